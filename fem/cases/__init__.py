@@ -1,0 +1,1 @@
+"""The shipped cases, one commented TOML file each."""
