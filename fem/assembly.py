@@ -1,0 +1,355 @@
+"""Finite elements of the container: mass, stiffness and large-rotation forces, with forms in scikit-fem.
+
+The only door to scikit-fem. Total Lagrangian, plane stress, St. Venant-Kirchhoff (`fem.elasticity`);
+four-node bilinear or nine-node biquadratic quadrilaterals on straight-sided cells, 2 x 2 and 3 x 3 Gauss
+points, which integrate the mass of such a cell exactly. Bathe, Finite Element Procedures (2014), 5.3 and 6.3.
+
+Axes x to the right, z up. Displacements have shape (n, 2); in vectors and matrices of all unknowns the order
+is u_x of node 0, u_z of node 0, u_x of node 1, ... Loads point along +x and +z; the internal force is the
+gradient of the strain energy, so equilibrium reads internal force = load.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix, csc_matrix, csr_matrix, diags_array
+from skfem import (
+    Basis,
+    BilinearForm,
+    ElementQuad1,
+    ElementQuad2,
+    ElementVector,
+    FacetBasis,
+    LinearForm,
+    MeshQuad,
+)
+from skfem.helpers import ddot, eye, mul, sym_grad, trace, transpose
+
+from fem.elasticity import (
+    FloatArray,
+    LamePair,
+    cauchy_stress,
+    energy_density,
+    first_stress,
+    first_stress_tangent,
+    plane_stress_lame,
+    von_mises,
+)
+
+IntArray = NDArray[np.int64]
+#: A field over the elevation: (x, z) of any shape (...) -> the two components, shape (2, ...).
+VectorField = Callable[[FloatArray, FloatArray], Any]
+#: (x, z) of the midpoints of edges -> chosen or not.
+EdgeChoice = Callable[[FloatArray, FloatArray], NDArray[np.bool_]]
+
+_ELEMENTS = {1: ElementQuad1, 2: ElementQuad2}
+_QUADRATURE_DEGREE = {1: 3, 2: 5}  # 2 x 2 and 3 x 3 Gauss points
+
+
+class QuadMesh(Protocol):
+    """What the assembly asks of a mesh."""
+
+    @property
+    def points(self) -> NDArray[np.floating]: ...  #: (n, 2) [m]
+
+    @property
+    def quads(self) -> NDArray[np.integer]: ...  #: (m, 4), counter-clockwise
+
+    @property
+    def region(self) -> NDArray[np.integer]: ...  #: (m,)
+
+    @property
+    def thickness(self) -> NDArray[np.floating]: ...  #: (m,), out of plane [m]
+
+    @property
+    def areal_density(self) -> NDArray[np.floating]: ...  #: (m,) [kg per m2 of elevation]
+
+
+@BilinearForm
+def _mass_form(u: Any, v: Any, w: Any) -> Any:
+    return w.areal_density * u * v
+
+
+@BilinearForm
+def _stiffness_form(u: Any, v: Any, w: Any) -> Any:
+    """Linear plane stress: sigma(u) : epsilon(v)."""
+    strain, test = sym_grad(u), sym_grad(v)
+    return w.thickness * (2.0 * w.shear * ddot(strain, test) + w.first * trace(strain) * trace(test))
+
+
+@LinearForm
+def _internal_force_form(v: Any, w: Any) -> Any:
+    """P : grad v with P = F S, S of the Green-Lagrange strain (F^T F - I)/2."""
+    F, S = _deformation_and_stress(w)
+    return w.thickness * ddot(mul(F, S), v.grad)
+
+
+@BilinearForm
+def _tangent_form(u: Any, v: Any, w: Any) -> Any:
+    """Derivative of the internal force: geometric part, then material part in the current frame."""
+    F, S = _deformation_and_stress(w)
+    strain, test = (0.5 * (mul(transpose(F), g) + mul(transpose(g), F)) for g in (u.grad, v.grad))
+    material = 2.0 * w.shear * ddot(strain, test) + w.first * trace(strain) * trace(test)
+    return w.thickness * (ddot(mul(u.grad, S), v.grad) + material)
+
+
+def _deformation_and_stress(w: Any) -> tuple[FloatArray, FloatArray]:
+    gradient = w.displacement.grad
+    identity = eye(np.ones_like(gradient[0, 0]), 2)
+    F = gradient + identity
+    strain = 0.5 * (mul(transpose(F), F) - identity)
+    return F, 2.0 * w.shear * strain + w.first * eye(trace(strain), 2)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FiniteElements:
+    """An assembled container: its nodes, its constant matrices and its large-rotation forces.
+
+    `nodes[: len(points)]` are the points of the mesh, in their order; order 2 adds middles of edges and cells.
+    """
+
+    order: int  #: 1 bilinear, 2 biquadratic
+    youngs_modulus: float  #: [Pa]
+    poisson_ratio: float  #: [-]
+    nodes: FloatArray  #: reference positions of all nodes, shape (n, 2) [m]
+    cells: IntArray  #: nodes of each cell in VTK's order (quad, biquadratic quad), shape (m, 4 | 9)
+    region: NDArray[np.integer]  #: region of each cell, shape (m,)
+    base_nodes: IntArray  #: nodes at z = 0, by rising x
+    mass: csr_matrix  #: consistent mass, the same for x and z, shape (n, n) [kg]
+    stiffness: csc_matrix  #: linear plane stress, shape (2n, 2n), interleaved [N/m]
+    _lame: LamePair = field(repr=False)
+    _basis: Basis = field(repr=False)
+    _thickness: FloatArray = field(repr=False)  # at the quadrature points, (m, q)
+    _weights: FloatArray = field(repr=False)  # volume of each quadrature point, (m q,)
+    _gradient: csr_matrix = field(repr=False)  # one component -> d/dx, d/dz at the points, (2 m q, n)
+    _divergence: csr_matrix = field(repr=False)  # the transpose, stored by rows as well: a third faster
+    _recovery: csr_matrix = field(repr=False)  # quadrature points -> averaged nodes, (n, m q)
+
+    @property
+    def unknowns(self) -> int:
+        """Number of displacement components."""
+        return 2 * len(self.nodes)
+
+    @property
+    def vector_mass(self) -> csc_matrix:
+        """Mass for interleaved unknowns, shape (2n, 2n) [kg]."""
+        mass = self.mass.tocoo()
+        rows, columns = (np.concatenate([2 * index, 2 * index + 1]) for index in (mass.row, mass.col))
+        data = np.tile(mass.data, 2)
+        return coo_matrix((data, (rows, columns)), shape=self.stiffness.shape).tocsc()
+
+    def internal_force(self, displacement: FloatArray) -> FloatArray:
+        """Gradient of the strain energy, shape (n, 2) [N]: one sparse product there and one back."""
+        stress = first_stress(self._displacement_gradient(displacement), self._lame)
+        stress *= self._weights
+        force = np.empty_like(self.nodes)
+        for i in range(2):
+            force[:, i] = self._divergence @ stress[i].ravel()
+        return force
+
+    def strain_energy(self, displacement: FloatArray) -> float:
+        """Strain energy [J]; never negative."""
+        density = energy_density(self._displacement_gradient(displacement), self._lame)
+        return float(density @ self._weights)
+
+    def tangent(self, displacement: FloatArray) -> csc_matrix:
+        """Derivative of `internal_force`, shape (2n, 2n), interleaved [N/m]."""
+        moduli = first_stress_tangent(self._displacement_gradient(displacement), self._lame)
+        cells, k = self.cells.shape
+        moduli = (moduli * self._weights).reshape(2, 2, 2, 2, cells, -1)
+        # data of the gradient operator, by direction, cell, quadrature point and node of the cell
+        shapes = self._gradient.data.reshape(2, cells, -1, k)
+        rows = shapes.transpose(1, 3, 0, 2).reshape(cells, k, -1)
+        blocks = np.empty((cells, k, 2, k, 2))
+        for i, p in np.ndindex(2, 2):
+            columns = np.einsum("jlcq,lcqb->cjqb", moduli[i, :, p], shapes).reshape(cells, -1, k)
+            blocks[:, :, i, :, p] = rows @ columns
+        unknowns = (2 * self.cells[:, :, None] + np.arange(2)).reshape(cells, -1)
+        positions = (np.repeat(unknowns, 2 * k, axis=1).ravel(), np.tile(unknowns, 2 * k).ravel())
+        return coo_matrix((blocks.ravel(), positions), shape=self.stiffness.shape).tocsc()
+
+    def nodal_stress(self, displacement: FloatArray) -> FloatArray:
+        """Cauchy stress at the nodes, shape (n, 3): xx, zz, xz in the axes of space [Pa].
+
+        In each cell a bilinear field is fitted to the quadrature points and read at the nodes; at a node the
+        cells are averaged by area, but only those of the greatest thickness there. So where a wall (thick out
+        of plane) meets a sheet, the node shows the wall's stress, not diluted by the sheet's.
+        """
+        stress = cauchy_stress(self._displacement_gradient(displacement), self._lame)
+        return self._recovery @ stress.reshape(3, -1).T
+
+    def nodal_von_mises(self, displacement: FloatArray) -> FloatArray:
+        """Equivalent stress of `nodal_stress`, shape (n,) [Pa]."""
+        return von_mises(self.nodal_stress(displacement).T)
+
+    def area_load(self, density: VectorField) -> FloatArray:
+        """Consistent nodal forces of a load per area of elevation [N/m2], shape (n, 2) [N]."""
+        return np.stack([_load(self._basis, density, i) for i in range(2)], axis=1)
+
+    def edge_load(self, chosen: EdgeChoice, density: VectorField) -> FloatArray:
+        """Consistent nodal forces of a load per length of boundary edge [N/m], shape (n, 2) [N].
+
+        `chosen` picks outer edges by their midpoints. A unit load gives the tributary lengths of the nodes.
+
+        Raises:
+            ValueError: no outer edge is chosen.
+        """
+        mesh = self._basis.mesh
+        facets = mesh.facets_satisfying(lambda x: chosen(x[0], x[1]), boundaries_only=True)
+        if len(facets) == 0:
+            raise ValueError("edge load: no outer edge of the mesh satisfies the choice")
+        edge = FacetBasis(mesh, self._basis.elem, facets=facets, intorder=_QUADRATURE_DEGREE[self.order])
+        return np.stack([_load(edge, density, i) for i in range(2)], axis=1)
+
+    def l2_distance(self, displacement: FloatArray, reference: VectorField) -> float:
+        """Root of the integral over the elevation of |displacement - reference|^2 [m2]."""
+        basis = Basis(self._basis.mesh, self._basis.elem, intorder=_QUADRATURE_DEGREE[self.order] + 4)
+        x, z = basis.global_coordinates()
+        exact = np.broadcast_arrays(*reference(x, z), x)[:2]
+        errors = [np.array(basis.interpolate(displacement[:, i])) - exact[i] for i in range(2)]
+        return float(np.sqrt(sum(np.sum(basis.dx * error**2) for error in errors)))
+
+    def internal_force_by_form(self, displacement: FloatArray) -> FloatArray:
+        """`internal_force` through its scikit-fem form: slow, the yardstick of the sparse product."""
+        basis, parameters = self._vector_basis(displacement)
+        return _internal_force_form.assemble(basis, **parameters).reshape(-1, 2)
+
+    def tangent_by_form(self, displacement: FloatArray) -> csc_matrix:
+        """`tangent` through its scikit-fem form."""
+        basis, parameters = self._vector_basis(displacement)
+        return _tangent_form.assemble(basis, **parameters).tocsc()
+
+    def _displacement_gradient(self, displacement: FloatArray) -> FloatArray:
+        """H_ij = d u_i / d X_j at the quadrature points, shape (2, 2, m q).
+
+        The mean goes first: a floor far from where it started then costs no digits.
+        """
+        gradient = np.empty((2, 2, self._weights.size))
+        for i in range(2):
+            component = displacement[:, i]
+            gradient[i] = (self._gradient @ (component - component.mean())).reshape(2, -1)
+        return gradient
+
+    def _vector_basis(self, displacement: FloatArray) -> tuple[Basis, dict[str, Any]]:
+        basis = self._basis.with_element(ElementVector(self._basis.elem))
+        return basis, {
+            "displacement": basis.interpolate(np.ravel(displacement)),
+            "thickness": self._thickness,
+            "first": self._lame.first,
+            "shear": self._lame.shear,
+        }
+
+
+def assemble(mesh: QuadMesh, *, youngs_modulus: float, poisson_ratio: float, order: int) -> FiniteElements:
+    """Assemble what does not change during a run.
+
+    Raises:
+        ValueError: order other than 1 or 2; elastic constants, thickness or areal density out of range; a
+            cell that is clockwise, inverted or without area; a point that belongs to no cell.
+    """
+    if order not in _ELEMENTS:
+        raise ValueError(f"element order must be 1 (bilinear) or 2 (biquadratic), got {order}")
+    lame = plane_stress_lame(youngs_modulus, poisson_ratio)
+    basis = _scalar_basis(mesh, order)
+    thickness = _at_points(basis, mesh.thickness, "thickness", "m")
+    density = _at_points(basis, mesh.areal_density, "areal density", "kg/m2")
+
+    cells = np.ascontiguousarray(basis.element_dofs.T).astype(np.int64)
+    nodes = np.ascontiguousarray(basis.doflocs.T)
+    nodes[: len(mesh.points)] = mesh.points  # exactly, not through the mapping
+    gradient = _gradient_operator(basis)
+    vector_basis = basis.with_element(ElementVector(basis.elem))
+    elastic = {"thickness": thickness, "first": lame.first, "shear": lame.shear}
+    return FiniteElements(
+        order=order,
+        youngs_modulus=youngs_modulus,
+        poisson_ratio=poisson_ratio,
+        nodes=nodes,
+        cells=cells,
+        region=np.asarray(mesh.region),
+        base_nodes=_base_nodes(nodes),
+        mass=_mass_form.assemble(basis, areal_density=density).tocsr(),
+        stiffness=_stiffness_form.assemble(vector_basis, **elastic).tocsc(),
+        _lame=lame,
+        _basis=basis,
+        _thickness=thickness,
+        _weights=(basis.dx * thickness).ravel(),
+        _gradient=gradient,
+        _divergence=gradient.T.tocsr(),
+        _recovery=_recovery_operator(basis, cells, np.asarray(mesh.thickness, dtype=float)),
+    )
+
+
+def _scalar_basis(mesh: QuadMesh, order: int) -> Basis:
+    points = np.ascontiguousarray(np.asarray(mesh.points, dtype=float).T)
+    quads = np.ascontiguousarray(np.asarray(mesh.quads, dtype=np.int64).T)
+    lonely = np.setdiff1d(np.arange(points.shape[1]), quads)
+    if lonely.size:
+        x, z = points[:, lonely[0]]
+        raise ValueError(f"point {lonely[0]} at x = {x:.6g} m, z = {z:.6g} m belongs to no cell; remove it")
+    basis = Basis(MeshQuad(points, quads), _ELEMENTS[order](), intorder=_QUADRATURE_DEGREE[order])
+    least = basis.mapping.detDF(basis.X).min(axis=1)
+    # scikit-fem integrates with |det J| and would take such a cell without a word
+    if not np.all(least > 0.0):
+        worst = int(np.argmin(np.where(np.isnan(least), -np.inf, least)))
+        x, z = points[:, quads[:, worst]].mean(axis=1)
+        raise ValueError(
+            f"cell {worst} at x = {x:.6g} m, z = {z:.6g} m has the Jacobian {least[worst]:.3g} m2; "
+            "its corners must run counter-clockwise around a positive area"
+        )
+    return basis
+
+
+def _at_points(basis: Basis, values: NDArray[np.floating], name: str, unit: str) -> FloatArray:
+    """One value a cell, repeated at its quadrature points, shape (m, q)."""
+    values = np.asarray(values, dtype=float)
+    if values.shape != (basis.nelems,):
+        raise ValueError(f"{name} must have one value a cell, shape ({basis.nelems},), got {values.shape}")
+    if not np.all((values > 0.0) & (values < np.inf)):
+        cell = int(np.argmin((values > 0.0) & (values < np.inf)))
+        raise ValueError(f"{name} of cell {cell} must be positive and finite, got {values[cell]} {unit}")
+    return np.repeat(values[:, None], basis.X.shape[1], axis=1)
+
+
+def _base_nodes(nodes: FloatArray) -> IntArray:
+    height = np.ptp(nodes[:, 1])
+    base = np.flatnonzero(np.abs(nodes[:, 1]) <= 1e-9 * height)
+    return base[np.argsort(nodes[base, 0], kind="stable")]
+
+
+def _gradient_operator(basis: Basis) -> csr_matrix:
+    """Values at the nodes -> derivatives along x, then along z, at the points of all cells, (2 m q, n)."""
+    gradients = np.stack([basis.basis[i][0].grad for i in range(basis.Nbfun)], axis=-1)  # (2, m, q, k)
+    nodes = np.broadcast_to(basis.element_dofs.T[None, :, None, :], gradients.shape)
+    starts = np.arange(0, gradients.size + 1, basis.Nbfun)
+    shape = (gradients[..., 0].size, basis.N)
+    return csr_matrix((gradients.ravel(), nodes.ravel(), starts), shape=shape)
+
+
+def _recovery_operator(basis: Basis, cells: IntArray, thickness: FloatArray) -> csr_matrix:
+    """Values at the quadrature points -> fitted in each cell, averaged at the nodes, shape (n, m q)."""
+    bilinear = [np.stack([np.ones_like(X), X, Z, X * Z], axis=1) for X, Z in (basis.X, basis.elem.doflocs.T)]
+    fit = bilinear[1] @ np.linalg.pinv(bilinear[0])  # (k, q)
+    greatest = np.zeros(basis.N)
+    np.maximum.at(greatest, cells, thickness[:, None])
+    share = np.where(thickness[:, None] >= (1.0 - 1e-9) * greatest[cells], basis.dx.sum(axis=1)[:, None], 0.0)
+    values = share[:, :, None] * fit  # (m, k, q)
+    rows = np.broadcast_to(cells[:, :, None], values.shape)
+    points = np.broadcast_to(np.arange(basis.dx.size).reshape(len(cells), 1, -1), values.shape)
+    summed = coo_matrix((values.ravel(), (rows.ravel(), points.ravel())), shape=(basis.N, basis.dx.size))
+    total = np.zeros(basis.N)
+    np.add.at(total, cells, share)
+    recovery = (diags_array(1.0 / total) @ summed).tocsr()
+    recovery.eliminate_zeros()
+    return recovery
+
+
+def _load(basis: Any, density: VectorField, component: int) -> FloatArray:
+    @LinearForm
+    def form(v: Any, w: Any) -> Any:
+        return density(*w.x)[component] * v
+
+    return form.assemble(basis)

@@ -1,0 +1,128 @@
+"""Plane-stress elasticity: strain, stress and energy as pure functions of the displacement gradient.
+
+St. Venant-Kirchhoff material in total Lagrangian form: small strains, any rotation. Holzapfel, Nonlinear
+Solid Mechanics (2000), sections 2.4, 3.1 and 6.5; plane stress as for a thin sheet.
+Gradients have shape (2, 2, ...) with `gradient[i, j]` = d u_i / d X_j, i and j running over x, z; symmetric
+tensors have shape (3, ...) in the order xx, zz, xz (the tensor's component, not twice it). Tension is
+positive.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+class LamePair(NamedTuple):
+    """The two Lamé constants of plane stress [Pa]."""
+
+    first: float  #: multiplies the trace of the in-plane strain
+    shear: float  #: shear modulus
+
+
+def plane_stress_lame(youngs_modulus: float, poisson_ratio: float) -> LamePair:
+    """Lamé pair for which 2 shear E + first tr(E) I is the plane-stress law [Pa].
+
+    Timoshenko and Goodier, Theory of Elasticity (1970), section 16, solved for the stresses.
+
+    Raises:
+        ValueError: Young's modulus not positive, or Poisson's ratio outside ]-1, 0.5].
+    """
+    if not 0.0 < youngs_modulus < np.inf:
+        raise ValueError(f"Young's modulus must be positive and finite, got {youngs_modulus} Pa")
+    if not -1.0 < poisson_ratio <= 0.5:
+        raise ValueError(f"Poisson's ratio must be above -1 and at most 0.5, got {poisson_ratio}")
+    return LamePair(
+        youngs_modulus * poisson_ratio / (1.0 - poisson_ratio**2),
+        youngs_modulus / (2.0 * (1.0 + poisson_ratio)),
+    )
+
+
+def green_strain(gradient: FloatArray) -> FloatArray:
+    """Green-Lagrange strain (H + H^T + H^T H)/2, shape (3, ...) [-].
+
+    Written in the gradient and not in F^T F - I, so that a strain of 1e-12 survives beside a small rotation;
+    a large rotation leaves a few units in the last place of 1.
+    """
+    (xx, xz), (zx, zz) = gradient
+    strain = np.empty((3, *gradient.shape[2:]))
+    strain[0] = xx + 0.5 * (xx * xx + zx * zx)
+    strain[1] = zz + 0.5 * (zz * zz + xz * xz)
+    strain[2] = 0.5 * (xz + zx + xx * xz + zx * zz)
+    return strain
+
+
+def second_stress(strain: FloatArray, lame: LamePair) -> FloatArray:
+    """Second Piola-Kirchhoff stress of St. Venant and Kirchhoff, shape (3, ...) [Pa]."""
+    stress = 2.0 * lame.shear * strain
+    stress[:2] += lame.first * (strain[0] + strain[1])
+    return stress
+
+
+def first_stress(gradient: FloatArray, lame: LamePair) -> FloatArray:
+    """First Piola-Kirchhoff stress P = F S, shape (2, 2, ...), force axis first [Pa]."""
+    sxx, szz, sxz = second_stress(green_strain(gradient), lame)
+    stress = np.empty_like(gradient)
+    for i in range(2):
+        stress[i, 0] = gradient[i, 0] * sxx + gradient[i, 1] * sxz
+        stress[i, 1] = gradient[i, 0] * sxz + gradient[i, 1] * szz
+    stress[0, 0] += sxx
+    stress[0, 1] += sxz
+    stress[1, 0] += sxz
+    stress[1, 1] += szz
+    return stress
+
+
+def first_stress_tangent(gradient: FloatArray, lame: LamePair) -> FloatArray:
+    """Derivative of `first_stress`: A[i, j, k, l] = d P_ij / d H_kl, shape (2, 2, 2, 2, ...) [Pa].
+
+    A_ijkl = delta_ik S_jl + first F_ij F_kl + shear (F_il F_kj + (F F^T)_ik delta_jl).
+    """
+    sxx, szz, sxz = second_stress(green_strain(gradient), lame)
+    stress = ((sxx, sxz), (sxz, szz))
+    deformation = gradient.copy()
+    deformation[0, 0] += 1.0
+    deformation[1, 1] += 1.0
+    tangent = lame.first * np.einsum("ij...,kl...->ijkl...", deformation, deformation)
+    tangent += lame.shear * np.einsum("il...,kj...->ijkl...", deformation, deformation)
+    left = lame.shear * np.einsum("im...,km...->ik...", deformation, deformation)
+    for j in range(2):
+        tangent[:, j, :, j] += left
+        for l in range(2):  # noqa: E741 - the fourth index of the tensor
+            for i in range(2):
+                tangent[i, j, i, l] += stress[j][l]
+    return tangent
+
+
+def energy_density(gradient: FloatArray, lame: LamePair) -> FloatArray:
+    """Strain energy per reference volume, shear E:E + first tr(E)^2/2, shape (...) [J/m3]; never negative."""
+    xx, zz, xz = green_strain(gradient)
+    return lame.shear * (xx * xx + zz * zz + 2.0 * xz * xz) + 0.5 * lame.first * (xx + zz) ** 2
+
+
+def cauchy_stress(gradient: FloatArray, lame: LamePair) -> FloatArray:
+    """True stress F S F^T / J in the axes of space, not of the body, shape (3, ...) [Pa].
+
+    J includes the stretch of the thickness, sqrt(1 - (first/shear) tr(E)), which plane stress leaves free.
+    Where an absurd strain would make the thickness vanish (tr(E) beyond shear/first) the stress is nan.
+    """
+    strain = green_strain(gradient)
+    sxx, szz, sxz = second_stress(strain, lame)
+    xx, xz = 1.0 + gradient[0, 0], gradient[0, 1]
+    zx, zz = gradient[1, 0], 1.0 + gradient[1, 1]
+    with np.errstate(invalid="ignore"):
+        thickness_stretch = np.sqrt(1.0 - lame.first / lame.shear * (strain[0] + strain[1]))
+    volume = (xx * zz - xz * zx) * thickness_stretch
+    stress = np.empty_like(strain)
+    stress[0] = (xx * xx * sxx + 2.0 * xx * xz * sxz + xz * xz * szz) / volume
+    stress[1] = (zx * zx * sxx + 2.0 * zx * zz * sxz + zz * zz * szz) / volume
+    stress[2] = (xx * zx * sxx + (xx * zz + xz * zx) * sxz + xz * zz * szz) / volume
+    return stress
+
+
+def von_mises(stress: FloatArray) -> FloatArray:
+    """Equivalent stress of plane stress, sqrt(sx^2 - sx sz + sz^2 + 3 t^2), shape (...) [Pa]."""
+    xx, zz, xz = stress
+    return np.sqrt(xx * xx - xx * zz + zz * zz + 3.0 * xz * xz)
