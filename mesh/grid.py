@@ -1,0 +1,118 @@
+"""Mesh lines of a structured container: where columns and rows begin and end.
+
+Lines always stand on the faces of the walls and at the edges of the feet; between them the spacing is
+even and as near to the element size as whole cells allow.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesh.cells import FloatArray
+from mesh.errors import MeshError
+from mesh.geometry import ContainerGeometry
+
+#: More cells than this are refused before memory is taken for them.
+MOST_CELLS = 2_000_000
+
+#: A foot line nearer than this share of the wall (or of a cell, at the middle) is moved onto the other
+#: line: a column that thin would refine nothing and only stiffen the numbers.
+MERGE_SHARE = 0.1
+
+#: Narrowest foot, as a share of the width.
+LEAST_FOOT = 1e-3
+
+
+@dataclass(frozen=True, kw_only=True)
+class Segments:
+    """Consecutive intervals of a coordinate, each divided evenly."""
+
+    lengths: tuple[float, ...]  #: [m]
+    counts: tuple[int, ...]  #: cells in each
+
+    @property
+    def count(self) -> int:
+        """Cells in all segments."""
+        return sum(self.counts)
+
+    def lines(self) -> FloatArray:
+        """Mesh lines from 0 to the sum of the lengths, shape (count + 1,) [m]."""
+        ends = np.concatenate(([0.0], np.cumsum(self.lengths)))
+        inner = [
+            np.linspace(start, stop, count + 1)[:-1]
+            for start, stop, count in zip(ends[:-1], ends[1:], self.counts, strict=True)
+        ]
+        return np.concatenate([*inner, ends[-1:]])
+
+
+def column_segments(geometry: ContainerGeometry, element_size: float, foot: float | None = None) -> Segments:
+    """Columns of the container from its left to its right side, symmetric."""
+    distances = {geometry.wall} if geometry.wall is not None else set()
+    if foot is not None:
+        distances.add(foot_line(geometry, element_size, foot))
+    return _mirrored(sorted(distances), geometry.width, element_size)
+
+
+def row_segments(geometry: ContainerGeometry, element_size: float) -> Segments:
+    """Rows of one box from its floor to its lid, symmetric."""
+    distances = [] if geometry.wall is None else [geometry.wall]
+    return _mirrored(distances, geometry.height, element_size)
+
+
+def foot_line(geometry: ContainerGeometry, element_size: float, foot: float) -> float:
+    """Distance from each corner of the mesh line that ends the foot [m].
+
+    It is `foot`, unless a face of the wall or the middle of the base lies so near that the column
+    between them would be a sliver (`MERGE_SHARE`): then it is that line.
+
+    Raises:
+        MeshError: a foot that is not positive, wider than half the base, or narrower than a thousandth of it.
+    """
+    half = 0.5 * geometry.width
+    if not 0.0 < foot <= half * (1.0 + 1e-12):
+        raise MeshError(f"foot must be above 0 and at most half the width, {half} m, got {foot} m")
+    if foot < LEAST_FOOT * geometry.width:
+        raise MeshError(
+            f"a foot of {foot} m is less than {LEAST_FOOT:g} of the width {geometry.width} m; "
+            "use support kind corners"
+        )
+    wall = geometry.wall
+    if wall is not None and abs(foot - wall) < MERGE_SHARE * min(wall, element_size):
+        return wall
+    if 2.0 * (half - foot) < MERGE_SHARE * min(element_size, geometry.width):
+        return half
+    return foot
+
+
+def require_affordable(geometry: ContainerGeometry, columns: Segments, rows: Segments) -> None:
+    """Refuse a mesh of more than `MOST_CELLS` cells, giving its number."""
+    cells = columns.count * rows.count * geometry.boxes
+    if cells > MOST_CELLS:
+        raise MeshError(
+            f"the mesh would have {cells:.3g} cells ({columns.count} columns, {rows.count} rows a box, "
+            f"{geometry.boxes} boxes); at most {MOST_CELLS} are allowed: take a larger element size"
+        )
+
+
+def _mirrored(distances: list[float], total: float, element_size: float) -> Segments:
+    """Segments between lines at `distances` from both ends of a side of length `total`."""
+    half = [stop - start for start, stop in zip([0.0, *distances[:-1]], distances, strict=True)]
+    middle = total - 2.0 * sum(half)
+    if distances and distances[-1] == 0.5 * total:
+        lengths = [*half, *reversed(half)]
+    else:
+        lengths = [*half, middle, *reversed(half)]
+    return Segments(lengths=tuple(lengths), counts=tuple(_cells(length, element_size) for length in lengths))
+
+
+def _cells(length: float, element_size: float) -> int:
+    if not (element_size > 0.0 and math.isfinite(element_size)):
+        raise MeshError(f"element size must be positive and finite, got {element_size} m")
+    share = length / element_size
+    if share > MOST_CELLS:  # before rounding: a share may be infinite
+        raise MeshError(
+            f"an element size of {element_size} m would cut {length} m into {share:.3g} cells; "
+            f"at most {MOST_CELLS} cells are allowed in all: take a larger element size"
+        )
+    return max(1, round(share))
