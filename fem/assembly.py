@@ -108,7 +108,7 @@ def _deformation_and_stress(w: Any) -> tuple[FloatArray, FloatArray]:
 class FiniteElements:
     """An assembled container: its nodes, its constant matrices and its large-rotation forces.
 
-    `nodes[: len(points)]` are the points of the mesh, in their order; order 2 adds middles of edges and cells.
+    `nodes[: len(points)]` are the points of the mesh, in their order; order 2 adds edge and cell middles.
     """
 
     order: int  #: 1 bilinear, 2 biquadratic
