@@ -255,6 +255,8 @@ def assemble(mesh: QuadMesh, *, youngs_modulus: float, poisson_ratio: float, ord
     lame = plane_stress_lame(youngs_modulus, poisson_ratio)
     basis = _scalar_basis(mesh, order)
     thickness = _at_points(basis, mesh.thickness, "thickness", "m")
+    if not np.all(thickness > 0.0):
+        raise ValueError(f"thickness must be positive, the smallest is {thickness.min()} m")
     density = _at_points(basis, mesh.areal_density, "areal density", "kg/m2")
 
     cells = np.ascontiguousarray(basis.element_dofs.T).astype(np.int64)
@@ -308,9 +310,10 @@ def _at_points(basis: Basis, values: NDArray[np.floating], name: str, unit: str)
     values = np.asarray(values, dtype=float)
     if values.shape != (basis.nelems,):
         raise ValueError(f"{name} must have one value a cell, shape ({basis.nelems},), got {values.shape}")
-    if not np.all((values > 0.0) & (values < np.inf)):
-        cell = int(np.argmin((values > 0.0) & (values < np.inf)))
-        raise ValueError(f"{name} of cell {cell} must be positive and finite, got {values[cell]} {unit}")
+    sound = (values >= 0.0) & (values < np.inf)
+    if not sound.all():
+        cell = int(np.argmin(sound))
+        raise ValueError(f"{name} of cell {cell} must be finite and not negative, got {values[cell]} {unit}")
     return np.repeat(values[:, None], basis.X.shape[1], axis=1)
 
 

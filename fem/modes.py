@@ -1,9 +1,9 @@
 """Free-free elastic modes of the container, separated exactly from its rigid motion.
 
-The frame that floats with the modes is Tisserand's: elastic modes carry neither momentum nor, to first order,
-angular momentum, so they are M-orthogonal to the two translations and the rotation. Shabana, Dynamics of
-Multibody Systems (2013), section 5.3. Lanczos iteration with shift and inversion (Ericsson and Ruhe, Math. Comp.
-35 (1980) 1251) on the complement of the rigid modes. Rotation > 0 tilts toward +x.
+The frame that floats with the modes is Tisserand's: elastic modes carry neither momentum nor, to first
+order, angular momentum, so they are M-orthogonal to the two translations and the rotation. Shabana, Dynamics
+of Multibody Systems (2013), chapter 5. Lanczos iteration with shift and inversion (Ericsson and Ruhe,
+Mathematics of Computation 35 (1980) 1251) on the complement of the rigid modes. Rotation > 0 tilts toward +x.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ _VTK_CELLS = {4: "quad", 9: "quad9"}
 class ElasticModes:
     """The lowest elastic modes of a free container, by rising frequency."""
 
-    frequencies_Hz: FloatArray  #: shape (k,) [Hz]
+    frequencies_Hz: FloatArray  #: shape (k,) [Hz]  # noqa: N815 - the symbol of the unit
     shapes: FloatArray  #: shape^T M shape = 1 for each, shape (k, n, 2) [kg^-1/2]
 
     @property
@@ -36,9 +36,9 @@ class ElasticModes:
 
 
 def rigid_modes(elements: FiniteElements) -> FloatArray:
-    """Unit translations along x and z and small rotation about the centroid, mass-normalised, shape (3, n, 2).
+    """Translations along x and z and small rotation about the centroid, M-orthonormal, shape (3, n, 2).
 
-    Normalised and M-orthogonal to one another: divided by sqrt(mass), sqrt(mass) and sqrt(polar inertia).
+    Unit motions divided by sqrt(mass), sqrt(mass) and sqrt(polar inertia).
     """
     nodal_mass = elements.mass @ np.ones(len(elements.nodes))
     arm = elements.nodes - nodal_mass @ elements.nodes / nodal_mass.sum()
@@ -72,22 +72,17 @@ def elastic_modes(elements: FiniteElements, count: int) -> ElasticModes:
 
 def elastic_mode_table(modes: ElasticModes) -> list[dict[str, float]]:
     """One row a mode for the screen: number, frequency_Hz, period_s, ratio to the first."""
+    frequencies = modes.frequencies_Hz.tolist()
     return [
-        {
-            "mode": number,
-            "frequency_Hz": f,
-            "period_s": 1.0 / f,
-            "ratio_to_first": f / modes.frequencies_Hz[0],
-        }
-        for number, f in enumerate(modes.frequencies_Hz.tolist(), start=1)
+        {"mode": i, "frequency_Hz": f, "period_s": 1.0 / f, "ratio_to_first": f / frequencies[0]}
+        for i, f in enumerate(frequencies, start=1)
     ]
 
 
 def write_modes(elements: FiniteElements, modes: ElasticModes, folder: Path) -> Path:
     """Write `modes.vtu` with every shape as a point vector, scaled to a largest displacement of 1 m.
 
-    Vectors have three components and lie in the plane of the points (x, z, 0): ParaView's Warp By Vector wants
-    three.
+    Points and vectors are (x, z, 0); ParaView's Warp By Vector wants three components.
 
     Returns:
         The file written.
@@ -110,13 +105,14 @@ def write_modes(elements: FiniteElements, modes: ElasticModes, folder: Path) -> 
 
 
 def _dense_modes(elements: FiniteElements, rigid: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
-    """On a basis of the complement of the rigid modes, orthonormal in the mass."""
-    upper = cholesky(elements.vector_mass.toarray())
-    complement = qr(upper @ rigid.T)[0][:, 3:]
-    basis = solve_triangular(upper, complement)
-    stiffness = basis.T @ (elements.stiffness @ basis)
-    squares, vectors = eigh(0.5 * (stiffness + stiffness.T), subset_by_index=(0, count - 1))
-    return squares, basis @ vectors
+    """The same inversion on a basis of the rigid modes' complement, orthonormal in K + shift M."""
+    mass, shift = elements.vector_mass, _first_square_estimate(elements, rigid)
+    upper = cholesky((elements.stiffness + shift * mass).toarray())
+    basis = solve_triangular(upper, qr(upper @ rigid.T)[0][:, 3:])
+    compliance = basis.T @ (mass @ basis)
+    last = len(compliance) - 1
+    inverses, vectors = eigh(0.5 * (compliance + compliance.T), subset_by_index=(last + 1 - count, last))
+    return 1.0 / inverses[::-1] - shift, basis @ vectors[:, ::-1]
 
 
 def _lanczos_modes(elements: FiniteElements, rigid: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
@@ -174,7 +170,7 @@ def _modal_masses(elements: FiniteElements, shapes: FloatArray) -> FloatArray:
 
 
 def _signs(shapes: FloatArray) -> FloatArray:
-    """+1 or -1 for each shape, shape (k, 1, 1); mirror images that tie up to rounding choose the first node."""
+    """+1 or -1 for each shape, (k, 1, 1); of components that tie up to rounding the first node's counts."""
     flat = shapes.reshape(len(shapes), -1)
     size = np.abs(flat)
     first = np.argmax(size >= (1.0 - 1e-6) * size.max(axis=1, keepdims=True), axis=1)
