@@ -97,7 +97,7 @@ def require_affordable(geometry: ContainerGeometry, columns: Segments, rows: Seg
 
 def _mirrored(distances: list[float], total: float, element_size: float) -> Segments:
     """Segments between lines at `distances` from both ends of a side of length `total`."""
-    half = [stop - start for start, stop in zip([0.0, *distances[:-1]], distances, strict=True)]
+    half = [stop - start for start, stop in zip([0.0, *distances], distances, strict=False)]
     middle = total - 2.0 * sum(half)
     if distances and distances[-1] == 0.5 * total:
         lengths = [*half, *reversed(half)]

@@ -15,6 +15,9 @@ from mesh.errors import MeshError, MeshQualityError
 #: Smallest scaled Jacobian accepted by default: corner angles between 11.5 and 168.5 degrees.
 LEAST_SCALED_JACOBIAN = 0.2
 
+#: Positions beyond this are no container's [m]; their squares and cubes still are numbers.
+FARTHEST = 1e9
+
 #: Smallest edge of a cell over its longest that is still an edge and not a collapsed one.
 LEAST_EDGE_RATIO = 1e-9
 
@@ -75,17 +78,23 @@ def require_quality(points: FloatArray, quads: IntArray, least: float = LEAST_SC
     )
 
 
+def require_positions(points: FloatArray) -> None:
+    """Refuse points (n, any) [m] that are not finite or beyond `FARTHEST`; raises MeshError naming the first."""
+    placed = (np.abs(points) <= FARTHEST).all(axis=1)  # also refuses nan
+    if not placed.all():
+        first = int(np.argmin(placed))
+        raise MeshError(
+            f"point {first} has no finite position within {FARTHEST:g} m: {points[first].tolist()} m "
+            f"({int(np.sum(~placed))} such points)"
+        )
+
+
 def _require_numbers(points: FloatArray, quads: IntArray) -> None:
     if points.ndim != 2 or points.shape[1] != 2:
         raise MeshError(f"points must have shape (n, 2), got {points.shape}")
     if quads.ndim != 2 or quads.shape[1] != 4 or len(quads) == 0:
         raise MeshError(f"quads must have shape (m, 4) with at least one cell, got {quads.shape}")
-    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
-    if bad.size:
-        x, z = points[bad[0]]
-        raise MeshError(
-            f"point {bad[0]} has no finite position: x = {x} m, z = {z} m ({bad.size} such points)"
-        )
+    require_positions(points)
     if quads.min() < 0 or quads.max() >= len(points):
         raise MeshError(
             f"cells name points {quads.min()} to {quads.max()}, "

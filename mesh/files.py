@@ -1,0 +1,264 @@
+"""Meshes from files and to files; the only door to meshio in this package.
+
+Read are Gmsh (.msh, 2.2 to 4.1), VTU, legacy VTK and Abaqus (.inp) meshes of quadrilaterals in a plane:
+x in the first column, z in the second (the third the same everywhere), or z in the third (the second the
+same everywhere). Lengths in m. Of quadrilaterals with 8 or 9 nodes the corners are taken, if their sides
+are straight; the order of the elements is chosen where the mesh is used.
+"""
+
+import contextlib
+import io
+from dataclasses import dataclass
+from pathlib import Path
+
+import meshio
+import numpy as np
+import numpy.typing as npt
+
+from mesh.cells import FloatArray, IntArray, areas_and_centroids, signed_areas
+from mesh.container import ContainerMesh
+from mesh.errors import MeshError
+from mesh.fill import BoxCells, MassFill, cell_thickness, distribute_mass
+from mesh.geometry import ContainerGeometry, Section
+from mesh.grid import MOST_CELLS
+from mesh.quality import require_positions, require_quality
+from mesh.region import Region
+from mesh.tags import CellTags, cell_regions
+from mesh.tiling import TOLERANCE, place_on_floor, require_tiling
+from mesh.untrusted import FORMATS, format_list, require_harmless
+
+#: Cell types with four corners first, and the points and lines that may lie about a mesh of them.
+QUADS = ("quad", "quad8", "quad9")
+BYSTANDERS = ("vertex", "line", "line3")
+
+#: How far a mid-side node may lie from the middle of its side, as a share of the side.
+STRAIGHT_SHARE = 1e-3
+
+_READERS = {
+    ".msh": meshio.gmsh.read,
+    ".vtu": meshio.vtu.read,
+    ".vtk": meshio.vtk.read,
+    ".inp": meshio.abaqus.read,
+}
+
+
+def read_container_mesh(path: Path | str, geometry: ContainerGeometry, fill: MassFill) -> ContainerMesh:
+    """Mesh of a container from a file, placed on the floor and filled.
+
+    Cells must carry the regions wall, sheet and fill (shell; sheet may be absent) or solid (`mesh.tags` says
+    how). The box they tile must be the geometry's, all boxes, to 1e-6. What the walls of each box do
+    not weigh is laid on its fill cells as in `mesh.fill`; fill cells beyond the level come back as sheet.
+
+    Raises:
+        MeshError: a file that is refused or not readable, other cells than quadrilaterals, tags or dimensions
+            that do not fit, cells that do not tile the box or lie in two boxes, mass out of reach.
+        MeshQualityError: distorted cells.
+    """
+    path = Path(path)
+    require_harmless(path)
+    try:
+        return _container(_parse(path), geometry, fill)
+    except MeshError as error:
+        raise type(error)(f"mesh file {path}: {error}") from error
+
+
+def write_container_mesh(path: Path | str, mesh: ContainerMesh) -> None:
+    """Write a mesh with its regions, in the format of the suffix; `read_container_mesh` reads it back.
+
+    x and z go to the first two columns. VTU and VTK also get thickness [m] and areal density [kg/m2] of
+    the cells.
+
+    Raises:
+        MeshError: a suffix that names no known format.
+    """
+    path = Path(path)
+    points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
+    present = [region for region in Region if (mesh.region == region).any()]
+    written = meshio.Mesh(points, [("quad", mesh.quads)])
+    match path.suffix.lower():
+        case ".msh":
+            # Physical groups count from 1; 0 means none.
+            written.field_data = {region.name.lower(): np.array([region + 1, 2]) for region in present}
+            written.cell_data = {
+                "gmsh:physical": [mesh.region + 1],
+                "gmsh:geometrical": [mesh.region + 1],
+            }
+            meshio.gmsh.write(path, written, fmt_version="2.2", binary=False, float_fmt=".17g")
+        case ".inp":
+            written.cell_sets = {
+                region.name.lower(): [np.flatnonzero(mesh.region == region)] for region in present
+            }
+            meshio.abaqus.write(path, written)
+        case ".vtu" | ".vtk":
+            written.cell_data = {
+                "region": [mesh.region],
+                "thickness": [mesh.thickness],
+                "areal_density": [mesh.areal_density],
+            }
+            if path.suffix.lower() == ".vtu":
+                meshio.vtu.write(path, written, compression=None)
+            else:
+                meshio.vtk.write(path, written)
+        case _:
+            raise MeshError(f"mesh file {path}: format {path.suffix} is not written; {format_list()}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Raw:
+    """What a file holds, in plain arrays; nothing is checked yet but types."""
+
+    points: FloatArray  #: (n, 2 or 3) [m]
+    quads: IntArray  #: (m, 4)
+    tags: CellTags
+
+
+def _parse(path: Path) -> _Raw:
+    """The file's numbers; whatever a reader complains of becomes one MeshError."""
+    chatter = io.StringIO()
+    suffix = path.suffix.lower()
+    try:
+        with contextlib.redirect_stdout(chatter), contextlib.redirect_stderr(chatter):
+            raw = _READERS[suffix](str(path))
+        return _raw(raw)
+    except MeshError:
+        raise
+    # Parsers of broken files fail in every way there is, and one of them leaves by SystemExit.
+    except (Exception, SystemExit) as error:
+        reason = " ".join(f"{type(error).__name__} {error}".split())[:200]
+        raise MeshError(f"not readable as {FORMATS[suffix]} ({reason}); is it complete?") from error
+
+
+def _raw(mesh: meshio.Mesh) -> _Raw:
+    others = sorted({block.type for block in mesh.cells if block.type not in (*QUADS, *BYSTANDERS)})
+    if others:
+        raise MeshError(
+            f"cells of type {', '.join(others)}: only quadrilaterals are read; recombine the mesh"
+        )
+    chosen = [number for number, block in enumerate(mesh.cells) if block.type in QUADS]
+    blocks = [np.asarray(mesh.cells[number].data, dtype=np.int64) for number in chosen]
+    count = sum(len(block) for block in blocks)
+    if not 0 < count <= MOST_CELLS:
+        raise MeshError(f"{count} quadrilaterals; 1 to {MOST_CELLS} are read")
+    points = np.asarray(mesh.points, dtype=np.float64)
+    quads = np.concatenate([block[:, :4] for block in blocks])
+    if points.ndim != 2 or points.shape[1] not in (2, 3):
+        raise MeshError(f"points have shape {points.shape}, 2 or 3 columns are read")
+    low, high = min(int(block.min()) for block in blocks), max(int(block.max()) for block in blocks)
+    if low < 0 or high >= len(points):
+        raise MeshError(f"cells name points {low} to {high}, the file has 0 to {len(points) - 1}")
+    for block in blocks:
+        _require_straight_sides(points, block)
+    data = {name: np.concatenate([values[n] for n in chosen]) for name, values in mesh.cell_data.items()}
+    tags = CellTags(
+        count=count,
+        sets=_memberships(mesh, chosen),
+        data={name: field for name, field in data.items() if field.ndim == 1 and field.dtype.kind in "biuf"},
+        physical_names={
+            int(entry[0]): name
+            for name, entry in mesh.field_data.items()
+            if np.shape(entry) == (2,) and int(entry[1]) == 2
+        },
+    )
+    return _Raw(points=points, quads=quads, tags=tags)
+
+
+def _container(raw: _Raw, geometry: ContainerGeometry, fill: MassFill) -> ContainerMesh:
+    used, numbers = np.unique(raw.quads, return_inverse=True)
+    points, quads = _plane(raw.points[used]), numbers.reshape(raw.quads.shape).astype(np.int64)
+    points = place_on_floor(points, geometry.width, geometry.total_height)
+    clockwise = signed_areas(points, quads) < 0.0
+    quads[clockwise] = quads[clockwise, ::-1]
+    require_quality(points, quads)
+    require_tiling(points, quads, geometry.width, geometry.total_height)
+
+    solid = geometry.section is Section.SOLID
+    allowed = (Region.SOLID,) if solid else (Region.WALL, Region.SHEET, Region.FILL)
+    region = cell_regions(raw.tags, allowed)
+    density, region = _fill_boxes(points, quads, region, geometry, fill)
+    return ContainerMesh(
+        points=points,
+        quads=quads,
+        region=region,
+        thickness=cell_thickness(geometry, region),
+        areal_density=density,
+    )
+
+
+def _memberships(raw: meshio.Mesh, chosen: list[int]) -> dict[str, npt.NDArray[np.bool_]]:
+    """Named sets of the file as one flag a quadrilateral."""
+    sets = {}
+    for name, members in raw.cell_sets.items():
+        if name.startswith("gmsh:") or len(members) != len(raw.cells):
+            continue
+        flags = [np.zeros(len(raw.cells[number].data), dtype=bool) for number in chosen]
+        for flag, number in zip(flags, chosen, strict=True):
+            if members[number] is not None:
+                flag[np.asarray(members[number], dtype=np.int64)] = True
+        sets[name] = np.concatenate(flags)
+    return sets
+
+
+def _require_straight_sides(points: FloatArray, cells: IntArray) -> None:
+    if cells.shape[1] < 8:
+        return
+    corners, middles = points[cells[:, :4]], points[cells[:, 4:8]]
+    ends = np.roll(corners, -1, axis=1)
+    offset = np.linalg.norm(middles - 0.5 * (corners + ends), axis=2)
+    length = np.linalg.norm(ends - corners, axis=2)
+    if not (offset <= STRAIGHT_SHARE * length).all():
+        worst = cells[np.argmax((offset - STRAIGHT_SHARE * length).max(axis=1)), :4]
+        raise MeshError(
+            f"the cell with corners {worst.tolist()} has curved sides; only straight ones are read"
+        )
+
+
+def _plane(points: FloatArray) -> FloatArray:
+    """x and z (n, 2) of finite points with two or three columns."""
+    require_positions(points)
+    if points.shape[1] == 2:
+        return points
+    extent = np.ptp(points, axis=0)
+    flat = extent <= TOLERANCE * extent.max()
+    if flat[2]:
+        return points[:, [0, 1]]
+    if flat[1]:
+        return points[:, [0, 2]]
+    raise MeshError(
+        f"the mesh is not in the x-y or the x-z plane: it measures {extent[0]:.4g} x {extent[1]:.4g} x "
+        f"{extent[2]:.4g} m along x, y, z"
+    )
+
+
+def _fill_boxes(
+    points: FloatArray, quads: IntArray, region: IntArray, geometry: ContainerGeometry, fill: MassFill
+) -> tuple[FloatArray, IntArray]:
+    """Areal density and region of all cells, box by box."""
+    area, centroid = areas_and_centroids(points, quads)
+    corner_heights = points[quads, 1]
+    bottom, top = corner_heights.min(axis=1), corner_heights.max(axis=1)
+    box = np.clip((centroid[:, 1] / geometry.height).astype(np.int64), 0, geometry.boxes - 1)
+    slack = TOLERANCE * geometry.height
+    astride = (bottom < box * geometry.height - slack) | (top > (box + 1) * geometry.height + slack)
+    if astride.any():
+        x, z = centroid[np.argmax(astride)]
+        raise MeshError(
+            f"{int(astride.sum())} cells lie in two boxes, the first at x = {x:.4g} m, z = {z:.4g} m: "
+            f"put mesh lines at every {geometry.height} m"
+        )
+    density = np.empty(len(quads))
+    region = region.copy()
+    for number in range(geometry.boxes):
+        cells = np.flatnonzero(box == number)
+        floor = number * geometry.height
+        density[cells], region[cells] = distribute_mass(
+            geometry,
+            fill,
+            BoxCells(
+                region=region[cells],
+                area=area[cells],
+                centroid=centroid[cells, 1] - floor,
+                bottom=bottom[cells] - floor,
+                top=top[cells] - floor,
+            ),
+        )
+    return density, region

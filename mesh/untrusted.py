@@ -1,0 +1,112 @@
+"""What a mesh file is looked through for before a parser sees it.
+
+A mesh file is data from anywhere. Only formats that hold plain numbers are read (no pickles, no HDF5 with
+links to other files), and what would let a small file take much memory, or read another file, is refused.
+"""
+
+import re
+from pathlib import Path
+
+from mesh.errors import MeshError
+from mesh.grid import MOST_CELLS
+
+#: Suffixes of the formats read and written, with their names.
+FORMATS = {".msh": "Gmsh", ".vtu": "VTU", ".vtk": "legacy VTK", ".inp": "Abaqus"}
+
+#: Largest file read [bytes]; two million cells in ASCII take about this much.
+MOST_BYTES = 400_000_000
+
+#: Largest zlib-compressed VTU read [bytes]: it can grow a thousandfold in memory.
+MOST_COMPRESSED_BYTES = 4_000_000
+
+#: Largest count or label in a header: cells of a few blocks with their points.
+MOST_ENTRIES = 10 * MOST_CELLS
+
+
+def require_harmless(path: Path) -> None:
+    """Refuse a mesh file by its suffix, size and headers.
+
+    Raises:
+        MeshError: not a file, a format that is not read, larger than `MOST_BYTES`, or with
+            contents that would take much more memory than the file or name another file.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in FORMATS:
+        raise MeshError(f"mesh file {path}: format {suffix or 'without suffix'} is not read; {format_list()}")
+    if not path.is_file():
+        raise MeshError(f"mesh file {path}: no such file")
+    size = path.stat().st_size
+    if size > MOST_BYTES:
+        raise MeshError(
+            f"mesh file {path}: {size} bytes, at most {MOST_BYTES} are read; take larger elements"
+        )
+    contents = path.read_bytes()
+    objection = {".msh": _gmsh, ".vtu": _vtu, ".vtk": _vtk, ".inp": _abaqus}[suffix](contents)
+    if objection:
+        raise MeshError(f"mesh file {path}: {objection}")
+
+
+def format_list() -> str:
+    """The formats in words, for messages."""
+    return "known are " + ", ".join(f"{suffix} ({name})" for suffix, name in FORMATS.items())
+
+
+def _gmsh(contents: bytes) -> str | None:
+    header = re.match(
+        rb"(?:\$Comments.*?\$EndComments\s*)?\$MeshFormat\s+(\d)[.\d]*\s+([01])", contents, re.S
+    )
+    if header is None:
+        return "it does not begin like a Gmsh file ($MeshFormat); .msh files of other programs are not read"
+    binary_counts = header[1] != b"2" and header[2] == b"1"
+    for section in re.finditer(rb"^\$(Entities|Nodes|Elements|PhysicalNames)\r?\n", contents, re.M):
+        rest = contents[section.end() : section.end() + 200]
+        if binary_counts and section[1] != b"PhysicalNames":
+            counts = [int.from_bytes(rest[at : at + 8], "little") for at in (0, 8)]
+        else:
+            counts = [int(word) for word in rest.split(b"\n", 1)[0].split()[:4] if word.isdigit()]
+        if counts and max(counts) > MOST_ENTRIES:
+            return (
+                f"{max(counts)} entries in its section {section[1].decode()}, at most {MOST_ENTRIES} are read"
+            )
+    return None
+
+
+def _vtu(contents: bytes) -> str | None:
+    if b"\0" in contents[:64] or re.search(rb"<!(DOCTYPE|ENTITY)", contents):
+        return "VTU files are read as plain UTF-8 XML without DOCTYPE or entities"
+    compressor = re.search(rb"compressor\s*=\s*[\"'](\w+)", contents)
+    if compressor is None:
+        return None
+    if compressor[1] != b"vtkZLibDataCompressor":
+        return f"compressed with {compressor[1].decode()}; write it uncompressed or with zlib"
+    if len(contents) > MOST_COMPRESSED_BYTES:
+        return f"{len(contents)} bytes compressed, at most {MOST_COMPRESSED_BYTES}; write it uncompressed"
+    return None
+
+
+def _vtk(contents: bytes) -> str | None:
+    kinds = {kind.upper() for kind in re.findall(rb"^\s*DATASET\s+(\w+)", contents, re.M | re.I)}
+    if kinds != {b"UNSTRUCTURED_GRID"}:
+        listed = ", ".join(sorted(kind.decode() for kind in kinds)) or "none"
+        return f"of legacy VTK only DATASET UNSTRUCTURED_GRID is read, found {listed}"
+    return None
+
+
+def _abaqus(contents: bytes) -> str | None:
+    generating = False
+    for line in contents.decode(errors="replace").replace("\r", "\n").split("\n"):
+        # The reader drops every asterisk from a keyword, so this does too.
+        if line.partition(",")[0].strip().replace("*", "").upper() == "INCLUDE":
+            return "*INCLUDE is not followed; put the whole mesh in one file"
+        if line.startswith("*"):
+            generating = "GENERATE" in line.upper()
+        elif generating and (label := max(map(_label, line.split(",")))) > MOST_ENTRIES:
+            return f"a set generated up to label {label}, at most {MOST_ENTRIES} are read"
+    return None
+
+
+def _label(word: str) -> int:
+    try:
+        return int(word)
+    except ValueError:
+        return 0
