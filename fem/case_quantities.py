@@ -1,0 +1,197 @@
+"""The physical quantities a case file may hold: unit, allowed range, and the slips people make.
+
+Every number of a case file is SI and carries its unit in its key. A number outside its range is
+refused with the range, the value, the unit and, where it would fit in another unit that is in daily
+use (mm, kN, GPa, degrees, per cent), with that guess. The ranges leave room for every container the
+program can compute; they are there to catch a slip, not to judge a design.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quantity:
+    """A finite number with its unit and range, as metadata of an annotated `float`."""
+
+    unit: str  #: SI unit as printed; empty for a pure number
+    least: float | None = None  #: smallest value allowed
+    above: float | None = None  #: every value allowed is greater than this
+    most: float | None = None  #: largest value allowed
+    below: float | None = None  #: every value allowed is less than this
+    typical: float | None = None  #: an ordinary magnitude, to choose between guesses
+    slips: Mapping[str, float] = field(
+        default_factory=dict, hash=False
+    )  #: other unit -> what one of it is in SI
+    advice: str = ""  #: what to do about a value out of range that is no slip
+
+    def allows(self, value: float) -> bool:
+        """Whether the value is a finite number within the range."""
+        return (
+            (not isinstance(value, float) or math.isfinite(value))
+            and (self.least is None or value >= self.least)
+            and (self.above is None or value > self.above)
+            and (self.most is None or value <= self.most)
+            and (self.below is None or value < self.below)
+        )
+
+    @property
+    def range_in_words(self) -> str:
+        """The range as it stands in a message, without its unit."""
+        if self.least is not None and self.most is not None:
+            return (
+                f"{self.least:g}" if self.least == self.most else f"between {self.least:g} and {self.most:g}"
+            )
+        words = []
+        if self.least is not None:
+            words.append(f"at least {self.least:g}")
+        if self.above is not None:
+            words.append("positive" if self.above == 0.0 else f"more than {self.above:g}")
+        if self.most is not None:
+            words.append(f"at most {self.most:g}")
+        if self.below is not None:
+            words.append(f"less than {self.below:g}")
+        return " and ".join(words)
+
+    def guess(self, value: float, accept: Callable[[float], bool] | None = None) -> str:
+        """The unit the value was probably meant in, as a question, or an empty string.
+
+        Of the units in `slips` that bring the value into the range (and into `accept`), the one that
+        comes nearest to `typical` in order of magnitude.
+        """
+        if self.typical is None or value == 0.0 or not math.isfinite(value):
+            return ""
+        candidates = [(name, value * factor) for name, factor in self.slips.items()]
+        fitting = [
+            (abs(math.log10(abs(converted) / self.typical)), name, converted)
+            for name, converted in candidates
+            if self.allows(converted) and (accept is None or accept(converted))
+        ]
+        if not fitting:
+            return ""
+        _, name, converted = min(fitting)
+        return f"looks like {name}: {with_unit(converted, self.unit)}?"
+
+    def check(self, value: float) -> float:
+        """Return the value; raises ValueError with range, value, unit and a way out."""
+        if self.allows(value):
+            return value
+        way_out = self.guess(value) or self.advice
+        required = f"{self.range_in_words} {self.unit}".strip()
+        reason = f"must be {required}, got {with_unit(value, self.unit)}"
+        raise ValueError(f"{reason}; {way_out}" if way_out else reason)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """Check the number after pydantic's own strict reading of it."""
+        return core_schema.no_info_after_validator_function(self.check, handler(source))
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Range and unit for the JSON schema of the case file."""
+        bounds = {
+            "minimum": self.least,
+            "exclusiveMinimum": self.above,
+            "maximum": self.most,
+            "exclusiveMaximum": self.below,
+            "x-unit": self.unit or None,
+        }
+        return {**handler(schema), **{name: value for name, value in bounds.items() if value is not None}}
+
+
+def with_unit(value: object, unit: str) -> str:
+    """A value as printed in a message: numbers short, text in quotes, the unit behind."""
+    shown = f"{value:.7g}" if isinstance(value, float) else repr(value)
+    shown = shown if len(shown) <= 80 else f"{shown[:76]} ..."
+    return f"{shown} {unit}" if unit else shown
+
+
+MILLI_AND_CENTI = {"millimetres": 1e-3, "centimetres": 1e-2}
+DEGREES = {"degrees": math.pi / 180.0}
+GAL = {"gal (cm/s2)": 1e-2, "mm/s2": 1e-3}
+PER_CENT = {"per cent": 1e-2}
+TONNES = {"t/m3 (g/cm3)": 1e3}
+
+LENGTH = Quantity(unit="m", least=1e-3, most=100.0, typical=1.0, slips=MILLI_AND_CENTI)
+WALL = Quantity(unit="m", least=1e-6, most=50.0, typical=0.01, slips=MILLI_AND_CENTI)
+FOOT = Quantity(unit="m", above=0.0, most=100.0, typical=0.1, slips=MILLI_AND_CENTI)
+ELEMENT_SIZE = Quantity(unit="m", least=1e-5, most=100.0, typical=0.1, slips=MILLI_AND_CENTI)
+GRAVITY = Quantity(unit="m/s2", least=1e-2, most=100.0, typical=9.81, slips={"cm/s2": 1e-2, "mm/s2": 1e-3})
+WEIGHT = Quantity(unit="N", above=0.0, typical=25e3, slips={"kilonewtons": 1e3, "meganewtons": 1e6})
+# From the lightest foam to heavier than osmium: the mean of walls, fill and what is empty.
+DENSITY = Quantity(unit="kg/m3", least=5.0, most=25e3, typical=2e3, slips=TONNES)
+WALL_DENSITY = Quantity(unit="kg/m3", least=50.0, most=25e3, typical=7850.0, slips=TONNES)
+STIFFNESS = Quantity(
+    unit="Pa",
+    least=1e6,
+    most=1e13,
+    typical=2.1e11,
+    slips={"GPa (kN/mm2)": 1e9, "MPa (N/mm2)": 1e6, "kN/cm2": 1e7},
+)
+POISSON = Quantity(unit="", least=0.0, most=0.5, advice="steel has 0.3")
+MATERIAL_DAMPING = Quantity(unit="", least=0.0, below=1.0, typical=0.02, slips=PER_CENT)
+CONTACT_DAMPING = Quantity(unit="", least=0.0, most=1e3, advice="2 is usual")
+FRICTION = Quantity(
+    unit="", least=0.0, most=5.0, typical=0.4, slips=PER_CENT, advice="steel on concrete has 0.3 to 0.4"
+)
+SLIP_VELOCITY = Quantity(
+    unit="m/s",
+    above=0.0,
+    most=1.0,
+    typical=1e-3,
+    slips={"mm/s": 1e-3},
+    advice="about 1e-3 of the largest slip velocity is usual",
+)
+PENALTY = Quantity(unit="Pa/m", above=0.0, most=1e20, advice='"auto" chooses it')
+RATIO = Quantity(unit="", above=0.0, most=1e3, advice="1 is usual")
+WEAKENING = Quantity(
+    unit="m", least=0.0, most=0.1, typical=1e-4, slips={"micrometres": 1e-6, "millimetres": 1e-3}
+)
+AMPLITUDE = Quantity(unit="m", least=0.0, most=10.0, typical=0.05, slips=MILLI_AND_CENTI)
+PEAK_ACCELERATION = Quantity(unit="m/s2", least=-100.0, most=100.0, typical=4.0, slips=GAL)
+ANGULAR_FREQUENCY = Quantity(
+    unit="rad/s",
+    least=0.0628,
+    most=628.4,
+    advice="0.01 to 100 Hz; a frequency f in Hz is 2 pi f in rad/s",
+)
+FREQUENCY = Quantity(unit="Hz", least=0.01, most=100.0, advice="a period T in s is a frequency 1/T in Hz")
+PHASE = Quantity(
+    unit="rad", least=-6.2832, most=6.2832, typical=1.0, slips=DEGREES, advice="one turn is 2 pi"
+)
+CYCLES = Quantity(unit="cycles", above=0.0, most=1e7)
+RAMP_CYCLES = Quantity(unit="cycles", least=0.0, most=1e7)
+PULSE_DURATION = Quantity(unit="s", above=0.0, most=1e4, advice="milliseconds are 1e-3 s")
+DELAY = Quantity(unit="s", least=0.0, most=1e4)
+SCALE = Quantity(unit="", least=-1e6, most=1e6)
+ROTATION = Quantity(
+    unit="rad",
+    above=-math.pi / 2,
+    below=math.pi / 2,
+    typical=0.1,
+    slips=DEGREES,
+    advice="a quarter turn lies on its side",
+)
+ANGULAR_VELOCITY = Quantity(unit="rad/s", least=-100.0, most=100.0, typical=0.5, slips=DEGREES)
+VELOCITY = Quantity(unit="m/s", least=-100.0, most=100.0, typical=0.5, slips={"mm/s": 1e-3})
+GROUND_ACCELERATION = Quantity(unit="m/s2", least=0.0, most=50.0, typical=1.6, slips=GAL)
+SOIL_FACTOR = Quantity(unit="", least=0.1, most=5.0, advice="EN 1998-1:2004, Table 3.2 has 1.0 to 1.8")
+BEHAVIOUR_FACTOR = Quantity(unit="", least=1.0, most=10.0, advice="1.0 is elastic, 1.5 is usual")
+IMPORTANCE_FACTOR = Quantity(unit="", least=0.1, most=5.0, advice="EN 1998-1:2004, 4.2.5 has 0.8 to 1.4")
+SPECTRAL_RADIUS = Quantity(unit="", least=0.0, most=1.0, advice="0.5 is usual; 1 does not damp")
+NEWMARK_BETA = Quantity(unit="", above=0.0, most=1.0, advice="1/4 is the average acceleration")
+NEWMARK_GAMMA = Quantity(unit="", least=0.5, most=1.5, advice="1/2 is of second order and does not damp")
+STEP = Quantity(unit="s", least=1e-9, most=10.0, advice='"auto" chooses it')
+DURATION = Quantity(unit="s", least=1e-3, most=1e4, typical=20.0, slips={"milliseconds": 1e-3})
+SAMPLING = Quantity(unit="s", least=1e-7, most=1e4)
+FRAME_INTERVAL = Quantity(unit="s", least=0.0, most=1e4, advice="0 writes no fields")
+
+BOXES = Quantity(unit="boxes", least=1, most=50)
+MODE_COUNT = Quantity(unit="modes", least=0, most=1000)
+ORDER = Quantity(unit="", least=1, most=2, advice="1 is bilinear, 2 quadratic")
+SCHEMA = Quantity(unit="", least=1, most=1, advice="this program reads schema 1")
