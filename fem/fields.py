@@ -1,0 +1,223 @@
+"""Fields of a run for ParaView, pyvista and meshio: one VTU a frame, and a PVD that lists them by time.
+
+The elevation lies in the x-y plane of the viewer: points and vectors are (x, z, 0), since a vector of two
+components aborts ParaView's Warp By Vector. Points stand where the container stood, unstressed, on the floor
+as it was at t = 0; displacement includes the floor's motion, so warping by it shows the container where it is.
+Numbers are single precision, compressed. A frame is written beside its place and renamed before the PVD,
+replaced in the same way, names it: the series is valid at every moment.
+"""
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+from xml.sax.saxutils import quoteattr
+
+import meshio
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+#: Names of meshio for cells by their number of nodes, corners first, then mid-sides, then the centre.
+CELL_TYPES = {4: "quad", 9: "quad9"}
+SERIES = "run.pvd"
+
+# Up to so many frames, the list of frames is rewritten with each of them; of longer series, with each
+# thousandth more, for rewriting it ever again would grow as the square of their number.
+PROMPT_FRAMES = 1000
+
+
+class FieldWriter:
+    """Writes the frames of a run into a folder.
+
+    Args:
+        folder: made if it is missing.
+        points: reference positions of the nodes (x, z), shape (n, 2) [m].
+        cells: nodes of each cell in the order of VTK, shape (m, 4) or (m, 9).
+        region: kind of each cell, shape (m,).
+        kept_times: times of the frames of an interrupted run that stay [s]; other old frames are removed.
+
+    Raises:
+        ValueError: shapes that do not fit.
+        OSError: the folder or a file cannot be written.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        *,
+        points: FloatArray,
+        cells: IntArray,
+        region: IntArray,
+        kept_times: Sequence[float] = (),
+    ) -> None:
+        if points.ndim != 2 or points.shape[1] != 2:
+            raise ValueError(f"fields: points must have shape (n, 2), got {points.shape}")
+        if cells.ndim != 2 or cells.shape[1] not in CELL_TYPES or region.shape != cells.shape[:1]:
+            raise ValueError(
+                f"fields: cells {cells.shape} with regions {region.shape}; (m, 4 or 9) and (m,) needed"
+            )
+        folder.mkdir(parents=True, exist_ok=True)
+        self.folder = folder
+        self._points = _padded(points)
+        self._cells = [(CELL_TYPES[cells.shape[1]], cells.astype(np.int32))]
+        self._region = [region.astype(np.int32)]
+        self._times = list(kept_times)
+        self._listed = 0
+        self._list_frames()
+        kept = {frame_name(i) for i in range(len(self._times))}
+        for old in folder.glob("frame_*.vtu"):
+            if old.name not in kept:
+                old.unlink()
+
+    @property
+    def times(self) -> tuple[float, ...]:
+        """Times of the frames so far [s]: what a checkpoint needs to go on from here."""
+        return tuple(self._times)
+
+    def write(
+        self,
+        time: float,
+        *,
+        displacement: FloatArray,
+        velocity: FloatArray,
+        von_mises: FloatArray,
+        contact_pressure: FloatArray,
+        floor_displacement: float,
+    ) -> Path:
+        """Write a frame and list it.
+
+        Args:
+            time: [s].
+            displacement: position minus `points`, the floor's motion included, shape (n, 2) [m].
+            velocity: absolute, shape (n, 2) [m/s].
+            von_mises: at the nodes, shape (n,) [Pa].
+            contact_pressure: compression positive, zero off the base, shape (n,) [Pa].
+            floor_displacement: along x [m].
+
+        Returns:
+            The file of the frame.
+        """
+        floor = np.zeros_like(self._points)
+        floor[:, 0] = floor_displacement
+        mesh = meshio.Mesh(
+            self._points,
+            self._cells,
+            point_data={
+                "displacement_m": _padded(displacement),
+                "velocity_m_s": _padded(velocity),
+                "von_mises_Pa": von_mises.astype(np.float32),
+                "contact_pressure_Pa": contact_pressure.astype(np.float32),
+                "floor_displacement_m": floor,
+            },
+            cell_data={"region": self._region},
+        )
+        path = self.folder / frame_name(len(self._times))
+        part = path.with_name(f".{path.name}.part")
+        try:
+            meshio.write(part, mesh, file_format="vtu", binary=True, compression="zlib")
+            os.replace(part, path)
+        except BaseException:  # a full disk, or Ctrl-C
+            part.unlink(missing_ok=True)
+            raise
+        self._times.append(float(time))
+        if len(self._times) - self._listed > len(self._times) // PROMPT_FRAMES:
+            self._list_frames()
+        return path
+
+    def close(self) -> None:
+        """List the last frames of a long series."""
+        if self._listed < len(self._times):
+            self._list_frames()
+
+    def _list_frames(self) -> None:
+        entries = "".join(
+            f'    <DataSet timestep="{time!r}" part="0" file={quoteattr(frame_name(i))}/>\n'
+            for i, time in enumerate(self._times)
+        )
+        text = (
+            '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'
+            f"  <Collection>\n{entries}  </Collection>\n</VTKFile>\n"
+        )
+        part = self.folder / f".{SERIES}.part"
+        part.write_text(text, encoding="utf-8")
+        os.replace(part, self.folder / SERIES)
+        self._listed = len(self._times)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Frame:
+    """Fields at one time, as `FieldWriter.write` takes them, in single precision."""
+
+    time: float  #: [s]
+    points: FloatArray  #: reference positions (x, z), shape (n, 2) [m]
+    cells: IntArray  #: nodes of each cell in the order of VTK, shape (m, 4 or 9)
+    region: IntArray  #: shape (m,)
+    displacement: FloatArray  #: shape (n, 2) [m]
+    velocity: FloatArray  #: shape (n, 2) [m/s]
+    von_mises: FloatArray  #: shape (n,) [Pa]
+    contact_pressure: FloatArray  #: shape (n,) [Pa]
+    floor_displacement: float  #: [m]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Fields:
+    """A series of frames on disk, read one at a time."""
+
+    times: FloatArray  #: shape (n_frames,) [s]
+    files: tuple[Path, ...]  #: of the frames, in order
+
+    def __len__(self) -> int:
+        return len(self.files)
+
+    def frame(self, index: int) -> Frame:
+        """Read a frame."""
+        mesh = meshio.read(self.files[index], file_format="vtu")
+        (block,), data = mesh.cells, mesh.point_data
+        return Frame(
+            time=float(self.times[index]),
+            points=mesh.points[:, :2],
+            cells=block.data,
+            region=mesh.cell_data["region"][0],
+            displacement=data["displacement_m"][:, :2],
+            velocity=data["velocity_m_s"][:, :2],
+            von_mises=data["von_mises_Pa"],
+            contact_pressure=data["contact_pressure_Pa"],
+            floor_displacement=float(data["floor_displacement_m"][0, 0]),
+        )
+
+
+def open_fields(folder: Path) -> Fields:
+    """The frames in the folder `fields` of a run, of one that still goes on too.
+
+    Raises:
+        ValueError: a series that is damaged or names a file outside the folder.
+        OSError: there is no series.
+    """
+    path = folder / SERIES
+    try:
+        sets = ElementTree.fromstring(path.read_text(encoding="utf-8")).findall("./Collection/DataSet")
+        listed = [(float(entry.attrib["timestep"]), entry.attrib["file"]) for entry in sets]
+    except (ElementTree.ParseError, KeyError, ValueError):
+        raise ValueError(f"{path}: damaged, or not a series of frames") from None
+    for _, name in listed:
+        if Path(name).name != name:
+            raise ValueError(f"{path}: names {name!r}, which is not in its folder")
+    return Fields(
+        times=np.array([time for time, _ in listed]), files=tuple(folder / name for _, name in listed)
+    )
+
+
+def frame_name(index: int) -> str:
+    """File name of a frame; the first has index 0."""
+    return f"frame_{index:05d}.vtu"
+
+
+def _padded(vectors: FloatArray) -> NDArray[np.float32]:
+    """(x, z) as (x, z, 0) in single precision, shape (n, 3)."""
+    padded = np.zeros((len(vectors), 3), dtype=np.float32)
+    padded[:, :2] = vectors
+    return padded

@@ -1,0 +1,250 @@
+"""The folder of one run: what lies in it, who may write into it, and how a file is replaced whole.
+
+`run.json` is written first, with status "running", and marks the folder as a run's; the case files follow.
+Every file that is replaced is written beside its place and renamed, so a reader, or the next run after a
+kill, finds the old one or the new one and never half of one.
+"""
+
+import contextlib
+import json
+import math
+import os
+import shutil
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+#: Statuses after which there is nothing left to compute.
+FINISHED = frozenset({"completed", "overturned"})
+STATUSES = FINISHED | {"failed", "interrupted", "running"}
+
+
+class FolderError(ValueError):
+    """The folder of results cannot be used as asked; the message names the way out."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunFolder:
+    """Places of a run's files."""
+
+    path: Path  #: of the folder itself
+    finished: dict[str, Any] | None = None  #: result already there; None if there is something to compute
+
+    @property
+    def case(self) -> Path:
+        """The case file as given."""
+        return self.path / "case.toml"
+
+    @property
+    def resolved(self) -> Path:
+        """The case with every default written out."""
+        return self.path / "resolved.toml"
+
+    @property
+    def result(self) -> Path:
+        """Status, verdict, static checks, energy, numerics."""
+        return self.path / "run.json"
+
+    @property
+    def summary(self) -> Path:
+        """The table of the end of the run."""
+        return self.path / "summary.txt"
+
+    @property
+    def history(self) -> Path:
+        """One row a sample."""
+        return self.path / "history.csv"
+
+    @property
+    def fields(self) -> Path:
+        """Folder of `run.pvd` and its frames."""
+        return self.path / "fields"
+
+    @property
+    def checkpoint(self) -> Path:
+        """State to go on from."""
+        return self.path / "checkpoint.npz"
+
+    @property
+    def figures(self) -> Path:
+        """Folder of the figures."""
+        return self.path / "figures"
+
+    def write_result(self, result: Mapping[str, Any]) -> None:
+        """Replace `run.json`; numbers that are not finite become null.
+
+        Raises:
+            ValueError: a status that is none of `STATUSES`.
+            OSError: the file cannot be written.
+        """
+        if result.get("status") not in STATUSES:
+            raise ValueError(f"unknown status {result.get('status')!r}; known: {', '.join(sorted(STATUSES))}")
+        write_atomically(self.result, to_json(result))
+
+    def write_summary(self, text: str) -> None:
+        """Replace `summary.txt`."""
+        write_atomically(self.summary, text)
+
+
+def open_run_folder(
+    path: Path,
+    *,
+    case_text: str,
+    resolved_text: str,
+    case_hash: str,
+    force: bool = False,
+    resume: bool = False,
+) -> RunFolder:
+    """Make or reuse the folder of a run and mark it as running.
+
+    A finished run of the same case is left untouched and returned as `finished`, unless `force`. An
+    unfinished one of the same case is begun anew: its results are removed, or kept for `resume`. Only files
+    that a run makes are ever removed, also under `force`.
+
+    Raises:
+        FolderError: the folder holds another case or something else (without `force`), is not a folder, or
+            cannot be written. No folder is then left behind that was not there before.
+    """
+    found = _look_into(path, case_hash, force)
+    if found is not None and found.get("status") in FINISHED and not force:
+        return RunFolder(path=path, finished=found)
+    same = found is not None and found.get("case_hash") == case_hash
+    return _prepare(
+        RunFolder(path=path), case_text, resolved_text, case_hash, keep=resume and same and not force
+    )
+
+
+def read_result(path: Path) -> dict[str, Any]:
+    """The content of a `run.json`.
+
+    Raises:
+        FolderError: there is none, or it is not one.
+    """
+    try:
+        result = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise FolderError(
+            f"{path}: cannot be read ({error.strerror}); is this the folder of a run?"
+        ) from None
+    except ValueError:
+        result = None
+    if not isinstance(result, dict) or not isinstance(result.get("case_hash"), str):
+        raise FolderError(f"{path}: damaged, or not the result of a run")
+    return result
+
+
+def write_atomically(path: Path, text: str) -> None:
+    """Replace a file by a new one in one step; it reaches the disk before the old one goes."""
+    part = path.with_name(f".{path.name}.part")
+    try:
+        with open(part, "w", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(part, path)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            part.unlink()
+        raise
+
+
+def to_json(result: Mapping[str, Any]) -> str:
+    """Strict JSON of a result: numpy scalars and arrays as numbers and lists, nan and infinity as null."""
+    return json.dumps(_plain(result), indent=2, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
+    if isinstance(value, str | Path):
+        return str(value)
+    if isinstance(value, Sequence | set | frozenset):
+        return [_plain(item) for item in (sorted(value) if isinstance(value, set | frozenset) else value)]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def _look_into(path: Path, case_hash: str, force: bool) -> dict[str, Any] | None:
+    """The `run.json` already there, if it is one; refuses a folder that is not this case's unless forced."""
+    remedy = "choose another folder with --out DIR, or overwrite it with --force"
+    try:
+        if not path.exists():
+            return None
+        if not path.is_dir():
+            raise FolderError(f"{path} is a file, not a folder; choose another with --out DIR")
+        names = [entry.name for entry in path.iterdir() if not entry.name.endswith(".part")]
+    except OSError as error:
+        raise FolderError(
+            f"{path}: cannot be read ({error.strerror}); choose another folder with --out DIR"
+        ) from None
+    if "run.json" not in names:
+        if names and not force:
+            raise FolderError(f"{path} is not empty and holds no run; {remedy}")
+        return None
+    try:
+        found = read_result(path / "run.json")
+    except FolderError as error:
+        if force:
+            return None
+        raise FolderError(f"{error}; {remedy}") from None
+    if found["case_hash"] != case_hash and not force:
+        raise FolderError(f"{path} holds the results of another case; {remedy}")
+    return found
+
+
+def _prepare(
+    folder: RunFolder, case_text: str, resolved_text: str, case_hash: str, *, keep: bool
+) -> RunFolder:
+    made = _make(folder.path)
+    try:
+        # The mark first: whatever comes between, the folder is then known as this case's, and not finished.
+        folder.write_result({"status": "running", "case_hash": case_hash})
+        if not keep:
+            _remove_results(folder)
+        write_atomically(folder.case, case_text)
+        write_atomically(folder.resolved, resolved_text)
+    except OSError as error:
+        for part in reversed(made):
+            shutil.rmtree(part, ignore_errors=True)
+        raise FolderError(
+            f"{folder.path}: cannot be written ({error.strerror}); choose another folder with --out DIR"
+        ) from None
+    return folder
+
+
+def _make(path: Path) -> list[Path]:
+    """Make a folder with its parents; returns those that were not there, outermost first."""
+    missing = [place for place in (path, *path.parents) if not place.exists()][::-1]
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        for part in reversed(missing):
+            with contextlib.suppress(OSError):
+                part.rmdir()
+        raise FolderError(
+            f"{path}: cannot be made ({error.strerror}); choose another folder with --out DIR"
+        ) from None
+    return missing
+
+
+def _remove_results(folder: RunFolder) -> None:
+    """Remove what an earlier run left, and nothing else that may lie there."""
+    for file in (folder.summary, folder.history, folder.checkpoint):
+        file.unlink(missing_ok=True)
+    for place, patterns in (
+        (folder.fields, ("run.pvd", "frame_*.vtu", ".*.part")),
+        (folder.figures, ("*.svg", "*.png")),
+    ):
+        for pattern in patterns:
+            for file in place.glob(pattern):
+                file.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):  # absent, or something else lies in it
+            place.rmdir()

@@ -1,0 +1,175 @@
+"""The history file: bits kept, valid at every moment, and honest about what it cannot read."""
+
+import math
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fem.history import HISTORY_COLUMNS, History, HistoryWriter, read_history
+
+ROWS = np.random.default_rng(3).normal(size=(7, 16)) * 10.0 ** np.arange(-8, 8)
+MODES = ["rest", "rock", "slide", "slide-rock", "rock", "rest", "overturned"]
+
+
+def test_columns_are_the_documented_ones_in_their_order(tmp_path):
+    with HistoryWriter(tmp_path / "history.csv") as writer:
+        writer.append(ROWS, MODES)
+    header = (tmp_path / "history.csv").read_text().splitlines()[0]
+    assert header == (
+        "time_s,base_displacement_m,base_velocity_m_s,base_acceleration_m_s2,rotation_rad,angular_velocity_rad_s,"
+        "slip_m,uplift_m,centre_x_m,centre_z_m,normal_force_N,shear_force_N,kinetic_J,strain_J,potential_J,"
+        "imbalance_J,mode"
+    )
+
+
+def test_numbers_come_back_to_the_last_bit(tmp_path):
+    with HistoryWriter(tmp_path / "h.csv") as writer:
+        writer.append(ROWS[:3], MODES[:3])
+        writer.append(ROWS[3:], MODES[3:])
+    history = read_history(tmp_path / "h.csv")
+    assert history.values.tobytes() == ROWS.tobytes()
+    assert history.modes == tuple(MODES)
+    assert history["rotation_rad"].tolist() == ROWS[:, 4].tolist()
+    assert len(history) == 7
+
+
+@given(st.lists(st.floats(allow_nan=False), min_size=16, max_size=16))
+def test_every_double_survives(tmp_path_factory, row):
+    path = tmp_path_factory.mktemp("h") / "h.csv"
+    with HistoryWriter(path) as writer:
+        writer.append(np.array([row]), ["rest"])
+    assert read_history(path).values.tobytes() == np.array([row]).tobytes()
+
+
+def test_samples_are_on_disk_as_soon_as_they_are_appended(tmp_path):
+    writer = HistoryWriter(tmp_path / "h.csv")
+    assert len(read_history(tmp_path / "h.csv")) == 0
+    writer.append(ROWS, MODES)
+    assert len(read_history(tmp_path / "h.csv")) == 7
+    writer.close()
+
+
+def test_a_killed_writer_leaves_whole_lines(tmp_path):
+    script = textwrap.dedent("""
+        import sys
+        from pathlib import Path
+        import numpy as np
+        from fem.history import HistoryWriter
+        writer = HistoryWriter(Path(sys.argv[1]))
+        print("ready", flush=True)
+        while True:
+            writer.append(np.random.normal(size=(50, 16)), ["rock"] * 50)
+    """)
+    path = tmp_path / "h.csv"
+    process = subprocess.Popen([sys.executable, "-c", script, str(path)], stdout=subprocess.PIPE)
+    assert process.stdout.readline() == b"ready\n"
+    while path.stat().st_size < 200_000:
+        assert process.poll() is None
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    process.stdout.close()
+    assert path.read_bytes().endswith(b",rock\n")
+    history = read_history(path)
+    assert len(history) > 100 and np.isfinite(history.values).all()
+
+
+def test_a_torn_last_line_is_left_out(tmp_path):
+    with HistoryWriter(tmp_path / "h.csv") as writer:
+        writer.append(ROWS, MODES)
+    data = (tmp_path / "h.csv").read_bytes()
+    (tmp_path / "h.csv").write_bytes(data[:-30])
+    assert len(read_history(tmp_path / "h.csv")) == 6
+
+
+def test_going_on_from_a_position_gives_the_bytes_of_an_uninterrupted_history(tmp_path):
+    whole, cut = tmp_path / "whole.csv", tmp_path / "cut.csv"
+    with HistoryWriter(whole) as writer:
+        writer.append(ROWS, MODES)
+    with HistoryWriter(cut) as writer:
+        writer.append(ROWS[:4], MODES[:4])
+        position = writer.position
+        writer.append(ROWS[4:6] + 1.0, MODES[4:6])  # lost: written after the checkpoint
+    with HistoryWriter(cut, position=position) as writer:
+        writer.append(ROWS[4:], MODES[4:])
+    assert cut.read_bytes() == whole.read_bytes()
+
+
+def test_going_on_in_a_history_that_is_too_short_or_missing_is_refused(tmp_path):
+    with HistoryWriter(tmp_path / "h.csv") as writer:
+        writer.append(ROWS, MODES)
+    for path in (tmp_path / "h.csv", tmp_path / "none.csv"):
+        with pytest.raises(ValueError, match="ends before byte 99999"):
+            HistoryWriter(path, position=99999)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")
+def test_a_full_disk_is_an_error_and_not_silence():
+    with pytest.raises(OSError, match="No space left"):
+        HistoryWriter(Path("/dev/full"))
+
+
+def test_a_line_that_does_not_go_through_is_cut_off(tmp_path):
+    resource = pytest.importorskip("resource")
+    path = tmp_path / "h.csv"
+    with HistoryWriter(path) as writer:
+        writer.append(ROWS[:2], MODES[:2])
+        limit = writer.position + 100  # less than one more line
+    script = textwrap.dedent(f"""
+        import resource, signal, sys
+        from pathlib import Path
+        import numpy as np
+        from fem.history import HistoryWriter
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        writer = HistoryWriter(Path(sys.argv[1]), position={limit - 100})
+        resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}))
+        try:
+            writer.append(np.full((3, 16), 1.0 / 3.0), ["rock"] * 3)
+        except OSError as error:
+            print(error.strerror)
+    """)
+    assert resource.RLIMIT_FSIZE is not None
+    done = subprocess.run(
+        [sys.executable, "-c", script, str(path)], capture_output=True, text=True, check=True
+    )
+    assert "File too large" in done.stdout
+    assert path.stat().st_size == limit - 100
+    assert len(read_history(path)) == 2
+
+
+def test_unknown_columns_and_wrong_shapes_are_named(tmp_path):
+    history = History(values=ROWS, modes=tuple(MODES))
+    with pytest.raises(KeyError, match="no column 'rotation'; known: time_s"):
+        history["rotation"]
+    with pytest.raises(ValueError, match="16 columns"):
+        History(values=ROWS[:, :15], modes=tuple(MODES))
+    with HistoryWriter(tmp_path / "h.csv") as writer, pytest.raises(ValueError, match="16 columns"):
+        writer.append(ROWS, MODES[:-1])
+    assert len(HISTORY_COLUMNS) == 17
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "not a history"),
+        ("time,x\n1,2\n", "not a history"),
+        (",".join(HISTORY_COLUMNS) + "\n1,2,rest\n", "line 2"),
+    ],
+)
+def test_files_that_are_no_history_are_refused(tmp_path, text, words):
+    (tmp_path / "h.csv").write_text(text)
+    with pytest.raises(ValueError, match=words):
+        read_history(tmp_path / "h.csv")
+
+
+def test_nan_is_written_and_read_as_nan(tmp_path):
+    with HistoryWriter(tmp_path / "h.csv") as writer:
+        writer.append(np.full((1, 16), math.nan), ["rest"])
+    assert np.isnan(read_history(tmp_path / "h.csv").values).all()
