@@ -15,7 +15,7 @@ from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix, csc_matrix, csr_matrix, diags_array
+from scipy.sparse import coo_array, csc_array, csr_array, diags_array
 from skfem import (
     Basis,
     BilinearForm,
@@ -118,15 +118,15 @@ class FiniteElements:
     cells: IntArray  #: nodes of each cell in VTK's order (quad, biquadratic quad), shape (m, 4 | 9)
     region: NDArray[np.integer]  #: region of each cell, shape (m,)
     base_nodes: IntArray  #: nodes at z = 0, by rising x
-    mass: csr_matrix  #: consistent mass, the same for x and z, shape (n, n) [kg]
-    stiffness: csc_matrix  #: linear plane stress, shape (2n, 2n), interleaved [N/m]
+    mass: csr_array  #: consistent mass, the same for x and z, shape (n, n) [kg]
+    stiffness: csc_array  #: linear plane stress, shape (2n, 2n), interleaved [N/m]
     _lame: LamePair = field(repr=False)
     _basis: Basis = field(repr=False)
     _thickness: FloatArray = field(repr=False)  # at the quadrature points, (m, q)
     _weights: FloatArray = field(repr=False)  # volume of each quadrature point, (m q,)
-    _gradient: csr_matrix = field(repr=False)  # one component -> d/dx, d/dz at the points, (2 m q, n)
-    _divergence: csr_matrix = field(repr=False)  # the transpose, stored by rows as well: a third faster
-    _recovery: csr_matrix = field(repr=False)  # quadrature points -> averaged nodes, (n, m q)
+    _gradient: csr_array = field(repr=False)  # one component -> d/dx, d/dz at the points, (2 m q, n)
+    _divergence: csr_array = field(repr=False)  # the transpose, stored by rows as well: a third faster
+    _recovery: csr_array = field(repr=False)  # quadrature points -> averaged nodes, (n, m q)
 
     @property
     def unknowns(self) -> int:
@@ -134,12 +134,12 @@ class FiniteElements:
         return 2 * len(self.nodes)
 
     @property
-    def vector_mass(self) -> csc_matrix:
+    def vector_mass(self) -> csc_array:
         """Mass for interleaved unknowns, shape (2n, 2n) [kg]."""
         mass = self.mass.tocoo()
         rows, columns = (np.concatenate([2 * index, 2 * index + 1]) for index in (mass.row, mass.col))
         data = np.tile(mass.data, 2)
-        return coo_matrix((data, (rows, columns)), shape=self.stiffness.shape).tocsc()
+        return coo_array((data, (rows, columns)), shape=self.stiffness.shape).tocsc()
 
     def internal_force(self, displacement: FloatArray) -> FloatArray:
         """Gradient of the strain energy, shape (n, 2) [N]: one sparse product there and one back."""
@@ -155,7 +155,7 @@ class FiniteElements:
         density = energy_density(self._displacement_gradient(displacement), self._lame)
         return float(density @ self._weights)
 
-    def tangent(self, displacement: FloatArray) -> csc_matrix:
+    def tangent(self, displacement: FloatArray) -> csc_array:
         """Derivative of `internal_force`, shape (2n, 2n), interleaved [N/m]."""
         moduli = first_stress_tangent(self._displacement_gradient(displacement), self._lame)
         cells, k = self.cells.shape
@@ -169,7 +169,7 @@ class FiniteElements:
             blocks[:, :, i, :, p] = rows @ columns
         unknowns = (2 * self.cells[:, :, None] + np.arange(2)).reshape(cells, -1)
         positions = (np.repeat(unknowns, 2 * k, axis=1).ravel(), np.tile(unknowns, 2 * k).ravel())
-        return coo_matrix((blocks.ravel(), positions), shape=self.stiffness.shape).tocsc()
+        return coo_array((blocks.ravel(), positions), shape=self.stiffness.shape).tocsc()
 
     def nodal_stress(self, displacement: FloatArray) -> FloatArray:
         """Cauchy stress at the nodes, shape (n, 3): xx, zz, xz in the axes of space [Pa].
@@ -217,10 +217,10 @@ class FiniteElements:
         basis, parameters = self._vector_basis(displacement)
         return _internal_force_form.assemble(basis, **parameters).reshape(-1, 2)
 
-    def tangent_by_form(self, displacement: FloatArray) -> csc_matrix:
+    def tangent_by_form(self, displacement: FloatArray) -> csc_array:
         """`tangent` through its scikit-fem form."""
         basis, parameters = self._vector_basis(displacement)
-        return _tangent_form.assemble(basis, **parameters).tocsc()
+        return csc_array(_tangent_form.assemble(basis, **parameters))
 
     def _displacement_gradient(self, displacement: FloatArray) -> FloatArray:
         """H_ij = d u_i / d X_j at the quadrature points, shape (2, 2, m q).
@@ -273,8 +273,8 @@ def assemble(mesh: QuadMesh, *, youngs_modulus: float, poisson_ratio: float, ord
         cells=cells,
         region=np.asarray(mesh.region),
         base_nodes=_base_nodes(nodes),
-        mass=_mass_form.assemble(basis, areal_density=density).tocsr(),
-        stiffness=_stiffness_form.assemble(vector_basis, **elastic).tocsc(),
+        mass=csr_array(_mass_form.assemble(basis, areal_density=density)),
+        stiffness=csc_array(_stiffness_form.assemble(vector_basis, **elastic)),
         _lame=lame,
         _basis=basis,
         _thickness=thickness,
@@ -323,16 +323,16 @@ def _base_nodes(nodes: FloatArray) -> IntArray:
     return base[np.argsort(nodes[base, 0], kind="stable")]
 
 
-def _gradient_operator(basis: Basis) -> csr_matrix:
+def _gradient_operator(basis: Basis) -> csr_array:
     """Values at the nodes -> derivatives along x, then along z, at the points of all cells, (2 m q, n)."""
     gradients = np.stack([basis.basis[i][0].grad for i in range(basis.Nbfun)], axis=-1)  # (2, m, q, k)
     nodes = np.broadcast_to(basis.element_dofs.T[None, :, None, :], gradients.shape)
     starts = np.arange(0, gradients.size + 1, basis.Nbfun)
     shape = (gradients[..., 0].size, basis.N)
-    return csr_matrix((gradients.ravel(), nodes.ravel(), starts), shape=shape)
+    return csr_array((gradients.ravel(), nodes.ravel(), starts), shape=shape)
 
 
-def _recovery_operator(basis: Basis, cells: IntArray, thickness: FloatArray) -> csr_matrix:
+def _recovery_operator(basis: Basis, cells: IntArray, thickness: FloatArray) -> csr_array:
     """Values at the quadrature points -> fitted in each cell, averaged at the nodes, shape (n, m q)."""
     bilinear = [np.stack([np.ones_like(X), X, Z, X * Z], axis=1) for X, Z in (basis.X, basis.elem.doflocs.T)]
     fit = bilinear[1] @ np.linalg.pinv(bilinear[0])  # (k, q)
@@ -342,7 +342,7 @@ def _recovery_operator(basis: Basis, cells: IntArray, thickness: FloatArray) -> 
     values = share[:, :, None] * fit  # (m, k, q)
     rows = np.broadcast_to(cells[:, :, None], values.shape)
     points = np.broadcast_to(np.arange(basis.dx.size).reshape(len(cells), 1, -1), values.shape)
-    summed = coo_matrix((values.ravel(), (rows.ravel(), points.ravel())), shape=(basis.N, basis.dx.size))
+    summed = coo_array((values.ravel(), (rows.ravel(), points.ravel())), shape=(basis.N, basis.dx.size))
     total = np.zeros(basis.N)
     np.add.at(total, cells, share)
     recovery = (diags_array(1.0 / total) @ summed).tocsr()

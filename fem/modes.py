@@ -12,7 +12,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 from scipy.linalg import cholesky, eigh, qr, solve_triangular
-from scipy.sparse import csc_matrix
+from scipy.sparse import csc_array
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from fem.assembly import FiniteElements
@@ -160,7 +160,7 @@ def _first_square_estimate(elements: FiniteElements, rigid: FloatArray) -> float
     return float(np.linalg.eigvalsh(vectors.T @ (elements.stiffness @ vectors))[0])
 
 
-def _without_rigid_motion(vectors: FloatArray, rigid: FloatArray, mass: csc_matrix) -> FloatArray:
+def _without_rigid_motion(vectors: FloatArray, rigid: FloatArray, mass: csc_array) -> FloatArray:
     """Remove the part of each column that has momentum or angular momentum."""
     return vectors - rigid.T @ (rigid @ (mass @ vectors))
 
