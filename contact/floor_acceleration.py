@@ -1,0 +1,143 @@
+"""Floor accelerations for the analytic references, with the instants where they jump or bend.
+
+An acceleration is positive toward +x. The references work in the frame of the floor, so the
+acceleration is all they need; the velocity at the start enters as the initial slip velocity of the block.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class FloorSegment:
+    """A stretch of time without a break inside; at its ends the acceleration is the one-sided limit."""
+
+    start: float  #: [s]
+    end: float  #: [s]
+    first: float  #: earliest time at which the acceleration is asked for [s]
+    last: float  #: latest time at which the acceleration is asked for [s]
+    function: Callable[[float], float]
+
+    def acceleration(self, time: float) -> float:
+        """Floor acceleration at a time of the segment, ends included [m/s2]."""
+        return float(self.function(min(max(time, self.first), self.last)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class FloorAcceleration:
+    """A floor acceleration as a function of time, smooth between its breaks.
+
+    Raises:
+        ValueError: breaks that do not increase, or a time scale that is not positive.
+    """
+
+    function: Callable[[float], float]  #: time [s] -> acceleration, positive toward +x [m/s2]
+    break_times: tuple[float, ...] = ()  #: increasing instants where it jumps or bends [s]
+    time_scale: float  #: no feature between two breaks is shorter than this; inf: monotone there [s]
+
+    def __post_init__(self) -> None:
+        if not all(math.isfinite(t) for t in self.break_times):
+            raise ValueError("floor acceleration: break times must be finite [s]")
+        for earlier, later in pairwise(self.break_times):
+            if not later > earlier:
+                raise ValueError(f"floor acceleration: break times must increase, got {earlier} s, {later} s")
+        if not self.time_scale > 0.0:
+            raise ValueError(f"floor acceleration: time_scale must be positive, got {self.time_scale} s")
+
+    def segments(self, start: float, end: float) -> Iterator[FloorSegment]:
+        """The stretches between breaks that fill start to end [s]."""
+        inner = [t for t in self.break_times if start < t < end]
+        breaks = set(self.break_times)
+        for left, right in pairwise([start, *inner, end]):
+            # a few rounding errors inside, so that a pulse written as `start <= t < end` shows its own side
+            nudge = 1e-14 * max(abs(left), abs(right), right - left)
+            first = left + nudge if left in breaks else left
+            last = right - nudge if right in breaks else right
+            yield FloorSegment(start=left, end=right, first=first, last=last, function=self.function)
+
+    def just_after(self, time: float) -> float:
+        """Acceleration immediately after a time, the limit from the right at a break [m/s2]."""
+        later = next((t for t in self.break_times if t > time), math.inf)
+        segment = next(self.segments(time, min(later, time + 1.0)))
+        return segment.acceleration(time)
+
+
+def still_floor() -> FloorAcceleration:
+    """A floor that does not move, or moves at constant velocity."""
+    return FloorAcceleration(function=lambda time: 0.0, time_scale=math.inf)
+
+
+def sine_floor(*, amplitude: float, angular_frequency: float, phase: float = 0.0) -> FloorAcceleration:
+    """Acceleration of a floor at x = A sin(Omega t + phase): -A Omega^2 sin(Omega t + phase).
+
+    Args:
+        amplitude: A [m].
+        angular_frequency: Omega [rad/s].
+        phase: [rad].
+    """
+    if not angular_frequency > 0.0:
+        raise ValueError(f"sine floor: angular_frequency must be positive, got {angular_frequency} rad/s")
+    peak = amplitude * angular_frequency**2
+    return FloorAcceleration(
+        function=lambda time: -peak * math.sin(angular_frequency * time + phase),
+        time_scale=0.25 * math.pi / angular_frequency,
+    )
+
+
+def rectangular_pulse(*, peak: float, duration: float, delay: float = 0.0) -> FloorAcceleration:
+    """Constant acceleration `peak` [m/s2] for `duration` [s] from `delay` [s] on, zero before and after."""
+    return _pulse(lambda share: peak, duration=duration, delay=delay, time_scale=math.inf)
+
+
+def half_sine_pulse(*, peak: float, duration: float, delay: float = 0.0) -> FloorAcceleration:
+    """peak x sin(pi t/duration) for half a period, zero before and after [m/s2]."""
+    return _pulse(
+        lambda share: peak * math.sin(math.pi * share),
+        duration=duration,
+        delay=delay,
+        time_scale=0.25 * duration,
+    )
+
+
+def one_sine_pulse(*, peak: float, duration: float, delay: float = 0.0) -> FloorAcceleration:
+    """peak x sin(2 pi t/duration) for one period, zero before and after [m/s2]."""
+    return _pulse(
+        lambda share: peak * math.sin(2.0 * math.pi * share),
+        duration=duration,
+        delay=delay,
+        time_scale=0.125 * duration,
+    )
+
+
+def sampled_floor(times: Sequence[float], accelerations: Sequence[float]) -> FloorAcceleration:
+    """Straight lines between samples of the acceleration [s], [m/s2]; zero outside the times given."""
+    time, value = np.asarray(times, dtype=float), np.asarray(accelerations, dtype=float)
+    if time.ndim != 1 or time.size < 2 or time.shape != value.shape:
+        raise ValueError(
+            "sampled floor: needs as many accelerations as times, at least two of each, "
+            f"got {time.size} times and {value.size} accelerations"
+        )
+    if not (np.isfinite(time).all() and np.isfinite(value).all()):
+        raise ValueError("sampled floor: times and accelerations must be finite")
+    return FloorAcceleration(
+        function=lambda t: float(np.interp(t, time, value, left=0.0, right=0.0)),
+        break_times=tuple(time.tolist()),
+        time_scale=math.inf,
+    )
+
+
+def _pulse(
+    shape: Callable[[float], float], *, duration: float, delay: float, time_scale: float
+) -> FloorAcceleration:
+    if not duration > 0.0:
+        raise ValueError(f"pulse: duration must be positive, got {duration} s")
+    end = delay + duration
+
+    def acceleration(time: float) -> float:
+        return shape((time - delay) / duration) if delay <= time < end else 0.0
+
+    return FloorAcceleration(function=acceleration, break_times=(delay, end), time_scale=time_scale)
