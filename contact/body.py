@@ -1,0 +1,81 @@
+"""What the stepper needs of a body, and no more.
+
+A body has coordinates (their number and meaning are its own affair), base points that may touch the floor,
+and four operations, each a function here that hands over to the body: `predict`, `release`, `respond` and
+`complete`. `contact.modal_body` compiles them for a floating frame with elastic modes; the finite-element
+body of `fem` brings them as methods. The stepper is written once, against these functions.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contact.interface import FloatArray, Workspace
+from contact.scheme import Scheme
+
+#: rows of `State.pose`
+ROTATION, ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, VELOCITY_X, VELOCITY_Z = 0, 1, 2, 3, 4, 5
+#: rows of `State.energy`
+KINETIC, STRAIN, POTENTIAL, MATERIAL_POWER = 0, 1, 2, 3
+
+
+class State(NamedTuple):
+    """Everything that moves, at one instant; n_d coordinates, n base points."""
+
+    position: FloatArray  #: (n_d,) coordinates of the body
+    velocity: FloatArray  #: (n_d,)
+    acceleration: FloatArray  #: (n_d,) of the scheme: it lags by (alpha_f - alpha_m) times the step
+    jerk: FloatArray  #: (n_d,) its change over the last step, per second
+    internal: FloatArray  #: (n_d,) internal minus gravity forces, damping included
+    external: FloatArray  #: (n_d,) contact forces
+    point: FloatArray  #: (n, 2) base points relative to the floor [m]
+    force: FloatArray  #: (n, 2) contact forces on the container, tangential and normal [N]
+    descent: FloatArray  #: (n, 2) downward velocity of the base points [m/s] and its rate [m/s2]
+    stick: FloatArray  #: (n,) elongation of the stuck tangential springs [m]
+    pose: FloatArray  #: (6,) best-fit rotation, its rate, mass centre and its velocity (absolute)
+    energy: FloatArray  #: (4,) kinetic, strain, gravity potential [J]; material damping power [W]
+    monitor: FloatArray  #: (n_m, 4) monitored points: position relative to the floor [m], acceleration [m/s2]
+
+
+def make_state(coordinates: int, points: int, monitors: int) -> State:
+    """Allocate a state of so many coordinates, base points and monitored points."""
+    return State(
+        position=np.zeros(coordinates),
+        velocity=np.zeros(coordinates),
+        acceleration=np.zeros(coordinates),
+        jerk=np.zeros(coordinates),
+        internal=np.zeros(coordinates),
+        external=np.zeros(coordinates),
+        point=np.zeros((points, 2)),
+        force=np.zeros((points, 2)),
+        descent=np.zeros((points, 2)),
+        stick=np.zeros(points),
+        pose=np.zeros(6),
+        energy=np.zeros(4),
+        monitor=np.zeros((monitors, 4)),
+    )
+
+
+def predict(body: Any, scheme: Scheme, step: float, old: State, new: State) -> None:
+    """Write into `new` the coordinates that the old acceleration leads to after `step` [s]."""
+    body.predict(scheme, step, old, new)
+
+
+def release(
+    body: Any, scheme: Scheme, step: float, old: State, new: State, work: Workspace, floor: float, floor_velocity: float
+) -> None:
+    """From the iterate in `new`, where the base points would go without contact force, and the compliance.
+
+    Writes `work.free`, `work.free_velocity` (relative to the floor) and `work.compliance`.
+    """
+    body.release(scheme, step, old, new, work, floor, floor_velocity)
+
+
+def respond(body: Any, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
+    """Move the iterate in `new` under `work.force`; returns the remaining error over its tolerance."""
+    return float(body.respond(scheme, step, old, new, work))
+
+
+def complete(body: Any, new: State, floor: float) -> None:
+    """Fill in what follows from the converged coordinates: internal and contact forces, points, pose, energy, monitor."""
+    body.complete(new, floor)

@@ -1,0 +1,60 @@
+"""Compilation of the stepping kernels, cached per version of their source.
+
+numba's own cache looks only at the file of the outermost function, so a change of a law in a
+neighbouring file would go unnoticed and old physics would be run. Here the cache folder carries a
+digest of every source of this package: another source, another folder.
+"""
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numba
+from numba.core import config
+
+
+@cache
+def source_digest() -> str:
+    """Digest of this package's sources and of numba's version, 16 hexadecimal digits."""
+    digest = hashlib.sha256(numba.__version__.encode())
+    for source in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(source.name.encode())
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+@cache
+def cache_folder() -> Path:
+    """Folder of the compiled kernels: NUMBA_CACHE_DIR, else the user's cache, else a temporary one."""
+    named = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
+    root = Path(named) if named else Path.home() / ".cache"
+    folder = root / "unanchored" / f"kernels-{source_digest()}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if not os.access(folder, os.W_OK):
+            raise PermissionError(folder)
+    except OSError:
+        folder = Path(tempfile.mkdtemp(prefix="unanchored-kernels-"))
+    return folder
+
+
+def compiled(function: Callable[..., Any], *, parallel: bool = False) -> Any:
+    """Compile a function of numbers, arrays and named tuples on first call; keep the machine code.
+
+    Division by zero follows IEEE (as in numpy); no fast-math, so that a run is the same bytes again.
+    """
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(cache_folder())
+    try:
+        return numba.njit(cache=True, error_model="numpy", parallel=parallel, _nrt=False)(function)
+    finally:
+        config.CACHE_DIR = before
+
+
+def is_compiled(name: str) -> bool:
+    """True if machine code of the function of that name lies in the cache (no compilation ahead)."""
+    return any(f".{name}-" in entry.name or entry.name.startswith(f"{name}-") for entry in cache_folder().rglob("*.nbc"))

@@ -1,0 +1,287 @@
+"""The contact of a body's base points with the floor, condensed to those points and solved implicitly.
+
+Within one step the body answers a contact force by a displacement of its base points: y = free + G f,
+with G the effective compliance (one over mass/(beta h^2) + stiffness, seen from the points). With the laws
+f = law(y) this is a small, non-smooth system, unsymmetric because of friction; it is solved by a
+semismooth Newton method (exact after finitely many steps, the laws being piecewise linear) with line
+search. Wriggers (2006) sec. 9.5; Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353.
+
+Arrays: points (n, 2) with columns x [m] and z [m], both relative to the floor, z > 0 open; forces (n, 2) on
+the container with columns tangential (along +x) and normal (> 0 in compression) [N].
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from contact.compiled import compiled
+from contact.laws import ELASTIC_STICK, normal_force, regularised_friction, stick_friction
+
+FloatArray = npt.NDArray[np.float64]
+
+FULL_STEPS = 6  #: Newton steps taken whole before the line search begins: contact sets change first, then settle
+NEWTON_LIMIT = 40
+#: residual force at which the contact counts as solved, over the largest force present
+FORCE_TOLERANCE = 1e-11
+
+
+class Contact(NamedTuple):
+    """What the floor is made of: constants of one run, shapes (n,) over the base points."""
+
+    normal_stiffness: FloatArray  #: [N/m]
+    tangential_stiffness: FloatArray  #: [N/m]
+    relaxation_time: float  #: dashpot over spring, of the normal and of the stuck tangential direction [s]
+    mu_static: float
+    mu_kinetic: float
+    weakening: float  #: slip over which static falls to kinetic friction [m]
+    friction: int  #: ELASTIC_STICK or REGULARISED
+    regularisation_velocity: float  #: [m/s]
+    force_scale: float  #: weight of the container [N], the measure of "no force"
+    resolution: float  #: rounding of a base point's position [m]: forces cannot be had finer than this times slope
+
+
+class Workspace(NamedTuple):
+    """Arrays of one contact problem, shapes in terms of the n base points."""
+
+    free: FloatArray  #: (n, 2) where the points would go without contact force [m]
+    free_velocity: FloatArray  #: (n, 2) and how fast, relative to the floor [m/s]
+    compliance: FloatArray  #: (2 n, 2 n) G [m/N], x and z of a point in turn
+    point: FloatArray  #: (n, 2) [m]
+    velocity: FloatArray  #: (n, 2) [m/s]
+    force: FloatArray  #: (n, 2) [N]
+    law: FloatArray  #: (n, 2) force that the laws give at `point` [N]
+    slope: FloatArray  #: (n, 3) minus its derivatives: tangential by x, tangential by z, normal by z [N/m]
+    matrix: FloatArray  #: (2 n, 2 n)
+    change: FloatArray  #: (2 n,)
+    trial: FloatArray  #: (n, 2)
+    active: npt.NDArray[np.int64]  #: (n,)
+
+
+def make_workspace(points: int) -> Workspace:
+    """Allocate the arrays for so many base points."""
+    n = points
+    return Workspace(
+        free=np.zeros((n, 2)),
+        free_velocity=np.zeros((n, 2)),
+        compliance=np.zeros((2 * n, 2 * n)),
+        point=np.zeros((n, 2)),
+        velocity=np.zeros((n, 2)),
+        force=np.zeros((n, 2)),
+        law=np.zeros((n, 2)),
+        slope=np.zeros((n, 3)),
+        matrix=np.zeros((2 * n, 2 * n)),
+        change=np.zeros(2 * n),
+        trial=np.zeros((n, 2)),
+        active=np.zeros(n, dtype=np.int64),
+    )
+
+
+def _evaluate_laws(
+    contact: Contact,
+    step: float,
+    velocity_slope: float,
+    mu: float,
+    start: FloatArray,
+    stick: FloatArray,
+    work: Workspace,
+) -> None:
+    """Forces of the laws at `work.point`, and minus their derivatives by the points' positions.
+
+    Args:
+        contact: the floor.
+        step: the time step [s].
+        velocity_slope: derivative of an end velocity by an end position, gamma/(beta h) [1/s].
+        mu: coefficient of friction in force.
+        start: (n, 2) points at the beginning of the step, relative to the floor [m].
+        stick: (n,) elongation of the stuck tangential springs at the beginning of the step [m].
+        work: point and velocity are read, law and slope are written.
+    """
+    for i in range(work.point.shape[0]):
+        normal, by_gap, by_rate = normal_force(
+            -work.point[i, 1],
+            -work.velocity[i, 1],
+            contact.normal_stiffness[i],
+            contact.normal_stiffness[i] * contact.relaxation_time,
+            step,
+        )
+        work.law[i, 1] = normal
+        work.slope[i, 2] = by_gap + by_rate * velocity_slope
+        if normal <= 0.0:
+            work.law[i, 0] = 0.0
+            work.slope[i, 0] = 0.0
+            work.slope[i, 1] = 0.0
+        elif contact.friction == ELASTIC_STICK:
+            stiffness = contact.tangential_stiffness[i]
+            trial = -stiffness * contact.relaxation_time * work.velocity[i, 0]
+            trial_slope = stiffness * contact.relaxation_time * velocity_slope
+            if start[i, 1] < 0.0:  # closed at the beginning: the spring has been stretched over the whole step
+                trial -= stiffness * (stick[i] + work.point[i, 0] - start[i, 0])
+                trial_slope += stiffness
+            force, by_trial, by_limit = stick_friction(trial, mu * normal)
+            work.law[i, 0] = force
+            work.slope[i, 0] = by_trial * trial_slope
+            work.slope[i, 1] = by_limit * mu * work.slope[i, 2]
+        else:
+            force, by_normal, by_velocity = regularised_friction(
+                normal,
+                work.velocity[i, 0],
+                contact.mu_static,
+                contact.mu_kinetic,
+                contact.regularisation_velocity,
+            )
+            work.law[i, 0] = force
+            work.slope[i, 0] = -by_velocity * velocity_slope
+            work.slope[i, 1] = by_normal * work.slope[i, 2]
+
+
+evaluate_laws = compiled(_evaluate_laws)
+
+
+def _move_points(velocity_slope: float, force: FloatArray, work: Workspace) -> None:
+    """Points and velocities that follow from contact forces, by the condensed compliance."""
+    n = force.shape[0]
+    for i in range(n):
+        for k in range(2):
+            moved = 0.0
+            for j in range(n):
+                if force[j, 1] != 0.0 or force[j, 0] != 0.0:
+                    moved += work.compliance[2 * i + k, 2 * j] * force[j, 0]
+                    moved += work.compliance[2 * i + k, 2 * j + 1] * force[j, 1]
+            work.point[i, k] = work.free[i, k] + moved
+            work.velocity[i, k] = work.free_velocity[i, k] + velocity_slope * moved
+
+
+move_points = compiled(_move_points)
+
+
+def _solve_dense(size: int, matrix: FloatArray, vector: FloatArray) -> bool:
+    """Gaussian elimination with row pivoting of the leading size x size block, in place."""
+    for k in range(size):
+        pivot, largest = k, abs(matrix[k, k])
+        for i in range(k + 1, size):
+            if abs(matrix[i, k]) > largest:
+                pivot, largest = i, abs(matrix[i, k])
+        if not largest > 0.0:
+            return False
+        if pivot != k:
+            for j in range(k, size):
+                matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
+            vector[k], vector[pivot] = vector[pivot], vector[k]
+        for i in range(k + 1, size):
+            factor = matrix[i, k] / matrix[k, k]
+            if factor != 0.0:
+                for j in range(k + 1, size):
+                    matrix[i, j] -= factor * matrix[k, j]
+                vector[i] -= factor * vector[k]
+    for k in range(size - 1, -1, -1):
+        total = vector[k]
+        for j in range(k + 1, size):
+            total -= matrix[k, j] * vector[j]
+        vector[k] = total / matrix[k, k]
+    return True
+
+
+solve_dense = compiled(_solve_dense)
+
+
+def _newton_change(work: Workspace) -> bool:
+    """Change of the contact forces, (1 + D G) df = law - f over the points that carry or could carry force."""
+    n = work.force.shape[0]
+    count = 0
+    for i in range(n):
+        if work.slope[i, 2] != 0.0 or work.force[i, 1] != 0.0 or work.force[i, 0] != 0.0:
+            work.active[count] = i
+            count += 1
+    for a in range(count):
+        i = work.active[a]
+        tangential_x, tangential_z, normal_z = work.slope[i, 0], work.slope[i, 1], work.slope[i, 2]
+        for b in range(count):
+            j = work.active[b]
+            for k in range(2):
+                by_x = work.compliance[2 * i, 2 * j + k]
+                by_z = work.compliance[2 * i + 1, 2 * j + k]
+                work.matrix[2 * a, 2 * b + k] = tangential_x * by_x + tangential_z * by_z
+                work.matrix[2 * a + 1, 2 * b + k] = normal_z * by_z
+        work.matrix[2 * a, 2 * a] += 1.0
+        work.matrix[2 * a + 1, 2 * a + 1] += 1.0
+        work.change[2 * a] = work.law[i, 0] - work.force[i, 0]
+        work.change[2 * a + 1] = work.law[i, 1] - work.force[i, 1]
+    if not solve_dense(2 * count, work.matrix, work.change):
+        return False
+    for a in range(count - 1, -1, -1):  # spread over all points, from the back: never onto what is still read
+        i = work.active[a]
+        tangential, normal = work.change[2 * a], work.change[2 * a + 1]
+        work.change[2 * a] = 0.0
+        work.change[2 * a + 1] = 0.0
+        work.change[2 * i] = tangential
+        work.change[2 * i + 1] = normal
+    carried = 0
+    for i in range(n):
+        if carried < count and work.active[carried] == i:
+            carried += 1
+        else:
+            work.change[2 * i] = 0.0
+            work.change[2 * i + 1] = 0.0
+    return True
+
+
+newton_change = compiled(_newton_change)
+
+
+def _solve_contact(
+    contact: Contact,
+    step: float,
+    velocity_slope: float,
+    mu: float,
+    start: FloatArray,
+    stick: FloatArray,
+    work: Workspace,
+) -> int:
+    """Contact forces that satisfy all laws at the end of the step.
+
+    Args:
+        contact, step, velocity_slope, mu, start, stick: as in `evaluate_laws`.
+        work: free, free_velocity and compliance are read; force is the first guess and the result; point
+            and velocity are those that go with it.
+
+    Returns:
+        Number of Newton iterations, or -1 if they did not converge.
+    """
+    n = work.force.shape[0]
+    for iteration in range(NEWTON_LIMIT):
+        move_points(velocity_slope, work.force, work)
+        evaluate_laws(contact, step, velocity_slope, mu, start, stick, work)
+        residual, largest, stiffest = 0.0, contact.force_scale, 0.0
+        for i in range(n):
+            stiffest = max(stiffest, work.slope[i, 0], work.slope[i, 2])
+            for k in range(2):
+                residual = max(residual, abs(work.law[i, k] - work.force[i, k]))
+                largest = max(largest, abs(work.force[i, k]))
+        if residual <= FORCE_TOLERANCE * largest + contact.resolution * stiffest:
+            return iteration
+        if not newton_change(work):
+            return -1
+        for i in range(n):
+            work.trial[i, 0] = work.force[i, 0]
+            work.trial[i, 1] = work.force[i, 1]
+        share = 1.0
+        while True:
+            for i in range(n):
+                for k in range(2):
+                    work.force[i, k] = work.trial[i, k] + share * work.change[2 * i + k]
+            if iteration < FULL_STEPS or share < 1e-3:
+                break
+            move_points(velocity_slope, work.force, work)
+            evaluate_laws(contact, step, velocity_slope, mu, start, stick, work)
+            after = 0.0
+            for i in range(n):
+                for k in range(2):
+                    after = max(after, abs(work.law[i, k] - work.force[i, k]))
+            if after <= (1.0 - 0.25 * share) * residual:
+                break
+            share *= 0.5
+    return -1
+
+
+solve_contact = compiled(_solve_contact)

@@ -1,0 +1,333 @@
+"""A body in a floating frame: three rigid coordinates and elastic modes; with no mode, the rigid body.
+
+Coordinates: mass centre x, z [m], rotation [rad, > 0 toward +x] and modal amplitudes q [m sqrt(kg)]. A point
+at X in the undeformed body, relative to the mass centre, is at c + R (X + Phi q), R = [[cos, sin], [-sin, cos]].
+The frame is the mean-axis (Tisserand) one: the modes are mass-normalised and orthogonal to the rigid
+motions, so the mass matrix is diag(m, m, I, 1, ..). Terms of the order (rotation rate / omega_1)^2 - centrifugal
+stretching, change of inertia with q - are dropped. Shabana, Dynamics of Multibody Systems, ch. 5;
+Canavin and Likins, J. Spacecraft 14 (1977) 724.
+
+Compiled for the stepper; see `contact.body` for what each function owes it.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba.core import types
+from numba.extending import overload
+
+from contact import body as interface
+from contact.body import (
+    ANGULAR_VELOCITY,
+    CENTRE_X,
+    CENTRE_Z,
+    KINETIC,
+    MATERIAL_POWER,
+    POTENTIAL,
+    ROTATION,
+    STRAIN,
+    VELOCITY_X,
+    VELOCITY_Z,
+    State,
+)
+from contact.compiled import compiled
+from contact.interface import FloatArray, Workspace
+from contact.scheme import Scheme
+
+
+class ModalBody(NamedTuple):
+    """Constants of the body; n base points, m elastic modes, k monitored points."""
+
+    mass: float  #: [kg]
+    inertia: float  #: about the mass centre [kg m2]
+    gravity: float  #: [m/s2]
+    point: FloatArray  #: (n, 2) base points relative to the mass centre, sorted by x [m]
+    shape: FloatArray  #: (n, 2, m) mode shapes there [1/sqrt(kg)]
+    monitor: FloatArray  #: (k, 2) monitored points relative to the mass centre [m]
+    monitor_shape: FloatArray  #: (k, 2, m)
+    stiffness: FloatArray  #: (m,) squares of the angular frequencies [1/s2]
+    damping: FloatArray  #: (m,) damping over mass, 2 zeta omega [1/s]
+    tolerance: float  #: error of a base point at which an iteration stops [m]
+    #: scratch, rewritten by the stepper: step of the cached compliance and the inverse effective masses
+    cached_step: FloatArray  #: (1,)
+    inverse: FloatArray  #: (3 + m,) [1/kg ..]
+    elastic_compliance: FloatArray  #: (2 n, 2 n) in the body's frame
+    arm: FloatArray  #: (n, 2) base points relative to the mass centre, turned
+    free_change: FloatArray  #: (3 + m,)
+
+
+def make_modal_body(
+    *,
+    mass: float,
+    inertia: float,
+    gravity: float,
+    point: FloatArray,
+    shape: FloatArray | None = None,
+    frequencies: FloatArray | None = None,
+    damping_ratios: FloatArray | None = None,
+    monitor: FloatArray | None = None,
+    monitor_shape: FloatArray | None = None,
+    tolerance: float,
+) -> ModalBody:
+    """Put a body together; without modes it is rigid.
+
+    Args:
+        mass: [kg]; inertia: about the mass centre [kg m2]; gravity: [m/s2].
+        point: (n, 2) base points relative to the mass centre [m], sorted by x.
+        shape: (n, 2, m) mass-normalised mode shapes at them.
+        frequencies: (m,) angular frequencies [rad/s]; damping_ratios: (m,) [-].
+        monitor: (k, 2) points whose acceleration is followed; monitor_shape: (k, 2, m).
+        tolerance: error of a base point at which the iterations of a step stop [m].
+    """
+    n = point.shape[0]
+    omega = np.zeros(0) if frequencies is None else np.asarray(frequencies, dtype=float)
+    zeta = np.zeros(omega.size) if damping_ratios is None else np.asarray(damping_ratios, dtype=float)
+    watched = np.zeros((0, 2)) if monitor is None else monitor
+    m = omega.size
+    return ModalBody(
+        mass=float(mass),
+        inertia=float(inertia),
+        gravity=float(gravity),
+        point=np.array(point, dtype=float, order="C"),
+        shape=np.zeros((n, 2, 0)) if shape is None else np.array(shape, dtype=float, order="C"),
+        monitor=np.array(watched, dtype=float, order="C"),
+        monitor_shape=np.zeros((len(watched), 2, m))
+        if monitor_shape is None
+        else np.array(monitor_shape, dtype=float, order="C"),
+        stiffness=omega**2,
+        damping=2.0 * zeta * omega,
+        tolerance=float(tolerance),
+        cached_step=np.full(1, -1.0),
+        inverse=np.zeros(3 + m),
+        elastic_compliance=np.zeros((2 * n, 2 * n)),
+        arm=np.zeros((n, 2)),
+        free_change=np.zeros(3 + m),
+    )
+
+
+def _predict(body: ModalBody, scheme: Scheme, step: float, old: State, new: State) -> None:
+    for j in range(old.position.size):
+        new.position[j] = old.position[j] + step * (old.velocity[j] + 0.5 * step * old.acceleration[j])
+        new.velocity[j] = old.velocity[j] + step * old.acceleration[j]
+        new.acceleration[j] = old.acceleration[j]
+
+
+def _refresh_compliance(body: ModalBody, scheme: Scheme, step: float) -> None:
+    """Inverse effective masses, and the elastic compliance in the body's frame, for a new step size."""
+    m = body.stiffness.size
+    now = 1.0 - scheme.alpha_f
+    inertial = (1.0 - scheme.alpha_m) / (scheme.newmark_beta * step * step)
+    viscous = now * scheme.newmark_gamma / (scheme.newmark_beta * step)
+    body.inverse[0] = 1.0 / (inertial * body.mass)
+    body.inverse[1] = body.inverse[0]
+    body.inverse[2] = 1.0 / (inertial * body.inertia)
+    for k in range(m):
+        body.inverse[3 + k] = 1.0 / (inertial + viscous * body.damping[k] + now * body.stiffness[k])
+    n = body.point.shape[0]
+    for a in range(2 * n):
+        for b in range(a, 2 * n):
+            total = 0.0
+            for k in range(m):
+                total += body.shape[a // 2, a % 2, k] * body.shape[b // 2, b % 2, k] * body.inverse[3 + k]
+            body.elastic_compliance[a, b] = total
+            body.elastic_compliance[b, a] = total
+    body.cached_step[0] = step
+
+
+refresh_compliance = compiled(_refresh_compliance)
+
+
+def _place_points(
+    body: ModalBody, state: State, work: Workspace, floor: float, floor_velocity: float, cosine: float, sine: float
+) -> None:
+    """Base points and their velocities at the iterate, relative to the floor; arms into `body.arm`."""
+    m = body.stiffness.size
+    rate = state.velocity[2]
+    for i in range(body.point.shape[0]):
+        x, z = body.point[i, 0], body.point[i, 1]
+        u, w = 0.0, 0.0
+        for k in range(m):
+            x += body.shape[i, 0, k] * state.position[3 + k]
+            z += body.shape[i, 1, k] * state.position[3 + k]
+            u += body.shape[i, 0, k] * state.velocity[3 + k]
+            w += body.shape[i, 1, k] * state.velocity[3 + k]
+        body.arm[i, 0] = cosine * x + sine * z
+        body.arm[i, 1] = -sine * x + cosine * z
+        work.free[i, 0] = state.position[0] + body.arm[i, 0] - floor
+        work.free[i, 1] = state.position[1] + body.arm[i, 1]
+        work.free_velocity[i, 0] = (
+            state.velocity[0] + body.arm[i, 1] * rate + cosine * u + sine * w - floor_velocity
+        )
+        work.free_velocity[i, 1] = state.velocity[1] - body.arm[i, 0] * rate - sine * u + cosine * w
+
+
+place_points = compiled(_place_points)
+
+
+def _release(
+    body: ModalBody,
+    scheme: Scheme,
+    step: float,
+    old: State,
+    new: State,
+    work: Workspace,
+    floor: float,
+    floor_velocity: float,
+) -> None:
+    m = body.stiffness.size
+    n = body.point.shape[0]
+    if body.cached_step[0] != step:
+        refresh_compliance(body, scheme, step)
+    now, before = 1.0 - scheme.alpha_f, scheme.alpha_f
+    cosine, sine = math.cos(new.position[2]), math.sin(new.position[2])
+    place_points(body, new, work, floor, floor_velocity, cosine, sine)
+    for j in range(3 + m):
+        mass, force = 1.0, before * (old.external[j] - old.internal[j])
+        if j < 2:
+            mass = body.mass
+        elif j == 2:
+            mass = body.inertia
+        else:
+            force -= now * (
+                body.damping[j - 3] * new.velocity[j] + body.stiffness[j - 3] * new.position[j]
+            )
+        if j == 1:
+            force -= now * body.mass * body.gravity
+        force -= mass * ((1.0 - scheme.alpha_m) * new.acceleration[j] + scheme.alpha_m * old.acceleration[j])
+        body.free_change[j] = body.inverse[j] * force
+    slope = scheme.newmark_gamma / (scheme.newmark_beta * step)
+    change = body.free_change
+    for i in range(n):
+        u, w = 0.0, 0.0
+        for k in range(m):
+            u += body.shape[i, 0, k] * change[3 + k]
+            w += body.shape[i, 1, k] * change[3 + k]
+        moved_x = change[0] + body.arm[i, 1] * change[2] + cosine * u + sine * w
+        moved_z = change[1] - body.arm[i, 0] * change[2] - sine * u + cosine * w
+        work.free[i, 0] += moved_x
+        work.free[i, 1] += moved_z
+        work.free_velocity[i, 0] += slope * moved_x
+        work.free_velocity[i, 1] += slope * moved_z
+    elastic = body.elastic_compliance
+    for i in range(n):
+        for j in range(n):
+            xx, xz, zx, zz = 0.0, 0.0, 0.0, 0.0
+            if m > 0:  # R E R^T of the 2 x 2 block
+                exx, exz = elastic[2 * i, 2 * j], elastic[2 * i, 2 * j + 1]
+                ezx, ezz = elastic[2 * i + 1, 2 * j], elastic[2 * i + 1, 2 * j + 1]
+                ax, az = cosine * exx + sine * ezx, cosine * exz + sine * ezz
+                bx, bz = -sine * exx + cosine * ezx, -sine * exz + cosine * ezz
+                xx, xz = ax * cosine + az * sine, -ax * sine + az * cosine
+                zx, zz = bx * cosine + bz * sine, -bx * sine + bz * cosine
+            turn = body.inverse[2]
+            work.compliance[2 * i, 2 * j] = now * (
+                xx + body.inverse[0] + turn * body.arm[i, 1] * body.arm[j, 1]
+            )
+            work.compliance[2 * i, 2 * j + 1] = now * (xz - turn * body.arm[i, 1] * body.arm[j, 0])
+            work.compliance[2 * i + 1, 2 * j] = now * (zx - turn * body.arm[i, 0] * body.arm[j, 1])
+            work.compliance[2 * i + 1, 2 * j + 1] = now * (
+                zz + body.inverse[1] + turn * body.arm[i, 0] * body.arm[j, 0]
+            )
+
+
+def _gather_force(body: ModalBody, force: FloatArray, rotation: float, arm: FloatArray, out: FloatArray) -> None:
+    """Generalised contact force J^T f into `out`."""
+    m = body.stiffness.size
+    cosine, sine = math.cos(rotation), math.sin(rotation)
+    for j in range(3 + m):
+        out[j] = 0.0
+    for i in range(force.shape[0]):
+        tangential, normal = force[i, 0], force[i, 1]
+        if tangential != 0.0 or normal != 0.0:
+            out[0] += tangential
+            out[1] += normal
+            out[2] += arm[i, 1] * tangential - arm[i, 0] * normal
+            along, across = cosine * tangential - sine * normal, sine * tangential + cosine * normal
+            for k in range(m):
+                out[3 + k] += body.shape[i, 0, k] * along + body.shape[i, 1, k] * across
+
+
+gather_force = compiled(_gather_force)
+
+
+def _respond(body: ModalBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
+    m = body.stiffness.size
+    now = 1.0 - scheme.alpha_f
+    gather_force(body, work.force, new.position[2], body.arm, new.external)
+    by_velocity = scheme.newmark_gamma / (scheme.newmark_beta * step)
+    by_acceleration = 1.0 / (scheme.newmark_beta * step * step)
+    turned = 0.0
+    for j in range(3 + m):
+        change = body.free_change[j] + now * body.inverse[j] * new.external[j]
+        new.position[j] += change
+        new.velocity[j] += by_velocity * change
+        new.acceleration[j] += by_acceleration * change
+        if j == 2:
+            turned = abs(change)
+    # The points were moved along the tangent of their circles: what the linearisation left out.
+    reach = abs(body.arm[0, 0]) + abs(body.arm[0, 1])
+    return turned * (0.5 * turned * reach) / body.tolerance
+
+
+def _complete(body: ModalBody, new: State, floor: float) -> None:
+    m = body.stiffness.size
+    position, velocity = new.position, new.velocity
+    cosine, sine = math.cos(position[2]), math.sin(position[2])
+    for i in range(body.point.shape[0]):
+        x, z = body.point[i, 0], body.point[i, 1]
+        for k in range(m):
+            x += body.shape[i, 0, k] * position[3 + k]
+            z += body.shape[i, 1, k] * position[3 + k]
+        body.arm[i, 0], body.arm[i, 1] = cosine * x + sine * z, -sine * x + cosine * z
+        new.point[i, 0] = position[0] + body.arm[i, 0] - floor
+        new.point[i, 1] = position[1] + body.arm[i, 1]
+    gather_force(body, new.force, position[2], body.arm, new.external)
+    new.internal[0], new.internal[1], new.internal[2] = 0.0, body.mass * body.gravity, 0.0
+    kinetic = body.mass * (velocity[0] ** 2 + velocity[1] ** 2) + body.inertia * velocity[2] ** 2
+    strain, power = 0.0, 0.0
+    for k in range(m):
+        q, rate = position[3 + k], velocity[3 + k]
+        new.internal[3 + k] = body.damping[k] * rate + body.stiffness[k] * q
+        kinetic += rate * rate
+        strain += body.stiffness[k] * q * q
+        power += body.damping[k] * rate * rate
+    new.energy[KINETIC] = 0.5 * kinetic
+    new.energy[STRAIN] = 0.5 * strain
+    new.energy[POTENTIAL] = body.mass * body.gravity * position[1]
+    new.energy[MATERIAL_POWER] = power
+    new.pose[ROTATION], new.pose[ANGULAR_VELOCITY] = position[2], velocity[2]
+    new.pose[CENTRE_X], new.pose[CENTRE_Z] = position[0], position[1]
+    new.pose[VELOCITY_X], new.pose[VELOCITY_Z] = velocity[0], velocity[1]
+    rate, turning = velocity[2], new.acceleration[2]
+    for i in range(body.monitor.shape[0]):
+        x, z = body.monitor[i, 0], body.monitor[i, 1]
+        u, w = 0.0, 0.0
+        for k in range(m):
+            x += body.monitor_shape[i, 0, k] * position[3 + k]
+            z += body.monitor_shape[i, 1, k] * position[3 + k]
+            u += body.monitor_shape[i, 0, k] * new.acceleration[3 + k]
+            w += body.monitor_shape[i, 1, k] * new.acceleration[3 + k]
+        arm_x, arm_z = cosine * x + sine * z, -sine * x + cosine * z
+        new.monitor[i, 0] = position[0] + arm_x - floor
+        new.monitor[i, 1] = position[1] + arm_z
+        new.monitor[i, 2] = new.acceleration[0] + arm_z * turning - arm_x * rate * rate + cosine * u + sine * w
+        new.monitor[i, 3] = new.acceleration[1] - arm_x * turning - arm_z * rate * rate - sine * u + cosine * w
+
+
+def _compile_for_modal_body(function: Callable[..., Any], implementation: Callable[..., Any]) -> None:
+    """Let compiled callers of `function` use `implementation` when the body is a `ModalBody`."""
+
+    def choose(body: Any, *arguments: Any) -> Callable[..., Any] | None:
+        if isinstance(body, types.BaseNamedTuple) and body.instance_class is ModalBody:
+            return implementation
+        return None
+
+    overload(function, strict=False)(choose)
+
+
+_compile_for_modal_body(interface.predict, _predict)
+_compile_for_modal_body(interface.release, _release)
+_compile_for_modal_body(interface.respond, _respond)
+_compile_for_modal_body(interface.complete, _complete)

@@ -1,0 +1,593 @@
+"""Adaptive time stepping of one body on a moving floor.
+
+One step: predict, then free motion -> contact forces -> response until the points stand where the forces were
+computed (`attempt`). Around it the step control: steps are a ladder h = largest / 2^(level/3); a step is redone
+smaller when an iteration fails, when the support breaks loose late in a large step, or when the energy
+ledger shows that the step lost or won more than its share; it grows by 2^(1/3) when it lost little.
+
+`advance` is written once. `advance_compiled` steps a `ModalBody`; `advance` itself, as plain Python, steps any
+object with the methods of `contact.body`. Both call the same compiled laws, contact solver and ledger.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from numba.extending import register_jitable
+
+from contact.body import (
+    ANGULAR_VELOCITY,
+    CENTRE_X,
+    CENTRE_Z,
+    KINETIC,
+    MATERIAL_POWER,
+    POTENTIAL,
+    ROTATION,
+    STRAIN,
+    VELOCITY_X,
+    VELOCITY_Z,
+    State,
+    complete,
+    predict,
+    release,
+    respond,
+)
+from contact.compiled import compiled
+from contact.floor_motion import FloorMotion, floor_motion
+from contact.interface import Contact, FloatArray, Workspace, solve_contact
+from contact.laws import ELASTIC_STICK, relaxed_stick, weakened_mu
+from contact.ledger import (
+    ROWS as LEDGER_ROWS,
+    BASE_WORK,
+    CONTACT_DAMPING,
+    FRICTION,
+    IMBALANCE,
+    MATERIAL_DAMPING,
+    contact_losses,
+    spring_energy,
+)
+from contact.scheme import Scheme
+from contact.tracking import FALLEN, NEVER, follow, make_track
+
+ITERATION_LIMIT = 12  #: of free motion, contact, response within one step
+STEPS_PER_OCTAVE = 3  #: of the ladder of step sizes
+HELD_STEPS = 6  #: after a rejection
+
+#: what `advance` returns
+REACHED, OVERTURNED, FAILED = 0, 1, 2
+OVERTURNING_ROTATION = 0.5 * np.pi
+
+#: columns of `Run.rows`
+(
+    ROW_ROTATION,
+    ROW_ANGULAR_VELOCITY,
+    ROW_SLIP,
+    ROW_UPLIFT,
+    ROW_CENTRE_X,
+    ROW_CENTRE_Z,
+    ROW_NORMAL,
+    ROW_SHEAR,
+    ROW_KINETIC,
+    ROW_STRAIN,
+    ROW_POTENTIAL,
+    ROW_IMBALANCE,
+) = range(12)
+ROW_COLUMNS = 12
+
+class Control(NamedTuple):
+    """Limits of the stepping: constants of one run."""
+
+    largest_step: float  #: [s]
+    smallest_step: float  #: [s]
+    event_step: float  #: largest step in which the support may break loose [s]
+    closing_step: float  #: largest step that may begin at the first touch of a point [s]
+    closing_speed: float  #: slower closings are left to the energy ledger [m/s]
+    reference_energy: float  #: what it takes to overturn the container [J]
+    energy_rate: float  #: imbalance allowed per second, over the reference energy [1/s]
+    energy_floor: float  #: imbalance allowed in any step, over the reference energy [-]
+    energy_share: float  #: imbalance allowed over what a step dissipates [-]
+    closing_share: float  #: imbalance allowed when a gap closes, over the kinetic energy relative to the floor [-]
+    mass: float  #: [kg]
+    resting_energy: float  #: gravity potential of the container at rest [J]
+    slenderness_angle: float  #: [rad]
+    width: float  #: [m]
+    stop_when_overturned: bool
+    sample_interval: float  #: of the history [s]
+    top_monitors: int  #: of the monitored points, so many first ones lie at the top
+
+
+CLOCK = np.dtype(
+    [
+        ("time", "f8"),
+        ("level", "i8"),
+        ("sliding", "i8"),  # 1 while every loaded point slides: kinetic friction
+        ("slid", "f8"),  # since the support broke loose
+        ("slip", "f8"),  # force-weighted sliding of the container, signed
+        ("steps", "i8"),
+        ("rejected", "i8"),
+        ("failed", "i8"),  # of these: iterations that did not converge
+        ("iterations", "i8"),
+        ("contact_iterations", "i8"),
+        ("smallest_step", "f8"),
+        ("utilisation", "f8"),  # support's tangential force over mu_s times its normal force
+        ("utilisation_rate", "f8"),
+        ("slip_velocity", "f8"),  # force-weighted
+        ("slip_acceleration", "f8"),
+        ("held", "i8"),  # accepted steps until the step may grow freely again
+        ("basis_step", "f8"),  # that the old acceleration's lag belongs to
+        ("samples", "i8"),  # written so far
+        ("next_break", "i8"),
+        ("least_imbalance", "f8"),
+        ("most_imbalance", "f8"),
+    ],
+    align=True,
+)
+
+
+class Run(NamedTuple):
+    """Everything a run consists of besides the body: constants, and what changes in place."""
+
+    scheme: Scheme
+    contact: Contact
+    motion: FloorMotion
+    breaks: FloatArray  #: instants at which a step must end [s], rising, the last one infinite
+    control: Control
+    old: State
+    new: State
+    work: Workspace
+    slip: FloatArray  #: (n,) sliding of the points in the step attempted [m]
+    change: FloatArray  #: (5,) what the step attempted adds to the ledger [J]
+    ledger: FloatArray  #: (5,) [J]
+    clock: Any  #: (1,) of CLOCK
+    track: Any  #: (1,) of tracking.TRACK
+    rows: FloatArray  #: (n_s, 16) samples: the numeric columns of a history but the base motion's
+    row_mode: npt.NDArray[np.int64]  #: (n_s,)
+    row_position: FloatArray  #: (n_s, n_k) leading coordinates of the body at the samples, n_k may be 0
+    row_force: FloatArray  #: (n_s, n, 2) contact forces at the samples [N]
+
+
+def make_run(
+    *,
+    scheme: Scheme,
+    contact: Contact,
+    motion: FloorMotion,
+    breaks: FloatArray,
+    control: Control,
+    old: State,
+    new: State,
+    work: Workspace,
+    samples: int,
+    coordinates_kept: int,
+) -> Run:
+    """Put a run together at t = 0; `old` holds the initial state, completed."""
+    n = old.point.shape[0]
+    clock = np.zeros(1, CLOCK).view(np.recarray)
+    clock["smallest_step"] = NEVER
+    return Run(
+        scheme=scheme,
+        contact=contact,
+        motion=motion,
+        breaks=np.append(np.asarray(breaks, dtype=float), NEVER),
+        control=control,
+        old=old,
+        new=new,
+        work=work,
+        slip=np.zeros(n),
+        change=np.zeros(LEDGER_ROWS),
+        ledger=np.zeros(LEDGER_ROWS),
+        clock=clock,
+        track=make_track(),
+        rows=np.zeros((samples, ROW_COLUMNS)),
+        row_mode=np.zeros(samples, dtype=np.int64),
+        row_position=np.zeros((samples, coordinates_kept)),
+        row_force=np.zeros((samples, n, 2)),
+    )
+
+
+def _copy_array(target: npt.NDArray[Any], source: npt.NDArray[Any]) -> None:
+    for index in np.ndindex(target.shape):
+        target[index] = source[index]
+
+
+copy_array = compiled(_copy_array)
+
+
+def _rebase_acceleration(scheme: Scheme, old: State, shortened: float) -> None:
+    """Shift the scheme's acceleration to the lag that belongs to a step shorter by `shortened` [s].
+
+    The averaged equation puts it (alpha_f - alpha_m) steps before the end of its step. Left as it is when the
+    step changes, it would cost the scheme its second order.
+    """
+    shift = (scheme.alpha_f - scheme.alpha_m) * shortened
+    if shift != 0.0:
+        for j in range(old.acceleration.size):
+            old.acceleration[j] += shift * old.jerk[j]
+
+
+rebase_acceleration = compiled(_rebase_acceleration)
+
+
+@register_jitable
+def _attempt(body: Any, run: Run, step: float, mu: float) -> int:
+    """Try one step; the result stands in `run.new`. Returns the iterations taken, or -1."""
+    old, new, work, scheme = run.old, run.new, run.work, run.scheme
+    clock = run.clock[0]
+    floor, floor_velocity, _ = floor_motion(run.motion, clock.time + step)
+    slope = scheme.newmark_gamma / (scheme.newmark_beta * step)
+    rebase_acceleration(scheme, old, clock.basis_step - step)
+    clock.basis_step = step
+    predict(body, scheme, step, old, new)
+    copy_array(work.force, old.force)
+    for iteration in range(ITERATION_LIMIT):
+        release(body, scheme, step, old, new, work, floor, floor_velocity)
+        solved = solve_contact(run.contact, step, slope, mu, old.point, old.stick, work)
+        if solved < 0:
+            return -1
+        clock.contact_iterations += solved
+        if respond(body, scheme, step, old, new, work) <= 1.0:
+            copy_array(new.force, work.force)
+            for i in range(new.descent.shape[0]):
+                new.descent[i, 0] = -work.velocity[i, 1]
+                new.descent[i, 1] = (new.descent[i, 0] - old.descent[i, 0]) / step
+            for j in range(new.jerk.size):
+                new.jerk[j] = (new.acceleration[j] - old.acceleration[j]) / step
+            complete(body, new, floor)
+            return iteration + 1
+    return -1
+
+
+def _slide(run: Run, step: float) -> tuple[bool, float, float]:
+    """Sliding of the base points and elongation of their springs after a converged step.
+
+    Returns whether every loaded point slides, all in one direction, the force-weighted sliding [m], and the
+    force-weighted velocity of the loaded points at the end of the step [m/s].
+    """
+    contact, old, new, work = run.contact, run.old, run.new, run.work
+    every, direction, weighted, total, velocity = True, 0.0, 0.0, 0.0, 0.0
+    for i in range(new.point.shape[0]):
+        normal, tangential = new.force[i, 1], new.force[i, 0]
+        moved = new.point[i, 0] - old.point[i, 0]
+        stick = old.stick[i]
+        if old.point[i, 1] >= 0.0:  # open at the beginning: only the closed part of the step slides
+            below = max(0.0, -new.point[i, 1])
+            moved *= below / (below + old.point[i, 1]) if below > 0.0 else 0.0
+        run.slip[i] = 0.0
+        if new.point[i, 1] >= 0.0:
+            new.stick[i] = 0.0
+            continue
+        if contact.friction != ELASTIC_STICK:
+            new.stick[i] = 0.0
+            run.slip[i] = moved
+        elif normal <= 0.0 or work.slope[i, 0] == 0.0:
+            new.stick[i] = relaxed_stick(
+                stick, -tangential, contact.tangential_stiffness[i], contact.relaxation_time, step
+            )
+            run.slip[i] = moved - (new.stick[i] - stick)
+        elif old.point[i, 1] >= 0.0:
+            new.stick[i] = 0.0
+        else:
+            new.stick[i] = stick + moved
+        if normal > 0.0:
+            weighted += normal * run.slip[i]
+            velocity += normal * work.velocity[i, 0]
+            total += normal
+            if contact.friction != ELASTIC_STICK:
+                every = every and abs(work.velocity[i, 0]) > contact.regularisation_velocity
+            elif work.slope[i, 0] != 0.0 or direction * tangential < 0.0:
+                every = False
+            direction = tangential
+    if total <= 0.0:
+        return False, 0.0, 0.0
+    return every, weighted / total, velocity / total
+
+
+slide = compiled(_slide)
+
+
+def _account(run: Run, step: float) -> float:
+    """What the step attempted adds to the ledger, into `run.change`; returns what it dissipated [J]."""
+    old, new, change = run.old, run.new, run.change
+    time = run.clock[0].time
+    before, _, _ = floor_motion(run.motion, time)
+    after, _, _ = floor_motion(run.motion, time + step)
+    shear = 0.0
+    for i in range(new.force.shape[0]):
+        shear += 0.5 * (old.force[i, 0] + new.force[i, 0])
+    friction, damping = contact_losses(
+        run.contact, old.point, new.point, old.force, new.force, old.stick, new.stick, run.slip
+    )
+    material = 0.5 * step * (old.energy[MATERIAL_POWER] + new.energy[MATERIAL_POWER])
+    stored = spring_energy(run.contact, new.point, new.stick) - spring_energy(run.contact, old.point, old.stick)
+    for row in (KINETIC, STRAIN, POTENTIAL):
+        stored += new.energy[row] - old.energy[row]
+    change[BASE_WORK] = shear * (after - before)
+    change[FRICTION] = friction
+    change[CONTACT_DAMPING] = damping
+    change[MATERIAL_DAMPING] = material
+    change[IMBALANCE] = change[BASE_WORK] - friction - damping - material - stored
+    return friction + damping + material
+
+
+account = compiled(_account)
+
+
+def _copy_state(old: State, new: State) -> None:
+    copy_array(old.position, new.position)
+    copy_array(old.velocity, new.velocity)
+    copy_array(old.acceleration, new.acceleration)
+    copy_array(old.jerk, new.jerk)
+    copy_array(old.internal, new.internal)
+    copy_array(old.external, new.external)
+    copy_array(old.point, new.point)
+    copy_array(old.force, new.force)
+    copy_array(old.descent, new.descent)
+    copy_array(old.stick, new.stick)
+    copy_array(old.pose, new.pose)
+    copy_array(old.energy, new.energy)
+    copy_array(old.monitor, new.monitor)
+
+
+copy_state = compiled(_copy_state)
+
+
+def _hermite(share: float, step: float, value: float, rate: float, value_new: float, rate_new: float) -> float:
+    """Cubic through values and rates at both ends of a step, at `share` of it."""
+    s = share
+    return (
+        (1.0 + 2.0 * s) * (1.0 - s) ** 2 * value
+        + s * (1.0 - s) ** 2 * step * rate
+        + s * s * (3.0 - 2.0 * s) * value_new
+        - s * s * (1.0 - s) * step * rate_new
+    )
+
+
+hermite = compiled(_hermite)
+
+
+def _sample(run: Run, step: float, slip_step: float) -> None:
+    """Write the samples that fall into the step just attempted: from the old time up to and with the new one."""
+    old, new, clock, control = run.old, run.new, run.clock[0], run.control
+    while clock.samples < run.rows.shape[0]:
+        time = clock.samples * control.sample_interval
+        if time > clock.time + step:
+            return
+        s = (time - clock.time) / step
+        row = run.rows[clock.samples]
+        floor, _, _ = floor_motion(run.motion, time)
+        a, b = old.pose, new.pose
+        row[ROW_ROTATION] = hermite(
+            s, step, a[ROTATION], a[ANGULAR_VELOCITY], b[ROTATION], b[ANGULAR_VELOCITY]
+        )
+        row[ROW_ANGULAR_VELOCITY] = (1.0 - s) * a[ANGULAR_VELOCITY] + s * b[ANGULAR_VELOCITY]
+        row[ROW_SLIP] = clock.slip + s * slip_step
+        row[ROW_CENTRE_X] = hermite(s, step, a[CENTRE_X], a[VELOCITY_X], b[CENTRE_X], b[VELOCITY_X]) - floor
+        row[ROW_CENTRE_Z] = hermite(s, step, a[CENTRE_Z], a[VELOCITY_Z], b[CENTRE_Z], b[VELOCITY_Z])
+        uplift, normal, shear = 0.0, 0.0, 0.0
+        for i in range(new.point.shape[0]):
+            uplift = max(uplift, (1.0 - s) * old.point[i, 1] + s * new.point[i, 1])
+            for k in range(2):
+                run.row_force[clock.samples, i, k] = (1.0 - s) * old.force[i, k] + s * new.force[i, k]
+            shear += run.row_force[clock.samples, i, 0]
+            normal += run.row_force[clock.samples, i, 1]
+        row[ROW_UPLIFT], row[ROW_NORMAL], row[ROW_SHEAR] = uplift, normal, shear
+        for k in range(3):
+            row[ROW_KINETIC + k] = (1.0 - s) * old.energy[k] + s * new.energy[k]
+        row[ROW_IMBALANCE] = run.ledger[IMBALANCE] + s * run.change[IMBALANCE]
+        for j in range(run.row_position.shape[1]):
+            run.row_position[clock.samples, j] = hermite(
+                s, step, old.position[j], old.velocity[j], new.position[j], new.velocity[j]
+            )
+        run.row_mode[clock.samples] = run.track[0].mode
+        clock.samples += 1
+
+
+sample = compiled(_sample)
+
+
+def _closing_time(control: Control, state: State, horizon: float) -> float:
+    """Time until a base point touches the floor with more than the closing speed [s], or the horizon.
+
+    By its present velocity and acceleration; 0 for a point that has touched just now.
+    """
+    first = horizon
+    for i in range(state.point.shape[0]):
+        gap, speed, rate = state.point[i, 1], state.descent[i, 0], state.descent[i, 1]
+        if gap > 0.0 and speed * first + 0.5 * max(rate, 0.0) * first * first > gap:
+            root = speed * speed + 2.0 * rate * gap
+            if root > control.closing_speed**2:
+                first = min(first, 2.0 * gap / (speed + np.sqrt(root)))
+        elif speed > control.closing_speed and -0.5 * control.closing_step * speed < gap <= 0.0:
+            first = 0.0
+    return first
+
+
+closing_time = compiled(_closing_time)
+
+
+def _switching_time(clock: Any, horizon: float) -> float:
+    """Time until the stuck support reaches its limit, or the sliding one comes to a halt [s], or the horizon."""
+    if clock.sliding == 0:
+        left, rate = 1.0 - clock.utilisation, clock.utilisation_rate
+    else:
+        left, rate = abs(clock.slip_velocity), -clock.slip_acceleration
+        if clock.slip_velocity < 0.0:
+            rate = -rate
+    return left / rate if rate * horizon > left > 0.0 else horizon
+
+
+switching_time = compiled(_switching_time)
+
+
+@register_jitable
+def _next_step(run: Run, until: float) -> float:
+    """The next step [s]: the ladder's at the present level, unless something is due before.
+
+    A gap about to close: the step ends where it closes, and the next one, on which the dashpot works, is small.
+    An instant that a step must end on: the step ends there.
+    """
+    clock, control = run.clock[0], run.control
+    step = control.largest_step * 2.0 ** (-clock.level / STEPS_PER_OCTAVE)
+    if step > control.closing_step:
+        closing = closing_time(control, run.old, step)
+        if closing < step:
+            if closing < 2.0 * control.closing_step:
+                clock.level = ladder_level(control.largest_step, control.closing_step)
+                step = control.largest_step * 2.0 ** (-clock.level / STEPS_PER_OCTAVE)
+            else:
+                step = closing
+    if step > control.event_step:
+        switching = switching_time(clock, step)
+        if switching < step:
+            step = max(switching, control.event_step)
+    while run.breaks[clock.next_break] <= clock.time:
+        clock.next_break += 1
+    left = min(until, run.breaks[clock.next_break]) - clock.time
+    if step >= left:
+        return left
+    if 2.0 * step > left:  # two equal steps instead of a whole one and a sliver
+        return 0.5 * left
+    return step
+
+
+def _allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
+    """Energy that the step attempted may lose or win [J].
+
+    A first touch switches a dashpot on: what the scheme loses there falls with the step itself only, so it is held
+    against the energy that meets the floor.
+    """
+    control, old, new = run.control, run.old, run.new
+    allowed = control.reference_energy * (control.energy_floor + control.energy_rate * step)
+    allowed += control.energy_share * abs(dissipated)
+    closing = False
+    for i in range(new.point.shape[0]):
+        closing = closing or (old.point[i, 1] >= 0.0 and new.point[i, 1] < 0.0)
+    if closing:
+        _, floor_velocity, _ = floor_motion(run.motion, run.clock[0].time)
+        relative = floor_velocity * (0.5 * floor_velocity - old.pose[VELOCITY_X])
+        allowed += control.closing_share * (old.energy[KINETIC] + control.mass * relative)
+    return allowed
+
+
+allowed_imbalance = compiled(_allowed_imbalance)
+
+
+def _change_level(level: int, used: float, not_held: bool) -> int:
+    """Level of the next step, when the last one used that share of the imbalance allowed to it.
+
+    The imbalance of a step is of third order: half the step has an eighth of it. Shortly after a rejection
+    (`not_held` false) the step grows only where almost nothing was lost.
+    """
+    if used > 8.0:
+        return level + 2 * STEPS_PER_OCTAVE
+    if used > 1.0:
+        return level + STEPS_PER_OCTAVE
+    if used > 0.7:
+        return level + 1
+    if used < 0.02:
+        return max(level - 3, 0)
+    if used < 0.05 and not_held:
+        return max(level - 2, 0)
+    if used < 0.15 and not_held:
+        return max(level - 1, 0)
+    return level
+
+
+change_level = compiled(_change_level)
+
+
+def _ladder_level(largest_step: float, step: float) -> int:
+    """Level of the largest step of the ladder that is not above `step`."""
+    return max(0, int(np.ceil(STEPS_PER_OCTAVE * np.log2(largest_step / step) - 1e-9)))
+
+
+ladder_level = compiled(_ladder_level)
+
+
+@register_jitable
+def _accept(run: Run, step: float, slip_step: float, slip_velocity: float, every: bool, iterations: int) -> None:
+    """Make the step attempted the state of the run; samples, ledger and record follow."""
+    control, clock = run.control, run.clock[0]
+    end = clock.time + step
+    clock.slid = clock.slid + abs(slip_step) if clock.sliding == 1 else 0.0
+    clock.sliding = 1 if every else 0
+    tangential, normal = 0.0, 0.0
+    for i in range(run.new.force.shape[0]):
+        tangential += run.new.force[i, 0]
+        normal += run.new.force[i, 1]
+    utilisation = abs(tangential) / (run.contact.mu_static * normal) if normal > 0.0 else 0.0
+    clock.utilisation_rate = (utilisation - clock.utilisation) / step
+    clock.utilisation = utilisation
+    clock.slip_acceleration = (slip_velocity - clock.slip_velocity) / step
+    clock.slip_velocity = slip_velocity
+    follow(
+        run.track[0],
+        run.old,
+        run.new,
+        end,
+        step,
+        control.slenderness_angle,
+        control.width,
+        control.resting_energy,
+        every,
+        clock.slip + slip_step,
+        slip_step,
+        control.top_monitors,
+    )
+    sample(run, step, slip_step)
+    for row in range(LEDGER_ROWS):
+        run.ledger[row] += run.change[row]
+    clock.least_imbalance = min(clock.least_imbalance, run.ledger[IMBALANCE])
+    clock.most_imbalance = max(clock.most_imbalance, run.ledger[IMBALANCE])
+    clock.slip += slip_step
+    clock.time = end
+    clock.steps += 1
+    clock.iterations += iterations
+    clock.smallest_step = min(clock.smallest_step, step)
+    copy_state(run.old, run.new)
+
+
+def advance(body: Any, run: Run, until: float) -> int:
+    """Step the body to the time `until` [s]; it changes `run` in place.
+
+    Returns:
+        REACHED, OVERTURNED (90 degrees, where `control.stop_when_overturned`), or FAILED: no convergence at
+        the smallest step; the last good state stands in `run.old`.
+    """
+    control, clock, track = run.control, run.clock[0], run.track[0]
+    while clock.time < until:
+        step = _next_step(run, until)
+        mu = run.contact.mu_static
+        if clock.sliding == 1:
+            mu = weakened_mu(run.contact.mu_static, run.contact.mu_kinetic, run.contact.weakening, clock.slid)
+        iterations = _attempt(body, run, step, mu)
+        if iterations < 0:
+            clock.rejected += 1
+            clock.failed += 1
+            if step <= control.smallest_step:
+                return FAILED
+            clock.level += STEPS_PER_OCTAVE
+            continue
+        every, slip_step, slip_velocity = slide(run, step)
+        dissipated = account(run, step)
+        used = abs(run.change[IMBALANCE]) / allowed_imbalance(run, step, dissipated)
+        switches = (clock.sliding == 1) != every
+        if switches and step > 1.01 * control.event_step:
+            used = max(used, 9.0 if step > 4.0 * control.event_step else 2.0)
+        if used > 1.0 and step > control.smallest_step:
+            clock.rejected += 1
+            clock.level = change_level(clock.level, used, False)
+            clock.held = HELD_STEPS
+            continue
+        _accept(run, step, slip_step, slip_velocity, every, iterations)
+        clock.level = change_level(clock.level, min(used, 1.0), clock.held == 0)
+        clock.held = max(clock.held - 1, 0)
+        if abs(run.new.pose[ROTATION]) >= OVERTURNING_ROTATION and track.overturned_at == NEVER:
+            track.overturned_at = clock.time
+            track.mode = FALLEN
+            track.modes |= 1 << FALLEN
+            if control.stop_when_overturned:
+                return OVERTURNED
+    return REACHED
+
+
+advance_compiled = compiled(advance)
