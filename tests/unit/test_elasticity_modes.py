@@ -113,9 +113,10 @@ def test_impossible_numbers_of_modes_are_refused(count):
 
 
 def test_slender_bar_bends_at_timoshenkos_frequency():
-    # Free-free Euler-Bernoulli bar: 4.730041^2/(2 pi L^2) sqrt(E I/(rho A)). Rotary inertia and shear lower it
-    # by (A + B E/(k G)) (h/L)^2/24 to first order, A = 49.4808 and B = 12.3026 the Rayleigh quotients of the
-    # slopes of the free-free and of the clamped-clamped shape, k = 5 (1 + nu)/(6 + 5 nu) (Timoshenko 1922).
+    # Free-free Euler-Bernoulli bar: 4.730041^2/(2 pi L^2) sqrt(E I/(rho A)). Rotary inertia and shear lower
+    # it by (A + B E/(k G)) (h/L)^2/24 to first order, A = 49.4808 and B = 12.3026 the quotients of
+    # squared slope over square of the free-free and of the clamped-clamped shape, k = 5 (1 + nu)/(6 + 5 nu)
+    # (Timoshenko, Philosophical Magazine 43 (1922) 125).
     height, width = 4.0, 0.08
     euler = 4.730041**2 / (2 * np.pi * height**2) * np.sqrt(2.1e11 * width**2 / 12.0 / 7850.0)
     shear = 2.0 * 1.3 * (6.0 + 5.0 * 0.3) / (5.0 * 1.3)
