@@ -25,7 +25,7 @@ from mesh.quality import require_positions, require_quality
 from mesh.region import Region
 from mesh.tags import CellTags, cell_regions
 from mesh.tiling import TOLERANCE, place_on_floor, require_tiling
-from mesh.untrusted import FORMATS, format_list, require_harmless
+from mesh.untrusted import FORMATS, bounded_memory, format_list, require_harmless
 
 #: Cell types with four corners first, and the points and lines that may lie about a mesh of them.
 QUADS = ("quad", "quad8", "quad9")
@@ -117,7 +117,11 @@ def _parse(path: Path) -> _Raw:
     chatter = io.StringIO()
     suffix = path.suffix.lower()
     try:
-        with contextlib.redirect_stdout(chatter), contextlib.redirect_stderr(chatter):
+        with (
+            contextlib.redirect_stdout(chatter),
+            contextlib.redirect_stderr(chatter),
+            bounded_memory(path),
+        ):
             raw = _READERS[suffix](str(path))
         return _raw(raw)
     except MeshError:

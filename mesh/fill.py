@@ -95,13 +95,15 @@ def _solid_density(geometry: ContainerGeometry, fill: MassFill, cells: BoxCells)
     if abs(offset) <= ROUNDING * fill.mass * geometry.height:
         return np.full(len(arm), fill.mass / total_area)
     second_moment = cells.area @ arm**2
-    density = fill.mass / total_area + offset / max(second_moment, np.finfo(float).tiny) * arm
-    if not (second_moment > ROUNDING * total_area * geometry.height**2 and density.min() >= 0.0):
-        raise MeshError(
-            f"the rows of this mesh are too tall to put the centroid at {fill.centroid_height} m in a solid "
-            f"box of {geometry.height} m; take an element size of at most {0.5 * geometry.height:.6g} m"
-        )
-    return density
+    if second_moment > ROUNDING * total_area * geometry.height**2:
+        density = fill.mass / total_area + offset / second_moment * arm
+        # Never so for even rows, but a low row beside tall ones can fall below zero.
+        if density.min() >= 0.0:
+            return density
+    raise MeshError(
+        f"the rows of this mesh are too tall to put the centroid at {fill.centroid_height} m in a solid "
+        f"box of {geometry.height} m; take smaller elements, of at most {0.5 * geometry.height:.6g} m"
+    )
 
 
 def _shell_density(

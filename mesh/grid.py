@@ -90,7 +90,7 @@ def require_affordable(geometry: ContainerGeometry, columns: Segments, rows: Seg
     cells = columns.count * rows.count * geometry.boxes
     if cells > MOST_CELLS:
         raise MeshError(
-            f"the mesh would have {cells:.3g} cells ({columns.count} columns, {rows.count} rows a box, "
+            f"the mesh would have {cells} cells ({columns.count} columns, {rows.count} rows a box, "
             f"{geometry.boxes} boxes); at most {MOST_CELLS} are allowed: take a larger element size"
         )
 

@@ -79,7 +79,7 @@ def require_quality(points: FloatArray, quads: IntArray, least: float = LEAST_SC
 
 
 def require_positions(points: FloatArray) -> None:
-    """Refuse points (n, any) [m] that are not finite or beyond `FARTHEST`; raises MeshError naming the first."""
+    """Refuse points (n, any) [m] not finite or beyond `FARTHEST`; raises MeshError naming the first."""
     placed = (np.abs(points) <= FARTHEST).all(axis=1)  # also refuses nan
     if not placed.all():
         first = int(np.argmin(placed))

@@ -2,13 +2,21 @@
 
 A mesh file is data from anywhere. Only formats that hold plain numbers are read (no pickles, no HDF5 with
 links to other files), and what would let a small file take much memory, or read another file, is refused.
+What slips through meets a limit on the memory of the process while the file is parsed (Linux only).
 """
 
+import contextlib
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 from mesh.errors import MeshError
 from mesh.grid import MOST_CELLS
+
+try:
+    import resource
+except ImportError:  # Windows has no such limits
+    resource = None  # type: ignore[assignment]
 
 #: Suffixes of the formats read and written, with their names.
 FORMATS = {".msh": "Gmsh", ".vtu": "VTU", ".vtk": "legacy VTK", ".inp": "Abaqus"}
@@ -21,6 +29,12 @@ MOST_COMPRESSED_BYTES = 4_000_000
 
 #: Largest count or label in a header: cells of a few blocks with their points.
 MOST_ENTRIES = 10 * MOST_CELLS
+
+#: Address space a parser may add: so much, and so many times the size of the file [bytes, -].
+SPARE_BYTES = 1_000_000_000
+SPARE_PER_BYTE = 50
+
+_MEMORY_IN_PAGES = Path("/proc/self/statm")
 
 
 def require_harmless(path: Path) -> None:
@@ -44,6 +58,27 @@ def require_harmless(path: Path) -> None:
     objection = {".msh": _gmsh, ".vtu": _vtu, ".vtk": _vtk, ".inp": _abaqus}[suffix](contents)
     if objection:
         raise MeshError(f"mesh file {path}: {objection}")
+
+
+@contextlib.contextmanager
+def bounded_memory(path: Path) -> Iterator[None]:
+    """Limit what parsing a file may allocate; beyond it the parser sees a MemoryError.
+
+    The limit is the process's, so no other thread should be allocating much meanwhile. Without /proc there
+    is none.
+    """
+    if resource is None or not _MEMORY_IN_PAGES.exists():
+        yield
+        return
+    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    present = int(_MEMORY_IN_PAGES.read_text().split()[0]) * resource.getpagesize()
+    limits = [present + SPARE_BYTES + SPARE_PER_BYTE * path.stat().st_size, soft, hard]
+    limit = min(each for each in limits if each != resource.RLIM_INFINITY)
+    resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
 
 
 def format_list() -> str:

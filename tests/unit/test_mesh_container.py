@@ -1,0 +1,198 @@
+"""The structured mesh: where its cells and lines lie, what it weighs, how it resists rotation."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from mesh.cells import areas_and_centroids, quadrature, signed_areas
+from mesh.container import ContainerMesh, build_container_mesh
+from mesh.errors import MeshError, MeshQualityError
+from mesh.fill import MassFill
+from mesh.geometry import ContainerGeometry, Section
+from mesh.quality import scaled_jacobian
+from mesh.region import Region
+from mesh.tiling import require_tiling
+
+STACK = ContainerGeometry(width=1.1, height=1.0, depth=1.2, boxes=4, wall=0.008)
+BLOCK = ContainerGeometry(width=1.1, height=1.0, depth=1.1, boxes=4, section=Section.SOLID)
+FILL = MassFill(mass=2500.0, centroid_height=0.5)
+
+
+def block(element_size: float = 0.25) -> ContainerMesh:
+    return build_container_mesh(BLOCK, FILL, element_size=element_size)
+
+
+def distorted_block() -> ContainerMesh:
+    """The block with its inner points moved at random: same shape, same density, other cells."""
+    mesh = block()
+    points = mesh.points.copy()
+    inside = (np.abs(points[:, 0]) < 0.549) & (points[:, 1] > 0.001) & (points[:, 1] < 3.999)
+    points[inside] += np.random.default_rng(1).uniform(-0.06, 0.06, (inside.sum(), 2))
+    return dataclasses.replace(mesh, points=points)
+
+
+@pytest.mark.parametrize("mesh", [block(1.0), block(), distorted_block()])
+def test_homogeneous_block_has_the_inertia_of_a_rectangle(mesh):
+    # m (a^2 + c^2)/12 about its centre, exact for cells of any shape.
+    assert mesh.mass == pytest.approx(10000.0, rel=1e-13)
+    assert mesh.centroid == pytest.approx((0.0, 2.0), abs=1e-13)
+    assert mesh.inertia == pytest.approx(10000.0 * (1.1**2 + 4.0**2) / 12.0, rel=1e-13)
+
+
+def test_inertia_of_the_shell_is_that_of_its_rectangles():
+    # Nested rectangles: ring = outer - inner as deep as the container, sheets and fill over the inner one.
+    mesh = build_container_mesh(
+        ContainerGeometry(width=1.1, height=1.0, depth=1.2, wall=0.008), FILL, element_size=0.1
+    )
+    outer, inner = 1.1 * 1.0, 1.084 * 0.984
+    ring = 7850.0 * 1.2
+    interior = (2500.0 - ring * (outer - inner)) / inner
+    expected = ring * outer * (1.1**2 + 1.0) / 12.0 + (interior - ring) * inner * (1.084**2 + 0.984**2) / 12.0
+    assert mesh.inertia == pytest.approx(expected, rel=1e-12)
+
+
+def test_quadrature_integrates_quadratics_over_any_quadrilateral():
+    # Green's theorem on the corners of an irregular quadrilateral: integral of x^2 = sum over edges of
+    # int x^3/3 dz = dz (x0^3 + x0^2 x1 + x0 x1^2 + x1^3)/12.
+    points = np.array([[0.1, -0.2], [1.3, 0.1], [1.1, 1.7], [-0.4, 0.9]])
+    start, stop = points, np.roll(points, -1, axis=0)
+    x0, x1 = start[:, 0], stop[:, 0]
+    exact = ((stop - start)[:, 1] * (x0**3 + x0**2 * x1 + x0 * x1**2 + x1**3) / 12.0).sum()
+    positions, weights = quadrature(points, np.array([[0, 1, 2, 3]]))
+    assert (weights * positions[..., 0] ** 2).sum() == pytest.approx(exact, rel=1e-14)
+    area, centroid = areas_and_centroids(points, np.array([[0, 1, 2, 3]]))
+    assert area == pytest.approx(signed_areas(points, np.array([[0, 1, 2, 3]])), rel=1e-14)
+    assert centroid[0, 0] == pytest.approx(
+        ((stop - start)[:, 1] * (x0**2 + x0 * x1 + x1**2) / 6.0).sum() / area[0], rel=1e-14
+    )
+
+
+@pytest.mark.parametrize("geometry", [STACK, BLOCK])
+@pytest.mark.parametrize("foot", [None, 0.15, 0.55])
+def test_cells_are_counter_clockwise_rectangles_that_tile_the_container(geometry, foot):
+    mesh = build_container_mesh(geometry, FILL, element_size=0.1, foot=foot)
+    areas = signed_areas(mesh.points, mesh.quads)
+    assert areas.min() > 0.0
+    assert areas.sum() == pytest.approx(1.1 * 4.0, rel=1e-13)
+    assert scaled_jacobian(mesh.points, mesh.quads) == pytest.approx(np.ones(len(areas)), abs=1e-12)
+    require_tiling(mesh.points, mesh.quads, 1.1, 4.0)
+
+
+def test_bolted_boxes_share_the_nodes_between_them():
+    mesh = build_container_mesh(STACK, FILL, element_size=0.1)
+    single = build_container_mesh(dataclasses.replace(STACK, boxes=1), FILL, element_size=0.1)
+    on_lid = int((single.points[:, 1] == 1.0).sum())
+    assert len(mesh.points) == 4 * len(single.points) - 3 * on_lid
+    assert len(np.unique(mesh.points, axis=0)) == len(mesh.points)
+    for height in (1.0, 2.0, 3.0):
+        assert (mesh.points[:, 1] == height).sum() == on_lid
+
+
+def test_ring_of_every_box_has_the_thickness_of_the_wall_and_the_depth_of_the_container():
+    mesh = build_container_mesh(STACK, FILL, element_size=0.1)
+    area = signed_areas(mesh.points, mesh.quads)
+    wall = mesh.region == Region.WALL
+    assert area[wall].sum() == pytest.approx(4 * (1.1 * 1.0 - 1.084 * 0.984), rel=1e-12)
+    assert (mesh.thickness[wall] == 1.2).all()
+    assert (mesh.thickness[~wall] == 0.016).all()
+    assert mesh.areal_density[wall] == pytest.approx(np.full(wall.sum(), 7850.0 * 1.2), rel=1e-15)
+
+
+def test_solid_is_as_thick_as_it_is_deep():
+    mesh = block()
+    assert (mesh.region == Region.SOLID).all()
+    assert (mesh.thickness == 1.1).all()
+
+
+def test_base_points_run_from_corner_to_corner():
+    mesh = build_container_mesh(STACK, FILL, element_size=0.1)
+    base = mesh.points[mesh.base_points]
+    assert (base[:, 1] == 0.0).all()
+    assert (np.diff(base[:, 0]) > 0.0).all()
+    assert base[[0, -1], 0].tolist() == [-0.55, 0.55]
+    assert len(base) == (mesh.points[:, 1] == 0.0).sum() == 14
+
+
+def test_mesh_is_symmetric_to_the_last_bit():
+    mesh = build_container_mesh(STACK, FILL, element_size=0.1, foot=0.13)
+    mirrored = mesh.points * [-1.0, 1.0]
+    assert {tuple(point) for point in mirrored} == {tuple(point) for point in mesh.points}
+
+
+@pytest.mark.parametrize("foot", [0.15, 0.05, 0.0079, 0.008, 0.3, 0.5499])
+def test_feet_end_on_a_base_point(foot):
+    mesh = build_container_mesh(STACK, FILL, element_size=0.1, foot=foot)
+    left, right = mesh.foot_widths(foot)
+    assert left == pytest.approx(right, rel=1e-12)
+    assert left == pytest.approx(foot, rel=1.0 / 8.0)
+    assert np.isclose(mesh.points[mesh.base_points, 0] + 0.55, left, rtol=1e-12, atol=0.0).any()
+
+
+def test_a_foot_without_a_mesh_line_is_refused_with_the_nearest():
+    mesh = build_container_mesh(STACK, FILL, element_size=0.5)
+    with pytest.raises(MeshError, match=r"no base point ends a foot of 0.15 m: the nearest is 0.008 m"):
+        mesh.foot_widths(0.15)
+
+
+def test_width_and_height_are_those_of_the_container():
+    mesh = build_container_mesh(STACK, FILL, element_size=0.1)
+    assert (mesh.width, mesh.height) == pytest.approx((1.1, 4.0), rel=1e-15)
+
+
+def test_arrays_are_read_only_and_owned():
+    mesh = block()
+    for name in ("points", "quads", "region", "thickness", "areal_density"):
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(mesh, name)[0] = 0
+    points = mesh.points.copy()
+    copied = dataclasses.replace(mesh, points=points)
+    points[0] = 99.0
+    assert copied.points[0].tolist() == [-0.55, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        (lambda m: {"region": m.region[:-1]}, "region must have one value a cell"),
+        (lambda m: {"region": m.region + 4}, r"values of Region, got \[7\]"),
+        (lambda m: {"thickness": 0.0 * m.thickness}, "smallest is 0.0 m"),
+        (lambda m: {"thickness": np.nan * m.thickness}, "thickness must be positive and finite"),
+        (lambda m: {"areal_density": -m.areal_density}, "not negative"),
+        (lambda m: {"areal_density": 0.0 * m.areal_density}, "no mass"),
+        (
+            lambda m: {"points": m.points + np.array([0.0, 0.1])},
+            "base must stand on z = 0, its lowest point is at z = 0.1",
+        ),
+        (lambda m: {"points": m.points + np.array([0.1, 0.0])}, "centred on x = 0"),
+        (lambda m: {"points": m.points[:-1]}, "cells name points 0 to"),
+        (lambda m: {"quads": m.quads[:, :3]}, r"quads must have shape \(m, 4\)"),
+    ],
+)
+def test_arrays_that_do_not_make_a_container_are_refused(changes, reason):
+    mesh = block()
+    with pytest.raises(MeshError, match=reason):
+        dataclasses.replace(mesh, **changes(mesh))
+
+
+def test_a_container_of_inverted_cells_cannot_be_made():
+    mesh = block()
+    with pytest.raises(MeshQualityError, match="inverted"):
+        dataclasses.replace(mesh, quads=mesh.quads[:, ::-1])
+
+
+def test_absurd_sizes_are_refused_before_memory_is_taken():
+    # 267 cells through a wall of 8 mm, 36133 and 32800 between walls.
+    cells = (36133 + 2 * 267) * (32800 + 2 * 267) * 4
+    with pytest.raises(MeshError, match=f"the mesh would have {cells} cells"):
+        build_container_mesh(STACK, FILL, element_size=3e-5)
+
+
+@pytest.mark.parametrize(
+    ("wall", "width"), [(1e-4, 0.05), (1e-4, 20.0), (0.0249, 0.05), (0.2, 1.1), (0.499, 1.1), (0.499, 20.0)]
+)
+def test_walls_from_hair_to_nearly_solid_can_be_meshed(wall, width):
+    geometry = ContainerGeometry(width=width, height=1.0, depth=2.0, boxes=2, wall=wall)
+    mesh = build_container_mesh(geometry, MassFill(mass=4e5, centroid_height=0.5), element_size=0.1)
+    assert mesh.mass == pytest.approx(8e5, rel=1e-9)
+    assert mesh.centroid[1] == pytest.approx(1.0, rel=1e-9)

@@ -1,0 +1,467 @@
+"""Meshes from files: what is read back, what is refused and by which name."""
+
+import dataclasses
+import pickle
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from mesh.cells import signed_areas
+from mesh.container import ContainerMesh, build_container_mesh
+from mesh.errors import MeshError, MeshQualityError
+from mesh.files import read_container_mesh, write_container_mesh
+from mesh.fill import MassFill
+from mesh.geometry import ContainerGeometry, Section
+from mesh.region import Region
+from mesh.untrusted import MOST_COMPRESSED_BYTES
+
+STACK = ContainerGeometry(width=1.1, height=1.0, depth=1.1, boxes=2, wall=0.008)
+BLOCK = ContainerGeometry(width=1.1, height=1.0, depth=1.1, boxes=2, section=Section.SOLID)
+FILL = MassFill(mass=2500.0, centroid_height=0.5)
+SUFFIXES = [".msh", ".vtu", ".vtk", ".inp"]
+
+
+def stack(fill: MassFill = FILL) -> ContainerMesh:
+    return build_container_mesh(STACK, fill, element_size=0.2)
+
+
+def names(mesh: ContainerMesh) -> list[str]:
+    return [Region(value).name.lower() for value in mesh.region]
+
+
+def write(path, mesh, *, points=None, cells=None, tags="region", region=None, **mesh_arguments):
+    """A file with the cells of `mesh`, changed as a test needs it."""
+    points = np.column_stack([mesh.points, np.zeros(len(mesh.points))]) if points is None else points
+    cells = [("quad", mesh.quads)] if cells is None else cells
+    if tags is not None:
+        mesh_arguments["cell_data"] = {tags: [mesh.region if region is None else region]}
+    meshio.write_points_cells(path, points, cells, **mesh_arguments)
+    return path
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+@pytest.mark.parametrize("centroid", [0.5, 0.42, 0.58])
+def test_shell_comes_back_as_it_was_written(tmp_path, suffix, centroid):
+    fill = MassFill(mass=2500.0, centroid_height=centroid)
+    mesh = stack(fill)
+    write_container_mesh(tmp_path / f"mesh{suffix}", mesh)
+    again = read_container_mesh(tmp_path / f"mesh{suffix}", STACK, fill)
+    assert again.points == pytest.approx(mesh.points, abs=1e-15)
+    for name in ("quads", "region", "thickness"):
+        assert (getattr(again, name) == getattr(mesh, name)).all()
+    assert again.areal_density == pytest.approx(mesh.areal_density, rel=1e-9)
+    assert again.mass == pytest.approx(5000.0, rel=1e-9)
+    assert again.centroid[1] == pytest.approx(0.5 + centroid, rel=1e-9)
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_solid_comes_back_as_it_was_written(tmp_path, suffix):
+    fill = MassFill(mass=2500.0, centroid_height=0.4)
+    mesh = build_container_mesh(BLOCK, fill, element_size=0.2)
+    write_container_mesh(tmp_path / f"mesh{suffix}", mesh)
+    again = read_container_mesh(tmp_path / f"mesh{suffix}", BLOCK, fill)
+    assert again.areal_density == pytest.approx(mesh.areal_density, rel=1e-9)
+    assert (again.region == Region.SOLID).all()
+
+
+GROUPS = {"wall": 42, "sheet": 7, "fill": 13}  # numbers are arbitrary: only names count
+
+
+@pytest.mark.parametrize("binary", [True, False])
+def test_gmsh_2_physical_groups_are_read_by_name_and_boundary_lines_passed_over(tmp_path, binary):
+    mesh = stack()
+    numbers = np.array(list(GROUPS.values()))[mesh.region]
+    base = np.column_stack([mesh.base_points[:-1], mesh.base_points[1:]])
+    raw = meshio.Mesh(
+        np.column_stack([mesh.points, 0 * mesh.points[:, 0]]),
+        [("line", base), ("quad", mesh.quads)],
+        cell_data={
+            "gmsh:physical": [np.full(len(base), 99), numbers],
+            "gmsh:geometrical": [np.full(len(base), 5), numbers],
+        },
+        field_data={name: np.array([number, 2]) for name, number in GROUPS.items()}
+        | {"base": np.array([99, 1])},
+    )
+    meshio.gmsh.write(tmp_path / "mesh.msh", raw, fmt_version="2.2", binary=binary)
+    again = read_container_mesh(tmp_path / "mesh.msh", STACK, FILL)
+    assert (again.region == mesh.region).all()
+    assert again.inertia == pytest.approx(mesh.inertia, rel=1e-12)
+
+
+def gmsh_4_text(mesh: ContainerMesh) -> str:
+    """The mesh as Gmsh 4.1 writes it (its manual, MSH file format): a surface a region, one curve."""
+    regions = [region for region in Region if (mesh.region == region).any()]
+    base = mesh.base_points + 1
+    lines = ["$MeshFormat", "4.1 0 8", "$EndMeshFormat", "$PhysicalNames", str(1 + len(regions))]
+    lines += ['1 99 "base"', *(f'2 {GROUPS[each.name.lower()]} "{each.name.lower()}"' for each in regions)]
+    lines += ["$EndPhysicalNames", "$Entities", f"0 1 {len(regions)} 0", "1 0 0 0 1 0 0 1 99 0"]
+    lines += [f"{each + 1} 0 0 0 1 2 0 1 {GROUPS[each.name.lower()]} 0" for each in regions]
+    count = len(mesh.points)
+    lines += [
+        "$EndEntities",
+        "$Nodes",
+        f"1 {count} 1 {count}",
+        f"2 1 0 {count}",
+        *map(str, range(1, count + 1)),
+    ]
+    lines += [f"{x!r} {z!r} 0" for x, z in mesh.points.tolist()]
+    total = len(base) - 1 + len(mesh.quads)
+    lines += ["$EndNodes", "$Elements", f"{1 + len(regions)} {total} 1 {total}", f"1 1 1 {len(base) - 1}"]
+    lines += [f"{n + 1} {base[n]} {base[n + 1]}" for n in range(len(base) - 1)]
+    number = len(base)
+    for each in regions:
+        quads = mesh.quads[mesh.region == each] + 1
+        lines.append(f"2 {each + 1} 3 {len(quads)}")
+        for quad in quads:
+            lines.append(f"{number} " + " ".join(map(str, quad)))
+            number += 1
+    return "\n".join([*lines, "$EndElements", ""])
+
+
+def test_gmsh_4_physical_groups_are_read_by_name(tmp_path):
+    fill = MassFill(mass=2500.0, centroid_height=0.42)
+    mesh = stack(fill)
+    (tmp_path / "mesh.msh").write_text(gmsh_4_text(mesh))
+    again = read_container_mesh(tmp_path / "mesh.msh", STACK, fill)
+    assert np.bincount(again.region).tolist() == np.bincount(mesh.region).tolist()
+    assert again.inertia == pytest.approx(mesh.inertia, rel=1e-9)
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".vtk"])
+def test_sets_that_meshio_turned_into_one_field_are_read(tmp_path, suffix):
+    mesh = stack(MassFill(mass=2500.0, centroid_height=0.42))
+    sets = {region.name.lower(): [np.flatnonzero(mesh.region == region)] for region in list(Region)[:3]}
+    write(tmp_path / f"mesh{suffix}", mesh, tags=None, cell_sets=sets)
+    again = read_container_mesh(
+        tmp_path / f"mesh{suffix}", STACK, MassFill(mass=2500.0, centroid_height=0.42)
+    )
+    assert (again.region == mesh.region).all()
+
+
+def test_one_flag_a_region_is_read(tmp_path):
+    mesh = stack()
+    flags = {name: [(mesh.region == Region[name.upper()]).astype(np.int32)] for name in ("wall", "fill")}
+    write(tmp_path / "mesh.vtu", mesh, tags=None, cell_data=flags)
+    assert (read_container_mesh(tmp_path / "mesh.vtu", STACK, FILL).region == mesh.region).all()
+
+
+@pytest.mark.parametrize(("columns", "plane"), [((0, 1), "x-y"), ((0, 2), "x-z")])
+def test_elevation_may_lie_in_the_x_y_or_the_x_z_plane_anywhere(tmp_path, columns, plane):
+    mesh = stack()
+    points = np.full((len(mesh.points), 3), 3.0)
+    points[:, columns] += mesh.points
+    write(tmp_path / "mesh.vtu", mesh, points=points)
+    again = read_container_mesh(tmp_path / "mesh.vtu", STACK, FILL)
+    assert again.points == pytest.approx(mesh.points, abs=1e-14)
+
+
+def test_elevation_in_another_plane_is_refused(tmp_path):
+    mesh = stack()
+    points = np.column_stack([0.0 * mesh.points[:, 0], mesh.points])
+    write(tmp_path / "mesh.vtu", mesh, points=points)
+    with pytest.raises(MeshError, match=r"not in the x-y or the x-z plane: it measures 0 x 1.1 x 2 m"):
+        read_container_mesh(tmp_path / "mesh.vtu", STACK, FILL)
+
+
+def test_clockwise_cells_are_turned(tmp_path):
+    mesh = stack()
+    quads = mesh.quads.copy()
+    quads[::2] = quads[::2, ::-1]
+    write(tmp_path / "mesh.vtu", mesh, cells=[("quad", quads)])
+    again = read_container_mesh(tmp_path / "mesh.vtu", STACK, FILL)
+    assert signed_areas(again.points, again.quads).min() > 0.0
+    assert again.inertia == pytest.approx(mesh.inertia, rel=1e-13)
+
+
+@pytest.mark.parametrize("kind", ["quad8", "quad9"])
+@pytest.mark.parametrize("bulge", [0.0, 0.05])
+def test_corners_of_straight_quadratic_cells_are_taken_and_curved_ones_refused(tmp_path, kind, bulge):
+    mesh = build_container_mesh(BLOCK, FILL, element_size=0.2)
+    corners = mesh.points[mesh.quads]
+    middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
+    middles[3, 0, 1] += bulge * 0.2
+    extra = np.concatenate([middles, corners.mean(axis=1, keepdims=True)], axis=1)[:, : int(kind[-1]) - 4]
+    points = np.concatenate([mesh.points, extra.reshape(-1, 2)])
+    numbers = len(mesh.points) + np.arange(extra.shape[0] * extra.shape[1]).reshape(extra.shape[:2])
+    write(
+        tmp_path / "mesh.vtu",
+        mesh,
+        points=np.column_stack([points, 0 * points[:, 0]]),
+        cells=[(kind, np.concatenate([mesh.quads, numbers], axis=1))],
+    )
+    if bulge:
+        with pytest.raises(MeshError, match="has curved sides"):
+            read_container_mesh(tmp_path / "mesh.vtu", BLOCK, FILL)
+    else:
+        again = read_container_mesh(tmp_path / "mesh.vtu", BLOCK, FILL)
+        assert (len(again.points), again.quads.shape) == (len(mesh.points), mesh.quads.shape)
+
+
+def test_distorted_cells_of_a_file_carry_mass_and_centroid_too(tmp_path):
+    fill = MassFill(mass=2500.0, centroid_height=0.43)
+    mesh = stack()
+    # Shake the points that belong to no wall: rows are no longer straight, so the level cuts cells askew.
+    free = np.ones(len(mesh.points), dtype=bool)
+    free[np.unique(mesh.quads[mesh.region == Region.WALL])] = False
+    points = np.column_stack([mesh.points, 0 * mesh.points[:, 0]])
+    points[free, :2] += np.random.default_rng(3).uniform(-0.05, 0.05, (free.sum(), 2))
+    write(tmp_path / "mesh.vtu", mesh, points=points)
+    again = read_container_mesh(tmp_path / "mesh.vtu", STACK, fill)
+    assert again.mass == pytest.approx(5000.0, rel=1e-9)
+    assert again.centroid[1] == pytest.approx(0.93, rel=1e-9)
+    assert again.areal_density.min() > 0.0
+
+
+@pytest.mark.parametrize(
+    ("tags", "region", "reason"),
+    [
+        ("material", None, r"no cell is tagged with a region \(wall, sheet, fill\); found field material"),
+        ("region", 7, r"no cell is tagged .*; found region 7 \(98 cells\)"),
+        ("region", 3, r"tagged solid do not belong to this section \(wall, sheet, fill\)"),
+        ("wall-sheet-fil", None, r"are in no region.*fil \(\d+ cells\).*did you mean fill by fil\?"),
+        ("wall", None, r"cell field wall must be 0 or 1"),
+    ],
+)
+def test_wrong_tags_are_refused_by_name(tmp_path, tags, region, reason):
+    mesh = stack()
+    write(
+        tmp_path / "mesh.vtu",
+        mesh,
+        tags=tags,
+        region=None if region is None else np.full(len(mesh.quads), region),
+    )
+    with pytest.raises(MeshError, match=reason) as caught:
+        read_container_mesh(tmp_path / "mesh.vtu", STACK, FILL)
+    assert str(caught.value).startswith(f"mesh file {tmp_path / 'mesh.vtu'}: ")
+
+
+def test_wrong_physical_names_are_refused_by_name(tmp_path):
+    mesh = stack()
+    write_container_mesh(tmp_path / "mesh.msh", mesh)
+    text = (tmp_path / "mesh.msh").read_text()
+    (tmp_path / "mesh.msh").write_text(text.replace('"fill"', '"filling"'))
+    with pytest.raises(
+        MeshError, match=r"no region.*wall \(\d+ cells\), filling \(\d+ cells\).*mean fill by filling"
+    ):
+        read_container_mesh(tmp_path / "mesh.msh", STACK, FILL)
+
+
+def test_cells_without_tags_or_in_two_regions_are_refused(tmp_path):
+    mesh = stack()
+    write(tmp_path / "bare.vtu", mesh, tags=None)
+    with pytest.raises(MeshError, match="found no tags at all"):
+        read_container_mesh(tmp_path / "bare.vtu", STACK, FILL)
+    wall = (mesh.region == Region.WALL).astype(np.int32)
+    write(tmp_path / "both.vtu", mesh, tags=None, cell_data={"wall": [wall], "fill": [1 + 0 * wall]})
+    with pytest.raises(MeshError, match=f"{wall.sum()} cells are in several regions, the first is cell 0"):
+        read_container_mesh(tmp_path / "both.vtu", STACK, FILL)
+    write(tmp_path / "none.vtu", mesh, tags=None, cell_data={"wall": [wall]})
+    with pytest.raises(MeshError, match=f"{(wall == 0).sum()} cells are in no region"):
+        read_container_mesh(tmp_path / "none.vtu", STACK, FILL)
+
+
+def test_a_shell_of_walls_and_sheets_only_has_nowhere_to_put_the_fill(tmp_path):
+    mesh = stack()
+    write(tmp_path / "mesh.vtu", mesh, region=np.minimum(mesh.region, Region.SHEET))
+    with pytest.raises(MeshError, match="no cell can carry the rest: tag the cells with fill as fill"):
+        read_container_mesh(tmp_path / "mesh.vtu", STACK, FILL)
+
+
+def test_section_and_tags_must_agree(tmp_path):
+    write_container_mesh(tmp_path / "shell.vtu", stack())
+    with pytest.raises(MeshError, match=r"tagged wall, fill do not belong to this section \(solid\)"):
+        read_container_mesh(tmp_path / "shell.vtu", BLOCK, FILL)
+
+
+@pytest.mark.parametrize("kind", ["triangle", "triangle6", "hexahedron"])
+def test_other_cells_are_refused_by_name(tmp_path, kind):
+    mesh = stack()
+    count = {"triangle": 3, "triangle6": 6, "hexahedron": 8}[kind]
+    write(tmp_path / "mesh.vtu", mesh, tags=None, cells=[("quad", mesh.quads), (kind, [list(range(count))])])
+    with pytest.raises(MeshError, match=rf"cells of type {kind}: only quadrilaterals"):
+        read_container_mesh(tmp_path / "mesh.vtu", STACK, FILL)
+
+
+@pytest.mark.parametrize(("factor", "accepted"), [(1000.0, False), (1.0 + 2e-6, False), (1.0 + 5e-7, True)])
+def test_dimensions_must_be_those_of_the_geometry_and_both_are_named(tmp_path, factor, accepted):
+    mesh = stack()
+    write(tmp_path / "mesh.vtu", mesh, points=np.column_stack([factor * mesh.points, 0 * mesh.points[:, 0]]))
+    if accepted:
+        again = read_container_mesh(tmp_path / "mesh.vtu", STACK, FILL)
+        assert (again.width, again.height) == (1.1, 2.0)
+    else:
+        with pytest.raises(
+            MeshError, match=rf"mesh is {1.1 * factor:.9g} m wide .*the container 1.1 m and 2 m"
+        ):
+            read_container_mesh(tmp_path / "mesh.vtu", STACK, FILL)
+
+
+def test_cells_astride_two_boxes_are_refused(tmp_path):
+    tall = dataclasses.replace(BLOCK, height=2.0, boxes=1)
+    mesh = build_container_mesh(tall, MassFill(mass=5000.0, centroid_height=1.0), element_size=0.65)
+    write_container_mesh(tmp_path / "mesh.vtu", mesh)
+    with pytest.raises(MeshError, match=r"2 cells lie in two boxes.*every 1.0 m"):
+        read_container_mesh(tmp_path / "mesh.vtu", BLOCK, FILL)
+
+
+def test_cracks_hanging_points_overlaps_and_holes_are_refused(tmp_path):
+    mesh = build_container_mesh(BLOCK, FILL, element_size=0.25)
+    points = np.column_stack([mesh.points, 0 * mesh.points[:, 0]])
+    inner = int(np.flatnonzero((np.abs(mesh.points[:, 0]) < 0.5) & (mesh.points[:, 1] == 1.0))[0])
+
+    cracked = mesh.quads.copy()
+    neighbour = int(np.flatnonzero((cracked == inner).any(axis=1))[0])
+    cracked[neighbour] = np.where(cracked[neighbour] == inner, len(points), cracked[neighbour])
+    write(tmp_path / "crack.vtu", mesh, points=np.vstack([points, points[inner]]), cells=[("quad", cracked)])
+    with pytest.raises(MeshError, match=r"lies inside the container but belongs to one cell only"):
+        read_container_mesh(tmp_path / "crack.vtu", BLOCK, FILL)
+
+    kept = np.delete(np.arange(len(mesh.quads)), 10)
+    write(tmp_path / "hole.vtu", mesh, cells=[("quad", mesh.quads[kept])], region=mesh.region[kept])
+    with pytest.raises(MeshError, match=r"belongs to one cell only"):
+        read_container_mesh(tmp_path / "hole.vtu", BLOCK, FILL)
+
+    doubled = np.concatenate([np.arange(len(mesh.quads)), [10]])
+    write(tmp_path / "twice.vtu", mesh, cells=[("quad", mesh.quads[doubled])], region=mesh.region[doubled])
+    with pytest.raises(MeshError, match=r"3 cells share the edge from x = "):
+        read_container_mesh(tmp_path / "twice.vtu", BLOCK, FILL)
+
+
+def test_two_separate_layers_are_refused_as_overlap(tmp_path):
+    mesh = build_container_mesh(BLOCK, FILL, element_size=0.25)
+    points = np.column_stack([np.tile(mesh.points, (2, 1)), np.zeros(2 * len(mesh.points))])
+    quads = np.concatenate([mesh.quads, mesh.quads + len(mesh.points)])
+    write(tmp_path / "mesh.vtu", mesh, points=points, cells=[("quad", quads)], region=np.tile(mesh.region, 2))
+    with pytest.raises(MeshError, match=r"cover 4.4 m2 of an elevation of 2.2 m2: they overlap"):
+        read_container_mesh(tmp_path / "mesh.vtu", BLOCK, FILL)
+
+
+def test_distorted_cells_of_a_file_are_refused_with_their_figures(tmp_path):
+    mesh = build_container_mesh(BLOCK, FILL, element_size=0.25)
+    points = np.column_stack([mesh.points, 0 * mesh.points[:, 0]])
+    inner = int(np.flatnonzero((np.abs(mesh.points[:, 0]) < 0.5) & (mesh.points[:, 1] == 1.0))[0])
+    points[inner, :2] += 0.3
+    write(tmp_path / "mesh.vtu", mesh, points=points)
+    with pytest.raises(MeshQualityError, match=r"cell \d+ at x = .*scaled Jacobian .*corner angles"):
+        read_container_mesh(tmp_path / "mesh.vtu", BLOCK, FILL)
+
+
+def test_positions_that_are_no_numbers_are_refused(tmp_path):
+    mesh = stack()
+    points = np.column_stack([mesh.points, 0 * mesh.points[:, 0]])
+    points[5, 1] = np.nan
+    write(tmp_path / "mesh.vtu", mesh, points=points)
+    with pytest.raises(MeshError, match="point 5 has no finite position"):
+        read_container_mesh(tmp_path / "mesh.vtu", STACK, FILL)
+
+
+class Bomb:
+    """What a pickle could do on being read."""
+
+    def __reduce__(self):
+        return (open, ("pickle_was_read", "w"))
+
+
+@pytest.mark.parametrize("suffix", [".pkl", ".npz", ".npy", ".xdmf", ".h5m", ".py", ""])
+def test_formats_that_are_more_than_numbers_are_refused_unread(tmp_path, monkeypatch, suffix):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / f"mesh{suffix}").write_bytes(pickle.dumps(Bomb()))
+    with pytest.raises(MeshError, match=r"is not read; known are .msh \(Gmsh\), .vtu"):
+        read_container_mesh(tmp_path / f"mesh{suffix}", STACK, FILL)
+    assert not (tmp_path / "pickle_was_read").exists()
+    with pytest.raises(MeshError, match="is not written"):
+        write_container_mesh(tmp_path / f"out{suffix}", stack())
+
+
+def test_a_missing_file_and_a_folder_are_refused(tmp_path):
+    with pytest.raises(MeshError, match="no such file"):
+        read_container_mesh(tmp_path / "mesh.msh", STACK, FILL)
+    (tmp_path / "folder.msh").mkdir()
+    with pytest.raises(MeshError, match="no such file"):
+        read_container_mesh(tmp_path / "folder.msh", STACK, FILL)
+
+
+@pytest.mark.parametrize(
+    ("name", "contents", "reason"),
+    [
+        ("a.inp", b"*NODE\n1, 0., 0.\n*INCLUDE, INPUT=secret.inp\n", r"\*INCLUDE is not followed"),
+        ("a.inp", b"*IN*clude, INPUT=secret.inp\r\n", r"\*INCLUDE is not followed"),
+        ("a.inp", b"*ELSET, ELSET=a, GENERATE\n1, 2_000_000_000, 1\n", r"generated up to label 2000000000"),
+        ("a.msh", b"$MeshFormat\n4.1 0 8\n$Nodes\n1 99999999999 1 2\n", r"99999999999 entries"),
+        (
+            "a.msh",
+            b"$MeshFormat\n4.1 1 8\n\x01\0\0\0\n$Elements\n" + (2**60).to_bytes(8, "little") * 4,
+            r"1152921504606846976 entries in its section Elements",
+        ),
+        ("a.msh", b"\x80\x04pickle", r"does not begin like a Gmsh file"),
+        (
+            "a.vtk",
+            b"# vtk DataFile Version 3.0\nx\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 99999 99999 1\n",
+            r"found STRUCTURED_POINTS",
+        ),
+        ("a.vtu", b'<?xml version="1.0"?><!DOCTYPE a [<!ENTITY b "c">]><VTKFile/>', r"without DOCTYPE"),
+        ("a.vtu", b'<VTKFile compressor="vtkLZMADataCompressor"/>', r"compressed with vtkLZMADataCompressor"),
+        (
+            "a.vtu",
+            b'<VTKFile compressor="vtkZLibDataCompressor">' + bytes([32]) * MOST_COMPRESSED_BYTES,
+            r"bytes compressed, at most 4000000",
+        ),
+    ],
+)
+def test_small_files_that_take_much_memory_or_name_other_files_are_refused(tmp_path, name, contents, reason):
+    (tmp_path / "secret.inp").write_text("*NODE\n1, 0., 0.\n")
+    (tmp_path / name).write_bytes(contents)
+    with pytest.raises(MeshError, match=reason):
+        read_container_mesh(tmp_path / name, STACK, FILL)
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="memory is limited on Linux only")
+def test_a_label_that_would_take_gigabytes_meets_the_limit_on_memory_which_is_then_lifted(tmp_path):
+    resource = pytest.importorskip("resource")
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    write_container_mesh(tmp_path / "mesh.msh", stack())
+    text = (tmp_path / "mesh.msh").read_text()
+    (tmp_path / "mesh.msh").write_text(text.replace("\n1 -0.55", "\n1e9 -0.55"))
+    with pytest.raises(MeshError, match=r"not readable as Gmsh \(.*Unable to allocate"):
+        read_container_mesh(tmp_path / "mesh.msh", STACK, FILL)
+    assert resource.getrlimit(resource.RLIMIT_AS) == before
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@given(data=st.data())
+def test_damaged_files_are_read_or_refused_and_nothing_else(tmp_path, capfd, suffix, data):
+    path = tmp_path / f"mesh{suffix}"
+    mesh = build_container_mesh(BLOCK, FILL, element_size=0.5)
+    write_container_mesh(path, mesh)
+    contents = bytearray(path.read_bytes())
+    for _ in range(data.draw(st.integers(1, 4))):
+        at = data.draw(st.integers(0, len(contents) - 1))
+        match data.draw(st.sampled_from(["byte", "cut", "copy"])):
+            case "byte":
+                contents[at] = data.draw(st.integers(0, 255))
+            case "cut":
+                del contents[at : at + data.draw(st.integers(1, 40))]
+            case "copy":
+                contents[at:at] = contents[at : at + data.draw(st.integers(1, 40))]
+        contents = contents or bytearray(b" ")
+    path.write_bytes(contents)
+    try:
+        again = read_container_mesh(path, BLOCK, FILL)
+    except MeshError as error:
+        assert str(error).startswith(f"mesh file {path}: ")
+        assert "\n" not in str(error)
+    else:
+        assert again.mass == pytest.approx(5000.0, rel=1e-9)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_compressed_vtu_of_ordinary_size_is_read(tmp_path):
+    mesh = stack()
+    write(tmp_path / "mesh.vtu", mesh)  # meshio compresses by default
+    assert b"vtkZLibDataCompressor" in (tmp_path / "mesh.vtu").read_bytes()
+    assert (read_container_mesh(tmp_path / "mesh.vtu", STACK, FILL).region == mesh.region).all()

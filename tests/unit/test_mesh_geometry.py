@@ -1,0 +1,117 @@
+"""Container dimensions and mesh lines."""
+
+import math
+
+import numpy as np
+import pytest
+
+from mesh.errors import MeshError
+from mesh.geometry import ContainerGeometry, Section
+from mesh.grid import MOST_CELLS, column_segments, foot_line, require_affordable, row_segments
+
+SHELL = {"width": 1.1, "height": 1.0, "depth": 1.1, "wall": 0.008}
+
+
+def shell(**changes: object) -> ContainerGeometry:
+    return ContainerGeometry(**(SHELL | changes))
+
+
+def test_total_height_counts_the_boxes():
+    assert shell(boxes=4).total_height == 4.0
+
+
+@pytest.mark.parametrize("name", ["width", "height", "depth", "wall"])
+@pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf])
+def test_lengths_must_be_positive_and_finite(name, value):
+    with pytest.raises(MeshError, match=rf"container {name} must be positive and finite, got {value} m"):
+        shell(**{name: value})
+
+
+@pytest.mark.parametrize("boxes", [0, -1, 1.5, True, "2"])
+def test_boxes_must_be_a_whole_number(boxes):
+    with pytest.raises(MeshError, match="whole number"):
+        shell(boxes=boxes)
+
+
+def test_walls_must_leave_room_inside():
+    with pytest.raises(MeshError, match=r"0.5 m leave no room in a height of 1.0 m"):
+        shell(wall=0.5)
+    with pytest.raises(MeshError, match=r"no room in a depth of 0.01 m"):
+        shell(depth=0.01)
+    shell(wall=0.499)
+
+
+def test_section_and_wall_belong_together():
+    with pytest.raises(MeshError, match="needs a wall"):
+        shell(wall=None)
+    with pytest.raises(MeshError, match="solid section has no wall"):
+        shell(section=Section.SOLID)
+    with pytest.raises(MeshError, match="must be a Section"):
+        shell(section="shell")
+
+
+def test_default_shell_has_one_cell_through_the_wall_and_eleven_between():
+    columns = column_segments(shell(), 0.1)
+    assert columns.counts == (1, round(1.084 / 0.1), 1)
+    assert row_segments(shell(), 0.1).counts == (1, round(0.984 / 0.1), 1)
+
+
+def test_thick_walls_are_divided_too():
+    assert column_segments(shell(wall=0.3), 0.1).counts == (3, 5, 3)
+
+
+def test_lines_stand_on_walls_and_feet_and_are_symmetric():
+    lines = column_segments(shell(), 0.1, foot=0.15).lines()
+    for place in (0.008, 0.15, 1.1 - 0.15, 1.1 - 0.008, 1.1):
+        assert np.abs(lines - place).min() < 1e-15
+    assert lines + lines[::-1] == pytest.approx(np.full(len(lines), 1.1), rel=1e-15)
+
+
+@pytest.mark.parametrize("wall", [None, 0.002, 0.008, 0.1, 0.4])
+def test_no_foot_makes_a_sliver(wall):
+    # A sliver: a column thinner than a tenth of the wall beside it, or a thousandth of the width.
+    geometry = shell(wall=wall) if wall else shell(wall=None, section=Section.SOLID)
+    for foot in np.geomspace(1.1e-3, 0.55, 400):
+        narrowest = np.diff(column_segments(geometry, 0.1, foot=foot).lines()).min()
+        assert narrowest >= min(0.1 * (wall or foot), 1.1e-3) * (1.0 - 1e-9)
+        assert abs(foot_line(geometry, 0.1, foot) - foot) <= foot / 8.0
+
+
+def test_foot_near_the_wall_ends_at_the_wall():
+    assert foot_line(shell(), 0.1, 0.0079) == 0.008
+    assert column_segments(shell(), 0.1, 0.0079) == column_segments(shell(), 0.1)
+
+
+def test_feet_that_meet_share_the_middle_line():
+    assert foot_line(shell(), 0.1, 0.5499) == 0.55
+    assert column_segments(shell(), 0.1, 0.55).counts == (1, 5, 5, 1)
+
+
+@pytest.mark.parametrize(
+    ("foot", "reason"),
+    [(0.0, "above 0"), (-0.1, "above 0"), (0.6, "half the width, 0.55 m"), (1e-4, "kind corners")],
+)
+def test_feet_that_do_not_fit_are_refused(foot, reason):
+    with pytest.raises(MeshError, match=reason):
+        foot_line(shell(), 0.1, foot)
+
+
+@pytest.mark.parametrize("size", [0.0, -0.1, math.nan, math.inf])
+def test_element_size_must_be_positive_and_finite(size):
+    with pytest.raises(MeshError, match="element size must be positive"):
+        column_segments(shell(), size)
+
+
+@pytest.mark.parametrize("size", [1e-9, 1e-300, 5e-324])
+def test_an_absurd_element_size_is_refused_with_its_number(size):
+    with pytest.raises(MeshError, match=r"would cut 0.008 m into (8e\+06|8e\+297|inf) cells"):
+        column_segments(shell(), size)
+
+
+def test_more_cells_than_allowed_are_refused_with_their_number():
+    geometry = shell(boxes=50)
+    columns, rows = column_segments(geometry, 0.004), row_segments(geometry, 0.004)
+    cells = columns.count * rows.count * 50
+    assert cells > MOST_CELLS
+    with pytest.raises(MeshError, match=r"3437500 cells \(275 columns, 250 rows a box, 50 boxes\)"):
+        require_affordable(geometry, columns, rows)
