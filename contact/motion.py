@@ -112,7 +112,7 @@ class HarmonicMotion:
             raise ValueError(f"harmonic ramp must not be negative, got {self.ramp_cycles} cycles")
         if self.cycles is not None and not 0.0 < self.cycles < math.inf:
             raise ValueError(f"harmonic motion must last for more than 0 cycles, got {self.cycles}")
-        if 2.0 * self.ramp > self.end_time:
+        if 2.0 * self.ramp > self.end_time * (1.0 + 1e-12):  # ramps that just meet are meant to
             raise ValueError(
                 f"two ramps of {self.ramp_cycles} cycles ({self.ramp:.6g} s each) do not fit into a drive of "
                 f"{self.end_time:.6g} s: it would not reach its amplitude; shorten the ramps or drive longer"

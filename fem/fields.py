@@ -2,7 +2,7 @@
 
 The elevation lies in the x-y plane of the viewer: points and vectors are (x, z, 0), since a vector of two
 components aborts ParaView's Warp By Vector. Points stand where the container stood, unstressed, on the floor
-as it was at t = 0; displacement includes the floor's motion, so warping by it shows the container where it is.
+as it was at t = 0. Displacement includes the floor's motion: warping by it shows the container where it is.
 Numbers are single precision, compressed. A frame is written beside its place and renamed before the PVD,
 replaced in the same way, names it: the series is valid at every moment.
 """

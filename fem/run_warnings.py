@@ -1,0 +1,202 @@
+"""What the reader of a result must know before believing it: one function a warning.
+
+A warning takes the result (the keys of `run.json`) and the case, and returns one sentence or two, or None. It
+states the figure that raised it, the limit, and what can be done. None of them changes a verdict.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from fem.case import Case
+
+Result = Mapping[str, Any]
+
+# A tilt of one hundredth of the slenderness angle counts as rocking; the contact alone must stay well below.
+ROCKING_RATIO = 0.01
+GAIN_LIMIT = 1e-4  #: of the energy reference, what the scheme may win
+LOSS_LIMIT = 1e-3  #: of the energy reference, or
+LOSS_SHARE_LIMIT = 1e-2  #: of what was dissipated, what the scheme may lose
+NEAR = 0.5  #: share of a limit from which it is worth telling
+CREDIBLE_STIFFNESS_RATIO = 4.0  #: f1/f_c from which the impact of a rigid block is reproduced
+REJECTED_SHARE = 0.05
+YIELD_STRENGTH = 235e6  #: [Pa], S235, EN 1993-1-1 Table 3.1
+
+
+def warnings_for(result: Result, case: Case) -> list[str]:
+    """All warnings that apply to a result, weightiest first."""
+    return [text for check in CHECKS if (text := check(result, case)) is not None]
+
+
+def band_is_unsure(result: Result, case: Case) -> str | None:
+    """The outcome changes within the uncertainty of the contact."""
+    band = _part(result, "verdict").get("band") or {}
+    if not band.get("unsure"):
+        return None
+    low, high = band["rotation_ratio"]
+    return (
+        "unsure: within the band of contact stiffness and damping the outcome is "
+        f"{' or '.join(band['outcomes'])}, the rotation ratio {low:.3g} to {high:.3g}"
+    )
+
+
+def energy_is_near_its_limits(result: Result, case: Case) -> str | None:
+    """The imbalance of the ledger, won or lost by the scheme, is past half of what fails a run."""
+    energy = _part(result, "energy")
+    reference, final = energy.get("reference_J"), energy.get("numerical_J")
+    if not reference or final is None:
+        return None
+    if -final > NEAR * GAIN_LIMIT * reference:
+        return (
+            f"the time stepping won {-final / reference:.1e} of the energy it takes to overturn (limit "
+            f"{GAIN_LIMIT:.0e}); a smaller solver.step_s should reduce it"
+        )
+    dissipated = sum(
+        energy.get(key) or 0.0 for key in ("friction_J", "contact_damping_J", "material_damping_J")
+    )
+    limit = max(LOSS_SHARE_LIMIT * dissipated, LOSS_LIMIT * reference)
+    largest = (energy.get("closure_error") or 0.0) * reference
+    if largest > NEAR * limit:
+        return (
+            f"the energy ledger is open by {largest:.3g} J (limit {limit:.3g} J); a smaller solver.step_s "
+            "should close it"
+        )
+    return None
+
+
+def contact_penetrates(result: Result, case: Case) -> str | None:
+    """The penetration of a corner alone tilts the container by a good part of what counts as rocking."""
+    depth = _part(result, "numerics").get("max_penetration_m")
+    angle = _part(result, "static").get("slenderness_angle_rad")
+    if depth is None or not angle:
+        return None
+    limit = ROCKING_RATIO * angle * case.container.width_m
+    if depth <= NEAR * limit:
+        return None
+    return (
+        f"penetration reached {1e3 * depth:.3g} mm: that alone tilts the container by "
+        f"{depth / (case.container.width_m * angle):.2g} of its slenderness angle (rocking counts from "
+        f"{ROCKING_RATIO}); a larger contact.normal_penalty_Pa_m reduces it"
+    )
+
+
+def regularised_friction_creeps(result: Result, case: Case) -> str | None:
+    """v = v_reg artanh(s) under a steady load of share s of what friction carries: no true stick."""
+    if case.contact.friction != "regularised":
+        return None
+    share = _action(result, "own_motion").get("utilisation_sliding")
+    start = "friction regularised in velocity never sticks: the container creeps"
+    if share is None or not 0.0 < share < 1.0:
+        return f"{start}; friction = 'elastic-stick' does not"
+    creep = case.contact.regularisation_velocity_m_s * math.atanh(share) * case.solver.duration_s
+    return (
+        f"{start}, under a steady load of {share:.2g} of the friction limit, this run's peak, by "
+        f"{1e3 * creep:.2g} mm in {case.solver.duration_s:g} s; friction = 'elastic-stick' does not"
+    )
+
+
+def shell_rings_on_the_floor(result: Result, case: Case) -> str | None:
+    """Near and below f1/f_c = 4 an impact feeds vibration: restitution depends on the contact stiffness."""
+    numerics = _part(result, "numerics")
+    elastic, contact = numerics.get("elastic_frequencies_Hz"), numerics.get("contact_frequency_Hz")
+    if case.solver.model == "rigid" or not elastic or not contact:
+        return None
+    ratio = elastic[0] / contact
+    if ratio >= CREDIBLE_STIFFNESS_RATIO:
+        return None
+    return (
+        f"first elastic frequency over contact frequency is {ratio:.2g} (< {CREDIBLE_STIFFNESS_RATIO:g}): "
+        "impacts feed vibration, so restitution depends on the contact stiffness; take results that matter "
+        "as a band (run --band)"
+    )
+
+
+def housner_is_not_credible(result: Result, case: Case) -> str | None:
+    """Below 0.5 the plastic impact of Housner (1963) at the far corner is not what a squat block does."""
+    static = _part(result, "static")
+    if static.get("housner_credible") is not False:
+        return None
+    return (
+        f"Housner's restitution is {static['housner_restitution']:.3f} (< 0.5): the container is too squat "
+        "for his impact at a corner; compare no restitution with it"
+    )
+
+
+def opening_is_not_uplift(result: Result, case: Case) -> str | None:
+    """A base edge opens on its elastic bed at a third of the acceleration that lifts the body."""
+    verdict = _part(result, "verdict")
+    opening, uplift = verdict.get("first_opening_s"), verdict.get("first_uplift_s")
+    if opening is None or uplift is not None:
+        return None
+    return (
+        f"a gap opened at the base at t = {opening:.4g} s, but no side was ever without load: that is the "
+        "elastic bed, not uplift of the container"
+    )
+
+
+def lateral_force_method_does_not_apply(result: Result, case: Case) -> str | None:
+    """EN 1998-1:2004, 4.3.3.2.1 (2): T1 <= 4 T_C and T1 <= 2.0 s."""
+    static = _part(result, "static")
+    if static.get("method_applicable") is not False:
+        return None
+    return (
+        f"the lateral force method does not apply at this period ({static['clause']}); the code's rows are "
+        "shown for comparison only"
+    )
+
+
+def rest_proves_nothing(result: Result, case: Case) -> str | None:
+    """Where the static rule also says that it stands, a run at rest is no argument against the rule."""
+    own = _action(result, "own_motion")
+    if _part(result, "verdict").get("outcome") != "rest" or not own:
+        return None
+    if max(own.get("utilisation_sliding") or 0.0, own.get("utilisation_overturning") or 0.0) > 1.0:
+        return None
+    return (
+        "the static rule, too, says that it stands under this motion: the run confirms it and decides nothing"
+    )
+
+
+def stress_is_beyond_yield(result: Result, case: Case) -> str | None:
+    """The model is elastic; a steel shell past its yield strength is not."""
+    stress = _part(result, "verdict").get("max_von_mises_Pa")
+    steel = case.container.section == "shell" and case.container.youngs_modulus_Pa > 1.5e11
+    if not steel or stress is None or stress <= YIELD_STRENGTH:
+        return None
+    return (
+        f"von Mises stress reached {stress / 1e6:.0f} MPa, beyond the yield strength of S235 (235 MPa): the "
+        "model is elastic, and stress at a corner that carries the weight grows as the mesh is refined"
+    )
+
+
+def steps_were_rejected(result: Result, case: Case) -> str | None:
+    """Many steps done twice mean that the contact was hard to solve."""
+    numerics = _part(result, "numerics")
+    steps, rejected = numerics.get("steps"), numerics.get("rejected")
+    if not steps or rejected is None or rejected <= REJECTED_SHARE * (steps + rejected):
+        return None
+    return f"{100.0 * rejected / (steps + rejected):.0f} % of the steps were rejected and made again smaller"
+
+
+CHECKS: tuple[Callable[[Result, Case], str | None], ...] = (
+    band_is_unsure,
+    energy_is_near_its_limits,
+    contact_penetrates,
+    regularised_friction_creeps,
+    shell_rings_on_the_floor,
+    steps_were_rejected,
+    stress_is_beyond_yield,
+    housner_is_not_credible,
+    opening_is_not_uplift,
+    lateral_force_method_does_not_apply,
+    rest_proves_nothing,
+)
+
+
+def _part(result: Result, name: str) -> Mapping[str, Any]:
+    """A block of a result that may not have got that far."""
+    return result.get(name) or {}
+
+
+def _action(result: Result, name: str) -> Mapping[str, Any]:
+    return _part(result, "static").get(name) or {}
