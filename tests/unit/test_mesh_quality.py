@@ -69,6 +69,7 @@ def test_clockwise_cells_score_negative():
         [[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]],  # two corners coincide
         [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]],  # on a line
         [[0.5, 0.5]] * 4,  # a point
+        [[0.0, 0.0], [1.0, 0.0], [0.5 + 1e-10, 0.866], [0.5, 0.866]],  # a triangle but for rounding
         [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]],  # a bow tie
         [[0.0, 0.0], [1.0, 0.0], [0.2, 0.2], [0.0, 1.0]],  # a corner that points inwards
     ],
