@@ -64,7 +64,6 @@ def elastic_modes(elements: FiniteElements, count: int) -> ElasticModes:
         squares, vectors = _dense_modes(elements, rigid, count)
     else:
         squares, vectors = _lanczos_modes(elements, rigid, count)
-    vectors = _without_rigid_motion(vectors, rigid, elements.vector_mass)
     shapes = vectors.T.reshape(count, -1, 2)
     shapes /= np.sqrt(_modal_masses(elements, shapes))[:, None, None]
     return ElasticModes(frequencies_Hz=np.sqrt(squares) / (2.0 * np.pi), shapes=shapes * _signs(shapes))

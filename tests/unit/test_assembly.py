@@ -75,6 +75,11 @@ def test_base_nodes_are_those_on_the_floor_by_rising_x(order):
     assert not base[:, 1].any()
 
 
+def test_base_nodes_leave_out_the_upper_face_of_a_thin_floor():
+    elements = assemble(quad_mesh(np.array([-0.55, 0.55]), np.array([0.0, 1e-4, 4.0])), order=2, **STEEL)
+    assert elements.nodes[elements.base_nodes].tolist() == [[-0.55, 0.0], [0.0, 0.0], [0.55, 0.0]]
+
+
 @ORDERS
 def test_mass_centroid_and_inertia_of_a_block_are_exact(order):
     elements = assemble(

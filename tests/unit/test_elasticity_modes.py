@@ -56,9 +56,9 @@ def test_modes_carry_no_momentum_and_no_angular_momentum(size):
     velocities = modes.shapes / np.sqrt(np.einsum("kni,kni->k", modes.shapes, modes.shapes))[:, None, None]
     momenta = np.array([elements.mass @ velocity for velocity in velocities])
     arms = elements.nodes - elements.mass.sum(axis=0) @ elements.nodes / elements.mass.sum()
-    assert np.abs(momenta.sum(axis=1)).max() < 1e-12 * np.abs(momenta).sum(axis=1).max()
+    assert np.abs(momenta.sum(axis=1)).max() < 1e-13 * np.abs(momenta).sum(axis=1).max()
     turning = arms[:, 1] * momenta[:, :, 0] - arms[:, 0] * momenta[:, :, 1]
-    assert np.abs(turning.sum(axis=1)).max() < 1e-12 * np.abs(turning).sum(axis=1).max()
+    assert np.abs(turning.sum(axis=1)).max() < 1e-13 * np.abs(turning).sum(axis=1).max()
 
 
 @SIZES
