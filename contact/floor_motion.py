@@ -10,8 +10,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from contact.compiled import compiled
 
 FloatArray = NDArray[np.float64]
 
@@ -38,7 +39,7 @@ class FloorMotion(NamedTuple):
     coefficients: FloatArray
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _window(u: float) -> tuple[float, float, float]:
     """Smooth step from 0 at u <= 0 to 1 at u >= 1, and its first two derivatives; C2 (quintic Hermite)."""
     if u <= 0.0:
@@ -49,7 +50,7 @@ def _window(u: float) -> tuple[float, float, float]:
     return u * u * u * (10.0 - 15.0 * u + 6.0 * u * u), 30.0 * u * u * v * v, 60.0 * u * v * (v - u)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _harmonic(parameters: FloatArray, time: float) -> tuple[float, float, float]:
     amplitude, omega, phase, ramp, end = parameters
     if time >= end:
@@ -70,7 +71,7 @@ def _harmonic(parameters: FloatArray, time: float) -> tuple[float, float, float]
     )
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _pulse(kind: int, parameters: FloatArray, time: float) -> tuple[float, float, float]:
     peak, length, delay = parameters
     # The end is compared as delay + length, to the last bit the instant that `PulseMotion.break_times` gives.
@@ -89,10 +90,10 @@ def _pulse(kind: int, parameters: FloatArray, time: float) -> tuple[float, float
     return displacement, velocity, acceleration if during and time >= delay else 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _piecewise(breaks: FloatArray, coefficients: FloatArray, time: float) -> tuple[float, float, float]:
     row = int(np.searchsorted(breaks, time, side="right"))
-    x, v, a, jerk = coefficients[row]
+    x, v, a, jerk = coefficients[row, 0], coefficients[row, 1], coefficients[row, 2], coefficients[row, 3]
     s = time - breaks[max(row - 1, 0)]
     return (
         x + s * (v + s * (0.5 * a + s * jerk / 6.0)),
@@ -101,7 +102,7 @@ def _piecewise(breaks: FloatArray, coefficients: FloatArray, time: float) -> tup
     )
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def floor_motion(motion: FloorMotion, time: float) -> tuple[float, float, float]:
     """Displacement [m], velocity [m/s] and acceleration [m/s2] of the floor at `time` [s]."""
     if motion.kind == HARMONIC:
@@ -114,12 +115,17 @@ def floor_motion(motion: FloorMotion, time: float) -> tuple[float, float, float]
     return _pulse(motion.kind, motion.parameters, time)
 
 
-@njit(cache=True, error_model="numpy")
-def floor_history(motion: FloorMotion, times: FloatArray) -> FloatArray:
-    """`floor_motion` at many times: rows displacement, velocity, acceleration, shape (3, n_times)."""
-    history = np.empty((3, times.size))
+@compiled
+def _fill_history(motion: FloorMotion, times: FloatArray, history: FloatArray) -> None:
     for i in range(times.size):
         history[0, i], history[1, i], history[2, i] = floor_motion(motion, times[i])
+
+
+def floor_history(motion: FloorMotion, times: FloatArray) -> FloatArray:
+    """`floor_motion` at many times: rows displacement, velocity, acceleration, shape (3, n_times)."""
+    times = np.ascontiguousarray(times, dtype=np.float64)
+    history = np.empty((3, times.size))
+    _fill_history(motion, times, history)
     return history
 
 

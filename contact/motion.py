@@ -59,7 +59,7 @@ class NoMotion:
 
     def evaluate(self, times: FloatArray) -> FloatArray:
         """Displacement, velocity, acceleration at the times [s], shape (3, n_times)."""
-        return floor_history(self.compiled(), np.ascontiguousarray(times, dtype=np.float64))
+        return floor_history(self.compiled(), times)
 
     @property
     def peak_acceleration(self) -> float:
@@ -179,7 +179,7 @@ class HarmonicMotion:
 
     def evaluate(self, times: FloatArray) -> FloatArray:
         """Displacement, velocity, acceleration at the times [s], shape (3, n_times)."""
-        return floor_history(self.compiled(), np.ascontiguousarray(times, dtype=np.float64))
+        return floor_history(self.compiled(), times)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -229,7 +229,7 @@ class PulseMotion:
 
     def evaluate(self, times: FloatArray) -> FloatArray:
         """Displacement, velocity, acceleration at the times [s], shape (3, n_times)."""
-        return floor_history(self.compiled(), np.ascontiguousarray(times, dtype=np.float64))
+        return floor_history(self.compiled(), times)
 
 
 BaseMotion = NoMotion | HarmonicMotion | PulseMotion | TableMotion

@@ -97,7 +97,7 @@ class TableMotion:
 
     def evaluate(self, times: FloatArray) -> FloatArray:
         """Displacement, velocity, acceleration at the times [s], shape (3, n_times)."""
-        return floor_history(self.compiled(), np.ascontiguousarray(times, dtype=np.float64))
+        return floor_history(self.compiled(), times)
 
     def _spline(self) -> CubicSpline:
         return CubicSpline(self.times, self.values, bc_type="natural")
