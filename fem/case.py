@@ -91,10 +91,11 @@ class Case(Heading):
     def box_mass(self) -> float:
         """Mass of one box with its fill [kg]."""
         box = self.container
+        if box.weight_N is not None:
+            return box.weight_N / self.gravity_m_s2
         if box.density_kg_m3 is not None:
             return box.density_kg_m3 * box.box_volume
-        assert box.weight_N is not None  # a rule of the table: exactly one of the two is given
-        return box.weight_N / self.gravity_m_s2
+        raise CaseError("[container] weight_N or density_kg_m3 is missing")  # a rule has seen to it
 
     @property
     def mass(self) -> float:
@@ -197,7 +198,7 @@ def shipped_text(name: str) -> str:
         CaseError: if there is none of this name; with the nearest one.
     """
     if name not in shipped_cases():
-        raise CaseError(f"no shipped case {name!r}; {_shipped_names(name)}")
+        raise CaseError(f"no shipped case {name!r}{_shipped_names(name)}")
     return (resources.files("fem.cases") / f"{name}.toml").read_text(encoding="utf-8")
 
 
@@ -333,12 +334,12 @@ def _read_text(path: Path) -> str:
 def _no_such_case(name: str) -> str:
     if name in ("", ".") or (name.isprintable() and Path(name).is_dir()):
         return f"{name!r} is a folder; give the case file, for instance {Path(name) / 'resolved.toml'}"
-    return f"no case file {name!r} and no shipped case of that name; {_shipped_names(Path(name).stem)}"
+    return f"no case file {name!r} and no shipped case of that name{_shipped_names(Path(name).stem)}"
 
 
 def _shipped_names(name: str) -> str:
     near = did_you_mean(name, shipped_cases())
-    return f"{near + ' ' if near else ''}(shipped: {', '.join(shipped_cases())})"
+    return f"{'; ' + near if near else ''} (shipped: {', '.join(shipped_cases())})"
 
 
 def _file_beside(folder: Path, key: str, name: str) -> Path:

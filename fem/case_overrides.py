@@ -56,7 +56,7 @@ def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
             near = did_you_mean(table, TABLES)
             known = ", ".join(TABLES)
             raise CaseError(
-                f"--set {dotted}: unknown table [{table}]; {near + ' ' if near else ''}(known: {known})"
+                f"--set {dotted}: unknown table [{table}]{'; ' + near if near else ''} (known: {known})"
             )
         content = changed.setdefault(table, {})
         if isinstance(content, dict):  # else the reading of the case says what is wrong with it

@@ -164,8 +164,8 @@ FREQUENCY = Quantity(unit="Hz", least=0.01, most=100.0, advice="a period T in s 
 PHASE = Quantity(
     unit="rad", least=-6.2832, most=6.2832, typical=1.0, slips=DEGREES, advice="one turn is 2 pi"
 )
-CYCLES = Quantity(unit="cycles", above=0.0, most=1e7)
-RAMP_CYCLES = Quantity(unit="cycles", least=0.0, most=1e7)
+CYCLES = Quantity(unit="", above=0.0, most=1e7)
+RAMP_CYCLES = Quantity(unit="", least=0.0, most=1e7)
 PULSE_DURATION = Quantity(unit="s", above=0.0, most=1e4, advice="milliseconds are 1e-3 s")
 DELAY = Quantity(unit="s", least=0.0, most=1e4)
 SCALE = Quantity(unit="", least=-1e6, most=1e6)
@@ -191,7 +191,7 @@ DURATION = Quantity(unit="s", least=1e-3, most=1e4, typical=20.0, slips={"millis
 SAMPLING = Quantity(unit="s", least=1e-7, most=1e4)
 FRAME_INTERVAL = Quantity(unit="s", least=0.0, most=1e4, advice="0 writes no fields")
 
-BOXES = Quantity(unit="boxes", least=1, most=50)
-MODE_COUNT = Quantity(unit="modes", least=0, most=1000)
+BOXES = Quantity(unit="", least=1, most=50)
+MODE_COUNT = Quantity(unit="", least=0, most=1000)
 ORDER = Quantity(unit="", least=1, most=2, advice="1 is bilinear, 2 quadratic")
 SCHEMA = Quantity(unit="", least=1, most=1, advice="this program reads schema 1")

@@ -173,7 +173,7 @@ def harmonic_is_given_by_two_of_three(motion: Any) -> Problem | None:
         return None
     return Problem(
         key="amplitude_m",
-        reason=", peak_acceleration_m_s2 and the frequency (angular_frequency_rad_s or frequency_Hz): exactly "
+        reason=", peak_acceleration_m_s2, frequency (angular_frequency_rad_s or frequency_Hz): exactly "
         f"two of the three must be given, got {', '.join(given) or 'none'}; "
         + ("leave one out" if len(given) > 1 else "add what is missing"),
     )
@@ -260,6 +260,17 @@ def table_unit_fits_its_quantity(motion: Any) -> Problem | None:
         key="unit",
         reason=f'must be {" or ".join(units)} for quantity = "{motion.quantity}", got "{motion.unit}"; '
         "for values in another unit give the factor as scale",
+    )
+
+
+def displacements_have_no_baseline(motion: Any) -> Problem | None:
+    """A baseline is taken from accelerations."""
+    if motion.kind != "table" or motion.quantity != "displacement" or motion.baseline == "none":
+        return None
+    return Problem(
+        key="baseline",
+        reason=f'must be "none" for quantity = "displacement", got "{motion.baseline}"; '
+        "it corrects accelerations",
     )
 
 

@@ -231,6 +231,7 @@ class Motion(Table):
         rules.pulse_is_complete,
         rules.table_is_complete,
         rules.table_unit_fits_its_quantity,
+        rules.displacements_have_no_baseline,
         rules.table_is_not_scaled_away,
         rules.motion_file_stays_beside_the_case,
     )

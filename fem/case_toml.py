@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from decimal import Decimal
 from typing import Any
 
 
@@ -16,11 +17,18 @@ def toml_value(value: object) -> str:
     if isinstance(value, int):
         return str(int(value))
     if isinstance(value, float):
-        return repr(float(value))
+        return _float(float(value))
     if isinstance(value, str):
         # JSON escapes what TOML wants escaped, except the delete character.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     raise TypeError(f"no TOML scalar: {type(value).__name__}")
+
+
+def _float(value: float) -> str:
+    """The shortest digits that read back to the same number; large ones with an exponent."""
+    if 1e6 <= abs(value) < float("inf"):
+        return format(Decimal(repr(value)).normalize(), "e")
+    return repr(value)
 
 
 def toml_document(tables: Mapping[str, Any]) -> str:

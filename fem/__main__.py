@@ -1,0 +1,91 @@
+"""The command line, `python -m fem`.
+
+Commands are loaded by name when they are called, so that help and bad input answer at once. This is the
+one place where errors of the user become a message and an exit code: 0 finished (overturned is a
+result), 2 bad input, 3 the solution failed, 4 interrupted.
+"""
+
+import difflib
+import os
+import sys
+from collections.abc import Sequence
+from importlib import metadata
+
+from cyclopts import App, CycloptsError
+
+BAD_INPUT, FAILED, INTERRUPTED = 2, 3, 4
+OWN_PACKAGES = {"fem", "mesh", "contact"}
+
+FLAGS = ("--help", "-h", "--version")
+COMMANDS = {
+    "run": ("fem.commands.run:run", "Compute a case: rest, slide, rock, slide-rock or overturn."),
+    "check": ("fem.commands.check:check", "Static checks, derived numbers and chosen numerics; no solution."),
+    "init": ("fem.commands.init:init", "Write a commented case file to start from."),
+    "list": ("fem.commands.list_cases:list_cases", "The shipped cases, and what each shows."),
+    "modes": ("fem.commands.modes:modes", "Elastic frequencies and shapes of the free container."),
+    "doctor": (
+        "fem.commands.doctor:doctor",
+        "Versions, pictures, threads, disk; how to mend what is missing.",
+    ),
+    "schema": ("fem.commands.schema:schema", "JSON schema of the case file."),
+}
+
+
+def build_app() -> App:
+    """The command line with its commands, none of them loaded."""
+    app = App(
+        name="python -m fem",
+        help="Does an unanchored container rest, slide, rock or overturn when the floor moves?",
+        help_format="plaintext",
+        version=lambda: metadata.version("unanchored"),
+        result_action="return_value",
+    )
+    for name, (place, help_line) in COMMANDS.items():
+        app.command(place, name=name, help=help_line)
+    return app
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code.
+
+    Args:
+        arguments: what stands behind `python -m fem`; None takes it from the process.
+    """
+    tokens = list(sys.argv[1:] if arguments is None else arguments)
+    if tokens and tokens[0] not in COMMANDS and tokens[0] not in FLAGS:
+        return _refuse(_unknown_command(tokens[0]))
+    try:
+        result = build_app()(tokens, exit_on_error=False, print_error=False)
+        sys.stdout.flush()
+    except CycloptsError as error:
+        return _refuse(f"{error}\nsee python -m fem --help")
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except BrokenPipeError:
+        # The reader has seen enough; Python would complain once more when it flushes at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except OSError as error:
+        return _refuse(f"{error.filename or 'input or output'}: {error.strerror or error}")
+    except Exception as error:
+        if type(error).__module__.partition(".")[0] not in OWN_PACKAGES:
+            raise  # not the user's fault: show where
+        return _refuse(str(error), getattr(error, "exit_code", BAD_INPUT))
+    return result if isinstance(result, int) else 0
+
+
+def _unknown_command(name: str) -> str:
+    near = difflib.get_close_matches(name, COMMANDS, n=1)
+    way_out = f"; did you mean {near[0]!r}?" if near else ""
+    return f"no command {name!r}{way_out} (known: {', '.join(COMMANDS)})"
+
+
+def _refuse(message: str, exit_code: int = BAD_INPUT) -> int:
+    sys.stdout.flush()
+    print(message.strip(), file=sys.stderr)
+    return exit_code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,77 @@
+"""The mesh of a case: its container, filled, on the floor."""
+
+import numpy as np
+
+from fem.case import Case
+from mesh.cells import FloatArray
+from mesh.container import ContainerMesh, build_container_mesh
+from mesh.files import read_container_mesh
+from mesh.fill import MassFill
+from mesh.geometry import ContainerGeometry, Section
+
+
+def container_geometry(case: Case) -> ContainerGeometry:
+    """Outer dimensions and section of the case's container."""
+    box = case.container
+    return ContainerGeometry(
+        width=box.width_m,
+        height=box.height_m,
+        depth=box.depth_m,
+        boxes=box.boxes,
+        section=Section(box.section),
+        wall=box.wall_m if box.section == "shell" else None,
+    )
+
+
+def mass_fill(case: Case) -> MassFill:
+    """What one box of the case weighs, and how high its mass centre lies."""
+    return MassFill(
+        mass=case.box_mass,
+        centroid_height=case.container.centroid_m,
+        wall_density=case.container.wall_density_kg_m3,
+    )
+
+
+def build_container(case: Case) -> ContainerMesh:
+    """The case's container: from its mesh file if it names one, else structured.
+
+    Raises:
+        MeshError: too many cells, walls heavier than the box, a mass centre or feet that cannot be had, a
+            mesh file that does not fit the case.
+        CaseError: if there is no such mesh file in the folder of the case.
+    """
+    geometry, fill = container_geometry(case), mass_fill(case)
+    if case.container.mesh_file is not None:
+        return read_container_mesh(case.data_files["container.mesh_file"], geometry, fill)
+    return build_container_mesh(
+        geometry, fill, element_size=case.solver.element_size_m, foot=case.support.foot
+    )
+
+
+def node_count(mesh: ContainerMesh, order: int) -> int:
+    """Nodes of the elements: the mesh's points, for order 2 also one on every edge and in every cell."""
+    if order == 1:
+        return len(mesh.points)
+    edges = np.sort(np.stack([mesh.quads, np.roll(mesh.quads, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    return len(mesh.points) + len(np.unique(edges, axis=0)) + len(mesh.quads)
+
+
+def contact_positions(mesh: ContainerMesh, *, kind: str, foot: float | None, order: int) -> FloatArray:
+    """Where the base may touch the floor, x from left to right, shape (n,) [m].
+
+    Args:
+        mesh: the container.
+        kind: of the support, `corners`, `feet` or `flat`.
+        foot: length of each foot, for `feet` [m].
+        order: of the elements; order 2 has a node in the middle of every edge.
+    """
+    base = mesh.points[mesh.base_points, 0]
+    if kind == "corners":
+        return base[[0, -1]]
+    if order == 2:
+        base = np.sort(np.concatenate([base, 0.5 * (base[1:] + base[:-1])]))
+    if foot is None:
+        return base
+    left, right = mesh.foot_widths(foot)
+    slack = 1e-9 * (base[-1] - base[0])
+    return base[(base <= base[0] + left + slack) | (base >= base[-1] - right - slack)]

@@ -1,0 +1,62 @@
+"""The base motion of a case, as the stepping takes it."""
+
+from typing import TypeVar
+
+from contact.motion import BaseMotion, HarmonicMotion, NoMotion, PulseMotion
+from contact.motion_file import read_motion_table
+from fem.case import Case, CaseError
+
+ValueT = TypeVar("ValueT")
+
+
+def build_motion(case: Case) -> BaseMotion:
+    """How the floor of the case moves.
+
+    Raises:
+        CaseError: if the file of a table is missing or is no table of motion, or if a motion is asked for
+            that cannot be, with the reason.
+    """
+    try:
+        return _build(case)
+    except CaseError:
+        raise
+    except ValueError as error:
+        raise CaseError(f"[motion] {error}") from error
+
+
+def _build(case: Case) -> BaseMotion:
+    motion = case.motion
+    match motion.kind:
+        case "none":
+            return NoMotion()
+        case "harmonic":
+            return HarmonicMotion(
+                amplitude=motion.amplitude,
+                angular_frequency=motion.angular_frequency,
+                duration=case.solver.duration_s,
+                phase=motion.phase_rad,
+                ramp_cycles=motion.ramp_cycles,
+                cycles=motion.cycles,
+            )
+        case "pulse":
+            return PulseMotion(
+                shape=_given(motion.shape, "shape"),
+                acceleration=_given(motion.peak_acceleration_m_s2, "peak_acceleration_m_s2"),
+                pulse=_given(motion.pulse_s, "pulse_s"),
+                delay=motion.delay_s,
+            )
+        case "table":
+            return read_motion_table(
+                case.data_files["motion.file"],
+                quantity=_given(motion.quantity, "quantity"),
+                unit=_given(motion.unit, "unit"),
+                scale=motion.scale,
+                baseline=motion.baseline,
+            )
+
+
+def _given(value: ValueT | None, key: str) -> ValueT:
+    """What the rules of the table have seen to: the chosen kind of motion is complete."""
+    if value is None:
+        raise CaseError(f"[motion] {key} is missing")
+    return value

@@ -1,0 +1,203 @@
+"""`check`: what can be said of a case without solving it."""
+
+import importlib
+import json
+import math
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from fem.case import Case, case_hash, load_case
+from fem.case_container import build_container, contact_positions, node_count
+from fem.static_checks import StaticChecks, static_checks
+from mesh.container import ContainerMesh
+
+
+def check(
+    case: str | None = None,
+    /,
+    *,
+    overrides: Annotated[
+        tuple[str, ...],
+        Parameter(name="--set", negative=(), show_default=False, help="table.key=value; may be repeated."),
+    ] = (),
+    as_json: Annotated[
+        bool, Parameter(name="--json", negative=(), show_default=False, help="Print JSON.")
+    ] = False,
+) -> None:
+    """Static checks, derived numbers and chosen numerics of a case; nothing is solved or written.
+
+    Parameters
+    ----------
+    case:
+        A case file or the name of a shipped case; default: seed_stack_plateau.
+    """
+    loaded = load_case(case, overrides)
+    mesh = build_container(loaded)
+    peak = peak_floor_acceleration(loaded)
+    static = checks_of(loaded, mesh, peak)
+    document = {
+        "case": loaded.name,
+        "case_hash": case_hash(loaded),
+        "derived": derived_numbers(loaded, mesh, peak),
+        "static": static.to_dict(),
+        "numerics": chosen_numerics(loaded, mesh),
+        "notes": notes(loaded, static, peak),
+    }
+    print(json.dumps(document, indent=2) if as_json else _page(loaded, document, static))
+
+
+def peak_floor_acceleration(case: Case) -> float:
+    """Largest |acceleration| that the floor reaches in the run [m/s2]."""
+    motion, nominal = case.motion, case.nominal_peak_acceleration
+    plain = motion.kind in ("none", "pulse") or (
+        motion.kind == "harmonic"
+        and motion.ramp_cycles == 0.0
+        and case.solver.duration_s >= 0.5 * motion.period
+    )
+    if nominal is not None and plain:
+        return nominal
+    # The motion itself is asked only where it must be: its compiled functions take long to load.
+    return float(importlib.import_module("fem.case_motion").build_motion(case).peak_acceleration)
+
+
+def checks_of(case: Case, mesh: ContainerMesh, peak: float) -> StaticChecks:
+    """Static checks of the meshed container under its own motion, peak floor acceleration in m/s2."""
+    return static_checks(
+        mass=mesh.mass,
+        centroid=mesh.centroid[1],
+        inertia=mesh.inertia,
+        width=mesh.width,
+        gravity=case.gravity_m_s2,
+        mu_static=case.contact.mu_static,
+        mu_kinetic=case.contact.mu_kinetic,
+        peak_floor_acceleration=peak,
+        ground_acceleration=case.static.ground_acceleration_m_s2,
+        soil_factor=case.static.soil_factor,
+        behaviour_factor=case.static.behaviour_factor,
+        importance_factor=case.static.importance_factor,
+        initial_rotation=case.initial.rotation_rad,
+    )
+
+
+def derived_numbers(case: Case, mesh: ContainerMesh, peak: float) -> dict[str, float | None]:
+    """What follows from the case before anything moves; SI units stand in the keys."""
+    harmonic = case.motion.kind == "harmonic"
+    return {
+        "mass_kg": mesh.mass,
+        "box_mass_kg": case.box_mass,
+        "mean_areal_density_kg_m2": case.mean_areal_density,
+        "width_m": mesh.width,
+        "height_m": mesh.height,
+        "peak_floor_acceleration_m_s2": peak,
+        "amplitude_m": case.amplitude if harmonic else None,
+        "angular_frequency_rad_s": case.angular_frequency if harmonic else None,
+        "period_s": case.motion.period if harmonic else None,
+    }
+
+
+def chosen_numerics(case: Case, mesh: ContainerMesh) -> dict[str, Any]:
+    """Model, scheme and sizes of the computation."""
+    solver, output = case.solver, case.output
+    nodes = node_count(mesh, solver.order)
+    touching = contact_positions(mesh, kind=case.support.kind, foot=case.support.foot, order=solver.order)
+    return {
+        "model": solver.model,
+        "scheme": solver.scheme,
+        "elements": len(mesh.quads),
+        "nodes": nodes,
+        "mesh_unknowns": 2 * nodes,
+        "elastic_modes": {"rigid": 0, "reduced": solver.elastic_modes}.get(solver.model),
+        "contact_nodes": len(touching),
+        "normal_penalty_Pa_m": case.contact.normal_penalty_Pa_m,
+        "duration_s": solver.duration_s,
+        "history_samples": math.floor(solver.duration_s / output.history_s * (1.0 + 1e-12)) + 1,
+        "field_frames": math.floor(solver.duration_s / output.fields_s * (1.0 + 1e-12)) + 1
+        if output.fields_s
+        else 0,
+    }
+
+
+def notes(case: Case, static: StaticChecks, peak: float) -> list[str]:
+    """What to keep in mind when the run is read."""
+    said = []
+    angle = static.slenderness_angle
+    if abs(case.initial.rotation_rad) >= angle:
+        said.append(
+            f"initial.rotation_rad = {case.initial.rotation_rad:g} is beyond the slenderness angle, "
+            f"{angle:.4g} rad: without help from the floor the container falls"
+        )
+    if not static.housner_credible:
+        said.append(
+            f"Housner's restitution is {static.housner_restitution:.3f}, below 0.5: for a container so squat "
+            "the rigid block's impact model is not credible"
+        )
+    if not static.applicability.passed:
+        limit = static.applicability
+        said.append(
+            f"the lateral force method does not apply: rocking period {limit.demand:.2f} s > "
+            f"{limit.capacity:.1f} s ({limit.clause})"
+        )
+    if case.contact.friction == "regularised":
+        said.append("friction regularised in velocity creeps under constant load; elastic-stick does not")
+    if case.motion.start == "rest" and case.motion.kind == "harmonic":
+        kick = case.amplitude * case.angular_frequency * abs(math.cos(case.motion.phase_rad))
+        said.append(f'start = "rest": the floor begins with a jerk of {kick:.3g} m/s')
+    if peak >= static.uplift_acceleration and static.own_motion.sliding.passed:
+        said.append(
+            "the floor reaches the acceleration of uplift, and friction holds until then: expect rocking"
+        )
+    return said
+
+
+def page_of_numerics(numerics: Mapping[str, Any]) -> list[str]:
+    """Lines for people of what `chosen_numerics` found."""
+    modes = f", {numerics['elastic_modes']} elastic modes" if numerics["elastic_modes"] else ""
+    return [
+        f"  model       {numerics['model']}{modes}, {numerics['scheme']}",
+        f"  mesh        {numerics['elements']} elements, {numerics['nodes']} nodes "
+        f"({numerics['mesh_unknowns']} unknowns), {numerics['contact_nodes']} contact nodes",
+        f"  output      {numerics['history_samples']} samples, {numerics['field_frames']} frames "
+        f"over {numerics['duration_s']:g} s",
+    ]
+
+
+def _page(case: Case, document: dict[str, Any], static: StaticChecks) -> str:
+    derived, numerics = document["derived"], document["numerics"]
+    container, support, motion = case.container, case.support, case.motion
+    boxes = f"{container.boxes} box{'es' if container.boxes > 1 else ''}, {container.section}, {support.kind}"
+    floor = {"none": "at rest", "pulse": f"{motion.shape} pulse", "table": f"table {motion.file}"}.get(
+        motion.kind, f"A = {case.amplitude:.4g} m, Omega = {case.angular_frequency:.4g} rad/s"
+    )
+    lines = [
+        f"{case.name}: {case.title}" if case.title else case.name,
+        f"  container   {derived['width_m']:g} x {derived['height_m']:g} m, "
+        f"{derived['mass_kg']:.6g} kg, {boxes}",
+        f"  floor       {floor}, peak {derived['peak_floor_acceleration_m_s2']:.4g} m/s2",
+        "",
+        f"  slenderness angle      {math.degrees(static.slenderness_angle):8.3f} deg   "
+        f"mass centre at {static.centroid:.4g} m",
+        f"  frequency parameter    {static.frequency_parameter:8.4f} 1/s   "
+        f"rocking period {static.period_eq2:.3f} s (Eq. 2), {static.period_eq3:.3f} s (Eq. 3)",
+        f"  uplift from            {static.uplift_acceleration:8.4f} m/s2  "
+        f"slip from {static.sliding_limit_static / derived['mass_kg']:.4g} m/s2",
+        f"  Housner's restitution  {static.housner_restitution:8.4f}",
+        "",
+        "  static rule                        demand     capacity   utilisation",
+    ]
+    actions = {
+        "own motion": static.own_motion,
+        f"code, q = {case.static.behaviour_factor:g}": static.code,
+        "code, q = 1": static.code_q1,
+    }
+    for action, result in actions.items():
+        for what, one in (("sliding", result.sliding), ("overturning", result.overturning)):
+            verdict = "" if one.passed else f"  {'slides' if what == 'sliding' else 'overturns'}"
+            lines.append(
+                f"    {action:<14} {what:<12} {one.demand / 1e3:8.2f}   {one.capacity / 1e3:8.2f} "
+                f"{'k' + one.unit:<4} {one.utilisation:8.3f}{verdict}"
+            )
+    lines += ["", *page_of_numerics(numerics)]
+    lines += [f"  note: {note}" for note in document["notes"]]
+    return "\n".join(lines)

@@ -1,0 +1,58 @@
+"""`modes`: elastic frequencies and shapes of the free container."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from fem.assembly import assemble
+from fem.case import load_case
+from fem.case_container import build_container
+from fem.modes import elastic_mode_table, elastic_modes, write_modes
+
+
+def modes(
+    case: str | None = None,
+    /,
+    *,
+    count: Annotated[int | None, Parameter(help="How many; default: solver.elastic_modes.")] = None,
+    out: Annotated[Path | None, Parameter(help="Folder for modes.vtu; default: outputs/NAME/modes.")] = None,
+    overrides: Annotated[
+        tuple[str, ...],
+        Parameter(name="--set", negative=(), show_default=False, help="table.key=value; may be repeated."),
+    ] = (),
+    as_json: Annotated[
+        bool, Parameter(name="--json", negative=(), show_default=False, help="Print JSON.")
+    ] = False,
+) -> None:
+    """Elastic frequencies and shapes of the container, free of the floor; the shapes go to modes.vtu.
+
+    Parameters
+    ----------
+    case:
+        A case file or the name of a shipped case; default: seed_stack_plateau.
+    """
+    loaded = load_case(case, overrides)
+    wanted = {} if count is None else {"solver.elastic_modes": count}
+    loaded = loaded.with_values(wanted) if wanted else loaded
+    elements = assemble(
+        build_container(loaded),
+        youngs_modulus=loaded.container.youngs_modulus_Pa,
+        poisson_ratio=loaded.container.poisson_ratio,
+        order=loaded.solver.order,
+    )
+    found = elastic_modes(elements, loaded.solver.elastic_modes)
+    path = write_modes(elements, found, out if out is not None else Path("outputs") / loaded.name / "modes")
+    rows = elastic_mode_table(found)
+    if as_json:
+        print(json.dumps({"case": loaded.name, "modes": rows, "file": str(path)}, indent=2))
+        return
+    print(f"{loaded.name}: elastic modes of the free container\n")
+    print("  mode   frequency [Hz]   period [ms]   to the first")
+    for row in rows:
+        print(
+            f"  {row['mode']:4.0f}   {row['frequency_Hz']:14.3f}   {1e3 * row['period_s']:11.4f}   "
+            f"{row['ratio_to_first']:12.3f}"
+        )
+    print(f"\n{path} shows the shapes in ParaView (Warp By Vector)")

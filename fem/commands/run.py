@@ -1,0 +1,117 @@
+"""`run`: compute a case, from the file to the verdict."""
+
+import importlib
+import json
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from fem.case import Case, CaseError, load_case
+from fem.case_container import build_container
+from fem.commands.check import chosen_numerics, page_of_numerics, peak_floor_acceleration
+from fem.progress import ScreenReporter
+from fem.run_folder import read_result
+
+EXIT_CODES = {"completed": 0, "overturned": 0, "failed": 3, "interrupted": 4}
+
+
+def run(
+    case: str | None = None,
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/NAME.")] = None,
+    overrides: Annotated[
+        tuple[str, ...],
+        Parameter(name="--set", negative=(), show_default=False, help="table.key=value; may be repeated."),
+    ] = (),
+    check_rigid: Annotated[
+        bool, Parameter(negative=(), show_default=False, help="Compare with the analytic rigid block.")
+    ] = False,
+    band: Annotated[
+        bool | None,
+        Parameter(
+            show_default=False,
+            help="Repeat over contact penalty and damping; default: where the outcome is not rest or slide.",
+        ),
+    ] = None,
+    resume: Annotated[
+        bool, Parameter(negative=(), show_default=False, help="Go on from the last checkpoint.")
+    ] = False,
+    force: Annotated[
+        bool, Parameter(negative=(), show_default=False, help="Compute anew, over what is there.")
+    ] = False,
+    dry_run: Annotated[
+        bool, Parameter(negative=(), show_default=False, help="Say what would be computed, and stop.")
+    ] = False,
+    as_json: Annotated[
+        bool, Parameter(name="--json", negative=(), show_default=False, help="Print run.json.")
+    ] = False,
+    quiet: Annotated[
+        bool, Parameter(name=("--quiet", "-q"), negative=(), show_default=False, help="No progress.")
+    ] = False,
+    verbose: Annotated[
+        bool, Parameter(name=("--verbose", "-v"), negative=(), show_default=False, help="Tell more.")
+    ] = False,
+) -> int:
+    """Compute a case: does the container rest, slide, rock, slide-rock or overturn?
+
+    Parameters
+    ----------
+    case:
+        A case file or the name of a shipped case; default: seed_stack_plateau.
+    """
+    if quiet and verbose:
+        raise CaseError("-q and -v contradict one another; give one of them")
+    loaded = load_case(case, overrides)
+    folder = out if out is not None else Path("outputs") / loaded.name
+    if dry_run or verbose:
+        plan = plan_of(loaded, folder)
+        text = json.dumps(plan, indent=2) if as_json else page_of_plan(loaded, plan)
+        print(text, file=sys.stdout if dry_run else sys.stderr)
+    if dry_run:
+        return 0
+    # The solver is loaded only now: bad input is answered before anything is compiled.
+    solver = importlib.import_module("fem.run")
+    result = solver.run_case(
+        loaded,
+        case_text=text_with_overrides(loaded),
+        folder=folder,
+        options=solver.RunOptions(check_rigid=check_rigid, band=band, resume=resume, force=force),
+        reporter=ScreenReporter(quiet=quiet),
+    )
+    if as_json:
+        print(json.dumps(read_result(folder / "run.json"), indent=2))
+    else:
+        print((folder / "summary.txt").read_text(encoding="utf-8"), end="")
+    return EXIT_CODES[result.status]
+
+
+def text_with_overrides(case: Case) -> str:
+    """The case file as given, with what the command line changed as comments at its end."""
+    if not case.overrides:
+        return case.text
+    changes = "".join(f"#   --set {override!r}\n" for override in case.overrides)
+    return f"{case.text.rstrip()}\n\n# Changed on the command line:\n{changes}"
+
+
+def plan_of(case: Case, folder: Path) -> dict[str, Any]:
+    """What would be computed, and where it would go."""
+    return {
+        "case": case.name,
+        "folder": str(folder),
+        "peak_floor_acceleration_m_s2": peak_floor_acceleration(case),
+        "numerics": chosen_numerics(case, build_container(case)),
+    }
+
+
+def page_of_plan(case: Case, plan: dict[str, Any]) -> str:
+    """The same for people."""
+    there = " (exists)" if Path(plan["folder"]).exists() else ""
+    lines = [
+        f"{case.name}: {case.title}" if case.title else case.name,
+        f"  folder      {plan['folder']}{there}",
+        f"  floor       {case.motion.kind}, peak {plan['peak_floor_acceleration_m_s2']:.4g} m/s2",
+    ]
+    return "\n".join(lines + page_of_numerics(plan["numerics"]))

@@ -1,0 +1,310 @@
+"""The static rules a run is held against, and what follows from the mass alone.
+
+Equilibrium of a rigid container on its corners, after sections 4 and 5 of the seed paper, "A simple
+stick-slip model for the overturning stability of unanchored containers", here called the paper, with the
+lateral force method of EN 1998-1:2004, 4.3.3.2. The container stands on z = 0, its mass centre is above
+the middle of the base; weights, forces and moments are magnitudes. Angles are measured from the vertical:
+the `slenderness_angle` is the complement of the paper's alpha.
+
+A static rule may be compared with a run only under the floor acceleration of that run (`own_motion`).
+The design base shear of the code (`code`, and `code_q1` with behaviour factor 1) is the amplified and
+reduced response of an elastic building: another question, in columns of its own.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+LIMIT_PERIOD = 2.0  # s, EN 1998-1:2004, 4.3.3.2.1 (2) a), Eq. (4.4)
+CONTROL_PERIOD = 0.8  # s, T_C of the paper's Eq. (4): EN 1998-1:2004, Table 3.2, ground type D
+CREDIBLE_RESTITUTION = 0.5
+CLAUSE_APPLICABLE = "EN 1998-1:2004, 4.3.3.2.1 (2)"
+CLAUSE_SLIDING = "EN 1998-1:2004, 4.4.2.4 (1)P, sliding"
+CLAUSE_OVERTURNING = "EN 1998-1:2004, 4.4.2.4 (1)P, overturning"
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckResult:
+    """Demand against capacity in one unit, under one clause."""
+
+    demand: float
+    capacity: float
+    unit: str
+    clause: str
+
+    @property
+    def utilisation(self) -> float:
+        """Demand over capacity [-]; infinite where a demand meets no capacity, 0 without demand."""
+        if self.demand == 0.0:
+            return 0.0
+        return self.demand / self.capacity if self.capacity > 0.0 else math.inf
+
+    @property
+    def passed(self) -> bool:
+        """Whether the demand is at most the capacity."""
+        return self.demand <= self.capacity
+
+
+def slenderness_angle(*, width: float, centroid: float) -> float:
+    """Angle between the vertical and the line from a corner to the mass centre [rad].
+
+    Housner, Bull. Seism. Soc. Am. 53 (1963) 403; pi/2 minus the paper's alpha (section 2).
+    """
+    return math.atan2(0.5 * width, centroid)
+
+
+def radius(*, width: float, centroid: float) -> float:
+    """Distance from a corner to the mass centre, R [m]. Paper, section 2: r = c/2/sin(alpha)."""
+    return math.hypot(0.5 * width, centroid)
+
+
+def frequency_parameter(*, mass: float, inertia: float, radius: float, gravity: float) -> float:
+    """sqrt(M g R / I_O), with I_O = I + M R^2 about the corner [1/s]. Housner (1963).
+
+    Args:
+        mass: M [kg].
+        inertia: I, polar in the plane about the mass centre [kg m2].
+        radius: R, corner to mass centre [m].
+        gravity: g [m/s2].
+    """
+    return math.sqrt(mass * gravity * radius / (inertia + mass * radius**2))
+
+
+def housner_restitution(*, mass: float, inertia: float, radius: float, slenderness_angle: float) -> float:
+    """Ratio of the angular velocities after and before an impact, 1 - (M R^2/I_O)(1 - cos 2 al) [-].
+
+    Angular momentum about the new corner is kept, Housner (1963). Negative for a squat block: it
+    would not rise on the other corner.
+    """
+    return 1.0 - mass * radius**2 / (inertia + mass * radius**2) * (1.0 - math.cos(2.0 * slenderness_angle))
+
+
+def period_eq2(*, width: float, radius: float, gravity: float, initial_rotation: float) -> float:
+    """Rocking period of a point mass, T = 8 sqrt(phi_0 r^2/(a g)) [s]. Paper, Eq. (2), after Klotter.
+
+    It depends on the rotation phi_0 [rad] from which the block is released; the sign plays no part.
+    """
+    return 8.0 * math.sqrt(abs(initial_rotation) * radius**2 / (width * gravity))
+
+
+def period_eq3(*, radius: float, gravity: float) -> float:
+    """Period of a hanging bar of length 2 r, T = 2 pi sqrt(4 r/(3 g)) [s]. Paper, Eq. (3)."""
+    return 2.0 * math.pi * math.sqrt(4.0 * radius / (3.0 * gravity))
+
+
+def sliding_limit(*, weight: float, friction: float) -> float:
+    """Base shear at which friction gives way, mu G [N]. Paper, Eqs. (8), mu_static, and (11), mu_kinetic."""
+    return friction * weight
+
+
+def restoring_moment(*, weight: float, width: float) -> float:
+    """Moment of the weight about a corner before it turns, G a/2, a magnitude [Nm]. Paper, Eq. (10)."""
+    return weight * 0.5 * width
+
+
+def tilting_moment(*, base_shear: float, centroid: float) -> float:
+    """Moment of the base shear, F z_c, a magnitude [Nm]. Paper, Eq. (9)."""
+    return base_shear * centroid
+
+
+def uplift_acceleration(*, slenderness_angle: float, gravity: float) -> float:
+    """Floor acceleration at which the container begins to turn about a corner, g tan al [m/s2].
+
+    From F z_c = G a/2, paper, Eqs. (9) and (10); known as West's formula (1885).
+    """
+    return gravity * math.tan(slenderness_angle)
+
+
+def plateau_base_shear(
+    *,
+    mass: float,
+    ground_acceleration: float,
+    soil_factor: float,
+    behaviour_factor: float,
+    importance_factor: float = 1.0,
+) -> float:
+    """Base shear on the plateau of the design spectrum, m gamma_I a_gR S 2.5/q [N].
+
+    EN 1998-1:2004, 4.3.3.2.2 (1)P with 3.2.2.5 (4)P, Eqs. (4.5) and (3.14), lambda = 1; a_g = gamma_I
+    a_gR by 3.2.1 (3). Paper, Eq. (17). Accelerations in m/s2, mass in kg.
+    """
+    return mass * importance_factor * ground_acceleration * soil_factor * 2.5 / behaviour_factor
+
+
+def method_applicable(*, period: float, control_period: float = CONTROL_PERIOD) -> CheckResult:
+    """The period against the limit of the lateral force method, min(4 T_C, 2.0 s) [s].
+
+    EN 1998-1:2004, 4.3.3.2.1 (2) a), Eq. (4.4).
+    """
+    return CheckResult(
+        demand=period, capacity=min(4.0 * control_period, LIMIT_PERIOD), unit="s", clause=CLAUSE_APPLICABLE
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ActionCheck:
+    """The static rule under one action."""
+
+    sliding: CheckResult  #: base shear against static friction [N]
+    overturning: CheckResult  #: tilting against restoring moment [Nm]
+
+    def to_dict(self) -> dict[str, float | None]:
+        """Demands and utilisations; a utilisation without capacity is null."""
+        return {
+            "base_shear_N": self.sliding.demand,
+            "tilting_moment_Nm": self.overturning.demand,
+            "utilisation_sliding": _finite(self.sliding.utilisation),
+            "utilisation_overturning": _finite(self.overturning.utilisation),
+        }
+
+
+@dataclass(frozen=True, kw_only=True)
+class StaticChecks:
+    """Everything the static rules say of one container, with what its mass alone determines."""
+
+    weight: float  #: G, of all boxes with fill [N]
+    centroid: float  #: z_c, height of the mass centre above the floor [m]
+    inertia: float  #: polar in the plane about the mass centre [kg m2]
+    radius: float  #: corner to mass centre [m]
+    slenderness_angle: float  #: from the vertical [rad]
+    frequency_parameter: float  #: [1/s]
+    period_eq2: float  #: of a point mass, at the initial rotation or half the slenderness angle [s]
+    period_eq3: float  #: of a hanging bar [s]
+    sliding_limit_static: float  #: mu_static G [N]
+    sliding_limit_kinetic: float  #: mu_kinetic G [N]
+    restoring_moment: float  #: G a/2 [Nm]
+    uplift_acceleration: float  #: g tan al [m/s2]
+    housner_restitution: float  #: [-]
+    own_motion: ActionCheck  #: under the peak floor acceleration of this run
+    code: ActionCheck  #: under the code's base shear
+    code_q1: ActionCheck  #: under the code's base shear with behaviour factor 1
+    applicability: CheckResult  #: of the lateral force method [s]
+
+    @property
+    def housner_credible(self) -> bool:
+        """Whether the impact model of the rigid block can be believed: a restitution of at least 0.5."""
+        return self.housner_restitution >= CREDIBLE_RESTITUTION
+
+    def to_dict(self) -> dict[str, Any]:
+        """The `static` block of a result; SI units stand in the keys."""
+        return {
+            "weight_N": self.weight,
+            "centroid_m": self.centroid,
+            "inertia_kg_m2": self.inertia,
+            "slenderness_angle_rad": self.slenderness_angle,
+            "frequency_parameter_1_s": self.frequency_parameter,
+            "period_eq2_s": self.period_eq2,
+            "period_eq3_s": self.period_eq3,
+            "sliding_limit_static_N": self.sliding_limit_static,
+            "sliding_limit_kinetic_N": self.sliding_limit_kinetic,
+            "restoring_moment_Nm": self.restoring_moment,
+            "uplift_acceleration_m_s2": self.uplift_acceleration,
+            "housner_restitution": self.housner_restitution,
+            "housner_credible": self.housner_credible,
+            "own_motion": self.own_motion.to_dict(),
+            "code": self.code.to_dict(),
+            "code_q1": self.code_q1.to_dict(),
+            "method_applicable": self.applicability.passed,
+            "clause": self.applicability.clause,
+        }
+
+
+def static_checks(
+    *,
+    mass: float,
+    centroid: float,
+    inertia: float,
+    width: float,
+    gravity: float,
+    mu_static: float,
+    mu_kinetic: float,
+    peak_floor_acceleration: float,
+    ground_acceleration: float,
+    soil_factor: float,
+    behaviour_factor: float,
+    importance_factor: float,
+    initial_rotation: float = 0.0,
+) -> StaticChecks:
+    """All static checks of one container under one motion.
+
+    Args:
+        mass: M of all boxes with fill [kg].
+        centroid: z_c above the floor [m]; the mass centre lies above the middle of the base.
+        inertia: polar in the plane about the mass centre [kg m2].
+        width: a, of the base between its corners [m].
+        gravity: g [m/s2].
+        mu_static: coefficient of static friction [-].
+        mu_kinetic: coefficient of kinetic friction [-].
+        peak_floor_acceleration: largest |acceleration| of the floor in this run [m/s2].
+        ground_acceleration: a_gR of the code [m/s2].
+        soil_factor: S [-].
+        behaviour_factor: q [-].
+        importance_factor: gamma_I [-].
+        initial_rotation: phi_0 of Eq. (2) [rad]; where it is 0, half the slenderness angle is taken, as an
+            ordinary rotation of a rocking container.
+
+    The rocking period that is held against the limit of the lateral force method is that of Eq. (3), as
+    in the paper's section 4.2, with T_C = 0.8 s.
+
+    Raises:
+        ValueError: if mass, centroid, inertia, width or gravity is not positive.
+    """
+    for name, value in (
+        ("mass", mass),
+        ("centroid", centroid),
+        ("inertia", inertia),
+        ("width", width),
+        ("gravity", gravity),
+    ):
+        if not value > 0.0:
+            raise ValueError(f"static checks: {name} must be positive, got {value}")
+    weight = mass * gravity
+    angle = slenderness_angle(width=width, centroid=centroid)
+    arm = radius(width=width, centroid=centroid)
+    friction = sliding_limit(weight=weight, friction=mu_static)
+    restoring = restoring_moment(weight=weight, width=width)
+    period = period_eq3(radius=arm, gravity=gravity)
+
+    def under(base_shear: float) -> ActionCheck:
+        moment = tilting_moment(base_shear=base_shear, centroid=centroid)
+        return ActionCheck(
+            sliding=CheckResult(demand=base_shear, capacity=friction, unit="N", clause=CLAUSE_SLIDING),
+            overturning=CheckResult(demand=moment, capacity=restoring, unit="Nm", clause=CLAUSE_OVERTURNING),
+        )
+
+    def code_base_shear(q: float) -> float:
+        return plateau_base_shear(
+            mass=mass,
+            ground_acceleration=ground_acceleration,
+            soil_factor=soil_factor,
+            behaviour_factor=q,
+            importance_factor=importance_factor,
+        )
+
+    return StaticChecks(
+        weight=weight,
+        centroid=centroid,
+        inertia=inertia,
+        radius=arm,
+        slenderness_angle=angle,
+        frequency_parameter=frequency_parameter(mass=mass, inertia=inertia, radius=arm, gravity=gravity),
+        period_eq2=period_eq2(
+            width=width, radius=arm, gravity=gravity, initial_rotation=initial_rotation or 0.5 * angle
+        ),
+        period_eq3=period,
+        sliding_limit_static=friction,
+        sliding_limit_kinetic=sliding_limit(weight=weight, friction=mu_kinetic),
+        restoring_moment=restoring,
+        uplift_acceleration=uplift_acceleration(slenderness_angle=angle, gravity=gravity),
+        housner_restitution=housner_restitution(
+            mass=mass, inertia=inertia, radius=arm, slenderness_angle=angle
+        ),
+        own_motion=under(mass * peak_floor_acceleration),
+        code=under(code_base_shear(behaviour_factor)),
+        code_q1=under(code_base_shear(1.0)),
+        applicability=method_applicable(period=period),
+    )
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
