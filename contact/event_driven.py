@@ -196,7 +196,7 @@ def _steps(
         segment.end,
         rtol=RELATIVE_TOLERANCE,
         atol=1e-2 * RELATIVE_TOLERANCE * scale,
-        max_step=floor.time_scale,
+        max_step=floor.longest_step,
         first_step=None if first_step is None else min(first_step, segment.end - segment.start),
     )
     while solver.status == "running":
@@ -212,7 +212,7 @@ def _rest(
     def interpolant(time: float | FloatArray) -> FloatArray:
         return np.multiply.outer(state, np.ones_like(time))
 
-    count = 1 if math.isinf(floor.time_scale) else math.ceil((segment.end - segment.start) / floor.time_scale)
+    count = 1 if math.isinf(floor.longest_step) else math.ceil((segment.end - segment.start) / floor.longest_step)
     times = np.linspace(segment.start, segment.end, max(count, 1) + 1)
     for start, end in pairwise(times.tolist()):
         yield start, end, interpolant

@@ -37,7 +37,7 @@ class FloorAcceleration:
 
     function: Callable[[float], float]  #: time [s] -> acceleration, positive toward +x [m/s2]
     break_times: tuple[float, ...] = ()  #: increasing instants where it jumps or bends [s]
-    time_scale: float  #: no feature between two breaks is shorter than this; inf: monotone there [s]
+    longest_step: float  #: at which it is looked at: an eighth of a period, inf where it is straight [s]
 
     def __post_init__(self) -> None:
         if not all(math.isfinite(t) for t in self.break_times):
@@ -45,8 +45,8 @@ class FloorAcceleration:
         for earlier, later in pairwise(self.break_times):
             if not later > earlier:
                 raise ValueError(f"floor acceleration: break times must increase, got {earlier} s, {later} s")
-        if not self.time_scale > 0.0:
-            raise ValueError(f"floor acceleration: time_scale must be positive, got {self.time_scale} s")
+        if not self.longest_step > 0.0:
+            raise ValueError(f"floor acceleration: longest_step must be positive, got {self.longest_step} s")
 
     def segments(self, start: float, end: float) -> Iterator[FloorSegment]:
         """The stretches between breaks that fill start to end [s]."""
@@ -68,7 +68,7 @@ class FloorAcceleration:
 
 def still_floor() -> FloorAcceleration:
     """A floor that does not move, or moves at constant velocity."""
-    return FloorAcceleration(function=lambda time: 0.0, time_scale=math.inf)
+    return FloorAcceleration(function=lambda time: 0.0, longest_step=math.inf)
 
 
 def sine_floor(*, amplitude: float, angular_frequency: float, phase: float = 0.0) -> FloorAcceleration:
@@ -84,13 +84,13 @@ def sine_floor(*, amplitude: float, angular_frequency: float, phase: float = 0.0
     peak = amplitude * angular_frequency**2
     return FloorAcceleration(
         function=lambda time: -peak * math.sin(angular_frequency * time + phase),
-        time_scale=0.25 * math.pi / angular_frequency,
+        longest_step=0.25 * math.pi / angular_frequency,
     )
 
 
 def rectangular_pulse(*, peak: float, duration: float, delay: float = 0.0) -> FloorAcceleration:
     """Constant acceleration `peak` [m/s2] for `duration` [s] from `delay` [s] on, zero before and after."""
-    return _pulse(lambda share: peak, duration=duration, delay=delay, time_scale=math.inf)
+    return _pulse(lambda share: peak, duration=duration, delay=delay, longest_step=math.inf)
 
 
 def half_sine_pulse(*, peak: float, duration: float, delay: float = 0.0) -> FloorAcceleration:
@@ -99,7 +99,7 @@ def half_sine_pulse(*, peak: float, duration: float, delay: float = 0.0) -> Floo
         lambda share: peak * math.sin(math.pi * share),
         duration=duration,
         delay=delay,
-        time_scale=0.25 * duration,
+        longest_step=0.25 * duration,
     )
 
 
@@ -109,7 +109,7 @@ def one_sine_pulse(*, peak: float, duration: float, delay: float = 0.0) -> Floor
         lambda share: peak * math.sin(2.0 * math.pi * share),
         duration=duration,
         delay=delay,
-        time_scale=0.125 * duration,
+        longest_step=0.125 * duration,
     )
 
 
@@ -126,12 +126,12 @@ def sampled_floor(times: Sequence[float], accelerations: Sequence[float]) -> Flo
     return FloorAcceleration(
         function=lambda t: float(np.interp(t, time, value, left=0.0, right=0.0)),
         break_times=tuple(time.tolist()),
-        time_scale=math.inf,
+        longest_step=math.inf,
     )
 
 
 def _pulse(
-    shape: Callable[[float], float], *, duration: float, delay: float, time_scale: float
+    shape: Callable[[float], float], *, duration: float, delay: float, longest_step: float
 ) -> FloorAcceleration:
     if not duration > 0.0:
         raise ValueError(f"pulse: duration must be positive, got {duration} s")
@@ -140,4 +140,4 @@ def _pulse(
     def acceleration(time: float) -> float:
         return shape((time - delay) / duration) if delay <= time < end else 0.0
 
-    return FloorAcceleration(function=acceleration, break_times=(delay, end), time_scale=time_scale)
+    return FloorAcceleration(function=acceleration, break_times=(delay, end), longest_step=longest_step)
