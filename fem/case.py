@@ -7,7 +7,7 @@ of `fem.case_tables`; what follows from several keys is a property here.
 
 import hashlib
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import resources
 from pathlib import Path
@@ -217,11 +217,7 @@ def load_case(name_or_path: str | Path | None = None, overrides: Sequence[str] =
         CaseError: with one line for each reason why the case cannot be used.
     """
     name = DEFAULT_CASE if name_or_path is None else str(name_or_path)
-    try:
-        is_file = name_or_path is not None and Path(name).is_file()
-    except ValueError:  # a null character
-        is_file = False
-    if is_file:
+    if name_or_path is not None and _is(Path.is_file, name):
         path = Path(name)
         origin = Origin(
             name=path.stem,
@@ -331,9 +327,18 @@ def _read_text(path: Path) -> str:
         raise CaseError(f"{path}: not text in UTF-8 (line {line}); save the file as UTF-8") from error
 
 
+def _is(kind: Callable[[Path], bool], name: str) -> bool:
+    """Whether there is such a file or folder; not for names that none can have."""
+    try:
+        return kind(Path(name))
+    except (ValueError, OSError):  # a null character, a name too long, a folder that may not be entered
+        return False
+
+
 def _no_such_case(name: str) -> str:
-    if name in ("", ".") or (name.isprintable() and Path(name).is_dir()):
+    if name and _is(Path.is_dir, name):
         return f"{name!r} is a folder; give the case file, for instance {Path(name) / 'resolved.toml'}"
+    name = name if len(name) <= 200 else f"{name[:200]} ..."
     return f"no case file {name!r} and no shipped case of that name{_shipped_names(Path(name).stem)}"
 
 

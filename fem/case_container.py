@@ -56,22 +56,7 @@ def node_count(mesh: ContainerMesh, order: int) -> int:
     return len(mesh.points) + len(np.unique(edges, axis=0)) + len(mesh.quads)
 
 
-def contact_positions(mesh: ContainerMesh, *, kind: str, foot: float | None, order: int) -> FloatArray:
-    """Where the base may touch the floor, x from left to right, shape (n,) [m].
-
-    Args:
-        mesh: the container.
-        kind: of the support, `corners`, `feet` or `flat`.
-        foot: length of each foot, for `feet` [m].
-        order: of the elements; order 2 has a node in the middle of every edge.
-    """
+def base_positions(mesh: ContainerMesh, order: int) -> FloatArray:
+    """x of the nodes on the floor from left to right, shape (n,) [m]; order 2 has one in every edge."""
     base = mesh.points[mesh.base_points, 0]
-    if kind == "corners":
-        return base[[0, -1]]
-    if order == 2:
-        base = np.sort(np.concatenate([base, 0.5 * (base[1:] + base[:-1])]))
-    if foot is None:
-        return base
-    left, right = mesh.foot_widths(foot)
-    slack = 1e-9 * (base[-1] - base[0])
-    return base[(base <= base[0] + left + slack) | (base >= base[-1] - right - slack)]
+    return base if order == 1 else np.sort(np.concatenate([base, 0.5 * (base[1:] + base[:-1])]))

@@ -8,8 +8,10 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
+from contact.penalty import contact_frequency
 from fem.case import Case, case_hash, load_case
-from fem.case_container import build_container, contact_positions, node_count
+from fem.case_contact import build_support, normal_penalty
+from fem.case_container import build_container, node_count
 from fem.static_checks import StaticChecks, static_checks
 from mesh.container import ContainerMesh
 
@@ -101,7 +103,9 @@ def chosen_numerics(case: Case, mesh: ContainerMesh) -> dict[str, Any]:
     """Model, scheme and sizes of the computation."""
     solver, output = case.solver, case.output
     nodes = node_count(mesh, solver.order)
-    touching = contact_positions(mesh, kind=case.support.kind, foot=case.support.foot, order=solver.order)
+    penalty = normal_penalty(case, mesh)
+    springs = build_support(case, mesh).normal_stiffness(penalty)
+    stiffness = float(springs.sum())
     return {
         "model": solver.model,
         "scheme": solver.scheme,
@@ -109,8 +113,10 @@ def chosen_numerics(case: Case, mesh: ContainerMesh) -> dict[str, Any]:
         "nodes": nodes,
         "mesh_unknowns": 2 * nodes,
         "elastic_modes": {"rigid": 0, "reduced": solver.elastic_modes}.get(solver.model),
-        "contact_nodes": len(touching),
-        "normal_penalty_Pa_m": case.contact.normal_penalty_Pa_m,
+        "contact_nodes": len(springs),
+        "normal_penalty_Pa_m": penalty,
+        "contact_frequency_Hz": contact_frequency(mesh.mass, stiffness),
+        "static_penetration_m": mesh.mass * case.gravity_m_s2 / stiffness,
         "duration_s": solver.duration_s,
         "history_samples": math.floor(solver.duration_s / output.history_s * (1.0 + 1e-12)) + 1,
         "field_frames": math.floor(solver.duration_s / output.fields_s * (1.0 + 1e-12)) + 1
@@ -158,6 +164,9 @@ def page_of_numerics(numerics: Mapping[str, Any]) -> list[str]:
         f"  model       {numerics['model']}{modes}, {numerics['scheme']}",
         f"  mesh        {numerics['elements']} elements, {numerics['nodes']} nodes "
         f"({numerics['mesh_unknowns']} unknowns), {numerics['contact_nodes']} contact nodes",
+        f"  contact     penalty {numerics['normal_penalty_Pa_m']:.4g} Pa/m, bounces at "
+        f"{numerics['contact_frequency_Hz']:.4g} Hz, "
+        f"sinks in by {1e6 * numerics['static_penetration_m']:.3g} um",
         f"  output      {numerics['history_samples']} samples, {numerics['field_frames']} frames "
         f"over {numerics['duration_s']:g} s",
     ]

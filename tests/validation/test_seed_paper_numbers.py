@@ -106,8 +106,8 @@ def test_the_lateral_force_method_applies_to_the_box_and_not_to_the_stack():
 
 
 def test_eq_2_and_eq_3_of_the_paper_disagree_on_the_period_of_the_stack():
-    # Eq. (2) at half the slenderness angle, r = 2.074 m, g = 10: 8 sqrt(0.1342 x 4.3025/(1.1 x 10)) = 1.833 s,
-    # against 3.304 s of Eq. (3): a point mass, and a bar that hangs.
+    # Eq. (2) at half the slenderness angle, r = 2.074 m, g = 10: T = 8 sqrt(0.1342 x 4.3025/(1.1 x 10)),
+    # 1.833 s, against 3.304 s of Eq. (3): a point mass, and a bar that hangs.
     checks = seed_checks(boxes=4, gravity=10.0)
     assert checks.period_eq2 == pytest.approx(1.833, abs=5e-4)
     assert checks.period_eq3 == pytest.approx(3.304, abs=5e-4)

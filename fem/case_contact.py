@@ -1,0 +1,46 @@
+"""Where the container of a case touches the floor, and how stiffly."""
+
+from contact.penalty import choose_normal_penalty
+from contact.support import Support, choose_support
+from fem.case import Case, CaseError
+from fem.case_container import base_positions
+from fem.static_checks import slenderness_angle
+from mesh.container import ContainerMesh
+
+
+def build_support(case: Case, mesh: ContainerMesh) -> Support:
+    """The base nodes that may touch the floor, each with its share of the base.
+
+    Raises:
+        CaseError: if feet do not fit the mesh.
+        MeshError: if no mesh line ends a foot.
+    """
+    foot = 0.0 if case.support.foot is None else mesh.foot_widths(case.support.foot)[0]
+    try:
+        return choose_support(
+            case.support.kind,
+            base_positions(mesh, case.solver.order),
+            depth=case.container.depth_m,
+            order=case.solver.order,
+            foot=foot,
+        )
+    except ValueError as error:
+        raise CaseError(str(error)) from error
+
+
+def normal_penalty(case: Case, mesh: ContainerMesh) -> float:
+    """The penalty of the case, or the one that "auto" chooses for its mesh [Pa/m]."""
+    given = case.contact.normal_penalty_Pa_m
+    if given != "auto":
+        return given
+    return choose_normal_penalty(
+        case.support.kind,
+        weight=mesh.mass * case.gravity_m_s2,
+        width=mesh.width,
+        height=mesh.height,
+        depth=case.container.depth_m,
+        slenderness_angle=slenderness_angle(width=mesh.width, centroid=mesh.centroid[1]),
+        youngs_modulus=case.container.youngs_modulus_Pa,
+        element_size=case.solver.element_size_m,
+        foot=case.support.foot or 0.0,
+    )
