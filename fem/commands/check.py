@@ -204,7 +204,7 @@ def _page(case: Case, document: dict[str, Any], static: StaticChecks) -> str:
         for what, one in (("sliding", result.sliding), ("overturning", result.overturning)):
             verdict = "" if one.passed else f"  {'slides' if what == 'sliding' else 'overturns'}"
             lines.append(
-                f"    {action:<14} {what:<12} {one.demand / 1e3:8.2f}   {one.capacity / 1e3:8.2f} "
+                f"    {action:<14} {what:<12} {one.demand / 1e3:8.3f}   {one.capacity / 1e3:8.3f} "
                 f"{'k' + one.unit:<4} {one.utilisation:8.3f}{verdict}"
             )
     lines += ["", *page_of_numerics(numerics)]
