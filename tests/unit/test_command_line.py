@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 import time
+from types import SimpleNamespace
 
 import pytest
 
@@ -18,7 +19,10 @@ BAD_INPUT = [
     (["check", "--set", "container.width_m=1100"], "looks like millimetres: 1.1 m?"),
     (["check", "--set", "container.heigth_m=1"], "did you mean 'height_m'?"),
     (["check", "--set", "container.weight_N=2500"], "the walls of one box weigh"),
-    (["check", "--set", "support.kind=feet", "--set", "support.foot_m=0.6"], "foot_m must be less than half of"),
+    (
+        ["check", "--set", "support.kind=feet", "--set", "support.foot_m=0.6"],
+        "foot_m must be less than half of",
+    ),
     (["check", "--set", "container.mesh_file=nothing.vtu"], "names no file: 'nothing.vtu'"),
     (["check", "--set", "solver.element_size_m=1e-5"], "take a larger element size"),
     (["check", "--set", "nonsense"], "not of the form table.key=value"),
@@ -236,12 +240,46 @@ class TestRun:
         assert plan["folder"] == "outputs/seed_box"
         assert plan["numerics"]["duration_s"] == 20.0
 
+    @pytest.mark.parametrize(
+        ("status", "code"), [("completed", 0), ("overturned", 0), ("failed", 3), ("interrupted", 4)]
+    )
+    def test_the_status_of_a_run_is_its_exit_code(self, tmp_path, monkeypatch, capsys, status, code):
+        asked = install_solver(monkeypatch, status)
+        arguments = ["run", "seed_box", "--out", str(tmp_path / "r"), "--resume", "--no-band", "-q"]
+        assert command_line.main(arguments) == code
+        assert capsys.readouterr().out == f"summary of {status}\n"
+        assert asked["options"] == {"check_rigid": False, "band": False, "resume": True, "force": False}
+        assert asked["folder"] == tmp_path / "r"
+        assert asked["case"].name == "seed_box"
+        assert asked["case_text"] == shipped_text("seed_box")
+
+    def test_with_json_the_result_is_printed_and_nothing_else(self, tmp_path, monkeypatch, capsys):
+        install_solver(monkeypatch, "overturned")
+        assert command_line.main(["run", "seed_box", "--out", str(tmp_path / "r"), "--json", "-v"]) == 0
+        assert json.loads(capsys.readouterr().out)["status"] == "overturned"
+
     def test_the_case_that_is_kept_tells_what_the_command_line_changed(self):
         case = load_case("seed_box", ["contact.mu_static=0.5", "title=two\nlines"])
         kept = text_with_overrides(case)
         assert kept.startswith(shipped_text("seed_box").rstrip())
         assert "#   --set 'contact.mu_static=0.5'" in kept
         assert read_case(kept).resolved() == load_case("seed_box").resolved()
+
+
+def install_solver(monkeypatch, status):
+    """A stand-in for `fem.run` that notes what it is asked and writes a result of that status."""
+    asked = {}
+
+    def run_case(case, *, case_text, folder, options, reporter):
+        asked.update(case=case, case_text=case_text, folder=folder, options=vars(options), reporter=reporter)
+        folder.mkdir()
+        (folder / "run.json").write_text(json.dumps({"status": status, "case_hash": "0"}), encoding="utf-8")
+        (folder / "summary.txt").write_text(f"summary of {status}\n", encoding="utf-8")
+        return SimpleNamespace(status=status)
+
+    solver = SimpleNamespace(run_case=run_case, RunOptions=SimpleNamespace)
+    monkeypatch.setitem(sys.modules, "fem.run", solver)
+    return asked
 
 
 class TestModes:
