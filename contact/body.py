@@ -16,7 +16,7 @@ from contact.scheme import Scheme
 #: rows of `State.pose`
 ROTATION, ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, VELOCITY_X, VELOCITY_Z = 0, 1, 2, 3, 4, 5
 #: rows of `State.energy`
-KINETIC, STRAIN, POTENTIAL, MATERIAL_POWER = 0, 1, 2, 3
+KINETIC, STRAIN, POTENTIAL = 0, 1, 2
 
 
 class State(NamedTuple):
@@ -26,15 +26,16 @@ class State(NamedTuple):
     velocity: FloatArray  #: (n_d,)
     acceleration: FloatArray  #: (n_d,) of the scheme: it lags by (alpha_f - alpha_m) times the step
     jerk: FloatArray  #: (n_d,) its change over the last step, per second
-    internal: FloatArray  #: (n_d,) internal minus gravity forces, damping included
+    internal: FloatArray  #: (n_d,) internal forces with gravity and damping
+    damping: FloatArray  #: (n_d,) of these the material damping
     external: FloatArray  #: (n_d,) contact forces
     point: FloatArray  #: (n, 2) base points relative to the floor [m]
     force: FloatArray  #: (n, 2) contact forces on the container, tangential and normal [N]
     descent: FloatArray  #: (n, 2) downward velocity of the base points [m/s] and its rate [m/s2]
     stick: FloatArray  #: (n,) elongation of the stuck tangential springs [m]
     pose: FloatArray  #: (6,) best-fit rotation, its rate, mass centre and its velocity (absolute)
-    energy: FloatArray  #: (4,) kinetic, strain, gravity potential [J]; material damping power [W]
-    monitor: FloatArray  #: (n_m, 4) monitored points: position relative to the floor [m], acceleration [m/s2]
+    energy: FloatArray  #: (3,) kinetic, strain, gravity potential [J]
+    monitor: FloatArray  #: (n_m, 4) monitored points: displacement relative to the floor [m], velocity [m/s]
 
 
 def make_state(coordinates: int, points: int, monitors: int) -> State:
@@ -45,13 +46,14 @@ def make_state(coordinates: int, points: int, monitors: int) -> State:
         acceleration=np.zeros(coordinates),
         jerk=np.zeros(coordinates),
         internal=np.zeros(coordinates),
+        damping=np.zeros(coordinates),
         external=np.zeros(coordinates),
         point=np.zeros((points, 2)),
         force=np.zeros((points, 2)),
         descent=np.zeros((points, 2)),
         stick=np.zeros(points),
         pose=np.zeros(6),
-        energy=np.zeros(4),
+        energy=np.zeros(3),
         monitor=np.zeros((monitors, 4)),
     )
 

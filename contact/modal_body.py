@@ -24,7 +24,6 @@ from contact.body import (
     CENTRE_X,
     CENTRE_Z,
     KINETIC,
-    MATERIAL_POWER,
     POTENTIAL,
     ROTATION,
     STRAIN,
@@ -33,6 +32,7 @@ from contact.body import (
     State,
 )
 from contact.compiled import compiled
+from contact.initial import Stance
 from contact.interface import FloatArray, Workspace
 from contact.scheme import Scheme
 
@@ -45,6 +45,7 @@ class ModalBody(NamedTuple):
     gravity: float  #: [m/s2]
     point: FloatArray  #: (n, 2) base points relative to the mass centre, sorted by x [m]
     shape: FloatArray  #: (n, 2, m) mode shapes there [1/sqrt(kg)]
+    rest: FloatArray  #: (2,) mass centre of the undeformed container on the floor at x = 0 [m]
     monitor: FloatArray  #: (k, 2) monitored points relative to the mass centre [m]
     monitor_shape: FloatArray  #: (k, 2, m)
     stiffness: FloatArray  #: (m,) squares of the angular frequencies [1/s2]
@@ -64,6 +65,7 @@ def make_modal_body(
     inertia: float,
     gravity: float,
     point: FloatArray,
+    rest: tuple[float, float] = (0.0, 0.0),
     shape: FloatArray | None = None,
     frequencies: FloatArray | None = None,
     damping_ratios: FloatArray | None = None,
@@ -76,9 +78,10 @@ def make_modal_body(
     Args:
         mass: [kg]; inertia: about the mass centre [kg m2]; gravity: [m/s2].
         point: (n, 2) base points relative to the mass centre [m], sorted by x.
+        rest: mass centre of the undeformed container standing on the floor [m].
         shape: (n, 2, m) mass-normalised mode shapes at them.
         frequencies: (m,) angular frequencies [rad/s]; damping_ratios: (m,) [-].
-        monitor: (k, 2) points whose acceleration is followed; monitor_shape: (k, 2, m).
+        monitor: (k, 2) points whose motion is followed; monitor_shape: (k, 2, m).
         tolerance: error of a base point at which the iterations of a step stop [m].
     """
     n = point.shape[0]
@@ -91,6 +94,7 @@ def make_modal_body(
         inertia=float(inertia),
         gravity=float(gravity),
         point=np.array(point, dtype=float, order="C"),
+        rest=np.array(rest, dtype=float),
         shape=np.zeros((n, 2, 0)) if shape is None else np.array(shape, dtype=float, order="C"),
         monitor=np.array(watched, dtype=float, order="C"),
         monitor_shape=np.zeros((len(watched), 2, m))
@@ -286,34 +290,52 @@ def _complete(body: ModalBody, new: State, floor: float) -> None:
     gather_force(body, new.force, position[2], body.arm, new.external)
     new.internal[0], new.internal[1], new.internal[2] = 0.0, body.mass * body.gravity, 0.0
     kinetic = body.mass * (velocity[0] ** 2 + velocity[1] ** 2) + body.inertia * velocity[2] ** 2
-    strain, power = 0.0, 0.0
+    strain = 0.0
     for k in range(m):
         q, rate = position[3 + k], velocity[3 + k]
-        new.internal[3 + k] = body.damping[k] * rate + body.stiffness[k] * q
+        new.damping[3 + k] = body.damping[k] * rate
+        new.internal[3 + k] = new.damping[3 + k] + body.stiffness[k] * q
         kinetic += rate * rate
         strain += body.stiffness[k] * q * q
-        power += body.damping[k] * rate * rate
     new.energy[KINETIC] = 0.5 * kinetic
     new.energy[STRAIN] = 0.5 * strain
     new.energy[POTENTIAL] = body.mass * body.gravity * position[1]
-    new.energy[MATERIAL_POWER] = power
     new.pose[ROTATION], new.pose[ANGULAR_VELOCITY] = position[2], velocity[2]
     new.pose[CENTRE_X], new.pose[CENTRE_Z] = position[0], position[1]
     new.pose[VELOCITY_X], new.pose[VELOCITY_Z] = velocity[0], velocity[1]
-    rate, turning = velocity[2], new.acceleration[2]
+    rate = velocity[2]
     for i in range(body.monitor.shape[0]):
         x, z = body.monitor[i, 0], body.monitor[i, 1]
         u, w = 0.0, 0.0
         for k in range(m):
             x += body.monitor_shape[i, 0, k] * position[3 + k]
             z += body.monitor_shape[i, 1, k] * position[3 + k]
-            u += body.monitor_shape[i, 0, k] * new.acceleration[3 + k]
-            w += body.monitor_shape[i, 1, k] * new.acceleration[3 + k]
+            u += body.monitor_shape[i, 0, k] * velocity[3 + k]
+            w += body.monitor_shape[i, 1, k] * velocity[3 + k]
         arm_x, arm_z = cosine * x + sine * z, -sine * x + cosine * z
-        new.monitor[i, 0] = position[0] + arm_x - floor
-        new.monitor[i, 1] = position[1] + arm_z
-        new.monitor[i, 2] = new.acceleration[0] + arm_z * turning - arm_x * rate * rate + cosine * u + sine * w
-        new.monitor[i, 3] = new.acceleration[1] - arm_x * turning - arm_z * rate * rate - sine * u + cosine * w
+        new.monitor[i, 0] = position[0] + arm_x - floor - body.rest[0] - body.monitor[i, 0]
+        new.monitor[i, 1] = position[1] + arm_z - body.rest[1] - body.monitor[i, 1]
+        new.monitor[i, 2] = velocity[0] + arm_z * rate + cosine * u + sine * w
+        new.monitor[i, 3] = velocity[1] - arm_x * rate - sine * u + cosine * w
+
+
+complete_modal = compiled(_complete)
+
+
+def place(body: ModalBody, state: State, stance: Stance, floor_velocity: float) -> None:
+    """Write the initial coordinates: the stance's rigid pose, strained by its contact forces."""
+    cosine, sine = math.cos(stance.rotation), math.sin(stance.rotation)
+    turn = np.array([[cosine, sine], [-sine, cosine]])
+    state.position[:2], state.position[2] = stance.centre, stance.rotation
+    state.velocity[:] = 0.0
+    state.velocity[:3] = stance.velocity[0] + floor_velocity, stance.velocity[1], stance.angular_velocity
+    state.position[3:] = np.einsum("ij,ijk->k", stance.force @ turn, body.shape) / body.stiffness
+
+
+def start(body: ModalBody, state: State) -> None:
+    """Initial acceleration from the forces in `state`, which are complete."""
+    masses = np.concatenate([[body.mass, body.mass, body.inertia], np.ones(body.stiffness.size)])
+    state.acceleration[:] = (state.external - state.internal) / masses
 
 
 def _compile_for_modal_body(function: Callable[..., Any], implementation: Callable[..., Any]) -> None:

@@ -20,7 +20,6 @@ from contact.body import (
     CENTRE_X,
     CENTRE_Z,
     KINETIC,
-    MATERIAL_POWER,
     POTENTIAL,
     ROTATION,
     STRAIN,
@@ -92,8 +91,8 @@ class Control(NamedTuple):
     slenderness_angle: float  #: [rad]
     width: float  #: [m]
     stop_when_overturned: bool
-    sample_interval: float  #: of the history [s]
     top_monitors: int  #: of the monitored points, so many first ones lie at the top
+    base_points: int  #: of the contact points, so many first ones make up the base
 
 
 CLOCK = np.dtype(
@@ -115,13 +114,41 @@ CLOCK = np.dtype(
         ("slip_acceleration", "f8"),
         ("held", "i8"),  # accepted steps until the step may grow freely again
         ("basis_step", "f8"),  # that the old acceleration's lag belongs to
-        ("samples", "i8"),  # written so far
+        ("samples", "i8"),  # of the history, so far
+        ("samples_gone", "i8"),  # of these no longer in the arrays
+        ("frames", "i8"),
+        ("frames_gone", "i8"),
         ("next_break", "i8"),
         ("least_imbalance", "f8"),
         ("most_imbalance", "f8"),
     ],
     align=True,
 )
+
+
+class Samples(NamedTuple):
+    """What is kept on an exact grid of times, as much of it as the arrays hold: n_s samples."""
+
+    interval: float  #: [s]
+    columns: FloatArray  #: (n_s, 12 or 0) of a history, see ROW_...
+    mode: npt.NDArray[np.int64]  #: (n_s,)
+    position: FloatArray  #: (n_s, n_d or 0) coordinates of the body
+    velocity: FloatArray  #: (n_s, n_d or 0)
+    force: FloatArray  #: (n_s, n, 2) contact forces [N]
+
+
+def make_samples(
+    interval: float, count: int, points: int, *, columns: bool = False, position: int = 0, velocity: int = 0
+) -> Samples:
+    """Room for `count` samples; `position` and `velocity` say how many coordinates are kept."""
+    return Samples(
+        interval=float(interval),
+        columns=np.zeros((count, ROW_COLUMNS if columns else 0)),
+        mode=np.zeros(count, dtype=np.int64),
+        position=np.zeros((count, position)),
+        velocity=np.zeros((count, velocity)),
+        force=np.zeros((count, points, 2)),
+    )
 
 
 class Run(NamedTuple):
@@ -140,10 +167,9 @@ class Run(NamedTuple):
     ledger: FloatArray  #: (5,) [J]
     clock: Any  #: (1,) of CLOCK
     track: Any  #: (1,) of tracking.TRACK
-    rows: FloatArray  #: (n_s, 16) samples: the numeric columns of a history but the base motion's
-    row_mode: npt.NDArray[np.int64]  #: (n_s,)
-    row_position: FloatArray  #: (n_s, n_k) leading coordinates of the body at the samples, n_k may be 0
-    row_force: FloatArray  #: (n_s, n, 2) contact forces at the samples [N]
+    watched: FloatArray  #: (n_m, 2) velocities of the monitored points at the last sample [m/s]
+    history: Samples
+    frames: Samples
 
 
 def make_run(
@@ -156,8 +182,8 @@ def make_run(
     old: State,
     new: State,
     work: Workspace,
-    samples: int,
-    coordinates_kept: int,
+    history: Samples,
+    frames: Samples,
 ) -> Run:
     """Put a run together at t = 0; `old` holds the initial state, completed."""
     n = old.point.shape[0]
@@ -177,10 +203,9 @@ def make_run(
         ledger=np.zeros(LEDGER_ROWS),
         clock=clock,
         track=make_track(),
-        rows=np.zeros((samples, ROW_COLUMNS)),
-        row_mode=np.zeros(samples, dtype=np.int64),
-        row_position=np.zeros((samples, coordinates_kept)),
-        row_force=np.zeros((samples, n, 2)),
+        watched=np.zeros((old.monitor.shape[0], 2)),
+        history=history,
+        frames=frames,
     )
 
 
@@ -296,7 +321,9 @@ def _account(run: Run, step: float) -> float:
     friction, damping = contact_losses(
         run.contact, old.point, new.point, old.force, new.force, old.stick, new.stick, run.slip
     )
-    material = 0.5 * step * (old.energy[MATERIAL_POWER] + new.energy[MATERIAL_POWER])
+    material = 0.0
+    for j in range(new.damping.size):
+        material += 0.5 * (old.damping[j] + new.damping[j]) * (new.position[j] - old.position[j])
     stored = spring_energy(run.contact, new.point, new.stick) - spring_energy(run.contact, old.point, old.stick)
     for row in (KINETIC, STRAIN, POTENTIAL):
         stored += new.energy[row] - old.energy[row]
@@ -317,6 +344,7 @@ def _copy_state(old: State, new: State) -> None:
     copy_array(old.acceleration, new.acceleration)
     copy_array(old.jerk, new.jerk)
     copy_array(old.internal, new.internal)
+    copy_array(old.damping, new.damping)
     copy_array(old.external, new.external)
     copy_array(old.point, new.point)
     copy_array(old.force, new.force)
@@ -344,41 +372,79 @@ def _hermite(share: float, step: float, value: float, rate: float, value_new: fl
 hermite = compiled(_hermite)
 
 
-def _sample(run: Run, step: float, slip_step: float) -> None:
-    """Write the samples that fall into the step just attempted: from the old time up to and with the new one."""
-    old, new, clock, control = run.old, run.new, run.clock[0], run.control
-    while clock.samples < run.rows.shape[0]:
-        time = clock.samples * control.sample_interval
+def _write_columns(
+    run: Run, row: FloatArray, force: FloatArray, time: float, s: float, step: float, slip_step: float
+) -> None:
+    """One row of a history at the share `s` of the step; `force` (n, 2) is that of this instant."""
+    old, new = run.old, run.new
+    a, b = old.pose, new.pose
+    floor, _, _ = floor_motion(run.motion, time)
+    row[ROW_ROTATION] = hermite(s, step, a[ROTATION], a[ANGULAR_VELOCITY], b[ROTATION], b[ANGULAR_VELOCITY])
+    row[ROW_ANGULAR_VELOCITY] = (1.0 - s) * a[ANGULAR_VELOCITY] + s * b[ANGULAR_VELOCITY]
+    row[ROW_SLIP] = run.clock[0].slip + s * slip_step
+    row[ROW_CENTRE_X] = hermite(s, step, a[CENTRE_X], a[VELOCITY_X], b[CENTRE_X], b[VELOCITY_X]) - floor
+    row[ROW_CENTRE_Z] = hermite(s, step, a[CENTRE_Z], a[VELOCITY_Z], b[CENTRE_Z], b[VELOCITY_Z])
+    row[ROW_UPLIFT], row[ROW_NORMAL], row[ROW_SHEAR] = 0.0, 0.0, 0.0
+    for i in range(new.point.shape[0]):
+        if i < run.control.base_points:
+            row[ROW_UPLIFT] = max(row[ROW_UPLIFT], (1.0 - s) * old.point[i, 1] + s * new.point[i, 1])
+        row[ROW_SHEAR] += force[i, 0]
+        row[ROW_NORMAL] += force[i, 1]
+    for k in range(3):
+        row[ROW_KINETIC + k] = (1.0 - s) * old.energy[k] + s * new.energy[k]
+    row[ROW_IMBALANCE] = run.ledger[IMBALANCE] + s * run.change[IMBALANCE]
+
+
+write_columns = compiled(_write_columns)
+
+
+def _watch_contents(run: Run, s: float, interval: float) -> None:
+    """Largest mean acceleration of the monitored contents over an interval of the history.
+
+    The instantaneous one means nothing under a dashpot that acts at a point: it grows without bound as the step
+    falls. What an accelerometer of the history's band would show does not.
+    """
+    old, new, watched = run.old.monitor, run.new.monitor, run.watched
+    for i in range(watched.shape[0]):
+        x = (1.0 - s) * old[i, 2] + s * new[i, 2]
+        z = (1.0 - s) * old[i, 3] + s * new[i, 3]
+        if i >= run.control.top_monitors:
+            size = np.hypot(x - watched[i, 0], z - watched[i, 1]) / interval
+            run.track[0].max_acceleration = max(run.track[0].max_acceleration, size)
+        watched[i, 0], watched[i, 1] = x, z
+
+
+watch_contents = compiled(_watch_contents)
+
+
+def _sample(run: Run, samples: Samples, written: int, origin: int, step: float, slip_step: float) -> int:
+    """Write the samples that fall into the step just attempted, from the old time up to and with the new one.
+
+    `written` samples exist so far, the first `origin` of them are no longer in the arrays; returns how many exist now.
+    Positions by cubics through both ends' positions and velocities, everything else linear.
+    """
+    old, new, clock = run.old, run.new, run.clock[0]
+    while written - origin < samples.mode.size:
+        time = written * samples.interval
         if time > clock.time + step:
-            return
+            break
         s = (time - clock.time) / step
-        row = run.rows[clock.samples]
-        floor, _, _ = floor_motion(run.motion, time)
-        a, b = old.pose, new.pose
-        row[ROW_ROTATION] = hermite(
-            s, step, a[ROTATION], a[ANGULAR_VELOCITY], b[ROTATION], b[ANGULAR_VELOCITY]
-        )
-        row[ROW_ANGULAR_VELOCITY] = (1.0 - s) * a[ANGULAR_VELOCITY] + s * b[ANGULAR_VELOCITY]
-        row[ROW_SLIP] = clock.slip + s * slip_step
-        row[ROW_CENTRE_X] = hermite(s, step, a[CENTRE_X], a[VELOCITY_X], b[CENTRE_X], b[VELOCITY_X]) - floor
-        row[ROW_CENTRE_Z] = hermite(s, step, a[CENTRE_Z], a[VELOCITY_Z], b[CENTRE_Z], b[VELOCITY_Z])
-        uplift, normal, shear = 0.0, 0.0, 0.0
+        at = written - origin
         for i in range(new.point.shape[0]):
-            uplift = max(uplift, (1.0 - s) * old.point[i, 1] + s * new.point[i, 1])
             for k in range(2):
-                run.row_force[clock.samples, i, k] = (1.0 - s) * old.force[i, k] + s * new.force[i, k]
-            shear += run.row_force[clock.samples, i, 0]
-            normal += run.row_force[clock.samples, i, 1]
-        row[ROW_UPLIFT], row[ROW_NORMAL], row[ROW_SHEAR] = uplift, normal, shear
-        for k in range(3):
-            row[ROW_KINETIC + k] = (1.0 - s) * old.energy[k] + s * new.energy[k]
-        row[ROW_IMBALANCE] = run.ledger[IMBALANCE] + s * run.change[IMBALANCE]
-        for j in range(run.row_position.shape[1]):
-            run.row_position[clock.samples, j] = hermite(
+                samples.force[at, i, k] = (1.0 - s) * old.force[i, k] + s * new.force[i, k]
+        for j in range(samples.position.shape[1]):
+            samples.position[at, j] = hermite(
                 s, step, old.position[j], old.velocity[j], new.position[j], new.velocity[j]
             )
-        run.row_mode[clock.samples] = run.track[0].mode
-        clock.samples += 1
+        for j in range(samples.velocity.shape[1]):
+            samples.velocity[at, j] = (1.0 - s) * old.velocity[j] + s * new.velocity[j]
+        samples.mode[at] = run.track[0].mode
+        if samples.columns.shape[1] > 0:
+            write_columns(run, samples.columns[at], samples.force[at], time, s, step, slip_step)
+            watch_contents(run, s, samples.interval if written > 0 else np.inf)
+        written += 1
+    return written
 
 
 sample = compiled(_sample)
@@ -419,7 +485,7 @@ switching_time = compiled(_switching_time)
 
 
 @register_jitable
-def _next_step(run: Run, until: float) -> float:
+def _next_step(run: Run) -> float:
     """The next step [s]: the ladder's at the present level, unless something is due before.
 
     A gap about to close: the step ends where it closes, and the next one, on which the dashpot works, is small.
@@ -441,7 +507,7 @@ def _next_step(run: Run, until: float) -> float:
             step = max(switching, control.event_step)
     while run.breaks[clock.next_break] <= clock.time:
         clock.next_break += 1
-    left = min(until, run.breaks[clock.next_break]) - clock.time
+    left = run.breaks[clock.next_break] - clock.time
     if step >= left:
         return left
     if 2.0 * step > left:  # two equal steps instead of a whole one and a sliver
@@ -532,8 +598,11 @@ def _accept(run: Run, step: float, slip_step: float, slip_velocity: float, every
         clock.slip + slip_step,
         slip_step,
         control.top_monitors,
+        control.base_points,
+        run.contact.force_scale,
     )
-    sample(run, step, slip_step)
+    clock.samples = sample(run, run.history, clock.samples, clock.samples_gone, step, slip_step)
+    clock.frames = sample(run, run.frames, clock.frames, clock.frames_gone, step, slip_step)
     for row in range(LEDGER_ROWS):
         run.ledger[row] += run.change[row]
     clock.least_imbalance = min(clock.least_imbalance, run.ledger[IMBALANCE])
@@ -546,16 +615,28 @@ def _accept(run: Run, step: float, slip_step: float, slip_velocity: float, every
     copy_state(run.old, run.new)
 
 
+@register_jitable
+def _is_full(run: Run) -> bool:
+    """No room for the samples of another largest step."""
+    ahead = run.control.largest_step
+    clock = run.clock[0]
+    room = run.history.mode.size - (clock.samples - clock.samples_gone)
+    room_of_frames = run.frames.mode.size - (clock.frames - clock.frames_gone)
+    return room < ahead / run.history.interval + 1.0 or room_of_frames < ahead / run.frames.interval + 1.0
+
+
 def advance(body: Any, run: Run, until: float) -> int:
-    """Step the body to the time `until` [s]; it changes `run` in place.
+    """Step the body to the time `until` [s] or, as no step is cut for it, just beyond; changes `run` in place.
+
+    It also returns when the arrays of samples are full, so that no sample is lost.
 
     Returns:
         REACHED, OVERTURNED (90 degrees, where `control.stop_when_overturned`), or FAILED: no convergence at
         the smallest step; the last good state stands in `run.old`.
     """
     control, clock, track = run.control, run.clock[0], run.track[0]
-    while clock.time < until:
-        step = _next_step(run, until)
+    while clock.time < until and not _is_full(run):
+        step = _next_step(run)
         mu = run.contact.mu_static
         if clock.sliding == 1:
             mu = weakened_mu(run.contact.mu_static, run.contact.mu_kinetic, run.contact.weakening, clock.slid)
@@ -581,7 +662,7 @@ def advance(body: Any, run: Run, until: float) -> int:
         _accept(run, step, slip_step, slip_velocity, every, iterations)
         clock.level = change_level(clock.level, min(used, 1.0), clock.held == 0)
         clock.held = max(clock.held - 1, 0)
-        if abs(run.new.pose[ROTATION]) >= OVERTURNING_ROTATION and track.overturned_at == NEVER:
+        if abs(run.old.pose[ROTATION]) >= OVERTURNING_ROTATION and track.overturned_at == NEVER:
             track.overturned_at = clock.time
             track.mode = FALLEN
             track.modes |= 1 << FALLEN

@@ -20,8 +20,10 @@ NEVER = math.inf  #: time of an event that has not happened
 OPENING = 1e-9
 #: gap whose closing counts as an impact, over width times slenderness angle
 IMPACT_GAP = 1e-3
-#: rotation ratio above which an open side is called rocking at that instant
-ROCKING = 1e-3
+#: an impact is over when the old pivot is open and the floor carries less than this times the weight
+SETTLED_FORCE = 1.2
+#: rotation ratio above which an open side is called rocking
+ROCKING = 0.01
 
 #: modes of motion as stored in a history, and as bits in `modes`
 REST, SLIDE, ROCK, SLIDE_ROCK, FALLEN = 0, 1, 2, 3, 4
@@ -29,6 +31,7 @@ REST, SLIDE, ROCK, SLIDE_ROCK, FALLEN = 0, 1, 2, 3, 4
 TRACK = np.dtype(
     [
         ("max_rotation", "f8"),
+        ("max_rocking", "f8"),  # largest rotation while a side carries nothing
         ("max_slip", "f8"),
         ("slip_travel", "f8"),
         ("max_uplift", "f8"),
@@ -83,6 +86,8 @@ def follow(
     slip: float,
     slip_step: float,
     top_monitors: int,
+    base_points: int,
+    weight: float,
 ) -> None:
     """Update the record with the accepted step from `old` to `new`.
 
@@ -95,8 +100,10 @@ def follow(
         sliding: every loaded point slides.
         slip: container against floor so far, signed [m]; slip_step: of this step [m].
         top_monitors: the first so many monitored points lie at the top; the others in the contents.
+        base_points: the first so many contact points make up the base.
+        weight: of the container [N].
     """
-    n = new.point.shape[0]
+    n = base_points
     rotation = new.pose[ROTATION]
     track.max_rotation = max(track.max_rotation, abs(rotation))
     track.max_slip = max(track.max_slip, abs(slip))
@@ -122,20 +129,18 @@ def follow(
     track.max_corner_force = max(track.max_corner_force, max(left_force, right_force))
     if left_open + right_open == 1 and time < track.first_uplift:
         track.first_uplift = time
-    for i in range(new.monitor.shape[0]):
-        if i < top_monitors:
-            # relative to where the undeformed, unmoved container would have it
-            track.max_top_displacement = max(
-                track.max_top_displacement, abs(new.monitor[i, 0])
-            )
-        else:
-            size = math.sqrt(new.monitor[i, 2] ** 2 + new.monitor[i, 3] ** 2)
-            track.max_acceleration = max(track.max_acceleration, size)
-    rocking = left_open + right_open > 0 and abs(rotation) > ROCKING * slenderness_angle
+    for i in range(top_monitors):
+        track.max_top_displacement = max(track.max_top_displacement, abs(new.monitor[i, 0]))
+    open_side = left_open + right_open > 0
+    if open_side:
+        track.max_rocking = max(track.max_rocking, abs(rotation))
+    rocking = open_side and abs(rotation) > ROCKING * slenderness_angle
     track.mode = (ROCK if rocking else REST) + (SLIDE if sliding else REST)
+    if track.overturned_at < time:
+        track.mode = FALLEN
     track.modes |= 1 << track.mode
-    _follow_impacts(track, old, new, time, step, slenderness_angle, width, resting_energy)
     track.left_open, track.right_open = left_open, right_open
+    _follow_impacts(track, old, new, time, step, slenderness_angle, width, resting_energy, n, weight, left_force + right_force)
     track.turning = (new.pose[ANGULAR_VELOCITY] - old.pose[ANGULAR_VELOCITY]) / step
 
 
@@ -149,8 +154,10 @@ def _follow_impacts(
     slenderness_angle: float,
     width: float,
     resting_energy: float,
+    n: int,
+    weight: float,
+    carried: float,
 ) -> None:
-    n = new.point.shape[0]
     counts = IMPACT_GAP * width * slenderness_angle
     left, right = new.point[0, 1], new.point[n - 1, 1]
     if left > 0.0 and right <= 0.0:
@@ -176,14 +183,14 @@ def _follow_impacts(
             track.pivot_waiting = -struck
     if track.pivot_waiting != 0:  # until the old pivot opens, and the body turns about the new one
         gap = left if track.pivot_waiting < 0 else right
-        if gap > 0.1 * counts:
+        if gap > counts and carried < SETTLED_FORCE * weight:
             track.restitution_by_velocity = new.pose[ANGULAR_VELOCITY] / track.velocity_before
             track.pivot_waiting = 0
         elif track.impacts > 1:
             track.restitution_by_velocity = 0.0
             track.pivot_waiting = 0
     # A turning point: the angular velocity changes sign while a side is open.
-    turned = old.pose[ANGULAR_VELOCITY] * new.pose[ANGULAR_VELOCITY] < 0.0
+    turned = old.pose[ANGULAR_VELOCITY] * new.pose[ANGULAR_VELOCITY] < 0.0 or old.pose[ANGULAR_VELOCITY] == 0.0
     if turned and (track.left_open + track.right_open == 1) and abs(new.pose[ROTATION]) > ROCKING * slenderness_angle:
         energy = max(old.energy[POTENTIAL], new.energy[POTENTIAL]) - resting_energy
         if track.impacts == 1 and not track.restitution_by_peaks >= 0.0 and track.peak_energy > 0.0:

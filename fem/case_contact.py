@@ -15,14 +15,14 @@ def build_support(case: Case, mesh: ContainerMesh) -> Support:
         CaseError: if feet do not fit the mesh.
         MeshError: if no mesh line ends a foot.
     """
-    foot = 0.0 if case.support.foot is None else mesh.foot_widths(case.support.foot)[0]
+    feet = (0.0, 0.0) if case.support.foot is None else mesh.foot_widths(case.support.foot)
     try:
         return choose_support(
             case.support.kind,
             base_positions(mesh, case.solver.order),
             depth=case.container.depth_m,
             order=case.solver.order,
-            foot=foot,
+            feet=feet,
         )
     except ValueError as error:
         raise CaseError(str(error)) from error

@@ -1,0 +1,62 @@
+"""The default penalty: as soft as the answer allows, for a soft contact lets the steps be long.
+
+It is a numerical choice, not the stiffness of concrete. For two corners the static penetration, and with it the
+tilt of a stand on one corner, must be small against the motion. A base of many points fails earlier: near
+uplift the whole weight stands on a narrow strip at the edge, the bed opens from the other side, softens, and
+may resonate with the drive far below uplift. So there the tilt near uplift is limited.
+"""
+
+import math
+
+PENETRATION_OVER_HEIGHT = 1e-5
+PENETRATION_OVER_SWING = 6e-5  #: over width times slenderness angle
+NEAR_UPLIFT = 0.9  #: share of the restoring moment at which the tilt of a wide base is limited
+TILT_OVER_SLENDERNESS = 1e-3
+STIFFEST = 3.0  #: times E/h: beyond it the contact, not the container, sets the time step
+
+
+def choose_normal_penalty(
+    kind: str,
+    *,
+    weight: float,
+    width: float,
+    height: float,
+    depth: float,
+    slenderness_angle: float,
+    youngs_modulus: float,
+    element_size: float,
+    foot: float = 0.0,
+) -> float:
+    """Penalty [Pa/m] for `corners`, `feet` or `flat`.
+
+    Args:
+        kind: of the support.
+        weight: of the container [N]; width, height (of the stack), depth: [m].
+        slenderness_angle: [rad]; youngs_modulus: [Pa]; element_size: [m]; foot: length of a foot, feet only [m].
+    """
+    limit = STIFFEST * youngs_modulus / element_size
+    if kind == "corners":
+        penetration = min(PENETRATION_OVER_HEIGHT * height, PENETRATION_OVER_SWING * width * slenderness_angle)
+        return min(weight / (penetration * width * depth), limit)
+    # Triangular pressure over a strip of length s at the edge, resultant at NEAR_UPLIFT of the half width:
+    # s = 3 (1 - NEAR_UPLIFT) width/2, edge pressure 2 weight/(s depth), tilt = edge pressure/(penalty s).
+    strip = 1.5 * (1.0 - NEAR_UPLIFT) * width
+    if kind == "feet":
+        strip = min(strip, foot)
+    tilt = TILT_OVER_SLENDERNESS * slenderness_angle
+    return min(2.0 * weight / (depth * strip**2 * tilt), limit)
+
+
+def relaxation_time(damping_ratio: float, mass: float, base_stiffness: float) -> float:
+    """Dashpot over spring of the contact [s], from c/(2 sqrt(k m)) with the mass on half the base's stiffness.
+
+    Args:
+        damping_ratio: of the whole mass on the spring of one corner [-].
+        mass: [kg]; base_stiffness: of all points together [N/m].
+    """
+    return 2.0 * damping_ratio * math.sqrt(mass / (0.5 * base_stiffness))
+
+
+def contact_frequency(mass: float, base_stiffness: float) -> float:
+    """Bounce frequency of the container on all contact points [Hz]."""
+    return math.sqrt(base_stiffness / mass) / (2.0 * math.pi)

@@ -1,0 +1,76 @@
+"""Where a container touches the floor, and how stiff each of these points is.
+
+`corners`: the two ends of the base; `feet`: every base point within a foot's length of an end; `flat`: all of
+them. A point of a foot or of a flat base carries the penalty over its tributary length (the integral of its
+shape function, so that a uniform pressure is met exactly by elements of first and second order); each
+corner carries half of it over the whole base.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+KINDS = ("corners", "feet", "flat")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Support:
+    """The points of a base that may touch the floor, by rising x."""
+
+    kind: str
+    index: IntArray  #: (n,) of the base points chosen, into the base points given
+    length: FloatArray  #: (n,) share of the base that each carries [m]
+    depth: float  #: of the container [m]
+
+    def normal_stiffness(self, normal_penalty: float) -> FloatArray:
+        """Spring of each point under a penalty in Pa/m, shape (n,) [N/m]."""
+        return normal_penalty * self.length * self.depth
+
+
+def tributary_lengths(x: FloatArray, order: int) -> FloatArray:
+    """Integrals of the shape functions along a row of nodes (n,), sorted [m]; order 1 or 2.
+
+    Raises:
+        ValueError: the nodes do not make up whole elements of that order.
+    """
+    if (x.size - 1) % order or x.size < order + 1:
+        raise ValueError(f"{x.size} base nodes do not make up elements of order {order}")
+    weights = np.array([[0.5, 0.5], [1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0]][order - 1])
+    lengths = np.zeros(x.size)
+    for first in range(0, x.size - 1, order):
+        lengths[first : first + order + 1] += weights * (x[first + order] - x[first])
+    return lengths
+
+
+def choose_support(kind: str, x: FloatArray, *, depth: float, order: int, feet: tuple[float, float] = (0.0, 0.0)) -> Support:
+    """Pick the supporting points out of the base nodes at x (n,), sorted [m].
+
+    `feet` gives the lengths of the left and the right foot, as the mesh has them.
+
+    Raises:
+        ValueError: unknown kind, or feet that are missing, overlap, or that no mesh line ends.
+    """
+    if kind not in KINDS:
+        raise ValueError(f"[support] kind must be one of {', '.join(KINDS)}, got {kind!r}")
+    width = float(x[-1] - x[0])
+    if kind == "corners":
+        return Support(kind=kind, index=np.array([0, x.size - 1]), length=np.full(2, 0.5 * width), depth=depth)
+    if kind == "flat":
+        return Support(kind=kind, index=np.arange(x.size), length=tributary_lengths(x, order), depth=depth)
+    if not (min(feet) > 0.0 and sum(feet) < width):
+        raise ValueError(f"[support] foot_m must be positive and below half the width, got {feet} m of {width} m")
+    near = 1e-9 * width
+    left = np.flatnonzero(x <= x[0] + feet[0] + near)
+    right = np.flatnonzero(x >= x[-1] - feet[1] - near)
+    if (left.size - 1) % order or (right.size - 1) % order or min(left.size, right.size) < order + 1:
+        raise ValueError(f"[support] foot_m: no mesh line ends the feet of {feet} m")
+    return Support(
+        kind=kind,
+        index=np.concatenate([left, right]),
+        length=np.concatenate([tributary_lengths(x[left], order), tributary_lengths(x[right], order)]),
+        depth=depth,
+    )

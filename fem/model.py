@@ -1,0 +1,394 @@
+"""From a case to what is stepped: mesh, elements, support, body, contact, control, initial state.
+
+Everything "auto" is decided here, once, whatever the model; `full`, `reduced` and `rigid` differ in the body
+alone.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from contact import modal_body
+from contact.body import State, make_state
+from contact.floor_motion import floor_motion
+from contact.initial import Stance, standing, tilted
+from contact.interface import Contact, FloatArray, make_workspace
+from contact.laws import ELASTIC_STICK, REGULARISED
+from contact.modal_body import ModalBody, make_modal_body
+from contact.motion import BaseMotion
+from contact.penalty import relaxation_time
+from contact.scheme import Scheme, generalised_alpha, newmark
+from contact.stepping import Control, Run, make_run, make_samples
+from contact.support import Support
+from fem.assembly import FiniteElements, assemble
+from fem.case import Case, CaseError
+from fem.case_contact import build_support, normal_penalty
+from fem.case_container import build_container
+from fem.case_motion import build_motion
+from fem.full_body import FullBody
+from fem.modes import elastic_modes
+from fem.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
+from fem.static_checks import StaticChecks, static_checks
+from mesh.container import ContainerMesh
+from mesh.region import Region
+
+#: largest step over the time scale of rocking, 1/p, and over that of the base motion
+STEP_OF_ROCKING, STEP_OF_MOTION = 0.01, 0.02
+#: over the largest step: the step in which friction may change between sticking and sliding
+EVENT_SHARE = 0.05
+SMALLEST_SHARE = 1e-7
+#: imbalance of the ledger that a step may have: see `contact.stepping.Control`
+ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE, CLOSING_SHARE = 1e-5, 1e-7, 2e-3, 3e-4
+#: closings with less energy than this, over the energy to overturn, are left to the ledger
+SOFT_CLOSING = 1e-6
+#: error of a base point at which the iterations of a step stop, over the static penetration
+POINT_TOLERANCE = 1e-6
+HISTORY_CHUNK, FRAME_CHUNK, FULL_FRAME_CHUNK = 1024, 64, 4
+#: a Newmark run without averaging gains energy beyond both
+STIFF_CONTACT, LARGE_CONTACT_STEP = 3.0, 0.7
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Model:
+    """One case, ready to be stepped."""
+
+    case: Case
+    mesh: ContainerMesh
+    elements: FiniteElements
+    support: Support
+    nodes: FloatArray  #: (n_c,) contact nodes, those of the base first, by rising x
+    penalty: float  #: [Pa/m]
+    motion: BaseMotion
+    static: StaticChecks
+    basis: ReducedBasis | None  #: elastic modes, of a reduced model
+    response: StaticResponse
+    body: ModalBody | FullBody
+    run: Run
+
+    @property
+    def base_stiffness(self) -> float:
+        """Of all base points together [N/m]."""
+        return float(self.run.contact.normal_stiffness[: self.support.index.size].sum())
+
+    @property
+    def frequencies(self) -> FloatArray:
+        """Elastic frequencies of the model's modes [Hz]; none for `full` and `rigid`."""
+        return np.zeros(0) if self.basis is None else self.basis.angular_frequencies / (2.0 * np.pi)
+
+
+def build_model(case: Case) -> Model:
+    """Discretise a case and put the container on its floor, settled, at t = 0.
+
+    Raises:
+        CaseError, MeshError: bad input.
+        SettlingError: no equilibrium at the start.
+    """
+    motion = build_motion(case)
+    mesh = build_container(case)
+    elements = assemble(
+        mesh,
+        youngs_modulus=case.container.youngs_modulus_Pa,
+        poisson_ratio=case.container.poisson_ratio,
+        order=case.solver.order,
+    )
+    support = build_support(case, mesh)
+    penalty = normal_penalty(case, mesh)
+    nodes = elements.base_nodes[support.index]
+    springs = support.normal_stiffness(penalty)
+    if not case.output.stop_when_overturned:  # it will come to lie on its side: the upper corners touch too
+        nodes = np.concatenate([nodes, _upper_corners(elements)])
+        springs = np.concatenate([springs, np.full(2, 0.5 * springs.sum())])
+    response = static_response(elements, nodes)
+    static = checks_of(case, mesh, motion)
+    basis = None
+    if case.solver.model == "reduced":
+        basis = reduced_basis(elements, response, case.solver.elastic_modes)
+    contact = _contact(case, mesh, springs, support.index.size)
+    control = _control(case, mesh, static, motion, contact, support.index.size)
+    scheme = _scheme(case, penalty, control, contact, elements, nodes)
+    monitors = _monitors(elements)
+    damping = _stiffness_damping(case, elements, basis)
+    body = _body(case, mesh, elements, nodes, monitors, basis, damping, static, contact)
+    full = isinstance(body, FullBody)
+    coordinates = body.coordinates if isinstance(body, FullBody) else 3 + body.stiffness.size
+    old, new = (make_state(coordinates, nodes.size, monitors.size) for _ in range(2))
+    stance = _stance(case, mesh, elements, nodes, support, response, contact, rigid=case.solver.model == "rigid")
+    compiled_motion = motion.compiled()
+    floor, floor_velocity, _ = floor_motion(compiled_motion, 0.0)
+    _place(body, old, stance, response, floor, floor_velocity if case.motion.start == "moving" else 0.0, contact)
+    frames = FULL_FRAME_CHUNK if full else FRAME_CHUNK
+    fields = case.output.fields_s
+    run = make_run(
+        scheme=scheme,
+        contact=contact,
+        motion=compiled_motion,
+        breaks=_breaks(motion, case.solver.duration_s),
+        control=control,
+        old=old,
+        new=new,
+        work=make_workspace(nodes.size),
+        history=make_samples(
+            case.output.history_s,
+            _chunk(HISTORY_CHUNK, control.largest_step, case.output.history_s),
+            nodes.size,
+            columns=True,
+            position=0 if full else coordinates,
+        ),
+        frames=make_samples(
+            fields if fields > 0.0 else math.inf,
+            _chunk(frames, control.largest_step, fields) if fields > 0.0 else 4,
+            nodes.size,
+            position=coordinates if fields > 0.0 else 0,
+            velocity=coordinates if fields > 0.0 else 0,
+        ),
+    )
+    return Model(
+        case=case,
+        mesh=mesh,
+        elements=elements,
+        support=support,
+        nodes=nodes,
+        penalty=penalty,
+        motion=motion,
+        static=static,
+        basis=basis,
+        response=response,
+        body=body,
+        run=run,
+    )
+
+
+def checks_of(case: Case, mesh: ContainerMesh, motion: BaseMotion) -> StaticChecks:
+    """Static checks of the meshed container under its own motion."""
+    return static_checks(
+        mass=mesh.mass,
+        centroid=mesh.centroid[1],
+        inertia=mesh.inertia,
+        width=mesh.width,
+        gravity=case.gravity_m_s2,
+        mu_static=case.contact.mu_static,
+        mu_kinetic=case.contact.mu_kinetic,
+        peak_floor_acceleration=motion.peak_acceleration,
+        ground_acceleration=case.static.ground_acceleration_m_s2,
+        soil_factor=case.static.soil_factor,
+        behaviour_factor=case.static.behaviour_factor,
+        importance_factor=case.static.importance_factor,
+        initial_rotation=case.initial.rotation_rad,
+    )
+
+
+def reference_energy(mesh: ContainerMesh, static: StaticChecks, gravity: float) -> float:
+    """What it takes to overturn the container quasi-statically, M g R (1 - cos slenderness angle) [J]."""
+    return mesh.mass * gravity * static.radius * (1.0 - math.cos(static.slenderness_angle))
+
+
+def _breaks(motion: BaseMotion, duration: float) -> FloatArray:
+    inside = [time for time in motion.break_times if 0.0 < time < duration]
+    return np.array([*inside, duration])
+
+
+def _chunk(wanted: int, largest_step: float, interval: float) -> int:
+    """Samples to keep at a time: never fewer than two largest steps make."""
+    return max(wanted, 2 * math.ceil(largest_step / interval) + 4)
+
+
+def _upper_corners(elements: FiniteElements) -> FloatArray:
+    x, z = elements.nodes.T
+    top = np.flatnonzero(z >= z.max() - 1e-9 * np.ptp(z))
+    return top[[np.argmin(x[top]), np.argmax(x[top])]]
+
+
+def _monitors(elements: FiniteElements) -> FloatArray:
+    """Nodes to follow: the two upper corners, then the middle and the outermost nodes of the contents."""
+    contents = np.isin(elements.region, (Region.FILL, Region.SOLID))
+    held = np.unique(elements.cells[contents] if contents.any() else elements.cells)
+    x, z = elements.nodes[held].T
+    corners = [held[np.argmax(a * x / np.ptp(x) + b * z / np.ptp(z))] for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
+    middle = held[np.argmin(np.hypot(x - x.mean(), z - 0.5 * (z.min() + z.max())))]
+    return np.concatenate([_upper_corners(elements), [middle, *corners]])
+
+
+def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) -> Contact:
+    laws = {"elastic-stick": ELASTIC_STICK, "regularised": REGULARISED}
+    chosen = case.contact
+    return Contact(
+        normal_stiffness=springs,
+        tangential_stiffness=chosen.tangential_ratio * springs,
+        relaxation_time=relaxation_time(chosen.damping_ratio, mesh.mass, float(springs[:base].sum())),
+        mu_static=chosen.mu_static,
+        mu_kinetic=chosen.mu_kinetic,
+        weakening=chosen.weakening_m,
+        friction=laws[chosen.friction],
+        regularisation_velocity=chosen.regularisation_velocity_m_s,
+        force_scale=mesh.mass * case.gravity_m_s2,
+        resolution=1e-15 * (mesh.width + mesh.height),
+    )
+
+
+def _control(
+    case: Case,
+    mesh: ContainerMesh,
+    static: StaticChecks,
+    motion: BaseMotion,
+    contact: Contact,
+    base: int,
+) -> Control:
+    reference = reference_energy(mesh, static, case.gravity_m_s2)
+    rate = static.frequency_parameter
+    if case.solver.step_s == "auto":
+        largest = min(STEP_OF_ROCKING / rate, STEP_OF_MOTION * motion.time_scale)
+    else:
+        largest = case.solver.step_s
+    largest = min(largest, case.solver.duration_s)
+    bounce = math.sqrt(float(contact.normal_stiffness[:base].sum()) / mesh.mass)
+    return Control(
+        largest_step=largest,
+        smallest_step=SMALLEST_SHARE * largest,
+        event_step=EVENT_SHARE * largest,
+        closing_step=0.01 / (0.5 * bounce * bounce * contact.relaxation_time + 0.2 * bounce),
+        closing_speed=math.sqrt(SOFT_CLOSING * reference / mesh.mass),
+        reference_energy=reference,
+        energy_rate=ENERGY_RATE * rate,
+        energy_floor=ENERGY_FLOOR,
+        energy_share=ENERGY_SHARE,
+        closing_share=CLOSING_SHARE,
+        mass=mesh.mass,
+        resting_energy=mesh.mass * case.gravity_m_s2 * mesh.centroid[1],
+        slenderness_angle=static.slenderness_angle,
+        width=mesh.width,
+        stop_when_overturned=case.output.stop_when_overturned,
+        top_monitors=2,
+        base_points=base,
+    )
+
+
+def _scheme(
+    case: Case, penalty: float, control: Control, contact: Contact, elements: FiniteElements, nodes: FloatArray
+) -> Scheme:
+    solver = case.solver
+    if solver.scheme == "generalised-alpha":
+        return generalised_alpha(solver.spectral_radius)
+    nodal = elements.mass @ np.ones(len(elements.nodes))
+    stiff = penalty * solver.element_size_m / case.container.youngs_modulus_Pa
+    large = control.largest_step * math.sqrt(float(np.max(contact.normal_stiffness / nodal[nodes])))
+    if stiff > STIFF_CONTACT and large > LARGE_CONTACT_STEP:
+        raise CaseError(
+            f"[solver] scheme = 'newmark' gains energy at impacts here: normal_penalty_Pa_m x element size / "
+            f"youngs_modulus_Pa = {stiff:.3g} > {STIFF_CONTACT:g} together with step x contact frequency = "
+            f"{large:.3g} > {LARGE_CONTACT_STEP:g}; lower the penalty, set solver.step_s <= "
+            f"{control.largest_step * LARGE_CONTACT_STEP / large:.2g} s, or take scheme = 'generalised-alpha'"
+        )
+    return newmark(solver.newmark_beta, solver.newmark_gamma)
+
+
+def _stiffness_damping(case: Case, elements: FiniteElements, basis: ReducedBasis | None) -> float:
+    """a of C = a K that gives the first elastic mode its damping ratio [s]."""
+    ratio = case.container.damping_ratio
+    if ratio == 0.0 or case.solver.model == "rigid":
+        return 0.0
+    first = basis.angular_frequencies[0] if basis is not None else first_angular_frequency(elements)
+    return 2.0 * ratio / float(first)
+
+
+def first_angular_frequency(elements: FiniteElements) -> float:
+    """Of the lowest elastic mode [rad/s]."""
+    return float(elastic_modes(elements, 1).angular_frequencies[0])
+
+
+def _body(
+    case: Case,
+    mesh: ContainerMesh,
+    elements: FiniteElements,
+    nodes: FloatArray,
+    monitors: FloatArray,
+    basis: ReducedBasis | None,
+    damping: float,
+    static: StaticChecks,
+    contact: Contact,
+) -> ModalBody | FullBody:
+    if case.solver.model == "full":
+        return FullBody(elements, nodes, monitors, gravity=case.gravity_m_s2, damping=damping)
+    centroid = np.asarray(mesh.centroid)
+    penetration = static.weight / float(contact.normal_stiffness.sum())
+    omega = np.zeros(0) if basis is None else basis.angular_frequencies
+    shapes = np.zeros((0, len(elements.nodes), 2)) if basis is None else basis.shapes
+    return make_modal_body(
+        mass=mesh.mass,
+        inertia=mesh.inertia,
+        gravity=case.gravity_m_s2,
+        point=elements.nodes[nodes] - centroid,
+        rest=mesh.centroid,
+        shape=np.moveaxis(shapes[:, nodes], 0, -1),
+        frequencies=omega,
+        damping_ratios=0.5 * damping * omega,
+        monitor=elements.nodes[monitors] - centroid,
+        monitor_shape=np.moveaxis(shapes[:, monitors], 0, -1),
+        tolerance=POINT_TOLERANCE * penetration,
+    )
+
+
+def _stance(
+    case: Case,
+    mesh: ContainerMesh,
+    elements: FiniteElements,
+    nodes: FloatArray,
+    support: Support,
+    response: StaticResponse,
+    contact: Contact,
+    *,
+    rigid: bool,
+) -> Stance:
+    base = support.index.size
+    point = elements.nodes[nodes[:base]] - np.asarray(mesh.centroid)
+    initial = case.initial
+    if initial.rotation_rad == 0.0:
+        stance = standing(
+            weight=mesh.mass * case.gravity_m_s2,
+            centroid=mesh.centroid,
+            point=point,
+            compliance=(0.0 if rigid else 1.0) * response.compliance[: 2 * base, : 2 * base],
+            normal_stiffness=contact.normal_stiffness[:base],
+        )
+        if initial.angular_velocity_rad_s != 0.0:
+            stance = stance.turning(initial.angular_velocity_rad_s, point)
+    else:
+        corner = nodes[base - 1] if initial.rotation_rad > 0.0 else nodes[0]
+        stance = tilted(
+            rotation=initial.rotation_rad,
+            angular_velocity=initial.angular_velocity_rad_s,
+            mass=mesh.mass,
+            inertia=mesh.inertia,
+            gravity=case.gravity_m_s2,
+            point=point,
+            corner_x=float(elements.nodes[corner, 0]),
+            normal_stiffness=contact.normal_stiffness[:base],
+            mu_static=contact.mu_static,
+        )
+    return stance.with_points(nodes.size).sliding(initial.velocity_m_s)
+
+
+def _place(
+    body: Any,
+    state: State,
+    stance: Stance,
+    response: StaticResponse,
+    floor: float,
+    floor_velocity: float,
+    contact: Contact,
+) -> None:
+    """Write the initial state: the stance on the floor where it is at t = 0."""
+    shifted = stance.moved(floor)
+    state.force[:] = shifted.force
+    state.stick[:] = -shifted.force[:, 0] / contact.tangential_stiffness
+    if isinstance(body, FullBody):
+        body.place(state, shifted, response, floor_velocity)
+        body.complete(state, floor)
+        body.start(state)
+        body.complete(state, floor)
+    else:
+        modal_body.place(body, state, shifted, floor_velocity)
+        modal_body.complete_modal(body, state, floor)
+        modal_body.start(body, state)
+        modal_body.complete_modal(body, state, floor)
