@@ -6,17 +6,20 @@ of `fem.case_tables`; what follows from several keys is a property here.
 """
 
 import hashlib
-import tomllib
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from importlib import resources
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Self
 
 from pydantic import Field, PrivateAttr
 
+from fem.case_files import (
+    Origin,
+    find_case,
+    parse_case,
+)
 from fem.case_overrides import parse_override, with_overrides
-from fem.case_reading import CaseError, did_you_mean, problem_lines, read_case_tables
+from fem.case_reading import CaseError, problem_lines, read_case_tables
 from fem.case_rules import RULES_OF_A_CASE
 from fem.case_tables import (
     TABLES,
@@ -31,20 +34,6 @@ from fem.case_tables import (
     Support,
 )
 from fem.case_toml import toml_document
-
-DEFAULT_CASE = "seed_stack_plateau"
-LARGEST_FILE = 1_000_000  # bytes; a case file has a few thousand
-
-
-@dataclass(frozen=True, kw_only=True)
-class Origin:
-    """Where a case comes from; it plays no part when two cases are compared."""
-
-    name: str = field(default="case", compare=False)  #: file stem or name of the shipped case
-    place: str = field(default="case", compare=False)  #: how messages call it: path or name
-    folder: Path = field(default_factory=Path, compare=False)  #: where its mesh and motion files are
-    text: str = field(default="", compare=False)  #: the file as given, without overrides
-    overrides: tuple[str, ...] = field(default=(), compare=False)  #: as given, `table.key=value`
 
 
 class Case(Heading):
@@ -185,53 +174,17 @@ class Case(Heading):
         return copy
 
 
-def shipped_cases() -> tuple[str, ...]:
-    """Names of the cases that come with the program, in alphabetical order."""
-    folder = resources.files("fem.cases")
-    return tuple(sorted(entry.name[:-5] for entry in folder.iterdir() if entry.name.endswith(".toml")))
-
-
-def shipped_text(name: str) -> str:
-    """The commented file of a shipped case.
-
-    Raises:
-        CaseError: if there is none of this name; with the nearest one.
-    """
-    if name not in shipped_cases():
-        raise CaseError(f"no shipped case {name!r}{_shipped_names(name)}")
-    return (resources.files("fem.cases") / f"{name}.toml").read_text(encoding="utf-8")
-
-
-def shipped_description(name: str) -> str:
-    """What a shipped case shows: the first line of its file."""
-    return shipped_text(name).partition("\n")[0].lstrip("# ").strip()
-
-
 def load_case(name_or_path: str | Path | None = None, overrides: Sequence[str] = ()) -> Case:
     """Read a case file or a shipped case, changed by overrides of the form `table.key=value`.
 
-    A file wins over a shipped case of the same name; None is the shipped default. The mesh and
-    motion files of a shipped case are looked for in the current folder.
+    A file wins over a shipped case of the same name; None is the shipped default.
 
     Raises:
         CaseError: with one line for each reason why the case cannot be used.
     """
-    name = DEFAULT_CASE if name_or_path is None else str(name_or_path)
-    if name_or_path is not None and _is(Path.is_file, name):
-        path = Path(name)
-        origin = Origin(
-            name=path.stem,
-            place=str(path),
-            folder=path.parent,
-            text=_read_text(path),
-            overrides=tuple(overrides),
-        )
-    elif name in shipped_cases():
-        origin = Origin(name=name, place=name, text=shipped_text(name), overrides=tuple(overrides))
-    else:
-        raise CaseError(_no_such_case(name))
+    origin = replace(find_case(name_or_path), overrides=tuple(overrides))
     values = dict(parse_override(text) for text in overrides)
-    return _read(with_overrides(_parse(origin), values), origin, values)
+    return _read(with_overrides(parse_case(origin), values), origin, values)
 
 
 def read_case(text: str, *, name: str = "case", folder: Path | None = None) -> Case:
@@ -241,7 +194,7 @@ def read_case(text: str, *, name: str = "case", folder: Path | None = None) -> C
         CaseError: with one line for each reason why the case cannot be used.
     """
     origin = Origin(name=name, place=name, folder=folder or Path(), text=text)
-    return _read(_parse(origin), origin, {})
+    return _read(parse_case(origin), origin, {})
 
 
 def to_toml(case: Case) -> str:
@@ -299,52 +252,6 @@ def _naming_overrides(lines: list[str], overrides: Mapping[str, Any]) -> list[st
 def _as_override(dotted: str, value: object) -> str:
     shown = str(value)[:80]
     return f"--set {dotted}={shown if shown.isprintable() else repr(shown)}"
-
-
-def _parse(origin: Origin) -> dict[str, Any]:
-    try:
-        return tomllib.loads(origin.text)
-    except tomllib.TOMLDecodeError as error:
-        raise CaseError(f"{origin.place}: not a TOML file: {error}") from error
-    except RecursionError as error:
-        raise CaseError(f"{origin.place}: not a case file: lists or tables nested too deep") from error
-    except ValueError as error:  # a whole number of thousands of digits
-        raise CaseError(f"{origin.place}: not a TOML file: {error}") from error
-
-
-def _read_text(path: Path) -> str:
-    try:
-        with path.open("rb") as stream:
-            content = stream.read(LARGEST_FILE + 1)
-    except OSError as error:
-        raise CaseError(f"{path}: cannot be read: {error.strerror}") from error
-    if len(content) > LARGEST_FILE:
-        raise CaseError(f"{path}: larger than {LARGEST_FILE} bytes; that is no case file")
-    try:
-        return content.decode("utf-8-sig")  # editors on Windows put a mark in front
-    except UnicodeDecodeError as error:
-        line = content[: error.start].count(b"\n") + 1
-        raise CaseError(f"{path}: not text in UTF-8 (line {line}); save the file as UTF-8") from error
-
-
-def _is(kind: Callable[[Path], bool], name: str) -> bool:
-    """Whether there is such a file or folder; not for names that none can have."""
-    try:
-        return kind(Path(name))
-    except (ValueError, OSError):  # a null character, a name too long, a folder that may not be entered
-        return False
-
-
-def _no_such_case(name: str) -> str:
-    if name and _is(Path.is_dir, name):
-        return f"{name!r} is a folder; give the case file, for instance {Path(name) / 'resolved.toml'}"
-    name = name if len(name) <= 200 else f"{name[:200]} ..."
-    return f"no case file {name!r} and no shipped case of that name{_shipped_names(Path(name).stem)}"
-
-
-def _shipped_names(name: str) -> str:
-    near = did_you_mean(name, shipped_cases())
-    return f"{'; ' + near if near else ''} (shipped: {', '.join(shipped_cases())})"
 
 
 def _file_beside(folder: Path, key: str, name: str) -> Path:

@@ -15,8 +15,9 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticUndefined
 
+from fem.case_problem import Problem, Rule
 from fem.case_quantities import Quantity, with_unit
-from fem.case_rules import RULES_OF_A_CASE, Problem, Rule
+from fem.case_rules import RULES_OF_A_CASE
 from fem.case_tables import TABLES, Heading, Table
 
 

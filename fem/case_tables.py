@@ -13,7 +13,8 @@ from pydantic import BaseModel, ConfigDict, Field, Strict, model_validator
 
 from fem import case_quantities as q
 from fem import case_rules as rules
-from fem.case_rules import BrokenRulesError, Rule
+from fem import case_rules_motion as motion_rules
+from fem.case_problem import BrokenRulesError, Rule
 
 
 class Table(BaseModel):
@@ -223,28 +224,28 @@ class Motion(Table):
     )
 
     rules = (
-        rules.harmonic_is_given_by_two_of_three,
-        rules.harmonic_frequency_is_computable,
-        rules.harmonic_peak_is_not_negative,
-        rules.harmonic_amplitude_is_computable,
-        rules.ramps_fit_into_the_cycles,
-        rules.pulse_is_complete,
-        rules.table_is_complete,
-        rules.table_unit_fits_its_quantity,
-        rules.displacements_have_no_baseline,
-        rules.table_is_not_scaled_away,
-        rules.motion_file_stays_beside_the_case,
+        motion_rules.harmonic_is_given_by_two_of_three,
+        motion_rules.harmonic_frequency_is_computable,
+        motion_rules.harmonic_peak_is_not_negative,
+        motion_rules.harmonic_amplitude_is_computable,
+        motion_rules.ramps_fit_into_the_cycles,
+        motion_rules.pulse_is_complete,
+        motion_rules.table_is_complete,
+        motion_rules.table_unit_fits_its_quantity,
+        motion_rules.displacements_have_no_baseline,
+        motion_rules.table_is_not_scaled_away,
+        motion_rules.motion_file_stays_beside_the_case,
     )
 
     @property
     def angular_frequency(self) -> float:
         """Omega of a harmonic motion [rad/s]; 0 for every other kind."""
-        return rules.harmonic_angular_frequency(self) or 0.0
+        return motion_rules.harmonic_angular_frequency(self) or 0.0
 
     @property
     def amplitude(self) -> float:
         """A of a harmonic motion x = A sin(Omega t + phase) [m]; 0 for every other kind."""
-        return rules.harmonic_amplitude(self) or 0.0
+        return motion_rules.harmonic_amplitude(self) or 0.0
 
     @property
     def period(self) -> float:

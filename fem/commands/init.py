@@ -5,7 +5,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from fem.case import CaseError, load_case, shipped_text
+from fem.case import CaseError, load_case
+from fem.case_files import shipped_text
 from fem.case_template import case_template
 
 

@@ -1,6 +1,6 @@
 """`list`: the shipped cases."""
 
-from fem.case import DEFAULT_CASE, shipped_cases, shipped_description
+from fem.case_files import DEFAULT_CASE, shipped_cases, shipped_description
 
 
 def list_cases() -> None:

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from contact.motion import HarmonicMotion, NoMotion, PulseMotion, TableMotion
-from fem.case import CaseError, load_case, read_case, shipped_cases, shipped_text
+from fem.case import CaseError, load_case, read_case
 from fem.case_contact import build_support, normal_penalty
 from fem.case_container import base_positions, build_container, node_count
+from fem.case_files import shipped_cases, shipped_text
 from fem.case_motion import build_motion
 from fem.commands.check import peak_floor_acceleration
 from mesh.errors import MeshError

@@ -8,18 +8,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from fem.case import (
-    DEFAULT_CASE,
-    Case,
-    CaseError,
-    case_hash,
-    load_case,
-    read_case,
-    shipped_cases,
-    shipped_description,
-    shipped_text,
-    to_toml,
-)
+from fem.case import Case, CaseError, case_hash, load_case, read_case, to_toml
+from fem.case_files import DEFAULT_CASE, shipped_cases, shipped_description, shipped_text
 from fem.case_reading import known_keys, quantity_of
 from fem.case_tables import TABLES
 from fem.case_template import case_template

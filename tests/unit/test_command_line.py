@@ -9,7 +9,8 @@ from types import SimpleNamespace
 import pytest
 
 from fem import __main__ as command_line
-from fem.case import load_case, read_case, shipped_cases, shipped_text
+from fem.case import load_case, read_case
+from fem.case_files import shipped_cases, shipped_text
 from fem.commands import doctor as doctor_command
 from fem.commands.run import text_with_overrides
 
