@@ -169,6 +169,8 @@ def test_other_kinds_of_motion_have_no_amplitude():
         {"solver__elastic_modes": 0},
         {"solver__spectral_radius": 0.0},
         {"solver__spectral_radius": 1.0},
+        {"solver__scheme": "newmark"},  # average acceleration, 2 beta = gamma: on the edge of stability
+        {"solver__scheme": "newmark", "solver__newmark_beta": 0.3025, "solver__newmark_gamma": 0.6},
         PULSE | {"motion__delay_s": 1.0},
         TABLE,
     ],
