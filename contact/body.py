@@ -1,8 +1,8 @@
 """What the stepper needs of a body, and no more.
 
 A body has coordinates (their number and meaning are its own affair), base points that may touch the floor,
-and four operations, each a function here that hands over to the body: `predict`, `release`, `respond` and
-`complete`. `contact.modal_body` compiles them for a floating frame with elastic modes; the finite-element
+and five operations, each a function here that hands over to the body: `predict`, `release`, `respond`,
+`complete` and `observe`. `contact.modal_body` compiles them for a floating frame with elastic modes; the finite-element
 body of `fem` brings them as methods. The stepper is written once, against these functions.
 """
 
@@ -79,5 +79,10 @@ def respond(body: Any, scheme: Scheme, step: float, old: State, new: State, work
 
 
 def complete(body: Any, new: State, floor: float) -> None:
-    """Fill in what follows from the converged coordinates: internal and contact forces, points, pose, energy, monitor."""
+    """Fill in what follows from the converged coordinates: internal forces, base points, pose, energy."""
     body.complete(new, floor)
+
+
+def observe(body: Any, state: State, floor: float) -> None:
+    """Fill in displacement and velocity of the monitored points; asked for at samples only."""
+    body.observe(state, floor)

@@ -45,12 +45,13 @@ def cache_folder() -> Path:
 def compiled(function: Callable[..., Any], *, parallel: bool = False) -> Any:
     """Compile a function of numbers, arrays and named tuples on first call; keep the machine code.
 
-    Division by zero follows IEEE (as in numpy); no fast-math, so that a run is the same bytes again.
+    The kernels own no memory: numba's runtime, which would count references at every call, is left out, and so
+    none may allocate an array. They run without the interpreter's lock. Division by zero follows IEEE (as in numpy); no fast-math, so that a run is the same bytes again.
     """
     before = config.CACHE_DIR
     config.CACHE_DIR = str(cache_folder())
     try:
-        return numba.njit(cache=True, error_model="numpy", parallel=parallel, _nrt=False)(function)
+        return numba.njit(cache=True, error_model="numpy", parallel=parallel, nogil=True, _nrt=False)(function)
     finally:
         config.CACHE_DIR = before
 

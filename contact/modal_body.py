@@ -287,7 +287,6 @@ def _complete(body: ModalBody, new: State, floor: float) -> None:
         body.arm[i, 0], body.arm[i, 1] = cosine * x + sine * z, -sine * x + cosine * z
         new.point[i, 0] = position[0] + body.arm[i, 0] - floor
         new.point[i, 1] = position[1] + body.arm[i, 1]
-    gather_force(body, new.force, position[2], body.arm, new.external)
     new.internal[0], new.internal[1], new.internal[2] = 0.0, body.mass * body.gravity, 0.0
     kinetic = body.mass * (velocity[0] ** 2 + velocity[1] ** 2) + body.inertia * velocity[2] ** 2
     strain = 0.0
@@ -303,6 +302,12 @@ def _complete(body: ModalBody, new: State, floor: float) -> None:
     new.pose[ROTATION], new.pose[ANGULAR_VELOCITY] = position[2], velocity[2]
     new.pose[CENTRE_X], new.pose[CENTRE_Z] = position[0], position[1]
     new.pose[VELOCITY_X], new.pose[VELOCITY_Z] = velocity[0], velocity[1]
+
+
+def _observe(body: ModalBody, new: State, floor: float) -> None:
+    m = body.stiffness.size
+    position, velocity = new.position, new.velocity
+    cosine, sine = math.cos(position[2]), math.sin(position[2])
     rate = velocity[2]
     for i in range(body.monitor.shape[0]):
         x, z = body.monitor[i, 0], body.monitor[i, 1]
@@ -332,8 +337,10 @@ def place(body: ModalBody, state: State, stance: Stance, floor_velocity: float) 
     state.position[3:] = np.einsum("ij,ijk->k", stance.force @ turn, body.shape) / body.stiffness
 
 
-def start(body: ModalBody, state: State) -> None:
-    """Initial acceleration from the forces in `state`, which are complete."""
+def start(body: ModalBody, state: State, floor: float) -> None:
+    """What follows from the coordinates and contact forces in `state`, and the acceleration they give."""
+    complete_modal(body, state, floor)
+    gather_force(body, state.force, state.position[2], body.arm, state.external)
     masses = np.concatenate([[body.mass, body.mass, body.inertia], np.ones(body.stiffness.size)])
     state.acceleration[:] = (state.external - state.internal) / masses
 
@@ -353,3 +360,4 @@ _compile_for_modal_body(interface.predict, _predict)
 _compile_for_modal_body(interface.release, _release)
 _compile_for_modal_body(interface.respond, _respond)
 _compile_for_modal_body(interface.complete, _complete)
+_compile_for_modal_body(interface.observe, _observe)

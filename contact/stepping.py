@@ -27,6 +27,7 @@ from contact.body import (
     VELOCITY_Z,
     State,
     complete,
+    observe,
     predict,
     release,
     respond,
@@ -85,8 +86,12 @@ class Control(NamedTuple):
     energy_rate: float  #: imbalance allowed per second, over the reference energy [1/s]
     energy_floor: float  #: imbalance allowed in any step, over the reference energy [-]
     energy_share: float  #: imbalance allowed over what a step dissipates [-]
+    trail_share: float  #: imbalance allowed over what was dissipated shortly before [-]
+    trail_time: float  #: how long that counts [s]
     closing_share: float  #: imbalance allowed when a gap closes, over the kinetic energy relative to the floor [-]
     mass: float  #: [kg]
+    gravity: float  #: [m/s2]
+    frequency_parameter: float  #: of rocking [1/s]
     resting_energy: float  #: gravity potential of the container at rest [J]
     slenderness_angle: float  #: [rad]
     width: float  #: [m]
@@ -112,6 +117,7 @@ CLOCK = np.dtype(
         ("utilisation_rate", "f8"),
         ("slip_velocity", "f8"),  # force-weighted
         ("slip_acceleration", "f8"),
+        ("trail", "f8"),  # dissipated shortly before [J]
         ("held", "i8"),  # accepted steps until the step may grow freely again
         ("basis_step", "f8"),  # that the old acceleration's lag belongs to
         ("samples", "i8"),  # of the history, so far
@@ -162,6 +168,7 @@ class Run(NamedTuple):
     old: State
     new: State
     work: Workspace
+    floor: FloatArray  #: (2, 3) displacement, velocity, acceleration of the floor before and after the step
     slip: FloatArray  #: (n,) sliding of the points in the step attempted [m]
     change: FloatArray  #: (5,) what the step attempted adds to the ledger [J]
     ledger: FloatArray  #: (5,) [J]
@@ -198,6 +205,7 @@ def make_run(
         old=old,
         new=new,
         work=work,
+        floor=np.tile(floor_motion(motion, 0.0), (2, 1)),
         slip=np.zeros(n),
         change=np.zeros(LEDGER_ROWS),
         ledger=np.zeros(LEDGER_ROWS),
@@ -209,12 +217,21 @@ def make_run(
     )
 
 
-def _copy_array(target: npt.NDArray[Any], source: npt.NDArray[Any]) -> None:
-    for index in np.ndindex(target.shape):
-        target[index] = source[index]
+def _copy_vector(target: FloatArray, source: FloatArray) -> None:
+    for i in range(target.size):
+        target[i] = source[i]
 
 
-copy_array = compiled(_copy_array)
+copy_vector = compiled(_copy_vector)
+
+
+def _copy_rows(target: FloatArray, source: FloatArray) -> None:
+    for i in range(target.shape[0]):
+        for k in range(target.shape[1]):
+            target[i, k] = source[i, k]
+
+
+copy_rows = compiled(_copy_rows)
 
 
 def _rebase_acceleration(scheme: Scheme, old: State, shortened: float) -> None:
@@ -237,12 +254,13 @@ def _attempt(body: Any, run: Run, step: float, mu: float) -> int:
     """Try one step; the result stands in `run.new`. Returns the iterations taken, or -1."""
     old, new, work, scheme = run.old, run.new, run.work, run.scheme
     clock = run.clock[0]
-    floor, floor_velocity, _ = floor_motion(run.motion, clock.time + step)
+    floor, floor_velocity, floor_acceleration = floor_motion(run.motion, clock.time + step)
+    run.floor[1, 0], run.floor[1, 1], run.floor[1, 2] = floor, floor_velocity, floor_acceleration
     slope = scheme.newmark_gamma / (scheme.newmark_beta * step)
     rebase_acceleration(scheme, old, clock.basis_step - step)
     clock.basis_step = step
     predict(body, scheme, step, old, new)
-    copy_array(work.force, old.force)
+    copy_rows(work.force, old.force)
     for iteration in range(ITERATION_LIMIT):
         release(body, scheme, step, old, new, work, floor, floor_velocity)
         solved = solve_contact(run.contact, step, slope, mu, old.point, old.stick, work)
@@ -250,7 +268,7 @@ def _attempt(body: Any, run: Run, step: float, mu: float) -> int:
             return -1
         clock.contact_iterations += solved
         if respond(body, scheme, step, old, new, work) <= 1.0:
-            copy_array(new.force, work.force)
+            copy_rows(new.force, work.force)
             for i in range(new.descent.shape[0]):
                 new.descent[i, 0] = -work.velocity[i, 1]
                 new.descent[i, 1] = (new.descent[i, 0] - old.descent[i, 0]) / step
@@ -309,12 +327,9 @@ def _slide(run: Run, step: float) -> tuple[bool, float, float]:
 slide = compiled(_slide)
 
 
-def _account(run: Run, step: float) -> float:
+def _account(run: Run) -> float:
     """What the step attempted adds to the ledger, into `run.change`; returns what it dissipated [J]."""
     old, new, change = run.old, run.new, run.change
-    time = run.clock[0].time
-    before, _, _ = floor_motion(run.motion, time)
-    after, _, _ = floor_motion(run.motion, time + step)
     shear = 0.0
     for i in range(new.force.shape[0]):
         shear += 0.5 * (old.force[i, 0] + new.force[i, 0])
@@ -327,7 +342,7 @@ def _account(run: Run, step: float) -> float:
     stored = spring_energy(run.contact, new.point, new.stick) - spring_energy(run.contact, old.point, old.stick)
     for row in (KINETIC, STRAIN, POTENTIAL):
         stored += new.energy[row] - old.energy[row]
-    change[BASE_WORK] = shear * (after - before)
+    change[BASE_WORK] = shear * (run.floor[1, 0] - run.floor[0, 0])
     change[FRICTION] = friction
     change[CONTACT_DAMPING] = damping
     change[MATERIAL_DAMPING] = material
@@ -339,20 +354,19 @@ account = compiled(_account)
 
 
 def _copy_state(old: State, new: State) -> None:
-    copy_array(old.position, new.position)
-    copy_array(old.velocity, new.velocity)
-    copy_array(old.acceleration, new.acceleration)
-    copy_array(old.jerk, new.jerk)
-    copy_array(old.internal, new.internal)
-    copy_array(old.damping, new.damping)
-    copy_array(old.external, new.external)
-    copy_array(old.point, new.point)
-    copy_array(old.force, new.force)
-    copy_array(old.descent, new.descent)
-    copy_array(old.stick, new.stick)
-    copy_array(old.pose, new.pose)
-    copy_array(old.energy, new.energy)
-    copy_array(old.monitor, new.monitor)
+    copy_vector(old.position, new.position)
+    copy_vector(old.velocity, new.velocity)
+    copy_vector(old.acceleration, new.acceleration)
+    copy_vector(old.jerk, new.jerk)
+    copy_vector(old.internal, new.internal)
+    copy_vector(old.damping, new.damping)
+    copy_vector(old.external, new.external)
+    copy_rows(old.point, new.point)
+    copy_rows(old.force, new.force)
+    copy_rows(old.descent, new.descent)
+    copy_vector(old.stick, new.stick)
+    copy_vector(old.pose, new.pose)
+    copy_vector(old.energy, new.energy)
 
 
 copy_state = compiled(_copy_state)
@@ -408,7 +422,10 @@ def _watch_contents(run: Run, s: float, interval: float) -> None:
     for i in range(watched.shape[0]):
         x = (1.0 - s) * old[i, 2] + s * new[i, 2]
         z = (1.0 - s) * old[i, 3] + s * new[i, 3]
-        if i >= run.control.top_monitors:
+        if i < run.control.top_monitors:
+            sway = abs((1.0 - s) * old[i, 0] + s * new[i, 0])
+            run.track[0].max_top_displacement = max(run.track[0].max_top_displacement, sway)
+        else:
             size = np.hypot(x - watched[i, 0], z - watched[i, 1]) / interval
             run.track[0].max_acceleration = max(run.track[0].max_acceleration, size)
         watched[i, 0], watched[i, 1] = x, z
@@ -417,13 +434,15 @@ def _watch_contents(run: Run, s: float, interval: float) -> None:
 watch_contents = compiled(_watch_contents)
 
 
-def _sample(run: Run, samples: Samples, written: int, origin: int, step: float, slip_step: float) -> int:
+@register_jitable
+def sample(body: Any, run: Run, samples: Samples, written: int, origin: int, step: float, slip_step: float) -> int:
     """Write the samples that fall into the step just attempted, from the old time up to and with the new one.
 
     `written` samples exist so far, the first `origin` of them are no longer in the arrays; returns how many exist now.
     Positions by cubics through both ends' positions and velocities, everything else linear.
     """
     old, new, clock = run.old, run.new, run.clock[0]
+    observed = False
     while written - origin < samples.mode.size:
         time = written * samples.interval
         if time > clock.time + step:
@@ -442,12 +461,13 @@ def _sample(run: Run, samples: Samples, written: int, origin: int, step: float, 
         samples.mode[at] = run.track[0].mode
         if samples.columns.shape[1] > 0:
             write_columns(run, samples.columns[at], samples.force[at], time, s, step, slip_step)
+            if not observed:
+                observe(body, old, run.floor[0, 0])
+                observe(body, new, run.floor[1, 0])
+                observed = True
             watch_contents(run, s, samples.interval if written > 0 else np.inf)
         written += 1
     return written
-
-
-sample = compiled(_sample)
 
 
 def _closing_time(control: Control, state: State, horizon: float) -> float:
@@ -518,17 +538,20 @@ def _next_step(run: Run) -> float:
 def _allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
     """Energy that the step attempted may lose or win [J].
 
+    A share of what it dissipates, and of what was dissipated shortly before: while an impact rings down, the
+    ringing is resolved as well as the impact deserves.
     A first touch switches a dashpot on: what the scheme loses there falls with the step itself only, so it is held
     against the energy that meets the floor.
     """
     control, old, new = run.control, run.old, run.new
     allowed = control.reference_energy * (control.energy_floor + control.energy_rate * step)
     allowed += control.energy_share * abs(dissipated)
+    allowed += control.trail_share * run.clock[0].trail * step / control.trail_time
     closing = False
     for i in range(new.point.shape[0]):
         closing = closing or (old.point[i, 1] >= 0.0 and new.point[i, 1] < 0.0)
     if closing:
-        _, floor_velocity, _ = floor_motion(run.motion, run.clock[0].time)
+        floor_velocity = run.floor[0, 1]
         relative = floor_velocity * (0.5 * floor_velocity - old.pose[VELOCITY_X])
         allowed += control.closing_share * (old.energy[KINETIC] + control.mass * relative)
     return allowed
@@ -570,7 +593,7 @@ ladder_level = compiled(_ladder_level)
 
 
 @register_jitable
-def _accept(run: Run, step: float, slip_step: float, slip_velocity: float, every: bool, iterations: int) -> None:
+def _accept(body: Any, run: Run, step: float, slip_step: float, slip_velocity: float, every: bool, iterations: int) -> None:
     """Make the step attempted the state of the run; samples, ledger and record follow."""
     control, clock = run.control, run.clock[0]
     end = clock.time + step
@@ -587,22 +610,18 @@ def _accept(run: Run, step: float, slip_step: float, slip_velocity: float, every
     clock.slip_velocity = slip_velocity
     follow(
         run.track[0],
+        control,
         run.old,
         run.new,
         end,
         step,
-        control.slenderness_angle,
-        control.width,
-        control.resting_energy,
         every,
         clock.slip + slip_step,
         slip_step,
-        control.top_monitors,
-        control.base_points,
-        run.contact.force_scale,
+        run.floor[1, 2],
     )
-    clock.samples = sample(run, run.history, clock.samples, clock.samples_gone, step, slip_step)
-    clock.frames = sample(run, run.frames, clock.frames, clock.frames_gone, step, slip_step)
+    clock.samples = sample(body, run, run.history, clock.samples, clock.samples_gone, step, slip_step)
+    clock.frames = sample(body, run, run.frames, clock.frames, clock.frames_gone, step, slip_step)
     for row in range(LEDGER_ROWS):
         run.ledger[row] += run.change[row]
     clock.least_imbalance = min(clock.least_imbalance, run.ledger[IMBALANCE])
@@ -613,6 +632,8 @@ def _accept(run: Run, step: float, slip_step: float, slip_velocity: float, every
     clock.iterations += iterations
     clock.smallest_step = min(clock.smallest_step, step)
     copy_state(run.old, run.new)
+    for k in range(3):
+        run.floor[0, k] = run.floor[1, k]
 
 
 @register_jitable
@@ -649,7 +670,7 @@ def advance(body: Any, run: Run, until: float) -> int:
             clock.level += STEPS_PER_OCTAVE
             continue
         every, slip_step, slip_velocity = slide(run, step)
-        dissipated = account(run, step)
+        dissipated = account(run)
         used = abs(run.change[IMBALANCE]) / allowed_imbalance(run, step, dissipated)
         switches = (clock.sliding == 1) != every
         if switches and step > 1.01 * control.event_step:
@@ -659,7 +680,8 @@ def advance(body: Any, run: Run, until: float) -> int:
             clock.level = change_level(clock.level, used, False)
             clock.held = HELD_STEPS
             continue
-        _accept(run, step, slip_step, slip_velocity, every, iterations)
+        clock.trail = clock.trail * np.exp(-step / control.trail_time) + max(dissipated, 0.0)
+        _accept(body, run, step, slip_step, slip_velocity, every, iterations)
         clock.level = change_level(clock.level, min(used, 1.0), clock.held == 0)
         clock.held = max(clock.held - 1, 0)
         if abs(run.old.pose[ROTATION]) >= OVERTURNING_ROTATION and track.overturned_at == NEVER:

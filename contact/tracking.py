@@ -20,8 +20,8 @@ NEVER = math.inf  #: time of an event that has not happened
 OPENING = 1e-9
 #: gap whose closing counts as an impact, over width times slenderness angle
 IMPACT_GAP = 1e-3
-#: an impact is over when the old pivot is open and the floor carries less than this times the weight
-SETTLED_FORCE = 1.2
+#: the angular velocity after an impact is averaged over this time, over 1/p: it rings
+AVERAGED = 0.1
 #: rotation ratio above which an open side is called rocking
 ROCKING = 0.01
 
@@ -53,10 +53,12 @@ TRACK = np.dtype(
         ("peak_energy", "f8"),  # potential energy above rest at the last turning point
         ("restitution_by_peaks", "f8"),
         ("turning", "f8"),  # angular acceleration over the last step
+        ("drift", "f8"),  # what a rigid block's angular velocity has changed by since the first impact
+        ("watched", "f8"),  # how long the angular velocity has been averaged since
+        ("mean_velocity", "f8"),
         ("velocity_before", "f8"),  # angular velocity just before the first impact
         ("pivot_waiting", "i8"),  # the corner that was the pivot at the first impact: -1 left, +1 right, 0 none
         ("restitution_by_velocity", "f8"),
-        ("first_peak_after", "f8"),
     ],
     align=True,
 )
@@ -67,7 +69,7 @@ def make_track() -> Any:
     track = np.zeros(1, TRACK).view(np.recarray)
     for name in ("first_opening", "first_uplift", "overturned_at", "first_impact"):
         track[name] = NEVER
-    for name in ("restitution_by_peaks", "restitution_by_velocity", "peak_energy", "velocity_before", "first_peak_after"):
+    for name in ("restitution_by_peaks", "restitution_by_velocity", "peak_energy", "velocity_before"):
         track[name] = np.nan
     return track
 
@@ -75,35 +77,28 @@ def make_track() -> Any:
 @register_jitable
 def follow(
     track: Any,
+    control: Any,
     old: State,
     new: State,
     time: float,
     step: float,
-    slenderness_angle: float,
-    width: float,
-    resting_energy: float,
     sliding: bool,
     slip: float,
     slip_step: float,
-    top_monitors: int,
-    base_points: int,
-    weight: float,
+    floor_acceleration: float,
 ) -> None:
     """Update the record with the accepted step from `old` to `new`.
 
     Args:
         track: record of TRACK.
+        control: the stepping's `Control`: sizes and constants of the container.
         old, new: states at both ends of the step.
         time: at its end [s]; step: its length [s].
-        slenderness_angle: [rad]; width: [m].
-        resting_energy: gravity potential of the container at rest [J].
         sliding: every loaded point slides.
         slip: container against floor so far, signed [m]; slip_step: of this step [m].
-        top_monitors: the first so many monitored points lie at the top; the others in the contents.
-        base_points: the first so many contact points make up the base.
-        weight: of the container [N].
+        floor_acceleration: at the end of the step [m/s2].
     """
-    n = base_points
+    n = control.base_points
     rotation = new.pose[ROTATION]
     track.max_rotation = max(track.max_rotation, abs(rotation))
     track.max_slip = max(track.max_slip, abs(slip))
@@ -114,52 +109,40 @@ def follow(
         gap = new.point[i, 1]
         uplift = max(uplift, gap)
         track.max_penetration = max(track.max_penetration, -gap)
-        if gap > OPENING * width and time < track.first_opening:
+        if gap > OPENING * control.width and time < track.first_opening:
             track.first_opening = time
-        closed = gap <= 0.0
         if new.point[i, 0] < middle:
             left_force += new.force[i, 1]
-            if closed:
+            if gap <= 0.0:
                 left_open = 0
         else:
             right_force += new.force[i, 1]
-            if closed:
+            if gap <= 0.0:
                 right_open = 0
     track.max_uplift = max(track.max_uplift, uplift)
     track.max_corner_force = max(track.max_corner_force, max(left_force, right_force))
     if left_open + right_open == 1 and time < track.first_uplift:
         track.first_uplift = time
-    for i in range(top_monitors):
-        track.max_top_displacement = max(track.max_top_displacement, abs(new.monitor[i, 0]))
     open_side = left_open + right_open > 0
     if open_side:
         track.max_rocking = max(track.max_rocking, abs(rotation))
-    rocking = open_side and abs(rotation) > ROCKING * slenderness_angle
+    rocking = open_side and abs(rotation) > ROCKING * control.slenderness_angle
     track.mode = (ROCK if rocking else REST) + (SLIDE if sliding else REST)
     if track.overturned_at < time:
         track.mode = FALLEN
     track.modes |= 1 << track.mode
     track.left_open, track.right_open = left_open, right_open
-    _follow_impacts(track, old, new, time, step, slenderness_angle, width, resting_energy, n, weight, left_force + right_force)
+    struck = _find_impact(track, control, old, new, step)
+    _follow_restitution(track, control, old, new, time, step, struck, floor_acceleration)
     track.turning = (new.pose[ANGULAR_VELOCITY] - old.pose[ANGULAR_VELOCITY]) / step
 
 
 @register_jitable
-def _follow_impacts(
-    track: Any,
-    old: State,
-    new: State,
-    time: float,
-    step: float,
-    slenderness_angle: float,
-    width: float,
-    resting_energy: float,
-    n: int,
-    weight: float,
-    carried: float,
-) -> None:
-    counts = IMPACT_GAP * width * slenderness_angle
-    left, right = new.point[0, 1], new.point[n - 1, 1]
+def _find_impact(track: Any, control: Any, old: State, new: State, step: float) -> int:
+    """The corner that a counted impact struck in this step: -1 left, +1 right, 0 none."""
+    last = control.base_points - 1
+    counts = IMPACT_GAP * control.width * control.slenderness_angle
+    left, right = new.point[0, 1], new.point[last, 1]
     if left > 0.0 and right <= 0.0:
         track.left_gap = max(track.left_gap, left)
     if right > 0.0 and left <= 0.0:
@@ -169,32 +152,56 @@ def _follow_impacts(
         if track.left_gap > counts:
             struck = -1
         track.left_gap = 0.0
-    if right <= 0.0 and old.point[n - 1, 1] > 0.0:
+    if right <= 0.0 and old.point[last, 1] > 0.0:
         if track.right_gap > counts:
             struck = 1
         track.right_gap = 0.0
     if struck != 0:
         track.impacts += 1
-        if track.impacts == 1:
-            track.first_impact = time
-            corner = 0 if struck < 0 else n - 1
-            gap, depth = old.point[corner, 1], -new.point[corner, 1]
-            track.velocity_before = old.pose[ANGULAR_VELOCITY] + track.turning * step * gap / (gap + depth)
-            track.pivot_waiting = -struck
-    if track.pivot_waiting != 0:  # until the old pivot opens, and the body turns about the new one
-        gap = left if track.pivot_waiting < 0 else right
-        if gap > counts and carried < SETTLED_FORCE * weight:
-            track.restitution_by_velocity = new.pose[ANGULAR_VELOCITY] / track.velocity_before
-            track.pivot_waiting = 0
-        elif track.impacts > 1:
+    return struck
+
+
+@register_jitable
+def _follow_restitution(
+    track: Any,
+    control: Any,
+    old: State,
+    new: State,
+    time: float,
+    step: float,
+    struck: int,
+    floor_acceleration: float,
+) -> None:
+    """Ratio of angular velocities over the first impact, and of the heights of the peaks around it.
+
+    The impact takes a moment and leaves ringing behind. So the velocity after it is the mean over a while of the
+    angular velocity less what a rigid block rocking about the new pivot would have gained since the impact.
+    """
+    velocity = new.pose[ANGULAR_VELOCITY]
+    if struck != 0 and track.impacts == 1:
+        corner = 0 if struck < 0 else control.base_points - 1
+        gap, depth = old.point[corner, 1], -new.point[corner, 1]
+        track.first_impact = time
+        track.velocity_before = old.pose[ANGULAR_VELOCITY] + track.turning * step * gap / (gap + depth)
+        track.pivot_waiting = -struck
+    elif track.pivot_waiting != 0:
+        corner = control.base_points - 1 if track.pivot_waiting > 0 else 0
+        lean = -track.pivot_waiting * control.slenderness_angle - new.pose[ROTATION]
+        pull = math.sin(lean) + floor_acceleration / control.gravity * math.cos(lean)
+        track.drift -= step * control.frequency_parameter**2 * pull
+        if new.point[corner, 1] > IMPACT_GAP * control.width * control.slenderness_angle:
+            track.mean_velocity += step * (velocity - track.drift)
+            track.watched += step
+        if struck != 0 or track.watched >= AVERAGED / control.frequency_parameter:
             track.restitution_by_velocity = 0.0
+            if track.watched >= 0.5 * AVERAGED / control.frequency_parameter:
+                track.restitution_by_velocity = track.mean_velocity / (track.watched * track.velocity_before)
             track.pivot_waiting = 0
-    # A turning point: the angular velocity changes sign while a side is open.
-    turned = old.pose[ANGULAR_VELOCITY] * new.pose[ANGULAR_VELOCITY] < 0.0 or old.pose[ANGULAR_VELOCITY] == 0.0
-    if turned and (track.left_open + track.right_open == 1) and abs(new.pose[ROTATION]) > ROCKING * slenderness_angle:
-        energy = max(old.energy[POTENTIAL], new.energy[POTENTIAL]) - resting_energy
+    turned = old.pose[ANGULAR_VELOCITY] * velocity < 0.0 or old.pose[ANGULAR_VELOCITY] == 0.0
+    aside = abs(new.pose[ROTATION]) > ROCKING * control.slenderness_angle
+    if turned and aside and track.left_open + track.right_open == 1:
+        energy = max(old.energy[POTENTIAL], new.energy[POTENTIAL]) - control.resting_energy
         if track.impacts == 1 and not track.restitution_by_peaks >= 0.0 and track.peak_energy > 0.0:
             track.restitution_by_peaks = math.sqrt(max(energy, 0.0) / track.peak_energy)
-            track.first_peak_after = abs(new.pose[ROTATION])
         if track.impacts == 0:
             track.peak_energy = energy

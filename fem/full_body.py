@@ -117,8 +117,9 @@ class FullBody:
         self._turn = turn
         self._forces(position, velocity)
 
-    def start(self, state: State) -> None:
-        """Initial acceleration from the forces in `state`, which are complete."""
+    def start(self, state: State, floor: float) -> None:
+        """What follows from the coordinates and contact forces in `state`, and the acceleration they give."""
+        self.complete(state, floor)
         force = (state.external - state.internal).reshape(-1, 2)
         factor = scipy.sparse.linalg.splu(self._mass.tocsc())
         state.acceleration[:] = factor.solve(force).ravel()
@@ -194,6 +195,10 @@ class FullBody:
         new.energy[KINETIC] = 0.5 * np.sum(momentum * velocity)
         new.energy[STRAIN] = self.elements.strain_energy(position - self.elements.nodes)
         new.energy[POTENTIAL] = self.mass * self.gravity * centre[1]
+
+    def observe(self, new: State, floor: float) -> None:
+        """See `contact.body.observe`."""
+        position, velocity = new.position.reshape(-1, 2), new.velocity.reshape(-1, 2)
         new.monitor[:, :2] = position[self.monitor] - self.elements.nodes[self.monitor]
         new.monitor[:, 0] -= floor
         new.monitor[:, 2:] = velocity[self.monitor]

@@ -59,6 +59,11 @@ class History:
                 f"history: {self.values.shape} numbers for {len(self.modes)} modes; {NUMBERS} columns needed"
             )
 
+    @classmethod
+    def empty(cls) -> Self:
+        """No samples."""
+        return cls(values=np.zeros((0, NUMBERS)), modes=())
+
     def __len__(self) -> int:
         return len(self.modes)
 

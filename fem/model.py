@@ -14,7 +14,7 @@ from contact import modal_body
 from contact.body import State, make_state
 from contact.floor_motion import floor_motion
 from contact.initial import Stance, standing, tilted
-from contact.interface import Contact, FloatArray, make_workspace
+from contact.interface import Contact, make_workspace
 from contact.laws import ELASTIC_STICK, REGULARISED
 from contact.modal_body import ModalBody, make_modal_body
 from contact.motion import BaseMotion
@@ -31,6 +31,7 @@ from fem.full_body import FullBody
 from fem.modes import elastic_modes
 from fem.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
 from fem.static_checks import StaticChecks, static_checks
+from mesh.cells import FloatArray, IntArray
 from mesh.container import ContainerMesh
 from mesh.region import Region
 
@@ -41,6 +42,7 @@ EVENT_SHARE = 0.05
 SMALLEST_SHARE = 1e-7
 #: imbalance of the ledger that a step may have: see `contact.stepping.Control`
 ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE, CLOSING_SHARE = 1e-5, 1e-7, 2e-3, 3e-4
+TRAIL_SHARE, TRAIL_TIME = 5e-3, 0.1
 #: closings with less energy than this, over the energy to overturn, are left to the ledger
 SOFT_CLOSING = 1e-6
 #: error of a base point at which the iterations of a step stop, over the static penetration
@@ -51,41 +53,49 @@ STIFF_CONTACT, LARGE_CONTACT_STEP = 3.0, 0.7
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class Container:
+    """What a case's container is made of, whatever floor it stands on and however that moves."""
+
+    mesh: ContainerMesh
+    elements: FiniteElements
+    support: Support
+    nodes: IntArray  #: (n_c,) contact nodes, those of the base first, by rising x
+    monitors: IntArray  #: (n_m,) nodes that are followed
+    response: StaticResponse
+    basis: ReducedBasis | None  #: elastic modes, of a reduced model
+    damping: float  #: a of C = a K [s]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Model:
     """One case, ready to be stepped."""
 
     case: Case
-    mesh: ContainerMesh
-    elements: FiniteElements
-    support: Support
-    nodes: FloatArray  #: (n_c,) contact nodes, those of the base first, by rising x
+    container: Container
     penalty: float  #: [Pa/m]
     motion: BaseMotion
     static: StaticChecks
-    basis: ReducedBasis | None  #: elastic modes, of a reduced model
-    response: StaticResponse
     body: ModalBody | FullBody
     run: Run
 
     @property
     def base_stiffness(self) -> float:
         """Of all base points together [N/m]."""
-        return float(self.run.contact.normal_stiffness[: self.support.index.size].sum())
+        return float(self.run.contact.normal_stiffness[: self.container.support.index.size].sum())
 
     @property
     def frequencies(self) -> FloatArray:
         """Elastic frequencies of the model's modes [Hz]; none for `full` and `rigid`."""
-        return np.zeros(0) if self.basis is None else self.basis.angular_frequencies / (2.0 * np.pi)
+        basis = self.container.basis
+        return np.zeros(0) if basis is None else basis.angular_frequencies / (2.0 * np.pi)
 
 
-def build_model(case: Case) -> Model:
-    """Discretise a case and put the container on its floor, settled, at t = 0.
+def discretise(case: Case) -> Container:
+    """Mesh, elements, supporting nodes and elastic modes of a case's container.
 
     Raises:
         CaseError, MeshError: bad input.
-        SettlingError: no equilibrium at the start.
     """
-    motion = build_motion(case)
     mesh = build_container(case)
     elements = assemble(
         mesh,
@@ -94,32 +104,59 @@ def build_model(case: Case) -> Model:
         order=case.solver.order,
     )
     support = build_support(case, mesh)
-    penalty = normal_penalty(case, mesh)
     nodes = elements.base_nodes[support.index]
-    springs = support.normal_stiffness(penalty)
     if not case.output.stop_when_overturned:  # it will come to lie on its side: the upper corners touch too
         nodes = np.concatenate([nodes, _upper_corners(elements)])
-        springs = np.concatenate([springs, np.full(2, 0.5 * springs.sum())])
     response = static_response(elements, nodes)
-    static = checks_of(case, mesh, motion)
-    basis = None
+    basis, first, damping = None, math.inf, 0.0
     if case.solver.model == "reduced":
         basis = reduced_basis(elements, response, case.solver.elastic_modes)
-    contact = _contact(case, mesh, springs, support.index.size)
-    control = _control(case, mesh, static, motion, contact, support.index.size)
-    scheme = _scheme(case, penalty, control, contact, elements, nodes)
-    monitors = _monitors(elements)
-    damping = _stiffness_damping(case, elements, basis)
-    body = _body(case, mesh, elements, nodes, monitors, basis, damping, static, contact)
+        first = float(basis.angular_frequencies[0])
+    elif case.solver.model == "full" and case.container.damping_ratio > 0.0:
+        first = float(elastic_modes(elements, 1).angular_frequencies[0])
+    if math.isfinite(first):
+        damping = 2.0 * case.container.damping_ratio / first
+    return Container(
+        mesh=mesh,
+        elements=elements,
+        support=support,
+        nodes=nodes,
+        monitors=_monitors(elements),
+        response=response,
+        basis=basis,
+        damping=damping,
+    )
+
+
+def build_model(case: Case, container: Container | None = None) -> Model:
+    """Discretise a case, unless its container is given, and put it on its floor, settled, at t = 0.
+
+    Raises:
+        CaseError, MeshError: bad input.
+        SettlingError: no equilibrium at the start.
+    """
+    motion = build_motion(case)
+    if container is None:
+        container = discretise(case)
+    mesh, nodes = container.mesh, container.nodes
+    penalty = normal_penalty(case, mesh)
+    springs = container.support.normal_stiffness(penalty)
+    base = springs.size
+    springs = np.concatenate([springs, np.full(nodes.size - base, 0.5 * springs.sum())])
+    static = checks_of(case, mesh, motion)
+    contact = _contact(case, mesh, springs, base)
+    control = _control(case, mesh, static, motion, contact, base)
+    scheme = _scheme(case, container, penalty, control, contact)
+    body = _body(case, container, contact)
     full = isinstance(body, FullBody)
     coordinates = body.coordinates if isinstance(body, FullBody) else 3 + body.stiffness.size
-    old, new = (make_state(coordinates, nodes.size, monitors.size) for _ in range(2))
-    stance = _stance(case, mesh, elements, nodes, support, response, contact, rigid=case.solver.model == "rigid")
+    old, new = (make_state(coordinates, nodes.size, container.monitors.size) for _ in range(2))
+    stance = _stance(case, container, contact)
     compiled_motion = motion.compiled()
     floor, floor_velocity, _ = floor_motion(compiled_motion, 0.0)
-    _place(body, old, stance, response, floor, floor_velocity if case.motion.start == "moving" else 0.0, contact)
-    frames = FULL_FRAME_CHUNK if full else FRAME_CHUNK
-    fields = case.output.fields_s
+    drift = floor_velocity if case.motion.start == "moving" else 0.0
+    _place(body, old, stance.moved(floor), container.response, floor, drift, contact)
+    interval, fields = case.output.history_s, case.output.fields_s
     run = make_run(
         scheme=scheme,
         contact=contact,
@@ -130,33 +167,22 @@ def build_model(case: Case) -> Model:
         new=new,
         work=make_workspace(nodes.size),
         history=make_samples(
-            case.output.history_s,
-            _chunk(HISTORY_CHUNK, control.largest_step, case.output.history_s),
+            interval,
+            _chunk(HISTORY_CHUNK, control.largest_step, interval),
             nodes.size,
             columns=True,
             position=0 if full else coordinates,
         ),
         frames=make_samples(
             fields if fields > 0.0 else math.inf,
-            _chunk(frames, control.largest_step, fields) if fields > 0.0 else 4,
+            _chunk(FULL_FRAME_CHUNK if full else FRAME_CHUNK, control.largest_step, fields or math.inf),
             nodes.size,
             position=coordinates if fields > 0.0 else 0,
             velocity=coordinates if fields > 0.0 else 0,
         ),
     )
     return Model(
-        case=case,
-        mesh=mesh,
-        elements=elements,
-        support=support,
-        nodes=nodes,
-        penalty=penalty,
-        motion=motion,
-        static=static,
-        basis=basis,
-        response=response,
-        body=body,
-        run=run,
+        case=case, container=container, penalty=penalty, motion=motion, static=static, body=body, run=run
     )
 
 
@@ -194,13 +220,13 @@ def _chunk(wanted: int, largest_step: float, interval: float) -> int:
     return max(wanted, 2 * math.ceil(largest_step / interval) + 4)
 
 
-def _upper_corners(elements: FiniteElements) -> FloatArray:
+def _upper_corners(elements: FiniteElements) -> IntArray:
     x, z = elements.nodes.T
     top = np.flatnonzero(z >= z.max() - 1e-9 * np.ptp(z))
     return top[[np.argmin(x[top]), np.argmax(x[top])]]
 
 
-def _monitors(elements: FiniteElements) -> FloatArray:
+def _monitors(elements: FiniteElements) -> IntArray:
     """Nodes to follow: the two upper corners, then the middle and the outermost nodes of the contents."""
     contents = np.isin(elements.region, (Region.FILL, Region.SOLID))
     held = np.unique(elements.cells[contents] if contents.any() else elements.cells)
@@ -253,8 +279,12 @@ def _control(
         energy_rate=ENERGY_RATE * rate,
         energy_floor=ENERGY_FLOOR,
         energy_share=ENERGY_SHARE,
+        trail_share=TRAIL_SHARE,
+        trail_time=TRAIL_TIME / rate,
         closing_share=CLOSING_SHARE,
         mass=mesh.mass,
+        gravity=case.gravity_m_s2,
+        frequency_parameter=rate,
         resting_energy=mesh.mass * case.gravity_m_s2 * mesh.centroid[1],
         slenderness_angle=static.slenderness_angle,
         width=mesh.width,
@@ -264,97 +294,67 @@ def _control(
     )
 
 
-def _scheme(
-    case: Case, penalty: float, control: Control, contact: Contact, elements: FiniteElements, nodes: FloatArray
-) -> Scheme:
-    solver = case.solver
+def _scheme(case: Case, container: Container, penalty: float, control: Control, contact: Contact) -> Scheme:
+    solver, elements = case.solver, container.elements
     if solver.scheme == "generalised-alpha":
         return generalised_alpha(solver.spectral_radius)
     nodal = elements.mass @ np.ones(len(elements.nodes))
     stiff = penalty * solver.element_size_m / case.container.youngs_modulus_Pa
-    large = control.largest_step * math.sqrt(float(np.max(contact.normal_stiffness / nodal[nodes])))
-    if stiff > STIFF_CONTACT and large > LARGE_CONTACT_STEP:
+    rate = math.sqrt(float(np.max(contact.normal_stiffness / nodal[container.nodes])))
+    if stiff > STIFF_CONTACT and control.largest_step * rate > LARGE_CONTACT_STEP:
         raise CaseError(
-            f"[solver] scheme = 'newmark' gains energy at impacts here: normal_penalty_Pa_m x element size / "
+            "[solver] scheme = 'newmark' gains energy at impacts here: normal_penalty_Pa_m x element_size_m / "
             f"youngs_modulus_Pa = {stiff:.3g} > {STIFF_CONTACT:g} together with step x contact frequency = "
-            f"{large:.3g} > {LARGE_CONTACT_STEP:g}; lower the penalty, set solver.step_s <= "
-            f"{control.largest_step * LARGE_CONTACT_STEP / large:.2g} s, or take scheme = 'generalised-alpha'"
+            f"{control.largest_step * rate:.3g} > {LARGE_CONTACT_STEP:g}; lower the penalty, set solver.step_s "
+            f"<= {LARGE_CONTACT_STEP / rate:.2g} s, or take scheme = 'generalised-alpha'"
         )
     return newmark(solver.newmark_beta, solver.newmark_gamma)
 
 
-def _stiffness_damping(case: Case, elements: FiniteElements, basis: ReducedBasis | None) -> float:
-    """a of C = a K that gives the first elastic mode its damping ratio [s]."""
-    ratio = case.container.damping_ratio
-    if ratio == 0.0 or case.solver.model == "rigid":
-        return 0.0
-    first = basis.angular_frequencies[0] if basis is not None else first_angular_frequency(elements)
-    return 2.0 * ratio / float(first)
-
-
-def first_angular_frequency(elements: FiniteElements) -> float:
-    """Of the lowest elastic mode [rad/s]."""
-    return float(elastic_modes(elements, 1).angular_frequencies[0])
-
-
-def _body(
-    case: Case,
-    mesh: ContainerMesh,
-    elements: FiniteElements,
-    nodes: FloatArray,
-    monitors: FloatArray,
-    basis: ReducedBasis | None,
-    damping: float,
-    static: StaticChecks,
-    contact: Contact,
-) -> ModalBody | FullBody:
+def _body(case: Case, container: Container, contact: Contact) -> ModalBody | FullBody:
+    elements, mesh, gravity = container.elements, container.mesh, case.gravity_m_s2
+    nodes, monitors = container.nodes, container.monitors
     if case.solver.model == "full":
-        return FullBody(elements, nodes, monitors, gravity=case.gravity_m_s2, damping=damping)
+        return FullBody(elements, nodes, monitors, gravity=gravity, damping=container.damping)
     centroid = np.asarray(mesh.centroid)
-    penetration = static.weight / float(contact.normal_stiffness.sum())
+    basis = container.basis
     omega = np.zeros(0) if basis is None else basis.angular_frequencies
-    shapes = np.zeros((0, len(elements.nodes), 2)) if basis is None else basis.shapes
+    shapes = np.zeros((0, *elements.nodes.shape)) if basis is None else basis.shapes
+    penetration = mesh.mass * gravity / float(contact.normal_stiffness.sum())
     return make_modal_body(
         mass=mesh.mass,
         inertia=mesh.inertia,
-        gravity=case.gravity_m_s2,
+        gravity=gravity,
         point=elements.nodes[nodes] - centroid,
         rest=mesh.centroid,
         shape=np.moveaxis(shapes[:, nodes], 0, -1),
         frequencies=omega,
-        damping_ratios=0.5 * damping * omega,
+        damping_ratios=0.5 * container.damping * omega,
         monitor=elements.nodes[monitors] - centroid,
         monitor_shape=np.moveaxis(shapes[:, monitors], 0, -1),
         tolerance=POINT_TOLERANCE * penetration,
     )
 
 
-def _stance(
-    case: Case,
-    mesh: ContainerMesh,
-    elements: FiniteElements,
-    nodes: FloatArray,
-    support: Support,
-    response: StaticResponse,
-    contact: Contact,
-    *,
-    rigid: bool,
-) -> Stance:
-    base = support.index.size
-    point = elements.nodes[nodes[:base]] - np.asarray(mesh.centroid)
-    initial = case.initial
+def _stance(case: Case, container: Container, contact: Contact) -> Stance:
+    """How the container stands on its floor at t = 0, the floor being at x = 0."""
+    mesh, elements, initial = container.mesh, container.elements, case.initial
+    base = container.support.index.size
+    nodes = container.nodes[:base]
+    point = elements.nodes[nodes] - np.asarray(mesh.centroid)
+    elastic = 0.0 if case.solver.model == "rigid" else 1.0
     if initial.rotation_rad == 0.0:
         stance = standing(
             weight=mesh.mass * case.gravity_m_s2,
             centroid=mesh.centroid,
             point=point,
-            compliance=(0.0 if rigid else 1.0) * response.compliance[: 2 * base, : 2 * base],
+            compliance=elastic * container.response.compliance[: 2 * base, : 2 * base],
             normal_stiffness=contact.normal_stiffness[:base],
         )
         if initial.angular_velocity_rad_s != 0.0:
             stance = stance.turning(initial.angular_velocity_rad_s, point)
     else:
-        corner = nodes[base - 1] if initial.rotation_rad > 0.0 else nodes[0]
+        corner = nodes[-1] if initial.rotation_rad > 0.0 else nodes[0]
         stance = tilted(
             rotation=initial.rotation_rad,
             angular_velocity=initial.angular_velocity_rad_s,
@@ -366,7 +366,7 @@ def _stance(
             normal_stiffness=contact.normal_stiffness[:base],
             mu_static=contact.mu_static,
         )
-    return stance.with_points(nodes.size).sliding(initial.velocity_m_s)
+    return stance.with_points(container.nodes.size).sliding(initial.velocity_m_s)
 
 
 def _place(
@@ -379,16 +379,11 @@ def _place(
     contact: Contact,
 ) -> None:
     """Write the initial state: the stance on the floor where it is at t = 0."""
-    shifted = stance.moved(floor)
-    state.force[:] = shifted.force
-    state.stick[:] = -shifted.force[:, 0] / contact.tangential_stiffness
+    state.force[:] = stance.force
+    state.stick[:] = -stance.force[:, 0] / contact.tangential_stiffness
     if isinstance(body, FullBody):
-        body.place(state, shifted, response, floor_velocity)
-        body.complete(state, floor)
-        body.start(state)
-        body.complete(state, floor)
+        body.place(state, stance, response, floor_velocity)
+        body.start(state, floor)
     else:
-        modal_body.place(body, state, shifted, floor_velocity)
-        modal_body.complete_modal(body, state, floor)
-        modal_body.start(body, state)
-        modal_body.complete_modal(body, state, floor)
+        modal_body.place(body, state, stance, floor_velocity)
+        modal_body.start(body, state, floor)

@@ -1,0 +1,127 @@
+"""What a run leaves behind while it goes on: history rows, field frames, the largest stress.
+
+The stepper fills small arrays of samples; the recorder empties them between its calls, so that the memory of a
+run does not grow with its fields, and hands the rows on to files.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from contact.floor_motion import floor_history, floor_motion
+from contact.stepping import (
+    ROW_ANGULAR_VELOCITY,
+    ROW_CENTRE_X,
+    ROW_CENTRE_Z,
+    ROW_IMBALANCE,
+    ROW_KINETIC,
+    ROW_NORMAL,
+    ROW_POTENTIAL,
+    ROW_ROTATION,
+    ROW_SHEAR,
+    ROW_SLIP,
+    ROW_STRAIN,
+    ROW_UPLIFT,
+    Run,
+)
+from fem.history import NUMBERS, History
+from fem.model import Model
+from fem.recovery import Frame, Recovery
+from fem.verdict import MODE_NAMES
+from mesh.cells import FloatArray
+
+#: the stepper's columns in the order of a history's, behind time and base motion
+ORDER = (
+    ROW_ROTATION,
+    ROW_ANGULAR_VELOCITY,
+    ROW_SLIP,
+    ROW_UPLIFT,
+    ROW_CENTRE_X,
+    ROW_CENTRE_Z,
+    ROW_NORMAL,
+    ROW_SHEAR,
+    ROW_KINETIC,
+    ROW_STRAIN,
+    ROW_POTENTIAL,
+    ROW_IMBALANCE,
+)
+
+HistorySink = Callable[[FloatArray, Sequence[str]], None]
+FrameSink = Callable[[float, Frame, FloatArray, float], None]
+
+
+class Recorder:
+    """Takes the samples out of a run.
+
+    Args:
+        model: what is stepped.
+        recovery: how its fields are had; None leaves fields and stresses out.
+        history_sink: called with new rows (k, 16) and their modes.
+        frame_sink: called with time, fields, contact pressures (n,) at the nodes and floor displacement.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        recovery: Recovery | None = None,
+        history_sink: HistorySink | None = None,
+        frame_sink: FrameSink | None = None,
+    ) -> None:
+        self._model = model
+        self._recovery = recovery
+        self._history_sink = history_sink
+        self._frame_sink = frame_sink
+        self._rows: list[FloatArray] = []
+        self._modes: list[str] = []
+        self._area = _contact_areas(model)
+        self.largest_von_mises = 0.0  #: so far, over frames and samples [Pa]
+
+    def drain(self, run: Run) -> None:
+        """Empty the run's arrays of samples."""
+        self._drain_history(run)
+        self._drain_frames(run)
+
+    def history(self) -> History:
+        """Everything sampled so far."""
+        values = np.concatenate(self._rows) if self._rows else np.zeros((0, NUMBERS))
+        return History(values=values, modes=tuple(self._modes))
+
+    def _drain_history(self, run: Run) -> None:
+        clock, samples = run.clock[0], run.history
+        first, count = int(clock.samples_gone), int(clock.samples - clock.samples_gone)
+        if count == 0:
+            return
+        times = np.arange(first, first + count) * samples.interval
+        rows = np.empty((count, NUMBERS))
+        rows[:, 0] = times
+        rows[:, 1:4] = floor_history(run.motion, times).T
+        rows[:, 4:] = samples.columns[:count, ORDER]
+        modes = [MODE_NAMES[int(mode)] for mode in samples.mode[:count]]
+        if self._recovery is not None:
+            stress = self._recovery.largest_von_mises(samples.position[:count])
+            self.largest_von_mises = max(self.largest_von_mises, stress)
+        self._rows.append(rows)
+        self._modes += modes
+        if self._history_sink is not None:
+            self._history_sink(rows, modes)
+        clock.samples_gone = clock.samples
+
+    def _drain_frames(self, run: Run) -> None:
+        clock, samples = run.clock[0], run.frames
+        first, count = int(clock.frames_gone), int(clock.frames - clock.frames_gone)
+        if self._recovery is not None and samples.position.shape[1] > 0:
+            for k in range(count):
+                time = (first + k) * samples.interval
+                frame = self._recovery.frame(samples.position[k], samples.velocity[k])
+                self.largest_von_mises = max(self.largest_von_mises, float(np.max(frame.von_mises)))
+                if self._frame_sink is not None:
+                    pressure = np.zeros(len(frame.von_mises))
+                    pressure[self._model.container.nodes] = samples.force[k, :, 1] / self._area
+                    floor, _, _ = floor_motion(run.motion, time)
+                    self._frame_sink(time, frame, pressure, floor)
+        clock.frames_gone = clock.frames
+
+
+def _contact_areas(model: Model) -> FloatArray:
+    """Area of the floor that each contact node stands for (n_c,) [m2]."""
+    return model.run.contact.normal_stiffness / model.penalty

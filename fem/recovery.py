@@ -1,0 +1,90 @@
+"""From the coordinates of a body back to fields on the whole mesh: displacement, velocity, von Mises stress."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fem.assembly import FiniteElements
+from fem.elasticity import von_mises
+from fem.full_body import FullBody
+from fem.model import Model
+from mesh.cells import FloatArray
+
+#: largest elastic displacement used to probe the stress of a mode, over the size of the container
+PROBE = 1e-6
+STRESS_BLOCK = 2_000_000  #: numbers held at once while stresses over time are searched
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Frame:
+    """Fields at one instant, n nodes."""
+
+    displacement: FloatArray  #: (n, 2) from the undeformed place, absolute [m]
+    velocity: FloatArray  #: (n, 2) absolute [m/s]
+    von_mises: FloatArray  #: (n,) [Pa]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Recovery:
+    """Fields of a model from its coordinates (for `full` these are the nodes' positions)."""
+
+    elements: FiniteElements
+    centroid: FloatArray  #: (2,) of the undeformed container [m]
+    shapes: FloatArray  #: (m, n, 2) elastic modes [1/sqrt(kg)]
+    full: bool
+    _stress: FloatArray = field(repr=False)  # (m, n, 3) stress of each mode
+
+    def frame(self, position: FloatArray, velocity: FloatArray) -> Frame:
+        """Fields for one row of coordinates and their rates."""
+        nodes = self.elements.nodes
+        if self.full:
+            displacement = position.reshape(-1, 2) - nodes
+            return Frame(
+                displacement=displacement,
+                velocity=velocity.reshape(-1, 2),
+                von_mises=self.elements.nodal_von_mises(displacement),
+            )
+        cosine, sine = math.cos(position[2]), math.sin(position[2])
+        turn = np.array([[cosine, sine], [-sine, cosine]])
+        arm = (nodes - self.centroid + np.tensordot(position[3:], self.shapes, axes=1)) @ turn.T
+        elastic_rate = np.tensordot(velocity[3:], self.shapes, axes=1) @ turn.T
+        spin = velocity[2] * np.column_stack([arm[:, 1], -arm[:, 0]])
+        return Frame(
+            displacement=position[:2] + arm - nodes,
+            velocity=velocity[:2] + spin + elastic_rate,
+            von_mises=von_mises(np.tensordot(position[3:], self._stress, axes=1).T),
+        )
+
+    def largest_von_mises(self, position: FloatArray) -> float:
+        """Largest nodal von Mises stress over rows of coordinates (n_s, n_d) [Pa]; 0 without modes."""
+        if self.full or not len(self.shapes):
+            return 0.0
+        largest = 0.0
+        modes = self._stress.reshape(len(self.shapes), -1)
+        rows = max(1, STRESS_BLOCK // modes.shape[1])
+        for first in range(0, len(position), rows):
+            stress = (position[first : first + rows, 3:] @ modes).reshape(-1, 3)
+            xx, zz, xz = stress.T
+            largest = max(largest, float(np.max(xx * xx - xx * zz + zz * zz + 3.0 * xz * xz)))
+        return math.sqrt(largest)
+
+
+def recovery_of(model: Model) -> Recovery:
+    """How the fields of this model are had."""
+    elements, basis = model.container.elements, model.container.basis
+    shapes = np.zeros((0, *elements.nodes.shape)) if basis is None else basis.shapes
+    stress = np.zeros((len(shapes), len(elements.nodes), 3))
+    size = float(np.ptp(elements.nodes, axis=0).max())
+    for k, shape in enumerate(shapes):
+        probe = PROBE * size / np.abs(shape).max()
+        # The difference of both signs leaves the part of the stress that is linear in the displacement.
+        both = elements.nodal_stress(probe * shape) - elements.nodal_stress(-probe * shape)
+        stress[k] = both / (2.0 * probe)
+    return Recovery(
+        elements=elements,
+        centroid=np.asarray(model.container.mesh.centroid),
+        shapes=shapes,
+        full=isinstance(model.body, FullBody),
+        _stress=stress,
+    )

@@ -1,0 +1,159 @@
+"""What a run found: outcome, extremes, events, energy, numerics, as `run.json` holds them.
+
+The container slides when it slid more than 1e-4 of its width, it rocks when it turned by more than a hundredth
+of its slenderness angle with a side unloaded, below both it rested; overturned is 90 degrees.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from contact.ledger import BASE_WORK, CONTACT_DAMPING, FRICTION, IMBALANCE, MATERIAL_DAMPING
+from contact.penalty import contact_frequency
+from contact.tracking import FALLEN, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
+from fem.history import History
+from fem.model import Model
+
+MODE_NAMES = {REST: "rest", SLIDE: "slide", ROCK: "rock", SLIDE_ROCK: "slide-rock", FALLEN: "overturned"}
+SLIDING = 1e-4  #: slip over the width that counts as sliding
+#: limits of the energy ledger
+GAIN_LIMIT = 1e-4  #: of the reference energy, what the scheme may win
+LOSS_LIMIT = 1e-3  #: of the reference energy, or
+LOSS_SHARE_LIMIT = 1e-2  #: of what was dissipated, what the scheme may lose
+
+
+def outcome_of(model: Model) -> str:
+    """One word for the whole run."""
+    track = model.run.track[0]
+    if math.isfinite(track.overturned_at):
+        return "overturned"
+    slides = track.max_slip > SLIDING * model.container.mesh.width
+    rocks = track.max_rocking > ROCKING * model.static.slenderness_angle
+    return MODE_NAMES[(ROCK if rocks else REST) + (SLIDE if slides else REST)]
+
+
+def verdict_of(model: Model, history: History, largest_von_mises: float | None) -> dict[str, Any]:
+    """The `verdict` of a result; what was not reached is None."""
+    track, run = model.run.track[0], model.run
+    angle = model.static.slenderness_angle
+    outcome = outcome_of(model)
+    rocked = outcome in ("rock", "slide-rock")
+    at_end = abs(float(run.old.pose[0]))
+    slip = history["slip_m"]
+    return {
+        "outcome": outcome,
+        "modes": _modes_seen(model, outcome),
+        "max_rotation_rad": float(track.max_rotation),
+        "rotation_ratio": float(track.max_rotation) / angle,
+        "max_slip_m": float(track.max_slip),
+        "residual_slip_m": float(run.clock[0].slip),
+        "slip_peak_to_peak_m": _peak_to_peak(model, history["time_s"], slip),
+        "slip_travel_m": float(track.slip_travel),
+        "max_uplift_m": float(track.max_uplift),
+        "impacts": int(track.impacts),
+        "first_opening_s": _time(track.first_opening),
+        "first_uplift_s": _time(track.first_uplift),
+        "overturned_at_s": _time(track.overturned_at),
+        "restored": rocked and at_end < ROCKING * angle,
+        "restitution_first": _restitution(model),
+        "max_corner_force_N": float(track.max_corner_force),
+        "max_top_displacement_m": float(track.max_top_displacement),
+        "max_acceleration_m_s2": float(track.max_acceleration),
+        "max_von_mises_Pa": largest_von_mises,
+        "basis": "study",
+        "band": None,
+    }
+
+
+def energy_of(model: Model) -> dict[str, float]:
+    """The `energy` of a result [J]."""
+    ledger, clock = model.run.ledger, model.run.clock[0]
+    reference = model.run.control.reference_energy
+    return {
+        "reference_J": reference,
+        "closure_error": max(-float(clock.least_imbalance), float(clock.most_imbalance)) / reference,
+        "friction_J": float(ledger[FRICTION]),
+        "contact_damping_J": float(ledger[CONTACT_DAMPING]),
+        "material_damping_J": float(ledger[MATERIAL_DAMPING]),
+        "numerical_J": float(ledger[IMBALANCE]),
+        "base_work_J": float(ledger[BASE_WORK]),
+    }
+
+
+def audit(model: Model) -> str | None:
+    """Why the energy ledger fails this run, or None if it stands."""
+    ledger, clock = model.run.ledger, model.run.clock[0]
+    reference = model.run.control.reference_energy
+    won, lost = -float(clock.least_imbalance), float(clock.most_imbalance)
+    dissipated = float(ledger[FRICTION] + ledger[CONTACT_DAMPING] + ledger[MATERIAL_DAMPING])
+    remedy = (
+        f"set solver.step_s below the {model.run.control.largest_step:.2g} s used, "
+        "or a softer contact.normal_penalty_Pa_m"
+    )
+    if won > GAIN_LIMIT * reference:
+        return (
+            f"the time stepping won {won:.3g} J, {won / reference:.1e} of the energy to overturn "
+            f"(limit {GAIN_LIMIT:.0e}); {remedy}"
+        )
+    limit = max(LOSS_SHARE_LIMIT * dissipated, LOSS_LIMIT * reference)
+    if lost > limit:
+        return f"the energy ledger is open by {lost:.3g} J (limit {limit:.3g} J); {remedy}"
+    return None
+
+
+def numerics_of(model: Model, stepping_cpu: float) -> dict[str, Any]:
+    """The `numerics` of a result."""
+    run, container = model.run, model.container
+    clock = run.clock[0]
+    mass, stiffness = container.mesh.mass, model.base_stiffness
+    return {
+        "unknowns": int(run.old.position.size),
+        "contact_nodes": int(container.support.index.size),
+        "steps": int(clock.steps),
+        "rejected": int(clock.rejected),
+        "newton_iterations": int(clock.contact_iterations),
+        "iterations": int(clock.iterations),
+        "largest_step_s": run.control.largest_step,
+        "smallest_step_s": float(clock.smallest_step) if clock.steps else None,
+        "stepping_cpu_s": stepping_cpu,
+        "normal_penalty_Pa_m": model.penalty,
+        "contact_frequency_Hz": contact_frequency(mass, stiffness),
+        "static_penetration_m": mass * model.case.gravity_m_s2 / stiffness,
+        "max_penetration_m": float(run.track[0].max_penetration),
+        "elastic_frequencies_Hz": model.frequencies.tolist(),
+    }
+
+
+def _time(instant: float) -> float | None:
+    return float(instant) if math.isfinite(instant) else None
+
+
+def _modes_seen(model: Model, outcome: str) -> list[str]:
+    """Modes that the history passed through; sliding too small to count in the outcome does not count here."""
+    bits = int(model.run.track[0].modes)
+    if model.run.track[0].max_slip <= SLIDING * model.container.mesh.width:
+        bits = sum(1 << (mode & ~SLIDE) for mode in (REST, ROCK) if bits & (1 << mode | 1 << (mode | SLIDE))) | (
+            bits & 1 << FALLEN
+        )
+    return [name for mode, name in MODE_NAMES.items() if bits & 1 << mode]
+
+
+def _peak_to_peak(model: Model, time: np.ndarray, slip: np.ndarray) -> float | None:
+    """Largest less smallest slip over the last full cycle of a harmonic drive [m]."""
+    if model.case.motion.kind != "harmonic" or time.size == 0:
+        return None
+    period = 2.0 * math.pi / model.case.angular_frequency
+    end = min(float(time[-1]), getattr(model.motion, "end_time", math.inf))
+    if end < period * (1.0 - 1e-9):
+        return None
+    last = slip[(time >= end - period - 1e-9) & (time <= end + 1e-9)]
+    return float(last.max() - last.min())
+
+
+def _restitution(model: Model) -> float | None:
+    """First impact: by the peaks around it where the floor stands still, else by the angular velocities."""
+    track = model.run.track[0]
+    still = model.case.motion.kind == "none"
+    value = float(track.restitution_by_peaks if still else track.restitution_by_velocity)
+    return value if math.isfinite(value) else None
