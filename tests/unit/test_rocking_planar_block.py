@@ -2,8 +2,9 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
-from contact.floor_acceleration import rectangular_pulse, sine_floor, still_floor
+from contact.floor_acceleration import FloorAcceleration, rectangular_pulse, sine_floor, still_floor
 from contact.planar_block import PlanarBlock, simulate_planar_block
 from contact.planar_equations import energy
 from contact.planar_motion import PlanarMode
@@ -122,6 +123,26 @@ def test_friction_between_kinetic_and_static_need_decides_between_sliding_and_ro
     for mu_static, first in ((0.4, PlanarMode.ROCK), (0.28, PlanarMode.SLIDE)):
         block = PlanarBlock(body=STACK, mu_static=mu_static, mu_kinetic=0.2)
         assert simulate_planar_block(block, floor, duration=0.1).first_motion is first
+
+
+def test_a_jump_of_the_floor_that_exceeds_friction_for_an_instant_is_not_missed():
+    # The stick limit of a rocking block is passed by a millionth at the jump, and is met again at once.
+    block = PlanarBlock(body=STACK, mu_static=0.4, mu_kinetic=0.4)
+    calm = simulate_planar_block(block, still_floor(), duration=0.05, rotation=0.1)
+    values, state = calm.pieces[-1].interpolant(0.05), calm.states[-1]
+    limit = brentq(lambda a: block.stick_margin(block.contact(state, values, a)), 0.0, 20.0, xtol=1e-14)
+    times = (0.0, 0.05, 0.1)
+    for factor, slips in ((1.0 + 1e-6, True), (1.0 - 1e-6, False)):
+
+        def acceleration(time, peak=factor * limit):
+            return peak * (2.0 - time / 0.05) if 0.05 <= time < 0.1 else 0.0
+
+        floor = FloorAcceleration(function=acceleration, break_times=times, longest_step=math.inf)
+        motion = simulate_planar_block(block, floor, duration=0.1, rotation=0.1)
+        assert (motion.transitions[1:2] != ()) is slips
+        if slips:
+            assert motion.transitions[1].reason == "slips"
+            assert motion.transitions[1].time == 0.05
 
 
 def test_overturning_ends_the_motion():

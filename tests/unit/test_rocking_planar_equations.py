@@ -151,3 +151,11 @@ def test_an_impact_balances_momentum(half_width, slip_velocity, mu):
     # new corner at (-B, -1) from the centroid, clockwise moment rz px - rx pz
     moment = -1.0 * impact.friction_impulse + half_width * impact.normal_impulse
     assert inertia * (spin[1] - spin[0]) == pytest.approx(moment, abs=1e-12)
+
+
+def test_a_block_that_slides_into_an_impact_has_the_kinetic_coefficient():
+    # The impact needs 0.2024: within mu_static for a corner at rest, beyond mu_kinetic for one that slides.
+    for slip_velocity, slides in ((0.0, False), (1e-9, True), (-1e-9, True)):
+        impact = corner_impact(STACK, 1, slip_velocity, -0.7, mu_static=0.25, mu_kinetic=0.15)
+        assert impact is not None
+        assert impact.slides is slides
