@@ -212,7 +212,9 @@ def _rest(
     def interpolant(time: float | FloatArray) -> FloatArray:
         return np.multiply.outer(state, np.ones_like(time))
 
-    count = 1 if math.isinf(floor.longest_step) else math.ceil((segment.end - segment.start) / floor.longest_step)
+    count = (
+        1 if math.isinf(floor.longest_step) else math.ceil((segment.end - segment.start) / floor.longest_step)
+    )
     times = np.linspace(segment.start, segment.end, max(count, 1) + 1)
     for start, end in pairwise(times.tolist()):
         yield start, end, interpolant
