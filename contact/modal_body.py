@@ -33,7 +33,7 @@ from contact.body import (
 )
 from contact.compiled import compiled
 from contact.initial import Stance
-from contact.interface import FloatArray, Workspace
+from contact.interface import FloatArray, Workspace, turn_compliance
 from contact.scheme import Scheme
 
 
@@ -214,26 +214,14 @@ def _release(
         work.free[i, 1] += moved_z
         work.free_velocity[i, 0] += slope * moved_x
         work.free_velocity[i, 1] += slope * moved_z
-    elastic = body.elastic_compliance
+    turn_compliance(body.elastic_compliance, cosine, sine, now, work.compliance)
+    drift, turn = now * body.inverse[0], now * body.inverse[2]
     for i in range(n):
         for j in range(n):
-            xx, xz, zx, zz = 0.0, 0.0, 0.0, 0.0
-            if m > 0:  # R E R^T of the 2 x 2 block
-                exx, exz = elastic[2 * i, 2 * j], elastic[2 * i, 2 * j + 1]
-                ezx, ezz = elastic[2 * i + 1, 2 * j], elastic[2 * i + 1, 2 * j + 1]
-                ax, az = cosine * exx + sine * ezx, cosine * exz + sine * ezz
-                bx, bz = -sine * exx + cosine * ezx, -sine * exz + cosine * ezz
-                xx, xz = ax * cosine + az * sine, -ax * sine + az * cosine
-                zx, zz = bx * cosine + bz * sine, -bx * sine + bz * cosine
-            turn = body.inverse[2]
-            work.compliance[2 * i, 2 * j] = now * (
-                xx + body.inverse[0] + turn * body.arm[i, 1] * body.arm[j, 1]
-            )
-            work.compliance[2 * i, 2 * j + 1] = now * (xz - turn * body.arm[i, 1] * body.arm[j, 0])
-            work.compliance[2 * i + 1, 2 * j] = now * (zx - turn * body.arm[i, 0] * body.arm[j, 1])
-            work.compliance[2 * i + 1, 2 * j + 1] = now * (
-                zz + body.inverse[1] + turn * body.arm[i, 0] * body.arm[j, 0]
-            )
+            work.compliance[2 * i, 2 * j] += drift + turn * body.arm[i, 1] * body.arm[j, 1]
+            work.compliance[2 * i, 2 * j + 1] -= turn * body.arm[i, 1] * body.arm[j, 0]
+            work.compliance[2 * i + 1, 2 * j] -= turn * body.arm[i, 0] * body.arm[j, 1]
+            work.compliance[2 * i + 1, 2 * j + 1] += drift + turn * body.arm[i, 0] * body.arm[j, 0]
 
 
 def _gather_force(body: ModalBody, force: FloatArray, rotation: float, arm: FloatArray, out: FloatArray) -> None:

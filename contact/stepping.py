@@ -249,6 +249,18 @@ def _rebase_acceleration(scheme: Scheme, old: State, shortened: float) -> None:
 rebase_acceleration = compiled(_rebase_acceleration)
 
 
+def _note_rates(step: float, old: State, new: State, work: Workspace) -> None:
+    """Velocities of the base points and rates of change over the step, for the step control."""
+    for i in range(new.descent.shape[0]):
+        new.descent[i, 0] = -work.velocity[i, 1]
+        new.descent[i, 1] = (new.descent[i, 0] - old.descent[i, 0]) / step
+    for j in range(new.jerk.size):
+        new.jerk[j] = (new.acceleration[j] - old.acceleration[j]) / step
+
+
+note_rates = compiled(_note_rates)
+
+
 @register_jitable
 def _attempt(body: Any, run: Run, step: float, mu: float) -> int:
     """Try one step; the result stands in `run.new`. Returns the iterations taken, or -1."""
@@ -269,11 +281,7 @@ def _attempt(body: Any, run: Run, step: float, mu: float) -> int:
         clock.contact_iterations += solved
         if respond(body, scheme, step, old, new, work) <= 1.0:
             copy_rows(new.force, work.force)
-            for i in range(new.descent.shape[0]):
-                new.descent[i, 0] = -work.velocity[i, 1]
-                new.descent[i, 1] = (new.descent[i, 0] - old.descent[i, 0]) / step
-            for j in range(new.jerk.size):
-                new.jerk[j] = (new.acceleration[j] - old.acceleration[j]) / step
+            note_rates(step, old, new, work)
             complete(body, new, floor)
             return iteration + 1
     return -1
@@ -444,7 +452,7 @@ def sample(body: Any, run: Run, samples: Samples, written: int, origin: int, ste
     old, new, clock = run.old, run.new, run.clock[0]
     observed = False
     while written - origin < samples.mode.size:
-        time = written * samples.interval
+        time = written * samples.interval if written > 0 else 0.0
         if time > clock.time + step:
             break
         s = (time - clock.time) / step
@@ -514,17 +522,16 @@ def _next_step(run: Run) -> float:
     clock, control = run.clock[0], run.control
     step = control.largest_step * 2.0 ** (-clock.level / STEPS_PER_OCTAVE)
     if step > control.closing_step:
-        closing = closing_time(control, run.old, step)
-        if closing < step:
-            if closing < 2.0 * control.closing_step:
-                clock.level = ladder_level(control.largest_step, control.closing_step)
-                step = control.largest_step * 2.0 ** (-clock.level / STEPS_PER_OCTAVE)
-            else:
-                step = closing
+        due = max(closing_time(control, run.old, step), control.closing_step)
+        if due < step:  # on the ladder, just short of it: a new step size is dear to a body that factors a matrix
+            due_level = ladder_level(control.largest_step, due)
+            step = control.largest_step * 2.0 ** (-due_level / STEPS_PER_OCTAVE)
+            if due == control.closing_step:
+                clock.level = due_level
     if step > control.event_step:
-        switching = switching_time(clock, step)
-        if switching < step:
-            step = max(switching, control.event_step)
+        due = max(switching_time(clock, step), control.event_step)
+        if due < step:
+            step = control.largest_step * 2.0 ** (-ladder_level(control.largest_step, due) / STEPS_PER_OCTAVE)
     while run.breaks[clock.next_break] <= clock.time:
         clock.next_break += 1
     left = run.breaks[clock.next_break] - clock.time

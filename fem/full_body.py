@@ -31,14 +31,14 @@ from contact.body import (
     State,
 )
 from contact.initial import Stance
-from contact.interface import FloatArray, Workspace
+from contact.interface import FloatArray, Workspace, turn_compliance
 from contact.scheme import Scheme
 from fem.assembly import FiniteElements
 from fem.reduction import StaticResponse
 
 #: residual of a step at which its iteration stops, over the weight
-RESIDUAL_TOLERANCE = 1e-8
-FACTORS_KEPT = 24
+RESIDUAL_TOLERANCE = 1e-7
+FACTORS_KEPT = 40
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,8 +46,8 @@ class _Factor:
     """The effective matrix of one step size, factored, and its compliance seen from the base points."""
 
     solve: scipy.sparse.linalg.SuperLU
-    to_base: FloatArray  #: (2 n_c, n, 2) displacement under unit forces at the base points, turned frame
-    compliance: FloatArray  #: (n_c, 2, n_c, 2)
+    to_base: FloatArray  #: (2 n_c, 2 n) displacement under unit forces at the base points, turned frame
+    compliance: FloatArray  #: (2 n_c, 2 n_c) of the base points, turned frame
 
 
 def _rotation_matrix(rotation: float) -> FloatArray:
@@ -157,15 +157,14 @@ class FullBody:
         work.free_velocity[:] = new.velocity.reshape(-1, 2)[self.base] + slope * moved
         work.free_velocity[:, 0] -= floor_velocity
         now = 1.0 - scheme.alpha_f
-        turned = np.einsum("ab,ibjc,dc->iajd", turn, factor.compliance, turn, optimize=True)
-        work.compliance[:] = now * turned.reshape(work.compliance.shape)
+        turn_compliance(factor.compliance, turn[0, 0], turn[0, 1], now, work.compliance)
 
     def respond(self, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
         """See `contact.body.respond`; the error is the residual over its tolerance."""
         now = 1.0 - scheme.alpha_f
         factor = self._factor(scheme, step)
         turn = self._turn
-        answer = np.tensordot((work.force @ turn).ravel(), factor.to_base, axes=1) @ turn.T
+        answer = ((work.force @ turn).ravel() @ factor.to_base).reshape(-1, 2) @ turn.T
         change = (self._free_change + now * answer).ravel()
         new.position[:] += change
         new.velocity[:] += scheme.newmark_gamma / (scheme.newmark_beta * step) * change
@@ -249,11 +248,10 @@ class FullBody:
         loads[dofs, np.arange(dofs.size)] = 1.0
         answers = solver.solve(loads)
         seen = 0.5 * (answers[dofs] + answers[dofs].T)
-        n = self.base.size
         factor = _Factor(
             solve=solver,
-            to_base=np.ascontiguousarray(answers.T).reshape(dofs.size, -1, 2),
-            compliance=seen.reshape(n, 2, n, 2),
+            to_base=np.ascontiguousarray(answers.T),
+            compliance=np.ascontiguousarray(seen),
         )
         self._factors[key] = factor
         if len(self._factors) > FACTORS_KEPT:
