@@ -52,6 +52,7 @@ from contact.tracking import FALLEN, NEVER, follow, make_track
 ITERATION_LIMIT = 12  #: of free motion, contact, response within one step
 STEPS_PER_OCTAVE = 3  #: of the ladder of step sizes
 HELD_STEPS = 6  #: after a rejection
+FADING = 0.8  #: of the memory for the imbalance, a step
 
 #: what `advance` returns
 REACHED, OVERTURNED, FAILED = 0, 1, 2
@@ -117,6 +118,7 @@ CLOCK = np.dtype(
         ("utilisation_rate", "f8"),
         ("slip_velocity", "f8"),  # force-weighted
         ("slip_acceleration", "f8"),
+        ("used", "f8"),  # share of the imbalance allowed, lately
         ("trail", "f8"),  # dissipated shortly before [J]
         ("held", "i8"),  # accepted steps until the step may grow freely again
         ("basis_step", "f8"),  # that the old acceleration's lag belongs to
@@ -687,9 +689,14 @@ def advance(body: Any, run: Run, until: float) -> int:
             clock.level = change_level(clock.level, used, False)
             clock.held = HELD_STEPS
             continue
+        if switches:  # what follows has the time scale of the contact again
+            clock.level = max(clock.level, ladder_level(control.largest_step, control.event_step))
         clock.trail = clock.trail * np.exp(-step / control.trail_time) + max(dissipated, 0.0)
         _accept(body, run, step, slip_step, slip_velocity, every, iterations)
-        clock.level = change_level(clock.level, min(used, 1.0), clock.held == 0)
+        # One step's imbalance may vanish by chance while it changes sign: look at three.
+        recent = max(min(used, 1.0), FADING * clock.used)
+        clock.level = change_level(clock.level, recent, clock.held == 0)
+        clock.used = recent
         clock.held = max(clock.held - 1, 0)
         if abs(run.old.pose[ROTATION]) >= OVERTURNING_ROTATION and track.overturned_at == NEVER:
             track.overturned_at = clock.time

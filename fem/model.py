@@ -40,9 +40,11 @@ STEP_OF_ROCKING, STEP_OF_MOTION = 0.01, 0.02
 #: over the largest step: the step in which friction may change between sticking and sliding
 EVENT_SHARE = 0.05
 SMALLEST_SHARE = 1e-7
+#: over the time constant of a corner on its dashpot: the step that begins at a touch
+CLOSING_SHARE_OF_TIME = 0.01
 #: imbalance of the ledger that a step may have: see `contact.stepping.Control`
-ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE, CLOSING_SHARE = 1e-5, 1e-7, 2e-3, 3e-4
-TRAIL_SHARE, TRAIL_TIME = 5e-3, 0.1
+ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE, CLOSING_SHARE = 1e-5, 1e-7, 4e-3, 4e-4
+TRAIL_SHARE, TRAIL_TIME = 2e-2, 0.1
 #: closings with less energy than this, over the energy to overturn, are left to the ledger
 SOFT_CLOSING = 1e-6
 #: error of a base point at which the iterations of a step stop, over the static penetration
@@ -145,7 +147,7 @@ def build_model(case: Case, container: Container | None = None) -> Model:
     springs = np.concatenate([springs, np.full(nodes.size - base, 0.5 * springs.sum())])
     static = checks_of(case, mesh, motion)
     contact = _contact(case, mesh, springs, base)
-    control = _control(case, mesh, static, motion, contact, base)
+    control = _control(case, container, static, motion, contact)
     scheme = _scheme(case, container, penalty, control, contact)
     body = _body(case, container, contact)
     full = isinstance(body, FullBody)
@@ -253,14 +255,25 @@ def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) ->
     )
 
 
+def _struck_mass(case: Case, container: Container) -> float:
+    """Mass that a corner puts against the floor in the first instant of an impact [kg].
+
+    The whole, turning container's for a rigid one; for an elastic one hardly more than the corner's own.
+    """
+    mesh, corner = container.mesh, container.nodes[0]
+    if case.solver.model == "full":
+        return float((container.elements.mass @ np.ones(len(container.elements.nodes)))[corner])
+    arm = container.elements.nodes[corner, 0] - mesh.centroid[0]
+    inverse = 1.0 / mesh.mass + arm * arm / mesh.inertia
+    if container.basis is not None:
+        inverse += float(np.sum(container.basis.shapes[:, corner, 1] ** 2))
+    return 1.0 / inverse
+
+
 def _control(
-    case: Case,
-    mesh: ContainerMesh,
-    static: StaticChecks,
-    motion: BaseMotion,
-    contact: Contact,
-    base: int,
+    case: Case, container: Container, static: StaticChecks, motion: BaseMotion, contact: Contact
 ) -> Control:
+    mesh, base = container.mesh, container.support.index.size
     reference = reference_energy(mesh, static, case.gravity_m_s2)
     rate = static.frequency_parameter
     if case.solver.step_s == "auto":
@@ -268,12 +281,17 @@ def _control(
     else:
         largest = case.solver.step_s
     largest = min(largest, case.solver.duration_s)
-    bounce = math.sqrt(float(contact.normal_stiffness[:base].sum()) / mesh.mass)
+    spring = float(contact.normal_stiffness[0])
+    struck = _struck_mass(case, container)
+    # Time constants of a mass on the dashpot and on the spring of a corner.
+    closing = CLOSING_SHARE_OF_TIME / (
+        spring * contact.relaxation_time / struck + 0.2 * math.sqrt(2.0 * spring / mesh.mass)
+    )
     return Control(
         largest_step=largest,
         smallest_step=SMALLEST_SHARE * largest,
         event_step=EVENT_SHARE * largest,
-        closing_step=0.01 / (0.5 * bounce * bounce * contact.relaxation_time + 0.2 * bounce),
+        closing_step=min(closing, largest),
         closing_speed=math.sqrt(SOFT_CLOSING * reference / mesh.mass),
         reference_energy=reference,
         energy_rate=ENERGY_RATE * rate,
