@@ -19,9 +19,11 @@ from contact.compiled import compiled
 from contact.laws import ELASTIC_STICK, normal_force, regularised_friction, stick_friction
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 FULL_STEPS = 6  #: Newton steps taken whole before the line search begins: contact sets change first, then settle
 NEWTON_LIMIT = 40
+WORTH_KEEPING = 5  #: active points from which an old factorisation is tried before a new one is made
 #: residual force at which the contact counts as solved, over the largest force present
 FORCE_TOLERANCE = 1e-11
 
@@ -52,10 +54,15 @@ class Workspace(NamedTuple):
     force: FloatArray  #: (n, 2) [N]
     law: FloatArray  #: (n, 2) force that the laws give at `point` [N]
     slope: FloatArray  #: (n, 3) minus its derivatives: tangential by x, tangential by z, normal by z [N/m]
-    matrix: FloatArray  #: (2 n, 2 n)
+    matrix: FloatArray  #: (2 n, 2 n) factors of the tangent over the active points
     change: FloatArray  #: (2 n,)
+    solution: FloatArray  #: (2 n,)
+    pivot: IntArray  #: (2 n,) of the factors in `matrix`
+    factored_slope: FloatArray  #: (n, 3) tangents that they belong to
+    factored_step: FloatArray  #: (1,) and the step; < 0: none
+    factored_count: IntArray  #: (1,) and how many points
     trial: FloatArray  #: (n, 2)
-    active: npt.NDArray[np.int64]  #: (n,)
+    active: IntArray  #: (n,) points that have a tangent, leading `factored_count`
 
 
 def make_workspace(points: int) -> Workspace:
@@ -72,6 +79,11 @@ def make_workspace(points: int) -> Workspace:
         slope=np.zeros((n, 3)),
         matrix=np.zeros((2 * n, 2 * n)),
         change=np.zeros(2 * n),
+        solution=np.zeros(2 * n),
+        pivot=np.zeros(2 * n, dtype=np.int64),
+        factored_slope=np.zeros((n, 3)),
+        factored_step=np.full(1, -1.0),
+        factored_count=np.zeros(1, dtype=np.int64),
         trial=np.zeros((n, 2)),
         active=np.zeros(n, dtype=np.int64),
     )
@@ -172,44 +184,78 @@ def _move_points(velocity_slope: float, force: FloatArray, work: Workspace) -> N
 move_points = compiled(_move_points)
 
 
-def _solve_dense(size: int, matrix: FloatArray, vector: FloatArray) -> bool:
-    """Gaussian elimination with row pivoting of the leading size x size block, in place."""
+def _factor_dense(size: int, matrix: FloatArray, pivot: IntArray) -> bool:
+    """LU decomposition with row pivoting of the leading size x size block, in place; False if singular."""
     for k in range(size):
-        pivot, largest = k, abs(matrix[k, k])
+        chosen, largest = k, abs(matrix[k, k])
         for i in range(k + 1, size):
             if abs(matrix[i, k]) > largest:
-                pivot, largest = i, abs(matrix[i, k])
+                chosen, largest = i, abs(matrix[i, k])
+        pivot[k] = chosen
         if not largest > 0.0:
             return False
-        if pivot != k:
-            for j in range(k, size):
-                matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
-            vector[k], vector[pivot] = vector[pivot], vector[k]
+        if chosen != k:
+            for j in range(size):
+                matrix[k, j], matrix[chosen, j] = matrix[chosen, j], matrix[k, j]
         for i in range(k + 1, size):
             factor = matrix[i, k] / matrix[k, k]
+            matrix[i, k] = factor
             if factor != 0.0:
                 for j in range(k + 1, size):
                     matrix[i, j] -= factor * matrix[k, j]
-                vector[i] -= factor * vector[k]
-    for k in range(size - 1, -1, -1):
-        total = vector[k]
-        for j in range(k + 1, size):
-            total -= matrix[k, j] * vector[j]
-        vector[k] = total / matrix[k, k]
     return True
 
 
-solve_dense = compiled(_solve_dense)
+factor_dense = compiled(_factor_dense)
 
 
-def _newton_change(work: Workspace) -> bool:
-    """Change of the contact forces, (1 + D G) df = law - f over the points that carry or could carry force."""
-    n = work.force.shape[0]
+def _substitute_dense(size: int, factors: FloatArray, pivot: IntArray, vector: FloatArray) -> None:
+    """Solve with the factors of `factor_dense`, in place."""
+    for k in range(size):
+        if pivot[k] != k:
+            vector[k], vector[pivot[k]] = vector[pivot[k]], vector[k]
+    for k in range(1, size):
+        total = vector[k]
+        for j in range(k):
+            total -= factors[k, j] * vector[j]
+        vector[k] = total
+    for k in range(size - 1, -1, -1):
+        total = vector[k]
+        for j in range(k + 1, size):
+            total -= factors[k, j] * vector[j]
+        vector[k] = total / factors[k, k]
+
+
+substitute_dense = compiled(_substitute_dense)
+
+
+def _factor_is_current(step: float, work: Workspace) -> bool:
+    """The factors at hand belong to these tangents and this step: good enough to iterate with.
+
+    The compliance has turned with the body since; a Newton step with slightly old factors only gains fewer digits.
+    """
+    if work.factored_step[0] != step or work.factored_count[0] < WORTH_KEEPING:
+        return False
+    for i in range(work.slope.shape[0]):
+        for k in range(3):
+            if work.slope[i, k] != work.factored_slope[i, k]:
+                return False
+    return True
+
+
+factor_is_current = compiled(_factor_is_current)
+
+
+def _factor_tangent(step: float, work: Workspace) -> bool:
+    """Factor 1 + D G over the points whose law has a tangent, and note what for."""
     count = 0
-    for i in range(n):
-        if work.slope[i, 2] != 0.0 or work.force[i, 1] != 0.0 or work.force[i, 0] != 0.0:
+    for i in range(work.force.shape[0]):
+        if work.slope[i, 2] != 0.0:
             work.active[count] = i
             count += 1
+        for k in range(3):
+            work.factored_slope[i, k] = work.slope[i, k]
+    work.factored_count[0] = count
     for a in range(count):
         i = work.active[a]
         tangential_x, tangential_z, normal_z = work.slope[i, 0], work.slope[i, 1], work.slope[i, 2]
@@ -222,25 +268,48 @@ def _newton_change(work: Workspace) -> bool:
                 work.matrix[2 * a + 1, 2 * b + k] = normal_z * by_z
         work.matrix[2 * a, 2 * a] += 1.0
         work.matrix[2 * a + 1, 2 * a + 1] += 1.0
-        work.change[2 * a] = work.law[i, 0] - work.force[i, 0]
-        work.change[2 * a + 1] = work.law[i, 1] - work.force[i, 1]
-    if not solve_dense(2 * count, work.matrix, work.change):
+    work.factored_step[0] = step
+    if not factor_dense(2 * count, work.matrix, work.pivot):
+        work.factored_step[0] = -1.0
         return False
-    for a in range(count - 1, -1, -1):  # spread over all points, from the back: never onto what is still read
-        i = work.active[a]
-        tangential, normal = work.change[2 * a], work.change[2 * a + 1]
-        work.change[2 * a] = 0.0
-        work.change[2 * a + 1] = 0.0
-        work.change[2 * i] = tangential
-        work.change[2 * i + 1] = normal
-    carried = 0
-    for i in range(n):
-        if carried < count and work.active[carried] == i:
-            carried += 1
-        else:
-            work.change[2 * i] = 0.0
-            work.change[2 * i + 1] = 0.0
     return True
+
+
+factor_tangent = compiled(_factor_tangent)
+
+
+def _newton_change(work: Workspace) -> None:
+    """Change of the contact forces (1 + D G) df = law - f, with the factors at hand.
+
+    A point without tangent carries nothing from now on; what it carried so far moves the others.
+    """
+    n = work.force.shape[0]
+    count = work.factored_count[0]
+    for i in range(2 * n):
+        work.change[i] = 0.0
+    for i in range(n):
+        if work.slope[i, 2] == 0.0:
+            work.change[2 * i] = work.law[i, 0] - work.force[i, 0]
+            work.change[2 * i + 1] = work.law[i, 1] - work.force[i, 1]
+    for a in range(count):
+        i = work.active[a]
+        tangential_x, tangential_z, normal_z = work.slope[i, 0], work.slope[i, 1], work.slope[i, 2]
+        right_x = work.law[i, 0] - work.force[i, 0]
+        right_z = work.law[i, 1] - work.force[i, 1]
+        for j in range(n):
+            if work.slope[j, 2] == 0.0:
+                for k in range(2):
+                    given = work.change[2 * j + k]
+                    if given != 0.0:
+                        by_x = work.compliance[2 * i, 2 * j + k]
+                        by_z = work.compliance[2 * i + 1, 2 * j + k]
+                        right_x -= (tangential_x * by_x + tangential_z * by_z) * given
+                        right_z -= normal_z * by_z * given
+        work.solution[2 * a], work.solution[2 * a + 1] = right_x, right_z
+    substitute_dense(2 * count, work.matrix, work.pivot, work.solution)
+    for a in range(count):
+        i = work.active[a]
+        work.change[2 * i], work.change[2 * i + 1] = work.solution[2 * a], work.solution[2 * a + 1]
 
 
 newton_change = compiled(_newton_change)
@@ -266,6 +335,7 @@ def _solve_contact(
         Number of Newton iterations, or -1 if they did not converge.
     """
     n = work.force.shape[0]
+    before = np.inf
     for iteration in range(NEWTON_LIMIT):
         move_points(velocity_slope, work.force, work)
         evaluate_laws(contact, step, velocity_slope, mu, start, stick, work)
@@ -277,8 +347,14 @@ def _solve_contact(
                 largest = max(largest, abs(work.force[i, k]))
         if residual <= FORCE_TOLERANCE * largest + contact.resolution * stiffest:
             return iteration
-        if not newton_change(work):
-            return -1
+        # Old factors serve as long as they serve well: an unchanged contact is the rule, not the exception.
+        if not factor_is_current(step, work) or residual > 0.1 * before:
+            if not factor_tangent(step, work):
+                return -1
+            before = np.inf
+        else:
+            before = residual
+        newton_change(work)
         for i in range(n):
             work.trial[i, 0] = work.force[i, 0]
             work.trial[i, 1] = work.force[i, 1]

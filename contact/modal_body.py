@@ -37,6 +37,9 @@ from contact.interface import FloatArray, Workspace, turn_compliance
 from contact.scheme import Scheme
 
 
+STEP_SLOTS = 16  #: step sizes whose effective compliance is kept
+
+
 class ModalBody(NamedTuple):
     """Constants of the body; n base points, m elastic modes, k monitored points."""
 
@@ -51,10 +54,10 @@ class ModalBody(NamedTuple):
     stiffness: FloatArray  #: (m,) squares of the angular frequencies [1/s2]
     damping: FloatArray  #: (m,) damping over mass, 2 zeta omega [1/s]
     tolerance: float  #: error of a base point at which an iteration stops [m]
-    #: scratch, rewritten by the stepper: step of the cached compliance and the inverse effective masses
-    cached_step: FloatArray  #: (1,)
-    inverse: FloatArray  #: (3 + m,) [1/kg ..]
-    elastic_compliance: FloatArray  #: (2 n, 2 n) in the body's frame
+    #: scratch, rewritten by the stepper: for each of so many step sizes ..
+    cached_step: FloatArray  #: (slots + 1,) the step [s]; last, the slot to use next
+    inverse: FloatArray  #: (slots, 3 + m) inverse effective masses
+    elastic_compliance: FloatArray  #: (slots, 2 n, 2 n) effective compliance of the modes, body's frame [m/N]
     arm: FloatArray  #: (n, 2) base points relative to the mass centre, turned
     free_change: FloatArray  #: (3 + m,)
 
@@ -103,9 +106,9 @@ def make_modal_body(
         stiffness=omega**2,
         damping=2.0 * zeta * omega,
         tolerance=float(tolerance),
-        cached_step=np.full(1, -1.0),
-        inverse=np.zeros(3 + m),
-        elastic_compliance=np.zeros((2 * n, 2 * n)),
+        cached_step=np.append(np.full(STEP_SLOTS, -1.0), 0.0),
+        inverse=np.zeros((STEP_SLOTS, 3 + m)),
+        elastic_compliance=np.zeros((STEP_SLOTS, 2 * n, 2 * n)),
         arm=np.zeros((n, 2)),
         free_change=np.zeros(3 + m),
     )
@@ -118,29 +121,36 @@ def _predict(body: ModalBody, scheme: Scheme, step: float, old: State, new: Stat
         new.acceleration[j] = old.acceleration[j]
 
 
-def _refresh_compliance(body: ModalBody, scheme: Scheme, step: float) -> None:
-    """Inverse effective masses, and the elastic compliance in the body's frame, for a new step size."""
+def _effective_slot(body: ModalBody, scheme: Scheme, step: float) -> int:
+    """Where the inverse effective masses and the elastic compliance of this step size lie; made if missing."""
+    slots = body.cached_step.size - 1
+    for slot in range(slots):
+        if body.cached_step[slot] == step:
+            return slot
+    slot = int(body.cached_step[slots])  # the oldest makes room
+    body.cached_step[slots] = (slot + 1) % slots
+    body.cached_step[slot] = step
     m = body.stiffness.size
     now = 1.0 - scheme.alpha_f
     inertial = (1.0 - scheme.alpha_m) / (scheme.newmark_beta * step * step)
     viscous = now * scheme.newmark_gamma / (scheme.newmark_beta * step)
-    body.inverse[0] = 1.0 / (inertial * body.mass)
-    body.inverse[1] = body.inverse[0]
-    body.inverse[2] = 1.0 / (inertial * body.inertia)
+    body.inverse[slot, 0] = 1.0 / (inertial * body.mass)
+    body.inverse[slot, 1] = body.inverse[slot, 0]
+    body.inverse[slot, 2] = 1.0 / (inertial * body.inertia)
     for k in range(m):
-        body.inverse[3 + k] = 1.0 / (inertial + viscous * body.damping[k] + now * body.stiffness[k])
+        body.inverse[slot, 3 + k] = 1.0 / (inertial + viscous * body.damping[k] + now * body.stiffness[k])
     n = body.point.shape[0]
     for a in range(2 * n):
         for b in range(a, 2 * n):
             total = 0.0
             for k in range(m):
-                total += body.shape[a // 2, a % 2, k] * body.shape[b // 2, b % 2, k] * body.inverse[3 + k]
-            body.elastic_compliance[a, b] = total
-            body.elastic_compliance[b, a] = total
-    body.cached_step[0] = step
+                total += body.shape[a // 2, a % 2, k] * body.shape[b // 2, b % 2, k] * body.inverse[slot, 3 + k]
+            body.elastic_compliance[slot, a, b] = total
+            body.elastic_compliance[slot, b, a] = total
+    return slot
 
 
-refresh_compliance = compiled(_refresh_compliance)
+effective_slot = compiled(_effective_slot)
 
 
 def _place_points(
@@ -182,8 +192,8 @@ def _release(
 ) -> None:
     m = body.stiffness.size
     n = body.point.shape[0]
-    if body.cached_step[0] != step:
-        refresh_compliance(body, scheme, step)
+    slot = effective_slot(body, scheme, step)
+    inverse = body.inverse[slot]
     now, before = 1.0 - scheme.alpha_f, scheme.alpha_f
     cosine, sine = math.cos(new.position[2]), math.sin(new.position[2])
     place_points(body, new, work, floor, floor_velocity, cosine, sine)
@@ -200,7 +210,7 @@ def _release(
         if j == 1:
             force -= now * body.mass * body.gravity
         force -= mass * ((1.0 - scheme.alpha_m) * new.acceleration[j] + scheme.alpha_m * old.acceleration[j])
-        body.free_change[j] = body.inverse[j] * force
+        body.free_change[j] = inverse[j] * force
     slope = scheme.newmark_gamma / (scheme.newmark_beta * step)
     change = body.free_change
     for i in range(n):
@@ -214,8 +224,8 @@ def _release(
         work.free[i, 1] += moved_z
         work.free_velocity[i, 0] += slope * moved_x
         work.free_velocity[i, 1] += slope * moved_z
-    turn_compliance(body.elastic_compliance, cosine, sine, now, work.compliance)
-    drift, turn = now * body.inverse[0], now * body.inverse[2]
+    turn_compliance(body.elastic_compliance[slot], cosine, sine, now, work.compliance)
+    drift, turn = now * inverse[0], now * inverse[2]
     for i in range(n):
         for j in range(n):
             work.compliance[2 * i, 2 * j] += drift + turn * body.arm[i, 1] * body.arm[j, 1]
@@ -248,11 +258,12 @@ def _respond(body: ModalBody, scheme: Scheme, step: float, old: State, new: Stat
     m = body.stiffness.size
     now = 1.0 - scheme.alpha_f
     gather_force(body, work.force, new.position[2], body.arm, new.external)
+    inverse = body.inverse[effective_slot(body, scheme, step)]
     by_velocity = scheme.newmark_gamma / (scheme.newmark_beta * step)
     by_acceleration = 1.0 / (scheme.newmark_beta * step * step)
     turned = 0.0
     for j in range(3 + m):
-        change = body.free_change[j] + now * body.inverse[j] * new.external[j]
+        change = body.free_change[j] + now * inverse[j] * new.external[j]
         new.position[j] += change
         new.velocity[j] += by_velocity * change
         new.acceleration[j] += by_acceleration * change

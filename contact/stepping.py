@@ -51,6 +51,7 @@ from contact.tracking import FALLEN, NEVER, follow, make_track
 
 ITERATION_LIMIT = 12  #: of free motion, contact, response within one step
 STEPS_PER_OCTAVE = 3  #: of the ladder of step sizes
+NEIGHBOUR = 0.25  #: base points nearer than this, over the width, close as one
 HELD_STEPS = 6  #: after a rejection
 FADING = 0.8  #: of the memory for the imbalance, a step
 
@@ -480,13 +481,26 @@ def sample(body: Any, run: Run, samples: Samples, written: int, origin: int, ste
     return written
 
 
+@register_jitable
+def _rests_beside(state: State, other: int, point: int, width: float) -> bool:
+    """Another base point, if there is one, is closed and near."""
+    if other < 0 or other >= state.point.shape[0]:
+        return False
+    near = abs(state.point[other, 0] - state.point[point, 0]) < NEIGHBOUR * width
+    return near and state.point[other, 1] < 0.0
+
+
 def _closing_time(control: Control, state: State, horizon: float) -> float:
     """Time until a base point touches the floor with more than the closing speed [s], or the horizon.
 
-    By its present velocity and acceleration; 0 for a point that has touched just now.
+    By its present velocity and acceleration; 0 for a point that has touched just now. A point beside one that is
+    closed (a wide base zips up) brings no mass of its own and is left to the ledger.
     """
     first = horizon
-    for i in range(state.point.shape[0]):
+    n = state.point.shape[0]
+    for i in range(n):
+        if _rests_beside(state, i - 1, i, control.width) or _rests_beside(state, i + 1, i, control.width):
+            continue
         gap, speed, rate = state.point[i, 1], state.descent[i, 0], state.descent[i, 1]
         if gap > 0.0 and speed * first + 0.5 * max(rate, 0.0) * first * first > gap:
             root = speed * speed + 2.0 * rate * gap
@@ -556,13 +570,17 @@ def _allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
     allowed = control.reference_energy * (control.energy_floor + control.energy_rate * step)
     allowed += control.energy_share * abs(dissipated)
     allowed += control.trail_share * run.clock[0].trail * step / control.trail_time
-    closing = False
+    closing, closing_beside = False, False
     for i in range(new.point.shape[0]):
-        closing = closing or (old.point[i, 1] >= 0.0 and new.point[i, 1] < 0.0)
-    if closing:
+        if old.point[i, 1] >= 0.0 and new.point[i, 1] < 0.0:
+            beside = _rests_beside(old, i - 1, i, control.width) or _rests_beside(old, i + 1, i, control.width)
+            closing = closing or not beside
+            closing_beside = closing_beside or beside
+    if closing or closing_beside:  # a base that zips up shares the allowance among its points
         floor_velocity = run.floor[0, 1]
         relative = floor_velocity * (0.5 * floor_velocity - old.pose[VELOCITY_X])
-        allowed += control.closing_share * (old.energy[KINETIC] + control.mass * relative)
+        share = control.closing_share if closing else control.closing_share / control.base_points
+        allowed += share * (old.energy[KINETIC] + control.mass * relative)
     return allowed
 
 

@@ -43,7 +43,7 @@ SMALLEST_SHARE = 1e-7
 #: over the time constant of a corner on its dashpot: the step that begins at a touch
 CLOSING_SHARE_OF_TIME = 0.01
 #: imbalance of the ledger that a step may have: see `contact.stepping.Control`
-ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE, CLOSING_SHARE = 1e-5, 1e-7, 4e-3, 4e-4
+ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE, CLOSING_SHARE = 1e-5, 2e-7, 4e-3, 4e-4
 TRAIL_SHARE, TRAIL_TIME = 2e-2, 0.1
 #: closings with less energy than this, over the energy to overturn, are left to the ledger
 SOFT_CLOSING = 1e-6
