@@ -33,11 +33,10 @@ from fem.elasticity import (
     FloatArray,
     LamePair,
     cauchy_stress,
-    energy_density,
-    first_stress,
     first_stress_tangent,
     plane_stress_lame,
     von_mises,
+    weigh_stress,
 )
 
 IntArray = NDArray[np.int64]
@@ -142,19 +141,26 @@ class FiniteElements:
         data = np.tile(mass.data, 2)
         return coo_array((data, (rows, columns)), shape=self.stiffness.shape).tocsc()
 
-    def internal_force(self, displacement: FloatArray) -> FloatArray:
-        """Gradient of the strain energy, shape (n, 2) [N]: one sparse product there and one back."""
-        stress = first_stress(self._displacement_gradient(displacement), self._lame)
-        stress *= self._weights
+    def force_and_energy(self, displacement: FloatArray) -> tuple[FloatArray, float]:
+        """Gradient of the strain energy, shape (n, 2) [N], and the energy itself [J].
+
+        One sparse product to the quadrature points, one pass over them and one product back.
+        """
+        gradient = self._displacement_gradient(displacement)
+        stress = np.empty_like(gradient)
+        energy = weigh_stress(gradient, self._weights, self._lame.first, self._lame.shear, stress)
         force = np.empty_like(self.nodes)
         for i in range(2):
             force[:, i] = self._divergence @ stress[i].ravel()
-        return force
+        return force, energy
+
+    def internal_force(self, displacement: FloatArray) -> FloatArray:
+        """Gradient of the strain energy, shape (n, 2) [N]."""
+        return self.force_and_energy(displacement)[0]
 
     def strain_energy(self, displacement: FloatArray) -> float:
         """Strain energy [J]; never negative."""
-        density = energy_density(self._displacement_gradient(displacement), self._lame)
-        return float(density @ self._weights)
+        return self.force_and_energy(displacement)[1]
 
     def tangent(self, displacement: FloatArray) -> csc_array:
         """Derivative of `internal_force`, shape (2n, 2n), interleaved [N/m]."""

@@ -7,12 +7,15 @@ tensors have shape (3, ...) in the order xx, zz, xz (the tensor's component, not
 positive.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
+from numba import njit
+from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
+Real = TypeVar("Real", float, FloatArray)
 
 
 class LamePair(NamedTuple):
@@ -40,39 +43,77 @@ def plane_stress_lame(youngs_modulus: float, poisson_ratio: float) -> LamePair:
     )
 
 
-def green_strain(gradient: FloatArray) -> FloatArray:
-    """Green-Lagrange strain (H + H^T + H^T H)/2, shape (3, ...) [-].
+@register_jitable
+def strain_components(xx: Real, xz: Real, zx: Real, zz: Real) -> tuple[Real, Real, Real]:
+    """Green-Lagrange strain (H + H^T + H^T H)/2 of a gradient's components, xx, zz, xz [-].
 
     Written in the gradient and not in F^T F - I, so that a strain of 1e-12 survives beside a small rotation;
-    a large rotation leaves a few units in the last place of 1.
+    a large rotation leaves a few units in the last place of 1. For numbers and for arrays alike.
     """
+    return (
+        xx + 0.5 * (xx * xx + zx * zx),
+        zz + 0.5 * (zz * zz + xz * xz),
+        0.5 * (xz + zx + xx * xz + zx * zz),
+    )
+
+
+@register_jitable
+def stress_components(xx: Real, zz: Real, xz: Real, first: float, shear: float) -> tuple[Real, Real, Real]:
+    """Second Piola-Kirchhoff stress of St. Venant and Kirchhoff from the strain, xx, zz, xz [Pa]."""
+    trace = first * (xx + zz)
+    return 2.0 * shear * xx + trace, 2.0 * shear * zz + trace, 2.0 * shear * xz
+
+
+@register_jitable
+def energy_of_strain(xx: Real, zz: Real, xz: Real, first: float, shear: float) -> Real:
+    """Strain energy per reference volume, shear E:E + first tr(E)^2/2 [J/m3]; never negative."""
+    return shear * (xx * xx + zz * zz + 2.0 * xz * xz) + 0.5 * first * (xx + zz) ** 2
+
+
+def green_strain(gradient: FloatArray) -> FloatArray:
+    """Green-Lagrange strain, shape (3, ...) [-]."""
     (xx, xz), (zx, zz) = gradient
-    strain = np.empty((3, *gradient.shape[2:]))
-    strain[0] = xx + 0.5 * (xx * xx + zx * zx)
-    strain[1] = zz + 0.5 * (zz * zz + xz * xz)
-    strain[2] = 0.5 * (xz + zx + xx * xz + zx * zz)
-    return strain
+    return np.stack(strain_components(xx, xz, zx, zz))
 
 
 def second_stress(strain: FloatArray, lame: LamePair) -> FloatArray:
-    """Second Piola-Kirchhoff stress of St. Venant and Kirchhoff, shape (3, ...) [Pa]."""
-    stress = 2.0 * lame.shear * strain
-    stress[:2] += lame.first * (strain[0] + strain[1])
-    return stress
+    """Second Piola-Kirchhoff stress, shape (3, ...) [Pa]."""
+    xx, zz, xz = strain
+    return np.stack(stress_components(xx, zz, xz, lame.first, lame.shear))
 
 
 def first_stress(gradient: FloatArray, lame: LamePair) -> FloatArray:
     """First Piola-Kirchhoff stress P = F S, shape (2, 2, ...), force axis first [Pa]."""
-    sxx, szz, sxz = second_stress(green_strain(gradient), lame)
-    stress = np.empty_like(gradient)
-    for i in range(2):
-        stress[i, 0] = gradient[i, 0] * sxx + gradient[i, 1] * sxz
-        stress[i, 1] = gradient[i, 0] * sxz + gradient[i, 1] * szz
-    stress[0, 0] += sxx
-    stress[0, 1] += sxz
-    stress[1, 0] += sxz
-    stress[1, 1] += szz
+    stress = np.empty(gradient.shape)
+    points = np.ascontiguousarray(gradient.reshape(2, 2, -1))
+    out = stress.reshape(2, 2, -1)
+    weigh_stress(points, np.ones(points.shape[2]), lame.first, lame.shear, out)
     return stress
+
+
+@njit(cache=True)
+def weigh_stress(
+    gradient: FloatArray, weights: FloatArray, first: float, shear: float, out: FloatArray
+) -> float:
+    """First Piola-Kirchhoff stress times weight at every point, in one pass; returns the weighted energy.
+
+    Args:
+        gradient: (2, 2, q) [-]; weights: (q,) volumes [m3].
+        first, shear: the Lamé pair [Pa].
+        out: (2, 2, q), P times weight [N m], written.
+    """
+    energy = 0.0
+    for q in range(weights.size):
+        xx, xz, zx, zz = gradient[0, 0, q], gradient[0, 1, q], gradient[1, 0, q], gradient[1, 1, q]
+        exx, ezz, exz = strain_components(xx, xz, zx, zz)
+        sxx, szz, sxz = stress_components(exx, ezz, exz, first, shear)
+        weight = weights[q]
+        energy += weight * energy_of_strain(exx, ezz, exz, first, shear)
+        out[0, 0, q] = weight * ((1.0 + xx) * sxx + xz * sxz)
+        out[0, 1, q] = weight * ((1.0 + xx) * sxz + xz * szz)
+        out[1, 0, q] = weight * (zx * sxx + (1.0 + zz) * sxz)
+        out[1, 1, q] = weight * (zx * sxz + (1.0 + zz) * szz)
+    return energy
 
 
 def first_stress_tangent(gradient: FloatArray, lame: LamePair) -> FloatArray:
@@ -97,9 +138,9 @@ def first_stress_tangent(gradient: FloatArray, lame: LamePair) -> FloatArray:
 
 
 def energy_density(gradient: FloatArray, lame: LamePair) -> FloatArray:
-    """Strain energy per reference volume, shear E:E + first tr(E)^2/2, shape (...) [J/m3]; never negative."""
+    """Strain energy per reference volume, shape (...) [J/m3]; never negative."""
     xx, zz, xz = green_strain(gradient)
-    return lame.shear * (xx * xx + zz * zz + 2.0 * xz * xz) + 0.5 * lame.first * (xx + zz) ** 2
+    return energy_of_strain(xx, zz, xz, lame.first, lame.shear)
 
 
 def cauchy_stress(gradient: FloatArray, lame: LamePair) -> FloatArray:

@@ -36,9 +36,9 @@ from contact.scheme import Scheme
 from fem.assembly import FiniteElements
 from fem.reduction import StaticResponse
 
-#: residual of a step at which its iteration stops, over the weight
-RESIDUAL_TOLERANCE = 1e-7
-FACTORS_KEPT = 40
+#: residual of a step at which its iteration stops, over the weight; the next iterate would have its square
+RESIDUAL_TOLERANCE = 5e-6
+FACTOR_MEMORY = 600_000_000  #: for factors of different step sizes [bytes]
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +95,7 @@ class FullBody:
         self._turn = np.eye(2)
         self._residual: FloatArray | None = None
         self._internal = np.zeros_like(elements.nodes)
+        self._strain_energy = 0.0
         self._damping_force = np.zeros_like(elements.nodes)
         self._free_change = np.zeros_like(elements.nodes)
         self.residuals = 0  #: evaluated so far
@@ -175,7 +176,7 @@ class FullBody:
         return float(np.abs(unbalanced).max() / (RESIDUAL_TOLERANCE * self.mass * self.gravity))
 
     def complete(self, new: State, floor: float) -> None:
-        """See `contact.body.complete`; internal forces are those of the last residual."""
+        """See `contact.body.complete`; internal forces and strain energy are those of the last residual."""
         position, velocity = new.position.reshape(-1, 2), new.velocity.reshape(-1, 2)
         new.internal[:] = (self._internal + self._damping_force + self._weight).ravel()
         new.damping[:] = self._damping_force.ravel()
@@ -192,7 +193,7 @@ class FullBody:
         new.pose[CENTRE_X], new.pose[CENTRE_Z] = centre
         new.pose[VELOCITY_X], new.pose[VELOCITY_Z] = drift
         new.energy[KINETIC] = 0.5 * np.sum(momentum * velocity)
-        new.energy[STRAIN] = self.elements.strain_energy(position - self.elements.nodes)
+        new.energy[STRAIN] = self._strain_energy
         new.energy[POTENTIAL] = self.mass * self.gravity * centre[1]
 
     def observe(self, new: State, floor: float) -> None:
@@ -212,7 +213,7 @@ class FullBody:
 
     def _forces(self, position: FloatArray, velocity: FloatArray) -> None:
         """Internal and damping forces at these positions and velocities (n, 2)."""
-        self._internal = self.elements.internal_force(position - self.elements.nodes)
+        self._internal, self._strain_energy = self.elements.force_and_energy(position - self.elements.nodes)
         turned = (velocity @ self._turn).ravel()
         self._damping_force = self.damping * (self._stiffness @ turned).reshape(-1, 2) @ self._turn.T
         self.residuals += 1
@@ -253,7 +254,8 @@ class FullBody:
             to_base=np.ascontiguousarray(answers.T),
             compliance=np.ascontiguousarray(seen),
         )
+        size = 12 * solver.nnz + factor.to_base.nbytes
         self._factors[key] = factor
-        if len(self._factors) > FACTORS_KEPT:
+        while len(self._factors) > max(8, FACTOR_MEMORY // size):
             self._factors.popitem(last=False)
         return factor

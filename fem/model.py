@@ -41,9 +41,11 @@ STEP_OF_ROCKING, STEP_OF_MOTION = 0.01, 0.02
 EVENT_SHARE = 0.05
 SMALLEST_SHARE = 1e-7
 #: over the time constant of a corner on its dashpot: the step that begins at a touch
-CLOSING_SHARE_OF_TIME = 0.01
+CLOSING_SHARE_OF_TIME = 0.02
 #: imbalance of the ledger that a step may have: see `contact.stepping.Control`
-ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE, CLOSING_SHARE = 1e-5, 2e-7, 4e-3, 4e-4
+ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE = 1e-5, 2e-7, 4e-3
+#: .. at a first touch: over the energy that a rigid block would lose there
+CLOSING_SHARE, LEAST_LOSS = 2e-3, 0.02
 TRAIL_SHARE, TRAIL_TIME = 2e-2, 0.1
 #: closings with less energy than this, over the energy to overturn, are left to the ledger
 SOFT_CLOSING = 1e-6
@@ -299,7 +301,7 @@ def _control(
         energy_share=ENERGY_SHARE,
         trail_share=TRAIL_SHARE,
         trail_time=TRAIL_TIME / rate,
-        closing_share=CLOSING_SHARE,
+        closing_share=CLOSING_SHARE * max(1.0 - static.housner_restitution**2, LEAST_LOSS),
         mass=mesh.mass,
         gravity=case.gravity_m_s2,
         frequency_parameter=rate,
