@@ -114,6 +114,19 @@ def make_modal_body(
     )
 
 
+def with_own_scratch(body: ModalBody) -> ModalBody:
+    """The same body with scratch arrays of its own and no monitored points: for a thread of a batch."""
+    return body._replace(
+        monitor=np.zeros((0, 2)),
+        monitor_shape=np.zeros((0, 2, body.stiffness.size)),
+        cached_step=np.append(np.full(STEP_SLOTS, -1.0), 0.0),
+        inverse=np.zeros_like(body.inverse),
+        elastic_compliance=np.zeros_like(body.elastic_compliance),
+        arm=np.zeros_like(body.arm),
+        free_change=np.zeros_like(body.free_change),
+    )
+
+
 def _predict(body: ModalBody, scheme: Scheme, step: float, old: State, new: State) -> None:
     for j in range(old.position.size):
         new.position[j] = old.position[j] + step * (old.velocity[j] + 0.5 * step * old.acceleration[j])
