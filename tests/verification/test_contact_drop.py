@@ -1,0 +1,106 @@
+"""A block that lands flat on its floor: one degree of freedom, known in closed form."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from block_on_floor import Block, Rig, rig
+
+from contact.closed_forms_drop import damped_drop_restitution, drop_force
+from contact.scheme import Scheme, newmark
+
+SPEED = 0.5  #: of the approach [m/s]
+
+
+def falling(block: Block, gap: float, speed: float, **options) -> Rig:
+    """Above the floor by `gap` [m], coming down, the floor not yet touched."""
+    settled = Block(height=block.height).standing()
+    stance = replace(
+        settled,
+        centre=(0.0, 0.5 * block.height + gap),
+        rotation=0.0,
+        velocity=(0.0, -speed),
+        force=np.zeros((2, 2)),
+    )
+    return rig(block, stance=stance, **options)
+
+
+def rebound(heave_ratio: float, **options) -> float:
+    """Speed of the rebound over that of the approach, without gravity."""
+    # The whole mass on one corner has sqrt 2 less than the heave ratio: k is then half, c is half.
+    block = Block(
+        height=1.0,
+        mass=2500.0,
+        gravity=0.0,
+        bounce_frequency=20.0,
+        damping_ratio=heave_ratio / math.sqrt(2.0),
+    )
+    run = falling(block, 1e-3, SPEED, **options).advance(0.1)
+    assert (run.run.old.point[:, 1] > 0.0).all()  # it has left the floor
+    assert abs(run.run.old.position[2]) < 1e-12
+    return float(run.run.old.velocity[1]) / SPEED
+
+
+# e(zeta) at contact that ends where the dashpot would begin to pull (Schwager and Poschel 2007).
+RESTITUTION = {0.05: 0.859, 0.1: 0.744, 0.2: 0.572, 0.5: 0.298}
+
+
+@pytest.mark.parametrize(("heave_ratio", "printed"), RESTITUTION.items())
+def test_a_damped_landing_rebounds_as_its_heave_ratio_says(heave_ratio, printed):
+    exact = damped_drop_restitution(heave_ratio)
+    assert exact == pytest.approx(printed, abs=5e-4)
+    assert rebound(heave_ratio, largest_step=1e-5, fixed_step=True) == pytest.approx(exact, abs=5e-4)
+
+
+@pytest.mark.parametrize("heave_ratio", RESTITUTION)
+def test_the_steps_of_the_control_resolve_a_damped_landing(heave_ratio):
+    assert rebound(heave_ratio) == pytest.approx(damped_drop_restitution(heave_ratio), abs=0.01)
+
+
+def test_the_rebound_converges_to_first_order_because_the_dashpot_switches():
+    steps = 4e-5 / 2.0 ** np.arange(5)
+    exact = damped_drop_restitution(0.2)
+    errors = [abs(rebound(0.2, largest_step=h, fixed_step=True) - exact) for h in steps]
+    assert np.polyfit(np.log(steps), np.log(errors), 1)[0] >= 0.9
+
+
+@pytest.mark.parametrize("scheme", [None, newmark(0.25, 0.5)], ids=["generalised-alpha", "newmark"])
+@pytest.mark.parametrize("speed", [0.1, 1.0])
+def test_the_largest_force_of_a_flat_drop(speed, scheme: Scheme | None):
+    # m g + sqrt((m g)^2 + k m v^2), from energy.
+    block = Block(height=1.0, mass=2500.0, bounce_frequency=50.0, damping_ratio=0.0)
+    expected = drop_force(mass=2500.0, stiffness=block.base_stiffness, speed=speed, gravity=9.81)
+    run = falling(block, 0.0, speed, scheme=scheme, largest_step=2e-5, fixed_step=True, sampled=2e-5)
+    run.advance(0.03)
+    assert run.force[:, :, 1].sum(axis=1).max() == pytest.approx(expected, rel=2e-4)
+    assert 2.0 * run.track.max_corner_force == pytest.approx(expected, rel=2e-4)
+    assert run.track.max_penetration == pytest.approx(expected / block.base_stiffness, rel=2e-4)
+
+
+def test_the_steps_of_the_control_find_the_largest_force():
+    block = Block(height=1.0, mass=2500.0, bounce_frequency=50.0, damping_ratio=0.0)
+    expected = drop_force(mass=2500.0, stiffness=block.base_stiffness, speed=1.0, gravity=9.81)
+    run = falling(block, 0.0, 1.0).advance(0.03)
+    assert 2.0 * run.track.max_corner_force == pytest.approx(expected, rel=2e-3)
+    assert run.run.ledger[2:4] == pytest.approx([0.0, 0.0], abs=1e-9)
+
+
+def test_an_undamped_drop_keeps_bouncing_to_the_same_height():
+    # Free flight of 0.5 m/s, landing, and again: speeds at three landings, energy kept by small steps.
+    block = Block(height=1.0, mass=2500.0, bounce_frequency=50.0, damping_ratio=0.0)
+    run = falling(block, 0.0, SPEED, energy_scale=0.01).advance(0.5)
+    kinetic = 0.5 * block.mass * SPEED**2
+    assert run.run.ledger[:4] == pytest.approx(np.zeros(4), abs=1e-9 * kinetic)
+    assert abs(run.run.ledger[4]) <= 1e-3 * kinetic
+
+
+def test_contact_forces_never_pull_in_a_landing_that_rocks():
+    block = Block(height=1.0, mass=2500.0)
+    stance = replace(
+        block.standing(), centre=(0.0, 0.6), rotation=0.1, angular_velocity=-1.0, force=np.zeros((2, 2))
+    )
+    run = rig(block, stance=stance, sampled=1e-3).advance(3.0)
+    assert run.force[:, :, 1].max() > block.mass * 9.81
+    assert run.force[:, :, 1].min() >= 0.0
+    assert (np.abs(run.force[:, :, 0]) <= 0.4 * run.force[:, :, 1] + 1e-6).all()

@@ -1,0 +1,146 @@
+"""A stepped rigid block on two springs and dashpots against the exact rocking block.
+
+Contact damping 2 makes an impact plastic at the corner (Housner, 1963). The penalty is varied: the bounce
+frequency on it is a third, once and three times the one that a case chooses.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from block_on_floor import GRAVITY, Block, Rig, rig
+
+from contact.initial import tilted
+from contact.motion import HarmonicMotion
+from contact.stepping import OVERTURNED, advance_compiled
+
+STACK = Block()
+AMPLE = replace(STACK, mu_static=1.0, mu_kinetic=1.0)
+STIFFNESSES = [40.0, 117.0, 350.0]  #: a third, once and three times the one chosen for the stack [Hz]
+
+
+def released(block: Block, share: float, **options) -> Rig:
+    """Tilted to a share of the slenderness angle, let go."""
+    stance = tilted(
+        rotation=share * block.slenderness_angle,
+        angular_velocity=0.0,
+        mass=block.mass,
+        inertia=block.inertia,
+        gravity=block.gravity,
+        point=block.point,
+        corner_x=math.copysign(0.5 * block.width, share),
+        normal_stiffness=block.contact().normal_stiffness,
+        mu_static=block.mu_static,
+    )
+    return rig(block, stance=stance, **options)
+
+
+def shaken(block: Block, *, amplitude: float, omega: float, until: float, start_moving: bool = True) -> Rig:
+    motion = HarmonicMotion(amplitude=amplitude, angular_frequency=omega, duration=100.0)
+    return rig(block, motion=motion, start_moving=start_moving).advance(until)
+
+
+# Housner's e = 1 - (3/2) sin^2 of the slenderness angle, c/a = 1.5, 2, 2.5, 3.64.
+HOUSNER = {1.65: 0.5385, 2.2: 0.7, 2.75: 0.7931, 4.0: 0.8945}
+
+
+@pytest.mark.parametrize("frequency", [117.0, 350.0])
+@pytest.mark.parametrize(("height", "printed"), HOUSNER.items())
+def test_restitution_on_two_corners_is_housners(height, printed, frequency):
+    block = replace(AMPLE, height=height, bounce_frequency=frequency)
+    exact = 1.0 - 1.5 * math.sin(block.slenderness_angle) ** 2
+    assert exact == pytest.approx(printed, abs=1e-4)
+    run = released(block, 0.5).advance(4.0)
+    assert run.track.restitution_by_peaks == pytest.approx(exact, abs=5e-3)
+    assert run.track.restitution_by_velocity == pytest.approx(exact, abs=5e-3)
+
+
+@pytest.mark.parametrize("frequency", [117.0, 350.0])
+def test_first_impact_and_first_peak_of_the_released_stack(frequency):
+    # Exact quarter period from half the slenderness angle: 0.700737 s; the next peak: 0.098783 rad.
+    run = released(replace(AMPLE, bounce_frequency=frequency), 0.5).advance(2.0)
+    assert run.track.first_impact == pytest.approx(0.700737, rel=3e-3)
+    assert -run.rotation.min() == pytest.approx(0.098783, rel=0.01)
+
+
+def test_peaks_of_free_rocking_follow_the_plastic_impacts():
+    # cos(al - theta_n) - cos al = e^(2n) [cos(al - theta_0) - cos al]
+    run = released(AMPLE, 0.5).advance(6.0)
+    alpha = AMPLE.slenderness_angle
+    e = 1.0 - 1.5 * math.sin(alpha) ** 2
+    size = np.abs(run.rotation)
+    turning = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] > size[2:])) + 1
+    assert turning.size >= 6
+    for n in range(1, 7):
+        height = e ** (2 * n) * (math.cos(0.5 * alpha) - math.cos(alpha))
+        exact = alpha - math.acos(math.cos(alpha) + height)
+        # beyond the first the tilt of a one-corner stand on its spring shows
+        assert size[turning[n - 1]] == pytest.approx(exact, rel=0.02)
+
+
+def test_the_mirror_image_is_released_to_the_mirror_image():
+    right, left = released(AMPLE, 0.5).advance(4.0), released(AMPLE, -0.5).advance(4.0)
+    assert left.rotation[:700] == pytest.approx(-right.rotation[:700], abs=1e-9)
+
+
+@pytest.mark.parametrize("frequency", STIFFNESSES)
+def test_the_stack_under_the_codes_plateau_rocks_without_slip_and_stands(frequency):
+    # Event-driven block: 0.399 of the slenderness angle in 8 s, 0.38 to 0.43 for restitution 0.85 to 0.96.
+    block = replace(STACK, mu_kinetic=0.2, bounce_frequency=frequency)
+    run = shaken(block, amplitude=4.0 / 6.928**2, omega=6.928, until=8.0)
+    ratio = run.track.max_rotation / block.slenderness_angle
+    assert 0.38 <= ratio <= 0.43
+    if frequency >= 117.0:
+        assert ratio == pytest.approx(0.399, abs=2e-3)
+    assert run.track.max_slip < 1e-4 * block.width
+
+
+@pytest.mark.parametrize("frequency", STIFFNESSES)
+def test_the_stack_under_the_stated_motion_stays_at_rest(frequency):
+    # 2.40 < 2.698 (uplift) < 3.924 m/s2 (slip): slip < 1e-5 m, tilt < 1e-4 rad over 10 cycles.
+    block = replace(STACK, mu_kinetic=0.2, bounce_frequency=frequency)
+    run = shaken(block, amplitude=0.05, omega=6.928, until=10.0 * 2.0 * math.pi / 6.928)
+    assert run.track.max_slip < 1e-5
+    assert run.track.impacts == 0
+    if frequency >= 117.0:
+        assert run.track.max_rotation < 1e-4
+
+
+@pytest.mark.parametrize("frequency", STIFFNESSES)
+def test_a_floor_that_starts_with_a_jerk_rocks_the_stack(frequency):
+    # 50 mm, start at rest, mu 0.4: 0.2505 of the slenderness angle (event-driven).
+    block = replace(STACK, bounce_frequency=frequency)
+    run = shaken(block, amplitude=0.05, omega=6.928, until=20.0, start_moving=False)
+    assert run.track.max_rotation / block.slenderness_angle == pytest.approx(0.2505, rel=0.02)
+
+
+def test_slide_rocking_of_the_stack_on_less_friction():
+    # A = 0.1 m, 8 rad/s, mu 0.3: first peak 0.100303 rad; slip after 2.5 s 81.1 mm (event-driven).
+    block = replace(STACK, mu_static=0.3, mu_kinetic=0.3, bounce_frequency=350.0)
+    run = shaken(block, amplitude=0.1, omega=8.0, until=2.5)
+    size = np.abs(run.rotation)
+    first = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] > size[2:]) & (size[1:-1] > 0.05))[0] + 1
+    assert size[first] == pytest.approx(0.100303, rel=0.01)
+    assert abs(run.slip[500]) == pytest.approx(81.1e-3, rel=0.02)
+
+
+@pytest.mark.parametrize("share", [0.99, 1.01])
+def test_the_slenderness_angle_divides_falling_from_coming_back(share):
+    # Balanced on a corner, the side of it on which the weight stands decides.
+    run = released(AMPLE, share)
+    status = advance_compiled(run.body, run.run, 10.0)
+    assert (status == OVERTURNED) == (share > 1.0)
+    assert (run.track.overturned_at < math.inf) == (share > 1.0)
+
+
+@pytest.mark.parametrize("acceleration", [0.95, 1.05])
+def test_a_constant_pull_lifts_an_edge_from_g_times_width_over_height_on(acceleration):
+    # Uplift of a rigid block, statics; on two corners there is no earlier opening of the base.
+    limit = GRAVITY * STACK.width / STACK.height
+    motion = HarmonicMotion(amplitude=acceleration * limit / 0.5**2, angular_frequency=0.5, duration=20.0)
+    run = rig(STACK, motion=motion).advance(4.0)  # beyond the first peak of the floor's acceleration
+    assert (run.track.first_uplift < math.inf) == (acceleration > 1.0)
+    if acceleration > 1.0:  # it lifts where the slowly rising floor acceleration passes the limit
+        exact = math.asin(1.0 / acceleration) / 0.5
+        assert run.track.first_uplift == pytest.approx(exact, rel=0.01)
