@@ -24,7 +24,7 @@ from contact.stepping import CLOCK, OVERTURNED, REACHED, Control, Run, Samples, 
 from contact.tracking import TRACK
 
 CONTACT_NUMBERS = tuple(name for name in Contact._fields if name not in ("normal_stiffness", "tangential_stiffness"))
-ROWS_AT_A_TIME = 64  #: handed to a thread: small enough to share the work evenly and to report progress
+ROWS_AT_A_TIME = 8  #: handed to a thread: small enough to share the work evenly and to report progress
 
 
 class Rows(NamedTuple):

@@ -2,8 +2,8 @@
 
 A body has coordinates (their number and meaning are its own affair), base points that may touch the floor,
 and five operations, each a function here that hands over to the body: `predict`, `release`, `respond`,
-`complete` and `observe`. `contact.modal_body` compiles them for a floating frame with elastic modes; the finite-element
-body of `fem` brings them as methods. The stepper is written once, against these functions.
+`complete` and `observe`. `contact.modal_body` compiles them for a floating frame with elastic modes; the
+finite-element body of `fem` brings them as methods. The stepper is written once, against these functions.
 """
 
 from typing import Any, NamedTuple
@@ -64,7 +64,14 @@ def predict(body: Any, scheme: Scheme, step: float, old: State, new: State) -> N
 
 
 def release(
-    body: Any, scheme: Scheme, step: float, old: State, new: State, work: Workspace, floor: float, floor_velocity: float
+    body: Any,
+    scheme: Scheme,
+    step: float,
+    old: State,
+    new: State,
+    work: Workspace,
+    floor: float,
+    floor_velocity: float,
 ) -> None:
     """From the iterate in `new`, where the base points would go without contact force, and the compliance.
 

@@ -42,8 +42,11 @@ def cache_folder() -> Path:
     return folder
 
 
-def compiled(function: Callable[..., Any], *, parallel: bool = False) -> Any:
+def compiled(function: Callable[..., Any], *, inline: bool = False) -> Any:
     """Compile a function of numbers, arrays and named tuples on first call; keep the machine code.
+
+    `inline` puts the body of a function that has one caller into it: the tuples of arrays that the kernels live
+    on are dear to hand over.
 
     The kernels own no memory: numba's runtime, which would count references at every call, is left out, and so
     none may allocate an array. They run without the interpreter's lock. Division by zero follows IEEE (as in numpy); no fast-math, so that a run is the same bytes again.
@@ -51,7 +54,13 @@ def compiled(function: Callable[..., Any], *, parallel: bool = False) -> Any:
     before = config.CACHE_DIR
     config.CACHE_DIR = str(cache_folder())
     try:
-        return numba.njit(cache=True, error_model="numpy", parallel=parallel, nogil=True, _nrt=False)(function)
+        return numba.njit(
+            cache=True,
+            error_model="numpy",
+            forceinline=inline,
+            nogil=True,
+            _nrt=False,
+        )(function)
     finally:
         config.CACHE_DIR = before
 

@@ -1,7 +1,7 @@
 """How a container stands before the motion begins: settled under gravity, or tilted on one corner.
 
-Both stances need only the rigid body, the contact springs and the elastic compliance seen from the base points
-(inertia relief: gravity is a uniform field and by itself strains a free body not at all).
+Both stances need only the rigid body, the contact springs and the elastic compliance seen from the base
+points (inertia relief: gravity is a uniform field and by itself strains a free body not at all).
 """
 
 import math
@@ -75,7 +75,7 @@ def standing(
     for _ in range(2 * n + 2):
         chosen = np.flatnonzero(carrying)
         m = chosen.size
-        # Unknown: normal forces, height of the centroid above its place in the undeformed container, rotation.
+        # Unknown: normal forces, rise of the centroid above its place in the undeformed container, rotation.
         system = np.zeros((m + 2, m + 2))
         system[:m, :m] = vertical[np.ix_(chosen, chosen)] + np.diag(1.0 / normal_stiffness[chosen])
         system[:m, m] = 1.0
@@ -140,7 +140,8 @@ def tilted(
     force = np.linalg.solve(jacobian @ inverse @ jacobian.T, -free)
     if force[1] <= 0.0:
         raise SettlingError(
-            f"the corner would have to pull: angular velocity {angular_velocity} rad/s throws the container off the floor"
+            f"the corner would have to pull: angular velocity {angular_velocity} rad/s throws the container "
+            "off the floor"
         )
     force[0] = np.clip(force[0], -mu_static * force[1], mu_static * force[1])
     forces = np.zeros_like(point)

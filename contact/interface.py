@@ -21,7 +21,7 @@ from contact.laws import ELASTIC_STICK, normal_force, regularised_friction, stic
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-FULL_STEPS = 6  #: Newton steps taken whole before the line search begins: contact sets change first, then settle
+FULL_STEPS = 6  #: Newton steps taken whole before the line search begins: contact sets change first
 NEWTON_LIMIT = 40
 WORTH_KEEPING = 5  #: active points from which an old factorisation is tried before a new one is made
 #: residual force at which the contact counts as solved, over the largest force present
@@ -40,7 +40,7 @@ class Contact(NamedTuple):
     friction: int  #: ELASTIC_STICK or REGULARISED
     regularisation_velocity: float  #: [m/s]
     force_scale: float  #: weight of the container [N], the measure of "no force"
-    resolution: float  #: rounding of a base point's position [m]: forces cannot be had finer than this times slope
+    resolution: float  #: rounding of a base point's position [m]: times slope, the finest force to be had
 
 
 class Workspace(NamedTuple):
@@ -127,7 +127,7 @@ def _evaluate_laws(
             stiffness = contact.tangential_stiffness[i]
             trial = -stiffness * contact.relaxation_time * work.velocity[i, 0]
             trial_slope = stiffness * contact.relaxation_time * velocity_slope
-            if start[i, 1] < 0.0:  # closed at the beginning: the spring has been stretched over the whole step
+            if start[i, 1] < 0.0:  # closed at the beginning: the spring is stretched over the whole step
                 trial -= stiffness * (stick[i] + work.point[i, 0] - start[i, 0])
                 trial_slope += stiffness
             force, by_trial, by_limit = stick_friction(trial, mu * normal)
@@ -150,7 +150,9 @@ def _evaluate_laws(
 evaluate_laws = compiled(_evaluate_laws)
 
 
-def _turn_compliance(compliance: FloatArray, cosine: float, sine: float, share: float, out: FloatArray) -> None:
+def _turn_compliance(
+    compliance: FloatArray, cosine: float, sine: float, share: float, out: FloatArray
+) -> None:
     """`share` R C R^T of every 2 x 2 block of a compliance (2 n, 2 n), R = [[cos, sin], [-sin, cos]]."""
     for i in range(compliance.shape[0] // 2):
         for j in range(compliance.shape[1] // 2):
@@ -232,7 +234,7 @@ substitute_dense = compiled(_substitute_dense)
 def _factor_is_current(step: float, work: Workspace) -> bool:
     """The factors at hand belong to these tangents and this step: good enough to iterate with.
 
-    The compliance has turned with the body since; a Newton step with slightly old factors only gains fewer digits.
+    The compliance has turned with the body since; a Newton step with slightly old factors gains fewer digits.
     """
     if work.factored_step[0] != step or work.factored_count[0] < WORTH_KEEPING:
         return False

@@ -63,7 +63,9 @@ def _stick_friction(trial: float, limit: float) -> tuple[float, float, float]:
 stick_friction = compiled(_stick_friction)
 
 
-def _relaxed_stick(stick: float, force: float, stiffness: float, relaxation_time: float, step: float) -> float:
+def _relaxed_stick(
+    stick: float, force: float, stiffness: float, relaxation_time: float, step: float
+) -> float:
     """Elongation [m] of a Kelvin-Voigt element after one step under a constant force.
 
     The slider holds the element at the limit force while it slides: k s + c s' = F, c/k the relaxation

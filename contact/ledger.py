@@ -60,4 +60,4 @@ def _contact_losses(
     return friction, damping
 
 
-contact_losses = compiled(_contact_losses)
+contact_losses = compiled(_contact_losses, inline=True)

@@ -190,7 +190,7 @@ def _place_points(
         work.free_velocity[i, 1] = state.velocity[1] - body.arm[i, 0] * rate - sine * u + cosine * w
 
 
-place_points = compiled(_place_points)
+place_points = compiled(_place_points, inline=True)
 
 
 def _release(
@@ -264,7 +264,7 @@ def _gather_force(body: ModalBody, force: FloatArray, rotation: float, arm: Floa
                 out[3 + k] += body.shape[i, 0, k] * along + body.shape[i, 1, k] * across
 
 
-gather_force = compiled(_gather_force)
+gather_force = compiled(_gather_force, inline=True)
 
 
 def _respond(body: ModalBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
@@ -365,7 +365,7 @@ def _compile_for_modal_body(function: Callable[..., Any], implementation: Callab
             return implementation
         return None
 
-    overload(function, strict=False)(choose)
+    overload(function, strict=False, jit_options={"forceinline": True})(choose)
 
 
 _compile_for_modal_body(interface.predict, _predict)

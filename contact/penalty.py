@@ -36,7 +36,9 @@ def choose_normal_penalty(
     """
     limit = STIFFEST * youngs_modulus / element_size
     if kind == "corners":
-        penetration = min(PENETRATION_OVER_HEIGHT * height, PENETRATION_OVER_SWING * width * slenderness_angle)
+        penetration = min(
+            PENETRATION_OVER_HEIGHT * height, PENETRATION_OVER_SWING * width * slenderness_angle
+        )
         return min(weight / (penetration * width * depth), limit)
     # Triangular pressure over a strip of length s at the edge, resultant at NEAR_UPLIFT of the half width:
     # s = 3 (1 - NEAR_UPLIFT) width/2, edge pressure 2 weight/(s depth), tilt = edge pressure/(penalty s).

@@ -249,7 +249,7 @@ def _rebase_acceleration(scheme: Scheme, old: State, shortened: float) -> None:
             old.acceleration[j] += shift * old.jerk[j]
 
 
-rebase_acceleration = compiled(_rebase_acceleration)
+rebase_acceleration = compiled(_rebase_acceleration, inline=True)
 
 
 def _note_rates(step: float, old: State, new: State, work: Workspace) -> None:
@@ -261,10 +261,10 @@ def _note_rates(step: float, old: State, new: State, work: Workspace) -> None:
         new.jerk[j] = (new.acceleration[j] - old.acceleration[j]) / step
 
 
-note_rates = compiled(_note_rates)
+note_rates = compiled(_note_rates, inline=True)
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def _attempt(body: Any, run: Run, step: float, mu: float) -> int:
     """Try one step; the result stands in `run.new`. Returns the iterations taken, or -1."""
     old, new, work, scheme = run.old, run.new, run.work, run.scheme
@@ -335,7 +335,7 @@ def _slide(run: Run, step: float) -> tuple[bool, float, float]:
     return every, weighted / total, velocity / total
 
 
-slide = compiled(_slide)
+slide = compiled(_slide, inline=True)
 
 
 def _account(run: Run) -> float:
@@ -361,7 +361,7 @@ def _account(run: Run) -> float:
     return friction + damping + material
 
 
-account = compiled(_account)
+account = compiled(_account, inline=True)
 
 
 def _copy_state(old: State, new: State) -> None:
@@ -380,7 +380,7 @@ def _copy_state(old: State, new: State) -> None:
     copy_vector(old.energy, new.energy)
 
 
-copy_state = compiled(_copy_state)
+copy_state = compiled(_copy_state, inline=True)
 
 
 def _hermite(share: float, step: float, value: float, rate: float, value_new: float, rate_new: float) -> float:
@@ -420,7 +420,7 @@ def _write_columns(
     row[ROW_IMBALANCE] = run.ledger[IMBALANCE] + s * run.change[IMBALANCE]
 
 
-write_columns = compiled(_write_columns)
+write_columns = compiled(_write_columns, inline=True)
 
 
 def _watch_contents(run: Run, s: float, interval: float) -> None:
@@ -442,10 +442,10 @@ def _watch_contents(run: Run, s: float, interval: float) -> None:
         watched[i, 0], watched[i, 1] = x, z
 
 
-watch_contents = compiled(_watch_contents)
+watch_contents = compiled(_watch_contents, inline=True)
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def sample(body: Any, run: Run, samples: Samples, written: int, origin: int, step: float, slip_step: float) -> int:
     """Write the samples that fall into the step just attempted, from the old time up to and with the new one.
 
@@ -481,7 +481,7 @@ def sample(body: Any, run: Run, samples: Samples, written: int, origin: int, ste
     return written
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def _rests_beside(state: State, other: int, point: int, width: float) -> bool:
     """Another base point, if there is one, is closed and near."""
     if other < 0 or other >= state.point.shape[0]:
@@ -511,7 +511,7 @@ def _closing_time(control: Control, state: State, horizon: float) -> float:
     return first
 
 
-closing_time = compiled(_closing_time)
+closing_time = compiled(_closing_time, inline=True)
 
 
 def _switching_time(clock: Any, horizon: float) -> float:
@@ -525,10 +525,10 @@ def _switching_time(clock: Any, horizon: float) -> float:
     return left / rate if rate * horizon > left > 0.0 else horizon
 
 
-switching_time = compiled(_switching_time)
+switching_time = compiled(_switching_time, inline=True)
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def _next_step(run: Run) -> float:
     """The next step [s]: the ladder's at the present level, unless something is due before.
 
@@ -584,7 +584,7 @@ def _allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
     return allowed
 
 
-allowed_imbalance = compiled(_allowed_imbalance)
+allowed_imbalance = compiled(_allowed_imbalance, inline=True)
 
 
 def _change_level(level: int, used: float, not_held: bool) -> int:
@@ -619,7 +619,7 @@ def _ladder_level(largest_step: float, step: float) -> int:
 ladder_level = compiled(_ladder_level)
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def _accept(body: Any, run: Run, step: float, slip_step: float, slip_velocity: float, every: bool, iterations: int) -> None:
     """Make the step attempted the state of the run; samples, ledger and record follow."""
     control, clock = run.control, run.clock[0]
@@ -663,7 +663,7 @@ def _accept(body: Any, run: Run, step: float, slip_step: float, slip_velocity: f
         run.floor[0, k] = run.floor[1, k]
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def _is_full(run: Run) -> bool:
     """No room for the samples of another largest step."""
     ahead = run.control.largest_step

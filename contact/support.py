@@ -46,7 +46,9 @@ def tributary_lengths(x: FloatArray, order: int) -> FloatArray:
     return lengths
 
 
-def choose_support(kind: str, x: FloatArray, *, depth: float, order: int, feet: tuple[float, float] = (0.0, 0.0)) -> Support:
+def choose_support(
+    kind: str, x: FloatArray, *, depth: float, order: int, feet: tuple[float, float] = (0.0, 0.0)
+) -> Support:
     """Pick the supporting points out of the base nodes at x (n,), sorted [m].
 
     `feet` gives the lengths of the left and the right foot, as the mesh has them.
@@ -58,11 +60,15 @@ def choose_support(kind: str, x: FloatArray, *, depth: float, order: int, feet: 
         raise ValueError(f"[support] kind must be one of {', '.join(KINDS)}, got {kind!r}")
     width = float(x[-1] - x[0])
     if kind == "corners":
-        return Support(kind=kind, index=np.array([0, x.size - 1]), length=np.full(2, 0.5 * width), depth=depth)
+        return Support(
+            kind=kind, index=np.array([0, x.size - 1]), length=np.full(2, 0.5 * width), depth=depth
+        )
     if kind == "flat":
         return Support(kind=kind, index=np.arange(x.size), length=tributary_lengths(x, order), depth=depth)
     if not (min(feet) > 0.0 and sum(feet) < width):
-        raise ValueError(f"[support] foot_m must be positive and below half the width, got {feet} m of {width} m")
+        raise ValueError(
+            f"[support] foot_m must be positive and below half the width, got {feet} m of {width} m"
+        )
     near = 1e-9 * width
     left = np.flatnonzero(x <= x[0] + feet[0] + near)
     right = np.flatnonzero(x >= x[-1] - feet[1] - near)

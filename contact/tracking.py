@@ -74,7 +74,7 @@ def make_track() -> Any:
     return track
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def follow(
     track: Any,
     control: Any,
@@ -137,7 +137,7 @@ def follow(
     track.turning = (new.pose[ANGULAR_VELOCITY] - old.pose[ANGULAR_VELOCITY]) / step
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def _find_impact(track: Any, control: Any, old: State, new: State, step: float) -> int:
     """The corner that a counted impact struck in this step: -1 left, +1 right, 0 none."""
     last = control.base_points - 1
@@ -161,7 +161,7 @@ def _find_impact(track: Any, control: Any, old: State, new: State, step: float) 
     return struck
 
 
-@register_jitable
+@register_jitable(forceinline=True)
 def _follow_restitution(
     track: Any,
     control: Any,
