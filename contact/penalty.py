@@ -1,7 +1,7 @@
 """The default penalty: as soft as the answer allows, for a soft contact lets the steps be long.
 
-It is a numerical choice, not the stiffness of concrete. For two corners the static penetration, and with it the
-tilt of a stand on one corner, must be small against the motion. A base of many points fails earlier: near
+It is a numerical choice, not the stiffness of concrete. For two corners the static penetration, and with it
+the tilt of a stand on one corner, must be small against the motion. A base of many points fails earlier: near
 uplift the whole weight stands on a narrow strip at the edge, the bed opens from the other side, softens, and
 may resonate with the drive far below uplift. So there the tilt near uplift is limited.
 """
@@ -32,7 +32,7 @@ def choose_normal_penalty(
     Args:
         kind: of the support.
         weight: of the container [N]; width, height (of the stack), depth: [m].
-        slenderness_angle: [rad]; youngs_modulus: [Pa]; element_size: [m]; foot: length of a foot, feet only [m].
+        slenderness_angle: [rad]; youngs_modulus: [Pa]; element_size: [m]; foot: its length, feet only [m].
     """
     limit = STIFFEST * youngs_modulus / element_size
     if kind == "corners":
@@ -50,7 +50,7 @@ def choose_normal_penalty(
 
 
 def relaxation_time(damping_ratio: float, mass: float, base_stiffness: float) -> float:
-    """Dashpot over spring of the contact [s], from c/(2 sqrt(k m)) with the mass on half the base's stiffness.
+    """Dashpot over spring of the contact [s]: c/(2 sqrt(k m)) of the mass on half the base's stiffness.
 
     Args:
         damping_ratio: of the whole mass on the spring of one corner [-].

@@ -139,8 +139,8 @@ def test_the_shipped_case_of_a_sliding_box():
 def test_a_stuck_block_does_not_creep(share, stairs, sign):
     """A floor that pulls one way for 20 s, below the limit of friction: elastic, and then nothing.
 
-    Switched on at once, a pull above 0.96 of the limit makes the stick springs swing over it; so the last ones
-    are raised within 2 s.
+    Switched on at once, a pull above 0.96 of the limit makes the stick springs swing over it; so the last
+    ones are raised within 2 s.
     """
     knots = [2.0 * i / stairs for i in range(stairs)]
     pulls = [sign * share * 0.4 * GRAVITY * (i + 1) / stairs for i in range(stairs)]
