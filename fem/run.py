@@ -1,9 +1,9 @@
 """A run, from a case to a verdict and its files.
 
-case -> model (mesh, body, floor, settled) -> step until done -> history -> verdict -> outputs.
+case -> model (mesh, body, floor, settled) -> step until done -> history -> verdict -> outputs; then, where
+they are wanted, the comparison with the rigid block and the band over the contact.
 """
 
-import os
 import platform
 import shutil
 import signal
@@ -18,29 +18,22 @@ from typing import Any
 
 import numpy as np
 
-from contact.body import ROTATION
-from contact.compiled import is_compiled
-from contact.floor_motion import coasting_floor
-from contact.stepping import FAILED, OVERTURNED, Run, advance, advance_compiled
+from contact.event_driven import EventError
+from fem.band import band_of, wants_band
 from fem.case import Case, case_hash, to_toml
 from fem.fields import FieldWriter
-from fem.full_body import FullBody
-from fem.history import History, HistoryWriter
+from fem.history import History, HistoryWriter, read_history
 from fem.model import Model, build_model
 from fem.progress import Reporter, SilentReporter
 from fem.recorder import Recorder
 from fem.recovery import Frame, recovery_of
-from fem.run_folder import RunFolder, open_run_folder
+from fem.rigid_check import check_against_rigid_block, wants_rigid_check
+from fem.run_folder import FINISHED, FolderError, RunFolder, open_run_folder, write_atomically
 from fem.run_warnings import warnings_for
+from fem.simulation import Ending, simulate
 from fem.summary import plain_summary
-from fem.verdict import MODE_NAMES, audit, energy_of, numerics_of, verdict_of
+from fem.verdict import energy_of, numerics_of, verdict_of
 from mesh.cells import FloatArray
-
-#: how far a run goes before it looks up, in simulated seconds and in wall seconds of the files' age
-SLICE_REDUCED, SLICE_FULL = 0.25, 0.01
-STATUS_S = 2.0
-#: a container left beyond its slenderness angle at the end falls or comes back within so many times 1/p
-AFTERMATH = 50.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,15 +55,6 @@ class RunResult:
     history: History
 
 
-@dataclass(frozen=True, kw_only=True)
-class Ending:
-    """How the stepping ended."""
-
-    status: str
-    stepping_cpu_s: float
-    error: str | None = None
-
-
 def run_case(
     case: Case,
     *,
@@ -80,6 +64,8 @@ def run_case(
     reporter: Reporter | None = None,
 ) -> RunResult:
     """Compute a case into a folder.
+
+    A finished run of the same case is not computed again; a band or a rigid check that it lacks is added.
 
     Raises:
         CaseError, MeshError, FolderError: bad input; nothing is left behind.
@@ -96,98 +82,75 @@ def run_case(
         force=options.force,
         resume=options.resume,
     )
-    if place.finished is not None:
-        reporter.message(f"{folder} holds this run already; --force computes it again")
-        return RunResult(
-            status=str(place.finished["status"]), result=place.finished, history=History.empty()
-        )
-    copy_data_files(case, place)
-    base = {
-        "status": "running",
-        "case": case.name,
-        "title": case.title,
-        "case_hash": case_hash(resolved),
-        "static": model.static.to_dict(),
-        "versions": versions(),
-    }
-    place.write_result(base)
-    with ExitStack() as stack:
-        stop = stack.enter_context(interruptible(reporter))
-        history_writer = stack.enter_context(HistoryWriter(place.history))
-        frame_sink = None
-        if case.output.fields_s > 0.0:
-            elements = model.container.elements
-            fields = FieldWriter(
-                place.fields, points=elements.nodes, cells=elements.cells, region=elements.region
-            )
-            stack.callback(fields.close)
-            frame_sink = _frame_writer(fields)
-        recorder = Recorder(model, recovery_of(model), history_writer.append, frame_sink)
-        ending = simulate(model, recorder, reporter=reporter, stop=stop)
-    result = base | result_of(model, recorder, ending)
-    result["wall_s"] = time.perf_counter() - began[0]
-    result["cpu_s"] = time.process_time() - began[1]
-    result["warnings"] = warnings_for(result, case)
-    place.write_result(result)
-    place.write_summary(
-        plain_summary(result, title=case.title or case.name, folder=folder, warnings=result["warnings"])
-    )
+    with interruptible(reporter) as stop:
+        if place.finished is not None:
+            reporter.message(f"{folder} holds this run already; --force computes it again")
+            result, history = dict(place.finished), History.empty()
+            added = add_checks(result, model, place, options, reporter=reporter, stop=stop)
+            if added:
+                store(result, case, place)
+            return RunResult(status=str(result["status"]), result=result, history=history)
+        copy_data_files(case, place)
+        result = {
+            "status": "running",
+            "case": case.name,
+            "title": case.title,
+            "case_hash": case_hash(resolved),
+            "static": model.static.to_dict(),
+            "versions": versions(),
+        }
+        place.write_result(result)
+        ending, recorder = _step_into(place, model, reporter, stop)
+        result |= result_of(model, recorder, ending)
+        for once_more in (True, False):  # the run is safe before its checks begin, and whole after them
+            result["wall_s"] = time.perf_counter() - began[0]
+            result["cpu_s"] = time.process_time() - began[1]
+            store(result, case, place)
+            if not (once_more and add_checks(result, model, place, options, reporter=reporter, stop=stop)):
+                break
     return RunResult(status=ending.status, result=result, history=recorder.history())
 
 
-def simulate(
-    model: Model,
-    recorder: Recorder,
-    *,
-    reporter: Reporter | None = None,
-    stop: Callable[[], bool] = lambda: False,
-) -> Ending:
-    """Step a model to its end; the recorder takes the samples.
+def store(result: dict[str, Any], case: Case, place: RunFolder) -> None:
+    """Write `run.json` with its warnings, and the summary."""
+    result["warnings"] = warnings_for(result, case)
+    place.write_result(result)
+    place.write_summary(
+        plain_summary(result, title=case.title or case.name, folder=place.path, warnings=result["warnings"])
+    )
 
-    A container that the end finds beyond its slenderness angle is followed on a floor that coasts, undriven, until
-    it falls or has come back.
+
+def add_checks(
+    result: dict[str, Any],
+    model: Model,
+    place: RunFolder,
+    options: RunOptions,
+    *,
+    reporter: Reporter,
+    stop: Callable[[], bool],
+) -> bool:
+    """Add the rigid check and the band to a finished run, where they are wanted and missing.
+
+    Returns:
+        Whether anything was added.
+
+    Raises:
+        FolderError: the history in the folder cannot be read.
     """
-    reporter = reporter or SilentReporter()
-    full = isinstance(model.body, FullBody)
-    step = advance if full else advance_compiled
-    if not full:
-        if not is_compiled("advance"):
-            reporter.message("compiling the stepping kernels, once after installation: about half a minute")
-        advance_compiled(model.body, model.run, 0.0)
-    duration, control = model.case.solver.duration_s, model.run.control
-    angle = control.slenderness_angle
-    reporter.start(duration)
-    cpu, run, until = 0.0, model.run, duration
-    clock, track = run.clock[0], run.track[0]
-    status = "completed"
-    while clock.time < until:
-        began = time.process_time()
-        code = step(model.body, run, min(clock.time + (SLICE_FULL if full else SLICE_REDUCED), until))
-        cpu += time.process_time() - began
-        recorder.drain(run)
-        rotation = abs(float(run.old.pose[ROTATION]))
-        reporter.update(float(clock.time), rotation / angle, MODE_NAMES[int(track.mode)])
-        if code == FAILED:
-            reporter.finish()
-            return Ending(status="failed", stepping_cpu_s=cpu, error=_failure(model))
-        if code == OVERTURNED:
-            status = "overturned"
-            break
-        if stop():
-            reporter.finish()
-            return Ending(status="interrupted", stepping_cpu_s=cpu)
-        if clock.time >= duration:
-            if until == duration and angle < rotation < 0.5 * np.pi:
-                run, until = _left_alone(run), duration + AFTERMATH / control.frequency_parameter
-            elif until > duration and rotation < angle:
-                break
-    if np.isfinite(track.overturned_at):
-        status = "overturned"
-    reporter.finish()
-    error = audit(model)
-    if error is not None:
-        return Ending(status="failed", stepping_cpu_s=cpu, error=error)
-    return Ending(status=status, stepping_cpu_s=cpu)
+    case, verdict = model.case, result["verdict"]
+    added = False
+    if result["status"] not in FINISHED:
+        return added
+    if wants_rigid_check(options.check_rigid, case) and result.get("rigid_check") is None:
+        result["rigid_check"] = _rigid_check(model, place, verdict)
+        added = True
+    if wants_band(options.band, case, verdict) and verdict.get("band") is None and not stop():
+        reporter.message("band: the same run over contact penalty and damping")
+        verdict["band"] = band_of(case, model.container, penalty=model.penalty, verdict=verdict, stop=stop)
+        if verdict["band"] is None:
+            reporter.message("the band was stopped; run the case again to have it")
+        added = added or verdict["band"] is not None
+    return added
 
 
 def result_of(model: Model, recorder: Recorder, ending: Ending) -> dict[str, Any]:
@@ -254,12 +217,41 @@ def interruptible(reporter: Reporter) -> Iterator[Callable[[], bool]]:
             signal.signal(number, handler)
 
 
-def _left_alone(run: Run) -> Run:
-    """The run with its floor coasting from now on."""
-    run.clock[0].next_break = 0
-    return run._replace(
-        motion=coasting_floor(run.motion, float(run.clock[0].time)), breaks=np.full(1, np.inf)
-    )
+def _step_into(
+    place: RunFolder, model: Model, reporter: Reporter, stop: Callable[[], bool]
+) -> tuple[Ending, Recorder]:
+    """Step the model; history and fields go into the folder as they come."""
+    with ExitStack() as stack:
+        history = stack.enter_context(HistoryWriter(place.history))
+        frame_sink = None
+        if model.case.output.fields_s > 0.0:
+            elements = model.container.elements
+            fields = FieldWriter(
+                place.fields,
+                points=elements.nodes,
+                cells=elements.cells,
+                region=elements.region.astype(np.int64),
+            )
+            stack.callback(fields.close)
+            frame_sink = _frame_writer(fields)
+        recorder = Recorder(model, recovery_of(model), history.append, frame_sink)
+        return simulate(model, recorder, reporter=reporter, stop=stop), recorder
+
+
+def _rigid_check(model: Model, place: RunFolder, verdict: dict[str, Any]) -> dict[str, Any]:
+    """The comparison with the rigid block, its rotation beside the run's in a table of its own."""
+    try:
+        history = read_history(place.history)
+    except (OSError, ValueError) as error:
+        raise FolderError(
+            f"{place.history}: cannot be compared with the rigid block ({error}); --force runs it again"
+        ) from None
+    try:
+        check = check_against_rigid_block(model, history, verdict)
+    except (ValueError, EventError) as error:  # a run too short, a block that bounces without end
+        return {"reference": None, "meaningful": False, "reasons": [str(error)]}
+    write_atomically(place.rigid_check, check.table())
+    return check.summary
 
 
 def _frame_writer(fields: FieldWriter) -> Callable[[float, Frame, FloatArray, float], None]:
@@ -274,20 +266,3 @@ def _frame_writer(fields: FieldWriter) -> Callable[[float, Frame, FloatArray, fl
         )
 
     return write
-
-
-def _failure(model: Model) -> str:
-    """Where and why the stepping gave up, and what to try."""
-    clock, work = model.run.clock[0], model.run.work
-    residual = float(np.abs(work.law - work.force).max())
-    step = model.run.control.smallest_step
-    return (
-        f"step {int(clock.steps) + 1}, t = {float(clock.time):.6g} s: the contact forces are out of balance by "
-        f"{residual:.2g} N after the last iteration at the smallest step ({step:.1g} s); try a softer "
-        "contact.normal_penalty_Pa_m, contact.weakening_m > 0, or a smaller solver.step_s"
-    )
-
-
-def cores() -> int:
-    """Processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)

@@ -59,6 +59,11 @@ class RunFolder:
         return self.path / "history.csv"
 
     @property
+    def rigid_check(self) -> Path:
+        """The analytic block's rotation beside the run's."""
+        return self.path / "rigid_check.csv"
+
+    @property
     def fields(self) -> Path:
         """Folder of `run.pvd` and its frames."""
         return self.path / "fields"
@@ -237,7 +242,7 @@ def _make(path: Path) -> list[Path]:
 
 def _remove_results(folder: RunFolder) -> None:
     """Remove what an earlier run left, and nothing else that may lie there."""
-    for file in (folder.summary, folder.history, folder.checkpoint):
+    for file in (folder.summary, folder.history, folder.rigid_check, folder.checkpoint):
         file.unlink(missing_ok=True)
     for place, patterns in (
         (folder.fields, ("run.pvd", "frame_*.vtu", ".*.part")),

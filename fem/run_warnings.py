@@ -34,10 +34,16 @@ def band_is_unsure(result: Result, case: Case) -> str | None:
     if not band.get("unsure"):
         return None
     low, high = band["rotation_ratio"]
-    return (
+    failed = [member for member in band.get("members") or () if member["outcome"] is None]
+    found = (
         "unsure: within the band of contact stiffness and damping the outcome is "
         f"{' or '.join(band['outcomes'])}, the rotation ratio {low:.3g} to {high:.3g}"
     )
+    places = ", ".join(
+        f"{member['normal_penalty_Pa_m']:.3g} Pa/m with damping ratio {member['damping_ratio']:g}"
+        for member in failed
+    )
+    return f"{found}; no outcome, because the solution failed, at penalty {places}" if failed else found
 
 
 def energy_is_near_its_limits(result: Result, case: Case) -> str | None:

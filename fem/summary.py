@@ -20,6 +20,11 @@ Result = Mapping[str, Any]
 
 TEXT_WIDTH = 110
 CODE_NOTE = "The code's rows hold a design response (EN 1998-1:2004, 4.3.3.2), not the motion of this floor."
+BAND_NOTE = (
+    "The band repeats the run with a third and three times the contact penalty and with contact damping "
+    "ratios 0.5 and 2, for nobody knows a floor better: one outcome throughout means that it does not hang on "
+    "the contact, different ones mean that this model cannot tell."
+)
 MARGIN_NOTE = (
     "The rotation ratio is no margin: the factor on the motion is, and only a scan of motions finds it."
 )
@@ -49,6 +54,8 @@ def screen_summary(
         parts.append(_run_table(rows))
     if (result.get("verdict") or {}).get("outcome") in ("rock", "slide-rock"):
         parts += [Text(MARGIN_NOTE), Text()]
+    if (result.get("verdict") or {}).get("band"):
+        parts += [Text(BAND_NOTE), Text()]
     parts.append(_files(folder))
     parts += [Text(f"Warning: {warning}", style="yellow") for warning in warnings]
     return Group(*parts)
@@ -179,6 +186,7 @@ def _run_rows(result: Result) -> list[tuple[str, str]]:
         ("acceleration of the contents", _unit(verdict.get("max_acceleration_m_s2"), 1.0, "m/s2")),
         ("von Mises stress", _unit(verdict.get("max_von_mises_Pa"), 1e-6, "MPa")),
         ("band of the contact", _band(band)),
+        *_rigid_rows(result.get("rigid_check") or {}, static.get("slenderness_angle_rad")),
         ("energy closure", _closure(energy)),
         ("steps", _steps(numerics)),
         ("time", _times(result, numerics)),
@@ -204,7 +212,41 @@ def _band(band: Mapping[str, Any]) -> str:
     if not band:
         return ""
     low, high = band["rotation_ratio"]
-    return f"{', '.join(band['outcomes'])}; rotation ratio {low:.3g} to {high:.3g}"
+    members = band.get("members") or ()
+    failed = sum(member["outcome"] is None for member in members)
+    return (
+        f"{', '.join(band['outcomes'])}; rotation ratio {low:.3g} to {high:.3g}"
+        + (f"; {failed} of {len(members)} failed" if failed else "")
+        + ("; unsure" if band.get("unsure") else "")
+    )
+
+
+def _rigid_rows(check: Mapping[str, Any], angle: float | None) -> list[tuple[str, str]]:
+    """The run beside the analytic rigid block."""
+    if not check:
+        return []
+    rows = []
+    for key, name, form, unit in (
+        ("first_impact_s", "first impact", ".4f", " s"),
+        ("velocity_ratio", "velocity ratio", ".4f", ""),
+    ):
+        run, block = (check.get(key) or {}).get("run"), (check.get(key) or {}).get("block")
+        if run is not None or block is not None:
+            rows.append(
+                (
+                    f"rigid check, {name}",
+                    f"{_number(run, 1.0, form)}{unit} (block {_number(block, 1.0, form)})",
+                )
+            )
+    peaks = check.get("peaks") or ()
+    if peaks and angle:
+        found, expected = (
+            ", ".join(f"{peak[key] / angle:.3f}" for peak in peaks[:4]) for key in ("run_rad", "block_rad")
+        )
+        rows.append(("rigid check, first peaks", f"{found} (block {expected}) of the slenderness angle"))
+    verdict = "a fair comparison" if check.get("meaningful") else "no fair comparison: "
+    rows.append(("rigid check", verdict + "; ".join(check.get("reasons") or ())))
+    return rows
 
 
 def _closure(energy: Mapping[str, Any]) -> str:

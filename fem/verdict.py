@@ -1,7 +1,7 @@
 """What a run found: outcome, extremes, events, energy, numerics, as `run.json` holds them.
 
-The container slides when it slid more than 1e-4 of its width, it rocks when it turned by more than a hundredth
-of its slenderness angle with a side unloaded, below both it rested; overturned is 90 degrees.
+The container slides when it slid more than 1e-4 of its width, it rocks when it turned by more than a
+hundredth of its slenderness angle with a side unloaded, below both it rested; overturned is 90 degrees.
 """
 
 import math
@@ -54,6 +54,7 @@ def verdict_of(model: Model, history: History, largest_von_mises: float | None) 
         "impacts": int(track.impacts),
         "first_opening_s": _time(track.first_opening),
         "first_uplift_s": _time(track.first_uplift),
+        "first_impact_s": _time(track.first_impact),
         "overturned_at_s": _time(track.overturned_at),
         "restored": rocked and at_end < ROCKING * angle,
         "restitution_first": _restitution(model),
@@ -130,12 +131,11 @@ def _time(instant: float) -> float | None:
 
 
 def _modes_seen(model: Model, outcome: str) -> list[str]:
-    """Modes that the history passed through; sliding too small to count in the outcome does not count here."""
+    """Modes that the history passed through; sliding too small for the outcome does not count here."""
     bits = int(model.run.track[0].modes)
     if model.run.track[0].max_slip <= SLIDING * model.container.mesh.width:
-        bits = sum(1 << (mode & ~SLIDE) for mode in (REST, ROCK) if bits & (1 << mode | 1 << (mode | SLIDE))) | (
-            bits & 1 << FALLEN
-        )
+        seen = [mode for mode in (REST, ROCK) if bits & (1 << mode | 1 << (mode | SLIDE))]
+        bits = sum(1 << mode for mode in seen) | (bits & 1 << FALLEN)
     return [name for mode, name in MODE_NAMES.items() if bits & 1 << mode]
 
 

@@ -1,0 +1,145 @@
+"""How sure an outcome is: the same run again over the stiffness and the damping of the contact.
+
+Restitution at an impact is a property of the support, and where the container's first elastic mode is not far
+above the bounce on the contact, an impact feeds vibration as well: how much then depends on stiffness and
+damping, and with friction even the regime of motion may. Nobody knows either of a floor within a factor of
+three. So the run is repeated with the penalty divided and multiplied by three and with damping ratios 0.5
+(the contact bounces a little) and 2 (it does not); where the outcomes differ, the verdict is unsure. A member
+that fails is no outcome and makes it unsure as well.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass
+from itertools import product
+from typing import Any
+
+from fem.case import Case
+from fem.model import Container, build_model
+from fem.recorder import Recorder
+from fem.simulation import cores, simulate
+from fem.verdict import MODE_NAMES, outcome_of
+
+PENALTY_FACTORS = (1.0 / 3.0, 1.0, 3.0)
+DAMPING_RATIOS = (0.5, 2.0)
+#: outcomes that depend on impacts, or may
+DEPENDENT = frozenset({"rock", "slide-rock", "overturned"})
+NO_SAMPLES_S = 1e4  #: interval of a history of which nobody will read more than its first row
+
+
+@dataclass(frozen=True, kw_only=True)
+class Member:
+    """One run of a band."""
+
+    normal_penalty_Pa_m: float  # noqa: N815 - the unit, as in a case file
+    damping_ratio: float  #: of the contact [-]
+    status: str  #: completed | overturned | failed
+    outcome: str | None  #: None where it failed
+    rotation_ratio: float | None  #: largest |rotation| over the slenderness angle; None where it failed
+    error: str | None = None
+
+
+def wants_band(asked: bool | None, case: Case, verdict: Mapping[str, Any]) -> bool:
+    """Whether a finished run is to have a band: as asked, else where its outcome depends on impacts.
+
+    A run of the `full` model has one only when asked: it would take six times as long.
+    """
+    if asked is not None:
+        return asked
+    return case.solver.model != "full" and verdict.get("outcome") in DEPENDENT
+
+
+def band_of(
+    case: Case,
+    container: Container,
+    *,
+    penalty: float,
+    verdict: Mapping[str, Any],
+    stop: Callable[[], bool] = lambda: False,
+) -> dict[str, Any] | None:
+    """Run the members of a band side by side and sum them up.
+
+    Args:
+        case: of the run.
+        container: of the run; its mesh and modes serve every member.
+        penalty: of the run [Pa/m].
+        verdict: of the run, which is itself a member.
+        stop: asked now and then; true ends the band.
+
+    Returns:
+        The `band` of a verdict, or None if it was stopped.
+    """
+    given = Member(
+        normal_penalty_Pa_m=penalty,
+        damping_ratio=case.contact.damping_ratio,
+        status="overturned" if verdict["outcome"] == "overturned" else "completed",
+        outcome=verdict["outcome"],
+        rotation_ratio=verdict["rotation_ratio"],
+    )
+    floors = _other_floors(penalty, case.contact.damping_ratio)
+    # The full model is stepped by the interpreter, under its lock: threads would gain nothing.
+    workers = 1 if case.solver.model == "full" else min(cores(), len(floors))
+    with ThreadPoolExecutor(max_workers=workers) as pool:
+        members = list(pool.map(lambda floor: _run_member(case, container, floor, stop), floors))
+    if stop():
+        return None
+    return summed_up([given, *members])
+
+
+def summed_up(members: Sequence[Member]) -> dict[str, Any]:
+    """The `band` of a verdict: outcomes in the order of the motion's states, range of rotation, doubt."""
+    standing = [member for member in members if member.outcome is not None]
+    found = {member.outcome for member in standing}
+    ratios = [member.rotation_ratio for member in standing if member.rotation_ratio is not None]
+    return {
+        "outcomes": [name for name in MODE_NAMES.values() if name in found],
+        "rotation_ratio": [min(ratios), max(ratios)],
+        "unsure": len(found) > 1 or len(standing) < len(members),
+        "members": [asdict(member) for member in members],
+    }
+
+
+def _other_floors(penalty: float, damping_ratio: float) -> list[tuple[float, float]]:
+    """Penalty [Pa/m] and damping ratio of all members but the run itself."""
+    ratios = sorted({*DAMPING_RATIOS, damping_ratio})
+    return [
+        (factor * penalty, ratio)
+        for factor, ratio in product(PENALTY_FACTORS, ratios)
+        if (factor, ratio) != (1.0, damping_ratio)
+    ]
+
+
+def _run_member(
+    case: Case, container: Container, floor: tuple[float, float], stop: Callable[[], bool]
+) -> Member:
+    """One member; whatever keeps it from an outcome is its error, never an outcome."""
+    penalty, damping_ratio = floor
+    status, error = "failed", None
+    outcome: str | None = None
+    ratio: float | None = None
+    try:
+        changed = case.with_values(
+            {
+                "contact.normal_penalty_Pa_m": penalty,
+                "contact.damping_ratio": damping_ratio,
+                "output.history_s": NO_SAMPLES_S,
+                "output.fields_s": 0.0,
+            }
+        )
+        model = build_model(changed, container)
+        ending = simulate(model, Recorder(model), stop=stop)
+    except (ValueError, ArithmeticError, RuntimeError) as problem:  # bad input, no stance, a singular matrix
+        error = str(problem)
+    else:
+        status, error = ending.status, ending.error
+        if status in ("completed", "overturned"):
+            outcome = outcome_of(model)
+            ratio = float(model.run.track[0].max_rotation) / model.static.slenderness_angle
+    return Member(
+        normal_penalty_Pa_m=penalty,
+        damping_ratio=damping_ratio,
+        status=status,
+        outcome=outcome,
+        rotation_ratio=ratio,
+        error=error,
+    )
