@@ -115,6 +115,7 @@ class Rig:
         """Step to `until` [s] or, as no step is cut for it, just beyond."""
         status = advance_compiled(self.body, self.run, until)
         assert status == 0, f"stopped with status {status} at {self.time} s"
+        assert self.time >= until, f"no room for more samples at {self.time} s"
         return self
 
     @property
