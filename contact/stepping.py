@@ -53,6 +53,7 @@ ITERATION_LIMIT = 12  #: of free motion, contact, response within one step
 STEPS_PER_OCTAVE = 3  #: of the ladder of step sizes
 NEIGHBOUR = 0.25  #: base points nearer than this, over the width, close as one
 HELD_STEPS = 6  #: after a rejection
+ROOM_SHARE = 0.1  #: of what is left before the ledger wins, for the gain of one step
 FADING = 0.8  #: of the memory for the imbalance, a step
 
 #: what `advance` returns
@@ -90,6 +91,8 @@ class Control(NamedTuple):
     energy_share: float  #: imbalance allowed over what a step dissipates [-]
     trail_share: float  #: imbalance allowed over what was dissipated shortly before [-]
     trail_time: float  #: how long that counts [s]
+    gain_room: float  #: what the ledger may have won before gains are held small, over the reference energy [-]
+    gain_share: float  #: and then: of the imbalance allowed, what of it may be a gain [-]
     closing_share: float  #: imbalance allowed when a gap closes, over the kinetic energy relative to the floor [-]
     mass: float  #: [kg]
     gravity: float  #: [m/s2]
@@ -698,7 +701,11 @@ def advance(body: Any, run: Run, until: float) -> int:
             continue
         every, slip_step, slip_velocity = slide(run, step)
         dissipated = account(run)
-        used = abs(run.change[IMBALANCE]) / allowed_imbalance(run, step, dissipated)
+        allowed = allowed_imbalance(run, step, dissipated)
+        if run.change[IMBALANCE] < 0.0:  # a gain: small once the ledger as a whole comes near one
+            room = ROOM_SHARE * (run.ledger[IMBALANCE] + control.gain_room * control.reference_energy)
+            allowed = min(allowed, max(room, control.gain_share * allowed))
+        used = abs(run.change[IMBALANCE]) / allowed
         switches = (clock.sliding == 1) != every
         if switches and step > 1.01 * control.event_step:
             used = max(used, 9.0 if step > 4.0 * control.event_step else 2.0)

@@ -47,6 +47,8 @@ ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE = 1e-5, 2e-7, 4e-3
 #: .. at a first touch: over the energy that a rigid block would lose there
 CLOSING_SHARE, LEAST_LOSS = 2e-3, 0.02
 TRAIL_SHARE, TRAIL_TIME = 2e-2, 0.1
+#: a gain is worse than a loss: beyond this, over the reference energy, only so much of what is allowed may be one
+GAIN_ROOM, GAIN_SHARE = 1e-5, 0.05
 #: closings with less energy than this, over the energy to overturn, are left to the ledger
 SOFT_CLOSING = 1e-6
 #: error of a base point at which the iterations of a step stop, over the static penetration
@@ -301,6 +303,8 @@ def _control(
         energy_share=ENERGY_SHARE,
         trail_share=TRAIL_SHARE,
         trail_time=TRAIL_TIME / rate,
+        gain_room=GAIN_ROOM,
+        gain_share=GAIN_SHARE,
         closing_share=CLOSING_SHARE * max(1.0 - static.housner_restitution**2, LEAST_LOSS),
         mass=mesh.mass,
         gravity=case.gravity_m_s2,
