@@ -23,7 +23,9 @@ from contact.scheme import Scheme
 from contact.stepping import CLOCK, OVERTURNED, REACHED, Control, Run, Samples, advance_compiled, make_samples
 from contact.tracking import TRACK
 
-CONTACT_NUMBERS = tuple(name for name in Contact._fields if name not in ("normal_stiffness", "tangential_stiffness"))
+CONTACT_NUMBERS = tuple(
+    name for name in Contact._fields if name not in ("normal_stiffness", "tangential_stiffness")
+)
 ROWS_AT_A_TIME = 8  #: handed to a thread: small enough to share the work evenly and to report progress
 
 
@@ -40,7 +42,9 @@ class Rows(NamedTuple):
     motion_coefficients: FloatArray  #: (k, .., 4) padded
     breaks: FloatArray  #: (k, ..) instants that a step must end on, padded with infinity
     duration: FloatArray  #: (k,) [s]
-    aftermath: FloatArray  #: (k,) how long a container beyond its slenderness angle is followed afterwards [s]
+    aftermath: (
+        FloatArray  #: (k,) how long a container beyond its slenderness angle is followed afterwards [s]
+    )
     position: FloatArray  #: (k, n_d) initial state, and so on
     velocity: FloatArray
     acceleration: FloatArray
@@ -92,7 +96,9 @@ def pack_rows(runs: Sequence[Run], durations: Sequence[float], aftermaths: Seque
     return Rows(
         normal_stiffness=np.stack([run.contact.normal_stiffness for run in runs]),
         tangential_stiffness=np.stack([run.contact.tangential_stiffness for run in runs]),
-        contact=np.array([[getattr(run.contact, name) for name in CONTACT_NUMBERS] for run in runs], dtype=float),
+        contact=np.array(
+            [[getattr(run.contact, name) for name in CONTACT_NUMBERS] for run in runs], dtype=float
+        ),
         control=np.array([tuple(run.control) for run in runs], dtype=float),
         motion_kind=np.array([motion.kind for motion in motions], dtype=np.int64),
         motion_parameters=_padded([motion.parameters for motion in motions], 0.0),

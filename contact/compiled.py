@@ -45,26 +45,25 @@ def cache_folder() -> Path:
 def compiled(function: Callable[..., Any], *, inline: bool = False) -> Any:
     """Compile a function of numbers, arrays and named tuples on first call; keep the machine code.
 
-    `inline` puts the body of a function that has one caller into it: the tuples of arrays that the kernels live
-    on are dear to hand over.
+    `inline` asks LLVM to put the function into its caller whatever its size: the tuples of arrays that the
+    kernels live on are dear to hand over.
 
-    The kernels own no memory: numba's runtime, which would count references at every call, is left out, and so
-    none may allocate an array. They run without the interpreter's lock. Division by zero follows IEEE (as in numpy); no fast-math, so that a run is the same bytes again.
+    The kernels own no memory: numba's runtime, which would count references at every call, is left out, and
+    so none may allocate an array. They run without the interpreter's lock. Division by zero follows IEEE (as
+    in numpy); no fast-math, so that a run is the same bytes again.
     """
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(cache_folder())
+    options: dict[str, Any] = {"cache": True, "error_model": "numpy", "nogil": True, "_nrt": False}
+    before = getattr(config, "CACHE_DIR")  # noqa: B009 - numba sets its options at run time
+    setattr(config, "CACHE_DIR", str(cache_folder()))  # noqa: B010
     try:
-        return numba.njit(
-            cache=True,
-            error_model="numpy",
-            forceinline=inline,
-            nogil=True,
-            _nrt=False,
-        )(function)
+        return numba.njit(forceinline=inline, **options)(function)
     finally:
-        config.CACHE_DIR = before
+        setattr(config, "CACHE_DIR", before)  # noqa: B010
 
 
 def is_compiled(name: str) -> bool:
     """True if machine code of the function of that name lies in the cache (no compilation ahead)."""
-    return any(f".{name}-" in entry.name or entry.name.startswith(f"{name}-") for entry in cache_folder().rglob("*.nbc"))
+    return any(
+        f".{name}-" in entry.name or entry.name.startswith(f"{name}-")
+        for entry in cache_folder().rglob("*.nbc")
+    )

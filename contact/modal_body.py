@@ -15,7 +15,6 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba.core import types
 from numba.extending import overload
 
 from contact import body as interface
@@ -35,7 +34,6 @@ from contact.compiled import compiled
 from contact.initial import Stance
 from contact.interface import FloatArray, Workspace, turn_compliance
 from contact.scheme import Scheme
-
 
 STEP_SLOTS = 16  #: step sizes whose effective compliance is kept
 
@@ -157,7 +155,9 @@ def _effective_slot(body: ModalBody, scheme: Scheme, step: float) -> int:
         for b in range(a, 2 * n):
             total = 0.0
             for k in range(m):
-                total += body.shape[a // 2, a % 2, k] * body.shape[b // 2, b % 2, k] * body.inverse[slot, 3 + k]
+                total += (
+                    body.shape[a // 2, a % 2, k] * body.shape[b // 2, b % 2, k] * body.inverse[slot, 3 + k]
+                )
             body.elastic_compliance[slot, a, b] = total
             body.elastic_compliance[slot, b, a] = total
     return slot
@@ -167,7 +167,13 @@ effective_slot = compiled(_effective_slot)
 
 
 def _place_points(
-    body: ModalBody, state: State, work: Workspace, floor: float, floor_velocity: float, cosine: float, sine: float
+    body: ModalBody,
+    state: State,
+    work: Workspace,
+    floor: float,
+    floor_velocity: float,
+    cosine: float,
+    sine: float,
 ) -> None:
     """Base points and their velocities at the iterate, relative to the floor; arms into `body.arm`."""
     m = body.stiffness.size
@@ -217,9 +223,7 @@ def _release(
         elif j == 2:
             mass = body.inertia
         else:
-            force -= now * (
-                body.damping[j - 3] * new.velocity[j] + body.stiffness[j - 3] * new.position[j]
-            )
+            force -= now * (body.damping[j - 3] * new.velocity[j] + body.stiffness[j - 3] * new.position[j])
         if j == 1:
             force -= now * body.mass * body.gravity
         force -= mass * ((1.0 - scheme.alpha_m) * new.acceleration[j] + scheme.alpha_m * old.acceleration[j])
@@ -247,7 +251,9 @@ def _release(
             work.compliance[2 * i + 1, 2 * j + 1] += drift + turn * body.arm[i, 0] * body.arm[j, 0]
 
 
-def _gather_force(body: ModalBody, force: FloatArray, rotation: float, arm: FloatArray, out: FloatArray) -> None:
+def _gather_force(
+    body: ModalBody, force: FloatArray, rotation: float, arm: FloatArray, out: FloatArray
+) -> None:
     """Generalised contact force J^T f into `out`."""
     m = body.stiffness.size
     cosine, sine = math.cos(rotation), math.sin(rotation)
@@ -361,7 +367,7 @@ def _compile_for_modal_body(function: Callable[..., Any], implementation: Callab
     """Let compiled callers of `function` use `implementation` when the body is a `ModalBody`."""
 
     def choose(body: Any, *arguments: Any) -> Callable[..., Any] | None:
-        if isinstance(body, types.BaseNamedTuple) and body.instance_class is ModalBody:
+        if getattr(body, "instance_class", None) is ModalBody:
             return implementation
         return None
 

@@ -37,7 +37,6 @@ from contact.floor_motion import FloorMotion, floor_motion
 from contact.interface import Contact, FloatArray, Workspace, solve_contact
 from contact.laws import ELASTIC_STICK, relaxed_stick, weakened_mu
 from contact.ledger import (
-    ROWS as LEDGER_ROWS,
     BASE_WORK,
     CONTACT_DAMPING,
     FRICTION,
@@ -45,6 +44,9 @@ from contact.ledger import (
     MATERIAL_DAMPING,
     contact_losses,
     spring_energy,
+)
+from contact.ledger import (
+    ROWS as LEDGER_ROWS,
 )
 from contact.scheme import Scheme
 from contact.tracking import FALLEN, NEVER, follow, make_track
@@ -77,6 +79,7 @@ OVERTURNING_ROTATION = 0.5 * np.pi
 ) = range(12)
 ROW_COLUMNS = 12
 
+
 class Control(NamedTuple):
     """Limits of the stepping: constants of one run."""
 
@@ -91,9 +94,13 @@ class Control(NamedTuple):
     energy_share: float  #: imbalance allowed over what a step dissipates [-]
     trail_share: float  #: imbalance allowed over what was dissipated shortly before [-]
     trail_time: float  #: how long that counts [s]
-    gain_room: float  #: what the ledger may have won before gains are held small, over the reference energy [-]
+    gain_room: (
+        float  #: what the ledger may have won before gains are held small, over the reference energy [-]
+    )
     gain_share: float  #: and then: of the imbalance allowed, what of it may be a gain [-]
-    closing_share: float  #: imbalance allowed when a gap closes, over the kinetic energy relative to the floor [-]
+    closing_share: (
+        float  #: imbalance allowed when a gap closes, over the kinetic energy relative to the floor [-]
+    )
     mass: float  #: [kg]
     gravity: float  #: [m/s2]
     frequency_parameter: float  #: of rocking [1/s]
@@ -353,7 +360,9 @@ def _account(run: Run) -> float:
     material = 0.0
     for j in range(new.damping.size):
         material += 0.5 * (old.damping[j] + new.damping[j]) * (new.position[j] - old.position[j])
-    stored = spring_energy(run.contact, new.point, new.stick) - spring_energy(run.contact, old.point, old.stick)
+    stored = spring_energy(run.contact, new.point, new.stick) - spring_energy(
+        run.contact, old.point, old.stick
+    )
     for row in (KINETIC, STRAIN, POTENTIAL):
         stored += new.energy[row] - old.energy[row]
     change[BASE_WORK] = shear * (run.floor[1, 0] - run.floor[0, 0])
@@ -386,7 +395,9 @@ def _copy_state(old: State, new: State) -> None:
 copy_state = compiled(_copy_state, inline=True)
 
 
-def _hermite(share: float, step: float, value: float, rate: float, value_new: float, rate_new: float) -> float:
+def _hermite(
+    share: float, step: float, value: float, rate: float, value_new: float, rate_new: float
+) -> float:
     """Cubic through values and rates at both ends of a step, at `share` of it."""
     s = share
     return (
@@ -449,7 +460,9 @@ watch_contents = compiled(_watch_contents, inline=True)
 
 
 @register_jitable(forceinline=True)
-def sample(body: Any, run: Run, samples: Samples, written: int, origin: int, step: float, slip_step: float) -> int:
+def sample(
+    body: Any, run: Run, samples: Samples, written: int, origin: int, step: float, slip_step: float
+) -> int:
     """Write the samples that fall into the step just attempted, from the old time up to and with the new one.
 
     `written` samples exist so far, the first `origin` of them are no longer in the arrays; returns how many exist now.
@@ -542,7 +555,9 @@ def _next_step(run: Run) -> float:
     step = control.largest_step * 2.0 ** (-clock.level / STEPS_PER_OCTAVE)
     if step > control.closing_step:
         due = max(closing_time(control, run.old, step), control.closing_step)
-        if due < step:  # on the ladder, just short of it: a new step size is dear to a body that factors a matrix
+        if (
+            due < step
+        ):  # on the ladder, just short of it: a new step size is dear to a body that factors a matrix
             due_level = ladder_level(control.largest_step, due)
             step = control.largest_step * 2.0 ** (-due_level / STEPS_PER_OCTAVE)
             if due == control.closing_step:
@@ -576,7 +591,9 @@ def _allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
     closing, closing_beside = False, False
     for i in range(new.point.shape[0]):
         if old.point[i, 1] >= 0.0 and new.point[i, 1] < 0.0:
-            beside = _rests_beside(old, i - 1, i, control.width) or _rests_beside(old, i + 1, i, control.width)
+            beside = _rests_beside(old, i - 1, i, control.width) or _rests_beside(
+                old, i + 1, i, control.width
+            )
             closing = closing or not beside
             closing_beside = closing_beside or beside
     if closing or closing_beside:  # a base that zips up shares the allowance among its points
@@ -623,7 +640,9 @@ ladder_level = compiled(_ladder_level)
 
 
 @register_jitable(forceinline=True)
-def _accept(body: Any, run: Run, step: float, slip_step: float, slip_velocity: float, every: bool, iterations: int) -> None:
+def _accept(
+    body: Any, run: Run, step: float, slip_step: float, slip_velocity: float, every: bool, iterations: int
+) -> None:
     """Make the step attempted the state of the run; samples, ledger and record follow."""
     control, clock = run.control, run.clock[0]
     end = clock.time + step

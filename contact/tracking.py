@@ -57,7 +57,10 @@ TRACK = np.dtype(
         ("watched", "f8"),  # how long the angular velocity has been averaged since
         ("mean_velocity", "f8"),
         ("velocity_before", "f8"),  # angular velocity just before the first impact
-        ("pivot_waiting", "i8"),  # the corner that was the pivot at the first impact: -1 left, +1 right, 0 none
+        (
+            "pivot_waiting",
+            "i8",
+        ),  # the corner that was the pivot at the first impact: -1 left, +1 right, 0 none
         ("restitution_by_velocity", "f8"),
     ],
     align=True,

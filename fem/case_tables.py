@@ -321,6 +321,10 @@ class Solver(Table):
     step_s: Annotated[float, q.STEP] | Literal["auto"] = Field(
         default="auto", description='largest step, or "auto"'
     )
+    energy_tolerance: Annotated[float, q.ENERGY_TOLERANCE] = Field(
+        default=1.0,
+        description="factor on the energy that a step may lose; 10: coarser and faster, for maps",
+    )
     duration_s: Annotated[float, q.DURATION] = Field(default=20.0, description="simulated time")
     element_size_m: Annotated[float, q.ELEMENT_SIZE] = Field(
         default=0.1, description="of the structured mesh; mesh lines also at wall_m and foot_m"

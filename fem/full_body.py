@@ -31,7 +31,7 @@ from contact.body import (
     State,
 )
 from contact.initial import Stance
-from contact.interface import FloatArray, Workspace, turn_compliance
+from contact.interface import FloatArray, IntArray, Workspace, turn_compliance
 from contact.scheme import Scheme
 from fem.assembly import FiniteElements
 from fem.reduction import StaticResponse
@@ -70,8 +70,8 @@ class FullBody:
     def __init__(
         self,
         elements: FiniteElements,
-        base: FloatArray,
-        monitor: FloatArray,
+        base: IntArray,
+        monitor: IntArray,
         *,
         gravity: float,
         damping: float,

@@ -237,7 +237,9 @@ def _monitors(elements: FiniteElements) -> IntArray:
     contents = np.isin(elements.region, (Region.FILL, Region.SOLID))
     held = np.unique(elements.cells[contents] if contents.any() else elements.cells)
     x, z = elements.nodes[held].T
-    corners = [held[np.argmax(a * x / np.ptp(x) + b * z / np.ptp(z))] for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
+    corners = [
+        held[np.argmax(a * x / np.ptp(x) + b * z / np.ptp(z))] for a in (-1.0, 1.0) for b in (-1.0, 1.0)
+    ]
     middle = held[np.argmin(np.hypot(x - x.mean(), z - 0.5 * (z.min() + z.max())))]
     return np.concatenate([_upper_corners(elements), [middle, *corners]])
 
@@ -285,6 +287,7 @@ def _control(
     else:
         largest = case.solver.step_s
     largest = min(largest, case.solver.duration_s)
+    loose = case.solver.energy_tolerance
     spring = float(contact.normal_stiffness[0])
     struck = _struck_mass(case, container)
     # Time constants of a mass on the dashpot and on the spring of a corner.
@@ -298,14 +301,14 @@ def _control(
         closing_step=min(closing, largest),
         closing_speed=math.sqrt(SOFT_CLOSING * reference / mesh.mass),
         reference_energy=reference,
-        energy_rate=ENERGY_RATE * rate,
-        energy_floor=ENERGY_FLOOR,
-        energy_share=ENERGY_SHARE,
-        trail_share=TRAIL_SHARE,
+        energy_rate=loose * ENERGY_RATE * rate,
+        energy_floor=loose * ENERGY_FLOOR,
+        energy_share=loose * ENERGY_SHARE,
+        trail_share=loose * TRAIL_SHARE,
         trail_time=TRAIL_TIME / rate,
         gain_room=GAIN_ROOM,
         gain_share=GAIN_SHARE,
-        closing_share=CLOSING_SHARE * max(1.0 - static.housner_restitution**2, LEAST_LOSS),
+        closing_share=loose * CLOSING_SHARE * max(1.0 - static.housner_restitution**2, LEAST_LOSS),
         mass=mesh.mass,
         gravity=case.gravity_m_s2,
         frequency_parameter=rate,

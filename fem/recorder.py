@@ -91,7 +91,7 @@ class Recorder:
         first, count = int(clock.samples_gone), int(clock.samples - clock.samples_gone)
         if count == 0:
             return
-        times = np.arange(first, first + count) * samples.interval
+        times: FloatArray = np.arange(first, first + count, dtype=np.float64) * samples.interval
         rows = np.empty((count, NUMBERS))
         rows[:, 0] = times
         rows[:, 1:4] = floor_history(run.motion, times).T

@@ -12,7 +12,7 @@ import numpy as np
 import scipy.linalg
 import scipy.sparse.linalg
 
-from contact.interface import FloatArray
+from contact.interface import FloatArray, IntArray
 from fem.assembly import FiniteElements
 from fem.modes import elastic_modes, rigid_modes
 
@@ -36,7 +36,7 @@ class ReducedBasis:
     shapes: FloatArray  #: (m, n, 2) mass-normalised [1/sqrt(kg)]
 
 
-def static_response(elements: FiniteElements, base: FloatArray) -> StaticResponse:
+def static_response(elements: FiniteElements, base: IntArray) -> StaticResponse:
     """Answer of the free elastic container to unit forces at the nodes `base` (n_c,).
 
     The body is held at three degrees of freedom; the loads balance themselves, so the supports carry nothing
@@ -72,7 +72,9 @@ def reduced_basis(elements: FiniteElements, response: StaticResponse, modes: int
     mass, stiffness = elements.vector_mass, elements.stiffness
     columns = np.zeros((elements.unknowns, 0))
     if modes > 0:
-        columns = elastic_modes(elements, min(modes, elements.unknowns - 3)).shapes.reshape(-1, elements.unknowns).T
+        columns = (
+            elastic_modes(elements, min(modes, elements.unknowns - 3)).shapes.reshape(-1, elements.unknowns).T
+        )
     attachments = response.displacement.reshape(-1, elements.unknowns).T
     for _ in range(2):  # twice is enough to make them orthogonal to rounding
         attachments = attachments - columns @ (columns.T @ (mass @ attachments))
