@@ -52,6 +52,17 @@ def test_a_push_stops_where_friction_has_eaten_its_energy():
     assert abs(run.slip_velocity) < 1e-9
 
 
+def test_slip_leaves_out_the_elastic_stick():
+    # A corner moves by its slip and the elongation of its spring, mu_k N/k; a low block: both carry alike.
+    block = replace(BOX, height=0.05, bounce_frequency=20.0)
+    run = rig(block, motion=constant_pull(0.6 * GRAVITY)).advance(0.5)
+    state = run.run.old
+    stick = float(state.stick.mean())
+    assert abs(stick) == pytest.approx(0.2 * block.mass * GRAVITY / block.base_stiffness, rel=0.01)
+    moved = float((state.point[:, 0] - block.point[:, 0]).mean())
+    assert moved - float(run.clock.slip) == pytest.approx(stick, rel=0.02)
+
+
 def test_friction_heat_is_kinetic_friction_times_the_path():
     block = replace(BOX, mu_static=0.2)
     motion = HarmonicMotion(amplitude=AMPLITUDE, angular_frequency=12.0, duration=10.0)
