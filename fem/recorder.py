@@ -46,6 +46,9 @@ ORDER = (
     ROW_IMBALANCE,
 )
 
+#: samples searched for the largest stress at each emptying, those of the largest strain energy
+STRAINED = 4
+
 HistorySink = Callable[[FloatArray, Sequence[str]], None]
 FrameSink = Callable[[float, Frame, FloatArray, float], None]
 
@@ -74,7 +77,7 @@ class Recorder:
         self._rows: list[FloatArray] = []
         self._modes: list[str] = []
         self._area = _contact_areas(model)
-        self.largest_von_mises = 0.0  #: so far, over frames and samples [Pa]
+        self.largest_von_mises = 0.0  #: so far, over frames and the most strained samples [Pa]
 
     def drain(self, run: Run) -> None:
         """Empty the run's arrays of samples."""
@@ -98,7 +101,8 @@ class Recorder:
         rows[:, 4:] = samples.columns[:count, ORDER]
         modes = [MODE_NAMES[int(mode)] for mode in samples.mode[:count]]
         if self._recovery is not None:
-            stress = self._recovery.largest_von_mises(samples.position[:count])
+            strained = np.argsort(samples.columns[:count, ROW_STRAIN])[-STRAINED:]
+            stress = self._recovery.largest_von_mises(samples.position[strained])
             self.largest_von_mises = max(self.largest_von_mises, stress)
         self._rows.append(rows)
         self._modes += modes

@@ -13,7 +13,6 @@ from mesh.cells import FloatArray
 
 #: largest elastic displacement used to probe the stress of a mode, over the size of the container
 PROBE = 1e-6
-STRESS_BLOCK = 2_000_000  #: numbers held at once while stresses over time are searched
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -58,16 +57,11 @@ class Recovery:
 
     def largest_von_mises(self, position: FloatArray) -> float:
         """Largest nodal von Mises stress over rows of coordinates (n_s, n_d) [Pa]; 0 without modes."""
-        if self.full or not len(self.shapes):
+        if self.full or not len(self.shapes) or not len(position):
             return 0.0
-        largest = 0.0
         modes = self._stress.reshape(len(self.shapes), -1)
-        rows = max(1, STRESS_BLOCK // modes.shape[1])
-        for first in range(0, len(position), rows):
-            stress = (position[first : first + rows, 3:] @ modes).reshape(-1, 3)
-            xx, zz, xz = stress.T
-            largest = max(largest, float(np.max(xx * xx - xx * zz + zz * zz + 3.0 * xz * xz)))
-        return math.sqrt(largest)
+        stress = (position[:, 3:] @ modes).reshape(len(position), -1, 3)
+        return float(von_mises(np.moveaxis(stress, -1, 0)).max())
 
 
 def recovery_of(model: Model) -> Recovery:
