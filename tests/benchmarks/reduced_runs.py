@@ -1,0 +1,116 @@
+"""What a run with the `reduced` model costs: two corners, a flat base, longer runs, more modes, memory.
+
+CPU seconds are those of the stepping loop alone, medians, as `stepping_cpu_s` in a result. Memory is the peak of a
+whole process `python -m fem run` without fields.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from measuring import Figure, median_of, report, stepped
+
+from fem.case import Case, load_case
+from fem.model import Container, discretise
+
+REPEATS = 5
+DURATION = 20.0  # s
+CORNERS, FLAT = 0.1, 3.0  # CPU seconds of stepping for it
+MEMORY = 300.0  # MB
+EXPONENT = 0.25  # by which the cost may grow faster than the duration or the modes
+CASES = ("seed_stack", "rocking")
+DURATIONS, MODES = (5.0, 10.0, 20.0, 40.0), (10, 20, 40, 80)
+
+
+def cost(case: Case, container: Container) -> tuple[float, int]:
+    """Median CPU seconds of stepping, and steps."""
+    runs = [stepped(case, container) for _ in range(REPEATS)]
+    return median_of(REPEATS, iter([run.cpu_s for run in runs]).__next__), runs[0].steps
+
+
+def growth(sizes: tuple[float, ...], costs: list[float]) -> float:
+    """Exponent of the cost as a power of the size."""
+    return float(np.polyfit(np.log(sizes), np.log(costs), 1)[0])
+
+
+def peak_memory(name: str) -> float:
+    """Of a process that runs a case without fields [MB]."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, "-m", "fem", "run", name, "-q", "--out", str(Path(folder) / "run")]
+        command += ["--set", "output.fields_s=0", "--set", f"solver.duration_s={DURATION}"]
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        raise RuntimeError(f"{' '.join(command)} ended with exit code {process.returncode}")
+    return usage.ru_maxrss / 1024.0
+
+
+def single_runs() -> list[Figure]:
+    figures = []
+    for kind, limit in (("corners", CORNERS), ("flat", FLAT)):
+        for name in CASES:
+            case = load_case(name, [f"support.kind={kind}", f"solver.duration_s={DURATION}"])
+            container = discretise(case)
+            run = stepped(case, container)
+            cpu, steps = cost(case, container)
+            what = f"{name}, {kind}, {container.support.index.size} contact nodes"
+            ratio = float(run.model.run.track[0].max_rotation) / run.model.static.slenderness_angle
+            figures += [
+                Figure(f"{what}: CPU s", f"{cpu:.3f}", f"<= {limit:g}", cpu <= limit),
+                Figure(
+                    f"{what}: steps, rejected, rotation ratio",
+                    f"{steps}, {100.0 * run.rejected_share:.1f} %, {ratio:.4f}",
+                ),
+            ]
+    return figures
+
+
+def scaling() -> list[Figure]:
+    """Growth of the cost; with the modes the steps change a little too, so the cost of a step is looked at."""
+    base = load_case("rocking")
+    container = discretise(base)
+    by_duration = [cost(base.with_values({"solver.duration_s": one}), container)[0] for one in DURATIONS]
+    by_modes = []
+    for count in MODES:
+        case = base.with_values({"solver.elastic_modes": count, "solver.duration_s": DURATION})
+        cpu, steps = cost(case, discretise(case))
+        by_modes.append(1e6 * cpu / steps)
+    in_time, in_modes = growth(DURATIONS, by_duration), growth(tuple(map(float, MODES)), by_modes)
+    limit = 1.0 + EXPONENT
+    return [
+        Figure(
+            f"CPU s over durations {', '.join(f'{one:g}' for one in DURATIONS)} s: grows with the power",
+            f"{', '.join(f'{one:.3f}' for one in by_duration)}: {in_time:.2f}",
+            f"<= {limit:g}",
+            in_time <= limit,
+        ),
+        Figure(
+            f"microseconds a step over {', '.join(map(str, MODES))} modes: grow with the power",
+            f"{', '.join(f'{one:.2f}' for one in by_modes)}: {in_modes:.2f}",
+            f"<= {limit:g}",
+            in_modes <= limit,
+        ),
+    ]
+
+
+def main() -> int:
+    memory = peak_memory("rocking")
+    figures = [
+        *single_runs(),
+        *scaling(),
+        Figure(
+            "rocking, a whole run without fields: peak MB",
+            f"{memory:.0f}",
+            f"<= {MEMORY:g}",
+            memory <= MEMORY,
+        ),
+    ]
+    return report(f"reduced model, shell, 20 elastic modes, {DURATION:g} s of motion", figures)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

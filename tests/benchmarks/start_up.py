@@ -1,0 +1,55 @@
+"""How long the program takes to answer: help, check, and a run when the kernels are compiled already.
+
+Wall time of whole processes, medians. The start of a run is measured on the default case cut to 5 ms of motion,
+without fields; a fresh folder for the compiled kernels shows what the first run after an installation adds.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from measuring import Figure, median_of, report
+
+REPEATS = 5
+HELP, CHECK, START = 0.5, 1.0, 3.0  # s
+
+
+def wall_seconds(*arguments: str, environment: dict[str, str] | None = None) -> float:
+    """Of `python -m fem` with these arguments [s]."""
+    began = time.perf_counter()
+    subprocess.run(
+        [sys.executable, "-m", "fem", *arguments],
+        check=True,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        env=os.environ | (environment or {}),
+    )
+    return time.perf_counter() - began
+
+
+def main() -> int:
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        short = ["run", "-q", "--force", "--out", str(folder / "run")]
+        short += ["--set", "solver.duration_s=0.005", "--set", "output.fields_s=0"]
+        first = wall_seconds(*short, environment={"NUMBA_CACHE_DIR": str(folder / "kernels")})
+        wall_seconds(*short)
+        wall_seconds("check")
+        measured = (
+            ("--help", median_of(REPEATS, lambda: wall_seconds("--help")), HELP),
+            ("check", median_of(REPEATS, lambda: wall_seconds("check")), CHECK),
+            ("run, kernels compiled", median_of(REPEATS, lambda: wall_seconds(*short)), START),
+        )
+    figures = [
+        Figure(f"{what} [s]", f"{seconds:.2f}", f"<= {limit:g}", seconds <= limit)
+        for what, seconds, limit in measured
+    ]
+    figures.append(Figure("run, nothing compiled yet [s]", f"{first:.1f}", "for information"))
+    return report("start-up, wall time of whole processes", figures)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
