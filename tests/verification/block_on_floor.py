@@ -256,9 +256,10 @@ def _control(block: Block, largest_step: float, fixed_step: bool, energy_scale: 
     rate = math.sqrt(0.75 * GRAVITY / block.radius)
     reference = block.mass * GRAVITY * block.radius * (1.0 - math.cos(block.slenderness_angle))
     scale = LOOSE if fixed_step else energy_scale
+    restitution = 1.0 - 1.5 * math.sin(block.slenderness_angle) ** 2
     spring, half = 0.5 * block.base_stiffness, 0.5 * block.width
     struck = 1.0 / (1.0 / block.mass + half * half / block.inertia)
-    closing_step = 0.01 / (
+    closing_step = 0.02 / (
         spring * block.relaxation_time / struck + 0.2 * math.sqrt(2.0 * spring / block.mass)
     )
     return Control(
@@ -273,7 +274,9 @@ def _control(block: Block, largest_step: float, fixed_step: bool, energy_scale: 
         energy_share=scale * 4e-3,
         trail_share=scale * 2e-2,
         trail_time=0.1 / rate,
-        closing_share=scale * 4e-4,
+        gain_room=scale * 1e-5,
+        gain_share=0.05,
+        closing_share=scale * 2e-3 * max(1.0 - restitution**2, 0.02),
         mass=block.mass,
         gravity=GRAVITY,
         frequency_parameter=rate,
