@@ -22,8 +22,8 @@ TEXT_WIDTH = 110
 CODE_NOTE = "The code's rows hold a design response (EN 1998-1:2004, 4.3.3.2), not the motion of this floor."
 BAND_NOTE = (
     "The band repeats the run with a third and three times the contact penalty and with contact damping "
-    "ratios 0.5 and 2, for nobody knows a floor better: one outcome throughout means that it does not hang on "
-    "the contact, different ones mean that this model cannot tell."
+    "ratios 0.5 and 2, for nobody knows a floor better: one outcome throughout means that it does not hang "
+    "on the contact, different ones mean that this model cannot tell."
 )
 MARGIN_NOTE = (
     "The rotation ratio is no margin: the factor on the motion is, and only a scan of motions finds it."

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from contact.penalty import contact_frequency
+from fem.calibration import apparent_restitution
 from fem.case import Case, case_hash, load_case
 from fem.case_contact import build_support, normal_penalty
 from fem.case_container import build_container, node_count
@@ -44,6 +45,7 @@ def check(
         "case_hash": case_hash(loaded),
         "derived": derived_numbers(loaded, mesh, peak),
         "static": static.to_dict(),
+        "contact_restitution": contact_restitution(loaded, mesh, static),
         "numerics": chosen_numerics(loaded, mesh),
         "notes": notes(loaded, static, peak),
     }
@@ -125,6 +127,18 @@ def chosen_numerics(case: Case, mesh: ContainerMesh) -> dict[str, Any]:
     }
 
 
+def contact_restitution(case: Case, mesh: ContainerMesh, static: StaticChecks) -> float | None:
+    """Restitution that the contact damping ratio amounts to, were the container rigid; None off the table."""
+    foot = case.support.foot
+    return apparent_restitution(
+        support=case.support.kind,
+        foot_over_width=None if foot is None else foot / mesh.width,
+        slenderness=static.centroid / (0.5 * mesh.width),
+        damping_ratio=case.contact.damping_ratio,
+        housner=static.housner_restitution,
+    )
+
+
 def notes(case: Case, static: StaticChecks, peak: float) -> list[str]:
     """What to keep in mind when the run is read."""
     said = []
@@ -191,7 +205,7 @@ def _page(case: Case, document: dict[str, Any], static: StaticChecks) -> str:
         f"rocking period {static.period_eq2:.3f} s (Eq. 2), {static.period_eq3:.3f} s (Eq. 3)",
         f"  uplift from            {static.uplift_acceleration:8.4f} m/s2  "
         f"slip from {static.sliding_limit_static / derived['mass_kg']:.4g} m/s2",
-        f"  Housner's restitution  {static.housner_restitution:8.4f}",
+        f"  Housner's restitution  {static.housner_restitution:8.4f}      {_restitution_of_contact(case, document)}",
         "",
         "  static rule                        demand     capacity   utilisation",
     ]
@@ -210,3 +224,10 @@ def _page(case: Case, document: dict[str, Any], static: StaticChecks) -> str:
     lines += ["", *page_of_numerics(numerics)]
     lines += [f"  note: {note}" for note in document["notes"]]
     return "\n".join(lines)
+
+
+def _restitution_of_contact(case: Case, document: Mapping[str, Any]) -> str:
+    """What the calibration table says, for the page."""
+    contact = f"contact damping ratio {case.contact.damping_ratio:g} on {case.support.kind}"
+    value = document["contact_restitution"]
+    return f"{contact}: {value:.3f} if rigid" if value is not None else f"{contact}: not in the table"

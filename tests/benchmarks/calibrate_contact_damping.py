@@ -1,0 +1,170 @@
+"""Contact damping ratio against apparent restitution of slender blocks: makes fem/data/contact_damping_restitution.csv.
+
+    python tests/benchmarks/calibrate_contact_damping.py
+
+A homogeneous block is released at rest from half its slenderness angle. Its apparent restitution is the square
+root of the ratio of the potential energies above rest at the turning points after and before the first impact:
+for a rigid block on two corners and an impact without bounce, Housner's. Friction is ample. Each row is run
+with the rigid model at the default penalty and at three times it, and with the elastic solid so stiff that its
+first frequency is fifteen times the contact frequency, or as near as the largest Young's modulus comes. Only
+runs that pass their own energy audit count; a value whose run does not is left empty, and the script ends with
+an error where that happens to the rigid model. About two minutes on one core.
+"""
+
+import csv
+import io
+import math
+import sys
+from itertools import product
+from pathlib import Path
+
+from contact.penalty import contact_frequency
+from fem.case import Case, read_case
+from fem.model import Container, Model, build_model, discretise
+from fem.recorder import Recorder
+from fem.simulation import simulate
+
+WIDTH = 1.1
+HEIGHTS = (1.5, 2.0, 2.5, 3.0, 4.0, 5.0)  #: over the width
+DAMPING_RATIOS = (0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 4.0)
+#: kind of support and length of a foot over the width
+SUPPORTS = (("corners", 0.0), ("feet", 0.07), ("feet", 0.14), ("feet", 0.25), ("flat", 0.5))
+STIFFNESS_RATIO = 15.0  #: first elastic over contact frequency of the solid
+STIFFEST = 1e13  #: largest Young's modulus of a case [Pa]
+STIFFER = 3.0  #: penalty of the sensitivity column over the default
+TARGET = Path(__file__).parents[2] / "fem" / "data" / "contact_damping_restitution.csv"
+
+COLUMNS = (
+    "support",
+    "foot_over_width",
+    "height_over_width",
+    "contact_damping_ratio",
+    "housner",
+    "rigid",
+    "rigid_stiffer_contact",
+    "solid",
+    "solid_frequency_ratio",
+)
+CASE = """
+schema = 1
+title = "calibration"
+[container]
+width_m = {width!r}
+height_m = {height!r}
+density_kg_m3 = 2066.0
+section = "solid"
+[support]
+kind = "{kind}"
+foot_m = {foot!r}
+[contact]
+mu_static = 2.0
+[motion]
+kind = "none"
+[initial]
+rotation_rad = {rotation!r}
+[solver]
+model = "{model}"
+duration_s = {duration!r}
+step_s = 1e-4
+[output]
+history_s = 0.1
+fields_s = 0.0
+"""
+HEADER = """\
+# Apparent restitution of homogeneous blocks, by contact damping ratio c/(2 sqrt(k m)), support and slenderness.
+# Made by tests/benchmarks/calibrate_contact_damping.py; all values computed by this program (no measurement).
+# Released at rest from half the slenderness angle, friction 2, steps of at most 0.1 ms, peaks before and after the
+# first impact: restitution = sqrt(potential energy above rest after / before). housner: 1 - 1.5 sin^2(slenderness
+# angle). rigid: rigid model, default penalty; rigid_stiffer_contact: three times that penalty; solid: elastic,
+# first elastic over contact frequency = solid_frequency_ratio. Empty: the run did not pass its energy audit.
+"""
+
+
+def case_of(kind: str, foot: float, slenderness: float, model: str) -> Case:
+    """A block of that height over width, released from half its slenderness angle."""
+    angle = math.atan(1.0 / slenderness)
+    radius = 0.5 * WIDTH * math.hypot(1.0, slenderness)
+    duration = 5.0 / math.sqrt(0.75 * 9.81 / radius)  # the second peak comes after 2 to 3.5 times 1/p
+    text = CASE.format(
+        width=WIDTH,
+        height=slenderness * WIDTH,
+        kind=kind,
+        foot=foot * WIDTH if kind == "feet" else 0.15,
+        rotation=0.5 * angle,
+        model=model,
+        duration=duration,
+    )
+    return read_case(text)
+
+
+def restitution(model: Model) -> float | None:
+    """Of the first impact by the peaks around it; None where the run fails its audit."""
+    if simulate(model, Recorder(model)).status != "completed":
+        return None
+    value = float(model.run.track[0].restitution_by_peaks)
+    return value if math.isfinite(value) else None
+
+
+def on_floor(case: Case, container: Container, damping_ratio: float, penalty_factor: float = 1.0) -> Model:
+    """The block on a contact of that damping ratio and stiffness."""
+    model = build_model(case.with_values({"contact.damping_ratio": damping_ratio}), container)
+    if penalty_factor == 1.0:
+        return model
+    stiffer = {"contact.normal_penalty_Pa_m": penalty_factor * model.penalty}
+    return build_model(model.case.with_values(stiffer), container)
+
+
+def stiff_solid(kind: str, foot: float, slenderness: float) -> tuple[Case, Container, float]:
+    """The elastic block, stiff enough that f1/f_c is STIFFNESS_RATIO, if it may be; and what f1/f_c is."""
+    case = case_of(kind, foot, slenderness, "reduced")
+    model = build_model(case)
+    given = case.container.youngs_modulus_Pa
+    ratio = model.frequencies[0] / contact_frequency(model.container.mesh.mass, model.base_stiffness)
+    modulus = min(given * (STIFFNESS_RATIO / ratio) ** 2, STIFFEST)
+    chosen = {"container.youngs_modulus_Pa": modulus, "contact.normal_penalty_Pa_m": model.penalty}
+    case = case.with_values(chosen)
+    return case, discretise(case), ratio * math.sqrt(modulus / given)
+
+
+def rows_of(kind: str, foot: float, slenderness: float) -> list[dict[str, str]]:
+    """Rows of one support and slenderness, over the damping ratios."""
+    rigid_case = case_of(kind, foot, slenderness, "rigid")
+    rigid = discretise(rigid_case)
+    solid_case, solid, ratio = stiff_solid(kind, foot, slenderness)
+    rows = []
+    for damping_ratio in DAMPING_RATIOS:
+        model = on_floor(rigid_case, rigid, damping_ratio)
+        values = {
+            "housner": model.static.housner_restitution,
+            "rigid": restitution(model),
+            "rigid_stiffer_contact": restitution(on_floor(rigid_case, rigid, damping_ratio, STIFFER)),
+            "solid": restitution(on_floor(solid_case, solid, damping_ratio)),
+        }
+        row = {"support": kind, "foot_over_width": f"{foot:g}", "height_over_width": f"{slenderness:g}"}
+        row["contact_damping_ratio"] = f"{damping_ratio:g}"
+        row |= {name: "" if value is None else f"{value:.4f}" for name, value in values.items()}
+        rows.append(row | {"solid_frequency_ratio": f"{ratio:.1f}"})
+    return rows
+
+
+def main() -> int:
+    """Make the table; 1 if the rigid model left a gap in it."""
+    rows = []
+    for (kind, foot), slenderness in product(SUPPORTS, HEIGHTS):
+        rows += rows_of(kind, foot, slenderness)
+        print(*rows[-1].values(), sep="\t", flush=True)
+    text = io.StringIO()
+    text.write(HEADER)
+    table = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+    table.writeheader()
+    table.writerows(rows)
+    TARGET.parent.mkdir(exist_ok=True)
+    TARGET.write_text(text.getvalue(), encoding="utf-8")
+    gaps = [row for row in rows if not row["rigid"]]
+    for row in gaps:
+        print("no value:", *row.values(), file=sys.stderr)
+    return 1 if gaps else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
