@@ -38,7 +38,7 @@ from mesh.region import Region
 #: largest step over the time scale of rocking, 1/p, and over that of the base motion
 STEP_OF_ROCKING, STEP_OF_MOTION = 0.01, 0.02
 #: over the largest step: the step in which friction may change between sticking and sliding
-EVENT_SHARE = 0.05
+EVENT_SHARE = 0.01
 SMALLEST_SHARE = 1e-7
 #: over the time constant of a corner on its dashpot: the step that begins at a touch
 CLOSING_SHARE_OF_TIME = 0.02
