@@ -1,0 +1,130 @@
+"""What the README tells a newcomer to type exists, works in the order it stands there, and says what it claims."""
+
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fem.__main__ import COMMANDS
+from fem.case_files import DEFAULT_CASE, shipped_cases
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", *sorted(ROOT.glob("*/README.md"))]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+LINES = [
+    line
+    for block in re.findall(r"^```sh\n(.*?)^```$", README, flags=re.MULTILINE | re.DOTALL)
+    for line in block.splitlines()
+]
+TOUR = [line for line in LINES if line.startswith("python -m fem ")]
+#: appended to a run of the tour: the same command, less to compute
+SHORT = ("--set", "solver.duration_s=0.1", "--set", "output.fields_s=0.05", "--no-band")
+
+
+def python_m_fem(*arguments: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run the program in a folder, as installed."""
+    return subprocess.run(
+        [sys.executable, "-m", "fem", *arguments],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
+    )
+
+
+def test_two_lines_set_up_run_and_test():
+    setups = [line for line in LINES if "pip install" in line]
+    assert len(setups) == 2
+    run, tests = ([part.strip() for part in line.split("&&")] for line in setups)
+    assert run == [
+        "python3 -m venv .venv",
+        ".venv/bin/python -m pip install -e .",
+        ".venv/bin/python -m fem run",
+    ]
+    assert tests[0] == run[0]
+    assert tests[1] == '.venv/bin/python -m pip install -e ".[dev]"'
+    assert tests[2].startswith(".venv/bin/python -m pytest")
+
+
+def test_the_server_runs_the_test_line_of_the_readme():
+    pattern = re.search(r"grep -m1 -E '(.*?)' README.md", (ROOT / ".ci" / "run").read_text(encoding="utf-8"))
+    assert pattern is not None
+    found = [line for line in README.splitlines() if re.search(pattern[1], line)]
+    assert found == [line for line in LINES if "pytest" in line]
+
+
+def test_every_command_is_told_of_and_every_command_told_of_exists():
+    told = set(re.findall(r"python -m fem ([a-z]+)", README)) | set(re.findall(r"`([a-z]+)`", README))
+    assert set(COMMANDS) <= told
+    assert set(re.findall(r"python -m fem ([a-z]+)", README)) <= set(COMMANDS)
+
+
+def test_help_names_every_command_and_answers_without_the_solver():
+    # numba, pyvista and scikit-fem take half a second to a second and a half each to import.
+    script = (
+        "import sys; from fem.__main__ import main; main(['--help']); "
+        "print(*{'numba', 'pyvista', 'skfem', 'scipy'} & set(sys.modules))"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True, timeout=60
+    )
+    *page, loaded = result.stdout.splitlines()
+    assert loaded == ""
+    assert all(re.search(rf"\b{name}\b", "\n".join(page)) for name in COMMANDS)
+
+
+def test_the_tour_works_as_written(tmp_path):
+    assert len(TOUR) >= 10
+    for line in TOUR:
+        arguments = shlex.split(line)[3:]
+        short = SHORT if arguments[0] == "run" and "--dry-run" not in arguments else ()
+        result = python_m_fem(*arguments, *short, folder=tmp_path)
+        assert result.returncode == 0, f"{line}\n{result.stdout}\n{result.stderr}"
+        assert result.stdout.strip(), line
+        if arguments[0] == "list":
+            assert all(name in result.stdout for name in shipped_cases())
+        if arguments[0] == "schema":
+            assert json.loads(result.stdout)["properties"]["container"]
+    results = tmp_path / "outputs" / "my-stack"
+    table = README.partition("| file in ")[2].partition("\n\n")[0]
+    files = re.findall(r"`([a-z/]+\.(?:txt|json|csv|pvd|toml))`", table)
+    assert {"run.json", "fields/run.pvd", "resolved.toml"} <= set(files)
+    assert [name for name in files if not (results / name).is_file()] == []
+    assert json.loads((results / "run.json").read_text())["status"] == "completed"
+    assert {path.name for path in (tmp_path / "outputs").iterdir()} >= {"my-stack", "slippery", "rigid"}
+
+
+def test_the_static_figures_of_the_default_case_are_those_of_check(tmp_path):
+    result = python_m_fem("check", "--json", folder=tmp_path)
+    document = json.loads(result.stdout)
+    assert document["case"] == DEFAULT_CASE
+    static, own = document["static"], document["static"]["own_motion"]
+    said = [
+        f"{own['base_shear_N'] / 1e3:.1f} kN against {static['sliding_limit_static_N'] / 1e3:.2f} kN",
+        f"utilisation {own['utilisation_sliding']:.3f}",
+        f"{own['tilting_moment_Nm'] / 1e3:.1f} kNm against",
+        f"{static['restoring_moment_Nm'] / 1e3:.2f} kNm of restoring moment",
+        f"utilisation {own['utilisation_overturning']:.3f}",
+    ]
+    flowing = " ".join(README.split())
+    assert [words for words in said if words not in flowing] == []
+    assert own["utilisation_sliding"] > 1.0 and own["utilisation_overturning"] > 1.0
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_links_within_the_repository_lead_somewhere(page):
+    targets = re.findall(r"\]\(([^)#:]+)\)", page.read_text(encoding="utf-8"))
+    assert [target for target in targets if not (page.parent / target).exists()] == []
+
+
+def test_files_and_scripts_named_in_the_readme_exist():
+    named = re.findall(r"`(?:python )?((?:tests|\.ci)/[\w/.]+)`", README)
+    assert {"tests/benchmarks/full_box.py", ".ci/run"} <= set(named)
+    assert [name for name in named if not (ROOT / name).exists()] == []
