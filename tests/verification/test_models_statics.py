@@ -1,0 +1,127 @@
+"""Stresses and frequencies of the reduced model against the full one and against linear statics.
+
+Static reference: K u = -weight with the contact springs on the supporting nodes that press, solved anew here.
+"""
+
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.linalg
+import scipy.sparse
+import scipy.sparse.linalg
+from container_runs import SHELL, SOLID, run, stack
+
+from fem.elasticity import von_mises
+from fem.model import Container, Model, build_model
+from fem.recovery import Frame, recovery_of
+
+SECTIONS = {"solid": SOLID, "shell": SHELL}
+STANDING: dict[str, Any] = {"initial.rotation_rad": 0.0, "solver.duration_s": 0.05}
+
+
+def frame_of(model: Model) -> Frame:
+    """Fields of the state a model has come to."""
+    return recovery_of(model).frame(model.run.old.position, model.run.old.velocity)
+
+
+def settled_displacement(model: Model) -> np.ndarray:
+    """Nodal displacements (n, 2) of linear statics on unilateral springs; the middle of the base kept in x."""
+    elements, contact = model.container.elements, model.run.contact
+    weight = np.zeros((len(elements.nodes), 2))
+    weight[:, 1] = -model.case.gravity_m_s2 * (elements.mass @ np.ones(len(elements.nodes)))
+    pressing = np.ones(model.container.nodes.size, dtype=bool)
+    middle = elements.base_nodes[np.argmin(np.abs(elements.nodes[elements.base_nodes, 0]))]
+    for _ in range(50):
+        springs = np.zeros(elements.unknowns)
+        springs[2 * model.container.nodes + 1] = np.where(pressing, contact.normal_stiffness, 0.0)
+        springs[2 * middle] = 1e12  # symmetry leaves nothing for it to carry
+        matrix = (elements.stiffness + scipy.sparse.diags_array(springs)).tocsc()
+        answer = scipy.sparse.linalg.spsolve(matrix, weight.ravel()).reshape(-1, 2)
+        now = answer[model.container.nodes, 1] < 0.0
+        if np.array_equal(now, pressing):
+            return answer
+        pressing = now
+    raise AssertionError("no equilibrium found")
+
+
+@pytest.mark.parametrize("kind", ["corners", "feet", "flat"])
+@pytest.mark.parametrize("section", SECTIONS)
+def test_stresses_under_gravity_are_those_of_linear_statics(section: str, kind: str) -> None:
+    case = stack(**SECTIONS[section], **STANDING, support__kind=kind)
+    reduced = build_model(case)
+    elements = reduced.container.elements
+    expected = elements.nodal_von_mises(settled_displacement(reduced))
+    at_start = frame_of(reduced)
+    largest = expected.max()
+    assert largest > 1e4
+    assert np.abs(at_start.von_mises - expected).max() <= 0.01 * largest
+    after = run(case).model
+    assert np.abs(frame_of(after).von_mises - expected).max() <= 0.01 * largest
+    full = run(case.with_values({"solver.model": "full"})).model
+    assert np.abs(frame_of(full).von_mises - expected).max() <= 0.01 * largest
+
+
+@pytest.mark.parametrize("section", SECTIONS)
+def test_stresses_on_one_corner_agree_between_the_models(section: str) -> None:
+    # Half a second into the fall back, tilted by 0.3 of the slenderness angle: one corner carries everything.
+    case = stack(**SECTIONS[section], solver__duration_s=0.5)
+    reduced, full = (run(case.with_values({"solver.model": model})).model for model in ("reduced", "full"))
+    expected = frame_of(full).von_mises
+    standing = build_model(stack(**SECTIONS[section], **STANDING))
+    assert expected.max() > 1.5 * frame_of(standing).von_mises.max()
+    assert np.abs(frame_of(reduced).von_mises - expected).max() <= 0.01 * expected.max()
+
+
+@pytest.mark.parametrize("section", SECTIONS)
+def test_displacements_on_one_corner_agree_between_the_models(section: str) -> None:
+    case = stack(**SECTIONS[section], solver__duration_s=0.5)
+    reduced, full = (run(case.with_values({"solver.model": model})).model for model in ("reduced", "full"))
+    apart = frame_of(reduced).displacement - frame_of(full).displacement
+    assert np.abs(apart).max() <= 1e-3 * np.abs(frame_of(full).displacement).max()
+
+
+def container_of(section: str) -> Container:
+    return build_model(stack(**SECTIONS[section])).container
+
+
+@pytest.mark.parametrize("section", SECTIONS)
+def test_frequencies_of_the_modes_kept_are_those_of_all_nodes(section: str) -> None:
+    # Every mode of the free mesh by a dense solution, against the twenty kept, whose basis holds attachment modes.
+    container = container_of(section)
+    elements = container.elements
+    squares = scipy.linalg.eigh(
+        elements.stiffness.toarray(), elements.vector_mass.toarray(), eigvals_only=True, driver="gvd"
+    )
+    assert np.abs(squares[:3]).max() < 1e-6 * squares[3]
+    assert container.basis is not None
+    kept = container.basis.angular_frequencies[:20]
+    assert kept == pytest.approx(np.sqrt(squares[3:23]), rel=1e-3)
+
+
+@pytest.mark.parametrize("section", SECTIONS)
+def test_full_model_turned_on_its_side_vibrates_at_the_frequencies_kept(section: str) -> None:
+    # The full model's own internal force, not its stiffness matrix: phi^T f(R(X + s phi) - X)/s = omega^2 at any turn.
+    container = container_of(section)
+    elements, basis = container.elements, container.basis
+    assert basis is not None
+    cosine, sine = np.cos(0.7), np.sin(0.7)
+    turn = np.array([[cosine, sine], [-sine, cosine]])
+    size = 1e-7 * np.ptp(elements.nodes, axis=0).max()
+    for omega, shape in zip(basis.angular_frequencies[:20], basis.shapes[:20], strict=True):
+        small = size / np.abs(shape).max()
+        forces = [
+            elements.internal_force((elements.nodes + sign * small * shape) @ turn.T - elements.nodes)
+            for sign in (1.0, -1.0)
+        ]
+        generalised = np.sum((shape @ turn.T) * (forces[0] - forces[1])) / (2.0 * small)
+        assert generalised == pytest.approx(omega**2, rel=1e-3)
+
+
+def test_von_mises_of_the_reference_is_not_all_zero_at_the_walls() -> None:
+    # A stress field that came back as zeros would agree with anything: the walls of the shell carry the weight.
+    model = build_model(stack(**SHELL, **STANDING))
+    stress = model.container.elements.nodal_stress(settled_displacement(model))
+    base = model.container.elements.nodes[:, 1] < 0.5
+    assert stress[base, 1].min() < -1e4
+    assert von_mises(stress.T).max() > 1e5
