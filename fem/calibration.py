@@ -40,8 +40,10 @@ class Calibration:
             if place is None:
                 return None
             first, share = place
-            after = values[first + 1] if share > 0.0 else values[first]
-            values = (1.0 - share) * values[first] + share * after
+            if share in (0.0, 1.0):  # on an entry: what lies beside it may have no value
+                values = values[first + int(share)]
+            else:
+                values = (1.0 - share) * values[first] + share * values[first + 1]
         return None if np.isnan(values) else float(values)
 
 

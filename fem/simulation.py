@@ -79,7 +79,8 @@ def simulate(
             reporter.finish()
             return Ending(status="interrupted", stepping_cpu_s=cpu)
         if clock.time >= duration:
-            if until == duration and angle < rotation < 0.5 * np.pi:
+            undecided = angle < rotation and not np.isfinite(track.overturned_at)
+            if until == duration and undecided:
                 run, until = _left_alone(run), duration + AFTERMATH / control.frequency_parameter
             elif until > duration and rotation < angle:
                 break
