@@ -23,6 +23,7 @@ COMMANDS = {
     "init": ("fem.commands.init:init", "Write a commented case file to start from."),
     "list": ("fem.commands.list_cases:list_cases", "The shipped cases, and what each shows."),
     "modes": ("fem.commands.modes:modes", "Elastic frequencies and shapes of the free container."),
+    "verify": ("fem.commands.verify:verify", "The verification ladder: every case with its reference."),
     "doctor": (
         "fem.commands.doctor:doctor",
         "Versions, pictures, threads, disk; how to mend what is missing.",

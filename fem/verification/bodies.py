@@ -19,6 +19,7 @@ from contact.laws import ELASTIC_STICK
 from contact.modal_body import ModalBody
 from contact.scheme import Scheme, generalised_alpha, newmark
 from contact.stepping import REACHED, Run, advance, advance_compiled, make_run, make_samples
+from fem.assembly import FiniteElements
 from fem.full_body import FullBody
 from fem.model import build_model
 from fem.reduction import StaticResponse
@@ -167,4 +168,11 @@ def _contact(springs: FloatArray, mass: float) -> Contact:
         regularisation_velocity=1e-3,
         force_scale=mass,
         resolution=1e-15,
+    )
+
+
+def body_of(elements: FiniteElements) -> FullBody:
+    """A free body of these elements, undamped and nearly without weight."""
+    return FullBody(
+        elements, elements.base_nodes[[0, -1]], elements.base_nodes[:0], gravity=1e-3, damping=0.0
     )

@@ -1,4 +1,4 @@
-"""The contact with the floor: patch test, penetration, drops, the impact of a bar, opening edges, a ledger that must fail.
+"""The contact with the floor: patch test, penetration, drops, impact of a bar, opening edges, a ledger that must fail.
 
 Wriggers, Computational Contact Mechanics (2006). The impact bar is that of Hughes, Taylor, Sackman, Curnier and
 Kanoknukulchai, Comput. Methods Appl. Mech. Eng. 8 (1976) 249: exact by d'Alembert's solution.

@@ -1,0 +1,59 @@
+"""`verify`: climb the verification ladder and say which rows hold."""
+
+import importlib
+import json
+import sys
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+FAILED = 3
+FOLDER = Path("outputs") / "verify"
+
+
+def verify(
+    *,
+    quick: Annotated[
+        bool, Parameter(negative=(), show_default=False, help="Leave out what takes long: two minutes.")
+    ] = False,
+    room: Annotated[
+        tuple[str, ...], Parameter(negative=(), show_default=False, help="Only this room; may be repeated.")
+    ] = (),
+    out: Annotated[Path, Parameter(help="Folder of verify.json and verify.html.")] = FOLDER,
+    as_json: Annotated[
+        bool, Parameter(name="--json", negative=(), show_default=False, help="Print JSON.")
+    ] = False,
+    quiet: Annotated[
+        bool, Parameter(name=("--quiet", "-q"), negative=(), show_default=False, help="No progress.")
+    ] = False,
+) -> int:
+    """Compute every case that a number of this program rests on, and compare it with its reference.
+
+    Ends with 3 if one row fails. The table goes to verify.json as well, and with plots to verify.html.
+    """
+    ladder = importlib.import_module("fem.verification.ladder")
+    pages = importlib.import_module("fem.verification.page")
+    unknown = [name for name in room if name not in ladder.ROOMS]
+    if unknown:
+        raise ladder.UnknownRoomError(unknown[0])
+    total = len(ladder.chosen_checks(quick=quick, rooms=room))
+    done = 0
+
+    def tell(name: str, check: str) -> None:
+        nonlocal done
+        done += 1
+        if not quiet:
+            print(f"[{done}/{total}] {name}: {check}", file=sys.stderr, flush=True)
+
+    found = ladder.climb(quick=quick, rooms=room, before=lambda name, check: tell(name, check.name))
+    out.mkdir(parents=True, exist_ok=True)
+    document = json.dumps(found.to_dict(), indent=2)
+    (out / "verify.json").write_text(document + "\n", encoding="utf-8")
+    (out / "verify.html").write_text(pages.page(found), encoding="utf-8")
+    if as_json:
+        print(document)
+    else:
+        print("\n".join(pages.table_lines(found)))
+        print(f"{out / 'verify.html'} shows the convergence plots")
+    return 0 if found.failures == 0 else FAILED

@@ -1,0 +1,243 @@
+"""Manufactured solutions: static and dynamic, at finite strain and rotation; sources from the textbook's law.
+
+Roache, Verification and Validation in Computational Science and Engineering (1998), chapter 3. The source in space
+is written here from St. Venant-Kirchhoff's law of plane stress, by differences of its own stress; nothing of the
+elements is used. The source of the moving body is exact in space (its internal forces are the elements' own), so
+that its error is of the time stepping alone.
+"""
+
+import math
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse.linalg import spsolve
+
+from contact.body import State
+from contact.scheme import Scheme, generalised_alpha
+from fem.assembly import assemble
+from fem.full_body import FullBody
+from fem.verification.bodies import Flight, free_run
+from fem.verification.meshes import PlainMesh, mapped_mesh
+from mesh.cells import FloatArray
+
+E, NU, THICKNESS, DENSITY = 5.0, 0.3, 0.4, 2.0
+HEIGHT = 10.0  #: of the moving bodies above the floor [m]
+
+
+class NewtonError(ArithmeticError):
+    """A static solution did not converge."""
+
+
+def turned_and_strained(x: FloatArray, z: FloatArray, turn: float, strain: float) -> FloatArray:
+    """Displacement (2, ...): turned by `turn` [rad], with strains of `strain` times some per cent."""
+    cosine, sine = math.cos(turn) - 1.0, math.sin(turn)
+    return np.array(
+        [
+            cosine * x + sine * z + strain * 0.03 * np.sin(2.0 * x + 0.5) * np.cos(1.5 * z),
+            -sine * x + cosine * z + strain * 0.04 * np.cos(1.2 * x - 0.3) * np.sin(2.2 * z + 0.2),
+        ]
+    )
+
+
+def gradient_of(x: FloatArray, z: FloatArray, turn: float, strain: float) -> FloatArray:
+    """Its gradient (2, 2, ...), component first."""
+    cosine, sine = math.cos(turn) - 1.0, math.sin(turn)
+    return np.array(
+        [
+            [
+                cosine + strain * 0.06 * np.cos(2.0 * x + 0.5) * np.cos(1.5 * z),
+                sine - strain * 0.045 * np.sin(2.0 * x + 0.5) * np.sin(1.5 * z),
+            ],
+            [
+                -sine - strain * 0.048 * np.sin(1.2 * x - 0.3) * np.sin(2.2 * z + 0.2),
+                cosine + strain * 0.088 * np.cos(1.2 * x - 0.3) * np.cos(2.2 * z + 0.2),
+            ],
+        ]
+    )
+
+
+def textbook_stress(x: FloatArray, z: FloatArray, turn: float, strain: float) -> FloatArray:
+    """P = F S, S by Hooke's law of plane stress from (F^T F - I)/2, shape (2, 2, ...)."""
+    identity = np.eye(2).reshape(2, 2, *(1,) * np.ndim(x))
+    (a, b), (c, d) = gradient_of(x, z, turn, strain) + identity
+    xx, zz, xz = 0.5 * (a * a + c * c - 1), 0.5 * (b * b + d * d - 1), 0.5 * (a * b + c * d)
+    sxx, szz, sxz = (E / (1 - NU**2) * (xx + NU * zz), E / (1 - NU**2) * (zz + NU * xx), E / (1 + NU) * xz)
+    return np.array([[a * sxx + b * sxz, a * sxz + b * szz], [c * sxx + d * sxz, c * sxz + d * szz]])
+
+
+def static_source(x: FloatArray, z: FloatArray, turn: float, strain: float) -> FloatArray:
+    """Load per area of elevation, -t Div P, by differences of fourth order (2, ...)."""
+    h = 1e-3
+    along = [textbook_stress(x + k * h, z, turn, strain)[:, 0] for k in (-2, -1, 1, 2)]
+    up = [textbook_stress(x, z + k * h, turn, strain)[:, 1] for k in (-2, -1, 1, 2)]
+    terms = [(d[0] - 8.0 * d[1] + 8.0 * d[2] - d[3]) / (12.0 * h) for d in (along, up)]
+    return -THICKNESS * (terms[0] + terms[1])
+
+
+def static_error(order: int, cells: int) -> float:
+    """L2 error of the displacement of a curved block, its boundary held where the solution has it."""
+    elements = assemble(curved_block(cells), youngs_modulus=E, poisson_ratio=NU, order=order)
+    turn, strain = 0.4, 1.0
+    x, z = elements.nodes.T
+    held = elements.edge_load(lambda x, z: x > -np.inf, lambda x, z: (1.0, 0.0))[:, 0] > 0.0  # all round
+    inside, free = ~held, np.flatnonzero(~np.repeat(held, 2))
+    load = elements.area_load(lambda x, z: static_source(x, z, turn, strain)).ravel()[free]
+    displacement = turned_and_strained(x, z, turn, strain).T.copy()
+    for _ in range(12):
+        residual = elements.internal_force(displacement).ravel()[free] - load
+        if np.abs(residual).max() < 1e-13 * E * THICKNESS:
+            return elements.l2_distance(displacement, lambda x, z: turned_and_strained(x, z, turn, strain))
+        correction = spsolve(elements.tangent(displacement)[free][:, free], residual)
+        displacement[inside] -= correction.reshape(-1, 2)
+    raise NewtonError(f"manufactured solution, {cells} cells of order {order}: no convergence")
+
+
+class DrivenBody(FullBody):
+    """A full body under a source that makes a given motion exact.
+
+    The source is part of its internal forces, which the stepper averages over a step as it does all forces.
+    """
+
+    def drive(self, flight: Flight) -> None:
+        """Tell the time by this flight from now on."""
+        self._flight = flight
+
+    def predict(self, scheme: Scheme, step: float, old: State, new: State) -> None:
+        """See `contact.body.predict`; the source is then that of the step's end."""
+        self._time = self._flight.time + step
+        super().predict(scheme, step, old, new)
+
+    def place_at_start(self, state: State) -> None:
+        """Write position, velocity and acceleration of the motion at t = 0."""
+        position, velocity, acceleration = self.motion(0.0)
+        state.position[:], state.velocity[:] = position.ravel(), velocity.ravel()
+        rotation, _ = self._best_fit(position)
+        cosine, sine = math.cos(rotation), math.sin(rotation)
+        self._turn = np.array([[cosine, sine], [-sine, cosine]])
+        self._time = 0.0
+        self._forces(position, velocity)
+        self.start(state, 0.0)
+        state.acceleration[:] = acceleration.ravel()
+
+    def motion(self, time: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Positions, velocities and accelerations of the nodes, each (n, 2)."""
+        h = 1e-3
+        places = [self._place(time + k * h) for k in (-2, -1, 0, 1, 2)]
+        velocity = (places[0] - 8.0 * places[1] + 8.0 * places[3] - places[4]) / (12.0 * h)
+        acceleration = (-places[0] + 16.0 * places[1] - 30.0 * places[2] + 16.0 * places[3] - places[4]) / (
+            12.0 * h * h
+        )
+        return places[2], velocity, acceleration
+
+    def source(self, time: float) -> FloatArray:
+        """Nodal forces (n, 2) that make the motion exact [N]."""
+        raise NotImplementedError
+
+    def _place(self, time: float) -> FloatArray:
+        x, z = self.elements.nodes.T
+        turn, strain = turn_and_strain(time)
+        displacement = turned_and_strained(x, z, turn, strain).T
+        return self.elements.nodes + displacement + np.array([0.3 * time, HEIGHT + 2.0 * time**2])
+
+    def _forces(self, position: FloatArray, velocity: FloatArray) -> None:
+        super()._forces(position, velocity)
+        if hasattr(self, "_time"):
+            self._internal = self._internal - self.source(self._time)
+
+
+class SemiDiscreteBody(DrivenBody):
+    """Its source balances the elements' own forces: exact in space."""
+
+    def source(self, time: float) -> FloatArray:
+        """M x'' + internal forces + damping + weight of the motion."""
+        position, velocity, acceleration = self.motion(time)
+        internal = self.elements.internal_force(position - self.elements.nodes)
+        turned = (velocity @ self._turn).ravel()
+        damping = self.damping * (self._stiffness @ turned).reshape(-1, 2) @ self._turn.T
+        return self.elements.mass @ acceleration + internal + damping + self._weight
+
+
+class ContinuumBody(DrivenBody):
+    """Its source is that of the continuum: inertia, -Div P inside and P n on the faces of the unit square."""
+
+    def source(self, time: float) -> FloatArray:
+        """Consistent nodal forces of the textbook's source, and the weight."""
+        turn, strain = turn_and_strain(time)
+        h = 1e-3
+
+        def inertia(x: FloatArray, z: FloatArray) -> FloatArray:
+            moved = []
+            for k in (-2, -1, 0, 1, 2):
+                angle, size = turn_and_strain(time + k * h)
+                rise = np.array([0.3 * (time + k * h), 2.0 * (time + k * h) ** 2]).reshape(
+                    2, *(1,) * np.ndim(x)
+                )
+                moved.append(turned_and_strained(x, z, angle, size) + rise)
+            second = -moved[0] + 16.0 * moved[1] - 30.0 * moved[2] + 16.0 * moved[3] - moved[4]
+            return DENSITY * THICKNESS * second / (12.0 * h * h)
+
+        load = self.elements.area_load(lambda x, z: static_source(x, z, turn, strain) + inertia(x, z))
+        for axis, place, sign in ((0, 0.0, -1.0), (0, 1.0, 1.0), (1, 0.0, -1.0), (1, 1.0, 1.0)):
+            load += self.elements.edge_load(
+                partial(_on_face, axis, place), partial(_traction, axis, sign, turn, strain)
+            )
+        return load + self._weight
+
+
+def _on_face(axis: int, place: float, x: FloatArray, z: FloatArray) -> NDArray[np.bool_]:
+    return np.asarray(np.abs((x, z)[axis] - place) < 1e-9)
+
+
+def _traction(axis: int, sign: float, turn: float, strain: float, x: FloatArray, z: FloatArray) -> FloatArray:
+    """P n of a face whose normal is `sign` times an axis, per length [N/m]."""
+    return np.asarray(sign * THICKNESS * textbook_stress(x, z, turn, strain)[:, axis])
+
+
+def turn_and_strain(time: float) -> tuple[float, float]:
+    """Rotation [rad] and size of the strains of the moving bodies."""
+    return 0.2 + 2.0 * time + 0.8 * time**2, 1.0 + 0.5 * math.sin(3.0 * time)
+
+
+def moving_body_error(scheme: Scheme, step: float, end: float = 0.5) -> float:
+    """Largest error of a node at the end of the motion, exact in space, over the size of the body."""
+    mesh = mapped_mesh(3, 3, lambda s, t: (s, t), thickness=THICKNESS, density=DENSITY)
+    elements = assemble(mesh, youngs_modulus=E, poisson_ratio=NU, order=1)
+    body = SemiDiscreteBody(
+        elements, elements.base_nodes[[0, -1]], elements.base_nodes[:0], gravity=1e-3, damping=0.02
+    )
+    flight = _driven(body, scheme, step, end)
+    exact = body.motion(flight.time)[0]
+    return float(np.abs(flight.state.position.reshape(-1, 2) - exact).max())
+
+
+def dynamic_error(order: int, cells: int, step: float, end: float = 0.3) -> float:
+    """L2 error of the displacement at the end of the motion of the continuum."""
+    mesh = mapped_mesh(cells, cells, lambda s, t: (s, t), thickness=THICKNESS, density=DENSITY)
+    elements = assemble(mesh, youngs_modulus=E, poisson_ratio=NU, order=order)
+    body = ContinuumBody(
+        elements, elements.base_nodes[[0, -1]], elements.base_nodes[:0], gravity=1e-3, damping=0.0
+    )
+    flight = _driven(body, generalised_alpha(0.5), step, end)
+    displacement = flight.state.position.reshape(-1, 2) - elements.nodes
+    turn, strain = turn_and_strain(flight.time)
+    rise = np.array([0.3 * flight.time, HEIGHT + 2.0 * flight.time**2])
+    return elements.l2_distance(displacement - rise, lambda x, z: turned_and_strained(x, z, turn, strain))
+
+
+def curved_block(cells: int) -> PlainMesh:
+    """`cells` x `cells` quads between two curved sides, none of them a parallelogram."""
+
+    def place(s: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray]:
+        x = s * (1.0 + 0.3 * t) + 0.08 * np.sin(np.pi * t) * np.sin(np.pi * s)
+        z = t * (1.2 - 0.2 * s) + 0.08 * np.sin(np.pi * t) * np.sin(2 * np.pi * s)
+        return x, z
+
+    return mapped_mesh(cells, cells, place, thickness=THICKNESS)
+
+
+def _driven(body: DrivenBody, scheme: Scheme, step: float, end: float) -> Flight:
+    flight = free_run(body, step=step, scheme=scheme, until=end)
+    body.place_at_start(flight.state)
+    body.drive(flight)
+    return flight.advance(end)
