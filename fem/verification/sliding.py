@@ -14,6 +14,7 @@ import numpy as np
 from contact.closed_forms_sliding import never_stops_ratio, pulse_slip, steady_stroke
 from contact.floor_acceleration import sine_floor
 from contact.sliding import RigidSlider, simulate_sliding
+from fem.model import build_model
 from fem.verification.rows import Check, Row
 from fem.verification.runs import BOX, GRAVITY, SOLID, Finished, run
 
@@ -21,6 +22,7 @@ AMPLITUDE, OMEGA = 0.1, 10.0
 PERIOD = 2.0 * math.pi / OMEGA
 STROKE_TOLERANCE = 5e-3
 LARGEST = 79.144e-3  #: slip of the seed's box under 50 mm at 10 rad/s [m]
+STIFFER = 10.0  #: times the default penalty, where the time of the springs would show
 #: over the period: a spring that turns over at a reversal takes a few thousandths of it
 SHORTEST_STOP = 5e-3
 
@@ -32,6 +34,10 @@ def harmonic(amplitude: float, omega: float, **values: Any) -> dict[str, Any]:
         "motion.amplitude_m": amplitude,
         "motion.angular_frequency_rad_s": omega,
     } | values
+
+
+#: the box of the seed on a floor of 50 mm at 10 rad/s
+SEED = harmonic(0.05, 10.0) | {"contact.mu_static": 0.4, "contact.mu_kinetic": 0.2}
 
 
 def friction_of(kappa: float, static_ratio: float = 1.0) -> dict[str, Any]:
@@ -73,21 +79,10 @@ def seed_slider() -> list[Row]:
         ("rigid box", {}),
         ("stiff solid box, 20 modes", SOLID | {"container.youngs_modulus_Pa": 2.1e12}),
     ):
-        done = run(
-            BOX,
-            harmonic(0.05, 10.0)
-            | {"contact.mu_static": 0.4, "contact.mu_kinetic": 0.2, "solver.duration_s": 20.0}
-            | values,
-        )
-        at_ten = float(np.interp(10.0 * PERIOD, done.history["time_s"], done.history["slip_m"]))
+        done = run(BOX, SEED | values | {"solver.duration_s": 20.0})
         for compared, value, reference in (
-            (
-                "steady slip, peak to peak, over the largest",
-                stroke_of(done, PERIOD) / LARGEST,
-                78.745 / 79.144,
-            ),
-            ("largest slip over what it should be", float(done.track.max_slip) / LARGEST, 1.0),
-            ("slip after ten periods over the largest", at_ten / LARGEST, 19.893 / 79.144),
+            ("steady slip, peak to peak [m]", stroke_of(done, PERIOD), 78.745e-3),
+            ("largest slip [m]", float(done.track.max_slip), LARGEST),
         ):
             rows.append(
                 Row(
@@ -96,11 +91,60 @@ def seed_slider() -> list[Row]:
                     value=value,
                     reference=reference,
                     kind="computed",
-                    source="event-driven slider, 78.745, 79.144 and 19.893 mm",
+                    source="event-driven slider",
                     tolerance=STROKE_TOLERANCE,
+                    relative=True,
                 )
             )
     return rows
+
+
+def seed_slider_position() -> list[Row]:
+    """Where that box is: after ten periods, and at every instant of five seconds."""
+    soft, stiff = (
+        run(
+            BOX,
+            SEED
+            | {
+                "contact.normal_penalty_Pa_m": factor * build_model(BOX).penalty,
+                "solver.duration_s": 10.0 * PERIOD,
+                "output.history_s": PERIOD / 100,
+            },
+        )
+        for factor in (1.0, STIFFER)
+    )
+    times = stiff.history["time_s"]
+    slider = RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=GRAVITY)
+    floor = sine_floor(amplitude=0.05, angular_frequency=10.0)
+    exact = simulate_sliding(slider, floor, duration=float(times[-1])).at(times)[0]
+    largest = [float(np.abs(done.history["slip_m"] - exact).max()) for done in (soft, stiff)]
+    ends = [float(done.history["slip_m"][-1]) for done in (soft, stiff)]
+    case = f"rigid box, A = 0.05 m, Omega = 10 rad/s, mu 0.4/0.2, penalty x {STIFFER:g}"
+    reason = (
+        ": the case lies 0.2 % from the limit of sliding without stops, where the springs' own time counts"
+    )
+    return [
+        Row(
+            case=case,
+            compared="slip after ten periods over the largest",
+            value=ends[1] / LARGEST,
+            reference=19.893e-3 / LARGEST,
+            kind="computed",
+            source="event-driven slider, 19.893 of 79.144 mm",
+            tolerance=STROKE_TOLERANCE,
+            note=at_the_default_penalty(ends[0], 19.893e-3, LARGEST) + reason,
+        ),
+        Row(
+            case=case,
+            compared="slip in ten periods, largest difference over the largest slip",
+            value=largest[1] / LARGEST,
+            reference=0.0,
+            kind="computed",
+            source="event-driven slider",
+            tolerance=STROKE_TOLERANCE,
+            note=at_the_default_penalty(largest[0], 0.0, LARGEST) + reason,
+        ),
+    ]
 
 
 def sliding_without_stops() -> list[Row]:
@@ -108,42 +152,55 @@ def sliding_without_stops() -> list[Row]:
     rows = []
     for static_ratio, printed in ((1.0, 0.53703), (2.0, 0.39322)):
         limit = never_stops_ratio(static_ratio)
-        wrong, stroke, exact = 0, math.nan, math.nan
-        for factor, stops in ((0.95, False), (1.05, True)):
-            keys = friction_of(factor * limit, static_ratio)
-            done = run(
-                BOX,
-                harmonic(AMPLITUDE, OMEGA)
-                | keys
-                | {"solver.duration_s": 40.0 * PERIOD, "output.history_s": PERIOD / 1000},
-            )
-            wrong += (longest_stop(done, 36.0 * PERIOD) > SHORTEST_STOP * PERIOD) is not stops
-            stroke = stroke_of(done, PERIOD) / AMPLITUDE
-            exact = steady_stroke(friction_ratio=factor * limit, static_ratio=static_ratio)
+        below, above = (near_the_limit(factor * limit, static_ratio) for factor in (0.95, 1.05))
+        stops = [longest_stop(done, 36.0 * PERIOD) > SHORTEST_STOP * PERIOD for done in (below, above)]
         rows.append(
             Row(
                 case=f"rigid box, mu_s = {static_ratio:g} mu_k",
                 compared="friction ratio up to which it never stops, if 0.95 of it does not stop and 1.05 does",
-                value=limit if wrong == 0 else math.nan,
+                value=limit if stops == [False, True] else math.nan,
                 reference=printed,
                 kind="analytic",
                 source="1/sqrt((mu_s/mu_k)^2 + pi^2/4)",
                 tolerance=5e-6,
             )
         )
+        exact = steady_stroke(friction_ratio=1.05 * limit, static_ratio=static_ratio)
+        stiff = near_the_limit(1.05 * limit, static_ratio, stiffer=STIFFER)
         rows.append(
             Row(
-                case=f"rigid box, mu_s = {static_ratio:g} mu_k, 1.05 of that friction ratio",
+                case=f"rigid box, mu_s = {static_ratio:g} mu_k, 1.05 of that friction ratio, penalty x {STIFFER:g}",
                 compared="steady slip, peak to peak, over A",
-                value=stroke,
+                value=stroke_of(stiff, PERIOD) / AMPLITUDE,
                 reference=exact,
                 kind="analytic",
                 source="two stops a cycle, each of 2 % of it",
                 tolerance=STROKE_TOLERANCE,
                 relative=True,
+                note=at_the_default_penalty(stroke_of(above, PERIOD) / AMPLITUDE, exact)
+                + ": stops as short as the springs take to turn over are not resolved",
             )
         )
     return rows
+
+
+def near_the_limit(kappa: float, static_ratio: float, stiffer: float = 1.0) -> Finished:
+    """Forty cycles of the box at a friction ratio, on `stiffer` times the default penalty."""
+    keys = harmonic(AMPLITUDE, OMEGA) | friction_of(kappa, static_ratio)
+    return run(
+        BOX,
+        keys
+        | {
+            "contact.normal_penalty_Pa_m": stiffer * build_model(BOX).penalty,
+            "solver.duration_s": 40.0 * PERIOD,
+            "output.history_s": PERIOD / 1000,
+        },
+    )
+
+
+def at_the_default_penalty(value: float, exact: float, scale: float | None = None) -> str:
+    """What the default penalty makes of it, for a note."""
+    return f"{100.0 * abs(value - exact) / (scale or abs(exact)):.2g} % at the default penalty"
 
 
 def pulses() -> list[Row]:
@@ -179,30 +236,6 @@ def pulses() -> list[Row]:
     return rows
 
 
-def whole_history() -> list[Row]:
-    """Slip at every instant against the event-driven slider."""
-    done = run(
-        BOX,
-        harmonic(0.05, 10.0)
-        | {"contact.mu_static": 0.4, "contact.mu_kinetic": 0.2, "solver.duration_s": 5.0},
-    )
-    slider = RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=GRAVITY)
-    floor = sine_floor(amplitude=0.05, angular_frequency=10.0)
-    times = done.history["time_s"]
-    exact = simulate_sliding(slider, floor, duration=float(times[-1])).at(times)[0]
-    return [
-        Row(
-            case="rigid box, A = 0.05 m, Omega = 10 rad/s, mu 0.4/0.2, 5 s",
-            compared="slip, largest difference over the largest slip",
-            value=float(np.abs(done.history["slip_m"] - exact).max()) / LARGEST,
-            reference=0.0,
-            kind="computed",
-            source="event-driven slider",
-            tolerance=STROKE_TOLERANCE,
-        )
-    ]
-
-
 def longest_stop(done: Finished, since: float) -> float:
     """Longest stretch without sliding after an instant [s]."""
     late = done.history["time_s"] > since
@@ -221,6 +254,6 @@ CHECKS = (
     Check(name="steady strokes", rows=steady_strokes),
     Check(name="sliding without stops", rows=sliding_without_stops),
     Check(name="the seed's box on a fast floor", rows=seed_slider),
-    Check(name="slip at every instant", rows=whole_history),
+    Check(name="where the seed's box is", rows=seed_slider_position),
     Check(name="rectangular pulse", rows=pulses),
 )
