@@ -6,7 +6,6 @@ import math
 import matplotlib
 import numpy as np
 from jinja2 import Environment
-from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from fem.run import versions
@@ -47,7 +46,7 @@ refinements.</p>
 <td class="number">{{ order(row) }}</td>
 <td class="{{ 'pass' if row.passed else 'fail' }}">{{ "pass" if row.passed else "FAIL" }}</td></tr>
 {% endfor %}{% endfor %}</table>
-<div class="plots">{% for caption, svg in plots[room] %}<figure>{{ svg }}<figcaption>{{ caption }}</figcaption></figure>
+<div class="plots">{% for caption, svg in plots[room] %}<figure>{{ svg | safe }}<figcaption>{{ caption }}</figcaption></figure>
 {% endfor %}</div>
 {% endfor %}</body></html>
 """
@@ -77,7 +76,7 @@ def page(ladder: Ladder) -> str:
         rooms.setdefault(rung.room, []).append(rung)
     plots = {
         room: [
-            (f"{row.case}: {row.compared}", Markup(convergence_plot(row.convergence)))
+            (f"{row.case}: {row.compared}", convergence_plot(row.convergence))
             for rung in rungs
             for row in rung.rows
             if row.convergence is not None

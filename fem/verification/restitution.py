@@ -129,7 +129,7 @@ def _row(case: str, value: float, reference: float, tolerance: float) -> Row:
 
 CHECKS = (
     Check(name="slendernesses", rows=slendernesses),
-    Check(name="limit of a stiff floor", rows=penalty_limit),
+    Check(name="the error of a soft floor", rows=penalty_limit),
     Check(name="penalties, steps, meshes", rows=variations),
     Check(name="stiffness of the container", rows=stiffness_of_the_container),
 )

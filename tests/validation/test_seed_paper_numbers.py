@@ -9,28 +9,7 @@ import pytest
 from fem.case import load_case
 from fem.case_container import build_container
 from fem.commands.check import checks_of, peak_floor_acceleration
-from fem.static_checks import StaticChecks, static_checks
-
-WIDTH, BOX_HEIGHT, BOX_MASS = 1.1, 1.0, 2500.0
-
-
-def seed_checks(*, boxes: int, gravity: float, peak: float = 2.4) -> StaticChecks:
-    """The paper's homogeneous container: I = M (a^2 + c^2)/12."""
-    mass, height = boxes * BOX_MASS, boxes * BOX_HEIGHT
-    return static_checks(
-        mass=mass,
-        centroid=0.5 * height,
-        inertia=mass * (WIDTH**2 + height**2) / 12.0,
-        width=WIDTH,
-        gravity=gravity,
-        mu_static=0.4,
-        mu_kinetic=0.2,
-        peak_floor_acceleration=peak,
-        ground_acceleration=1.6,
-        soil_factor=1.5,
-        behaviour_factor=1.5,
-        importance_factor=1.0,
-    )
+from fem.verification.statics import seed_checks
 
 
 def test_one_box_of_the_paper():
