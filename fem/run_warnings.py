@@ -9,14 +9,12 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from fem.case import Case
+from fem.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 
 Result = Mapping[str, Any]
 
 # A tilt of one hundredth of the slenderness angle counts as rocking; the contact alone must stay well below.
 ROCKING_RATIO = 0.01
-GAIN_LIMIT = 1e-4  #: of the energy reference, what the scheme may win
-LOSS_LIMIT = 1e-3  #: of the energy reference, or
-LOSS_SHARE_LIMIT = 1e-2  #: of what was dissipated, what the scheme may lose
 NEAR = 0.5  #: share of a limit from which it is worth telling
 CREDIBLE_STIFFNESS_RATIO = 4.0  #: f1/f_c from which the impact of a rigid block is reproduced
 REJECTED_SHARE = 0.05
@@ -110,10 +108,11 @@ def shell_rings_on_the_floor(result: Result, case: Case) -> str | None:
     ratio = elastic[0] / contact
     if ratio >= CREDIBLE_STIFFNESS_RATIO:
         return None
+    banded = _part(result, "verdict").get("band") is not None
     return (
         f"first elastic frequency over contact frequency is {ratio:.2g} (< {CREDIBLE_STIFFNESS_RATIO:g}): "
-        "impacts feed vibration, so restitution depends on the contact stiffness; take results that matter "
-        "as a band (run --band)"
+        "impacts feed vibration, so restitution depends on the contact stiffness; "
+        + ("the band belongs to the result" if banded else "take results that matter as a band (run --band)")
     )
 
 
