@@ -46,7 +46,8 @@ refinements.</p>
 <td class="number">{{ order(row) }}</td>
 <td class="{{ 'pass' if row.passed else 'fail' }}">{{ "pass" if row.passed else "FAIL" }}</td></tr>
 {% endfor %}{% endfor %}</table>
-<div class="plots">{% for caption, svg in plots[room] %}<figure>{{ svg | safe }}<figcaption>{{ caption }}</figcaption></figure>
+<div class="plots">{% for caption, svg in plots[room] %}<figure>{{ svg | safe }}
+<figcaption>{{ caption }}</figcaption></figure>
 {% endfor %}</div>
 {% endfor %}</body></html>
 """
