@@ -20,7 +20,18 @@ from contact.interface import Contact, FloatArray, IntArray, Workspace, make_wor
 from contact.ledger import ROWS as LEDGER_ROWS
 from contact.modal_body import ModalBody, with_own_scratch
 from contact.scheme import Scheme
-from contact.stepping import CLOCK, OVERTURNED, REACHED, Control, Run, Samples, advance_compiled, make_samples
+from contact.stepping import (
+    AFTERMATH_SLICE,
+    CLOCK,
+    OVERTURNED,
+    REACHED,
+    Control,
+    Run,
+    Samples,
+    advance_compiled,
+    leave_alone,
+    make_samples,
+)
 from contact.tracking import TRACK
 
 CONTACT_NUMBERS = tuple(
@@ -35,7 +46,7 @@ class Rows(NamedTuple):
     normal_stiffness: FloatArray  #: (k, n)
     tangential_stiffness: FloatArray  #: (k, n)
     contact: FloatArray  #: (k, 8) the other numbers of `Contact`
-    control: FloatArray  #: (k, 24) numbers of `Control`
+    control: FloatArray  #: (k, 23) numbers of `Control`
     motion_kind: IntArray  #: (k,)
     motion_parameters: FloatArray  #: (k, ..) padded
     motion_breaks: FloatArray  #: (k, ..) padded with infinity
@@ -79,7 +90,7 @@ class Scratch(NamedTuple):
     floor: FloatArray
     change: FloatArray
     watched: FloatArray
-    uniform: FloatArray  #: (3,) parameters of the coasting floor
+    uniform: FloatArray  #: (3,) parameters of the floor left alone
     never: FloatArray  #: (1,) infinite
     history: Samples
     frames: Samples
@@ -121,20 +132,20 @@ def pack_rows(runs: Sequence[Run], durations: Sequence[float], aftermaths: Seque
     )
 
 
-def run_rows(body: ModalBody, scheme: Scheme, rows: Rows, fresh_track: Any, *, threads: int = 1) -> Outcomes:
+def run_rows(body: ModalBody, scheme: Scheme, rows: Rows, tracks: Any, *, threads: int = 1) -> Outcomes:
     """Step every row to its end.
 
     Args:
         body: the shared container; its scratch arrays are not touched.
         scheme: of the time stepping, shared.
         rows: the inputs.
-        fresh_track: record (1,) of TRACK in which nothing has happened yet.
+        tracks: records (k,) of TRACK as the runs have them at t = 0; copied.
         threads: to share the rows among; it does not change a bit of the results.
     """
     count = rows.duration.size
     outcomes = Outcomes(
         status=np.zeros(count, dtype=np.int64),
-        track=np.repeat(fresh_track, count).view(np.recarray),
+        track=np.array(tracks).view(np.recarray),
         clock=np.zeros(count, CLOCK).view(np.recarray),
         ledger=np.zeros((count, LEDGER_ROWS)),
         rotation=np.zeros(count),
@@ -289,10 +300,11 @@ def _advance_rows(scheme: Scheme, rows: Rows, scratch: Scratch, out: Outcomes, f
 
 
 def _follow_aftermath(scratch: Scratch, run: Run, until: float) -> int:
-    """Let the floor coast until the container falls or is back below its slenderness angle."""
+    """Leave the floor alone until the container falls or is back below its slenderness angle."""
     clock = run.clock[0]
     x, v, _ = floor_motion(run.motion, clock.time)
-    scratch.uniform[0], scratch.uniform[1], scratch.uniform[2] = clock.time, x, v
+    leave_alone(scratch.body, run, v)
+    scratch.uniform[0], scratch.uniform[1], scratch.uniform[2] = clock.time, x, 0.0
     motion = FloorMotion(UNIFORM, scratch.uniform, run.motion.breaks, run.motion.coefficients)
     clock.next_break = 0
     alone = Run(
@@ -322,7 +334,6 @@ def _follow_aftermath(scratch: Scratch, run: Run, until: float) -> int:
     return REACHED
 
 
-AFTERMATH_SLICE = 0.05  #: how often the coasting container is looked at [s]
 follow_aftermath = compiled(_follow_aftermath)
 advance_rows = compiled(_advance_rows)
 

@@ -1,8 +1,8 @@
 """What the stepper needs of a body, and no more.
 
-A body has coordinates (their number and meaning are its own affair), base points that may touch the floor,
-and five operations, each a function here that hands over to the body: `predict`, `release`, `respond`,
-`complete` and `observe`. `contact.modal_body` compiles them for a floating frame with elastic modes; the
+A body has coordinates (their number and meaning are its own affair), base points that may touch the floor, and
+six operations, each a function here that hands over to the body: `predict`, `release`, `respond`, `complete`,
+`observe` and `shift_velocity`. `contact.modal_body` compiles them for a floating frame with elastic modes; the
 finite-element body of `fem` brings them as methods. The stepper is written once, against these functions.
 """
 
@@ -93,3 +93,8 @@ def complete(body: Any, new: State, floor: float) -> None:
 def observe(body: Any, state: State, floor: float) -> None:
     """Fill in displacement and velocity of the monitored points; asked for at samples only."""
     body.observe(state, floor)
+
+
+def shift_velocity(body: Any, state: State, velocity: float) -> None:
+    """Take the velocity of a new frame along x off that of every coordinate."""
+    body.shift_velocity(state, velocity)

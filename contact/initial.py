@@ -114,6 +114,7 @@ def tilted(
     gravity: float,
     point: FloatArray,
     corner_x: float,
+    compliance: FloatArray,
     normal_stiffness: FloatArray,
     mu_static: float,
 ) -> Stance:
@@ -124,6 +125,7 @@ def tilted(
         mass, inertia: [kg, kg m2]; gravity: [m/s2].
         point: (n, 2) base points relative to the mass centre, by rising x [m].
         corner_x: where that corner stands on the floor [m].
+        compliance: (2n, 2n) elastic compliance in the body's frame, inertia relief [m/N].
         normal_stiffness: (n,) [N/m]; mu_static: bounds the friction asked of the corner.
 
     Raises:
@@ -146,8 +148,13 @@ def tilted(
     force[0] = np.clip(force[0], -mu_static * force[1], mu_static * force[1])
     forces = np.zeros_like(point)
     forces[corner] = force
+    turn = np.array([[cosine, sine], [-sine, cosine]])
+    own = compliance[2 * corner : 2 * corner + 2, 2 * corner : 2 * corner + 2]
+    strained = (
+        arm + turn @ own @ turn.T @ force
+    )  # where the corner is once the force has strained the container
     return Stance(
-        centre=(corner_x - arm[0], -force[1] / normal_stiffness[corner] - arm[1]),
+        centre=(corner_x - strained[0], -force[1] / normal_stiffness[corner] - strained[1]),
         rotation=rotation,
         velocity=(-angular_velocity * arm[1], angular_velocity * arm[0]),
         angular_velocity=angular_velocity,

@@ -342,6 +342,10 @@ def _observe(body: ModalBody, new: State, floor: float) -> None:
         new.monitor[i, 3] = velocity[1] - arm_x * rate - sine * u + cosine * w
 
 
+def _shift_velocity(body: ModalBody, state: State, velocity: float) -> None:
+    state.velocity[0] -= velocity
+
+
 complete_modal = compiled(_complete)
 
 
@@ -379,3 +383,4 @@ _compile_for_modal_body(interface.release, _release)
 _compile_for_modal_body(interface.respond, _respond)
 _compile_for_modal_body(interface.complete, _complete)
 _compile_for_modal_body(interface.observe, _observe)
+_compile_for_modal_body(interface.shift_velocity, _shift_velocity)

@@ -31,6 +31,7 @@ from contact.body import (
     predict,
     release,
     respond,
+    shift_velocity,
 )
 from contact.compiled import compiled
 from contact.floor_motion import FloorMotion, floor_motion
@@ -52,6 +53,8 @@ from contact.scheme import Scheme
 from contact.tracking import FALLEN, NEVER, follow, make_track
 
 ITERATION_LIMIT = 12  #: of free motion, contact, response within one step
+WEAKENING_LIMIT = 8  #: repetitions of a step for friction that falls with its slip
+WEAKENING_TOLERANCE = 1e-9  #: change of the coefficient at which they end
 STEPS_PER_OCTAVE = 3  #: of the ladder of step sizes
 NEIGHBOUR = 0.25  #: base points nearer than this, over the width, close as one
 HELD_STEPS = 6  #: after a rejection
@@ -61,6 +64,8 @@ FADING = 0.8  #: of the memory for the imbalance, a step
 #: what `advance` returns
 REACHED, OVERTURNED, FAILED = 0, 1, 2
 OVERTURNING_ROTATION = 0.5 * np.pi
+#: a container that is to lie on its side counts as overturned so much before: there its side meets the floor [rad]
+LYING_DOWN = 2e-3
 
 #: columns of `Run.rows`
 (
@@ -140,6 +145,7 @@ CLOCK = np.dtype(
         ("next_break", "i8"),
         ("least_imbalance", "f8"),
         ("most_imbalance", "f8"),
+        ("dissipated", "f8"),  # when these were taken
     ],
     align=True,
 )
@@ -337,11 +343,11 @@ def _slide(run: Run, step: float) -> tuple[bool, float, float]:
             total += normal
             if contact.friction != ELASTIC_STICK:
                 every = every and abs(work.velocity[i, 0]) > contact.regularisation_velocity
-            elif work.slope[i, 0] != 0.0 or direction * tangential < 0.0:
+            elif work.slope[i, 0] != 0.0 or direction * run.slip[i] < 0.0:
                 every = False
-            direction = tangential
-    if total <= 0.0:
-        return False, 0.0, 0.0
+            direction = run.slip[i]
+    if total <= 0.0:  # in flight nothing tells sticking from sliding: as before
+        return run.clock[0].sliding == 1, 0.0, 0.0
     return every, weighted / total, velocity / total
 
 
@@ -646,13 +652,14 @@ def _accept(
     """Make the step attempted the state of the run; samples, ledger and record follow."""
     control, clock = run.control, run.clock[0]
     end = clock.time + step
-    clock.slid = clock.slid + abs(slip_step) if clock.sliding == 1 else 0.0
+    clock.slid = clock.slid + abs(slip_step) if clock.sliding == 1 or every else 0.0
     clock.sliding = 1 if every else 0
     tangential, normal = 0.0, 0.0
     for i in range(run.new.force.shape[0]):
         tangential += run.new.force[i, 0]
         normal += run.new.force[i, 1]
-    utilisation = abs(tangential) / (run.contact.mu_static * normal) if normal > 0.0 else 0.0
+    limit = run.contact.mu_static * normal
+    utilisation = abs(tangential) / limit if limit > 0.0 else 0.0
     clock.utilisation_rate = (utilisation - clock.utilisation) / step
     clock.utilisation = utilisation
     clock.slip_acceleration = (slip_velocity - clock.slip_velocity) / step
@@ -673,8 +680,10 @@ def _accept(
     clock.frames = sample(body, run, run.frames, clock.frames, clock.frames_gone, step, slip_step)
     for row in range(LEDGER_ROWS):
         run.ledger[row] += run.change[row]
-    clock.least_imbalance = min(clock.least_imbalance, run.ledger[IMBALANCE])
-    clock.most_imbalance = max(clock.most_imbalance, run.ledger[IMBALANCE])
+    if run.track[0].overturned_at == NEVER:  # how it slams down afterwards is not the question
+        clock.least_imbalance = min(clock.least_imbalance, run.ledger[IMBALANCE])
+        clock.most_imbalance = max(clock.most_imbalance, run.ledger[IMBALANCE])
+        clock.dissipated = run.ledger[FRICTION] + run.ledger[CONTACT_DAMPING] + run.ledger[MATERIAL_DAMPING]
     clock.slip += slip_step
     clock.time = end
     clock.steps += 1
@@ -686,6 +695,12 @@ def _accept(
 
 
 @register_jitable(forceinline=True)
+def _kinetic_friction(contact: Contact, slid: float) -> float:
+    """Coefficient of friction of a support that slides, `slid` [m] since it broke loose."""
+    return weakened_mu(contact.mu_static, contact.mu_kinetic, contact.weakening, slid)
+
+
+@register_jitable(forceinline=True)
 def _is_full(run: Run) -> bool:
     """No room for the samples of another largest step."""
     ahead = run.control.largest_step
@@ -693,6 +708,24 @@ def _is_full(run: Run) -> bool:
     room = run.history.mode.size - (clock.samples - clock.samples_gone)
     room_of_frames = run.frames.mode.size - (clock.frames - clock.frames_gone)
     return room < ahead / run.history.interval + 1.0 or room_of_frames < ahead / run.frames.interval + 1.0
+
+
+@register_jitable(forceinline=True)
+def leave_alone(body: Any, run: Run, floor_velocity: float) -> None:
+    """Go over to the frame in which the floor, undriven from now on, stands still (Galilei): no kick, no journey.
+
+    Args:
+        body: what is stepped; run: at the end of its motion, whose `floor` rows are brought to rest.
+        floor_velocity: that it had [m/s].
+    """
+    shift_velocity(body, run.old, floor_velocity)
+    complete(body, run.old, run.floor[0, 0])
+    for side in range(2):
+        run.floor[side, 1], run.floor[side, 2] = 0.0, 0.0
+    run.clock[0].next_break = 0
+
+
+AFTERMATH_SLICE = 0.05  #: how often a container left alone is looked at [s]
 
 
 def advance(body: Any, run: Run, until: float) -> int:
@@ -709,8 +742,19 @@ def advance(body: Any, run: Run, until: float) -> int:
         step = _next_step(run)
         mu = run.contact.mu_static
         if clock.sliding == 1:
-            mu = weakened_mu(run.contact.mu_static, run.contact.mu_kinetic, run.contact.weakening, clock.slid)
-        iterations = _attempt(body, run, step, mu)
+            mu = _kinetic_friction(run.contact, clock.slid)
+        iterations, every, slip_step, slip_velocity = 0, False, 0.0, 0.0
+        for _ in range(WEAKENING_LIMIT):  # friction that falls with the slip of this very step
+            iterations = _attempt(body, run, step, mu)
+            if iterations < 0:
+                break
+            every, slip_step, slip_velocity = slide(run, step)
+            if clock.sliding == 0 or run.contact.weakening <= 0.0:
+                break
+            weakened = _kinetic_friction(run.contact, clock.slid + abs(slip_step))
+            if abs(weakened - mu) <= WEAKENING_TOLERANCE:
+                break
+            mu = weakened
         if iterations < 0:
             clock.rejected += 1
             clock.failed += 1
@@ -718,14 +762,13 @@ def advance(body: Any, run: Run, until: float) -> int:
                 return FAILED
             clock.level += STEPS_PER_OCTAVE
             continue
-        every, slip_step, slip_velocity = slide(run, step)
         dissipated = account(run)
         allowed = allowed_imbalance(run, step, dissipated)
         if run.change[IMBALANCE] < 0.0:  # a gain: small once the ledger as a whole comes near one
             room = ROOM_SHARE * (run.ledger[IMBALANCE] + control.gain_room * control.reference_energy)
             allowed = min(allowed, max(room, control.gain_share * allowed))
         used = abs(run.change[IMBALANCE]) / allowed
-        switches = (clock.sliding == 1) != every
+        switches = (clock.sliding == 1) != every and run.contact.mu_static > 0.0
         if switches and step > 1.01 * control.event_step:
             used = max(used, 9.0 if step > 4.0 * control.event_step else 2.0)
         if used > 1.0 and step > control.smallest_step:
@@ -742,7 +785,8 @@ def advance(body: Any, run: Run, until: float) -> int:
         clock.level = change_level(clock.level, recent, clock.held == 0)
         clock.used = recent
         clock.held = max(clock.held - 1, 0)
-        if abs(run.old.pose[ROTATION]) >= OVERTURNING_ROTATION and track.overturned_at == NEVER:
+        fallen = OVERTURNING_ROTATION if control.stop_when_overturned else OVERTURNING_ROTATION - LYING_DOWN
+        if abs(run.old.pose[ROTATION]) >= fallen and track.overturned_at == NEVER:
             track.overturned_at = clock.time
             track.mode = FALLEN
             track.modes |= 1 << FALLEN
@@ -752,3 +796,4 @@ def advance(body: Any, run: Run, until: float) -> int:
 
 
 advance_compiled = compiled(advance)
+leave_alone_compiled = compiled(leave_alone)

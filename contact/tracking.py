@@ -1,9 +1,9 @@
 """What a run is judged by, followed step by step: extremes, events, impacts, restitution.
 
-A side is the base points left or right of the middle; it carries nothing when none of its points touches.
-The corners are the first and the last base point. Definitions of impact and restitution as in the results'
-description: an impact counts when a corner closes whose gap had exceeded a thousandth of width times slenderness
-angle while the other was the pivot.
+A side carries nothing, and the body turns about the other, when only the outer part of the base at the other
+side touches: a flat base on an elastic bed opens from one edge long before. The corners are the first and the
+last base point. An impact counts when a corner closes whose gap had exceeded a thousandth of width times
+slenderness angle while the other was the pivot.
 """
 
 import math
@@ -22,6 +22,10 @@ OPENING = 1e-9
 IMPACT_GAP = 1e-3
 #: the angular velocity after an impact is averaged over this time, over 1/p: it rings
 AVERAGED = 0.1
+#: corner forces are averaged over this time, over 1/p: under a dashpot the instantaneous one means nothing
+FORCE_WINDOW = 0.01
+#: a side is open when nothing but this outer part of the base, over its width, carries: the body turns about it
+PIVOT = 0.15
 #: rotation ratio above which an open side is called rocking
 ROCKING = 0.01
 
@@ -36,7 +40,12 @@ TRACK = np.dtype(
         ("slip_travel", "f8"),
         ("max_uplift", "f8"),
         ("max_penetration", "f8"),
-        ("max_corner_force", "f8"),
+        ("max_corner_force", "f8"),  # mean over a short while
+        ("left_force", "f8"),  # at the end of the last step
+        ("right_force", "f8"),
+        ("pressed", "f8"),  # how long the impulses have been gathered
+        ("left_impulse", "f8"),
+        ("right_impulse", "f8"),
         ("max_top_displacement", "f8"),
         ("max_acceleration", "f8"),
         ("first_opening", "f8"),
@@ -77,6 +86,29 @@ def make_track() -> Any:
     return track
 
 
+def begin(track: Any, control: Any, state: State) -> None:
+    """Note the initial state: a container may start tilted, with a side already open."""
+    n = control.base_points
+    gap, x = state.point[:n, 1], state.point[:n, 0]
+    closed = gap <= 0.0
+    track.left_open = int(not np.any(closed & (x < x[-1] - PIVOT * control.width)))
+    track.right_open = int(not np.any(closed & (x > x[0] + PIVOT * control.width)))
+    rotation = abs(state.pose[ROTATION])
+    track.max_rotation, track.max_uplift = rotation, max(0.0, float(gap.max()))
+    track.max_penetration = max(0.0, -float(gap.min()))
+    if gap.max() > OPENING * control.width:
+        track.first_opening = 0.0
+    if track.left_open + track.right_open == 1:
+        track.first_uplift, track.max_rocking = 0.0, rotation
+    middle = 0.5 * (x[0] + x[-1])
+    track.left_force = float(state.force[:n][x < middle, 1].sum())
+    track.right_force = float(state.force[:n][x >= middle, 1].sum())
+    track.max_corner_force = max(track.left_force, track.right_force)
+    rocking = track.left_open + track.right_open > 0 and rotation > ROCKING * control.slenderness_angle
+    track.mode = ROCK if rocking else REST
+    track.modes = 1 << track.mode
+
+
 @register_jitable(forceinline=True)
 def follow(
     track: Any,
@@ -107,23 +139,30 @@ def follow(
     track.max_slip = max(track.max_slip, abs(slip))
     track.slip_travel += abs(slip_step)
     left_open, right_open, uplift, left_force, right_force = 1, 1, 0.0, 0.0, 0.0
-    middle = 0.5 * (new.point[0, 0] + new.point[n - 1, 0])
+    first, last = new.point[0, 0], new.point[n - 1, 0]
     for i in range(n):
-        gap = new.point[i, 1]
+        gap, x = new.point[i, 1], new.point[i, 0]
         uplift = max(uplift, gap)
         track.max_penetration = max(track.max_penetration, -gap)
         if gap > OPENING * control.width and time < track.first_opening:
             track.first_opening = time
-        if new.point[i, 0] < middle:
+        if x < 0.5 * (first + last):
             left_force += new.force[i, 1]
-            if gap <= 0.0:
-                left_open = 0
         else:
             right_force += new.force[i, 1]
-            if gap <= 0.0:
-                right_open = 0
+        if gap <= 0.0 and x < last - PIVOT * control.width:
+            left_open = 0
+        if gap <= 0.0 and x > first + PIVOT * control.width:
+            right_open = 0
     track.max_uplift = max(track.max_uplift, uplift)
-    track.max_corner_force = max(track.max_corner_force, max(left_force, right_force))
+    track.left_impulse += 0.5 * step * (track.left_force + left_force)
+    track.right_impulse += 0.5 * step * (track.right_force + right_force)
+    track.left_force, track.right_force = left_force, right_force
+    track.pressed += step
+    if track.pressed >= FORCE_WINDOW / control.frequency_parameter:
+        mean = max(track.left_impulse, track.right_impulse) / track.pressed
+        track.max_corner_force = max(track.max_corner_force, mean)
+        track.left_impulse, track.right_impulse, track.pressed = 0.0, 0.0, 0.0
     if left_open + right_open == 1 and time < track.first_uplift:
         track.first_uplift = time
     open_side = left_open + right_open > 0
@@ -196,9 +235,10 @@ def _follow_restitution(
             track.mean_velocity += step * (velocity - track.drift)
             track.watched += step
         if struck != 0 or track.watched >= AVERAGED / control.frequency_parameter:
-            track.restitution_by_velocity = 0.0
             if track.watched >= 0.5 * AVERAGED / control.frequency_parameter:
-                track.restitution_by_velocity = track.mean_velocity / (track.watched * track.velocity_before)
+                ratio = track.mean_velocity / (track.watched * track.velocity_before)
+                if ratio > 0.0:  # else it did not go over to the new pivot: there is no such ratio
+                    track.restitution_by_velocity = ratio
             track.pivot_waiting = 0
     turned = old.pose[ANGULAR_VELOCITY] * velocity < 0.0 or old.pose[ANGULAR_VELOCITY] == 0.0
     aside = abs(new.pose[ROTATION]) > ROCKING * control.slenderness_angle

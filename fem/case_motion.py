@@ -2,9 +2,13 @@
 
 from typing import TypeVar
 
-from contact.motion import BaseMotion, HarmonicMotion, NoMotion, PulseMotion
+import numpy as np
+
+from contact.motion import BaseMotion, HarmonicMotion, NoMotion, PulseMotion, TableMotion
 from contact.motion_file import read_motion_table
 from fem.case import Case, CaseError
+
+PEAK_SAMPLES = 20_001  #: over a run, beside the instants at which a pulse or a table changes
 
 ValueT = TypeVar("ValueT")
 
@@ -22,6 +26,24 @@ def build_motion(case: Case) -> BaseMotion:
         raise
     except ValueError as error:
         raise CaseError(f"[motion] {error}") from error
+
+
+def peak_acceleration_within(motion: BaseMotion, duration: float) -> float:
+    """Largest |acceleration| that the floor reaches up to `duration` [m/s2].
+
+    What it would do afterwards is no business of a static rule that is compared with the run.
+    """
+    if isinstance(motion, NoMotion | HarmonicMotion):
+        return motion.peak_acceleration  # knows the duration of its case
+    instants = np.concatenate(
+        [
+            np.linspace(0.0, duration, PEAK_SAMPLES),
+            np.asarray(motion.break_times, dtype=float),
+            motion.times if isinstance(motion, TableMotion) else np.zeros(0),
+        ]
+    )
+    inside = np.unique(instants[(instants >= 0.0) & (instants <= duration)])
+    return float(np.abs(motion.evaluate(inside)[2]).max())
 
 
 def _build(case: Case) -> BaseMotion:

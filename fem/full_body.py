@@ -203,6 +203,10 @@ class FullBody:
         new.monitor[:, 0] -= floor
         new.monitor[:, 2:] = velocity[self.monitor]
 
+    def shift_velocity(self, state: State, velocity: float) -> None:
+        """See `contact.body.shift_velocity`."""
+        state.velocity[::2] -= velocity
+
     def _best_fit(self, position: FloatArray) -> tuple[float, FloatArray]:
         """Mass-weighted best-fit rotation [rad] and mass centre [m]."""
         centre = self._nodal_mass @ position / self.mass

@@ -22,11 +22,12 @@ from contact.penalty import relaxation_time
 from contact.scheme import Scheme, generalised_alpha, newmark
 from contact.stepping import Control, Run, make_run, make_samples
 from contact.support import Support
+from contact.tracking import begin
 from fem.assembly import FiniteElements, assemble
 from fem.case import Case, CaseError
 from fem.case_contact import build_support, normal_penalty
 from fem.case_container import build_container
-from fem.case_motion import build_motion
+from fem.case_motion import build_motion, peak_acceleration_within
 from fem.full_body import FullBody
 from fem.modes import elastic_modes
 from fem.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
@@ -47,6 +48,8 @@ ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE = 1e-5, 2e-7, 4e-3
 #: .. at a first touch: over the energy that a rigid block would lose there
 CLOSING_SHARE, LEAST_LOSS = 2e-3, 0.02
 TRAIL_SHARE, TRAIL_TIME = 2e-2, 0.1
+#: .. and however loose the tolerance: what is lost of what is dissipated is judged in the end
+MOST_SHARE, MOST_TRAIL = 8e-3, 3e-2
 #: a gain is worse than a loss: beyond this, over the reference energy, only so much of what is allowed may be one
 GAIN_ROOM, GAIN_SHARE = 1e-5, 0.05
 #: closings with less energy than this, over the energy to overturn, are left to the ledger
@@ -70,6 +73,7 @@ class Container:
     response: StaticResponse
     basis: ReducedBasis | None  #: elastic modes, of a reduced model
     damping: float  #: a of C = a K [s]
+    first: float  #: lowest elastic angular frequency; infinite for a rigid container [rad/s]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -91,9 +95,11 @@ class Model:
 
     @property
     def frequencies(self) -> FloatArray:
-        """Elastic frequencies of the model's modes [Hz]; none for `full` and `rigid`."""
-        basis = self.container.basis
-        return np.zeros(0) if basis is None else basis.angular_frequencies / (2.0 * np.pi)
+        """Elastic frequencies of the model's modes [Hz]: all of `reduced`, the first of `full`, none of `rigid`."""
+        if self.container.basis is not None:
+            return self.container.basis.angular_frequencies / (2.0 * np.pi)
+        first = self.container.first
+        return np.array([first / (2.0 * np.pi)]) if math.isfinite(first) else np.zeros(0)
 
 
 def discretise(case: Case) -> Container:
@@ -118,7 +124,7 @@ def discretise(case: Case) -> Container:
     if case.solver.model == "reduced":
         basis = reduced_basis(elements, response, case.solver.elastic_modes)
         first = float(basis.angular_frequencies[0])
-    elif case.solver.model == "full" and case.container.damping_ratio > 0.0:
+    elif case.solver.model == "full":
         first = float(elastic_modes(elements, 1).angular_frequencies[0])
     if math.isfinite(first):
         damping = 2.0 * case.container.damping_ratio / first
@@ -131,6 +137,7 @@ def discretise(case: Case) -> Container:
         response=response,
         basis=basis,
         damping=damping,
+        first=first,
     )
 
 
@@ -187,6 +194,7 @@ def build_model(case: Case, container: Container | None = None) -> Model:
             velocity=coordinates if fields > 0.0 else 0,
         ),
     )
+    begin(run.track[0], control, old)
     return Model(
         case=case, container=container, penalty=penalty, motion=motion, static=static, body=body, run=run
     )
@@ -202,7 +210,7 @@ def checks_of(case: Case, mesh: ContainerMesh, motion: BaseMotion) -> StaticChec
         gravity=case.gravity_m_s2,
         mu_static=case.contact.mu_static,
         mu_kinetic=case.contact.mu_kinetic,
-        peak_floor_acceleration=motion.peak_acceleration,
+        peak_floor_acceleration=peak_acceleration_within(motion, case.solver.duration_s),
         ground_acceleration=case.static.ground_acceleration_m_s2,
         soil_factor=case.static.soil_factor,
         behaviour_factor=case.static.behaviour_factor,
@@ -303,8 +311,8 @@ def _control(
         reference_energy=reference,
         energy_rate=loose * ENERGY_RATE * rate,
         energy_floor=loose * ENERGY_FLOOR,
-        energy_share=loose * ENERGY_SHARE,
-        trail_share=loose * TRAIL_SHARE,
+        energy_share=min(loose * ENERGY_SHARE, max(ENERGY_SHARE, MOST_SHARE)),
+        trail_share=min(loose * TRAIL_SHARE, max(TRAIL_SHARE, MOST_TRAIL)),
         trail_time=TRAIL_TIME / rate,
         gain_room=GAIN_ROOM,
         gain_share=GAIN_SHARE,
@@ -370,12 +378,13 @@ def _stance(case: Case, container: Container, contact: Contact) -> Stance:
     nodes = container.nodes[:base]
     point = elements.nodes[nodes] - np.asarray(mesh.centroid)
     elastic = 0.0 if case.solver.model == "rigid" else 1.0
+    compliance = elastic * container.response.compliance[: 2 * base, : 2 * base]
     if initial.rotation_rad == 0.0:
         stance = standing(
             weight=mesh.mass * case.gravity_m_s2,
             centroid=mesh.centroid,
             point=point,
-            compliance=elastic * container.response.compliance[: 2 * base, : 2 * base],
+            compliance=compliance,
             normal_stiffness=contact.normal_stiffness[:base],
         )
         if initial.angular_velocity_rad_s != 0.0:
@@ -390,6 +399,7 @@ def _stance(case: Case, container: Container, contact: Contact) -> Stance:
             gravity=case.gravity_m_s2,
             point=point,
             corner_x=float(elements.nodes[corner, 0]),
+            compliance=compliance,
             normal_stiffness=contact.normal_stiffness[:base],
             mu_static=contact.mu_static,
         )

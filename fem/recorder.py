@@ -77,7 +77,7 @@ class Recorder:
         self._rows: list[FloatArray] = []
         self._modes: list[str] = []
         self._area = _contact_areas(model)
-        self.largest_von_mises = 0.0  #: so far, over frames and the most strained samples [Pa]
+        self.largest_von_mises: float | None = None  #: over frames and the most strained samples, if any [Pa]
 
     def drain(self, run: Run) -> None:
         """Empty the run's arrays of samples."""
@@ -102,13 +102,16 @@ class Recorder:
         modes = [MODE_NAMES[int(mode)] for mode in samples.mode[:count]]
         if self._recovery is not None:
             strained = np.argsort(samples.columns[:count, ROW_STRAIN])[-STRAINED:]
-            stress = self._recovery.largest_von_mises(samples.position[strained])
-            self.largest_von_mises = max(self.largest_von_mises, stress)
+            if samples.position.shape[1] > 0:
+                self._note_stress(self._recovery.largest_von_mises(samples.position[strained]))
         self._rows.append(rows)
         self._modes += modes
         if self._history_sink is not None:
             self._history_sink(rows, modes)
         clock.samples_gone = clock.samples
+
+    def _note_stress(self, stress: float) -> None:
+        self.largest_von_mises = max(self.largest_von_mises or 0.0, stress)
 
     def _drain_frames(self, run: Run) -> None:
         clock, samples = run.clock[0], run.frames
@@ -117,7 +120,7 @@ class Recorder:
             for k in range(count):
                 time = (first + k) * samples.interval
                 frame = self._recovery.frame(samples.position[k], samples.velocity[k])
-                self.largest_von_mises = max(self.largest_von_mises, float(np.max(frame.von_mises)))
+                self._note_stress(float(np.max(frame.von_mises)))
                 if self._frame_sink is not None:
                     pressure = np.zeros(len(frame.von_mises))
                     pressure[self._model.container.nodes] = samples.force[k, :, 1] / self._area

@@ -76,11 +76,12 @@ def reduced_basis(elements: FiniteElements, response: StaticResponse, modes: int
             elastic_modes(elements, min(modes, elements.unknowns - 3)).shapes.reshape(-1, elements.unknowns).T
         )
     attachments = response.displacement.reshape(-1, elements.unknowns).T
+    attachments = attachments / np.sqrt(np.sum(attachments * (mass @ attachments), axis=0))
     for _ in range(2):  # twice is enough to make them orthogonal to rounding
         attachments = attachments - columns @ (columns.T @ (mass @ attachments))
-    attachments = attachments / np.sqrt(np.sum(attachments * (mass @ attachments), axis=0))
+    # What the free modes leave of an attachment mode, of mass 1 before: nothing but noise, if they span it.
     values, directions = np.linalg.eigh(attachments.T @ (mass @ attachments))
-    kept = values > INDEPENDENT * values[-1]
+    kept = values > INDEPENDENT
     columns = np.hstack([columns, attachments @ (directions[:, kept] / np.sqrt(values[kept]))])
     gram = columns.T @ (mass @ columns)
     projected = columns.T @ (stiffness @ columns)

@@ -1,7 +1,7 @@
 """Stepping a model to its end: in slices, so that samples are taken, progress is told and a stop is heard.
 
 A container that the end of a run finds beyond its slenderness angle has neither fallen nor come back: it is
-followed on a floor that coasts, undriven, until it has done one or the other.
+followed in the frame of its floor, undriven and so at rest there, until it has done one or the other.
 """
 
 import os
@@ -14,8 +14,17 @@ import numpy as np
 
 from contact.body import ROTATION
 from contact.compiled import is_compiled
-from contact.floor_motion import coasting_floor
-from contact.stepping import FAILED, OVERTURNED, Run, advance, advance_compiled
+from contact.floor_motion import UNIFORM, as_floor_motion, floor_motion
+from contact.stepping import (
+    AFTERMATH_SLICE,
+    FAILED,
+    OVERTURNED,
+    Run,
+    advance,
+    advance_compiled,
+    leave_alone,
+    leave_alone_compiled,
+)
 from fem.full_body import FullBody
 from fem.model import Model
 from fem.progress import Reporter, SilentReporter
@@ -46,8 +55,8 @@ def simulate(
 ) -> Ending:
     """Step a model to its end; the recorder takes the samples.
 
-    A container that the end finds beyond its slenderness angle is followed on a floor that coasts, undriven,
-    until it falls or has come back.
+    A container that the end finds beyond its slenderness angle is followed in the frame of its floor, which
+    stands still there, until it falls or has come back.
     """
     reporter = reporter or SilentReporter()
     full = isinstance(model.body, FullBody)
@@ -61,10 +70,10 @@ def simulate(
     reporter.start(duration)
     cpu, run, until = 0.0, model.run, duration
     clock, track = run.clock[0], run.track[0]
-    status = "completed"
+    status, ahead = "completed", SLICE_FULL if full else SLICE_REDUCED
     while clock.time < until:
         began = time.process_time()
-        code = step(model.body, run, min(clock.time + (SLICE_FULL if full else SLICE_REDUCED), until))
+        code = step(model.body, run, min(clock.time + ahead, until))
         cpu += time.process_time() - began
         recorder.drain(run)
         rotation = abs(float(run.old.pose[ROTATION]))
@@ -80,10 +89,11 @@ def simulate(
             return Ending(status="interrupted", stepping_cpu_s=cpu)
         if clock.time >= duration:
             undecided = angle < rotation and not np.isfinite(track.overturned_at)
-            if until == duration and undecided:
-                run, until = _left_alone(run), duration + AFTERMATH / control.frequency_parameter
-            elif until > duration and rotation < angle:
+            if not undecided:
                 break
+            if until == duration:
+                run, until = _left_alone(model, run), duration + AFTERMATH / control.frequency_parameter
+                ahead = AFTERMATH_SLICE
     if np.isfinite(track.overturned_at):
         status = "overturned"
     reporter.finish()
@@ -98,12 +108,14 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)
 
 
-def _left_alone(run: Run) -> Run:
-    """The run with its floor coasting from now on."""
-    run.clock[0].next_break = 0
-    return run._replace(
-        motion=coasting_floor(run.motion, float(run.clock[0].time)), breaks=np.full(1, np.inf)
-    )
+def _left_alone(model: Model, run: Run) -> Run:
+    """The run in the frame of its floor, which from now on stands still."""
+    clock = run.clock[0]
+    displacement, velocity, _ = floor_motion(run.motion, float(clock.time))
+    leave = leave_alone if isinstance(model.body, FullBody) else leave_alone_compiled
+    leave(model.body, run, velocity)
+    still = as_floor_motion(UNIFORM, (float(clock.time), displacement, 0.0))
+    return run._replace(motion=still, breaks=np.full(1, np.inf))
 
 
 def _failure(model: Model) -> str:

@@ -59,8 +59,8 @@ def verdict_of(model: Model, history: History, largest_von_mises: float | None) 
         "restored": rocked and at_end < ROCKING * angle,
         "restitution_first": _restitution(model),
         "max_corner_force_N": float(track.max_corner_force),
-        "max_top_displacement_m": float(track.max_top_displacement),
-        "max_acceleration_m_s2": float(track.max_acceleration),
+        "max_top_displacement_m": float(track.max_top_displacement) if len(history) > 1 else None,
+        "max_acceleration_m_s2": float(track.max_acceleration) if len(history) > 1 else None,
         "max_von_mises_Pa": largest_von_mises,
         "basis": "study",
         "band": None,
@@ -83,11 +83,11 @@ def energy_of(model: Model) -> dict[str, float]:
 
 
 def audit(model: Model) -> str | None:
-    """Why the energy ledger fails this run, or None if it stands."""
-    ledger, clock = model.run.ledger, model.run.clock[0]
+    """Why the energy ledger fails this run, or None if it stands; of an overturned one, up to its fall."""
+    clock = model.run.clock[0]
     reference = model.run.control.reference_energy
     won, lost = -float(clock.least_imbalance), float(clock.most_imbalance)
-    dissipated = float(ledger[FRICTION] + ledger[CONTACT_DAMPING] + ledger[MATERIAL_DAMPING])
+    dissipated = float(clock.dissipated)
     remedy = (
         f"set solver.step_s below the {model.run.control.largest_step:.2g} s used, "
         "or a softer contact.normal_penalty_Pa_m"
@@ -131,12 +131,15 @@ def _time(instant: float) -> float | None:
 
 
 def _modes_seen(model: Model, outcome: str) -> list[str]:
-    """Modes that the history passed through; sliding too small for the outcome does not count here."""
+    """Modes that the history passed through, and the outcome, which may have come about by creep.
+
+    Sliding that is too small to count in the outcome does not count here.
+    """
     bits = int(model.run.track[0].modes)
+    seen = {name for mode, name in MODE_NAMES.items() if bits & 1 << mode}
     if model.run.track[0].max_slip <= SLIDING * model.container.mesh.width:
-        seen = [mode for mode in (REST, ROCK) if bits & (1 << mode | 1 << (mode | SLIDE))]
-        bits = sum(1 << mode for mode in seen) | (bits & 1 << FALLEN)
-    return [name for mode, name in MODE_NAMES.items() if bits & 1 << mode]
+        seen = {{"slide": "rest", "slide-rock": "rock"}.get(name, name) for name in seen}
+    return [name for name in MODE_NAMES.values() if name in seen or name == outcome]
 
 
 def _peak_to_peak(model: Model, time: np.ndarray, slip: np.ndarray) -> float | None:
@@ -144,7 +147,7 @@ def _peak_to_peak(model: Model, time: np.ndarray, slip: np.ndarray) -> float | N
     if model.case.motion.kind != "harmonic" or time.size == 0:
         return None
     period = 2.0 * math.pi / model.case.angular_frequency
-    end = min(float(time[-1]), getattr(model.motion, "end_time", math.inf))
+    end = min(float(time[-1]), model.case.solver.duration_s, getattr(model.motion, "end_time", math.inf))
     if end < period * (1.0 - 1e-9):
         return None
     last = slip[(time >= end - period - 1e-9) & (time <= end + 1e-9)]

@@ -55,15 +55,21 @@ def check(
 def peak_floor_acceleration(case: Case) -> float:
     """Largest |acceleration| that the floor reaches in the run [m/s2]."""
     motion, nominal = case.motion, case.nominal_peak_acceleration
-    plain = motion.kind in ("none", "pulse") or (
-        motion.kind == "harmonic"
-        and motion.ramp_cycles == 0.0
-        and case.solver.duration_s >= 0.5 * motion.period
+    whole = motion.kind == "pulse" and case.solver.duration_s >= motion.delay_s + (motion.pulse_s or 0.0)
+    plain = (
+        motion.kind == "none"
+        or whole
+        or (
+            motion.kind == "harmonic"
+            and motion.ramp_cycles == 0.0
+            and case.solver.duration_s >= 0.5 * motion.period
+        )
     )
     if nominal is not None and plain:
         return nominal
     # The motion itself is asked only where it must be: its compiled functions take long to load.
-    return float(importlib.import_module("fem.case_motion").build_motion(case).peak_acceleration)
+    room = importlib.import_module("fem.case_motion")
+    return float(room.peak_acceleration_within(room.build_motion(case), case.solver.duration_s))
 
 
 def checks_of(case: Case, mesh: ContainerMesh, peak: float) -> StaticChecks:

@@ -37,7 +37,7 @@ def run(
         ),
     ] = None,
     resume: Annotated[
-        bool, Parameter(negative=(), show_default=False, help="Go on from the last checkpoint.")
+        bool, Parameter(negative=(), show_default=False, help="Go on from the checkpoint, if there is one.")
     ] = False,
     force: Annotated[
         bool, Parameter(negative=(), show_default=False, help="Compute anew, over what is there.")

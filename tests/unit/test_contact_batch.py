@@ -5,14 +5,14 @@ import pytest
 
 from contact.batch import pack_rows, run_rows
 from contact.stepping import FAILED, OVERTURNED, REACHED, advance_compiled
-from contact.tracking import make_track
 from fem.case import load_case
 from fem.model import build_model, discretise
 
 DURATION = 2.5
 MOTIONS = (
     {"motion.peak_acceleration_m_s2": 4.0, "motion.angular_frequency_rad_s": 6.928},
-    {"motion.peak_acceleration_m_s2": 8.0, "motion.angular_frequency_rad_s": 2.0, "contact.mu_static": 0.9},  # overturns
+    # overturns
+    {"motion.peak_acceleration_m_s2": 8.0, "motion.angular_frequency_rad_s": 2.0, "contact.mu_static": 0.9},
     {"motion.peak_acceleration_m_s2": 4.0, "motion.angular_frequency_rad_s": 9.0, "contact.mu_static": 0.3},
     {"contact.damping_ratio": 0.5, "contact.normal_penalty_Pa_m": 2e9},
     {"motion.start": "rest"},
@@ -23,7 +23,12 @@ MOTIONS = (
 def models():
     case = load_case(
         "seed_stack_plateau",
-        ["solver.model=rigid", "output.fields_s=0", f"solver.duration_s={DURATION}", "contact.mu_kinetic=0.2"],
+        [
+            "solver.model=rigid",
+            "output.fields_s=0",
+            f"solver.duration_s={DURATION}",
+            "contact.mu_kinetic=0.2",
+        ],
     )
     container = discretise(case)
     return lambda: [build_model(case.with_values(values), container) for values in MOTIONS]
@@ -42,7 +47,8 @@ def outcomes_of(models, threads, order=None):
     chosen = [models[i] for i in order] if order is not None else models
     runs = [model.run for model in chosen]
     rows = pack_rows(runs, [DURATION] * len(runs), [0.0] * len(runs))
-    return run_rows(models[0].body, runs[0].scheme, rows, make_track(), threads=threads)
+    tracks = np.concatenate([run.track for run in runs])
+    return run_rows(models[0].body, runs[0].scheme, rows, tracks, threads=threads)
 
 
 def test_a_row_is_the_run_that_it_stands_for(models):
@@ -51,7 +57,14 @@ def test_a_row_is_the_run_that_it_stands_for(models):
         assert outcomes.status[k] == run_alone(model)
         assert outcomes.rotation[k] == model.run.old.pose[0]
         assert outcomes.ledger[k].tobytes() == model.run.ledger.tobytes()
-        for name in ("max_rotation", "max_slip", "impacts", "first_uplift", "modes", "restitution_by_velocity"):
+        for name in (
+            "max_rotation",
+            "max_slip",
+            "impacts",
+            "first_uplift",
+            "modes",
+            "restitution_by_velocity",
+        ):
             assert np.array_equal(outcomes.track[name][k], model.run.track[name][0], equal_nan=True), name
         for name in ("steps", "rejected", "time"):
             assert outcomes.clock[name][k] == model.run.clock[name][0]

@@ -92,6 +92,7 @@ def lean(rotation: float, rate: float = 0.0, mu: float = 10.0) -> Stance:
         gravity=GRAVITY,
         point=base(2),
         corner_x=math.copysign(0.5 * WIDTH, rotation),
+        compliance=np.zeros((4, 4)),
         normal_stiffness=np.full(2, STIFFNESS),
         mu_static=mu,
     )
@@ -172,3 +173,24 @@ def test_stances_are_moved_pushed_and_padded_without_touching_the_rest():
     assert changed.force.shape == (5, 2)
     assert not changed.force[3:].any()
     assert stance.force.shape == (3, 2)
+
+
+def test_a_strained_corner_stands_as_deep_as_its_force_asks():
+    # The elastic corner gives way under its force; the centre is lowered by as much, so that it does not hover.
+    soft = np.diag([1e-9, 2e-9, 1e-9, 2e-9])
+    stance = tilted(
+        rotation=0.1,
+        angular_velocity=0.0,
+        mass=MASS,
+        inertia=INERTIA,
+        gravity=GRAVITY,
+        point=base(2),
+        corner_x=0.5 * WIDTH,
+        compliance=soft,
+        normal_stiffness=np.full(2, STIFFNESS),
+        mu_static=10.0,
+    )
+    turn = np.array([[math.cos(0.1), math.sin(0.1)], [-math.sin(0.1), math.cos(0.1)]])
+    strained = base(2)[1] + soft[2:, 2:] @ (stance.force[1] @ turn)
+    corner = np.asarray(stance.centre) + turn @ strained
+    assert corner == pytest.approx([0.5 * WIDTH, -stance.force[1, 1] / STIFFNESS], abs=1e-15)
