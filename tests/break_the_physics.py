@@ -1,0 +1,136 @@
+"""A test of the tests: break the physics in one place after the other, and see that some test notices.
+
+    python tests/break_the_physics.py [-j JOBS] [--only WORDS]
+
+Each fault of `mutations` is put into a copy of the project, and the fast tests named beside it are run there, with a
+kernel cache of their own. A fault that no test notices survives; then the script ends with 1. It ends with 2 where a
+fault cannot be judged: its text is no longer there, or the tests do not pass without it.
+"""
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from mutations import MUTATIONS, Mutation
+
+ROOT = Path(__file__).parents[1]
+COPIED = ("fem", "mesh", "contact", "tests")
+TESTS_PASSED, TESTS_FAILED = 0, 1  #: exit codes of pytest; all others are no verdict
+LONGEST = 900.0  #: [s] for the tests of one fault
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """What became of one fault."""
+
+    mutation: Mutation
+    verdict: str  #: noticed | SURVIVES | no verdict
+    by: str  #: the first test that failed, or why there is no verdict
+    seconds: float
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Break, test, print the table."""
+    parser = argparse.ArgumentParser(description="Break the physics; see that some test notices.")
+    parser.add_argument(
+        "-j", "--jobs", type=int, default=len(os.sched_getaffinity(0)), help="faults at a time"
+    )
+    parser.add_argument("--only", default="", help="faults whose name or file contains these words")
+    options = parser.parse_args(arguments)
+    chosen = [m for m in MUTATIONS if options.only in f"{m.file}: {m.name}"]
+    with tempfile.TemporaryDirectory(prefix="broken-physics-") as folder:
+        cache = Path(folder) / "cache"
+        sound = soundness(Path(folder), cache, chosen)
+        if sound:
+            print(f"the tests do not pass on the physics as it is: {sound}", file=sys.stderr)
+            return 2
+        with ThreadPoolExecutor(options.jobs) as pool:
+            findings = []
+            for finding in pool.map(lambda mutation: judge(mutation, Path(folder), cache), chosen):
+                print(line_of(finding), flush=True)
+                findings.append(finding)
+    survivors = sum(finding.verdict == "SURVIVES" for finding in findings)
+    unjudged = sum(finding.verdict == "no verdict" for finding in findings)
+    print(f"{len(findings)} faults: {survivors} survive, {unjudged} without a verdict")
+    return 2 if unjudged else int(survivors > 0)
+
+
+def soundness(folder: Path, cache: Path, mutations: Sequence[Mutation]) -> str:
+    """The first test that fails without any fault, or nothing; fills the kernel cache besides."""
+    for tests in dict.fromkeys(mutation.tests for mutation in mutations):
+        with copied_tree(folder) as tree:
+            code, by = run_tests(tree, cache, tests)
+        if code != TESTS_PASSED:
+            return by
+    return ""
+
+
+def judge(mutation: Mutation, folder: Path, cache: Path) -> Finding:
+    """Put one fault into a fresh copy and run its tests."""
+    began = time.perf_counter()
+    with copied_tree(folder) as tree:
+        path = tree / mutation.file
+        text = path.read_text(encoding="utf-8")
+        if text.count(mutation.old) != 1:
+            verdict, by = "no verdict", f"its text stands {text.count(mutation.old)} times in {mutation.file}"
+        else:
+            path.write_text(text.replace(mutation.old, mutation.new), encoding="utf-8")
+            own_cache = tree / "cache"
+            shutil.copytree(cache, own_cache)  # kernels are kept by the digest of their sources
+            code, by = run_tests(tree, own_cache, mutation.tests)
+            verdict = {TESTS_PASSED: "SURVIVES", TESTS_FAILED: "noticed"}.get(code, "no verdict")
+    return Finding(mutation=mutation, verdict=verdict, by=by, seconds=time.perf_counter() - began)
+
+
+@contextmanager
+def copied_tree(folder: Path) -> Iterator[Path]:
+    """A copy of the project without what is made from it, for a while."""
+    tree = Path(tempfile.mkdtemp(dir=folder))
+    try:
+        for name in COPIED:
+            shutil.copytree(ROOT / name, tree / name, ignore=shutil.ignore_patterns("__pycache__"))
+        for name in ("pyproject.toml", "README.md"):
+            shutil.copy2(ROOT / name, tree / name)
+        yield tree
+    finally:
+        shutil.rmtree(tree)
+
+
+def run_tests(tree: Path, cache: Path, tests: Sequence[str]) -> tuple[int, str]:
+    """Exit code of pytest up to the first failure, and that test."""
+    cache.mkdir(parents=True, exist_ok=True)
+    environment = {
+        name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "NUMBA"))
+    }
+    environment |= {"XDG_CACHE_HOME": str(cache), "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1"}
+    named = [f"tests/{test}" if test.endswith(".py") else test for test in tests]
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:xdist", "-p", "no:cacheprovider", *named]
+    try:
+        result = subprocess.run(
+            command, cwd=tree, env=environment, capture_output=True, text=True, timeout=LONGEST, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return TESTS_FAILED, f"no end within {LONGEST:.0f} s"
+    failed = re.search(r"^(?:FAILED|ERROR) \S*?([^/\s]+::.*?)(?: - .*)?$", result.stdout, re.MULTILINE)
+    last = (result.stdout.strip() or result.stderr.strip() or "nothing said").splitlines()[-1]
+    return result.returncode, failed.group(1) if failed else last
+
+
+def line_of(finding: Finding) -> str:
+    """One line of the table."""
+    mutation = finding.mutation
+    return f"{finding.verdict:<10} {finding.seconds:5.0f} s  {mutation.file:<24} {mutation.name}\n{'':20} {finding.by}"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,256 @@
+"""Faults to put into the physics, one at a time, each with the fast tests that must see it.
+
+Signs, factors, dropped terms, one coefficient for another, tangents, the ledger: what a slip of the pen would do.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mutation:
+    """One fault: a piece of text that stands once in a file, and what it becomes."""
+
+    name: str  #: what is wrong then
+    file: str  #: from the root of the project
+    old: str
+    new: str
+    tests: tuple[str, ...]  #: files from the folder of the tests, and options of pytest
+
+
+ELASTICITY = ("unit/test_elasticity.py", "unit/test_assembly.py", "verification/test_elasticity_patch.py")
+MODAL = ("unit/test_contact_modal_body.py",)
+LAWS = ("unit/test_contact_laws.py", "unit/test_contact_interface.py")
+
+MUTATIONS = (
+    Mutation(
+        name="Lame pair of plane strain in place of plane stress",
+        file="fem/elasticity.py",
+        old="youngs_modulus * poisson_ratio / (1.0 - poisson_ratio**2)",
+        new="youngs_modulus * poisson_ratio / ((1.0 + poisson_ratio) * (1.0 - 2.0 * poisson_ratio))",
+        tests=ELASTICITY,
+    ),
+    Mutation(
+        name="linear strain: the products of gradients dropped in shear",
+        file="fem/elasticity.py",
+        old="0.5 * (xz + zx + xx * xz + zx * zz)",
+        new="0.5 * (xz + zx)",
+        tests=ELASTICITY,
+    ),
+    Mutation(
+        name="sign of the shear stress in P = F S",
+        file="fem/elasticity.py",
+        old="weight * ((1.0 + xx) * sxz + xz * szz)",
+        new="weight * (xz * szz - (1.0 + xx) * sxz)",
+        tests=ELASTICITY,
+    ),
+    Mutation(
+        name="shear strain counted once in the strain energy",
+        file="fem/elasticity.py",
+        old="shear * (xx * xx + zz * zz + 2.0 * xz * xz)",
+        new="shear * (xx * xx + zz * zz + xz * xz)",
+        tests=ELASTICITY,
+    ),
+    Mutation(
+        name="geometric stiffness dropped from the tangent",
+        file="fem/elasticity.py",
+        old="tangent[i, j, i, l] += stress[j][l]",
+        new="tangent[i, j, i, l] += 0.0 * stress[j][l]",
+        tests=ELASTICITY,
+    ),
+    Mutation(
+        name="stiffness without the factor 2 of the shear modulus",
+        file="fem/assembly.py",
+        old="strain, test = sym_grad(u), sym_grad(v)\n    return w.thickness * (2.0 * w.shear",
+        new="strain, test = sym_grad(u), sym_grad(v)\n    return w.thickness * (1.0 * w.shear",
+        tests=ELASTICITY,
+    ),
+    Mutation(
+        name="inertia of the mesh about its base, not its centroid",
+        file="mesh/container.py",
+        old="arms = ((positions - np.array(self.centroid)) ** 2).sum(axis=2)",
+        new="arms = (positions**2).sum(axis=2)",
+        tests=("unit/test_mesh_container.py",),
+    ),
+    Mutation(
+        name="dashpot that pushes the container off",
+        file="contact/laws.py",
+        old="force = stiffness * penetration + damping * rate\n",
+        new="force = stiffness * penetration - damping * rate\n",
+        tests=LAWS,
+    ),
+    Mutation(
+        name="a floor that pulls",
+        file="contact/laws.py",
+        old="        if force <= 0.0:\n            return 0.0, 0.0, 0.0\n",
+        new="",
+        tests=LAWS,
+    ),
+    Mutation(
+        name="sign of friction against a negative trial force",
+        file="contact/laws.py",
+        old="return -limit, 0.0, -1.0",
+        new="return limit, 0.0, 1.0",
+        tests=LAWS,
+    ),
+    Mutation(
+        name="mu_s for mu_k while sliding",
+        file="contact/laws.py",
+        old="    if slid >= weakening:\n        return mu_kinetic\n",
+        new="    if slid >= weakening:\n        return mu_static\n",
+        tests=(*LAWS, "verification/test_contact_sliding.py"),
+    ),
+    Mutation(
+        name="tangent of regularised friction without the fall of mu",
+        file="contact/laws.py",
+        old="-normal * (mu_slope * sway + mu * sway_slope)",
+        new="-normal * (mu * sway_slope)",
+        tests=LAWS,
+    ),
+    Mutation(
+        name="friction that does not know the normal force's tangent",
+        file="contact/interface.py",
+        old="work.slope[i, 1] = by_limit * mu * work.slope[i, 2]",
+        new="work.slope[i, 1] = 0.0 * by_limit",
+        tests=LAWS,
+    ),
+    Mutation(
+        name="elastic stick that forgets its elongation",
+        file="contact/interface.py",
+        old="trial -= stiffness * (stick[i] + work.point[i, 0] - start[i, 0])",
+        new="trial -= stiffness * (work.point[i, 0] - start[i, 0])",
+        tests=LAWS,
+    ),
+    Mutation(
+        name="moment of the friction force with the wrong sign",
+        file="contact/modal_body.py",
+        old="out[2] += arm[i, 1] * tangential - arm[i, 0] * normal",
+        new="out[2] += -arm[i, 1] * tangential - arm[i, 0] * normal",
+        tests=MODAL,
+    ),
+    Mutation(
+        name="velocity of a turned point without its angular part",
+        file="contact/modal_body.py",
+        old="state.velocity[1] - body.arm[i, 0] * rate - sine * u + cosine * w",
+        new="state.velocity[1] - sine * u + cosine * w",
+        tests=MODAL,
+    ),
+    Mutation(
+        name="forces of the step's beginning dropped from the average",
+        file="contact/modal_body.py",
+        old="mass, force = 1.0, before * (old.external[j] - old.internal[j])",
+        new="mass, force = 1.0, 0.0 * before",
+        tests=MODAL,
+    ),
+    Mutation(
+        name="beta of generalised-alpha without its square",
+        file="contact/scheme.py",
+        old="newmark_beta=0.25 * (1.0 - alpha_m + alpha_f) ** 2,",
+        new="newmark_beta=0.25 * (1.0 - alpha_m + alpha_f),",
+        tests=("unit/test_scheme.py",),
+    ),
+    Mutation(
+        name="acceleration not shifted when the step changes",
+        file="contact/stepping.py",
+        old="shift = (scheme.alpha_f - scheme.alpha_m) * shortened",
+        new="shift = 0.0 * shortened",
+        tests=("verification/test_time_newmark_family.py",),
+    ),
+    Mutation(
+        name="an imbalance defined away: friction heat takes what is missing",
+        file="contact/stepping.py",
+        old="change[IMBALANCE] = change[BASE_WORK] - friction - damping - material - stored",
+        new="change[IMBALANCE] = 0.0 * stored",
+        tests=("verification/test_time_energy.py",),
+    ),
+    Mutation(
+        name="work of the floor with the wrong sign",
+        file="contact/stepping.py",
+        old="change[BASE_WORK] = shear * (run.floor[1, 0] - run.floor[0, 0])",
+        new="change[BASE_WORK] = -shear * (run.floor[1, 0] - run.floor[0, 0])",
+        tests=("verification/test_time_energy.py", "verification/test_contact_rocking.py"),
+    ),
+    Mutation(
+        name="friction heat by the force of one end of the step",
+        file="contact/ledger.py",
+        old="friction -= 0.5 * (force[i, 0] + force_new[i, 0]) * slip[i]",
+        new="friction -= 0.5 * force_new[i, 0] * slip[i]",
+        tests=("unit/test_contact_ledger.py",),
+    ),
+    Mutation(
+        name="energy of the contact springs without the half",
+        file="contact/ledger.py",
+        old="energy += 0.5 * contact.normal_stiffness[i] * point[i, 1] ** 2",
+        new="energy += contact.normal_stiffness[i] * point[i, 1] ** 2",
+        tests=("unit/test_contact_ledger.py",),
+    ),
+    Mutation(
+        name="damping ratio with the whole base in place of one corner",
+        file="contact/penalty.py",
+        old="math.sqrt(mass / (0.5 * base_stiffness))",
+        new="math.sqrt(mass / base_stiffness)",
+        tests=("unit/test_contact_support.py",),
+    ),
+    Mutation(
+        name="tilted start without the centripetal acceleration",
+        file="contact/initial.py",
+        old="free = np.array([0.0, -gravity]) - angular_velocity**2 * arm",
+        new="free = np.array([0.0, -gravity])",
+        tests=("unit/test_contact_initial.py",),
+    ),
+    Mutation(
+        name="velocity of a harmonic floor without its frequency",
+        file="contact/floor_motion.py",
+        old="return amplitude * sine, amplitude * omega * cosine, -amplitude * omega * omega * sine",
+        new="return amplitude * sine, amplitude * cosine, -amplitude * omega * omega * sine",
+        tests=("unit/test_motion.py",),
+    ),
+    Mutation(
+        name="restitution by the ratio of energies, not of velocities",
+        file="contact/tracking.py",
+        old="math.sqrt(max(energy, 0.0) / track.peak_energy)",
+        new="max(energy, 0.0) / track.peak_energy",
+        tests=("verification/test_contact_rocking.py",),
+    ),
+    Mutation(
+        name="Housner's restitution with cos(al) for cos(2 al)",
+        file="contact/rigid_block.py",
+        old="1.0 - (1.0 - math.cos(2.0 * self.slenderness_angle)) / self.inertia_ratio",
+        new="1.0 - (1.0 - math.cos(self.slenderness_angle)) / self.inertia_ratio",
+        tests=("unit/test_rocking_rigid_block.py", "validation/test_closed_forms_rocking.py"),
+    ),
+    Mutation(
+        name="the analytic block tilts with the floor, not against it",
+        file="contact/rocking.py",
+        old="pull = math.sin(lean) + side * acceleration / gravity * math.cos(lean)",
+        new="pull = math.sin(lean) - side * acceleration / gravity * math.cos(lean)",
+        tests=("unit/test_rocking.py",),
+    ),
+    Mutation(
+        name="the analytic slider slides on mu_s",
+        file="contact/sliding.py",
+        old="friction = -direction * slider.mu_kinetic * slider.gravity",
+        new="friction = -direction * slider.mu_static * slider.gravity",
+        tests=("unit/test_rocking_slider.py",),
+    ),
+    Mutation(
+        name="material damping of the full model in the fixed frame",
+        file="fem/full_body.py",
+        old="turned = (velocity @ self._turn).ravel()",
+        new="turned = velocity.ravel()",
+        tests=("verification/test_elasticity_convergence.py", "-k", "turns_far"),
+    ),
+    Mutation(
+        name="the code's plateau without its 2.5",
+        file="fem/static_checks.py",
+        old="soil_factor * 2.5 / behaviour_factor",
+        new="soil_factor / behaviour_factor",
+        tests=("unit/test_static_checks.py", "validation/test_seed_paper_numbers.py"),
+    ),
+    Mutation(
+        name="an audit that lets the scheme win energy",
+        file="fem/verdict.py",
+        old="if won > GAIN_LIMIT * reference:",
+        new="if won > 1e9 * GAIN_LIMIT * reference:",
+        tests=("validation/test_verify_ladder.py", "-k", "ledger"),
+    ),
+)
