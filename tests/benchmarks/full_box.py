@@ -51,6 +51,8 @@ def main() -> int:
     for name, step, limit in (("adaptive", "auto", ADAPTIVE), ("steps <= 1 ms", FINE_STEP, FINE)):
         cost, run = measured(step)
         track, clock = run.model.run.track[0], run.model.run.clock[0]
+        ratio = float(track.restitution_by_velocity)
+        found = f"{ratio:.4f}" if math.isfinite(ratio) else "none, it rebounds"
         unknowns = int(run.model.run.old.position.size)
         figures += [
             Figure(f"{name}: CPU s per simulated s", f"{cost:.2f}", f"<= {limit:g}", cost <= limit),
@@ -61,7 +63,7 @@ def main() -> int:
             run.ledger,
             Figure(
                 f"{name}: first impact [s], velocity ratio, impacts",
-                f"{track.first_impact:.4f}, {track.restitution_by_velocity:.4f}, {int(track.impacts)}",
+                f"{track.first_impact:.4f}, {found}, {int(track.impacts)}",
                 f"rigid block: {quarter_period(BLOCK, 0.25 * BLOCK.slenderness_angle):.4f}, "
                 f"{BLOCK.housner_restitution:.4f}",
             ),
