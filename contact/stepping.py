@@ -343,9 +343,9 @@ def _slide(run: Run, step: float) -> tuple[bool, float, float]:
             total += normal
             if contact.friction != ELASTIC_STICK:
                 every = every and abs(work.velocity[i, 0]) > contact.regularisation_velocity
-            elif work.slope[i, 0] != 0.0 or direction * run.slip[i] < 0.0:
+            elif work.slope[i, 0] != 0.0 or direction * work.law[i, 0] < 0.0:
                 every = False
-            direction = run.slip[i]
+            direction = work.law[i, 0]
     if total <= 0.0:  # in flight nothing tells sticking from sliding: as before
         return run.clock[0].sliding == 1, 0.0, 0.0
     return every, weighted / total, velocity / total

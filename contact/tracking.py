@@ -41,6 +41,7 @@ TRACK = np.dtype(
         ("max_uplift", "f8"),
         ("max_penetration", "f8"),
         ("max_corner_force", "f8"),  # mean over a short while
+        ("peak_corner_force", "f8"),  # the instantaneous one
         ("left_force", "f8"),  # at the end of the last step
         ("right_force", "f8"),
         ("pressed", "f8"),  # how long the impulses have been gathered
@@ -103,7 +104,7 @@ def begin(track: Any, control: Any, state: State) -> None:
     middle = 0.5 * (x[0] + x[-1])
     track.left_force = float(state.force[:n][x < middle, 1].sum())
     track.right_force = float(state.force[:n][x >= middle, 1].sum())
-    track.max_corner_force = max(track.left_force, track.right_force)
+    track.max_corner_force = track.peak_corner_force = max(track.left_force, track.right_force)
     rocking = track.left_open + track.right_open > 0 and rotation > ROCKING * control.slenderness_angle
     track.mode = ROCK if rocking else REST
     track.modes = 1 << track.mode
@@ -158,6 +159,7 @@ def follow(
     track.left_impulse += 0.5 * step * (track.left_force + left_force)
     track.right_impulse += 0.5 * step * (track.right_force + right_force)
     track.left_force, track.right_force = left_force, right_force
+    track.peak_corner_force = max(track.peak_corner_force, max(left_force, right_force))
     track.pressed += step
     if track.pressed >= FORCE_WINDOW / control.frequency_parameter:
         mean = max(track.left_impulse, track.right_impulse) / track.pressed

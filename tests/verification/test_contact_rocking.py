@@ -30,6 +30,7 @@ def released(block: Block, share: float, **options) -> Rig:
         gravity=block.gravity,
         point=block.point,
         corner_x=math.copysign(0.5 * block.width, share),
+        compliance=np.zeros((4, 4)),
         normal_stiffness=block.contact().normal_stiffness,
         mu_static=block.mu_static,
     )
