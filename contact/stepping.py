@@ -550,7 +550,6 @@ def _switching_time(clock: Any, horizon: float) -> float:
 switching_time = compiled(_switching_time, inline=True)
 
 
-@register_jitable(forceinline=True)
 def _next_step(run: Run) -> float:
     """The next step [s]: the ladder's at the present level, unless something is due before.
 
@@ -580,6 +579,9 @@ def _next_step(run: Run) -> float:
     if 2.0 * step > left:  # two equal steps instead of a whole one and a sliver
         return 0.5 * left
     return step
+
+
+next_step = compiled(_next_step, inline=True)
 
 
 def _allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
@@ -645,13 +647,9 @@ def _ladder_level(largest_step: float, step: float) -> int:
 ladder_level = compiled(_ladder_level)
 
 
-@register_jitable(forceinline=True)
-def _accept(
-    body: Any, run: Run, step: float, slip_step: float, slip_velocity: float, every: bool, iterations: int
-) -> None:
-    """Make the step attempted the state of the run; samples, ledger and record follow."""
-    control, clock = run.control, run.clock[0]
-    end = clock.time + step
+def _note_step(run: Run, step: float, slip_step: float, slip_velocity: float, every: bool) -> None:
+    """Friction's state and the record of the run, from the step about to be accepted."""
+    clock = run.clock[0]
     clock.slid = clock.slid + abs(slip_step) if clock.sliding == 1 or every else 0.0
     clock.sliding = 1 if every else 0
     tangential, normal = 0.0, 0.0
@@ -666,18 +664,24 @@ def _accept(
     clock.slip_velocity = slip_velocity
     follow(
         run.track[0],
-        control,
+        run.control,
         run.old,
         run.new,
-        end,
+        clock.time + step,
         step,
         every,
         clock.slip + slip_step,
         slip_step,
         run.floor[1, 2],
     )
-    clock.samples = sample(body, run, run.history, clock.samples, clock.samples_gone, step, slip_step)
-    clock.frames = sample(body, run, run.frames, clock.frames, clock.frames_gone, step, slip_step)
+
+
+note_step = compiled(_note_step, inline=True)
+
+
+def _close_step(run: Run, step: float, slip_step: float, iterations: int) -> None:
+    """Make the step the state of the run, and enter it in the ledger."""
+    clock = run.clock[0]
     for row in range(LEDGER_ROWS):
         run.ledger[row] += run.change[row]
     if run.track[0].overturned_at == NEVER:  # how it slams down afterwards is not the question
@@ -685,13 +689,28 @@ def _accept(
         clock.most_imbalance = max(clock.most_imbalance, run.ledger[IMBALANCE])
         clock.dissipated = run.ledger[FRICTION] + run.ledger[CONTACT_DAMPING] + run.ledger[MATERIAL_DAMPING]
     clock.slip += slip_step
-    clock.time = end
+    clock.time += step
     clock.steps += 1
     clock.iterations += iterations
     clock.smallest_step = min(clock.smallest_step, step)
     copy_state(run.old, run.new)
     for k in range(3):
         run.floor[0, k] = run.floor[1, k]
+
+
+close_step = compiled(_close_step, inline=True)
+
+
+@register_jitable(forceinline=True)
+def _accept(
+    body: Any, run: Run, step: float, slip_step: float, slip_velocity: float, every: bool, iterations: int
+) -> None:
+    """Make the step attempted the state of the run; samples, ledger and record follow."""
+    clock = run.clock[0]
+    note_step(run, step, slip_step, slip_velocity, every)
+    clock.samples = sample(body, run, run.history, clock.samples, clock.samples_gone, step, slip_step)
+    clock.frames = sample(body, run, run.frames, clock.frames, clock.frames_gone, step, slip_step)
+    close_step(run, step, slip_step, iterations)
 
 
 @register_jitable(forceinline=True)
@@ -739,7 +758,7 @@ def advance(body: Any, run: Run, until: float) -> int:
     """
     control, clock, track = run.control, run.clock[0], run.track[0]
     while clock.time < until and not _is_full(run):
-        step = _next_step(run)
+        step = next_step(run)
         mu = run.contact.mu_static
         if clock.sliding == 1:
             mu = _kinetic_friction(run.contact, clock.slid)

@@ -47,9 +47,10 @@ CLOSING_SHARE_OF_TIME = 0.02
 ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE = 1e-5, 2e-7, 4e-3
 #: .. at a first touch: over the energy that a rigid block would lose there
 CLOSING_SHARE, LEAST_LOSS = 2e-3, 0.02
-TRAIL_SHARE, TRAIL_TIME = 2e-2, 0.1
-#: .. and however loose the tolerance: what is lost of what is dissipated is judged in the end
-MOST_SHARE, MOST_TRAIL = 8e-3, 3e-2
+TRAIL_SHARE, TRAIL_TIME = 2.5e-2, 0.1
+#: .. and however loose the tolerance: what is lost of what is dissipated is judged in the end. A rigid container
+#: does not ring: it loses at the impact itself, once
+MOST_SHARE, MOST_RIGID_SHARE, MOST_TRAIL = 8e-3, 4e-2, 3e-2
 #: a gain is worse than a loss: beyond this, over the reference energy, only so much of what is allowed may be one
 GAIN_ROOM, GAIN_SHARE = 1e-5, 0.05
 #: closings with less energy than this, over the energy to overturn, are left to the ledger
@@ -295,7 +296,7 @@ def _control(
     else:
         largest = case.solver.step_s
     largest = min(largest, case.solver.duration_s)
-    loose = case.solver.energy_tolerance
+    loose, rigid = case.solver.energy_tolerance, case.solver.model == "rigid"
     spring = float(contact.normal_stiffness[0])
     struck = _struck_mass(case, container)
     # Time constants of a mass on the dashpot and on the spring of a corner.
@@ -311,8 +312,8 @@ def _control(
         reference_energy=reference,
         energy_rate=loose * ENERGY_RATE * rate,
         energy_floor=loose * ENERGY_FLOOR,
-        energy_share=min(loose * ENERGY_SHARE, max(ENERGY_SHARE, MOST_SHARE)),
-        trail_share=min(loose * TRAIL_SHARE, max(TRAIL_SHARE, MOST_TRAIL)),
+        energy_share=min(loose * ENERGY_SHARE, MOST_RIGID_SHARE if rigid else MOST_SHARE),
+        trail_share=min(loose * TRAIL_SHARE, MOST_TRAIL),
         trail_time=TRAIL_TIME / rate,
         gain_room=GAIN_ROOM,
         gain_share=GAIN_SHARE,
