@@ -38,6 +38,7 @@ from fem.elasticity import (
     von_mises,
     weigh_stress,
 )
+from fem.nodal_products import times_columns, times_rows
 
 IntArray = NDArray[np.int64]
 #: A field over the elevation: (x, z) of any shape (...) -> the two components, shape (2, ...).
@@ -151,8 +152,7 @@ class FiniteElements:
         stress = np.empty_like(gradient)
         energy = weigh_stress(gradient, self._weights, self._lame.first, self._lame.shear, stress)
         force = np.empty_like(self.nodes)
-        for i in range(2):
-            force[:, i] = self._divergence @ stress[i].ravel()
+        times_rows(self._divergence, stress.reshape(2, -1), force)
         return force, energy
 
     def internal_force(self, displacement: FloatArray) -> FloatArray:
@@ -233,8 +233,9 @@ class FiniteElements:
     def _displacement_gradient(self, displacement: FloatArray) -> FloatArray:
         """H_ij = d u_i / d X_j at the quadrature points, shape (2, 2, m q)."""
         gradient = np.empty((2, 2, self._weights.size))
-        for i in range(2):
-            gradient[i] = (self._gradient @ displacement[:, i]).reshape(2, -1)
+        times_columns(
+            self._gradient, np.ascontiguousarray(displacement, dtype=float), gradient.reshape(2, -1)
+        )
         return gradient
 
     def _vector_basis(self, displacement: FloatArray) -> tuple[Basis, dict[str, Any]]:

@@ -34,6 +34,7 @@ from contact.initial import Stance
 from contact.interface import FloatArray, IntArray, Workspace, turn_compliance
 from contact.scheme import Scheme
 from fem.assembly import FiniteElements
+from fem.nodal_products import sums_of_momentum, sums_of_position, times_field
 from fem.reduction import StaticResponse
 
 #: residual of a step at which its iteration stops, over the weight; the next iterate would have its square
@@ -185,14 +186,12 @@ class FullBody:
         new.point[:] = position[self.base]
         new.point[:, 0] -= floor
         rotation, centre = self._best_fit(position)
-        momentum = self._mass @ velocity
-        drift = momentum.sum(axis=0) / self.mass
-        arm = position - centre
-        spin = np.sum(arm[:, 1] * momentum[:, 0] - arm[:, 0] * momentum[:, 1]) / self.inertia
-        new.pose[ROTATION], new.pose[ANGULAR_VELOCITY] = rotation, spin
+        momentum = times_field(self._mass, velocity)
+        x, z, spin, twice = sums_of_momentum(momentum, position, velocity, centre)
+        new.pose[ROTATION], new.pose[ANGULAR_VELOCITY] = rotation, spin / self.inertia
         new.pose[CENTRE_X], new.pose[CENTRE_Z] = centre
-        new.pose[VELOCITY_X], new.pose[VELOCITY_Z] = drift
-        new.energy[KINETIC] = 0.5 * np.sum(momentum * velocity)
+        new.pose[VELOCITY_X], new.pose[VELOCITY_Z] = x / self.mass, z / self.mass
+        new.energy[KINETIC] = 0.5 * twice
         new.energy[STRAIN] = self._strain_energy
         new.energy[POTENTIAL] = self.mass * self.gravity * centre[1]
 
@@ -209,11 +208,8 @@ class FullBody:
 
     def _best_fit(self, position: FloatArray) -> tuple[float, FloatArray]:
         """Mass-weighted best-fit rotation [rad] and mass centre [m]."""
-        centre = self._nodal_mass @ position / self.mass
-        arm = self._mass_arm
-        along = float(np.sum(arm * position))
-        across = float(np.sum(arm[:, 1] * position[:, 0] - arm[:, 0] * position[:, 1]))
-        return math.atan2(across, along), centre
+        x, z, along, across = sums_of_position(self._nodal_mass, self._mass_arm, position)
+        return math.atan2(across, along), np.array([x, z]) / self.mass
 
     def _forces(self, position: FloatArray, velocity: FloatArray) -> None:
         """Internal and damping forces at these positions and velocities (n, 2)."""
@@ -227,7 +223,7 @@ class FullBody:
         now, before = 1.0 - scheme.alpha_f, scheme.alpha_f
         self._forces(new.position.reshape(-1, 2), new.velocity.reshape(-1, 2))
         mean = (1.0 - scheme.alpha_m) * new.acceleration + scheme.alpha_m * old.acceleration
-        residual = self._mass @ mean.reshape(-1, 2)
+        residual = times_field(self._mass, mean.reshape(-1, 2))
         residual += now * (self._internal + self._damping_force + self._weight)
         if before != 0.0:
             residual += before * (old.internal - old.external).reshape(-1, 2)
