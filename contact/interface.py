@@ -21,7 +21,7 @@ from contact.laws import ELASTIC_STICK, normal_force, regularised_friction, stic
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-FULL_STEPS = 6  #: Newton steps taken whole before the line search begins: contact sets change first
+FULL_STEPS = 1  #: Newton steps taken whole before the line search begins; a friction problem cycles soon
 NEWTON_LIMIT = 40
 WORTH_KEEPING = 5  #: active points from which an old factorisation is tried before a new one is made
 #: residual force at which the contact counts as solved, over the largest force present
