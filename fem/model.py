@@ -44,10 +44,10 @@ SMALLEST_SHARE = 1e-7
 #: over the time constant of a corner on its dashpot: the step that begins at a touch
 CLOSING_SHARE_OF_TIME = 0.02
 #: imbalance of the ledger that a step may have: see `contact.stepping.Control`
-ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE = 1e-5, 2e-7, 5e-3
+ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE = 1e-5, 2e-7, 4e-3
 #: .. at a first touch: over the energy that a rigid block would lose there
 CLOSING_SHARE, LEAST_LOSS = 2e-3, 0.02
-TRAIL_SHARE, TRAIL_TIME = 3e-2, 0.1
+TRAIL_SHARE, TRAIL_TIME = 2e-2, 0.1
 #: .. and however loose the tolerance: what is lost of what is dissipated is judged in the end. A rigid container
 #: does not ring: it loses at the impact itself, once
 MOST_SHARE, MOST_RIGID_SHARE, MOST_TRAIL = 8e-3, 4e-2, 3e-2

@@ -113,18 +113,18 @@ class TestAftermath:
     def test_a_container_left_beyond_its_slenderness_angle_is_followed_until_it_falls(self, tmp_path):
         # Released at rest a little beyond the unstable balance, the run over long before it is down; the rigid
         # block's own equation of motion says when it is.
-        start = 1.025 * ANGLE
+        start = 1.06 * ANGLE
         folder = tmp_path / "r"
         found = run(folder, "free_rocking", f"initial.rotation_rad={start!r}", "solver.duration_s=0.2")
         block = RigidBlock.homogeneous(width=1.1, height=4.0)
         falls_at = simulate_rocking(block, still_floor(), duration=20.0, rotation=start).overturned_at
-        assert falls_at > 2.0
+        assert falls_at > 1.5
         assert found.status == "overturned"
         assert found.result["verdict"]["overturned_at_s"] == pytest.approx(falls_at, rel=2e-3)
         assert history_of(folder)["time_s"][-1] > 2.0
 
     def test_one_that_comes_back_is_followed_until_it_has(self, tmp_path):
-        start = 1.025 * ANGLE
+        start = 1.06 * ANGLE
         folder = tmp_path / "r"
         found = run(
             folder,
