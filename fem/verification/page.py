@@ -107,6 +107,8 @@ def convergence_plot(convergence: Convergence) -> str:
         axes.loglog(sizes, errors, "o-", color="#20507a", label=f"observed {convergence.observed:.2f}")
         guide = errors[np.argmin(sizes)] * (sizes / sizes.min()) ** convergence.expected
         axes.loglog(sizes, guide, "--", color="#999999", label=f"order {convergence.expected:g}")
+        axes.set_xticks(sizes, [f"{size:.2g}" for size in sizes], rotation=30)
+        axes.set_xticks([], minor=True)
         axes.set_xlabel(convergence.against)
         axes.set_ylabel("error")
         axes.grid(visible=True, which="both", linewidth=0.3)
