@@ -129,16 +129,6 @@ def floor_history(motion: FloorMotion, times: FloatArray) -> FloatArray:
     return history
 
 
-def coasting_floor(motion: FloorMotion, time: float) -> FloorMotion:
-    """The floor left alone at `time` [s]: it keeps the displacement and velocity it has there, undriven.
-
-    A floor at constant velocity is, to the container, a floor at rest (Galilei), and unlike a floor stopped
-    dead it gives no kick. The result is that uniform motion at all times, before `time` too.
-    """
-    displacement, velocity, _ = floor_motion(motion, time)
-    return as_floor_motion(UNIFORM, (time, displacement, velocity))
-
-
 def as_floor_motion(
     kind: int,
     parameters: tuple[float, ...] = (),

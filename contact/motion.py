@@ -22,7 +22,6 @@ from contact.floor_motion import (
     FloatArray,
     FloorMotion,
     as_floor_motion,
-    coasting_floor,
     floor_history,
     floor_motion,
 )
@@ -35,7 +34,6 @@ __all__ = [
     "NoMotion",
     "PulseMotion",
     "TableMotion",
-    "coasting_floor",
     "floor_history",
     "floor_motion",
 ]

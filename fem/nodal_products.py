@@ -13,12 +13,12 @@ from mesh.cells import FloatArray, IntArray
 
 def times_columns(matrix: csr_array, field: FloatArray, out: FloatArray) -> None:
     """out[i] = matrix @ field[:, i] for i = 0, 1: field (n, 2), out (2, m)."""
-    _times_columns(matrix.indptr, matrix.indices, matrix.data, field, out)
+    _times_field(matrix.indptr, matrix.indices, matrix.data, field, out.T)
 
 
 def times_rows(matrix: csr_array, field: FloatArray, out: FloatArray) -> None:
     """out[:, i] = matrix @ field[i] for i = 0, 1: field (2, n), out (m, 2)."""
-    _times_rows(matrix.indptr, matrix.indices, matrix.data, field, out)
+    _times_field(matrix.indptr, matrix.indices, matrix.data, field.T, out)
 
 
 def times_field(matrix: csr_array, field: FloatArray) -> FloatArray:
@@ -69,28 +69,4 @@ def _times_field(
         for k in range(starts[row], starts[row + 1]):
             first += values[k] * field[columns[k], 0]
             second += values[k] * field[columns[k], 1]
-        out[row, 0], out[row, 1] = first, second
-
-
-@njit(cache=True)
-def _times_columns(
-    starts: IntArray, columns: IntArray, values: FloatArray, field: FloatArray, out: FloatArray
-) -> None:
-    for row in range(starts.size - 1):
-        first, second = 0.0, 0.0
-        for k in range(starts[row], starts[row + 1]):
-            first += values[k] * field[columns[k], 0]
-            second += values[k] * field[columns[k], 1]
-        out[0, row], out[1, row] = first, second
-
-
-@njit(cache=True)
-def _times_rows(
-    starts: IntArray, columns: IntArray, values: FloatArray, field: FloatArray, out: FloatArray
-) -> None:
-    for row in range(starts.size - 1):
-        first, second = 0.0, 0.0
-        for k in range(starts[row], starts[row + 1]):
-            first += values[k] * field[0, columns[k]]
-            second += values[k] * field[1, columns[k]]
         out[row, 0], out[row, 1] = first, second

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from contact.motion import HarmonicMotion, NoMotion, PulseMotion, coasting_floor, floor_motion
+from contact.motion import HarmonicMotion, NoMotion, PulseMotion, floor_motion
 
 OMEGA = 6.928
 PERIOD = 2.0 * math.pi / OMEGA
@@ -185,15 +185,6 @@ def test_pulse_reaches_its_peak_where_its_shape_says():
 def test_no_motion_is_rest():
     assert (NoMotion().evaluate(np.linspace(-1.0, 9.0, 7)) == 0.0).all()
     assert NoMotion().peak_acceleration == 0.0 and NoMotion().break_times.size == 0
-
-
-@pytest.mark.parametrize("name", MOTIONS)
-def test_coasting_floor_keeps_displacement_and_velocity(name):
-    motion = MOTIONS[name].compiled()
-    x, v, _ = floor_motion(motion, 0.6)
-    coasting = coasting_floor(motion, 0.6)
-    assert floor_motion(coasting, 0.6) == (x, v, 0.0)
-    assert floor_motion(coasting, 2.6) == pytest.approx((x + 2.0 * v, v, 0.0), rel=1e-15)
 
 
 def test_one_compilation_serves_every_kind():
