@@ -11,6 +11,9 @@ import numpy as np
 
 from contact.interface import FloatArray
 
+#: force, over the weight, below which a point of the settled base may as well be open
+ROUNDING = 1e-12
+
 
 class SettlingError(ArithmeticError):
     """The container finds no equilibrium on its supporting points."""
@@ -91,9 +94,10 @@ def standing(
         normal = np.zeros(n)
         normal[chosen] = solution[:m]
         gap = point[:, 1] + centroid[1] + solution[m] - solution[m + 1] * point[:, 0] + vertical @ normal
-        wrong = np.where(carrying, normal < 0.0, gap < 0.0)
+        # A point may just touch: within rounding it counts as what it was, or it would change sides for ever.
+        wrong = np.where(carrying, normal < -ROUNDING * weight, gap < -ROUNDING * weight / normal_stiffness)
         if not wrong.any():
-            force = np.column_stack([np.zeros(n), normal])
+            force = np.column_stack([np.zeros(n), np.maximum(normal, 0.0)])
             return Stance(
                 centre=(centroid[0], centroid[1] + solution[m]),
                 rotation=float(solution[m + 1]),
