@@ -1,0 +1,71 @@
+"""A list of cases on all cores: each row is the run of its case, whatever runs beside it."""
+
+import pytest
+
+from fem.case import load_case
+from fem.model import build_model
+from fem.recorder import Recorder
+from fem.recovery import recovery_of
+from fem.simulation import simulate
+from fem.sweep.running import SCALARS, run_cases
+from fem.verdict import verdict_of
+
+SHORT = ["solver.duration_s=2", "output.fields_s=0"]
+CHANGES = (
+    {"solver.model": "rigid"},
+    {"solver.model": "rigid", "motion.peak_acceleration_m_s2": 9.0, "motion.angular_frequency_rad_s": 2.0},
+    {"solver.model": "rigid", "contact.mu_static": 0.25},
+    {"solver.model": "rigid", "container.boxes": 2},
+    {"solver.model": "reduced"},
+)
+
+
+@pytest.fixture(scope="module")
+def cases():
+    base = load_case("seed_stack_plateau", SHORT)
+    return [base.with_values(change) for change in CHANGES]
+
+
+def without_wall(rows):
+    return [{name: value for name, value in row.items() if name != "wall_s"} for row in rows]
+
+
+def test_a_row_is_the_verdict_of_its_case(cases):
+    for case, row in zip(cases, run_cases(cases, jobs=2), strict=True):
+        model = build_model(case)
+        recorder = Recorder(model, recovery_of(model))
+        ending = simulate(model, recorder)
+        stress = None if case.solver.model == "rigid" else recorder.largest_von_mises
+        verdict = verdict_of(model, recorder.history(), stress)
+        assert row["status"] == ending.status
+        assert {name: row[name] for name in SCALARS} == {name: verdict[name] for name in SCALARS}
+
+
+def test_rows_come_in_the_order_of_the_cases_whatever_the_jobs(cases):
+    one = run_cases(cases, jobs=1)
+    assert without_wall(one) == without_wall(run_cases(cases, jobs=2))
+    assert without_wall(one[::-1]) == without_wall(run_cases(cases[::-1], jobs=2))
+    assert [row["outcome"] for row in one[:2]] == ["rock", "overturned"]
+
+
+def test_a_case_that_cannot_be_computed_has_a_reason_and_no_outcome(cases):
+    missing = cases[0].with_values(
+        {
+            "motion.kind": "table",
+            "motion.file": "gone.csv",
+            "motion.quantity": "acceleration",
+            "motion.unit": "m/s2",
+        }
+    )
+    good, bad = run_cases([cases[0], missing])
+    assert good["status"] == "completed"
+    assert (bad["status"], bad["outcome"]) == ("failed", None)
+    assert "gone.csv" in bad["reason"]
+
+
+def test_full_cases_run_in_processes_of_their_own():
+    case = load_case("seed_box", ["solver.model=full", "solver.duration_s=0.02", "output.fields_s=0"])
+    (row,) = run_cases([case], jobs=1)
+    assert row["status"] == "completed"
+    assert row["outcome"] == "rest"
+    assert row["max_von_mises_Pa"] is None or row["max_von_mises_Pa"] > 0.0
