@@ -19,6 +19,7 @@ DOORS = {
     "pyvista": {"fem/pictures.py", "fem/movie.py", "fem/opening.py"},
     "numba": {"contact", "fem/elasticity.py", "fem/nodal_products.py"},
     "pydantic": {"fem"},
+    "jinja2": {"fem/pages.py"},
 }
 
 

@@ -5,53 +5,13 @@ import math
 
 import matplotlib
 import numpy as np
-from jinja2 import Environment
+from markupsafe import Markup
 from matplotlib.figure import Figure
 
+from fem.pages import render_page, svg_element
 from fem.run import versions
 from fem.verification.ladder import Ladder, Rung
 from fem.verification.rows import Convergence, Row
-
-PAGE = """<!DOCTYPE html>
-<html lang="en-GB"><head><meta charset="utf-8"><title>Verification</title>
-<style>
-body { font: 15px/1.45 system-ui, sans-serif; margin: 2em auto; max-width: 78em; padding: 0 1em; color: #222; }
-table { border-collapse: collapse; width: 100%; font-size: 13px; }
-th, td { text-align: left; vertical-align: top; padding: .25em .6em; border-bottom: 1px solid #ddd; }
-td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-tr.failed { background: #fde8e6; } .pass { color: #2a6b2a; } .fail { color: #a11; font-weight: bold; }
-.note { color: #666; } .plots { display: flex; flex-wrap: wrap; gap: 1em; } figure { margin: 0; width: 25em; }
-figcaption { font-size: 12px; color: #444; } svg { max-width: 100%; height: auto; }
-</style></head><body>
-<h1>Verification</h1>
-<p>{{ ladder.count }} rows, {{ ladder.failures }} failed;
-{{ "the quick ladder" if ladder.quick else "the whole ladder" }}, {{ "%.0f" | format(ladder.seconds) }} s;
-{{ versions }}.</p>
-<p>A reference is <b>analytic</b> (a closed form, or a statement such as symmetry), <b>printed</b> (by somebody
-else), or <b>computed</b> (by code that shares nothing with what is checked, or a converged limit). An error is
-absolute, or relative where the tolerance is in per cent. An order is observed by least squares over all
-refinements.</p>
-{% for room, rungs in rooms %}
-<h2>{{ room }}</h2>
-<table><tr><th>case</th><th>what is compared</th><th>value</th><th>reference</th><th>kind</th><th>error</th>
-<th>tolerance</th><th>order</th><th></th></tr>
-{% for rung in rungs %}<tr><th colspan="9">{{ rung.check }}</th></tr>
-{% for row in rung.rows %}<tr class="{{ '' if row.passed else 'failed' }}">
-<td>{{ row.case }}</td>
-<td>{{ row.compared }}{% if row.note %}<br><span class="note">{{ row.note }}</span>{% endif %}</td>
-<td class="number">{{ number(row.value) }}</td>
-<td class="number" title="{{ row.source }}">{{ number(row.reference) }}</td>
-<td>{{ row.kind }}<br><span class="note">{{ row.source }}</span></td>
-<td class="number">{{ error(row) }}</td><td class="number">{{ tolerance(row) }}</td>
-<td class="number">{{ order(row) }}</td>
-<td class="{{ 'pass' if row.passed else 'fail' }}">{{ "pass" if row.passed else "FAIL" }}</td></tr>
-{% endfor %}{% endfor %}</table>
-<div class="plots">{% for caption, svg in plots[room] %}<figure>{{ svg | safe }}
-<figcaption>{{ caption }}</figcaption></figure>
-{% endfor %}</div>
-{% endfor %}</body></html>
-"""
-
 
 HEADING = f"{'value':>13} {'reference':>12}  {'kind':<9} {'error':>9} {'tolerance':>9}  order"
 
@@ -77,15 +37,15 @@ def page(ladder: Ladder) -> str:
         rooms.setdefault(rung.room, []).append(rung)
     plots = {
         room: [
-            (f"{row.case}: {row.compared}", convergence_plot(row.convergence))
-            for rung in rungs
-            for row in rung.rows
+            (f"{row.case}: {row.compared}", convergence_plot(row.convergence, f"{room}-{i}-{k}"))
+            for i, rung in enumerate(rungs)
+            for k, row in enumerate(rung.rows)
             if row.convergence is not None
         ]
         for room, rungs in rooms.items()
     }
-    template = Environment(autoescape=True).from_string(PAGE)
-    return template.render(
+    return render_page(
+        "verify.html.j2",
         ladder=ladder,
         versions=", ".join(f"{name} {version}" for name, version in versions().items()),
         rooms=rooms.items(),
@@ -97,8 +57,11 @@ def page(ladder: Ladder) -> str:
     )
 
 
-def convergence_plot(convergence: Convergence) -> str:
-    """Error over refinement in logarithmic scales, beside the expected slope, as an SVG element."""
+def convergence_plot(convergence: Convergence, prefix: str = "plot") -> Markup:
+    """Error over refinement in logarithmic scales, beside the expected slope, as an SVG element.
+
+    `prefix` keeps the ids of plots in one page apart.
+    """
     sizes, errors = np.array(convergence.sizes), np.array(convergence.errors)
     # The text stays text: small, and the same bytes again.
     with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "unanchored", "font.size": 9}):
@@ -115,8 +78,8 @@ def convergence_plot(convergence: Convergence) -> str:
         axes.legend(frameon=False)
         stream = io.StringIO()
         figure.savefig(stream, format="svg", metadata={"Date": None})
-    text = stream.getvalue()
-    return text[text.index("<svg") :]
+    label = f"error over {convergence.against}, observed order {convergence.observed:.2f}"
+    return svg_element(stream.getvalue(), label=label, prefix=prefix)
 
 
 def _row_lines(row: Row) -> list[str]:

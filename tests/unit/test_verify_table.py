@@ -114,7 +114,8 @@ def test_the_page_needs_nothing_from_elsewhere(small_ladder):
     assert text.count("<svg") == 1
     assert "a quantity &lt;b&gt; [m]" in text
     assert "src=" not in text
-    assert "<link" not in text
+    assert text.count("<link") == text.count('<link rel="icon" href="data:,">') == 1
+    assert "default-src 'none'" in text
     assert "<script" not in text
 
 
