@@ -465,6 +465,19 @@ def _watch_contents(run: Run, s: float, interval: float) -> None:
 watch_contents = compiled(_watch_contents, inline=True)
 
 
+def _write_coordinates(samples: Samples, at: int, old: State, new: State, s: float, step: float) -> None:
+    """Coordinates of the body and their rates at the share `s` of the step, where they are kept."""
+    for j in range(samples.position.shape[1]):
+        samples.position[at, j] = hermite(
+            s, step, old.position[j], old.velocity[j], new.position[j], new.velocity[j]
+        )
+    for j in range(samples.velocity.shape[1]):
+        samples.velocity[at, j] = (1.0 - s) * old.velocity[j] + s * new.velocity[j]
+
+
+write_coordinates = compiled(_write_coordinates, inline=True)
+
+
 @register_jitable(forceinline=True)
 def sample(
     body: Any, run: Run, samples: Samples, written: int, origin: int, step: float, slip_step: float
@@ -485,12 +498,7 @@ def sample(
         for i in range(new.point.shape[0]):
             for k in range(2):
                 samples.force[at, i, k] = (1.0 - s) * old.force[i, k] + s * new.force[i, k]
-        for j in range(samples.position.shape[1]):
-            samples.position[at, j] = hermite(
-                s, step, old.position[j], old.velocity[j], new.position[j], new.velocity[j]
-            )
-        for j in range(samples.velocity.shape[1]):
-            samples.velocity[at, j] = (1.0 - s) * old.velocity[j] + s * new.velocity[j]
+        write_coordinates(samples, at, old, new, s, step)
         samples.mode[at] = run.track[0].mode
         if samples.columns.shape[1] > 0:
             write_columns(run, samples.columns[at], samples.force[at], time, s, step, slip_step)

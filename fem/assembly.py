@@ -143,6 +143,12 @@ class FiniteElements:
         data = np.tile(mass.data, 2)
         return coo_array((data, (rows, columns)), shape=self.stiffness.shape).tocsc()
 
+    def mass_of(self, cells: IntArray, areal_density: NDArray[np.floating]) -> csr_array:
+        """Consistent mass of some cells alone, for the areal density (m,) of all [kg/m2]; shape (n, n) [kg]."""
+        part = self._basis.with_elements(cells)
+        density = np.repeat(np.asarray(areal_density, dtype=float)[cells, None], part.X.shape[1], axis=1)
+        return csr_array(_mass_form.assemble(part, areal_density=density))
+
     def force_and_energy(self, displacement: FloatArray) -> tuple[FloatArray, float]:
         """Gradient of the strain energy, shape (n, 2) [N], and the energy itself [J].
 

@@ -2,7 +2,8 @@
 
 SI units, named in the columns; x positive to the right, z up, rotation positive toward +x, forces on the
 container. Numbers are written so that reading them gives the same bits (shortest exact decimal form). The
-file grows by whole lines and is readable while the run goes on and after it was killed.
+file grows by whole lines and is readable while the run goes on and after it was killed. A stack has three columns
+more for every joint between its boxes (`fem.joints`), counted from the floor up, behind all others.
 """
 
 import contextlib
@@ -18,7 +19,7 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 
-#: Columns of `history.csv`; the last is a word, all others are numbers.
+#: Columns of `history.csv`, in a stack followed by those of its joints; `mode` is a word, all others are numbers.
 HISTORY_COLUMNS = (
     "time_s",
     "base_displacement_m",
@@ -39,30 +40,45 @@ HISTORY_COLUMNS = (
     "mode",
 )
 NUMBERS = len(HISTORY_COLUMNS) - 1
-HEADER = ",".join(HISTORY_COLUMNS) + "\n"
+#: Columns of one joint.
+JOINT_COLUMNS = ("joint_{}_normal_N", "joint_{}_shear_N", "joint_{}_moment_Nm")
+
+
+def history_columns(joints: int = 0) -> tuple[str, ...]:
+    """Columns of the history of a container with so many joints between its boxes."""
+    return HISTORY_COLUMNS + tuple(
+        name.format(joint) for joint in range(1, joints + 1) for name in JOINT_COLUMNS
+    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class History:
-    """Samples of a run, in the order of `HISTORY_COLUMNS`.
+    """Samples of a run, in the order of `history_columns` without the word.
 
     Raises:
         ValueError: arrays whose shapes do not fit the columns or each other.
     """
 
-    values: FloatArray  #: shape (n_samples, 16), units as in the columns' names
+    values: FloatArray  #: shape (n_samples, 16 + 3 joints), units as in the columns' names
     modes: tuple[str, ...]  #: state of motion at each sample, length n_samples
 
     def __post_init__(self) -> None:
-        if self.values.shape != (len(self.modes), NUMBERS):
-            raise ValueError(
-                f"history: {self.values.shape} numbers for {len(self.modes)} modes; {NUMBERS} columns needed"
-            )
+        _require_columns(self.values, self.modes)
 
     @classmethod
     def empty(cls) -> Self:
         """No samples."""
         return cls(values=np.zeros((0, NUMBERS)), modes=())
+
+    @property
+    def joints(self) -> int:
+        """Joints between boxes."""
+        return (self.values.shape[1] - NUMBERS) // len(JOINT_COLUMNS)
+
+    @property
+    def numbers(self) -> tuple[str, ...]:
+        """Names of the columns of numbers, in the order of `values`."""
+        return tuple(name for name in history_columns(self.joints) if name != "mode")
 
     def __len__(self) -> int:
         return len(self.modes)
@@ -70,9 +86,9 @@ class History:
     def __getitem__(self, column: str) -> FloatArray:
         """A column of numbers by its name, shape (n_samples,); KeyError names the columns there are."""
         try:
-            return self.values[:, HISTORY_COLUMNS[:NUMBERS].index(column)]
+            return self.values[:, self.numbers.index(column)]
         except ValueError:
-            raise KeyError(f"no column {column!r}; known: {', '.join(HISTORY_COLUMNS[:NUMBERS])}") from None
+            raise KeyError(f"no column {column!r}; known: {', '.join(self.numbers)}") from None
 
 
 class HistoryWriter:
@@ -84,19 +100,20 @@ class HistoryWriter:
     Args:
         path: the file; made anew, unless `position` is given.
         position: where an interrupted run had come to (`position` of its writer); what follows is cut off.
+        joints: between the boxes of the container, for the header.
 
     Raises:
         ValueError: a position beyond the end of the file, which then is not that run's.
         OSError: the file cannot be made or written.
     """
 
-    def __init__(self, path: Path, *, position: int | None = None) -> None:
+    def __init__(self, path: Path, *, position: int | None = None, joints: int = 0) -> None:
         self.path = path
         if position is None:
             self._file = open(path, "wb", buffering=0)  # noqa: SIM115 (closed by `close`)
             self._position = 0
             try:
-                self._write(HEADER)
+                self._write(",".join(history_columns(joints)) + "\n")
             except OSError:
                 self._file.close()
                 raise
@@ -114,13 +131,11 @@ class HistoryWriter:
         return self._position
 
     def append(self, rows: FloatArray, modes: Sequence[str]) -> None:
-        """Write samples: rows of numbers, shape (n, 16), and their modes, length n."""
-        if rows.shape != (len(modes), NUMBERS):
-            raise ValueError(
-                f"history: {rows.shape} numbers for {len(modes)} modes; {NUMBERS} columns are needed"
-            )
+        """Write samples: rows of numbers, shape (n, 16 + 3 joints), and their modes, length n."""
+        _require_columns(rows, modes)
         for row, mode in zip(rows.tolist(), modes, strict=True):
-            self._write(",".join(map(repr, row)) + f",{mode}\n")
+            words = [repr(number) for number in row]
+            self._write(",".join([*words[:NUMBERS], mode, *words[NUMBERS:]]) + "\n")
 
     def close(self) -> None:
         """Close the file; closing twice does no harm."""
@@ -152,19 +167,33 @@ def read_history(path: Path) -> History:
     """Read a history file, that of a running or killed run too: a last line without its end is left out.
 
     Raises:
-        ValueError: other columns than `HISTORY_COLUMNS`, or a line that does not hold them (named).
+        ValueError: other columns than `history_columns`, or a line that does not hold them (named).
         OSError: the file cannot be read.
     """
     text = path.read_text(encoding="utf-8")
     lines = text[: text.rfind("\n") + 1].splitlines()
-    if not lines or lines[0] != HEADER.strip():
-        raise ValueError(f"{path}: not a history; its first line must be {HEADER.strip()}")
-    values, modes = np.empty((len(lines) - 1, NUMBERS)), []
+    columns = tuple(lines[0].split(",")) if lines else ()
+    joints = (len(columns) - len(HISTORY_COLUMNS)) // len(JOINT_COLUMNS)
+    if columns != history_columns(joints):
+        raise ValueError(f"{path}: not a history; its first line must be {','.join(HISTORY_COLUMNS)} ..")
+    numbers = len(columns) - 1
+    values, modes = np.empty((len(lines) - 1, numbers)), []
     for number, line in enumerate(lines[1:]):
-        *fields, mode = line.split(",")
+        fields = line.split(",")
+        mode = "".join(fields[NUMBERS : NUMBERS + 1])
         try:
-            values[number] = [float(field) for field in fields]
+            values[number] = [float(field) for field in fields[:NUMBERS] + fields[NUMBERS + 1 :]]
         except ValueError:
-            raise ValueError(f"{path}, line {number + 2}: {NUMBERS} numbers and a mode are needed") from None
+            raise ValueError(f"{path}, line {number + 2}: {numbers} numbers and a mode are needed") from None
         modes.append(mode)
     return History(values=values, modes=tuple(modes))
+
+
+def _require_columns(values: FloatArray, modes: Sequence[str]) -> None:
+    """Refuse numbers whose rows or columns are not those of a history."""
+    rows, columns = values.shape
+    if rows != len(modes) or columns < NUMBERS or (columns - NUMBERS) % len(JOINT_COLUMNS) != 0:
+        raise ValueError(
+            f"history: {values.shape} numbers for {len(modes)} modes; {NUMBERS} columns are needed, and "
+            f"{len(JOINT_COLUMNS)} for each joint"
+        )

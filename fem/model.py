@@ -57,7 +57,9 @@ GAIN_ROOM, GAIN_SHARE = 1e-5, 0.05
 SOFT_CLOSING = 1e-6
 #: error of a base point at which the iterations of a step stop, over the static penetration
 POINT_TOLERANCE = 1e-6
-HISTORY_CHUNK, FRAME_CHUNK, FULL_FRAME_CHUNK = 1024, 64, 4
+HISTORY_CHUNK, FRAME_CHUNK = 1024, 64
+#: .. of the full model, whose coordinates are many
+FULL_HISTORY_CHUNK, FULL_FRAME_CHUNK = 16, 4
 #: a Newmark run without averaging gains energy beyond both
 STIFF_CONTACT, LARGE_CONTACT_STEP = 3.0, 0.7
 
@@ -171,6 +173,7 @@ def build_model(case: Case, container: Container | None = None) -> Model:
     drift = floor_velocity if case.motion.start == "moving" else 0.0
     _place(body, old, stance.moved(floor), container.response, floor, drift, contact)
     interval, fields = case.output.history_s, case.output.fields_s
+    stacked = case.container.boxes > 1  # the forces in its joints follow from the motion
     run = make_run(
         scheme=scheme,
         contact=contact,
@@ -182,10 +185,11 @@ def build_model(case: Case, container: Container | None = None) -> Model:
         work=make_workspace(nodes.size),
         history=make_samples(
             interval,
-            _chunk(HISTORY_CHUNK, control.largest_step, interval),
+            _chunk(FULL_HISTORY_CHUNK if full else HISTORY_CHUNK, control.largest_step, interval),
             nodes.size,
             columns=True,
-            position=0 if full else coordinates,
+            position=0 if full and not stacked else coordinates,
+            velocity=coordinates if stacked else 0,
         ),
         frames=make_samples(
             fields if fields > 0.0 else math.inf,

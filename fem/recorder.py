@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from contact.body import ROTATION, State
 from contact.floor_motion import floor_history, floor_motion
 from contact.stepping import (
     ROW_ANGULAR_VELOCITY,
@@ -23,8 +24,10 @@ from contact.stepping import (
     ROW_STRAIN,
     ROW_UPLIFT,
     Run,
+    Samples,
 )
-from fem.history import NUMBERS, History
+from fem.history import JOINT_COLUMNS, NUMBERS, History
+from fem.joints import Joints, joints_of
 from fem.model import Model
 from fem.recovery import Frame, Recovery
 from fem.verdict import MODE_NAMES
@@ -59,7 +62,7 @@ class Recorder:
     Args:
         model: what is stepped.
         recovery: how its fields are had; None leaves fields and stresses out.
-        history_sink: called with new rows (k, 16) and their modes.
+        history_sink: called with new rows (k, 16 + 3 joints) and their modes.
         frame_sink: called with time, fields, contact pressures (n,) at the nodes and floor displacement.
     """
 
@@ -78,6 +81,20 @@ class Recorder:
         self._modes: list[str] = []
         self._area = _contact_areas(model)
         self.largest_von_mises: float | None = None  #: over frames and the most strained samples, if any [Pa]
+        #: of the joints at the last sample (J, 8), see `fem.joints`: what the next one is held against
+        self.joint_motion = np.zeros((0, 0))
+        self._joint_forces = np.zeros((0, len(JOINT_COLUMNS)))
+        self.joints: Joints | None = None
+        self.take_joints(joints_of(model), model.run.old)
+
+    def take_joints(self, joints: Joints | None, initial: State) -> None:
+        """Follow the forces in these joints, from the initial state on."""
+        self.joints = joints
+        if joints is not None:
+            time_scale = 1.0 / self._model.run.control.frequency_parameter
+            self._joint_forces = joints.initial_forces(initial, time_scale)
+            rotation = initial.pose[ROTATION : ROTATION + 1]
+            self.joint_motion = joints.motion(initial.position[None], initial.velocity[None], rotation)[0]
 
     def drain(self, run: Run) -> None:
         """Empty the run's arrays of samples."""
@@ -86,8 +103,17 @@ class Recorder:
 
     def history(self) -> History:
         """Everything sampled so far."""
-        values = np.concatenate(self._rows) if self._rows else np.zeros((0, NUMBERS))
+        values = np.concatenate(self._rows) if self._rows else np.zeros((0, self._columns))
         return History(values=values, modes=tuple(self._modes))
+
+    def go_over_to_frame(self, velocity: float) -> None:
+        """From now on the run is told in a frame that moves with `velocity` along x [m/s]."""
+        if self.joints is not None:
+            self.joint_motion = self.joints.in_moving_frame(self.joint_motion, velocity)
+
+    @property
+    def _columns(self) -> int:
+        return NUMBERS + self._joint_forces.size
 
     def _drain_history(self, run: Run) -> None:
         clock, samples = run.clock[0], run.history
@@ -95,20 +121,34 @@ class Recorder:
         if count == 0:
             return
         times: FloatArray = np.arange(first, first + count, dtype=np.float64) * samples.interval
-        rows = np.empty((count, NUMBERS))
+        rows = np.empty((count, self._columns))
         rows[:, 0] = times
         rows[:, 1:4] = floor_history(run.motion, times).T
-        rows[:, 4:] = samples.columns[:count, ORDER]
+        rows[:, 4:NUMBERS] = samples.columns[:count, ORDER]
+        rows[:, NUMBERS:] = self._forces_in_joints(samples, first, count)
         modes = [MODE_NAMES[int(mode)] for mode in samples.mode[:count]]
         if self._recovery is not None:
             strained = np.argsort(samples.columns[:count, ROW_STRAIN])[-STRAINED:]
-            if samples.position.shape[1] > 0:
+            if samples.position.shape[1] > 0 and not self._recovery.full:
                 self._note_stress(self._recovery.largest_von_mises(samples.position[strained]))
         self._rows.append(rows)
         self._modes += modes
         if self._history_sink is not None:
             self._history_sink(rows, modes)
         clock.samples_gone = clock.samples
+
+    def _forces_in_joints(self, samples: Samples, first: int, count: int) -> FloatArray:
+        """Of new samples (count, 3 J): means since the sample before; the first of a run has its own acceleration."""
+        if self.joints is None:
+            return np.zeros((count, 0))
+        motion = self.joints.motion(
+            samples.position[:count], samples.velocity[:count], samples.columns[:count, ROW_ROTATION]
+        )
+        forces = self.joints.forces(np.concatenate([self.joint_motion[None], motion]), samples.interval)
+        if first == 0:
+            forces[0] = self._joint_forces
+        self.joint_motion = motion[-1]
+        return forces.reshape(count, -1)
 
     def _note_stress(self, stress: float) -> None:
         self.largest_von_mises = max(self.largest_von_mises or 0.0, stress)

@@ -23,6 +23,7 @@ from fem.band import band_of, wants_band
 from fem.case import Case, case_hash, to_toml
 from fem.fields import FieldWriter
 from fem.history import History, HistoryWriter, read_history
+from fem.joint_demands import joint_demands
 from fem.model import Model, build_model
 from fem.progress import Reporter, SilentReporter
 from fem.recorder import Recorder
@@ -155,10 +156,11 @@ def add_checks(
 
 def result_of(model: Model, recorder: Recorder, ending: Ending) -> dict[str, Any]:
     """The blocks of `run.json` that the stepping fills."""
-    rigid = model.case.solver.model == "rigid"
+    rigid, history = model.case.solver.model == "rigid", recorder.history()
     result: dict[str, Any] = {
         "status": ending.status,
-        "verdict": verdict_of(model, recorder.history(), None if rigid else recorder.largest_von_mises),
+        "verdict": verdict_of(model, history, None if rigid else recorder.largest_von_mises),
+        "joints": joint_demands(model, history),
         "energy": energy_of(model),
         "numerics": numerics_of(model, ending.stepping_cpu_s),
     }
@@ -222,7 +224,7 @@ def _step_into(
 ) -> tuple[Ending, Recorder]:
     """Step the model; history and fields go into the folder as they come."""
     with ExitStack() as stack:
-        history = stack.enter_context(HistoryWriter(place.history))
+        history = stack.enter_context(HistoryWriter(place.history, joints=model.case.container.boxes - 1))
         frame_sink = None
         if model.case.output.fields_s > 0.0:
             elements = model.container.elements

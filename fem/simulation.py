@@ -92,7 +92,8 @@ def simulate(
             if not undecided:
                 break
             if until == duration:
-                run, until = _left_alone(model, run), duration + AFTERMATH / control.frequency_parameter
+                run = _left_alone(model, run, recorder)
+                until = duration + AFTERMATH / control.frequency_parameter
                 ahead = AFTERMATH_SLICE
     if np.isfinite(track.overturned_at):
         status = "overturned"
@@ -108,12 +109,13 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)
 
 
-def _left_alone(model: Model, run: Run) -> Run:
+def _left_alone(model: Model, run: Run, recorder: Recorder) -> Run:
     """The run in the frame of its floor, which from now on stands still."""
     clock = run.clock[0]
     displacement, velocity, _ = floor_motion(run.motion, float(clock.time))
     leave = leave_alone if isinstance(model.body, FullBody) else leave_alone_compiled
     leave(model.body, run, velocity)
+    recorder.go_over_to_frame(velocity)
     still = as_floor_motion(UNIFORM, (float(clock.time), displacement, 0.0))
     return run._replace(motion=still, breaks=np.full(1, np.inf))
 

@@ -16,6 +16,8 @@ from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from fem.summary_joints import joint_table
+
 Result = Mapping[str, Any]
 
 TEXT_WIDTH = 110
@@ -52,6 +54,8 @@ def screen_summary(
     rows = _run_rows(result)
     if rows:
         parts.append(_run_table(rows))
+    if result.get("joints"):
+        parts.append(joint_table(result["joints"]))
     if (result.get("verdict") or {}).get("outcome") in ("rock", "slide-rock"):
         parts += [Text(MARGIN_NOTE), Text()]
     if (result.get("verdict") or {}).get("band"):

@@ -41,6 +41,22 @@ def test_numbers_come_back_to_the_last_bit(tmp_path):
     assert len(history) == 7
 
 
+def test_a_stack_has_three_columns_for_every_joint_behind_the_word(tmp_path):
+    with HistoryWriter(tmp_path / "h.csv", joints=2) as writer:
+        writer.append(np.hstack([ROWS, ROWS[:, :6]]), MODES)
+    header = (tmp_path / "h.csv").read_text().splitlines()[0]
+    assert header.endswith(
+        "imbalance_J,mode,joint_1_normal_N,joint_1_shear_N,joint_1_moment_Nm,joint_2_normal_N,joint_2_shear_N,"
+        "joint_2_moment_Nm"
+    )
+    history = read_history(tmp_path / "h.csv")
+    assert history.joints == 2 and history.modes == tuple(MODES)
+    assert history["imbalance_J"].tolist() == ROWS[:, 15].tolist()
+    assert history["joint_2_shear_N"].tolist() == ROWS[:, 4].tolist()
+    with pytest.raises(KeyError, match="no column 'joint_3_shear_N'"):
+        history["joint_3_shear_N"]
+
+
 @given(st.lists(st.floats(allow_nan=False), min_size=16, max_size=16))
 def test_every_double_survives(tmp_path_factory, row):
     path = tmp_path_factory.mktemp("h") / "h.csv"
