@@ -98,3 +98,8 @@ def observe(body: Any, state: State, floor: float) -> None:
 def shift_velocity(body: Any, state: State, velocity: float) -> None:
     """Take the velocity of a new frame along x off that of every coordinate."""
     body.shift_velocity(state, velocity)
+
+
+def sizes_hold(body: Any, run: Any) -> bool:
+    """The arrays of the run have the sizes that the body was compiled for; true where it takes any."""
+    return True

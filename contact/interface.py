@@ -147,7 +147,7 @@ def _evaluate_laws(
             work.slope[i, 1] = by_normal * work.slope[i, 2]
 
 
-evaluate_laws = compiled(_evaluate_laws)
+evaluate_laws = compiled(_evaluate_laws, inline=True)
 
 
 def _turn_compliance(
@@ -166,7 +166,7 @@ def _turn_compliance(
             out[2 * i + 1, 2 * j + 1] = share * (-bx * sine + bz * cosine)
 
 
-turn_compliance = compiled(_turn_compliance)
+turn_compliance = compiled(_turn_compliance, inline=True)
 
 
 def _move_points(velocity_slope: float, force: FloatArray, work: Workspace) -> None:
@@ -183,7 +183,7 @@ def _move_points(velocity_slope: float, force: FloatArray, work: Workspace) -> N
             work.velocity[i, k] = work.free_velocity[i, k] + velocity_slope * moved
 
 
-move_points = compiled(_move_points)
+move_points = compiled(_move_points, inline=True)
 
 
 def _factor_dense(size: int, matrix: FloatArray, pivot: IntArray) -> bool:
@@ -208,7 +208,7 @@ def _factor_dense(size: int, matrix: FloatArray, pivot: IntArray) -> bool:
     return True
 
 
-factor_dense = compiled(_factor_dense)
+factor_dense = compiled(_factor_dense, inline=True)
 
 
 def _substitute_dense(size: int, factors: FloatArray, pivot: IntArray, vector: FloatArray) -> None:
@@ -228,7 +228,7 @@ def _substitute_dense(size: int, factors: FloatArray, pivot: IntArray, vector: F
         vector[k] = total / factors[k, k]
 
 
-substitute_dense = compiled(_substitute_dense)
+substitute_dense = compiled(_substitute_dense, inline=True)
 
 
 def _factor_is_current(step: float, work: Workspace) -> bool:
@@ -245,7 +245,7 @@ def _factor_is_current(step: float, work: Workspace) -> bool:
     return True
 
 
-factor_is_current = compiled(_factor_is_current)
+factor_is_current = compiled(_factor_is_current, inline=True)
 
 
 def _factor_tangent(step: float, work: Workspace) -> bool:
@@ -277,7 +277,7 @@ def _factor_tangent(step: float, work: Workspace) -> bool:
     return True
 
 
-factor_tangent = compiled(_factor_tangent)
+factor_tangent = compiled(_factor_tangent, inline=True)
 
 
 def _newton_change(work: Workspace) -> None:
@@ -314,7 +314,7 @@ def _newton_change(work: Workspace) -> None:
         work.change[2 * i], work.change[2 * i + 1] = work.solution[2 * a], work.solution[2 * a + 1]
 
 
-newton_change = compiled(_newton_change)
+newton_change = compiled(_newton_change, inline=True)
 
 
 def _solve_contact(
@@ -379,4 +379,4 @@ def _solve_contact(
     return -1
 
 
-solve_contact = compiled(_solve_contact)
+solve_contact = compiled(_solve_contact, inline=True)

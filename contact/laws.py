@@ -43,7 +43,7 @@ def _normal_force(
     return slope * penetration, slope, 0.0
 
 
-normal_force = compiled(_normal_force)
+normal_force = compiled(_normal_force, inline=True)
 
 
 def _stick_friction(trial: float, limit: float) -> tuple[float, float, float]:
@@ -60,7 +60,7 @@ def _stick_friction(trial: float, limit: float) -> tuple[float, float, float]:
     return trial, 1.0, 0.0
 
 
-stick_friction = compiled(_stick_friction)
+stick_friction = compiled(_stick_friction, inline=True)
 
 
 def _relaxed_stick(

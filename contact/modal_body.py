@@ -15,7 +15,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba.extending import overload
+from numba.extending import overload, register_jitable
 
 from contact import body as interface
 from contact.body import (
@@ -112,9 +112,20 @@ def make_modal_body(
     )
 
 
+class BlockOnCorners(ModalBody):
+    """A rigid body on two contact points: the same fields under a type of its own.
+
+    For it the stepper is compiled with all sizes known (`sizes_hold`): loops over two points and three coordinates
+    are unrolled, which halves the time of a step and changes no bit of it.
+    """
+
+
 def with_own_scratch(body: ModalBody) -> ModalBody:
-    """The same body with scratch arrays of its own and no monitored points: for a thread of a batch."""
-    return body._replace(
+    """The same body with scratch arrays of its own and no monitored points: for a thread of a batch.
+
+    A rigid body on two points comes back as `BlockOnCorners`.
+    """
+    own = body._replace(
         monitor=np.zeros((0, 2)),
         monitor_shape=np.zeros((0, 2, body.stiffness.size)),
         cached_step=np.append(np.full(STEP_SLOTS, -1.0), 0.0),
@@ -123,6 +134,8 @@ def with_own_scratch(body: ModalBody) -> ModalBody:
         arm=np.zeros_like(body.arm),
         free_change=np.zeros_like(body.free_change),
     )
+    small = body.stiffness.size == 0 and body.point.shape[0] == 2
+    return BlockOnCorners(*own) if small else own
 
 
 def _predict(body: ModalBody, scheme: Scheme, step: float, old: State, new: State) -> None:
@@ -256,7 +269,9 @@ def _gather_force(
 ) -> None:
     """Generalised contact force J^T f into `out`."""
     m = body.stiffness.size
-    cosine, sine = math.cos(rotation), math.sin(rotation)
+    cosine, sine = 1.0, 0.0
+    if m > 0:
+        cosine, sine = math.cos(rotation), math.sin(rotation)
     for j in range(3 + m):
         out[j] = 0.0
     for i in range(force.shape[0]):
@@ -349,6 +364,39 @@ def _shift_velocity(body: ModalBody, state: State, velocity: float) -> None:
 complete_modal = compiled(_complete)
 
 
+def _any_sizes(body: ModalBody, run: Any) -> bool:
+    return True
+
+
+@register_jitable(forceinline=True)
+def _state_of_block_on_corners(state: State) -> bool:
+    if state.position.size != 3 or state.velocity.size != 3 or state.acceleration.size != 3:
+        return False
+    if state.jerk.size != 3 or state.internal.size != 3 or state.damping.size != 3:
+        return False
+    if state.external.size != 3 or state.pose.size != 6 or state.energy.size != 3 or state.stick.size != 2:
+        return False
+    if state.point.shape[0] != 2 or state.force.shape[0] != 2 or state.descent.shape[0] != 2:
+        return False
+    return bool(state.point.shape[1] == 2 and state.force.shape[1] == 2 and state.descent.shape[1] == 2)
+
+
+def _sizes_of_block_on_corners(body: ModalBody, run: Any) -> bool:
+    """Each comparison with a constant is one that the compiler relies on from there on: it unrolls the loops."""
+    work = run.work
+    if body.point.shape[0] != 2 or body.stiffness.size != 0 or run.control.base_points != 2:
+        return False
+    if body.elastic_compliance.shape[1] != 4 or body.elastic_compliance.shape[2] != 4:
+        return False
+    if work.point.shape[0] != 2 or work.slope.shape[0] != 2:
+        return False
+    if work.force.shape[0] != 2 or work.force.shape[1] != 2:
+        return False
+    if not _state_of_block_on_corners(run.old):
+        return False
+    return bool(_state_of_block_on_corners(run.new))
+
+
 def place(body: ModalBody, state: State, stance: Stance, floor_velocity: float) -> None:
     """Write the initial coordinates: the stance's rigid pose, strained by its contact forces."""
     cosine, sine = math.cos(stance.rotation), math.sin(stance.rotation)
@@ -367,20 +415,22 @@ def start(body: ModalBody, state: State, floor: float) -> None:
     state.acceleration[:] = (state.external - state.internal) / masses
 
 
-def _compile_for_modal_body(function: Callable[..., Any], implementation: Callable[..., Any]) -> None:
-    """Let compiled callers of `function` use `implementation` when the body is a `ModalBody`."""
+def _compile_for(
+    classes: tuple[type, ...], function: Callable[..., Any], implementation: Callable[..., Any]
+) -> None:
+    """Let compiled callers of `function` use `implementation` when the body is of one of these classes."""
 
     def choose(body: Any, *arguments: Any) -> Callable[..., Any] | None:
-        if getattr(body, "instance_class", None) is ModalBody:
-            return implementation
-        return None
+        return implementation if getattr(body, "instance_class", None) in classes else None
 
     overload(function, strict=False, jit_options={"forceinline": True})(choose)
 
 
-_compile_for_modal_body(interface.predict, _predict)
-_compile_for_modal_body(interface.release, _release)
-_compile_for_modal_body(interface.respond, _respond)
-_compile_for_modal_body(interface.complete, _complete)
-_compile_for_modal_body(interface.observe, _observe)
-_compile_for_modal_body(interface.shift_velocity, _shift_velocity)
+_compile_for((ModalBody, BlockOnCorners), interface.predict, _predict)
+_compile_for((ModalBody, BlockOnCorners), interface.release, _release)
+_compile_for((ModalBody, BlockOnCorners), interface.respond, _respond)
+_compile_for((ModalBody, BlockOnCorners), interface.complete, _complete)
+_compile_for((ModalBody, BlockOnCorners), interface.observe, _observe)
+_compile_for((ModalBody, BlockOnCorners), interface.shift_velocity, _shift_velocity)
+_compile_for((ModalBody,), interface.sizes_hold, _any_sizes)
+_compile_for((BlockOnCorners,), interface.sizes_hold, _sizes_of_block_on_corners)

@@ -32,6 +32,7 @@ from contact.body import (
     release,
     respond,
     shift_velocity,
+    sizes_hold,
 )
 from contact.compiled import compiled
 from contact.floor_motion import FloorMotion, floor_motion
@@ -241,7 +242,7 @@ def _copy_vector(target: FloatArray, source: FloatArray) -> None:
         target[i] = source[i]
 
 
-copy_vector = compiled(_copy_vector)
+copy_vector = compiled(_copy_vector, inline=True)
 
 
 def _copy_rows(target: FloatArray, source: FloatArray) -> None:
@@ -250,7 +251,7 @@ def _copy_rows(target: FloatArray, source: FloatArray) -> None:
             target[i, k] = source[i, k]
 
 
-copy_rows = compiled(_copy_rows)
+copy_rows = compiled(_copy_rows, inline=True)
 
 
 def _rebase_acceleration(scheme: Scheme, old: State, shortened: float) -> None:
@@ -765,6 +766,8 @@ def advance(body: Any, run: Run, until: float) -> int:
         the smallest step; the last good state stands in `run.old`.
     """
     control, clock, track = run.control, run.clock[0], run.track[0]
+    if not sizes_hold(body, run):
+        return FAILED
     while clock.time < until and not _is_full(run):
         step = next_step(run)
         mu = run.contact.mu_static
