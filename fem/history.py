@@ -3,7 +3,8 @@
 SI units, named in the columns; x positive to the right, z up, rotation positive toward +x, forces on the
 container. Numbers are written so that reading them gives the same bits (shortest exact decimal form). The
 file grows by whole lines and is readable while the run goes on and after it was killed. A stack has three columns
-more for every joint between its boxes (`fem.joints`), counted from the floor up, behind all others.
+more for every joint between its boxes (`fem.joints`), counted from the floor up, behind these. A run that was compared
+with the rigid block (`fem.rigid_check`) has the block's rotation as its last column, nan where it is not followed.
 """
 
 import contextlib
@@ -16,6 +17,8 @@ from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
+
+from fem.run_folder import write_atomically
 
 FloatArray = NDArray[np.float64]
 
@@ -42,13 +45,14 @@ HISTORY_COLUMNS = (
 NUMBERS = len(HISTORY_COLUMNS) - 1
 #: Columns of one joint.
 JOINT_COLUMNS = ("joint_{}_normal_N", "joint_{}_shear_N", "joint_{}_moment_Nm")
+#: Rotation of the analytic rigid block under the same floor.
+ANALYTIC_COLUMN = "analytic_rotation_rad"
 
 
-def history_columns(joints: int = 0) -> tuple[str, ...]:
-    """Columns of the history of a container with so many joints between its boxes."""
-    return HISTORY_COLUMNS + tuple(
-        name.format(joint) for joint in range(1, joints + 1) for name in JOINT_COLUMNS
-    )
+def history_columns(joints: int = 0, *, analytic: bool = False) -> tuple[str, ...]:
+    """Columns of the history of a container with so many joints, compared with the rigid block or not."""
+    of_joints = (name.format(joint) for joint in range(1, joints + 1) for name in JOINT_COLUMNS)
+    return HISTORY_COLUMNS + tuple(of_joints) + ((ANALYTIC_COLUMN,) if analytic else ())
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -59,7 +63,7 @@ class History:
         ValueError: arrays whose shapes do not fit the columns or each other.
     """
 
-    values: FloatArray  #: shape (n_samples, 16 + 3 joints), units as in the columns' names
+    values: FloatArray  #: shape (n_samples, 16 + 3 joints (+ 1)), units as in the columns' names
     modes: tuple[str, ...]  #: state of motion at each sample, length n_samples
 
     def __post_init__(self) -> None:
@@ -76,9 +80,14 @@ class History:
         return (self.values.shape[1] - NUMBERS) // len(JOINT_COLUMNS)
 
     @property
+    def analytic(self) -> bool:
+        """The rotation of the rigid block stands in the last column."""
+        return (self.values.shape[1] - NUMBERS) % len(JOINT_COLUMNS) == 1
+
+    @property
     def numbers(self) -> tuple[str, ...]:
         """Names of the columns of numbers, in the order of `values`."""
-        return tuple(name for name in history_columns(self.joints) if name != "mode")
+        return tuple(name for name in history_columns(self.joints, analytic=self.analytic) if name != "mode")
 
     def __len__(self) -> int:
         return len(self.modes)
@@ -170,11 +179,10 @@ def read_history(path: Path) -> History:
         ValueError: other columns than `history_columns`, or a line that does not hold them (named).
         OSError: the file cannot be read.
     """
-    text = path.read_text(encoding="utf-8")
-    lines = text[: text.rfind("\n") + 1].splitlines()
+    lines = _whole_lines(path)
     columns = tuple(lines[0].split(",")) if lines else ()
     joints = (len(columns) - len(HISTORY_COLUMNS)) // len(JOINT_COLUMNS)
-    if columns != history_columns(joints):
+    if columns != history_columns(joints, analytic=columns[-1:] == (ANALYTIC_COLUMN,)):
         raise ValueError(f"{path}: not a history; its first line must be {','.join(HISTORY_COLUMNS)} ..")
     numbers = len(columns) - 1
     values, modes = np.empty((len(lines) - 1, numbers)), []
@@ -189,11 +197,37 @@ def read_history(path: Path) -> History:
     return History(values=values, modes=tuple(modes))
 
 
+def add_analytic_rotation(path: Path, rotation: FloatArray) -> None:
+    """Put the rigid block's rotation beside the run's, as the last column of a finished history.
+
+    Args:
+        path: the file, replaced whole; a column of that name is replaced.
+        rotation: at each sample, shape (n_samples,) [rad]; nan where the block is not followed.
+
+    Raises:
+        ValueError: not as many rotations as samples.
+        OSError: the file cannot be read or written.
+    """
+    header, *rows = _whole_lines(path)
+    if len(rows) != len(rotation):
+        raise ValueError(f"{path}: {len(rotation)} rotations for {len(rows)} samples")
+    if header.endswith("," + ANALYTIC_COLUMN):
+        header, *rows = (line.rpartition(",")[0] for line in (header, *rows))
+    lines = [f"{header},{ANALYTIC_COLUMN}"]
+    lines += [f"{row},{value!r}" for row, value in zip(rows, rotation.tolist(), strict=True)]
+    write_atomically(path, "\n".join(lines) + "\n")
+
+
+def _whole_lines(path: Path) -> list[str]:
+    text = path.read_text(encoding="utf-8")
+    return text[: text.rfind("\n") + 1].splitlines()
+
+
 def _require_columns(values: FloatArray, modes: Sequence[str]) -> None:
     """Refuse numbers whose rows or columns are not those of a history."""
     rows, columns = values.shape
-    if rows != len(modes) or columns < NUMBERS or (columns - NUMBERS) % len(JOINT_COLUMNS) != 0:
+    if rows != len(modes) or columns < NUMBERS or (columns - NUMBERS) % len(JOINT_COLUMNS) > 1:
         raise ValueError(
-            f"history: {values.shape} numbers for {len(modes)} modes; {NUMBERS} columns are needed, and "
-            f"{len(JOINT_COLUMNS)} for each joint"
+            f"history: {values.shape} numbers for {len(modes)} modes; {NUMBERS} columns are needed, "
+            f"{len(JOINT_COLUMNS)} for each joint, and one for the rigid block"
         )

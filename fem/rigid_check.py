@@ -25,7 +25,7 @@ from contact.rigid_block import RigidBlock
 from contact.rocking import RockingMotion, simulate_rocking
 from contact.tracking import IMPACT_GAP, ROCKING
 from fem.case import Case
-from fem.history import FloatArray, History
+from fem.history import ANALYTIC_COLUMN, FloatArray, History
 from fem.model import Model
 from fem.modes import elastic_modes
 from fem.verdict import SLIDING
@@ -35,7 +35,7 @@ SOFT_FLOOR = 1e-3  #: static penetration over width times slenderness angle: the
 BOUNCING_CONTACT = 1.0  #: contact damping ratio below which an impact is not plastic
 OFF_CENTRE = 1e-6  #: of the mass centre, over the width
 PEAKS = 6  #: turning points that are compared
-COLUMNS = ("time_s", "rotation_rad", "analytic_rotation_rad", "analytic_angular_velocity_rad_s")
+COLUMNS = ("time_s", "rotation_rad", ANALYTIC_COLUMN, "analytic_angular_velocity_rad_s")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,6 +44,11 @@ class RigidCheck:
 
     summary: dict[str, Any]  #: the `rigid_check` of a result
     rows: FloatArray  #: (n, 4), see COLUMNS; nan where the block is no longer followed
+
+    @property
+    def analytic_rotation(self) -> FloatArray:
+        """The block's, at each sample of the history, shape (n,) [rad]."""
+        return self.rows[:, COLUMNS.index(ANALYTIC_COLUMN)]
 
     def table(self) -> str:
         """The rows as CSV."""

@@ -22,7 +22,7 @@ from contact.event_driven import EventError
 from fem.band import band_of, wants_band
 from fem.case import Case, case_hash, to_toml
 from fem.fields import FieldWriter
-from fem.history import History, HistoryWriter, read_history
+from fem.history import History, HistoryWriter, add_analytic_rotation, read_history
 from fem.joint_demands import joint_demands
 from fem.model import Model, build_model
 from fem.progress import Reporter, SilentReporter
@@ -253,6 +253,7 @@ def _rigid_check(model: Model, place: RunFolder, verdict: dict[str, Any]) -> dic
     except (ValueError, EventError) as error:  # a run too short, a block that bounces without end
         return {"reference": None, "meaningful": False, "reasons": [str(error)]}
     write_atomically(place.rigid_check, check.table())
+    add_analytic_rotation(place.history, check.analytic_rotation)
     return check.summary
 
 

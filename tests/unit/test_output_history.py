@@ -13,7 +13,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fem.history import HISTORY_COLUMNS, History, HistoryWriter, read_history
+from fem.history import (
+    HISTORY_COLUMNS,
+    NUMBERS,
+    History,
+    HistoryWriter,
+    add_analytic_rotation,
+    read_history,
+)
 
 ROWS = np.random.default_rng(3).normal(size=(7, 16)) * 10.0 ** np.arange(-8, 8)
 MODES = ["rest", "rock", "slide", "slide-rock", "rock", "rest", "overturned"]
@@ -189,3 +196,20 @@ def test_nan_is_written_and_read_as_nan(tmp_path):
     with HistoryWriter(tmp_path / "h.csv") as writer:
         writer.append(np.full((1, 16), math.nan), ["rest"])
     assert np.isnan(read_history(tmp_path / "h.csv").values).all()
+
+
+def test_the_rigid_block_stands_in_the_last_column_and_is_replaced_not_repeated(tmp_path):
+    path, rotation = tmp_path / "history.csv", np.array([0.1, math.nan])
+    rows = np.arange(2.0 * (NUMBERS + 3)).reshape(2, -1)
+    with HistoryWriter(path, joints=1) as writer:
+        writer.append(rows, ["rest", "rock"])
+    for _ in range(2):
+        add_analytic_rotation(path, rotation)
+    history = read_history(path)
+    assert history.numbers[-1] == "analytic_rotation_rad"
+    assert np.array_equal(history["analytic_rotation_rad"], rotation, equal_nan=True)
+    assert np.array_equal(history["joint_1_moment_Nm"], rows[:, -1])
+    assert history.modes == ("rest", "rock")
+    assert np.array_equal(history.values[:, :-1], rows)
+    with pytest.raises(ValueError, match="3 rotations for 2 samples"):
+        add_analytic_rotation(path, np.zeros(3))

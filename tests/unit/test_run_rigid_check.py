@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fem.case import load_case
+from fem.history import read_history
 from fem.model import Model, build_model
 from fem.recorder import Recorder
 from fem.rigid_check import (
@@ -103,6 +104,8 @@ class TestFreeRocking:
         assert columns["time_s"].tolist() == pytest.approx((0.005 * np.arange(401)).tolist())
         apart = np.abs(columns["rotation_rad"] - columns["analytic_rotation_rad"])
         assert apart.max() < 5e-3 * ANGLE
+        history = read_history(tmp_path / "r" / "history.csv")
+        assert np.array_equal(history["analytic_rotation_rad"], columns["analytic_rotation_rad"])
         kept = json.loads((tmp_path / "r" / "run.json").read_text())["rigid_check"]
         assert kept["meaningful"] is True
         page = (tmp_path / "r" / "summary.txt").read_text()
