@@ -20,9 +20,13 @@ FLAGS = ("--help", "-h", "--version")
 COMMANDS = {
     "run": ("fem.commands.run:run", "Compute a case: rest, slide, rock, slide-rock or overturn."),
     "check": ("fem.commands.check:check", "Static checks, derived numbers and chosen numerics; no solution."),
-    "init": ("fem.commands.init:init", "Write a commented case file to start from."),
-    "list": ("fem.commands.list_cases:list_cases", "The shipped cases, and what each shows."),
+    "init": ("fem.commands.init:init", "Write a commented case or sweep file to start from."),
+    "list": ("fem.commands.list_cases:list_cases", "The shipped cases and sweeps, and what each shows."),
     "modes": ("fem.commands.modes:modes", "Elastic frequencies and shapes of the free container."),
+    "sweep": (
+        "fem.commands.sweep:sweep",
+        "Compute many cases, over ranges of some keys.",
+    ),
     "verify": ("fem.commands.verify:verify", "The verification ladder: every case with its reference."),
     "doctor": (
         "fem.commands.doctor:doctor",

@@ -163,9 +163,12 @@ class Case(Heading):
         Raises:
             CaseError: as for a case file; the message names the keys that were set.
         """
+        return _read(with_overrides(self.given(), values), self.origin_with(values), values)
+
+    def origin_with(self, values: Mapping[str, Any]) -> Origin:
+        """Where this case with dotted keys set comes from."""
         overrides = (*self.overrides, *(f"{key}={value}" for key, value in values.items()))
-        origin = replace(self._origin, overrides=overrides)
-        return _read(with_overrides(self.given(), values), origin, values)
+        return replace(self._origin, overrides=overrides)
 
     def from_origin(self, origin: Origin) -> Self:
         """This case with another place of birth."""

@@ -71,13 +71,13 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
             problems.append(Problem(table=key, key="", reason=_unknown_table(key)))
         elif key not in TABLES:
             heading[key] = value
-    read, partial, found = _read_table("", Heading, heading)
+    read, partial, found = read_table("", Heading, heading)
     problems += found
     for name, model in TABLES.items():
         content = data.get(name, {})
         if not isinstance(content, dict):
             continue
-        given, part, found = _read_table(name, model, content)
+        given, part, found = read_table(name, model, content)
         problems += found
         partial[name] = SimpleNamespace(**part)
         if not found:
@@ -98,7 +98,7 @@ def problem_lines(problems: Iterable[Problem], heading: str = "") -> list[str]:
     return lines
 
 
-def _read_table(
+def read_table(
     name: str, model: type[Table], content: Mapping[str, Any]
 ) -> tuple[dict[str, Any], dict[str, Any], list[Problem]]:
     """Values as given, values by field with defaults as far as readable, and problems."""

@@ -27,6 +27,9 @@ class Reporter(Protocol):
     def update(self, time: float, rotation_ratio: float, mode: str) -> None:
         """It has come to `time` [s]; cheap enough to be called at every sample."""
 
+    def tell(self, line: Callable[[], str]) -> None:
+        """How far work has come that is not one run; `line` is asked when it is time to say so again."""
+
     def message(self, text: str) -> None:
         """A sentence for the user, once."""
 
@@ -41,6 +44,9 @@ class SilentReporter:
         """Nothing."""
 
     def update(self, time: float, rotation_ratio: float, mode: str) -> None:
+        """Nothing."""
+
+    def tell(self, line: Callable[[], str]) -> None:
         """Nothing."""
 
     def message(self, text: str) -> None:
@@ -86,17 +92,21 @@ class ScreenReporter:
 
     def update(self, time: float, rotation_ratio: float, mode: str) -> None:
         """Show the line, if the last one is old enough."""
+        elapsed = self._now() - self._began
+        self.tell(lambda: progress_line(time, self._duration, elapsed, rotation_ratio, mode))
+
+    def tell(self, line: Callable[[], str]) -> None:
+        """Show a line, if the last one is old enough."""
         if self._quiet:
             return
         now = self._now()
         if now < self._due:
             return
         self._due = now + self._pause
-        line = progress_line(time, self._duration, now - self._began, rotation_ratio, mode)
         if self._live is not None:
-            self._live.update(Text(line, no_wrap=True, overflow="ellipsis"), refresh=True)
+            self._live.update(Text(line(), no_wrap=True, overflow="ellipsis"), refresh=True)
         else:
-            self._console.print(Text(line), soft_wrap=True)
+            self._console.print(Text(line()), soft_wrap=True)
 
     def message(self, text: str) -> None:
         """Print a sentence; a line in place moves down and stays."""
@@ -128,7 +138,7 @@ def progress_line(time: float, duration: float, elapsed: float, rotation_ratio: 
     if time >= duration:
         remaining = "until it falls or comes back"
     elif rate > 0.0:
-        remaining = f"{_clock((duration - time) / rate)} left"
+        remaining = f"{clock_time((duration - time) / rate)} left"
     else:
         remaining = "time left unknown"
     return (
@@ -137,7 +147,7 @@ def progress_line(time: float, duration: float, elapsed: float, rotation_ratio: 
     )
 
 
-def _clock(seconds: float) -> str:
+def clock_time(seconds: float) -> str:
     """A duration for people: 7 s, 3 min 20 s, 2 h 05 min."""
     whole = round(seconds)
     if whole < 60:

@@ -16,45 +16,28 @@ from concurrent.futures import (
     ThreadPoolExecutor,
     wait,
 )
+from contextlib import contextmanager
+from dataclasses import dataclass
 from itertools import islice
 from multiprocessing import get_context
-from typing import Any
+from operator import itemgetter
+from typing import Any, TypeVar
 
 from fem.case import Case
 from fem.model import Container, build_model, discretise
 from fem.recorder import Recorder
 from fem.recovery import recovery_of
 from fem.simulation import cores, simulate
+from fem.sweep.table import SCALARS
 from fem.verdict import verdict_of
 
 #: cases handed to a core at a time
 CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}
-#: scalars of a verdict, as columns; None where a case does not have them
-SCALARS = (
-    "outcome",
-    "max_rotation_rad",
-    "rotation_ratio",
-    "max_slip_m",
-    "residual_slip_m",
-    "slip_peak_to_peak_m",
-    "slip_travel_m",
-    "max_uplift_m",
-    "impacts",
-    "first_opening_s",
-    "first_uplift_s",
-    "first_impact_s",
-    "overturned_at_s",
-    "restored",
-    "restitution_first",
-    "max_corner_force_N",
-    "max_top_displacement_m",
-    "max_acceleration_m_s2",
-    "max_von_mises_Pa",
-)
-#: what a row holds besides: how it ended, why it failed, what it took
-STATE = ("status", "reason", "wall_s")
+#: chunks handed out for every worker, so that none waits for the next
+AHEAD = 2
 
 Row = dict[str, Any]
+ItemT = TypeVar("ItemT")
 
 
 def run_cases(
@@ -84,11 +67,14 @@ def run_cases(
         first.setdefault(container_key(case), k)
     order = sorted(range(len(cases)), key=lambda k: first[container_key(cases[k])])
     finished = 0
-    for chunk, found in run_in_chunks([(k, cases[k]) for k in order], jobs=jobs, stop=stop):
-        for k, row in zip(chunk, found, strict=True):
-            rows[k] = row
-        finished += len(chunk)
-        done(finished)
+    for model in ("rigid", "reduced", "full"):
+        items = [(k, cases[k]) for k in order if cases[k].solver.model == model]
+        with local_workers(model, jobs or cores()) as workers:
+            for chunk, found in run_items(items, itemgetter(1), model, workers, stop=stop):
+                for (k, _), row in zip(chunk, found, strict=True):
+                    rows[k] = row
+                finished += len(chunk)
+                done(finished)
     return rows
 
 
@@ -108,29 +94,69 @@ def container_key(case: Case) -> Hashable:
     )
 
 
-def run_in_chunks(
-    numbered: Sequence[tuple[int, Case]],
+@dataclass(frozen=True, kw_only=True)
+class Workers:
+    """Who computes: an executor, and how many chunks it works on at once."""
+
+    pool: Executor
+    count: int
+
+
+@contextmanager
+def local_workers(model: str, jobs: int) -> Iterator[Workers]:
+    """Threads for the compiled models, which work without the interpreter's lock, and processes for `full`."""
+    if model == "full":
+        context = get_context("spawn")
+        with ProcessPoolExecutor(jobs, context, _end_with_parent, (os.getpid(),)) as processes:
+            yield Workers(pool=processes, count=jobs)
+    else:
+        with ThreadPoolExecutor(jobs) as threads:
+            yield Workers(pool=threads, count=jobs)
+
+
+def run_items(
+    items: Sequence[ItemT],
+    make: Callable[[ItemT], Case],
+    model: str,
+    workers: Workers,
     *,
-    jobs: int | None = None,
     stop: Callable[[], bool] = lambda: False,
-) -> Iterator[tuple[list[int], list[Row]]]:
-    """Run numbered cases; yields numbers and rows as they come, in any order."""
-    jobs = jobs or cores()
-    compiled = [item for item in numbered if item[1].solver.model != "full"]
-    whole = [item for item in numbered if item[1].solver.model == "full"]
-    if compiled:
-        with ThreadPoolExecutor(jobs) as pool:
-            shelf = Shelf()
-            yield from _spread(pool, jobs, _chunks(compiled), lambda chunk: run_chunk(chunk, shelf), stop)
-    if whole:
-        with ProcessPoolExecutor(jobs, get_context("spawn"), _die_with, (os.getpid(),)) as processes:
-            yield from _spread(processes, jobs, _chunks(whole), run_chunk, stop)
+) -> Iterator[tuple[list[ItemT], list[Row]]]:
+    """Run one case for each item; yields items and their rows as they come, in any order.
+
+    Args:
+        items: in an order in which those of one container stand together.
+        make: the case of an item; goes to the workers, so for processes it must be a module's function or a
+            method of something that can be pickled.
+        model: of all these cases.
+        workers: from `local_workers`, or a cluster.
+        stop: asked now and then; true ends the work when what has begun is done.
+    """
+    remaining = iter(items)
+    waiting: dict[Future[list[Row]], list[ItemT]] = {}
+    try:
+        while waiting or not stop():
+            while len(waiting) < AHEAD * workers.count and not stop():
+                chunk = list(islice(remaining, CASES_AT_A_TIME[model]))
+                if not chunk:
+                    break
+                waiting[workers.pool.submit(run_chunk, make, chunk)] = chunk
+            if not waiting:
+                break
+            finished, _ = wait(waiting, timeout=0.5, return_when=FIRST_COMPLETED)
+            for future in finished:
+                yield waiting.pop(future), future.result()
+            if stop():
+                for future in [future for future in waiting if future.cancel()]:
+                    del waiting[future]
+    finally:
+        for future in waiting:
+            future.cancel()
 
 
-def run_chunk(cases: Sequence[Case], shelf: "Shelf | None" = None) -> list[Row]:
-    """Run cases one after the other."""
-    shelf = shelf or _SHELF
-    return [_run_one(case, shelf) for case in cases]
+def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row]:
+    """Run the cases of some items one after the other."""
+    return [_run_one(make, item) for item in items]
 
 
 class Shelf:
@@ -166,40 +192,12 @@ class Shelf:
 _SHELF = Shelf()
 
 
-def _chunks(numbered: Sequence[tuple[int, Case]]) -> Iterator[tuple[list[int], list[Case]]]:
-    remaining = iter(numbered)
-    while chunk := list(islice(remaining, CASES_AT_A_TIME[numbered[0][1].solver.model])):
-        yield [number for number, _ in chunk], [case for _, case in chunk]
-
-
-def _spread(
-    pool: Executor,
-    jobs: int,
-    chunks: Iterator[tuple[list[int], list[Case]]],
-    work: Callable[[list[Case]], list[Row]],
-    stop: Callable[[], bool],
-) -> Iterator[tuple[list[int], list[Row]]]:
-    """Keep `jobs` workers busy without queueing up everything at once."""
-    waiting: dict[Future[list[Row]], list[int]] = {}
-    try:
-        while not stop():
-            for numbers, cases in islice(chunks, 2 * jobs - len(waiting)):
-                waiting[pool.submit(work, cases)] = numbers
-            if not waiting:
-                break
-            finished, _ = wait(waiting, timeout=0.5, return_when=FIRST_COMPLETED)
-            for future in finished:
-                yield waiting.pop(future), future.result()
-    finally:
-        for future in waiting:
-            future.cancel()
-
-
-def _run_one(case: Case, shelf: Shelf) -> Row:
+def _run_one(make: Callable[[ItemT], Case], item: ItemT) -> Row:
     began = time.perf_counter()
     try:
+        case = make(item)
         quiet = case.with_values({"output.fields_s": 0.0}) if case.output.fields_s > 0.0 else case
-        model = build_model(quiet, shelf.container_of(case))
+        model = build_model(quiet, _SHELF.container_of(case))
         recorder = Recorder(model, recovery_of(model))
         ending = simulate(model, recorder)
         rigid = case.solver.model == "rigid"
@@ -218,7 +216,7 @@ def _row_without_outcome(status: str, reason: str) -> Row:
     return {"status": status, "reason": reason, "wall_s": 0.0} | dict.fromkeys(SCALARS)
 
 
-def _die_with(parent: int) -> None:
+def _end_with_parent(parent: int) -> None:
     """End this worker when the process that started it is gone, however it went."""
 
     def watch() -> None:

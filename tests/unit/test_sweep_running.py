@@ -7,7 +7,8 @@ from fem.model import build_model
 from fem.recorder import Recorder
 from fem.recovery import recovery_of
 from fem.simulation import simulate
-from fem.sweep.running import SCALARS, run_cases
+from fem.sweep.running import run_cases
+from fem.sweep.table import SCALARS
 from fem.verdict import verdict_of
 
 SHORT = ["solver.duration_s=2", "output.fields_s=0"]

@@ -1,0 +1,74 @@
+"""`sweep`: many cases, from the file of a sweep to its table and maps."""
+
+import importlib
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from fem.case import CaseError
+from fem.progress import ScreenReporter
+from fem.run_folder import to_json
+from fem.sweep.file import load_sweep
+
+EXIT_CODES = {"completed": 0, "failed": 3, "interrupted": 4}
+
+
+def sweep(
+    sweep: str,
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/NAME.")] = None,
+    jobs: Annotated[
+        int | None, Parameter(name=("--jobs", "-j"), show_default=False, help="Cores; default: all.")
+    ] = None,
+    resume: Annotated[
+        bool, Parameter(negative=(), show_default=False, help="Go on with the rows that are there.")
+    ] = False,
+    force: Annotated[
+        bool,
+        Parameter(negative=(), show_default=False, help="Compute anew, over what is there; however many."),
+    ] = False,
+    as_json: Annotated[
+        bool, Parameter(name="--json", negative=(), show_default=False, help="Print sweep.json.")
+    ] = False,
+    quiet: Annotated[
+        bool, Parameter(name=("--quiet", "-q"), negative=(), show_default=False, help="No progress.")
+    ] = False,
+) -> int:
+    """Compute the cases of a sweep: where does the container stand?
+
+    Parameters
+    ----------
+    sweep:
+        A sweep file or the name of a shipped sweep (see `python -m fem list`).
+    """
+    if jobs is not None and jobs < 1:
+        raise CaseError(f"-j {jobs}: at least one core is needed")
+    asked = load_sweep(sweep)
+    folder = out if out is not None else Path("outputs") / asked.name
+    # The solver is loaded only now: bad input is answered before anything is compiled.
+    solver = importlib.import_module("fem.sweep.sweeping")
+    info = solver.run_sweep(
+        asked, folder, jobs=jobs, resume=resume, force=force, reporter=ScreenReporter(quiet=quiet)
+    )
+    print(to_json(info).rstrip() if as_json else page_of(json.loads(to_json(info)), folder))
+    return EXIT_CODES[info["status"]]
+
+
+def page_of(info: dict[str, Any], folder: Path) -> str:
+    """What a sweep found, for people."""
+    title = f": {info['title']}" if info["title"] else ""
+    lines = [f"{info['sweep']}{title}", f"  {info['rows']} of {info['cells']} cells, {info['status']}"]
+    for outcome, count in info["outcomes"].items():
+        lines.append(f"  {outcome:12} {count:>8}  {100.0 * count / max(info['rows'], 1):5.1f} %")
+    if info["unsure"] is not None:
+        lines.append(
+            f"  {'unsure':12} {info['unsure']:>8}  {100.0 * info['unsure'] / max(info['rows'], 1):5.1f} %  "
+            f"of {info['perturbed']} cells perturbed"
+        )
+    lines.append(f"  {folder}: table.csv, sweep.json" + "".join(f", {name}" for name in info["maps"]))
+    if info["status"] == "interrupted":
+        lines.append("  --resume goes on from here")
+    return "\n".join(lines)

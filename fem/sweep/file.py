@@ -1,0 +1,255 @@
+"""Read a sweep file: base case, axes, derived keys; every reason why it cannot be used, a line each.
+
+The file is TOML:
+
+    case = "seed_stack"                    # a shipped case, or a file in the folder of the sweep file
+    [set]                                  # keys changed in the base case
+    [axes]                                 # one to four dotted keys: a list, or { from, to, count, scale }
+    [derived]                              # keys that follow, as expressions of others
+    [perturbation]                         # how sure is a cell: see `perturbation`
+    [threshold]                            # where the outcome changes along one axis: see `threshold`
+"""
+
+from collections.abc import Mapping
+from itertools import islice, product
+from pathlib import Path
+from typing import Any
+
+from pydantic import Field
+
+from fem.case import Case, load_case
+from fem.case_files import DEFAULT_CASE, Origin, find_case, parse_case, shipped_cases
+from fem.case_problem import leaves_the_folder
+from fem.case_reading import CaseError, did_you_mean, problem_lines, read_table
+from fem.case_tables import Table
+from fem.sweep.axes import NO_AXIS, Axis, AxisError, field_of, read_axis
+from fem.sweep.expressions import Expression, ExpressionError, parse_expression
+from fem.sweep.perturbation import Perturbation
+from fem.sweep.plan import Derived, Sweep, in_order, value_in
+from fem.sweep.shipped import SHIPPED_SWEEPS, shipped_sweep_text
+from fem.sweep.threshold import Threshold
+
+MOST_AXES = 4
+#: cells that are built to see whether the axes make cases at all
+TRIED = 64
+
+
+class SweepHeading(Table):
+    """The keys of a sweep file that stand before its first table."""
+
+    case: str = Field(default=DEFAULT_CASE, description="a shipped case, or a file beside the sweep file")
+    title: str = Field(default="", max_length=500, description="for people")
+
+
+SUBTABLES = ("set", "axes", "derived", "perturbation", "threshold")
+
+
+def load_sweep(name_or_path: str | Path) -> Sweep:
+    """Read a sweep file, or a shipped sweep.
+
+    Raises:
+        CaseError: with one line for each reason why it cannot be used.
+    """
+    origin = _find(str(name_or_path))
+    data = parse_case(origin)
+    try:
+        return _read(data, origin)
+    except CaseError as error:
+        raise CaseError("\n".join(f"{origin.place}: {line}" for line in str(error).splitlines())) from None
+
+
+def _find(name: str) -> Origin:
+    if name in SHIPPED_SWEEPS and not Path(name).is_file():
+        return Origin(name=name, place=name, text=shipped_sweep_text(name))
+    if not Path(name).is_file():
+        near = did_you_mean(Path(name).stem, SHIPPED_SWEEPS)
+        raise CaseError(
+            f"no sweep file {name!r} and no shipped sweep of that name{'; ' + near if near else ''} "
+            f"(shipped: {', '.join(SHIPPED_SWEEPS)})"
+        )
+    return find_case(name)
+
+
+def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
+    heading = _heading({key: value for key, value in data.items() if not isinstance(value, dict)})
+    tables = {key: value for key, value in data.items() if isinstance(value, dict)}
+    for name in tables:
+        if name not in SUBTABLES:
+            near = did_you_mean(name, SUBTABLES)
+            raise CaseError(
+                f"[{name}] unknown table{'; ' + near if near else ''} (known: {', '.join(SUBTABLES)}); "
+                'dotted keys stand in quotes, such as "contact.mu_static"'
+            )
+    base = _base(heading.case, _flat("set", tables.get("set", {})), origin)
+    axes = _axes(tables.get("axes", {}))
+    derived = _derived(tables.get("derived", {}), base, axes)
+    sweep = Sweep(
+        name=origin.name,
+        text=origin.text,
+        title=heading.title,
+        base=base,
+        axes=axes,
+        derived=derived,
+        perturbation=_table("perturbation", Perturbation, tables.get("perturbation", {})),
+        threshold=_threshold(tables, axes),
+    )
+    _try_cells(sweep)
+    return sweep
+
+
+def _heading(given: Mapping[str, Any]) -> SweepHeading:
+    wrong = [key for key in given if key in SUBTABLES]
+    if wrong:
+        raise CaseError(f"{wrong[0]} must be a table; write [{wrong[0]}] above its keys")
+    return _table("", SweepHeading, given)
+
+
+def _table(name: str, model: type[Any], content: Mapping[str, Any]) -> Any:
+    given, _, problems = read_table(name, model, content)
+    if problems:
+        raise CaseError("\n".join(problem_lines(problems)))
+    return model.model_validate(given)
+
+
+def _flat(name: str, content: Mapping[str, Any]) -> dict[str, Any]:
+    """Dotted keys, whether they were written in quotes or, as TOML would have it, as tables in tables."""
+    flat: dict[str, Any] = {}
+    for key, value in content.items():
+        if isinstance(value, dict) and not {"from", "to", "count", "scale"} & value.keys():
+            inner = {f"{key}.{name}": one for name, one in value.items()}
+        else:
+            inner = {key: value}
+        for dotted, one in inner.items():
+            if dotted in flat:
+                raise CaseError(f"[{name}] {dotted} is given twice")
+            flat[dotted] = one
+    return flat
+
+
+def _base(name: str, values: Mapping[str, Any], origin: Origin) -> Case:
+    """The base case; a file is looked for beside the sweep file, and wins over a shipped case."""
+    problem = leaves_the_folder("case", name)
+    path = origin.folder / name
+    if problem is not None:
+        raise CaseError(f"{problem.key} {problem.reason}")
+    if path.is_file() and not path.resolve().is_relative_to(origin.folder.resolve()):
+        raise CaseError(f"case {name!r} leads out of the folder of the sweep file, to {path.resolve()}")
+    if not path.is_file() and name not in shipped_cases():
+        near = did_you_mean(name, shipped_cases())
+        raise CaseError(
+            f"case {name!r} is no file in {origin.folder.resolve()} and no shipped case"
+            f"{'; ' + near if near else ''} (shipped: {', '.join(shipped_cases())})"
+        )
+    base = load_case(path if path.is_file() else name)
+    return base.with_values(values) if values else base
+
+
+def _axes(content: Mapping[str, Any]) -> tuple[Axis, ...]:
+    given = _flat("axes", content)
+    if not 1 <= len(given) <= MOST_AXES:
+        example = '"contact.mu_static" = [0.2, 0.3, 0.4]'
+        raise CaseError(f"[axes] must hold one to {MOST_AXES} keys, got {len(given)}; for instance {example}")
+    axes, problems = [], []
+    for key, value in given.items():
+        try:
+            axes.append(read_axis(key, value))
+        except AxisError as error:
+            problems.append(f"[axes] {key!r} {error}")
+    if problems:
+        raise CaseError("\n".join(problems))
+    return tuple(axes)
+
+
+def _derived(content: Mapping[str, Any], base: Case, axes: tuple[Axis, ...]) -> tuple[Derived, ...]:
+    given = _flat("derived", content)
+    axis_keys = {axis.key: axis for axis in axes}
+    expressions: dict[str, Expression] = {}
+    for key, text in given.items():
+        place = f"[derived] {key!r}"
+        try:
+            field_of(key)
+            if key in axis_keys:
+                raise AxisError("is an axis already; it cannot follow another as well")
+            if key in NO_AXIS:
+                raise AxisError(f"cannot follow anything: {NO_AXIS[key]}")
+            if not isinstance(text, str):
+                raise AxisError(
+                    f"must be an expression in quotes, got {text!r}; a fixed value goes under [set]"
+                )
+            expressions[key] = parse_expression(text)
+        except (AxisError, ExpressionError) as error:
+            raise CaseError(f"{place} {error}") from None
+    for key, expression in expressions.items():
+        for name in sorted(expression.keys):
+            _must_have_a_value(f"[derived] {key!r}", name, base, axis_keys, expressions)
+    return tuple(Derived(key=key, expression=expressions[key]) for key in in_order(expressions))
+
+
+def _must_have_a_value(
+    place: str, name: str, base: Case, axes: Mapping[str, Axis], derived: Mapping[str, Expression]
+) -> None:
+    try:
+        field_of(name)
+    except AxisError as error:
+        raise CaseError(f"{place} refers to {name!r}, which {error}") from None
+    if name in derived:
+        return
+    if name in axes:
+        if any(isinstance(value, str | bool) for value in axes[name].values):
+            raise CaseError(f"{place} refers to {name!r}, whose values are no numbers")
+        return
+    if value_in(base, name, {axis.key: axis.values[0] for axis in axes.values()}) is None:
+        raise CaseError(
+            f"{place} refers to {name!r}, which has no number in the base case {base.name!r}; "
+            "set it under [set], or refer to a key that is given there"
+        )
+
+
+def _threshold(tables: Mapping[str, Any], axes: tuple[Axis, ...]) -> Threshold | None:
+    if "threshold" not in tables:
+        return None
+    threshold: Threshold = _table("threshold", Threshold, tables["threshold"])
+    known = {axis.key: axis for axis in axes}
+    if threshold.axis not in known:
+        near = did_you_mean(threshold.axis, known)
+        raise CaseError(
+            f"[threshold] axis {threshold.axis!r} is none of the axes{'; ' + near if near else ''} "
+            f"(axes: {', '.join(known)})"
+        )
+    if not known[threshold.axis].is_numeric:
+        raise CaseError(f"[threshold] axis {threshold.axis!r} needs two or more numbers that rise")
+    return threshold
+
+
+def _try_cells(sweep: Sweep) -> None:
+    """Make the cases at the corners of the grid, and those of every listed value, and refuse what they refuse.
+
+    Raises:
+        CaseError: one of them cannot be used, or an axis plays no part in any.
+    """
+    ends = [axis.values if axis.scale == "list" else (axis.values[0], axis.values[-1]) for axis in sweep.axes]
+    idle = [True] * len(sweep.axes)
+    for corner in islice(product(*ends), TRIED):
+        point = {axis.key: value for axis, value in zip(sweep.axes, corner, strict=True)}
+        try:
+            case = sweep.base.with_values(sweep.values(point))
+        except CaseError as error:
+            where = ", ".join(f"{key} = {value}" for key, value in point.items())
+            raise CaseError(f"{error}\n[axes] make this cell: {where}") from None
+        for k, axis in enumerate(sweep.axes):
+            idle[k] = idle[k] and _is_idle(case, axis.key)
+    for axis, unused in zip(sweep.axes, idle, strict=True):
+        if unused:
+            raise CaseError(
+                f"[axes] {axis.key!r} plays no part in this case, whose options are others; "
+                "choose the option it belongs to under [set], or leave the axis out"
+            )
+
+
+def _is_idle(case: Case, key: str) -> bool:
+    table, dot, name = key.rpartition(".")
+    if not dot:
+        return False
+    if table == "solver" and name == "elastic_modes":
+        return case.solver.model != "reduced"
+    return name in getattr(case, table).idle_keys()

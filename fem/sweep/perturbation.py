@@ -1,0 +1,92 @@
+"""How sure a cell is: the same cell again with motion, friction and contact changed a little.
+
+Each member changes one thing: the amplitude of the floor by some per cent up and down, both coefficients of
+friction up and down, the phase of a harmonic floor to and fro, the damping ratio of the contact to each of the
+values given. A cell is unsure if a member stands where the cell overturns, or overturns where it stands, or
+fails.
+"""
+
+import math
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from fem.case import Case
+from fem.case_quantities import Quantity
+from fem.case_tables import Table
+
+SHARE = Quantity(unit="", least=0.0, most=0.5, advice="0.02 is two per cent")
+FRICTION_STEP = Quantity(unit="", least=0.0, most=1.0, advice="0.02 is usual")
+PHASE_STEP = Quantity(unit="rad", least=0.0, most=math.pi, advice="one turn is 2 pi")
+CLOSE = Quantity(unit="", least=0.0, advice="rotation over the slenderness angle")
+TURN = 2.0 * math.pi
+
+
+class Perturbation(Table):
+    """Which cells are perturbed, and how much."""
+
+    cells: Literal["auto", "near", "all", "none"] = Field(
+        default="auto",
+        description='"near" a change of outcome | "all" | "none" | "auto": near, none for the full model',
+    )
+    amplitude_share: Annotated[float, SHARE] = Field(
+        default=0.02, description="of the floor's amplitude, up and down"
+    )
+    mu: Annotated[float, FRICTION_STEP] = Field(
+        default=0.02, description="added to and taken from both coefficients of friction"
+    )
+    phase_rad: Annotated[float, PHASE_STEP] = Field(
+        default=0.3142, description="added to and taken from the phase; a twentieth of a turn"
+    )
+    contact_damping_ratios: list[float] = Field(
+        default=[0.5, 1.0, 2.0], description="tried in place of the cell's own"
+    )
+    close: Annotated[float, CLOSE] = Field(
+        default=0.5, description="rotation ratio above which a standing cell counts as near"
+    )
+
+    def members(self, case: Case) -> list[dict[str, Any]]:
+        """The keys that each member of a cell's band sets."""
+        return list(self._members(case))
+
+    def _members(self, case: Case) -> Iterator[dict[str, Any]]:
+        for factor in (1.0 - self.amplitude_share, 1.0 + self.amplitude_share):
+            scaled = _scaled_motion(case, factor)
+            if scaled and factor != 1.0:
+                yield scaled
+        friction = case.contact
+        for step in (-self.mu, self.mu):
+            moved = {
+                "contact.mu_static": _rounded(max(0.0, friction.mu_static + step)),
+                "contact.mu_kinetic": _rounded(max(0.0, friction.mu_kinetic + step)),
+            }
+            if step != 0.0:
+                yield moved
+        if case.motion.kind == "harmonic" and self.phase_rad > 0.0:
+            for step in (-self.phase_rad, self.phase_rad):
+                yield {"motion.phase_rad": math.remainder(case.motion.phase_rad + step, TURN)}
+        for ratio in self.contact_damping_ratios:
+            if ratio != friction.damping_ratio:
+                yield {"contact.damping_ratio": ratio}
+
+
+def _scaled_motion(case: Case, factor: float) -> dict[str, Any]:
+    """The floor's motion times a factor, at the same frequency; nothing for a floor at rest."""
+    motion = case.motion
+    match motion.kind:
+        case "none":
+            return {}
+        case "table":
+            return {"motion.scale": factor * motion.scale}
+    given = {
+        f"motion.{key}": factor * value
+        for key in ("amplitude_m", "peak_acceleration_m_s2")
+        if (value := getattr(motion, key)) is not None
+    }
+    return given
+
+
+def _rounded(value: float) -> float:
+    """Without the noise of the last digits: 0.4 + 0.02 is 0.42."""
+    return float(f"{value:.15g}")

@@ -1,0 +1,93 @@
+"""Where, along one axis, does the outcome change: a scan, then each change closed in on by itself.
+
+Safe islands lie above the first amplitude that overturns, so there is no one threshold to bisect for. The values of
+the axis are the scan; between two neighbours of different outcome a few values are tried, and the same is done
+between any two of these that differ, until the bracket is narrow enough. A change inside a bracket that shows at
+none of the values tried goes unnoticed: the step of the scan is the finest island that is sure to be seen.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+
+from fem.case_quantities import Quantity
+from fem.case_tables import Table
+
+RESOLUTION = Quantity(unit="", above=0.0, most=1.0, advice="0.01 is one per cent")
+
+
+class Threshold(Table):
+    """Along which axis changes of outcome are closed in on, and how far."""
+
+    axis: str = Field(description="the key of one of the axes", examples=["motion.peak_acceleration_m_s2"])
+    resolution: Annotated[float, RESOLUTION] = Field(
+        default=0.01, description="width of a bracket over the value, at which it is narrow enough"
+    )
+    inner: Annotated[int, Quantity(unit="", least=1, most=100)] = Field(
+        default=3, description="values tried within a bracket at a time"
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Change:
+    """A bracket within which the outcome changes."""
+
+    low: float
+    high: float
+    below: str  #: outcome at the lower end: standing | overturned | failed
+    above: str
+
+    @property
+    def value(self) -> float:
+        """The middle of the bracket."""
+        return 0.5 * (self.low + self.high)
+
+
+def refine_changes(
+    values: Sequence[float],
+    outcomes: Sequence[str],
+    judge: Callable[[Sequence[float]], Sequence[str]],
+    *,
+    resolution: float = 0.01,
+    inner: int = 3,
+) -> list[Change]:
+    """Close in on every change of outcome along an axis.
+
+    Args:
+        values: of the scan, rising.
+        outcomes: at these values.
+        judge: the outcomes at further values; called with those of all brackets at once.
+        resolution: width of a bracket over its larger end (in magnitude) at which it is left.
+        inner: values tried within a bracket at a time.
+
+    Returns:
+        The brackets by rising value; several where the outcome changes to and fro.
+    """
+    known = dict(zip(values, outcomes, strict=True))
+    while True:
+        wide = [change for change in changes_of(known) if _is_wide(change, resolution)]
+        if not wide:
+            return changes_of(known)
+        tried = [
+            float(value) for change in wide for value in np.linspace(change.low, change.high, inner + 2)[1:-1]
+        ]
+        known |= dict(zip(tried, judge(tried), strict=True))
+
+
+def changes_of(known: dict[float, str]) -> list[Change]:
+    """Neighbouring values of different outcome."""
+    values = sorted(known)
+    return [
+        Change(low=low, high=high, below=known[low], above=known[high])
+        for low, high in pairwise(values)
+        if known[low] != known[high]
+    ]
+
+
+def _is_wide(change: Change, resolution: float) -> bool:
+    size = max(abs(change.low), abs(change.high))
+    return change.high - change.low > resolution * size

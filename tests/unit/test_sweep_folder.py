@@ -1,0 +1,201 @@
+"""A sweep from its file to its table: the same whatever the jobs, cut off or not."""
+
+import json
+import os
+import random
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fem.__main__ import main
+from fem.case_reading import CaseError
+from fem.run_folder import FolderError
+from fem.sweep.file import load_sweep
+from fem.sweep.sweeping import check_size, run_sweep
+from fem.sweep.table import fields_of, open_sweep
+
+ROOT = Path(__file__).parents[2]
+SMALL = """
+case = "seed_stack_plateau"
+[set]
+"solver.model" = "rigid"
+"solver.duration_s" = 2.0
+[axes]
+"motion.angular_frequency_rad_s" = { from = 2.0, to = 6.0, count = 4 }
+"motion.peak_acceleration_m_s2" = { from = 2.0, to = 14.0, count = 5 }
+[derived]
+"contact.mu_kinetic" = "0.5 * contact.mu_static"
+"""
+
+
+@pytest.fixture
+def small(tmp_path):
+    path = tmp_path / "small.toml"
+    path.write_text(SMALL, encoding="utf-8")
+    return load_sweep(path)
+
+
+def rows_without_wall(folder, name="table.csv"):
+    """The fields of a table, but for the wall time."""
+    header, *rows = (fields_of(line) for line in (folder / name).read_text().splitlines())
+    wall = header.index("wall_s")
+    return [fields[:wall] + fields[wall + 1 :] for fields in (header, *rows)]
+
+
+def test_the_table_does_not_depend_on_the_jobs(small, tmp_path):
+    one = run_sweep(small, tmp_path / "one", jobs=1)
+    two = run_sweep(small, tmp_path / "two", jobs=2)
+    assert one["status"] == two["status"] == "completed"
+    assert rows_without_wall(tmp_path / "one") == rows_without_wall(tmp_path / "two")
+    assert one["outcomes"] == two["outcomes"]
+    assert {"overturned", "rest"} <= set(one["outcomes"])
+    assert not (tmp_path / "one" / "rows.csv").exists()
+
+
+def test_the_folder_opens_as_arrays(small, tmp_path):
+    info = run_sweep(small, tmp_path / "out")
+    table = open_sweep(tmp_path / "out")
+    assert table.shape == small.shape
+    assert table.info["sweep_hash"] == info["sweep_hash"]
+    grid = table.grid("motion.peak_acceleration_m_s2")
+    assert np.array_equal(grid[2], small.axes[1].values)
+    assert np.array_equal(table["contact.mu_kinetic"], np.full(20, 0.2))
+    fallen = table.outcome == "overturned"
+    assert fallen.sum() == info["outcomes"]["overturned"]
+    assert np.all(np.isfinite(table["overturned_at_s"]) == fallen)
+    assert table["unsure"].sum() == info["unsure"]
+
+
+def test_a_finished_sweep_is_left_alone_and_another_is_refused(small, tmp_path):
+    folder = tmp_path / "out"
+    run_sweep(small, folder)
+    before = (folder / "table.csv").stat().st_mtime_ns
+    assert run_sweep(small, folder)["status"] == "completed"
+    assert (folder / "table.csv").stat().st_mtime_ns == before
+    path = tmp_path / "other.toml"
+    path.write_text(SMALL.replace("count = 5", "count = 3"), encoding="utf-8")
+    with pytest.raises(FolderError, match=r"another sweep; .*--out DIR.*--force"):
+        run_sweep(load_sweep(path), folder)
+    assert run_sweep(load_sweep(path), folder, force=True)["cells"] == 12
+    (tmp_path / "letters").mkdir()
+    (tmp_path / "letters" / "mine.txt").write_text("dear")
+    with pytest.raises(FolderError, match="holds no sweep"):
+        run_sweep(small, tmp_path / "letters")
+
+
+def test_another_band_keeps_the_rows(small, tmp_path):
+    folder = tmp_path / "out"
+    run_sweep(small, folder)
+    rows, walls = rows_without_wall(folder), open_sweep(folder)["wall_s"]
+    path = tmp_path / "small.toml"
+    path.write_text(SMALL + '[perturbation]\ncells = "none"\n', encoding="utf-8")
+    again = run_sweep(load_sweep(path), folder)
+    assert (again["unsure"], again["perturbed"]) == (None, 0)
+    kept = rows_without_wall(folder)
+    last = kept[0].index("perturbed")
+    assert [row[:last] for row in kept] == [row[:last] for row in rows]
+    # the wall times are the first computation's: nothing was computed again
+    assert np.array_equal(open_sweep(folder)["wall_s"], walls)
+
+
+def kill_in_the_middle(arguments, folder, pause):
+    """Start a sweep, and kill it with -9 some time after its first row."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "fem", "sweep", *arguments],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        cwd=folder,
+        stderr=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+    )
+    deadline = time.monotonic() + 60.0
+    log = folder / "outputs" / "small" / "rows.csv"
+    size = log.stat().st_size if log.exists() else 0
+    while process.poll() is None and time.monotonic() < deadline:
+        if log.exists() and log.stat().st_size > size:
+            break
+        time.sleep(0.005)
+    time.sleep(pause)
+    process.kill()
+    process.wait()
+
+
+@pytest.mark.parametrize("kills", [2, pytest.param(20, marks=pytest.mark.slow)])
+def test_a_sweep_killed_and_resumed_gives_the_same_table(tmp_path, monkeypatch, capsys, kills):
+    monkeypatch.chdir(tmp_path)
+    counts = (
+        ("count = 4", "count = 12"),
+        ("count = 5", "count = 15") if kills > 2 else ("count = 5", "count = 6"),
+    )
+    text = SMALL
+    for before, after in counts:
+        text = text.replace(before, after)
+    (tmp_path / "small.toml").write_text(text, encoding="utf-8")
+    choice = random.Random(0)
+    for k in range(kills):
+        kill_in_the_middle(["small.toml", *(["--resume"] if k else [])], tmp_path, choice.uniform(0.0, 0.3))
+    log = tmp_path / "outputs" / "small" / "rows.csv"
+    if log.exists():  # half a row, as a full disk would leave it
+        with log.open("ab") as stream:
+            stream.write(b"7,2.0,")
+    assert main(["sweep", "small.toml", "--resume", "-q"]) == 0
+    assert main(["sweep", "small.toml", "-q", "--out", "alone"]) == 0
+    assert rows_without_wall(tmp_path / "outputs" / "small") == rows_without_wall(tmp_path / "alone")
+    capsys.readouterr()
+
+
+def test_an_unfinished_sweep_is_not_begun_anew_silently(small, tmp_path):
+    folder = tmp_path / "out"
+    run_sweep(small, folder)
+    table = (folder / "table.csv").read_text().splitlines()
+    header = (folder / "table.csv").read_text().splitlines()[0].partition(",perturbed")[0]
+    kept = [",".join(line.split(",")[: header.count(",") + 1]) for line in table[1:8]]
+    (folder / "rows.csv").write_text("\n".join([header, *kept]) + "\n")
+    (folder / "table.csv").unlink()
+    info = json.loads((folder / "sweep.json").read_text()) | {"status": "running"}
+    (folder / "sweep.json").write_text(json.dumps(info))
+    with pytest.raises(FolderError, match="unfinished, with 7 of 20 rows; --resume"):
+        run_sweep(small, folder)
+    assert np.isfinite(open_sweep(folder)["wall_s"]).sum() == 7
+    assert run_sweep(small, folder, resume=True)["rows"] == 20
+    assert (folder / "table.csv").read_text().splitlines()[1:8] == table[1:8]  # wall times included
+
+
+def test_a_failed_cell_has_a_reason_and_never_stands(tmp_path):
+    # In the middle of the range the derived friction would be above the static one; its ends are fine.
+    path = tmp_path / "bad.toml"
+    path.write_text(
+        SMALL.replace(
+            '"0.5 * contact.mu_static"', '"0.5 - 0.2 * abs(motion.angular_frequency_rad_s - 4)"'
+        ).replace("count = 4", "count = 5"),
+        encoding="utf-8",
+    )
+    run_sweep(load_sweep(path), tmp_path / "out")
+    table = open_sweep(tmp_path / "out")
+    middle = table["motion.angular_frequency_rad_s"] == 4.0
+    assert np.array_equal(table.outcome == "failed", middle)
+    assert np.all(table["outcome"][middle] == "") and np.all(table["unsure"][middle] == 1.0)
+    assert all("mu_kinetic must be at most mu_static" in reason for reason in table["reason"][middle])
+
+
+def test_a_million_cells_need_force(tmp_path):
+    path = tmp_path / "huge.toml"
+    path.write_text(SMALL.replace("count = 4", "count = 2000").replace("count = 5", "count = 2000"))
+    with pytest.raises(CaseError) as refused:
+        check_size(load_sweep(path), 2, False)
+    assert all(words in str(refused.value) for words in ("4000000 cells", " on 2 cores", "GB", "--force"))
+    check_size(load_sweep(path), 2, True)
+
+
+def test_the_command_answers_bad_input_with_2(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["sweep", "nowhere.toml"]) == 2
+    assert "no sweep file" in capsys.readouterr().err
+    (tmp_path / "a.toml").write_text(SMALL.replace("mu_kinetic", "mu"))
+    assert main(["sweep", "a.toml"]) == 2
+    assert "a.toml: [derived]" in capsys.readouterr().err
+    assert main(["sweep", "outcome_map", "-j", "0"]) == 2
+    assert not (tmp_path / "outputs").exists()
