@@ -8,7 +8,7 @@ replaced in the same way, names it: the series is valid at every moment.
 """
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
@@ -28,6 +28,10 @@ SERIES = "run.pvd"
 # Up to so many frames, the list of frames is rewritten with each of them; of longer series, with each
 # thousandth more, for rewriting it ever again would grow as the square of their number.
 PROMPT_FRAMES = 1000
+
+
+class FieldError(ValueError):
+    """A frame cannot be read; the message names its file."""
 
 
 class FieldWriter:
@@ -173,21 +177,43 @@ class Fields:
     def __len__(self) -> int:
         return len(self.files)
 
+    def __iter__(self) -> Iterator[Frame]:
+        """Frames in order, each read when it is its turn."""
+        return (self.frame(index) for index in range(len(self)))
+
+    def nearest(self, time: float) -> int:
+        """Index of the frame nearest to a time [s]; of two as near, the earlier."""
+        return int(np.argmin(np.abs(self.times - time)))
+
     def frame(self, index: int) -> Frame:
-        """Read a frame."""
-        mesh = meshio.read(self.files[index], file_format="vtu")
-        (block,), data = mesh.cells, mesh.point_data
-        return Frame(
-            time=float(self.times[index]),
-            points=mesh.points[:, :2],
-            cells=block.data,
-            region=mesh.cell_data["region"][0],
-            displacement=data["displacement_m"][:, :2],
-            velocity=data["velocity_m_s"][:, :2],
-            von_mises=data["von_mises_Pa"],
-            contact_pressure=data["contact_pressure_Pa"],
-            floor_displacement=float(data["floor_displacement_m"][0, 0]),
-        )
+        """Read a frame.
+
+        Raises:
+            FieldError: its file is missing or damaged.
+        """
+        path = self.files[index]
+        if not path.is_file():
+            raise FieldError(f"{path}: this frame is missing; run the case again with --force")
+        try:
+            mesh = meshio.vtu.read(path)
+            (block,), data = mesh.cells, mesh.point_data
+            return Frame(
+                time=float(self.times[index]),
+                points=mesh.points[:, :2],
+                cells=block.data,
+                region=mesh.cell_data["region"][0],
+                displacement=data["displacement_m"][:, :2],
+                velocity=data["velocity_m_s"][:, :2],
+                von_mises=data["von_mises_Pa"],
+                contact_pressure=data["contact_pressure_Pa"],
+                floor_displacement=float(data["floor_displacement_m"][0, 0]),
+            )
+        # A parser of broken files fails in every way there is.
+        except (Exception, SystemExit) as error:
+            raise FieldError(
+                f"{path}: this frame is damaged ({type(error).__name__}: {error}); "
+                "run the case again with --force"
+            ) from None
 
 
 def open_fields(folder: Path) -> Fields:

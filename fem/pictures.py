@@ -1,0 +1,30 @@
+"""Fields of a run as grids and pictures, through pyvista."""
+
+import numpy as np
+import pyvista
+
+from fem.fields import Frame
+
+#: VTK's cells by their number of nodes
+CELL_TYPES = {4: pyvista.CellType.QUAD, 9: pyvista.CellType.BIQUADRATIC_QUAD}
+
+
+def grid_of(frame: Frame) -> pyvista.UnstructuredGrid:
+    """A frame as a grid in the x-y plane, where the container stood, with its fields by their names in the files.
+
+    `grid.warp_by_vector("displacement_m")` shows it where it is.
+    """
+    count, size = frame.cells.shape
+    cells = np.column_stack([np.full(count, size), frame.cells]).ravel()
+    grid = pyvista.UnstructuredGrid(cells, np.full(count, CELL_TYPES[size]), _spatial(frame.points))
+    grid.point_data["displacement_m"] = _spatial(frame.displacement)
+    grid.point_data["velocity_m_s"] = _spatial(frame.velocity)
+    grid.point_data["von_mises_Pa"] = frame.von_mises
+    grid.point_data["contact_pressure_Pa"] = frame.contact_pressure
+    grid.cell_data["region"] = frame.region
+    return grid
+
+
+def _spatial(vectors: np.ndarray) -> np.ndarray:
+    """(x, z) as (x, z, 0)."""
+    return np.column_stack([vectors, np.zeros(len(vectors))])
