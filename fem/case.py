@@ -208,13 +208,14 @@ def to_toml(case: Case) -> str:
 def case_hash(case: Case) -> str:
     """SHA-256 of the resolved case without its title, and of the files that it reads.
 
-    Cases that differ only in a comment, in what is written out, or in the keys of an option that is
-    not chosen have the same hash.
+    Cases that differ only in a comment, in what is written out, in the keys of an option that is not
+    chosen, or in whether figures are drawn have the same hash.
 
     Raises:
         CaseError: if a mesh or motion file cannot be read.
     """
     document = {key: value for key, value in case.resolved().items() if key != "title"}
+    document["output"] = {key: value for key, value in document["output"].items() if key != "figures"}
     digest = hashlib.sha256(toml_document(document).encode())
     for key, path in sorted(case.data_files.items()):
         try:

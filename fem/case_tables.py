@@ -349,6 +349,7 @@ class Output(Table):
     fields_s: Annotated[float, q.FRAME_INTERVAL] = Field(
         default=0.05, description="interval of the fields for ParaView; 0: none"
     )
+    figures: bool = Field(default=True, description="draw the figures of a run, as SVG")
     stop_when_overturned: bool = Field(
         default=True, description="end the run when the container lies on its side"
     )

@@ -22,9 +22,11 @@ from contact.event_driven import EventError
 from fem.band import band_of, wants_band
 from fem.case import Case, case_hash, to_toml
 from fem.fields import FieldWriter
+from fem.figures import write_figures
 from fem.history import History, HistoryWriter, add_analytic_rotation, read_history
 from fem.joint_demands import joint_demands
 from fem.model import Model, build_model
+from fem.opening import open_run
 from fem.progress import Reporter, SilentReporter
 from fem.recorder import Recorder
 from fem.recovery import Frame, recovery_of
@@ -90,6 +92,8 @@ def run_case(
             added = add_checks(result, model, place, options, reporter=reporter, stop=stop)
             if added:
                 store(result, case, place)
+            if added or not place.figures.is_dir():
+                draw(case, place, reporter)
             return RunResult(status=str(result["status"]), result=result, history=history)
         copy_data_files(case, place)
         result = {
@@ -109,6 +113,7 @@ def run_case(
             store(result, case, place)
             if not (once_more and add_checks(result, model, place, options, reporter=reporter, stop=stop)):
                 break
+        draw(case, place, reporter)
     return RunResult(status=ending.status, result=result, history=recorder.history())
 
 
@@ -119,6 +124,16 @@ def store(result: dict[str, Any], case: Case, place: RunFolder) -> None:
     place.write_summary(
         plain_summary(result, title=case.title or case.name, folder=place.path, warnings=result["warnings"])
     )
+
+
+def draw(case: Case, place: RunFolder, reporter: Reporter) -> None:
+    """Draw the figures of what the folder holds, where they are wanted; a run stands without them."""
+    if not case.output.figures:
+        return
+    try:
+        write_figures(open_run(place.path))
+    except Exception as error:  # a full disk, a history cut short, a fault of the drawing: never the run's
+        reporter.message(f"figures were not drawn ({type(error).__name__}: {error}); the results are whole")
 
 
 def add_checks(

@@ -97,7 +97,7 @@ def test_the_tour_works_as_written(tmp_path):
             assert json.loads(result.stdout)["properties"]["container"]
     results = tmp_path / "outputs" / "my-stack"
     table = README.partition("| file in ")[2].partition("\n\n")[0]
-    files = re.findall(r"`([a-z/]+\.(?:txt|json|csv|pvd|toml))`", table)
+    files = re.findall(r"`([a-z/]+\.(?:txt|json|csv|pvd|svg|toml))`", table)
     assert {"run.json", "fields/run.pvd", "resolved.toml"} <= set(files)
     assert [name for name in files if not (results / name).is_file()] == []
     assert json.loads((results / "run.json").read_text())["status"] == "completed"

@@ -51,7 +51,18 @@ def test_a_resolved_case_writes_out_every_default():
     assert set(resolved) == {"schema", "title", "gravity_m_s2", *TABLES}
     assert resolved["container"]["wall_density_kg_m3"] == 7850.0
     assert resolved["solver"]["spectral_radius"] == 0.5
-    assert resolved["output"] == {"history_s": 0.005, "fields_s": 0.05, "stop_when_overturned": True}
+    assert resolved["output"] == {
+        "history_s": 0.005,
+        "fields_s": 0.05,
+        "figures": True,
+        "stop_when_overturned": True,
+    }
+
+
+def test_whether_figures_are_drawn_makes_no_other_case():
+    plain, without = load_case("seed_box"), load_case("seed_box", ["output.figures=false"])
+    assert case_hash(without) == case_hash(plain)
+    assert case_hash(load_case("seed_box", ["output.history_s=0.01"])) != case_hash(plain)
 
 
 def test_a_resolved_case_leaves_out_what_plays_no_part():

@@ -21,7 +21,7 @@ from fem.progress import SilentReporter
 from fem.run import RunOptions, RunResult, interruptible, run_case
 from fem.run_folder import FolderError, read_result
 
-QUICK = ("solver.model=rigid", "output.fields_s=0")
+QUICK = ("solver.model=rigid", "output.fields_s=0", "output.figures=false")
 ANGLE = math.atan(1.1 / 4.0)  #: slenderness angle of the shipped stack [rad]
 
 

@@ -17,6 +17,7 @@ LONG = (
     "solver.duration_s=600",
     "solver.element_size_m=0.5",
     "output.history_s=0.001",
+    "output.figures=false",
 )
 
 

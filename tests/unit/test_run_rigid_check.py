@@ -95,7 +95,10 @@ class TestFreeRocking:
         assert left["peaks"][0]["run_rad"] == pytest.approx(-right["peaks"][0]["run_rad"], rel=1e-6)
 
     def test_the_table_holds_both_rotations_at_every_sample(self, tmp_path):
-        case = load_case("free_rocking", ["solver.model=rigid", "output.fields_s=0", "solver.duration_s=2"])
+        case = load_case(
+            "free_rocking",
+            ["solver.model=rigid", "output.fields_s=0", "output.figures=false", "solver.duration_s=2"],
+        )
         run_case(case, case_text=case.text, folder=tmp_path / "r", options=RunOptions(band=False))
         with (tmp_path / "r" / "rigid_check.csv").open() as stream:
             rows = list(csv.DictReader(stream))
@@ -228,7 +231,13 @@ class TestFairness:
     def test_the_summary_says_why_not(self, tmp_path):
         case = load_case(
             "free_rocking",
-            ["solver.model=rigid", "output.fields_s=0", "solver.duration_s=2", "support.kind=flat"],
+            [
+                "solver.model=rigid",
+                "output.fields_s=0",
+                "output.figures=false",
+                "solver.duration_s=2",
+                "support.kind=flat",
+            ],
         )
         run_case(case, case_text=case.text, folder=tmp_path / "r", options=RunOptions(band=False))
         page = " ".join((tmp_path / "r" / "summary.txt").read_text().split())

@@ -1,0 +1,397 @@
+"""The figures of a run: what the floor did, what the container did, and where the energy went.
+
+One function a figure; each takes an opened run and returns a matplotlib Figure, which stands in `figures/` as
+SVG and in the report. Titles say what one sees. Rotation in degrees, lengths in mm, forces in kN; x to the
+right, rotation > 0 toward +x, forces on the container.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from contact.tracking import ROCKING
+from fem.drawing import (
+    BLACK,
+    BLUE,
+    GAP,
+    GREEN,
+    GREY,
+    LEGEND_GAP,
+    ORANGE,
+    PURPLE,
+    STATE_COLOURS,
+    TIME,
+    VERMILLION,
+    WIDTH,
+    draw_curve,
+    draw_limits,
+    draw_states,
+    head,
+    house_style,
+    keep_visible,
+    kept_samples,
+    legend_above,
+    number,
+    panels,
+    svg_of,
+    time_panels,
+    zero_line,
+)
+from fem.figures_checks import band_figure, rigid_check_figure
+from fem.history import FloatArray, History
+from fem.opening import OpenedRun
+from fem.run_folder import write_atomically
+from fem.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT, SLIDING
+
+NEAR_LIMIT = 0.15  #: rotation ratio from which the slenderness angle is drawn to scale
+LARGE_FORCE = 2.5  #: times weight, or its static friction: beyond are impacts, not the motion between them
+OFF_SCALE = 1.3  #: forces beyond the scale by more than this are cut off and told
+MARKS = 300  #: of forces off the scale, side by side
+NAMES = 0.09  #: of a figure's width, for the names beside bars
+LEAST_MOTION = 1e-3  #: of the floor, on its axes [mm, m/s, m/s2]
+
+
+def figures_of(run: OpenedRun) -> dict[str, Figure]:
+    """Every figure that this run has, by name, in the order of reading.
+
+    Raises:
+        FolderError: the history is missing or damaged.
+    """
+    if len(run.history) < 2:
+        return {}
+    with house_style():
+        drawn = {name: draw(run) for name, draw in FIGURES.items()}
+    return {name: figure for name, figure in drawn.items() if figure is not None}
+
+
+def write_figures(run: OpenedRun) -> list[Path]:
+    """Draw every figure of a run into its folder `figures`, as SVG.
+
+    Raises:
+        FolderError: the history is missing or damaged.
+        OSError: the folder or a file cannot be written.
+    """
+    folder, paths = run.place.figures, []
+    for name, figure in figures_of(run).items():
+        folder.mkdir(parents=True, exist_ok=True)
+        paths.append(folder / f"{name}.svg")
+        write_atomically(paths[-1], svg_of(figure))
+    return paths
+
+
+def base_motion_figure(run: OpenedRun) -> Figure:
+    """Displacement, velocity and acceleration of the floor."""
+    history, static = run.history, run.result.get("static") or {}
+    displacement, acceleration = 1e3 * history["base_displacement_m"], history["base_acceleration_m_s2"]
+    figure, axes = time_panels((1.25, 1.25, 1.35), gaps=(GAP, LEGEND_GAP), header=1)
+    for panel, values, label, colour in (
+        (axes[0], displacement, "displacement [mm]", BLUE),
+        (axes[1], history["base_velocity_m_s"], "velocity [m/s]", GREEN),
+        (axes[2], acceleration, "acceleration [m/s²]", VERMILLION),
+    ):
+        zero_line(panel)
+        draw_curve(panel, history["time_s"], values, color=colour)
+        panel.set_ylabel(label)
+        keep_visible(panel, LEAST_MOTION)
+    peak, moved = float(np.abs(acceleration).max()), float(np.abs(displacement).max())
+    for limit, style, name in (
+        (static.get("uplift_acceleration_m_s2"), "--", "as a static load it tilts the container"),
+        (run.case.contact.mu_static * run.case.gravity_m_s2, ":", "slides it"),
+    ):
+        if limit and limit < 1.3 * peak:
+            draw_limits(axes[2], limit, f"{name} from {number(limit)} m/s²", color=BLACK, linestyle=style)
+    if axes[2].get_legend_handles_labels()[0]:
+        legend_above(axes[2])
+    still = peak == 0.0 and moved == 0.0
+    head(
+        figure,
+        "The floor stands still"
+        if still
+        else f"Motion of the floor: {number(moved)} mm and {number(peak)} m/s² at most",
+    )
+    return figure
+
+
+def rotation_figure(run: OpenedRun) -> Figure:
+    """Rotation with the slenderness angle marked, the rigid block's beside it where there is one."""
+    history, verdict, angle = run.history, _verdict(run), math.degrees(run.slenderness_angle)
+    rotation, check = np.degrees(history["rotation_rad"]), run.rigid_check
+    figure, axes = _panel_with_states(run, "rotation [degrees]", legend=True)
+    draw_curve(axes, history["time_s"], rotation, color=BLUE, label=f"{run.case.solver.model} model")
+    if check is not None:
+        block = np.degrees(check["analytic_rotation_rad"])
+        draw_curve(axes, check["time_s"], block, color=VERMILLION, linestyle="--", label="rigid block")
+    largest, rocking = float(np.abs(rotation).max()), ROCKING * angle
+    if largest >= NEAR_LIMIT * angle:
+        keep_visible(axes, 1.12 * angle)
+        draw_limits(axes, angle, f"slenderness angle ±{number(angle, 4)}°", color=BLACK, linestyle="-.")
+    else:
+        keep_visible(axes, 1.2 * rocking)
+        if largest < 10.0 * rocking:
+            draw_limits(
+                axes, rocking, f"counts as rocking, ±{number(rocking, 2)}°", color=GREY, linestyle=":"
+            )
+        axes.plot([], [], " ", label=f"slenderness angle ±{number(angle, 4)}°: far off the scale")
+    _mark_impact(axes, verdict)
+    legend_above(axes)
+    found = math.degrees(verdict.get("max_rotation_rad") or math.radians(largest))
+    _head(
+        run, figure, f"Rotation: {number(found)}° at most, {number(found / angle)} of the slenderness angle"
+    )
+    return figure
+
+
+def slip_figure(run: OpenedRun) -> Figure:
+    """Sliding of the loaded contact points over the floor."""
+    verdict, slip = _verdict(run), 1e3 * run.history["slip_m"]
+    limit = 1e3 * SLIDING * run.case.container.width_m
+    small = bool(np.abs(slip).max() < 10.0 * limit)
+    figure, axes = _panel_with_states(run, "slip [mm]", legend=small)
+    zero_line(axes)
+    draw_curve(axes, run.history["time_s"], slip, color=BLUE)
+    keep_visible(axes, 1.5 * limit)
+    if small:
+        draw_limits(axes, limit, f"counts as sliding, ±{number(limit, 2)} mm", color=GREY, linestyle=":")
+        legend_above(axes)
+    largest = 1e3 * (verdict.get("max_slip_m") or 0.0)
+    travel = 1e3 * (verdict.get("slip_travel_m") or 0.0)
+    _head(
+        run,
+        figure,
+        f"Slip: {number(largest)} mm at most, {number(slip[-1])} mm at the end, {number(travel)} mm travelled",
+    )
+    return figure
+
+
+def uplift_figure(run: OpenedRun) -> Figure:
+    """How high the lifted side of the base stands."""
+    verdict, uplift = _verdict(run), 1e3 * run.history["uplift_m"]
+    struck = verdict.get("first_impact_s") is not None
+    figure, axes = _panel_with_states(run, "uplift [mm]", legend=struck)
+    draw_curve(axes, run.history["time_s"], uplift, color=BLUE)
+    axes.set_ylim(0.0, max(1.08 * float(uplift.max()), run.case.container.width_m))
+    if struck:
+        _mark_impact(axes, verdict)
+        legend_above(axes)
+    impacts, largest = verdict.get("impacts"), 1e3 * (verdict.get("max_uplift_m") or 0.0)
+    count = "" if impacts is None else f", {impacts} impact{'' if impacts == 1 else 's'}"
+    title = (
+        f"Uplift of the base: {number(largest)} mm at most{count}"
+        if largest > 0.0
+        else "The base never opens"
+    )
+    _head(run, figure, title)
+    return figure
+
+
+def forces_figure(run: OpenedRun) -> Figure:
+    """Normal and shear force of the floor on the container."""
+    history, contact = run.history, run.case.contact
+    time, normal, shear = history["time_s"], 1e-3 * history["normal_force_N"], 1e-3 * history["shear_force_N"]
+    weight, states = 1e-3 * run.case.weight, _states(run)
+    figure, axes = time_panels((1.5, 1.7), states=states, gaps=(LEGEND_GAP,), header=3)
+    for panel, force, label, colour in (
+        (axes[0], normal, "normal force [kN]", BLUE),
+        (axes[1], shear, "shear force [kN]", VERMILLION),
+    ):
+        draw_curve(panel, time, force, color=colour, linewidth=0.8)
+        panel.set_ylabel(label)
+    axes[0].axhline(
+        weight, color=BLACK, linestyle="--", linewidth=0.9, label=f"weight, {number(weight, 4)} kN"
+    )
+    axes[0].set_ylim(bottom=0.0)
+    friction = {"static": (contact.mu_static, "--"), "kinetic": (contact.mu_kinetic, ":")}
+    for name, (mu, style) in friction.items():
+        label = f"{name} friction of the weight, ±{number(mu * weight)} kN"
+        draw_limits(axes[1], mu * weight, label, color=BLACK, linestyle=style)
+        if contact.mu_static == contact.mu_kinetic:
+            break
+    cut = [
+        _cut_off(axes[0], time, normal, LARGE_FORCE * weight),
+        _cut_off(axes[1], time, shear, LARGE_FORCE * contact.mu_static * weight),
+    ]
+    for panel in axes[:2]:
+        legend_above(panel)
+    draw_states(axes[-1], time, history.modes, states)
+    statement = (
+        f"marks at the rim: beyond the scale, up to {number(normal.max(), 4)} and {number(np.abs(shear).max(), 4)} kN, "
+        "when the contact's damper stops an impact"
+        if any(cut)
+        else ""
+    )
+    _head(run, figure, "Forces of the floor on the container", statement)
+    return figure
+
+
+def phase_portrait_figure(run: OpenedRun) -> Figure:
+    """Angular velocity over rotation, within the curve that a free rigid block returns from."""
+    angle, parameter = run.slenderness_angle, (run.result.get("static") or {}).get("frequency_parameter_1_s")
+    rotation, rate = run.history["rotation_rad"], run.history["angular_velocity_rad_s"]
+    figure, (axes,) = panels((4.0,), width=0.8 * WIDTH, header=2)
+    kept = kept_samples(rotation, rate)
+    axes.plot(np.degrees(rotation[kept]), np.degrees(rate[kept]), color=BLUE, linewidth=0.7)
+    axes.plot(*np.degrees([rotation[0], rate[0]]), "o", color=GREEN, label="start")
+    axes.plot(*np.degrees([rotation[-1], rate[-1]]), "s", color=VERMILLION, label="end")
+    if parameter and np.abs(rotation).max() >= NEAR_LIMIT * angle:
+        tilt = np.linspace(-angle, angle, 201)
+        bound = parameter * np.sqrt(2.0 * (1.0 - np.cos(angle - np.abs(tilt))))
+        outline = np.degrees([[*tilt, *tilt[::-1]], [*bound, *-bound[::-1]]])
+        axes.plot(*outline, "--", color=BLACK, linewidth=1.0, label="a free rigid block returns from within")
+    axes.margins(x=0.06)
+    least = 1.2 * ROCKING * math.degrees(angle)
+    axes.set_xlim(min(axes.get_xlim()[0], -least), max(axes.get_xlim()[1], least))
+    keep_visible(axes, least)
+    axes.set_xlabel("rotation [degrees]")
+    axes.set_ylabel("angular velocity [degrees/s]")
+    legend_above(axes)
+    _head(run, figure, "Phase portrait of the rotation")
+    return figure
+
+
+def energy_figure(run: OpenedRun) -> Figure:
+    """Stored energies and the imbalance over time; what went in and where it went, at the end."""
+    history, energy = run.history, run.result.get("energy") or {}
+    time, reference = history["time_s"], energy.get("reference_J")
+    figure, axes = panels((2.0, 0.9, 1.1), gaps=(LEGEND_GAP, 0.55), header=2)
+    stored, imbalance, budget = axes
+    # From the height of the mass centre of the container that stands: what its weight could still do.
+    centroid = float((run.result.get("static") or {}).get("centroid_m") or 0.0)
+    raised = history["potential_J"] - run.case.weight * centroid
+    for values, name, colour, style in (
+        (history["kinetic_J"], "kinetic", BLUE, "-"),
+        (raised, "gravity and contact springs", VERMILLION, "--"),
+        (history["strain_J"], "strain", GREEN, ":"),
+    ):
+        draw_curve(stored, time, 1e-3 * values, color=colour, linestyle=style, label=name)
+    if reference and raised.max() > NEAR_LIMIT * reference:
+        label = f"to overturn, {number(1e-3 * reference)} kJ"
+        stored.axhline(1e-3 * reference, color=BLACK, linestyle="-.", linewidth=0.9, label=label)
+    stored.set_ylabel("energy [kJ]")
+    legend_above(stored)
+    zero_line(imbalance)
+    draw_curve(imbalance, time, history["imbalance_J"], color=PURPLE, label=_imbalance_limits(energy))
+    imbalance.set_ylabel("imbalance [J]")
+    imbalance.set_xlabel(TIME)
+    legend_above(imbalance)
+    stored.sharex(imbalance)
+    stored.tick_params(labelbottom=False)
+    for panel in (stored, imbalance):
+        panel.set_gid(TIME)
+    box = budget.get_position()
+    budget.set_position((box.x0 + NAMES, box.y0, box.width - NAMES, box.height))
+    _draw_budget(budget, energy, history)
+    closure = energy.get("closure_error")
+    share = (
+        "" if closure is None else f": largest imbalance {number(closure, 2)} of what it takes to overturn"
+    )
+    _head(run, figure, f"Energy{share}")
+    return figure
+
+
+FIGURES: dict[str, Callable[[OpenedRun], Figure | None]] = {
+    "base_motion": base_motion_figure,
+    "rotation": rotation_figure,
+    "slip": slip_figure,
+    "uplift": uplift_figure,
+    "forces": forces_figure,
+    "phase_portrait": phase_portrait_figure,
+    "energy": energy_figure,
+    "rigid_check": rigid_check_figure,
+    "band": band_figure,
+}
+
+
+def _panel_with_states(run: OpenedRun, label: str, *, legend: bool) -> tuple[Figure, Axes]:
+    """One panel over time, with room for a legend above and the states of motion below."""
+    states = _states(run)
+    figure, (axes, below) = time_panels((2.3,), states=states, header=2 if legend else 1)
+    axes.set_ylabel(label)
+    draw_states(below, run.history["time_s"], run.history.modes, states)
+    return figure, axes
+
+
+def _states(run: OpenedRun) -> list[str]:
+    """States that the history passes through, in their order."""
+    seen = set(run.history.modes)
+    return [state for state in STATE_COLOURS if state in seen]
+
+
+def _verdict(run: OpenedRun) -> Mapping[str, Any]:
+    return run.result.get("verdict") or {}
+
+
+def _head(run: OpenedRun, figure: Figure, title: str, statement: str = "") -> None:
+    """Title and statement, with a word on a run that is not whole."""
+    whole = run.status in ("completed", "overturned")
+    head(figure, title if whole else f"{title} ({run.status})", statement)
+
+
+def _mark_impact(axes: Axes, verdict: Mapping[str, Any]) -> None:
+    """A line at the first impact, if there is one."""
+    impact = verdict.get("first_impact_s")
+    if impact is not None:
+        label = f"first impact, {impact:.3f} s"
+        axes.axvline(impact, color=GREY, linestyle=(0, (1, 2)), linewidth=1.0, label=label)
+
+
+def _cut_off(axes: Axes, time: FloatArray, force: FloatArray, large: float) -> bool:
+    """Keep the scale to what lies outside impacts, with a mark at the rim for each force beyond it."""
+    limit = max(large, 1.2 * float(np.quantile(np.abs(force), 0.9)))
+    if np.abs(force).max() <= OFF_SCALE * limit:
+        return False
+    axes.set_ylim(0.0 if axes.get_ylim()[0] == 0.0 else -limit, limit)
+    for sign, marker in ((1.0, "^"), (-1.0, "v")):
+        beyond = time[sign * force > limit]
+        # Marks as close as a thousandth of the figure would be one another's shadow.
+        _, apart = np.unique(np.round(beyond / (time[-1] - time[0]) * MARKS), return_index=True)
+        rim = np.full(len(apart), sign * limit)
+        axes.plot(beyond[apart], rim, marker, color=GREY, markersize=3, clip_on=False)
+    return True
+
+
+def _imbalance_limits(energy: Mapping[str, Any]) -> str:
+    """What the scheme lost or won, and what would fail the run."""
+    told, reference = "lost (> 0) or won by the time stepping", energy.get("reference_J")
+    if not reference:
+        return told
+    spent = sum(energy.get(key) or 0.0 for key in ("friction_J", "contact_damping_J", "material_damping_J"))
+    loss = max(LOSS_SHARE_LIMIT * spent, LOSS_LIMIT * reference)
+    return f"{told}; to lose {number(loss)} J or win {number(GAIN_LIMIT * reference, 2)} J would fail the run"
+
+
+def _draw_budget(axes: Axes, energy: Mapping[str, Any], history: History) -> None:
+    """Bars of what the floor put in and what took it."""
+    stored = sum(
+        float(history[key][-1] - history[key][0]) for key in ("kinetic_J", "strain_J", "potential_J")
+    )
+    bars = (
+        ("work of the floor", energy.get("base_work_J"), BLUE),
+        ("stored since the start", stored, GREY),
+        ("friction", energy.get("friction_J"), VERMILLION),
+        ("contact damping", energy.get("contact_damping_J"), GREEN),
+        ("material damping", energy.get("material_damping_J"), ORANGE),
+        ("imbalance", energy.get("numerical_J"), PURPLE),
+    )
+    known = [(name, 1e-3 * float(value), colour) for name, value, colour in bars if value is not None]
+    for row, (_, value, colour) in enumerate(known):
+        axes.barh(row, value, height=0.72, color=colour)
+        axes.annotate(
+            number(value),
+            (max(value, 0.0), row),
+            xytext=(3, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=8,
+        )
+    axes.axvline(0.0, color=GREY, linewidth=0.7)
+    axes.set_yticks(range(len(known)), [name for name, *_ in known], fontsize=7.5)
+    axes.tick_params(axis="y", length=0)
+    axes.invert_yaxis()
+    axes.set_xmargin(0.13)
+    axes.grid(visible=False, axis="y")
+    axes.set_xlabel("over the whole run [kJ]")
