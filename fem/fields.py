@@ -71,6 +71,7 @@ class FieldWriter:
         self._region = [region.astype(np.int32)]
         self._times = list(kept_times)
         self._listed = 0
+        self._synced = len(self._times)
         self._list_frames()
         kept = {frame_name(i) for i in range(len(self._times))}
         for old in folder.glob("frame_*.vtu"):
@@ -81,6 +82,13 @@ class FieldWriter:
     def times(self) -> tuple[float, ...]:
         """Times of the frames so far [s]: what a checkpoint needs to go on from here."""
         return tuple(self._times)
+
+    def sync(self) -> None:
+        """Bring the frames written since the last time to the disk."""
+        while self._synced < len(self._times):
+            with open(self.folder / frame_name(self._synced), "rb") as file:
+                os.fsync(file.fileno())
+            self._synced += 1
 
     def write(
         self,
@@ -147,8 +155,12 @@ class FieldWriter:
             f"  <Collection>\n{entries}  </Collection>\n</VTKFile>\n"
         )
         part = self.folder / f".{SERIES}.part"
-        part.write_text(text, encoding="utf-8")
-        os.replace(part, self.folder / SERIES)
+        try:
+            part.write_text(text, encoding="utf-8")
+            os.replace(part, self.folder / SERIES)
+        except BaseException:
+            part.unlink(missing_ok=True)
+            raise
         self._listed = len(self._times)
 
 

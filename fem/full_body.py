@@ -12,6 +12,7 @@ and acts in the turned frame, so that it does not brake the rocking itself.
 
 import math
 from collections import OrderedDict
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -205,6 +206,22 @@ class FullBody:
     def shift_velocity(self, state: State, velocity: float) -> None:
         """See `contact.body.shift_velocity`."""
         state.velocity[::2] -= velocity
+
+    def memory(self) -> dict[str, FloatArray]:
+        """What the last residual left behind for `complete`, by name; everything else follows from the state."""
+        return {
+            "turn": self._turn,
+            "internal": self._internal,
+            "damping_force": self._damping_force,
+            "strain_energy": np.array([self._strain_energy]),
+        }
+
+    def recall(self, memory: Mapping[str, FloatArray]) -> None:
+        """Take over the memory of another body of the same container."""
+        self._turn = memory["turn"]
+        self._internal = memory["internal"]
+        self._damping_force = memory["damping_force"]
+        self._strain_energy = float(memory["strain_energy"][0])
 
     def _best_fit(self, position: FloatArray) -> tuple[float, FloatArray]:
         """Mass-weighted best-fit rotation [rad] and mass centre [m]."""

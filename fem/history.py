@@ -8,6 +8,7 @@ with the rigid block (`fem.rigid_check`) has the block's rotation as its last co
 """
 
 import contextlib
+import hashlib
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -118,6 +119,7 @@ class HistoryWriter:
 
     def __init__(self, path: Path, *, position: int | None = None, joints: int = 0) -> None:
         self.path = path
+        self._digest = hashlib.sha256()
         if position is None:
             self._file = open(path, "wb", buffering=0)  # noqa: SIM115 (closed by `close`)
             self._position = 0
@@ -132,12 +134,22 @@ class HistoryWriter:
         self._file = open(path, "r+b", buffering=0)  # noqa: SIM115
         self._position = position
         self._file.truncate(position)
-        self._file.seek(position)
+        while self._file.tell() < position:
+            self._digest.update(self._file.read(min(position - self._file.tell(), 1 << 20)))
 
     @property
     def position(self) -> int:
         """Bytes of the whole lines written so far: what a checkpoint needs to go on from here."""
         return self._position
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of these bytes."""
+        return self._digest.hexdigest()
+
+    def sync(self) -> None:
+        """Bring what was written to the disk."""
+        os.fsync(self._file.fileno())
 
     def append(self, rows: FloatArray, modes: Sequence[str]) -> None:
         """Write samples: rows of numbers, shape (n, 16 + 3 joints), and their modes, length n."""
@@ -164,12 +176,13 @@ class HistoryWriter:
             done = 0
             while done < len(data):
                 done += self._file.write(data[done:])
-        except OSError:
+        except OSError as error:
             with contextlib.suppress(OSError):  # the first error is the one to tell
                 os.ftruncate(self._file.fileno(), self._position)
                 self._file.seek(self._position)
-            raise
+            raise OSError(error.errno, error.strerror, str(self.path)) from None
         self._position += len(data)
+        self._digest.update(data)
 
 
 def read_history(path: Path) -> History:

@@ -21,8 +21,8 @@ PLAIN_S = 5.0  #: between plain lines
 class Reporter(Protocol):
     """What a long computation tells of itself. All times are simulated seconds."""
 
-    def start(self, duration: float) -> None:
-        """The work begins; it will go to `duration` [s]."""
+    def start(self, duration: float, begun: float = 0.0) -> None:
+        """The work begins at `begun` [s], where it was cut off before; it will go to `duration` [s]."""
 
     def update(self, time: float, rotation_ratio: float, mode: str) -> None:
         """It has come to `time` [s]; cheap enough to be called at every sample."""
@@ -40,7 +40,7 @@ class Reporter(Protocol):
 class SilentReporter:
     """Says nothing: for sweeps, tests and library use."""
 
-    def start(self, duration: float) -> None:
+    def start(self, duration: float, begun: float = 0.0) -> None:
         """Nothing."""
 
     def update(self, time: float, rotation_ratio: float, mode: str) -> None:
@@ -76,15 +76,15 @@ class ScreenReporter:
         self._quiet = quiet
         self._now = now
         self._live: Live | None = None
-        self._duration = 0.0
+        self._duration = self._begun = 0.0
         self._began = self._due = 0.0
 
-    def start(self, duration: float) -> None:
-        """The work begins; it will go to `duration` [s]."""
+    def start(self, duration: float, begun: float = 0.0) -> None:
+        """The work begins at `begun` [s], where it was cut off before; it will go to `duration` [s]."""
         if self._quiet:
             return
         self.finish()
-        self._duration, self._began = duration, self._now()
+        self._duration, self._begun, self._began = duration, begun, self._now()
         if self._console.is_terminal:
             self._live = Live(console=self._console, auto_refresh=False, transient=True)
             self._live.start()
@@ -93,7 +93,8 @@ class ScreenReporter:
     def update(self, time: float, rotation_ratio: float, mode: str) -> None:
         """Show the line, if the last one is old enough."""
         elapsed = self._now() - self._began
-        self.tell(lambda: progress_line(time, self._duration, elapsed, rotation_ratio, mode))
+        begun = self._begun
+        self.tell(lambda: progress_line(time, self._duration, elapsed, rotation_ratio, mode, begun=begun))
 
     def tell(self, line: Callable[[], str]) -> None:
         """Show a line, if the last one is old enough."""
@@ -124,7 +125,9 @@ class ScreenReporter:
         return REDRAW_S if self._live is not None else PLAIN_S
 
 
-def progress_line(time: float, duration: float, elapsed: float, rotation_ratio: float, mode: str) -> str:
+def progress_line(
+    time: float, duration: float, elapsed: float, rotation_ratio: float, mode: str, *, begun: float = 0.0
+) -> str:
     """The line itself.
 
     Args:
@@ -133,8 +136,9 @@ def progress_line(time: float, duration: float, elapsed: float, rotation_ratio: 
         elapsed: wall time so far [s].
         rotation_ratio: |rotation| over the slenderness angle [-].
         mode: state of motion.
+        begun: simulated before [s].
     """
-    rate = time / elapsed if elapsed > 0.0 else 0.0
+    rate = (time - begun) / elapsed if elapsed > 0.0 else 0.0
     if time >= duration:
         remaining = "until it falls or comes back"
     elif rate > 0.0:

@@ -4,7 +4,7 @@ The stepper fills small arrays of samples; the recorder empties them between its
 run does not grow with its fields, and hands the rows on to files.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -105,6 +105,25 @@ class Recorder:
         """Everything sampled so far."""
         values = np.concatenate(self._rows) if self._rows else np.zeros((0, self._columns))
         return History(values=values, modes=tuple(self._modes))
+
+    def memory(self) -> dict[str, FloatArray]:
+        """What the next samples depend on besides the run, by name."""
+        stress = self.largest_von_mises
+        return {
+            "largest_von_mises": np.array([] if stress is None else [stress]),
+            "joint_motion": self.joint_motion,
+            "joint_forces": self._joint_forces,
+        }
+
+    def recall(self, memory: Mapping[str, FloatArray]) -> None:
+        """Go on with the memory of another recorder of the same run."""
+        stress = memory["largest_von_mises"]
+        self.largest_von_mises = float(stress[0]) if stress.size else None
+        self.joint_motion, self._joint_forces = memory["joint_motion"], memory["joint_forces"]
+
+    def go_on(self, history: History) -> None:
+        """Take over what was sampled before the run was cut off."""
+        self._rows, self._modes = [history.values], list(history.modes)
 
     def go_over_to_frame(self, velocity: float) -> None:
         """From now on the run is told in a frame that moves with `velocity` along x [m/s]."""

@@ -4,14 +4,13 @@ case -> model (mesh, body, floor, settled) -> step until done -> history -> verd
 they are wanted, the comparison with the rigid block and the band over the contact.
 """
 
-import platform
+import contextlib
 import shutil
 import signal
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from importlib import metadata
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -23,15 +22,25 @@ from fem.band import band_of, wants_band
 from fem.case import Case, case_hash, to_toml
 from fem.fields import FieldWriter
 from fem.figures import write_figures
+from fem.folder_lock import FolderLock, FolderLostError, held_folder
 from fem.history import History, HistoryWriter, add_analytic_rotation, read_history
 from fem.joint_demands import joint_demands
 from fem.model import Model, build_model
 from fem.opening import open_run
+from fem.program import versions
 from fem.progress import Reporter, SilentReporter
 from fem.recorder import Recorder
 from fem.recovery import Frame, recovery_of
+from fem.resumption import Beginning, CheckpointKeeper, beginning_in, put_back, spent_since
 from fem.rigid_check import check_against_rigid_block, wants_rigid_check
-from fem.run_folder import FINISHED, FolderError, RunFolder, open_run_folder, write_atomically
+from fem.run_folder import (
+    FINISHED,
+    FolderError,
+    RunFolder,
+    finished_run,
+    open_run_folder,
+    write_atomically,
+)
 from fem.run_warnings import warnings_for
 from fem.simulation import Ending, simulate
 from fem.summary import plain_summary
@@ -58,6 +67,12 @@ class RunResult:
     history: History
 
 
+class OutputError(RuntimeError):
+    """Results could not be written any more; the message says where and why, and how to go on."""
+
+    exit_code = 3
+
+
 def run_case(
     case: Case,
     *,
@@ -71,50 +86,110 @@ def run_case(
     A finished run of the same case is not computed again; a band or a rigid check that it lacks is added.
 
     Raises:
-        CaseError, MeshError, FolderError: bad input; nothing is left behind.
+        CaseError, MeshError, FolderError, FolderLockedError, CheckpointError: bad input; nothing is left behind.
+        OutputError: the disk is full, the folder was removed; what was written can be read.
     """
     options, reporter = options or RunOptions(), reporter or SilentReporter()
     began = time.perf_counter(), time.process_time()
     model = build_model(case)
     resolved = resolve(case, model)
-    place = open_run_folder(
-        folder,
-        case_text=case_text,
-        resolved_text=to_toml(resolved),
-        case_hash=case_hash(resolved),
-        force=options.force,
-        resume=options.resume,
-    )
-    with interruptible(reporter) as stop:
-        if place.finished is not None:
-            reporter.message(f"{folder} holds this run already; --force computes it again")
-            result, history = dict(place.finished), History.empty()
-            added = add_checks(result, model, place, options, reporter=reporter, stop=stop)
-            if added:
+    mark = case_hash(resolved)
+    found = finished_run(folder, case_hash=mark, force=options.force)
+    if found is not None:
+        reporter.message(f"{folder} holds this run already; --force computes it again")
+    if found is not None and _is_whole(found, RunFolder(path=folder), case, options):
+        return RunResult(status=str(found["status"]), result=found, history=History.empty())
+    beginning = Beginning()
+
+    def inspect(place: RunFolder) -> None:
+        nonlocal beginning
+        beginning = beginning_in(place, model, mark)
+
+    with held(folder) as lock, interruptible(reporter) as stop:
+        place = open_run_folder(
+            folder,
+            case_text=case_text,
+            resolved_text=to_toml(resolved),
+            case_hash=mark,
+            force=options.force,
+            resume=options.resume,
+            inspect=inspect,
+        )
+        result: dict[str, Any] = {}
+        with naming_what_failed(place, result):
+            if place.finished is not None:
+                result |= place.finished
+                added = add_checks(result, model, place, options, reporter=reporter, stop=stop)
+                if added:
+                    store(result, case, place)
+                if added or not place.figures.is_dir():
+                    draw(case, place, reporter)
+                return RunResult(status=str(result["status"]), result=result, history=History.empty())
+            copy_data_files(case, place)
+            result |= {
+                "status": "running",
+                "case": case.name,
+                "title": case.title,
+                "case_hash": mark,
+                "static": model.static.to_dict(),
+                "versions": versions(),
+            }
+            place.write_result(result)
+            ending, recorder = _step_into(place, lock, model, reporter, stop, beginning, mark, began)
+            result |= result_of(model, recorder, ending)
+            for once_more in (True, False):  # the run is safe before its checks begin, and whole after them
+                spent = spent_since(began, beginning.spent)
+                result |= {"wall_s": spent.wall_s, "cpu_s": spent.cpu_s}
+                lock.check()
                 store(result, case, place)
-            if added or not place.figures.is_dir():
-                draw(case, place, reporter)
-            return RunResult(status=str(result["status"]), result=result, history=history)
-        copy_data_files(case, place)
-        result = {
-            "status": "running",
-            "case": case.name,
-            "title": case.title,
-            "case_hash": case_hash(resolved),
-            "static": model.static.to_dict(),
-            "versions": versions(),
-        }
-        place.write_result(result)
-        ending, recorder = _step_into(place, model, reporter, stop)
-        result |= result_of(model, recorder, ending)
-        for once_more in (True, False):  # the run is safe before its checks begin, and whole after them
-            result["wall_s"] = time.perf_counter() - began[0]
-            result["cpu_s"] = time.process_time() - began[1]
-            store(result, case, place)
-            if not (once_more and add_checks(result, model, place, options, reporter=reporter, stop=stop)):
-                break
-        draw(case, place, reporter)
+                if ending.status in FINISHED:
+                    place.checkpoint.unlink(missing_ok=True)  # nothing is left to go on with
+                if not (
+                    once_more and add_checks(result, model, place, options, reporter=reporter, stop=stop)
+                ):
+                    break
+            draw(case, place, reporter)
     return RunResult(status=ending.status, result=result, history=recorder.history())
+
+
+@contextmanager
+def held(folder: Path) -> Iterator[FolderLock]:
+    """Hold a folder of results against other runs.
+
+    Raises:
+        FolderLockedError: another run writes there.
+        FolderError: it cannot be made or written.
+    """
+    with ExitStack() as stack:
+        try:
+            lock = stack.enter_context(held_folder(folder))
+        except FileExistsError:
+            raise FolderError(f"{folder} is a file, not a folder; choose another with --out DIR") from None
+        except OSError as error:
+            raise FolderError(
+                f"{folder}: cannot be made or written ({error.strerror}); choose another folder with --out DIR"
+            ) from None
+        yield lock
+
+
+@contextmanager
+def naming_what_failed(place: RunFolder, result: dict[str, Any]) -> Iterator[None]:
+    """Turn a disk that is full, or a folder that is gone, into a message and a failed run.
+
+    Raises:
+        OutputError: in the place of an OSError.
+    """
+    try:
+        yield
+    except OSError as error:
+        reason = (
+            f"{error.filename or place.path}: cannot be written ({error.strerror or error}); what was written "
+            "before can be read; when there is room again, --resume goes on from the last checkpoint"
+        )
+        if result.get("status") == "running" and not isinstance(error, FolderLostError):
+            with contextlib.suppress(OSError):
+                place.write_result(result | {"status": "failed", "error": reason})
+        raise OutputError(reason) from None
 
 
 def store(result: dict[str, Any], case: Case, place: RunFolder) -> None:
@@ -157,16 +232,31 @@ def add_checks(
     added = False
     if result["status"] not in FINISHED:
         return added
-    if wants_rigid_check(options.check_rigid, case) and result.get("rigid_check") is None:
+    if _lacks_rigid_check(result, case, options):
         result["rigid_check"] = _rigid_check(model, place, verdict)
         added = True
-    if wants_band(options.band, case, verdict) and verdict.get("band") is None and not stop():
+    if _lacks_band(result, case, options) and not stop():
         reporter.message("band: the same run over contact penalty and damping")
         verdict["band"] = band_of(case, model.container, penalty=model.penalty, verdict=verdict, stop=stop)
         if verdict["band"] is None:
             reporter.message("the band was stopped; run the case again to have it")
         added = added or verdict["band"] is not None
     return added
+
+
+def _is_whole(result: dict[str, Any], place: RunFolder, case: Case, options: RunOptions) -> bool:
+    """Whether a finished run has the rigid check and the band that are wanted, and its figures."""
+    lacks = _lacks_rigid_check(result, case, options) or _lacks_band(result, case, options)
+    return not lacks and (place.figures.is_dir() or not case.output.figures)
+
+
+def _lacks_rigid_check(result: dict[str, Any], case: Case, options: RunOptions) -> bool:
+    return wants_rigid_check(options.check_rigid, case) and result.get("rigid_check") is None
+
+
+def _lacks_band(result: dict[str, Any], case: Case, options: RunOptions) -> bool:
+    verdict = result["verdict"]
+    return wants_band(options.band, case, verdict) and verdict.get("band") is None
 
 
 def result_of(model: Model, recorder: Recorder, ending: Ending) -> dict[str, Any]:
@@ -204,12 +294,6 @@ def copy_data_files(case: Case, place: RunFolder) -> None:
             shutil.copyfile(path, target)
 
 
-def versions() -> dict[str, str]:
-    """Of the program and of what its numbers depend on."""
-    packages = ("unanchored", "numpy", "scipy", "scikit-fem", "numba", "meshio")
-    return {"python": platform.python_version()} | {name: metadata.version(name) for name in packages}
-
-
 @contextmanager
 def interruptible(reporter: Reporter) -> Iterator[Callable[[], bool]]:
     """Turn the first Ctrl-C or SIGTERM into a request to stop at a clean place; a second Ctrl-C insists."""
@@ -235,12 +319,23 @@ def interruptible(reporter: Reporter) -> Iterator[Callable[[], bool]]:
 
 
 def _step_into(
-    place: RunFolder, model: Model, reporter: Reporter, stop: Callable[[], bool]
+    place: RunFolder,
+    lock: FolderLock,
+    model: Model,
+    reporter: Reporter,
+    stop: Callable[[], bool],
+    beginning: Beginning,
+    case_hash: str,
+    began: tuple[float, float],
 ) -> tuple[Ending, Recorder]:
-    """Step the model; history and fields go into the folder as they come."""
+    """Step the model; history, fields and checkpoints go into the folder as they come."""
     with ExitStack() as stack:
-        history = stack.enter_context(HistoryWriter(place.history, joints=model.case.container.boxes - 1))
-        frame_sink = None
+        history = stack.enter_context(
+            HistoryWriter(
+                place.history, position=beginning.history_bytes, joints=model.case.container.boxes - 1
+            )
+        )
+        fields, frame_sink = None, None
         if model.case.output.fields_s > 0.0:
             elements = model.container.elements
             fields = FieldWriter(
@@ -248,11 +343,30 @@ def _step_into(
                 points=elements.nodes,
                 cells=elements.cells,
                 region=elements.region.astype(np.int64),
+                kept_times=beginning.frames_s,
             )
             stack.callback(fields.close)
             frame_sink = _frame_writer(fields)
         recorder = Recorder(model, recovery_of(model), history.append, frame_sink)
-        return simulate(model, recorder, reporter=reporter, stop=stop), recorder
+        if beginning.arrays is not None:
+            put_back(model, recorder, beginning.arrays)
+            recorder.go_on(read_history(place.history))
+            reporter.message(f"going on at t = {float(model.run.clock[0].time):.6g} s")
+        keeper = CheckpointKeeper(
+            place,
+            lock,
+            case_hash=case_hash,
+            model=model,
+            recorder=recorder,
+            history=history,
+            fields=fields,
+            before=beginning.spent,
+            began=began,
+        )
+        ending = simulate(
+            model, recorder, reporter=reporter, stop=stop, keeper=keeper, progress=beginning.progress
+        )
+        return ending, recorder
 
 
 def _rigid_check(model: Model, place: RunFolder, verdict: dict[str, Any]) -> dict[str, Any]:

@@ -10,12 +10,14 @@ import json
 import math
 import os
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+from fem.folder_lock import LOCK_NAME
 
 #: Statuses after which there is nothing left to compute.
 FINISHED = frozenset({"completed", "overturned"})
@@ -102,12 +104,19 @@ def open_run_folder(
     case_hash: str,
     force: bool = False,
     resume: bool = False,
+    inspect: Callable[[RunFolder], None] = lambda folder: None,
 ) -> RunFolder:
     """Make or reuse the folder of a run and mark it as running.
 
     A finished run of the same case is left untouched and returned as `finished`, unless `force`. An
-    unfinished one of the same case is begun anew: its results are removed, or kept for `resume`. Only files
-    that a run makes are ever removed, also under `force`.
+    unfinished one of the same case is begun anew: its results are removed, or kept for `resume` if there is a
+    checkpoint. Only files that a run makes are ever removed, also under `force`.
+
+    Args:
+        path: the folder.
+        case_text, resolved_text, case_hash: of the case.
+        force, resume: as on the command line.
+        inspect: called with a folder that is to be gone on with, before anything in it is changed; may refuse.
 
     Raises:
         FolderError: the folder holds another case or something else (without `force`), is not a folder, or
@@ -116,10 +125,21 @@ def open_run_folder(
     found = _look_into(path, case_hash, force)
     if found is not None and found.get("status") in FINISHED and not force:
         return RunFolder(path=path, finished=found)
-    same = found is not None and found.get("case_hash") == case_hash
-    return _prepare(
-        RunFolder(path=path), case_text, resolved_text, case_hash, keep=resume and same and not force
-    )
+    folder = RunFolder(path=path)
+    keep = resume and not force and found is not None and folder.checkpoint.exists()
+    if keep:
+        inspect(folder)
+    return _prepare(folder, case_text, resolved_text, case_hash, keep=keep)
+
+
+def finished_run(path: Path, *, case_hash: str, force: bool = False) -> dict[str, Any] | None:
+    """The result of a finished run of this case in a folder, if there is one; nothing is written.
+
+    Raises:
+        FolderError: as `open_run_folder`.
+    """
+    found = None if force else _look_into(path, case_hash, force)
+    return found if found is not None and found.get("status") in FINISHED else None
 
 
 def read_result(path: Path) -> dict[str, Any]:
@@ -185,7 +205,7 @@ def _look_into(path: Path, case_hash: str, force: bool) -> dict[str, Any] | None
             return None
         if not path.is_dir():
             raise FolderError(f"{path} is a file, not a folder; choose another with --out DIR")
-        names = [entry.name for entry in path.iterdir() if not entry.name.endswith(".part")]
+        names = _names_in(path)
     except OSError as error:
         raise FolderError(
             f"{path}: cannot be read ({error.strerror}); choose another folder with --out DIR"
@@ -209,6 +229,7 @@ def _prepare(
     folder: RunFolder, case_text: str, resolved_text: str, case_hash: str, *, keep: bool
 ) -> RunFolder:
     made = _make(folder.path)
+    was_empty = not _names_in(folder.path)
     try:
         # The mark first: whatever comes between, the folder is then known as this case's, and not finished.
         folder.write_result({"status": "running", "case_hash": case_hash})
@@ -217,12 +238,25 @@ def _prepare(
         write_atomically(folder.case, case_text)
         write_atomically(folder.resolved, resolved_text)
     except OSError as error:
+        for file in (folder.result, folder.case, folder.resolved):
+            if was_empty:
+                with contextlib.suppress(OSError):
+                    file.unlink()
         for part in reversed(made):
             shutil.rmtree(part, ignore_errors=True)
         raise FolderError(
             f"{folder.path}: cannot be written ({error.strerror}); choose another folder with --out DIR"
         ) from None
     return folder
+
+
+def _names_in(path: Path) -> list[str]:
+    """What lies in a folder, without the lock and what a kill may have left half written."""
+    return [
+        entry.name
+        for entry in path.iterdir()
+        if entry.name != LOCK_NAME and not (entry.name.startswith(".") and entry.name.endswith(".part"))
+    ]
 
 
 def _make(path: Path) -> list[Path]:
@@ -242,7 +276,8 @@ def _make(path: Path) -> list[Path]:
 
 def _remove_results(folder: RunFolder) -> None:
     """Remove what an earlier run left, and nothing else that may lie there."""
-    for file in (folder.summary, folder.history, folder.rigid_check, folder.checkpoint):
+    half_written = folder.checkpoint.with_name(f".{folder.checkpoint.name}.part")
+    for file in (folder.summary, folder.history, folder.rigid_check, folder.checkpoint, half_written):
         file.unlink(missing_ok=True)
     for place, patterns in (
         (folder.fields, ("run.pvd", "frame_*.vtu", ".*.part")),

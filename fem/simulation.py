@@ -7,8 +7,8 @@ followed in the frame of its floor, undriven and so at rest there, until it has 
 import os
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -38,6 +38,29 @@ AFTERMATH = 50.0
 
 
 @dataclass(frozen=True, kw_only=True)
+class Progress:
+    """How far a simulation has come, besides what its model and recorder hold."""
+
+    stepping_cpu_s: float = 0.0
+    #: since when the floor is left at rest [s], and where it stands [m]; None while it is driven
+    undriven: tuple[float, float] | None = None
+
+
+class Keeper(Protocol):
+    """Somebody who may want to keep the state of a simulation."""
+
+    def keep(self, progress: Progress, *, at_once: bool = False) -> None:
+        """Called between slices, when no sample waits in memory; `at_once`: the simulation ends here, unfinished."""
+
+
+class NoKeeper:
+    """Keeps nothing."""
+
+    def keep(self, progress: Progress, *, at_once: bool = False) -> None:
+        """Nothing."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Ending:
     """How the stepping ended."""
 
@@ -52,56 +75,63 @@ def simulate(
     *,
     reporter: Reporter | None = None,
     stop: Callable[[], bool] = lambda: False,
+    keeper: Keeper | None = None,
+    progress: Progress | None = None,
 ) -> Ending:
     """Step a model to its end; the recorder takes the samples.
 
     A container that the end finds beyond its slenderness angle is followed in the frame of its floor, which
     stands still there, until it falls or has come back.
+
+    Args:
+        model: from its present state on; recorder: of its samples.
+        reporter: told how far it is.
+        stop: asked between slices; true ends the simulation there.
+        keeper: may keep the state there, to go on from.
+        progress: of the simulation to go on with; its first slice is the one that came next then.
     """
-    reporter = reporter or SilentReporter()
+    reporter, keeper, progress = reporter or SilentReporter(), keeper or NoKeeper(), progress or Progress()
     full = isinstance(model.body, FullBody)
     step: Any = advance if full else advance_compiled
     if not full:
         if not is_compiled("advance"):
             reporter.message("compiling the stepping kernels, once after installation: about half a minute")
         advance_compiled(model.body, model.run, 0.0)
-    duration, control = model.case.solver.duration_s, model.run.control
-    angle = control.slenderness_angle
-    reporter.start(duration)
-    cpu, run, until = 0.0, model.run, duration
+    duration, control, run = model.case.solver.duration_s, model.run.control, model.run
     clock, track = run.clock[0], run.track[0]
-    status, ahead = "completed", SLICE_FULL if full else SLICE_REDUCED
-    while clock.time < until:
+    if progress.undriven is not None:
+        run = _on_resting_floor(run, progress.undriven)
+    reporter.start(duration, float(clock.time))
+    while _goes_on(model):
+        stopped = stop()
+        keeper.keep(progress, at_once=stopped)
+        if stopped:
+            reporter.finish()
+            return Ending(status="interrupted", stepping_cpu_s=progress.stepping_cpu_s)
+        until, ahead = duration, SLICE_FULL if full else SLICE_REDUCED
+        if clock.time >= duration:
+            until, ahead = _end_of_aftermath(model), AFTERMATH_SLICE
+            if progress.undriven is None:
+                undriven = _leave_alone(model, run, recorder)
+                progress, run = replace(progress, undriven=undriven), _on_resting_floor(run, undriven)
         began = time.process_time()
         code = step(model.body, run, min(clock.time + ahead, until))
-        cpu += time.process_time() - began
+        cpu = progress.stepping_cpu_s + time.process_time() - began
+        progress = replace(progress, stepping_cpu_s=cpu)
         recorder.drain(run)
-        rotation = abs(float(run.old.pose[ROTATION]))
-        reporter.update(float(clock.time), rotation / angle, MODE_NAMES[int(track.mode)])
+        ratio = abs(float(run.old.pose[ROTATION])) / control.slenderness_angle
+        reporter.update(float(clock.time), ratio, MODE_NAMES[int(track.mode)])
         if code == FAILED:
             reporter.finish()
             return Ending(status="failed", stepping_cpu_s=cpu, error=_failure(model))
         if code == OVERTURNED:
-            status = "overturned"
             break
-        if stop():
-            reporter.finish()
-            return Ending(status="interrupted", stepping_cpu_s=cpu)
-        if clock.time >= duration:
-            undecided = angle < rotation and not np.isfinite(track.overturned_at)
-            if not undecided:
-                break
-            if until == duration:
-                run = _left_alone(model, run, recorder)
-                until = duration + AFTERMATH / control.frequency_parameter
-                ahead = AFTERMATH_SLICE
-    if np.isfinite(track.overturned_at):
-        status = "overturned"
     reporter.finish()
     error = audit(model)
     if error is not None:
-        return Ending(status="failed", stepping_cpu_s=cpu, error=error)
-    return Ending(status=status, stepping_cpu_s=cpu)
+        return Ending(status="failed", stepping_cpu_s=progress.stepping_cpu_s, error=error)
+    status = "overturned" if np.isfinite(track.overturned_at) else "completed"
+    return Ending(status=status, stepping_cpu_s=progress.stepping_cpu_s)
 
 
 def cores() -> int:
@@ -109,14 +139,34 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)
 
 
-def _left_alone(model: Model, run: Run, recorder: Recorder) -> Run:
-    """The run in the frame of its floor, which from now on stands still."""
-    clock = run.clock[0]
-    displacement, velocity, _ = floor_motion(run.motion, float(clock.time))
+def _goes_on(model: Model) -> bool:
+    """Whether there is time left, or the end of it finds the container neither fallen nor come back."""
+    clock, run = model.run.clock[0], model.run
+    if clock.time < model.case.solver.duration_s:
+        return True
+    beyond = abs(float(run.old.pose[ROTATION])) > run.control.slenderness_angle
+    undecided = beyond and not np.isfinite(run.track[0].overturned_at)
+    return undecided and clock.time < _end_of_aftermath(model)
+
+
+def _end_of_aftermath(model: Model) -> float:
+    """When a container left alone is given up [s]."""
+    return model.case.solver.duration_s + AFTERMATH / model.run.control.frequency_parameter
+
+
+def _leave_alone(model: Model, run: Run, recorder: Recorder) -> tuple[float, float]:
+    """Go over to the frame of the floor, which is driven no more; returns since when [s] and where it stands [m]."""
+    since = float(run.clock[0].time)
+    displacement, velocity, _ = floor_motion(run.motion, since)
     leave = leave_alone if isinstance(model.body, FullBody) else leave_alone_compiled
     leave(model.body, run, velocity)
     recorder.go_over_to_frame(velocity)
-    still = as_floor_motion(UNIFORM, (float(clock.time), displacement, 0.0))
+    return since, float(displacement)
+
+
+def _on_resting_floor(run: Run, undriven: tuple[float, float]) -> Run:
+    """The run on a floor that stands still since then and there."""
+    still = as_floor_motion(UNIFORM, (*undriven, 0.0))
     return run._replace(motion=still, breaks=np.full(1, np.inf))
 
 

@@ -85,6 +85,11 @@ def run(
         print(json.dumps(read_result(folder / "run.json"), indent=2))
     else:
         print((folder / "summary.txt").read_text(encoding="utf-8"), end="")
+    if result.status == "interrupted":
+        print(
+            f"interrupted; the same command with --resume goes on from {folder / 'checkpoint.npz'}",
+            file=sys.stderr,
+        )
     return EXIT_CODES[result.status]
 
 

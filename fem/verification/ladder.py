@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from fem.run import versions
+from fem.program import versions
 from fem.verification import (
     contact_laws,
     elasticity,

@@ -9,7 +9,7 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from fem.pages import render_page, svg_element
-from fem.run import versions
+from fem.program import versions
 from fem.verification.ladder import Ladder, Rung
 from fem.verification.rows import Convergence, Row
 

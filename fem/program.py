@@ -1,0 +1,26 @@
+"""Which program this is: its version, its sources, and the libraries its numbers depend on."""
+
+import hashlib
+import platform
+from functools import cache
+from importlib import metadata
+from pathlib import Path
+
+PACKAGES = ("fem", "mesh", "contact")
+
+
+def versions() -> dict[str, str]:
+    """Of the program and of what its numbers depend on."""
+    packages = ("unanchored", "numpy", "scipy", "scikit-fem", "numba", "meshio")
+    return {"python": platform.python_version()} | {name: metadata.version(name) for name in packages}
+
+
+@cache
+def program_identity() -> dict[str, str]:
+    """What must be the same for a run to go on to the same bits: versions, machine, digest of the sources."""
+    digest = hashlib.sha256()
+    root = Path(__file__).parents[1]
+    for source in sorted(path for package in PACKAGES for path in (root / package).rglob("*.py")):
+        digest.update(source.relative_to(root).as_posix().encode())
+        digest.update(source.read_bytes())
+    return versions() | {"machine": platform.machine(), "sources": digest.hexdigest()[:16]}
