@@ -27,6 +27,7 @@ COMMANDS = {
         "fem.commands.sweep:sweep",
         "Compute many cases, over ranges of some keys.",
     ),
+    "report": ("fem.commands.report:report", "One self-contained page from a run, to send and print."),
     "verify": ("fem.commands.verify:verify", "The verification ladder: every case with its reference."),
     "doctor": (
         "fem.commands.doctor:doctor",

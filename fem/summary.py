@@ -51,7 +51,7 @@ def screen_summary(
     ]
     if result.get("static"):
         parts += [_static_table(result), Text(CODE_NOTE), Text()]
-    rows = _run_rows(result)
+    rows = run_rows(result)
     if rows:
         parts.append(_run_table(rows))
     if result.get("joints"):
@@ -112,8 +112,8 @@ def _static_table(result: Result) -> Table:
         ("sliding", "kN", "base_shear_N", static.get("sliding_limit_static_N")),
         ("overturning", "kNm", "tilting_moment_Nm", static.get("restoring_moment_Nm")),
     ):
-        found = _slid(verdict) if check == "sliding" else _tilted(verdict)
-        for key, name in (("own_motion", _own_motion_name(static)), *CODE_ACTIONS):
+        found = run_slid(verdict) if check == "sliding" else run_tilted(verdict)
+        for key, name in (("own_motion", own_motion_name(static)), *CODE_ACTIONS):
             action = static.get(key)
             if action is None:
                 continue
@@ -124,20 +124,21 @@ def _static_table(result: Result) -> Table:
                 f"{_number(action.get(demand), 1e-3)} {unit}",
                 f"{_number(capacity, 1e-3)} {unit}",
                 _number(use, 1.0, ".3f"),
-                _says(check, use),
+                rule_says(check, use),
                 found if key == "own_motion" else "(not compared)",
             )
     return table
 
 
-def _own_motion_name(static: Mapping[str, Any]) -> str:
+def own_motion_name(static: Mapping[str, Any]) -> str:
     """The run's own peak floor acceleration: the uplift acceleration times its utilisation."""
     use = (static.get("own_motion") or {}).get("utilisation_overturning")
     uplift = static.get("uplift_acceleration_m_s2")
     return "own peak" if use is None or uplift is None else f"own peak, {use * uplift:.3g} m/s2"
 
 
-def _says(check: str, utilisation: float | None) -> str:
+def rule_says(check: str, utilisation: float | None) -> str:
+    """What the static rule concludes from a utilisation, for `sliding` or `overturning`."""
     if utilisation is None:
         return "-"
     if check == "sliding":
@@ -145,7 +146,8 @@ def _says(check: str, utilisation: float | None) -> str:
     return "overturns" if utilisation > 1.0 else "stands"
 
 
-def _slid(verdict: Mapping[str, Any]) -> str:
+def run_slid(verdict: Mapping[str, Any]) -> str:
+    """Whether the run slid, and how far."""
     slip = verdict.get("max_slip_m")
     if slip is None:
         return "-"
@@ -153,7 +155,8 @@ def _slid(verdict: Mapping[str, Any]) -> str:
     return f"{'slides' if sliding else 'holds'}, slip {_number(slip, 1e3)} mm"
 
 
-def _tilted(verdict: Mapping[str, Any]) -> str:
+def run_tilted(verdict: Mapping[str, Any]) -> str:
+    """Whether the run overturned, and how far it turned."""
     ratio = verdict.get("rotation_ratio")
     if verdict.get("outcome") == "overturned":
         return "overturned"
@@ -169,7 +172,7 @@ def _run_table(rows: Sequence[tuple[str, str]]) -> Table:
     return table
 
 
-def _run_rows(result: Result) -> list[tuple[str, str]]:
+def run_rows(result: Result) -> list[tuple[str, str]]:
     """Name and value of what the run found, in the order of reading; nothing that it did not reach."""
     verdict, static = result.get("verdict") or {}, result.get("static") or {}
     energy, numerics = result.get("energy") or {}, result.get("numerics") or {}

@@ -1,0 +1,49 @@
+"""`report`: one self-contained page from the folder of a run."""
+
+import importlib
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from fem.progress import ScreenReporter
+from fem.run_folder import FolderError, write_atomically
+
+PAGE = "report.html"
+
+
+def report(
+    folder: Path,
+    /,
+    *,
+    to: Annotated[Path | None, Parameter(help="The file; default: report.html in the folder.")] = None,
+    author: Annotated[str, Parameter(show_default=False, help="Who made it; may be filled in later.")] = "",
+    checker: Annotated[str, Parameter(show_default=False, help="Who checked it.")] = "",
+    revision: Annotated[str, Parameter(show_default=False, help="Which revision it is.")] = "",
+    quiet: Annotated[
+        bool, Parameter(name=("--quiet", "-q"), negative=(), show_default=False, help="No progress.")
+    ] = False,
+) -> None:
+    """Make one HTML file that can be sent, read without a network, and printed.
+
+    Parameters
+    ----------
+    folder:
+        The folder of a run, such as outputs/my-stack.
+    """
+    if not folder.is_dir():
+        raise FolderError(f"{folder}: no such folder; give the folder of a run, such as outputs/NAME")
+    room = importlib.import_module("fem.report.run_page")
+    opened = importlib.import_module("fem.opening").open_run(folder)
+    runs = importlib.import_module("fem.run")
+    reporter = ScreenReporter(quiet=quiet)
+    with runs.interruptible(reporter) as stop:
+        page = room.run_report(
+            opened,
+            signature=room.Signature(author=author, checker=checker, revision=revision),
+            told=reporter.message,
+            stop=stop,
+        )
+    place = to if to is not None else folder / PAGE
+    write_atomically(place, page)
+    print(place)

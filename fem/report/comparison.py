@@ -1,0 +1,193 @@
+"""What was asked and what came of it, as rows for a reader: the case, the static rule beside the run, assumptions."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from markupsafe import Markup
+
+from fem.case import Case
+from fem.report.quantities import degrees, number, quantity, short
+from fem.static_checks import CLAUSE_OVERTURNING, CLAUSE_SLIDING
+from fem.summary import own_motion_name, rule_says, run_slid, run_tilted
+
+Result = Mapping[str, Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Compared:
+    """The static rule under one action, and what the run found where the two may be compared."""
+
+    check: str
+    action: str
+    demand: str
+    capacity: str
+    utilisation: str
+    exceeded: bool
+    clause: str
+    rule: str  #: what the rule says
+    run: str  #: what the run found; empty where it is not to be compared
+
+
+def compared_rows(result: Result, case: Case) -> list[Compared]:
+    """Sliding and overturning under the run's own peak, then under the code's base shear."""
+    static, verdict = result["static"], result.get("verdict") or {}
+    q = short(case.static.behaviour_factor)
+    actions = [("own_motion", own_motion_name(static).replace("m/s2", "m/s²")), ("code", f"code, q = {q}")]
+    if case.static.behaviour_factor != 1.0:
+        actions.append(("code_q1", "code, q = 1"))
+    checks = (
+        ("sliding", "kN", "base_shear_N", static["sliding_limit_static_N"], CLAUSE_SLIDING, run_slid),
+        (
+            "overturning",
+            "kNm",
+            "tilting_moment_Nm",
+            static["restoring_moment_Nm"],
+            CLAUSE_OVERTURNING,
+            run_tilted,
+        ),
+    )
+    rows = []
+    for key, name in actions:
+        for check, unit, demand, capacity, clause, found in checks:
+            use = static[key][f"utilisation_{check}"]
+            rows.append(
+                Compared(
+                    check=check,
+                    action=name,
+                    demand=quantity(static[key][demand], unit, 1e-3),
+                    capacity=quantity(capacity, unit, 1e-3),
+                    utilisation=number(use, figures=4),
+                    exceeded=use is None or use > 1.0,
+                    clause=clause.partition(", " + check)[0],
+                    rule=rule_says(check, use),
+                    run=found(verdict) if key == "own_motion" and verdict.get("outcome") else "",
+                )
+            )
+    return rows
+
+
+def asked_rows(case: Case) -> list[tuple[str, str]]:
+    """The case in words: name and value."""
+    box, contact = case.container, case.contact
+    boxes = f"{box.boxes} boxes, bolted, each " if box.boxes > 1 else ""
+    wall = f"shell, walls {short(box.wall_m, 1e3)} mm" if box.section == "shell" else "solid block"
+    size = " × ".join(short(length) for length in (box.width_m, box.depth_m, box.height_m))
+    weight = f"{short(case.weight / box.boxes, 1e-3, 6)} kN"
+    rows = [
+        ("container", f"{boxes}{size} m (width × depth × height), {weight} with fill"),
+        ("section", f"{wall}, E = {short(box.youngs_modulus_Pa, 1e-9)} GPa, ν = {short(box.poisson_ratio)}"),
+        ("support", _support(case)),
+        (
+            "friction",
+            Markup("μ<sub>s</sub> = {}, μ<sub>k</sub> = {}").format(
+                short(contact.mu_static), short(contact.mu_kinetic)
+            ),
+        ),
+        ("floor", floor_in_words(case)),
+        ("start", _start(case)),
+        ("model", _model(case)),
+        ("time", f"{short(case.solver.duration_s)} s, g = {short(case.gravity_m_s2)} m/s²"),
+    ]
+    return rows
+
+
+def assumptions(result: Result, case: Case) -> list[str]:
+    """What the result rests on."""
+    contact, numerics = case.contact, result.get("numerics") or {}
+    penalty = (
+        quantity(contact.normal_penalty_Pa_m, "GPa/m", 1e-9)
+        if not isinstance(contact.normal_penalty_Pa_m, str)
+        else ""
+    )
+    bounce = quantity(numerics.get("contact_frequency_Hz"), "Hz", figures=3)
+    law = (
+        "regularised in displacement: a stuck container does not creep"
+        if contact.friction == "elastic-stick"
+        else "regularised in velocity: under load it creeps"
+    )
+    said = [
+        "Plane elevation, plane stress; one horizontal floor motion, the same under the whole base.",
+        f"Rigid, level floor under a unilateral contact: penalty {penalty} (bounce at {bounce}), damping ratio "
+        f"{short(contact.damping_ratio)}. The penalty is a numerical input, not the stiffness of a concrete slab.",
+        f"Coulomb friction, static and kinetic, {law}.",
+        "Linear elastic walls (finite rotation); the fill is mass without stiffness, fixed to its place.",
+    ]
+    if case.container.boxes > 1:
+        said.append("The boxes are bolted and do not part; what the joints carry is listed below.")
+    if case.solver.model == "rigid":
+        said.append("The container is rigid: no elastic mode takes part.")
+    return said
+
+
+EXCLUSIONS = (
+    "vertical floor motion, torsion and motion out of the plane, wind",
+    "sloshing, plasticity, buckling and bending of the sheets out of their plane",
+    "compliance of floor and soil, neighbours, ropes or stops, loose stacking of boxes",
+    "an ensemble of ground motions, and partial factors: EN 1998-1:2004, 4.4.2.4 (2) asks for more than one run",
+)
+
+
+def floor_in_words(case: Case) -> str:
+    """How the floor moves."""
+    motion = case.motion
+    match motion.kind:
+        case "none":
+            return "at rest"
+        case "harmonic":
+            frequency = motion.angular_frequency / (2.0 * math.pi)
+            words = (
+                f"harmonic, A = {quantity(motion.amplitude, 'mm', 1e3)}, "
+                f"Ω = {short(motion.angular_frequency, 1.0, 5)} rad/s ({quantity(frequency, 'Hz')}), "
+                f"peak {quantity(case.nominal_peak_acceleration, 'm/s²')}"
+            )
+            extras = [
+                f"phase {degrees(motion.phase_rad)}" if motion.phase_rad else "",
+                f"ramps of {short(motion.ramp_cycles)} cycles" if motion.ramp_cycles else "",
+                f"{short(motion.cycles)} cycles" if motion.cycles is not None else "",
+            ]
+            return ", ".join([words, *filter(None, extras)])
+        case "pulse":
+            return (
+                f"{motion.shape} pulse, {quantity(motion.peak_acceleration_m_s2, 'm/s²')} for "
+                f"{quantity(motion.pulse_s, 's')}, from {short(motion.delay_s)} s on"
+            )
+    return (
+        f"record {motion.file} ({motion.quantity}, {motion.unit}), scale {short(motion.scale)}, "
+        f"baseline {motion.baseline}"
+    )
+
+
+def _support(case: Case) -> str:
+    match case.support.kind:
+        case "corners":
+            return "two bottom corners"
+        case "feet":
+            return f"two feet, {short(case.support.foot_m, 1e3)} mm long"
+    return "flat base"
+
+
+def _start(case: Case) -> str:
+    initial = case.initial
+    words = []
+    if case.motion.kind != "none":
+        moving = case.motion.start == "moving"
+        words.append("moving with the floor" if moving else "at rest, the floor jerks under it")
+    if initial.rotation_rad:
+        words.append(f"tilted by {degrees(initial.rotation_rad)}")
+    if initial.angular_velocity_rad_s:
+        words.append(f"turning at {quantity(initial.angular_velocity_rad_s, 'rad/s')}")
+    if initial.velocity_m_s:
+        words.append(f"sliding at {quantity(initial.velocity_m_s, 'm/s')}")
+    return ", ".join(words) or "at rest"
+
+
+def _model(case: Case) -> str:
+    solver = case.solver
+    words = {
+        "full": "full: every node of the mesh, finite rotation",
+        "reduced": f"reduced: turning frame and {solver.elastic_modes} elastic modes",
+        "rigid": "rigid: three coordinates",
+    }
+    return words[solver.model]

@@ -1,0 +1,206 @@
+"""The report of a run: one page from its folder, verdict first, with everything needed to check it.
+
+The run is not computed again. What is added is what a checker asks next: the static calculation with its
+numbers, the outcome under other assumptions, the elastic modes, the rigid block beside it, the motion itself.
+"""
+
+import datetime as dt
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from contact.event_driven import EventError
+from fem.fields import Fields
+from fem.figures import figures_of
+from fem.history import History
+from fem.model import Model, build_model
+from fem.modes import ElasticModes, elastic_mode_table, elastic_modes
+from fem.opening import OpenedRun
+from fem.pages import render_page
+from fem.report.animation import Film, exaggeration, exaggerations, film_of, player_data
+from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions, compared_rows
+from fem.report.curves import curves_of
+from fem.report.quantities import degrees, number, quantity, short
+from fem.report.sketch import sketch
+from fem.report.static_sheet import static_sheet
+from fem.report.stills import Still, colours, stills
+from fem.report.variations import variation_table
+from fem.rigid_check import check_against_rigid_block
+from fem.run_folder import FINISHED, FolderError
+from fem.summary import BAND_NOTE, CODE_NOTE, MARGIN_NOTE, outcome_sentence, run_rows
+from fem.summary_joints import JOINTS_NOTE
+
+MODES = 6  #: elastic modes in the table
+COLOURS = 64  #: of the stress scale in the animation
+#: figures beside the animation, in the order of reading; the others stand in their own sections
+MOTION = ("rotation", "base_motion", "slip", "uplift", "forces", "phase_portrait", "energy")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Signature:
+    """Who answers for a report; may be left to be filled in."""
+
+    author: str = ""
+    checker: str = ""
+    revision: str = ""
+
+
+def run_report(
+    run: OpenedRun,
+    *,
+    signature: Signature | None = None,
+    told: Callable[[str], None] = lambda text: None,
+    stop: Callable[[], bool] = lambda: False,
+) -> str:
+    """The page, as the text of an HTML file.
+
+    Args:
+        run: opened; finished or not.
+        signature: author, checker, revision.
+        told: a sentence for the user where something takes time or cannot be had.
+        stop: asked now and then; true leaves out what has not been computed.
+
+    Raises:
+        FolderError: the folder does not hold what a report needs.
+        CaseError, MeshError: the resolved case in it cannot be read.
+    """
+    if not run.result.get("static"):
+        raise FolderError(f"{run.place.result}: the run has not begun; run the case, then report it")
+    case, result = run.case, run.result
+    model = build_model(case)
+    history = _history(run, told)
+    film = film_of(model, _fields(run, told))
+    drawn = curves_of(figures_of(run)) if len(history) > 1 else {}
+    check = rigid_check(run, model, history)
+    finished = run.status in FINISHED
+    variations = (
+        variation_table(
+            case,
+            run.folder,
+            case_hash=str(result.get("case_hash")),
+            container=None if case.solver.model == "full" else model.container,
+            told=told,
+            stop=stop,
+        )
+        if finished
+        else None
+    )
+    static, verdict = result["static"], result.get("verdict") or {}
+    peak = static["own_motion"]["base_shear_N"] / (static["weight_N"] / case.gravity_m_s2)
+    return render_page(
+        "run.html.j2",
+        scripts=["player.js", "signature.js"] if len(history) > 1 else ["signature.js"],
+        data={"film": _film_data(film, history, model)} if len(history) > 1 else {},
+        title=case.title or run.name,
+        name=run.name,
+        run=run,
+        case=case,
+        result=result,
+        verdict=verdict,
+        static=static,
+        sentence=outcome_sentence(result),
+        standing=_standing(run),
+        signature=signature or Signature(),
+        sketch=sketch(case, centroid=static["centroid_m"], peak_acceleration=peak),
+        asked=asked_rows(case),
+        assumptions=assumptions(result, case),
+        exclusions=EXCLUSIONS,
+        compared=compared_rows(result, case),
+        sheet=static_sheet(result, case),
+        found=run_rows(result),
+        film=film,
+        exaggerations=exaggerations(film, model.container.mesh.height),
+        film_exaggeration=exaggeration(film, model.container.mesh.height),
+        mode_figure=None,
+        colours=colours(COLOURS),
+        stills=_stills(film, history, model, verdict),
+        motion=[drawn[name] for name in MOTION if name in drawn],
+        drawn=drawn,
+        check=check,
+        variations=variations,
+        modes=_modes(model),
+        resolved=run.place.resolved.read_text(encoding="utf-8"),
+        computed=_written(run.place.result),
+        version=metadata.version("unanchored"),
+        today=dt.date.today().isoformat(),
+        notes={"code": CODE_NOTE, "margin": MARGIN_NOTE, "band": BAND_NOTE, "joints": JOINTS_NOTE},
+        degrees=degrees,
+        number=number,
+        quantity=quantity,
+        short=short,
+    )
+
+
+def rigid_check(run: OpenedRun, model: Model, history: History) -> Mapping[str, Any] | None:
+    """The comparison with the analytic block: that of the run, or else made now; None where there is none.
+
+    Without a run to its end there is nothing to compare.
+    """
+    if run.result.get("rigid_check"):
+        found: Mapping[str, Any] = run.result["rigid_check"]
+        return found
+    if run.status not in FINISHED or len(history) < 2:
+        return None
+    try:
+        return check_against_rigid_block(model, history, run.result["verdict"]).summary
+    except (ValueError, EventError) as error:
+        return {"meaningful": False, "reasons": [str(error)]}
+
+
+def _film_data(film: Film, history: History, model: Model) -> dict[str, Any]:
+    data = player_data(film, history, model=model)
+    turned = np.abs(history["rotation_rad"])
+    # The page opens at the largest rotation that is not yet a fall: that is what one looks for.
+    inside = np.where(turned < data["angle"], turned, -1.0)
+    first = float(history["time_s"][int(np.argmax(inside))])
+    return data | {"colours": colours(COLOURS), "first": first}
+
+
+def _stills(film: Film, history: History, model: Model, verdict: Mapping[str, Any]) -> list[Still]:
+    mesh = model.container.mesh
+    return stills(
+        film, history, verdict, angle=model.static.slenderness_angle, width=mesh.width, height=mesh.height
+    )
+
+
+def _history(run: OpenedRun, told: Callable[[str], None]) -> History:
+    try:
+        return run.history
+    except FolderError as error:
+        if run.status in FINISHED:
+            raise
+        told(f"{error}; the report goes without it")
+        return History.empty()
+
+
+def _fields(run: OpenedRun, told: Callable[[str], None]) -> Fields | None:
+    try:
+        return run.fields
+    except FolderError as error:
+        told(f"the animation shows no stresses: {error}")
+        return None
+
+
+def _modes(model: Model) -> list[dict[str, float]]:
+    """Elastic modes of the free container, whether or not they take part."""
+    found: ElasticModes = elastic_modes(model.container.elements, MODES)
+    return elastic_mode_table(found)
+
+
+def _standing(run: OpenedRun) -> str:
+    """How the verdict is coloured: what the run found, never whether that is safe."""
+    if run.status not in FINISHED:
+        return "open"
+    verdict = run.result.get("verdict") or {}
+    if verdict.get("outcome") == "overturned":
+        return "fell"
+    return "unsure" if (verdict.get("band") or {}).get("unsure") else "stood"
+
+
+def _written(path: Path) -> str:
+    """When a file was written, to the minute."""
+    return dt.datetime.fromtimestamp(path.stat().st_mtime).strftime("%Y-%m-%d %H:%M")
