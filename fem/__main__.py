@@ -28,6 +28,10 @@ COMMANDS = {
         "Compute many cases, over ranges of some keys.",
     ),
     "report": ("fem.commands.report:report", "One self-contained page from a run, to send and print."),
+    "response": (
+        "fem.commands.response:response",
+        "Long-time motion, the frequency of the drive swept up and down.",
+    ),
     "verify": ("fem.commands.verify:verify", "The verification ladder: every case with its reference."),
     "doctor": (
         "fem.commands.doctor:doctor",

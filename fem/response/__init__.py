@@ -1,0 +1,1 @@
+"""Long-time motion under a harmonic drive: response curves, phase portraits, Poincare sections, stability."""

@@ -1,0 +1,177 @@
+"""What two sweeps over the same frequencies show: coexisting motions, jumps, drop-outs.
+
+Two motions at one frequency count as different where one overturned and the other did not, where they are of another
+kind, or where their largest rotations or slip strokes lie further apart than they vary within their own windows.
+"""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from fem.response.record import Record
+
+APART = 0.02  #: difference of rotation ratios that counts at least
+APART_STROKE = 0.05  #: of slip strokes, over the floor's amplitude
+JUMP = 0.05  #: change of the rotation ratio from one frequency to the next that is a jump at least
+JUMP_SHARE = 4.0  #: .. and so many times the changes before and after it: a steep curve does not jump
+
+
+@dataclass(frozen=True, kw_only=True)
+class Coexistence:
+    """Neighbouring frequencies at which the two sweeps found different motions."""
+
+    from_Hz: float  # noqa: N815 - the unit, as in a case file
+    to_Hz: float  # noqa: N815
+    frequencies: int
+    up: tuple[str, ...]  #: motions found on the way up, in words
+    down: tuple[str, ...]
+    largest_difference: float | None  #: of rotation ratios; None where one of each pair overturned
+
+
+@dataclass(frozen=True, kw_only=True)
+class Jump:
+    """A change between neighbouring frequencies that the sweep went through."""
+
+    direction: str
+    from_Hz: float  # noqa: N815
+    to_Hz: float  # noqa: N815
+    what: str
+    rotation_ratio: tuple[float, float]  #: before and after
+
+
+@dataclass(frozen=True, kw_only=True)
+class DropOut:
+    """Neighbouring frequencies at which the container overturned."""
+
+    direction: str
+    from_Hz: float  # noqa: N815 - in the order of the sweep
+    to_Hz: float  # noqa: N815
+    frequencies: int
+    carried: bool  #: the first of them overturned a motion that had been carried there
+
+
+def branches_of(records: Sequence[Record]) -> dict[str, Any]:
+    """Coexisting motions, jumps and drop-outs, as `response.json` holds them."""
+    return {
+        "coexisting": [asdict(found) for found in coexistences(records)],
+        "jumps": [asdict(found) for found in jumps(records)],
+        "drop_outs": [asdict(found) for found in drop_outs(records)],
+    }
+
+
+def coexistences(records: Sequence[Record]) -> list[Coexistence]:
+    """Ranges of frequencies at which up and down differ."""
+    up = {record.row["number"]: record for record in records if record.row["direction"] == "up"}
+    down = {record.row["number"]: record for record in records if record.row["direction"] == "down"}
+    runs: list[list[int]] = []
+    for number in sorted(up.keys() & down.keys()):
+        if not differ(up[number], down[number]):
+            continue
+        if runs and runs[-1][-1] == number - 1:
+            runs[-1].append(number)
+        else:
+            runs.append([number])
+    return [_coexistence([(up[k], down[k]) for k in run]) for run in runs]
+
+
+def differ(one: Record, other: Record) -> bool:
+    """Whether two points at one frequency are different motions; a failed one says nothing."""
+    if "failed" in (one.row["status"], other.row["status"]):
+        return False
+    if not (one.stands and other.stands):
+        return one.stands != other.stands
+    a, b = one.row, other.row
+    if (a["long_time"] == "rest") != (b["long_time"] == "rest"):
+        return True
+    spread = max(row["rotation_ratio"] - row["median_rotation_ratio"] for row in (a, b))
+    if abs(a["rotation_ratio"] - b["rotation_ratio"]) > max(APART, spread):
+        return True
+    strokes = [record.extremes[:, 4] for record in (one, other)]
+    spread = max(float(stroke.max() - np.median(stroke)) for stroke in strokes)
+    return bool(abs(a["slip_stroke_m"] - b["slip_stroke_m"]) > max(APART_STROKE * a["amplitude_m"], spread))
+
+
+def jumps(records: Sequence[Record]) -> list[Jump]:
+    """Changes of kind or of size between neighbouring frequencies through which a motion was carried."""
+    found = []
+    for direction in ("up", "down"):
+        swept = [record for record in records if record.row["direction"] == direction]
+        carried = [
+            (before.row, after.row)
+            for before, after in pairwise(swept)
+            if before.stands and after.stands and after.row["began"] == "carried"
+        ]
+        changes = [abs(after["rotation_ratio"] - before["rotation_ratio"]) for before, after in carried]
+        for k, ((before, after), change) in enumerate(zip(carried, changes, strict=True)):
+            kinds = in_words(before), in_words(after)
+            beside = max([*changes[max(k - 1, 0) : k], *changes[k + 1 : k + 2]], default=0.0)
+            large = change > max(JUMP, JUMP_SHARE * beside)
+            if kinds[0] == kinds[1] and not large:
+                continue
+            found.append(
+                Jump(
+                    direction=direction,
+                    from_Hz=before["frequency_Hz"],
+                    to_Hz=after["frequency_Hz"],
+                    what=f"{kinds[0]} to {kinds[1]}" if kinds[0] != kinds[1] else "in size",
+                    rotation_ratio=(before["rotation_ratio"], after["rotation_ratio"]),
+                )
+            )
+    return found
+
+
+def drop_outs(records: Sequence[Record]) -> list[DropOut]:
+    """Ranges of neighbouring frequencies, along each sweep, at which the container overturned."""
+    found: list[DropOut] = []
+    last: tuple[str, int] | None = None
+    for record in records:
+        row = record.row
+        here = (row["direction"], row["number"])
+        if row["status"] != "overturned":
+            continue
+        if found and last is not None and last[0] == here[0] and abs(last[1] - here[1]) == 1:
+            found[-1] = DropOut(
+                **asdict(found[-1]) | {"to_Hz": row["frequency_Hz"], "frequencies": found[-1].frequencies + 1}
+            )
+        else:
+            found.append(
+                DropOut(
+                    direction=row["direction"],
+                    from_Hz=row["frequency_Hz"],
+                    to_Hz=row["frequency_Hz"],
+                    frequencies=1,
+                    carried=row["began"] == "carried",
+                )
+            )
+        last = here
+    return found
+
+
+def in_words(row: Any) -> str:
+    """A long-time motion: `rest`, `rock of period 1`, `slide-rock, not periodic`, `overturned`."""
+    if row["long_time"] is None:
+        return str(row["status"])
+    if row["long_time"] == "rest":
+        return "rest"
+    if row["long_time"] == "periodic":
+        return f"{row['motion']} of period {row['period_n']}"
+    return f"{row['motion']}, {row['long_time']}"
+
+
+def _coexistence(pairs: Sequence[tuple[Record, Record]]) -> Coexistence:
+    apart = [
+        abs(one.row["rotation_ratio"] - other.row["rotation_ratio"])
+        for one, other in pairs
+        if one.stands and other.stands
+    ]
+    return Coexistence(
+        from_Hz=pairs[0][0].row["frequency_Hz"],
+        to_Hz=pairs[-1][0].row["frequency_Hz"],
+        frequencies=len(pairs),
+        up=tuple(dict.fromkeys(in_words(one.row) for one, _ in pairs)),
+        down=tuple(dict.fromkeys(in_words(other.row) for _, other in pairs)),
+        largest_difference=max(apart) if apart else None,
+    )

@@ -1,0 +1,56 @@
+"""Without its drive a motion dies out, or it does not: the second half of the seed paper's notion of stability.
+
+The paper's section 2 calls a motion stable if (a) long-time amplitudes do not diverge and (b) without the drive they
+converge to zero. For (b) the floor is stopped at a turning point, where its velocity is zero, so that stopping is no
+kick, and the container is followed until it has come to rest or has fallen.
+"""
+
+from dataclasses import dataclass
+
+from contact.body import ROTATION
+from contact.stepping import OVERTURNED, REACHED, advance_compiled
+from contact.tracking import ROCKING
+from fem.case import Case
+from fem.model import Container
+from fem.response.drive import DrivenModel, stop_drive
+from fem.verdict import audit
+
+#: at rest: for so long, over 1/p, it neither turned beyond the limit of a verdict nor slid
+STILL = 2.0
+STILL_SLIP = 1e-6  #: over the width, in a look
+LOOK = 0.02  #: how often that is looked at, over 1/p
+PATIENCE = 400.0  #: followed for at most so long, over 1/p
+
+
+@dataclass(frozen=True, kw_only=True)
+class Decay:
+    """What came of a motion whose drive was stopped."""
+
+    fate: str  #: dies out | overturns | goes on | failed
+    time: float | None  #: from the stop until it is at rest, or overturned [s]
+    largest_rotation: float  #: on the way [rad]
+
+
+def follow_decay(case: Case, container: Container, driven: DrivenModel) -> Decay:
+    """Stop the floor where it stands, at a section, and follow the container; `driven` is left as it is."""
+    stopped = stop_drive(case, container, driven)
+    run, control = stopped.run, stopped.run.control
+    clock, track = run.clock[0], run.track[0]
+    look = LOOK / control.frequency_parameter
+    largest = abs(float(run.old.pose[ROTATION]))
+    moved_at, limit = 0.0, ROCKING * control.slenderness_angle
+    while clock.time < PATIENCE / control.frequency_parameter:
+        track.max_rotation, travelled = 0.0, float(track.slip_travel)
+        code = advance_compiled(stopped.body, run, float(clock.time) + look)
+        clock.samples_gone = clock.samples
+        largest = max(largest, float(track.max_rotation))
+        if code == OVERTURNED:
+            return Decay(fate="overturns", time=float(track.overturned_at), largest_rotation=largest)
+        if code != REACHED:
+            return Decay(fate="failed", time=None, largest_rotation=largest)
+        if track.max_rotation > limit or track.slip_travel - travelled > STILL_SLIP * control.width:
+            moved_at = float(clock.time)
+        if clock.time - moved_at > STILL / control.frequency_parameter:
+            fate = "failed" if audit(stopped.model) else "dies out"
+            return Decay(fate=fate, time=moved_at, largest_rotation=largest)
+    return Decay(fate="goes on", time=None, largest_rotation=largest)

@@ -1,0 +1,101 @@
+"""What a motion comes to in the long run, judged from sections once a period, and how that was decided.
+
+- rest: within the limits of a verdict nothing turns and nothing slides;
+- periodic, of period n T: each section is the one n periods before, within a tolerance, over the whole window;
+- not settled: no such n, and sections come nearer to those before them as time goes on;
+- not periodic: no such n up to the largest looked for, and no approach either.
+
+Sections are compared in units of the slenderness angle, of that times the frequency parameter, of the floor's peak
+velocity and of its amplitude.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesh.cells import FloatArray
+
+LARGEST_PERIOD = 16  #: looked for, in periods of the drive; and at most a third of the window
+REPEATS = 3  #: of a period within the window, at least
+#: of a section against the one n periods before; an elastic container that slides and rings scatters by 3e-3
+TOLERANCE = 5e-3
+#: distances over the second half of the window less than this share of those over the first: still settling
+SETTLING = 0.5
+#: largest amplitude of the second half over that of the first beyond which amplitudes are said to grow
+GROWTH = 0.1
+NEGLIGIBLE = 0.01  #: of the slenderness angle: growth below it is none
+
+
+@dataclass(frozen=True, kw_only=True)
+class LongTime:
+    """Long-time motion, with the figures that decided."""
+
+    kind: str  #: rest | periodic | not periodic | not settled
+    period: int | None  #: n of a periodic motion, in periods of the drive
+    scatter: float  #: largest distance of sections n apart; of the best n where none was good enough
+    compared: int  #: pairs of sections behind it
+    settling: float | None  #: distances over the second half by those over the first; None where periodic
+    largest_period: int  #: looked for
+
+
+def classify(
+    sections: FloatArray, *, resting: bool, tolerance: float = TOLERANCE, largest_period: int = LARGEST_PERIOD
+) -> LongTime:
+    """Judge a window of sections.
+
+    Args:
+        sections: (n, k), scaled to order one.
+        resting: nothing moved beyond the limits of a verdict.
+        tolerance: of the largest coordinate.
+        largest_period: looked for; cut to a third of the window.
+
+    Raises:
+        ValueError: fewer sections than a period-one motion needs.
+    """
+    count = len(sections)
+    if count < REPEATS + 1:
+        raise ValueError(
+            f"{count} sections tell nothing of a long-time motion; at least {REPEATS + 1} are needed"
+        )
+    looked_for = max(1, min(largest_period, count // REPEATS))
+    scatters = np.array([distances(sections, n).max() for n in range(1, looked_for + 1)])
+    repeating = np.flatnonzero(scatters <= tolerance)
+    n = int(repeating[0]) + 1 if repeating.size else int(np.argmin(scatters)) + 1
+    common = {"scatter": float(scatters[n - 1]), "compared": count - n, "largest_period": looked_for}
+    if resting or repeating.size:
+        kind = "rest" if resting else "periodic"
+        return LongTime(kind=kind, period=None if resting else n, settling=None, **common)  # type: ignore[arg-type]
+    ratio = approach(sections, looked_for)
+    kind = "not settled" if ratio < SETTLING else "not periodic"
+    return LongTime(kind=kind, period=None, settling=ratio, **common)  # type: ignore[arg-type]
+
+
+def distances(sections: FloatArray, n: int) -> FloatArray:
+    """Largest coordinate of the difference of each section to the one n before, shape (count - n,)."""
+    return np.asarray(np.abs(sections[n:] - sections[:-n]).max(axis=1))
+
+
+def approach(sections: FloatArray, largest_period: int) -> float:
+    """Mean distance in the second half over that in the first, of the n for which this is least."""
+    ratios = []
+    for n in range(1, largest_period + 1):
+        apart = distances(sections, n)
+        half = apart.size // 2
+        ratios.append(float(apart[-half:].mean() / max(apart[:half].mean(), 1e-300)))
+    return min(ratios)
+
+
+def amplitude_growth(amplitudes: FloatArray) -> float:
+    """Largest amplitude in the second half of the window over that in the first, less one [-].
+
+    Args:
+        amplitudes: (n,) largest |rotation| of each period, over the slenderness angle.
+    """
+    half = amplitudes.size // 2
+    first, second = float(amplitudes[:half].max()), float(amplitudes[-half:].max())
+    return (second - first) / max(first, NEGLIGIBLE)
+
+
+def amplitudes_diverge(amplitudes: FloatArray) -> bool:
+    """Whether the long-time amplitudes grow by more than a bounded motion's do."""
+    return amplitude_growth(amplitudes) > GROWTH

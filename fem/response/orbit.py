@@ -1,0 +1,157 @@
+"""The motion followed period by period: a section at the end of each, and the extremes within it.
+
+A section is taken at the floor's turning point at +A, at the exact instant: the stepping ends a step there. Its
+coordinates are the rotation, the angular velocity, the velocity of the mass centre against the floor and what the
+container slid in the period. How far it has walked in all is no coordinate: the floor is everywhere the same.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from contact.body import ANGULAR_VELOCITY, ROTATION, VELOCITY_X
+from contact.floor_motion import floor_motion
+from contact.stepping import (
+    FAILED,
+    OVERTURNED,
+    REACHED,
+    ROW_ANGULAR_VELOCITY,
+    ROW_ROTATION,
+    ROW_SLIP,
+    advance_compiled,
+)
+from contact.tracking import NEVER
+from fem.response.drive import DrivenModel, section_times, with_sections
+from fem.verdict import audit
+from mesh.cells import FloatArray
+
+#: a motion of hundreds of periods is audited in stretches of so many, each as a run is
+AUDITED = 10
+STATUSES = {REACHED: "completed", OVERTURNED: "overturned", FAILED: "failed"}
+#: columns of `Orbit.sections`
+SECTION_COLUMNS = ("rotation_rad", "angular_velocity_rad_s", "centre_velocity_m_s", "slip_gained_m")
+#: columns of `Orbit.extremes`, within a period
+EXTREME_COLUMNS = (
+    "max_rotation_rad",
+    "least_rotation_rad",
+    "most_rotation_rad",
+    "rocking_rad",
+    "slip_stroke_m",
+    "impacts",
+)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Orbit:
+    """Consecutive periods of one motion."""
+
+    status: str  #: completed | overturned | failed
+    sections: FloatArray  #: (n, 4), see `SECTION_COLUMNS`
+    extremes: FloatArray  #: (n, 6), see `EXTREME_COLUMNS`
+    portrait: FloatArray  #: (n_samples, 2) rotation [rad] and angular velocity [rad/s] over the last periods
+    overturned_at: float | None = None  #: since the first of these periods began [s]
+    reason: str | None = None  #: why it failed
+
+
+def follow_periods(
+    driven: DrivenModel,
+    count: int,
+    *,
+    portrayed: int = 0,
+    told: Callable[[float, float, int], None] = lambda time, rotation, mode: None,
+) -> tuple[DrivenModel, Orbit]:
+    """Step through `count` periods from a section on.
+
+    Args:
+        driven: at a section, which is its t = 0.
+        count: periods.
+        portrayed: of how many last periods the phase portrait is kept.
+        told: of the time [s], the rotation [rad] and the mode after each period.
+
+    Returns:
+        The model where it stands then, and what it did; fewer periods where it overturned or failed.
+    """
+    driven = with_sections(driven, count)
+    run, track, clock = driven.run, driven.run.track[0], driven.run.clock[0]
+    sections, extremes, portraits = [], [], []
+    code, slipped, reason = REACHED, float(clock.slip), None
+    _open_ledger(driven)
+    for k, end in enumerate(section_times(driven.period, count)):
+        impacts = int(track.impacts)
+        track.max_rotation, track.max_rocking = 0.0, 0.0
+        code, samples = _step_to(driven, end)
+        if code != REACHED:
+            break
+        _, floor_velocity, _ = floor_motion(run.motion, end)
+        pose, slip = run.old.pose, float(clock.slip)
+        rotation, sliding = samples[:, ROW_ROTATION], samples[:, ROW_SLIP]
+        sections.append(
+            [pose[ROTATION], pose[ANGULAR_VELOCITY], pose[VELOCITY_X] - floor_velocity, slip - slipped]
+        )
+        low, high = min(float(sliding.min()), slip), max(float(sliding.max()), slip)
+        extremes.append(
+            [
+                float(track.max_rotation),
+                min(float(rotation.min()), float(pose[ROTATION])),
+                max(float(rotation.max()), float(pose[ROTATION])),
+                float(track.max_rocking),
+                high - low,
+                int(track.impacts) - impacts,
+            ]
+        )
+        slipped = slip
+        if k >= count - portrayed:
+            portraits.append(samples[:, [ROW_ROTATION, ROW_ANGULAR_VELOCITY]])
+        told(float(clock.time), float(pose[ROTATION]), int(track.mode))
+        if k % AUDITED == AUDITED - 1:
+            reason = audit(driven.model)
+            if reason is not None:
+                break
+            _open_ledger(driven)
+    status = STATUSES[code]
+    if code == FAILED:
+        reason = (
+            f"{clock.time / driven.period:.6g} periods on: the contact forces come into no balance at the smallest "
+            f"step ({run.control.smallest_step:.1g} s); try a softer contact.normal_penalty_Pa_m, "
+            "contact.weakening_m > 0, or a smaller solver.step_s"
+        )
+    else:
+        reason = reason or audit(driven.model)
+        status = "failed" if reason else status
+    fallen = float(track.overturned_at)
+    return driven, Orbit(
+        status=status,
+        sections=np.array(sections).reshape(-1, len(SECTION_COLUMNS)),
+        extremes=np.array(extremes).reshape(-1, len(EXTREME_COLUMNS)),
+        portrait=np.concatenate(portraits) if portraits else np.zeros((0, 2)),
+        overturned_at=fallen if fallen < NEVER else None,
+        reason=reason,
+    )
+
+
+def step_until(driven: DrivenModel, end: float) -> str:
+    """Step to an instant [s] that is a break of the run, or to the fall; returns the status."""
+    code, _ = _step_to(driven, end)
+    return STATUSES[code]
+
+
+def _open_ledger(driven: DrivenModel) -> None:
+    """Begin the energy ledger anew."""
+    driven.run.ledger[:] = 0.0
+    for name in ("least_imbalance", "most_imbalance", "dissipated"):
+        driven.run.clock[name] = 0.0
+
+
+def _step_to(driven: DrivenModel, end: float) -> tuple[int, FloatArray]:
+    """Step to an instant; returns the code of the stepping and the samples on the way."""
+    run, clock = driven.run, driven.run.clock[0]
+    taken = []
+    while True:
+        code = advance_compiled(driven.body, run, end)
+        count = int(clock.samples - clock.samples_gone)
+        taken.append(run.history.columns[:count].copy())
+        clock.samples_gone = clock.samples
+        if code != REACHED or clock.time >= end or math.isinf(end):
+            return code, np.concatenate(taken)

@@ -1,0 +1,113 @@
+"""What a response curve is asked for: the case, the frequencies, what of the drive is held, how long one waits."""
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from fem.case import Case, CaseError, case_hash
+from fem.response.long_time import LARGEST_PERIOD, TOLERANCE
+
+Hold = Literal["displacement", "acceleration"]
+Order = Literal["up-down", "down-up"]
+Scale = Literal["linear", "log"]
+
+LEAST_HZ, MOST_HZ = 0.01, 100.0  #: as in a case file
+MOST_FREQUENCIES = 2000
+MOST_PERIODS = 100_000
+LEAST_OBSERVED = 8
+DEFAULT_SETTLED, DEFAULT_OBSERVED = 60, 48
+
+
+@dataclass(frozen=True, kw_only=True)
+class ResponseRequest:
+    """Frequencies swept to and fro, and how long each is waited for.
+
+    Raises:
+        CaseError: a number out of range, a case without a harmonic drive that goes on, or of the full model.
+    """
+
+    case: Case
+    first_Hz: float  # noqa: N815 - lowest frequency; the unit, as in a case file
+    last_Hz: float  # noqa: N815 - highest frequency
+    count: int  #: frequencies, both ends included
+    scale: Scale = "linear"
+    hold: Hold | None = None  #: what of the drive stays the same; None: what the case states
+    order: Order = "up-down"
+    settle: int = DEFAULT_SETTLED  #: periods of the drive left out at each frequency
+    observe: int = DEFAULT_OBSERVED  #: periods by which the long-time motion is judged
+    tolerance: float = TOLERANCE  #: within which two sections count as the same, see `fem.response.long_time`
+    largest_period: int = LARGEST_PERIOD  #: looked for, in periods of the drive
+    held: Hold = field(init=False)  #: the same, decided
+
+    def __post_init__(self) -> None:
+        motion, solver = self.case.motion, self.case.solver
+        if motion.kind != "harmonic":
+            raise CaseError(f'[motion] kind must be "harmonic" for a response curve, got "{motion.kind}"')
+        if motion.cycles is not None:
+            raise CaseError(
+                f"[motion] cycles = {motion.cycles:g} ends the drive, a response curve needs one that goes on; "
+                "leave the key out"
+            )
+        if solver.model == "full":
+            raise CaseError(
+                '[solver] model = "full" would take days over the hundreds of periods of a response curve; '
+                'take --set solver.model="reduced" or "rigid"'
+            )
+        if not self.case.output.stop_when_overturned:
+            raise CaseError(
+                "[output] stop_when_overturned must be true: an overturned container has no response"
+            )
+        for name, value in (("--from", self.first_Hz), ("--to", self.last_Hz)):
+            if not LEAST_HZ <= value <= MOST_HZ:
+                raise CaseError(
+                    f"{name} must lie between {LEAST_HZ:g} and {MOST_HZ:g} Hz, got {value:g} Hz; "
+                    "an angular frequency Omega in rad/s is Omega/(2 pi) in Hz"
+                )
+        if not self.first_Hz < self.last_Hz:
+            raise CaseError(
+                f"--from must be less than --to, got {self.first_Hz:g} Hz and {self.last_Hz:g} Hz; "
+                "both directions are swept anyway, --order says which first"
+            )
+        for name, number, least, most in (
+            ("--count", self.count, 2, MOST_FREQUENCIES),
+            ("--settle", self.settle, 0, MOST_PERIODS),
+            ("--observe", self.observe, LEAST_OBSERVED, MOST_PERIODS),
+            ("--largest-period", self.largest_period, 1, MOST_PERIODS),
+        ):
+            if not least <= number <= most:
+                raise CaseError(f"{name} must lie between {least} and {most}, got {number}")
+        if not 1e-6 <= self.tolerance <= 0.1:
+            raise CaseError(
+                f"--tolerance must lie between 1e-6 and 0.1 of the slenderness angle, got {self.tolerance:g}; "
+                f"{TOLERANCE:g} is usual"
+            )
+        given = motion.amplitude_m is None or motion.peak_acceleration_m_s2 is None
+        stated: Hold = "acceleration" if given and motion.amplitude_m is None else "displacement"
+        object.__setattr__(self, "held", self.hold or stated)
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        """Rising, shape (count,) [Hz]."""
+        space = np.geomspace if self.scale == "log" else np.linspace
+        return np.asarray(space(self.first_Hz, self.last_Hz, self.count))
+
+    @property
+    def held_value(self) -> float:
+        """Amplitude of the floor's displacement [m] or acceleration [m/s2], whichever is held."""
+        amplitude, omega = self.case.amplitude, self.case.angular_frequency
+        return amplitude if self.held == "displacement" else amplitude * omega**2
+
+    def to_dict(self) -> dict[str, object]:
+        """As the result states it, without the case."""
+        numbers = asdict(self)
+        del numbers["case"], numbers["hold"]
+        return numbers | {"held_value": self.held_value, "frequencies_Hz": self.frequencies.tolist()}
+
+    @property
+    def hash(self) -> str:
+        """Equal for requests that give the same result."""
+        document = self.to_dict() | {"case": case_hash(self.case)}
+        return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()

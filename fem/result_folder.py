@@ -1,0 +1,130 @@
+"""The folder of a study that is no single run: what marks it, what may be removed from it, how it goes on.
+
+One JSON file, named after the kind of study, marks the folder; it holds the status and the hash of what was asked.
+It is written first, and every file is replaced whole.
+"""
+
+import contextlib
+import io
+import json
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fem.run_folder import FolderError, to_json, write_atomically
+
+COMPLETED = "completed"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ResultFolder:
+    """An opened folder."""
+
+    path: Path
+    mark: str  #: name of the JSON file that marks it
+    finished: dict[str, Any] | None = None  #: result already there; None if there is something to compute
+
+    def write_result(self, result: Mapping[str, Any]) -> None:
+        """Replace the marking file; numbers that are not finite become null."""
+        write_atomically(self.path / self.mark, to_json(result))
+
+    def write_text(self, name: str, text: str) -> None:
+        """Replace a file, in a folder below if its name says so."""
+        place = self.path / name
+        place.parent.mkdir(exist_ok=True)
+        write_atomically(place, text)
+
+    def write_arrays(self, name: str, arrays: Mapping[str, np.ndarray]) -> None:
+        """Replace an npz file of plain arrays."""
+        stream = io.BytesIO()
+        np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
+        part = self.path / f".{name}.part"
+        try:
+            with part.open("wb") as file:
+                file.write(stream.getvalue())
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(part, self.path / name)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                part.unlink()
+            raise
+
+    def read_arrays(self, name: str) -> dict[str, np.ndarray] | None:
+        """The arrays of such a file, or None if there is none.
+
+        Raises:
+            FolderError: it is damaged.
+        """
+        place = self.path / name
+        if not place.exists():
+            return None
+        try:
+            with np.load(place, allow_pickle=False) as file:
+                return {key: file[key] for key in file.files}
+        except (OSError, ValueError, KeyError, EOFError) as error:
+            raise FolderError(f"{place}: damaged ({error}); --force computes everything anew") from None
+
+
+def open_result_folder(
+    path: Path,
+    *,
+    mark: str,
+    kind: str,
+    asked: str,
+    own: Sequence[str],
+    force: bool = False,
+    resume: bool = False,
+) -> ResultFolder:
+    """Make or reuse a folder and mark it as running.
+
+    A finished result of the same request is left untouched and returned, unless `force`; an unfinished one is begun
+    anew, or gone on with under `resume`.
+
+    Args:
+        path: of the folder.
+        mark: name of its JSON file.
+        kind: what it holds, for messages.
+        asked: hash of the request.
+        own: patterns of the files that such a study makes; nothing else is ever removed.
+
+    Raises:
+        FolderError: it holds something else (without `force`), is no folder, or cannot be written.
+    """
+    remedy = "choose another folder with --out DIR, or overwrite it with --force"
+    if path.exists() and not path.is_dir():
+        raise FolderError(f"{path} is a file, not a folder; choose another with --out DIR")
+    found: dict[str, Any] = {}
+    if path.exists() and any(not entry.name.endswith(".part") for entry in path.iterdir()):
+        found = _read_mark(path / mark)
+        if found.get("asked") != asked and not force:
+            holds = f"another {kind}" if found else f"no {kind}"
+            raise FolderError(f"{path} holds {holds}; {remedy}")
+    same = found.get("asked") == asked and not force
+    if same and found.get("status") == COMPLETED:
+        return ResultFolder(path=path, mark=mark, finished=found)
+    folder = ResultFolder(path=path, mark=mark)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        folder.write_result({"status": "running", "asked": asked})
+        if not (same and resume):
+            for pattern in own:
+                for file in path.glob(pattern):
+                    file.unlink(missing_ok=True)
+    except OSError as error:
+        raise FolderError(
+            f"{path}: cannot be written ({error.strerror}); choose another folder with --out DIR"
+        ) from None
+    return folder
+
+
+def _read_mark(path: Path) -> dict[str, Any]:
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    return found if isinstance(found, dict) else {}
