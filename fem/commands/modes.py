@@ -9,7 +9,10 @@ from cyclopts import Parameter
 from fem.assembly import assemble
 from fem.case import load_case
 from fem.case_container import build_container
+from fem.drawing import house_style, svg_of
+from fem.figures_modes import modes_figure
 from fem.modes import elastic_mode_table, elastic_modes, write_modes
+from fem.run_folder import write_atomically
 
 
 def modes(
@@ -17,7 +20,7 @@ def modes(
     /,
     *,
     count: Annotated[int | None, Parameter(help="How many; default: solver.elastic_modes.")] = None,
-    out: Annotated[Path | None, Parameter(help="Folder for modes.vtu; default: outputs/NAME/modes.")] = None,
+    out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/NAME/modes.")] = None,
     overrides: Annotated[
         tuple[str, ...],
         Parameter(name="--set", negative=(), show_default=False, help="table.key=value; may be repeated."),
@@ -26,7 +29,7 @@ def modes(
         bool, Parameter(name="--json", negative=(), show_default=False, help="Print JSON.")
     ] = False,
 ) -> None:
-    """Elastic frequencies and shapes of the container, free of the floor; the shapes go to modes.vtu.
+    """Elastic frequencies and shapes of the container, free of the floor; the shapes go to modes.vtu and modes.svg.
 
     Parameters
     ----------
@@ -44,9 +47,23 @@ def modes(
     )
     found = elastic_modes(elements, loaded.solver.elastic_modes)
     path = write_modes(elements, found, out if out is not None else Path("outputs") / loaded.name / "modes")
+    figure = path.with_suffix(".svg")
+    with house_style():
+        drawn = modes_figure(
+            points=elements.nodes,
+            cells=elements.cells,
+            modes=found,
+            boxes=loaded.container.boxes,
+            name=loaded.name,
+        )
+    write_atomically(figure, svg_of(drawn))
     rows = elastic_mode_table(found)
     if as_json:
-        print(json.dumps({"case": loaded.name, "modes": rows, "file": str(path)}, indent=2))
+        print(
+            json.dumps(
+                {"case": loaded.name, "modes": rows, "file": str(path), "figure": str(figure)}, indent=2
+            )
+        )
         return
     print(f"{loaded.name}: elastic modes of the free container\n")
     print("  mode   frequency [Hz]   period [ms]   to the first")
@@ -55,4 +72,4 @@ def modes(
             f"  {row['mode']:4.0f}   {row['frequency_Hz']:14.3f}   {1e3 * row['period_s']:11.4f}   "
             f"{row['ratio_to_first']:12.3f}"
         )
-    print(f"\n{path} shows the shapes in ParaView (Warp By Vector)")
+    print(f"\n{figure} shows the shapes, {path} in ParaView (Warp By Vector)")
