@@ -33,6 +33,8 @@ COMMANDS = {
         "Long-time motion, the frequency of the drive swept up and down.",
     ),
     "verify": ("fem.commands.verify:verify", "The verification ladder: every case with its reference."),
+    "picture": ("fem.commands.picture:picture", "One instant of a run as a picture."),
+    "movie": ("fem.commands.movie:movie", "A run as a film."),
     "doctor": (
         "fem.commands.doctor:doctor",
         "Versions, pictures, threads, disk; how to mend what is missing.",

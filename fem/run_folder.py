@@ -281,7 +281,7 @@ def _remove_results(folder: RunFolder) -> None:
         file.unlink(missing_ok=True)
     for place, patterns in (
         (folder.fields, ("run.pvd", "frame_*.vtu", ".*.part")),
-        (folder.figures, ("*.svg", "*.png")),
+        (folder.figures, ("*.svg", "picture_*.png", "movie.gif", "movie.mp4")),
     ):
         for pattern in patterns:
             for file in place.glob(pattern):

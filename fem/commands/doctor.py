@@ -1,20 +1,16 @@
-"""`doctor`: what this machine has, and the line that mends what is missing.
-
-Pictures need an OpenGL library. Where there is none, rendering ends the whole process, so it is tried in
-a process of its own.
-"""
+"""`doctor`: what this machine has, and the line that mends what is missing."""
 
 import json
 import os
 import platform
 import shutil
-import subprocess
-import sys
 from importlib import metadata
 from pathlib import Path
 from typing import Annotated, Any
 
 from cyclopts import Parameter
+
+from fem.rendering import MEND_PICTURES, probe_rendering
 
 DISTRIBUTIONS = (
     "unanchored",
@@ -30,15 +26,7 @@ DISTRIBUTIONS = (
     "rich",
     "jinja2",
 )
-MEND_PICTURES = "apt-get install -y libegl1 libgl1-mesa-dri"
 MEND_PACKAGES = "python -m pip install --upgrade unanchored"
-RENDER_SECONDS = 120
-RENDER = """
-import pyvista
-plotter = pyvista.Plotter(off_screen=True, window_size=(64, 64))
-plotter.add_mesh(pyvista.Sphere())
-assert plotter.screenshot(return_img=True).std() > 0.0
-"""
 LEAST_FREE_GB = 1.0
 
 
@@ -69,26 +57,6 @@ def doctor(
         "remedies": remedies,
     }
     print(json.dumps(report, indent=2) if as_json else _page(report))
-
-
-def probe_rendering() -> str | None:
-    """None if a picture can be rendered here, else why not; tried in a process of its own."""
-    try:
-        result = subprocess.run(
-            [sys.executable, "-c", RENDER],
-            capture_output=True,
-            text=True,
-            timeout=RENDER_SECONDS,
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        return f"rendering did not end within {RENDER_SECONDS} s"
-    if result.returncode == 0:
-        return None
-    if result.returncode < 0:
-        return f"rendering ended with signal {-result.returncode}"
-    lines = result.stderr.strip().splitlines()
-    return f"rendering failed ({lines[-1] if lines else 'without a message'})"
 
 
 def available_threads() -> int:

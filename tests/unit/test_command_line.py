@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from fem import __main__ as command_line
+from fem import rendering
 from fem.case import load_case, read_case
 from fem.case_files import shipped_cases, shipped_text
 from fem.commands import doctor as doctor_command
@@ -290,6 +291,10 @@ class TestModes:
         document = json.loads(capsys.readouterr().out)
         assert [row["mode"] for row in document["modes"]] == [1, 2]
         assert (tmp_path / "m" / "modes.vtu").is_file()
+        figure = (tmp_path / "m" / "modes.svg").read_text(encoding="utf-8")
+        assert document["figure"] == str(tmp_path / "m" / "modes.svg")
+        for row in document["modes"]:
+            assert f">{row['mode']}: {row['frequency_Hz']:.4g} Hz<" in figure
 
 
 class TestDoctor:
@@ -303,18 +308,16 @@ class TestDoctor:
         assert report["threads"] >= 1
 
     def test_a_rendering_that_ends_its_process_is_told_and_does_not_end_this_one(self, monkeypatch):
-        monkeypatch.setattr(
-            doctor_command, "RENDER", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"
-        )
-        assert doctor_command.probe_rendering() == "rendering ended with signal 11"
-        monkeypatch.setattr(doctor_command, "RENDER", "raise RuntimeError('no GL')")
-        assert doctor_command.probe_rendering() == "rendering failed (RuntimeError: no GL)"
-        monkeypatch.setattr(doctor_command, "RENDER", "pass")
-        assert doctor_command.probe_rendering() is None
+        monkeypatch.setattr(rendering, "RENDER", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
+        assert rendering.probe_rendering() == "rendering ended with signal 11"
+        monkeypatch.setattr(rendering, "RENDER", "raise RuntimeError('no GL')")
+        assert rendering.probe_rendering() == "rendering failed (RuntimeError: no GL)"
+        monkeypatch.setattr(rendering, "RENDER", "pass")
+        assert rendering.probe_rendering() is None
 
     def test_a_rendering_that_hangs_is_given_up(self, monkeypatch):
-        monkeypatch.setattr(doctor_command, "RENDER", "import time; time.sleep(60)")
-        monkeypatch.setattr(doctor_command, "RENDER_SECONDS", 0.5)
+        monkeypatch.setattr(rendering, "RENDER", "import time; time.sleep(60)")
+        monkeypatch.setattr(rendering, "RENDER_SECONDS", 0.5)
         began = time.monotonic()
-        assert doctor_command.probe_rendering() == "rendering did not end within 0.5 s"
+        assert rendering.probe_rendering() == "rendering did not end within 0.5 s"
         assert time.monotonic() - began < 30.0

@@ -1,0 +1,47 @@
+"""`movie`: a run as GIF or MP4."""
+
+import importlib
+import sys
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from fem.opening import open_run
+from fem.rendering import require_rendering
+
+
+def movie(
+    run: Path,
+    /,
+    *,
+    to: Annotated[
+        Path | None, Parameter(help="The film, .gif or .mp4; default: figures/movie.gif of the run.")
+    ] = None,
+    quiet: Annotated[
+        bool, Parameter(name=("--quiet", "-q"), negative=(), show_default=False, help="No progress.")
+    ] = False,
+) -> None:
+    """Render the frames of a run into a film in real time; MP4 needs imageio-ffmpeg.
+
+    Parameters
+    ----------
+    run:
+        The folder of a run, such as outputs/NAME.
+    """
+    opened = open_run(run)
+    _ = opened.fields  # without fields there is nothing to probe for
+    require_rendering()
+    # pyvista is loaded only where it can work.
+    film = importlib.import_module("fem.movie")
+    print(film.write_movie(opened, path=to, progress=_ignore if quiet else _tell))
+
+
+def _tell(done: int, count: int) -> None:
+    """One line on a terminal, and nothing elsewhere."""
+    if sys.stderr.isatty():
+        print(f"\r{done} of {count} frames", end="" if done < count else "\n", file=sys.stderr, flush=True)
+
+
+def _ignore(done: int, count: int) -> None:
+    pass
