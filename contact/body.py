@@ -1,9 +1,10 @@
 """What the stepper needs of a body, and no more.
 
 A body has coordinates (their number and meaning are its own affair), base points that may touch the floor, and
-six operations, each a function here that hands over to the body: `predict`, `release`, `respond`, `complete`,
-`observe` and `shift_velocity`. `contact.modal_body` compiles them for a floating frame with elastic modes; the
-finite-element body of `fem` brings them as methods. The stepper is written once, against these functions.
+some operations, each a function here that hands over to the body: `predict`, `release`, `respond`, `complete`,
+`observe`, `shift_velocity`, and the two questions `prepared` and `sizes_hold`. `contact.modal_body` compiles them for a
+floating frame with elastic modes, `fem.nodal_body` for the nodes of a mesh; called by the interpreter they are methods
+of the body. The stepper is written once, against these functions.
 """
 
 from typing import Any, NamedTuple
@@ -98,6 +99,11 @@ def observe(body: Any, state: State, floor: float) -> None:
 def shift_velocity(body: Any, state: State, velocity: float) -> None:
     """Take the velocity of a new frame along x off that of every coordinate."""
     body.shift_velocity(state, velocity)
+
+
+def prepared(body: Any, step: float) -> bool:
+    """The body can take a step of this size [s]; false asks whoever steps it to make what it needs, and to go on."""
+    return bool(body.prepared(step))
 
 
 def sizes_hold(body: Any, run: Any) -> bool:

@@ -368,6 +368,10 @@ def _any_sizes(body: ModalBody, run: Any) -> bool:
     return True
 
 
+def _prepared(body: ModalBody, step: float) -> bool:
+    return True
+
+
 @register_jitable(forceinline=True)
 def _state_of_block_on_corners(state: State) -> bool:
     if state.position.size != 3 or state.velocity.size != 3 or state.acceleration.size != 3:
@@ -432,5 +436,6 @@ _compile_for((ModalBody, BlockOnCorners), interface.respond, _respond)
 _compile_for((ModalBody, BlockOnCorners), interface.complete, _complete)
 _compile_for((ModalBody, BlockOnCorners), interface.observe, _observe)
 _compile_for((ModalBody, BlockOnCorners), interface.shift_velocity, _shift_velocity)
+_compile_for((ModalBody, BlockOnCorners), interface.prepared, _prepared)
 _compile_for((ModalBody,), interface.sizes_hold, _any_sizes)
 _compile_for((BlockOnCorners,), interface.sizes_hold, _sizes_of_block_on_corners)

@@ -5,8 +5,9 @@ computed (`attempt`). Around it the step control: steps are a ladder h = largest
 smaller when an iteration fails, when the support breaks loose late in a large step, or when the energy
 ledger shows that the step lost or won more than its share; it grows by 2^(1/3) when it lost little.
 
-`advance` is written once. `advance_compiled` steps a `ModalBody`; `advance` itself, as plain Python, steps any
-object with the methods of `contact.body`. Both call the same compiled laws, contact solver and ledger.
+`advance` is written once. `advance_compiled` steps a `ModalBody`, `fem.full_body.advance_full` a finite-element body;
+`advance` itself, as plain Python, any object with the methods of `contact.body`. All call the same compiled laws,
+contact solver and ledger.
 """
 
 from typing import Any, NamedTuple
@@ -29,6 +30,7 @@ from contact.body import (
     complete,
     observe,
     predict,
+    prepared,
     release,
     respond,
     shift_velocity,
@@ -63,7 +65,7 @@ ROOM_SHARE = 0.1  #: of what is left before the ledger wins, for the gain of one
 FADING = 0.8  #: of the memory for the imbalance, a step
 
 #: what `advance` returns
-REACHED, OVERTURNED, FAILED = 0, 1, 2
+REACHED, OVERTURNED, FAILED, UNPREPARED = 0, 1, 2, 3
 OVERTURNING_ROTATION = 0.5 * np.pi
 #: a container that is to lie on its side counts as overturned so much before: there its side meets the floor [rad]
 LYING_DOWN = 2e-3
@@ -139,6 +141,7 @@ CLOCK = np.dtype(
         ("trail", "f8"),  # dissipated shortly before [J]
         ("held", "i8"),  # accepted steps until the step may grow freely again
         ("basis_step", "f8"),  # that the old acceleration's lag belongs to
+        ("due_step", "f8"),  # that the body was not prepared for
         ("samples", "i8"),  # of the history, so far
         ("samples_gone", "i8"),  # of these no longer in the arrays
         ("frames", "i8"),
@@ -762,14 +765,18 @@ def advance(body: Any, run: Run, until: float) -> int:
     It also returns when the arrays of samples are full, so that no sample is lost.
 
     Returns:
-        REACHED, OVERTURNED (90 degrees, where `control.stop_when_overturned`), or FAILED: no convergence at
-        the smallest step; the last good state stands in `run.old`.
+        REACHED, OVERTURNED (90 degrees, where `control.stop_when_overturned`), FAILED: no convergence at
+        the smallest step, the last good state stands in `run.old`; or UNPREPARED: the body needs something made for
+        steps of `clock.due_step`, after which the call is repeated.
     """
     control, clock, track = run.control, run.clock[0], run.track[0]
     if not sizes_hold(body, run):
         return FAILED
     while clock.time < until and not _is_full(run):
         step = next_step(run)
+        if not prepared(body, step):
+            clock.due_step = step
+            return UNPREPARED
         mu = run.contact.mu_static
         if clock.sliding == 1:
             mu = _kinetic_friction(run.contact, clock.slid)

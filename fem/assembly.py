@@ -33,12 +33,11 @@ from fem.elasticity import (
     FloatArray,
     LamePair,
     cauchy_stress,
+    element_forces,
     first_stress_tangent,
     plane_stress_lame,
     von_mises,
-    weigh_stress,
 )
-from fem.nodal_products import times_columns, times_rows
 
 IntArray = NDArray[np.int64]
 #: A field over the elevation: (x, z) of any shape (...) -> the two components, shape (2, ...).
@@ -122,12 +121,11 @@ class FiniteElements:
     base_nodes: IntArray  #: nodes at z = 0, by rising x
     mass: csr_array  #: consistent mass, the same for x and z, shape (n, n) [kg]
     stiffness: csc_array  #: linear plane stress, shape (2n, 2n), interleaved [N/m]
-    _lame: LamePair = field(repr=False)
+    lame: LamePair = field(repr=False)
+    gradient: FloatArray = field(repr=False)  #: derivatives of the shape functions, (2, m, q, k) [1/m]
+    weights: FloatArray = field(repr=False)  #: volume of each quadrature point, (m, q) [m3]
     _basis: Basis = field(repr=False)
     _thickness: FloatArray = field(repr=False)  # at the quadrature points, (m, q)
-    _weights: FloatArray = field(repr=False)  # volume of each quadrature point, (m q,)
-    _gradient: csr_array = field(repr=False)  # one component -> d/dx, d/dz at the points, (2 m q, n)
-    _divergence: csr_array = field(repr=False)  # the transpose, stored by rows as well: a third faster
     _recovery: csr_array = field(repr=False)  # quadrature points -> averaged nodes, (n, m q)
 
     @property
@@ -150,15 +148,18 @@ class FiniteElements:
         return csr_array(_mass_form.assemble(part, areal_density=density))
 
     def force_and_energy(self, displacement: FloatArray) -> tuple[FloatArray, float]:
-        """Gradient of the strain energy, shape (n, 2) [N], and the energy itself [J].
-
-        One sparse product to the quadrature points, one pass over them and one product back.
-        """
-        gradient = self._displacement_gradient(displacement)
-        stress = np.empty_like(gradient)
-        energy = weigh_stress(gradient, self._weights, self._lame.first, self._lame.shear, stress)
+        """Gradient of the strain energy, shape (n, 2) [N], and the energy itself [J]."""
         force = np.empty_like(self.nodes)
-        times_rows(self._divergence, stress.reshape(2, -1), force)
+        energy = element_forces(
+            self.cells,
+            self.gradient,
+            self.weights,
+            self.lame.first,
+            self.lame.shear,
+            np.ascontiguousarray(displacement, dtype=float),
+            np.empty((2, self.cells.shape[1], 2)),
+            force,
+        )
         return force, energy
 
     def internal_force(self, displacement: FloatArray) -> FloatArray:
@@ -171,11 +172,10 @@ class FiniteElements:
 
     def tangent(self, displacement: FloatArray) -> csc_array:
         """Derivative of `internal_force`, shape (2n, 2n), interleaved [N/m]."""
-        moduli = first_stress_tangent(self._displacement_gradient(displacement), self._lame)
+        moduli = first_stress_tangent(self._displacement_gradient(displacement), self.lame)
         cells, k = self.cells.shape
-        moduli = (moduli * self._weights).reshape(2, 2, 2, 2, cells, -1)
-        # data of the gradient operator, by direction, cell, quadrature point and node of the cell
-        shapes = self._gradient.data.reshape(2, cells, -1, k)
+        moduli = moduli * self.weights
+        shapes = self.gradient
         rows = shapes.transpose(1, 3, 0, 2).reshape(cells, k, -1)
         blocks = np.empty((cells, k, 2, k, 2))
         for i, p in np.ndindex(2, 2):
@@ -192,7 +192,7 @@ class FiniteElements:
         cells are averaged by area, but only those of the greatest thickness there. So where a wall (thick out
         of plane) meets a sheet, the node shows the wall's stress, not diluted by the sheet's.
         """
-        stress = cauchy_stress(self._displacement_gradient(displacement), self._lame)
+        stress = cauchy_stress(self._displacement_gradient(displacement), self.lame)
         return self._recovery @ stress.reshape(3, -1).T
 
     def nodal_von_mises(self, displacement: FloatArray) -> FloatArray:
@@ -237,20 +237,16 @@ class FiniteElements:
         return csc_array(_tangent_form.assemble(basis, **parameters))
 
     def _displacement_gradient(self, displacement: FloatArray) -> FloatArray:
-        """H_ij = d u_i / d X_j at the quadrature points, shape (2, 2, m q)."""
-        gradient = np.empty((2, 2, self._weights.size))
-        times_columns(
-            self._gradient, np.ascontiguousarray(displacement, dtype=float), gradient.reshape(2, -1)
-        )
-        return gradient
+        """H_ij = d u_i / d X_j at the quadrature points, shape (2, 2, m, q)."""
+        return np.einsum("jcqb,cbi->ijcq", self.gradient, np.asarray(displacement)[self.cells], optimize=True)
 
     def _vector_basis(self, displacement: FloatArray) -> tuple[Basis, dict[str, Any]]:
         basis = self._basis.with_element(ElementVector(self._basis.elem))
         return basis, {
             "displacement": basis.interpolate(np.ravel(displacement)),
             "thickness": self._thickness,
-            "first": self._lame.first,
-            "shear": self._lame.shear,
+            "first": self.lame.first,
+            "shear": self.lame.shear,
         }
 
 
@@ -273,7 +269,6 @@ def assemble(mesh: QuadMesh, *, youngs_modulus: float, poisson_ratio: float, ord
     cells = np.ascontiguousarray(basis.element_dofs.T).astype(np.int64)
     nodes = np.ascontiguousarray(basis.doflocs.T)
     nodes[: len(mesh.points)] = mesh.points  # exactly, not through the mapping
-    gradient = _gradient_operator(basis)
     vector_basis = basis.with_element(ElementVector(basis.elem))
     elastic = {"thickness": thickness, "first": lame.first, "shear": lame.shear}
     return FiniteElements(
@@ -286,12 +281,11 @@ def assemble(mesh: QuadMesh, *, youngs_modulus: float, poisson_ratio: float, ord
         base_nodes=_base_nodes(nodes),
         mass=csr_array(_mass_form.assemble(basis, areal_density=density)),
         stiffness=csc_array(_stiffness_form.assemble(vector_basis, **elastic)),
-        _lame=lame,
+        lame=lame,
+        gradient=_shape_gradients(basis),
+        weights=np.ascontiguousarray(basis.dx * thickness),
         _basis=basis,
         _thickness=thickness,
-        _weights=(basis.dx * thickness).ravel(),
-        _gradient=gradient,
-        _divergence=gradient.T.tocsr(),
         _recovery=_recovery_operator(basis, cells, np.asarray(mesh.thickness, dtype=float)),
     )
 
@@ -337,13 +331,10 @@ def _base_nodes(nodes: FloatArray) -> IntArray:
     return base[np.argsort(nodes[base, 0], kind="stable")]
 
 
-def _gradient_operator(basis: Basis) -> csr_array:
-    """Values at the nodes -> derivatives along x, then along z, at the points of all cells, (2 m q, n)."""
-    gradients = np.stack([basis.basis[i][0].grad for i in range(basis.Nbfun)], axis=-1)  # (2, m, q, k)
-    nodes = np.broadcast_to(basis.element_dofs.T[None, :, None, :], gradients.shape)
-    starts = np.arange(0, gradients.size + 1, basis.Nbfun)
-    shape = (gradients[..., 0].size, basis.N)
-    return csr_array((gradients.ravel(), nodes.ravel(), starts), shape=shape)
+def _shape_gradients(basis: Basis) -> FloatArray:
+    """Derivatives of the shape functions along x and z at the points of all cells, shape (2, m, q, k) [1/m]."""
+    gradients = np.stack([basis.basis[i][0].grad for i in range(basis.Nbfun)], axis=-1)
+    return np.ascontiguousarray(gradients)
 
 
 def _recovery_operator(basis: Basis, cells: IntArray, thickness: FloatArray) -> csr_array:

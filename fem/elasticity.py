@@ -7,14 +7,18 @@ tensors have shape (3, ...) in the order xx, zz, xz (the tensor's component, not
 positive.
 """
 
+from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 import numpy as np
-from numba import njit
 from numba.extending import register_jitable
 from numpy.typing import NDArray
 
+from contact.compiled import compiled
+
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+SOURCES = (Path(__file__),)  #: of the machine code of this module
 Real = TypeVar("Real", float, FloatArray)
 
 
@@ -70,6 +74,22 @@ def energy_of_strain(xx: Real, zz: Real, xz: Real, first: float, shear: float) -
     return shear * (xx * xx + zz * zz + 2.0 * xz * xz) + 0.5 * first * (xx + zz) ** 2
 
 
+@register_jitable
+def stress_and_energy(
+    xx: Real, xz: Real, zx: Real, zz: Real, first: float, shear: float
+) -> tuple[Real, Real, Real, Real, Real]:
+    """First Piola-Kirchhoff stress P = F S, xx, xz, zx, zz, force axis first [Pa], and energy [J/m3], of a gradient."""
+    exx, ezz, exz = strain_components(xx, xz, zx, zz)
+    sxx, szz, sxz = stress_components(exx, ezz, exz, first, shear)
+    return (
+        (1.0 + xx) * sxx + xz * sxz,
+        (1.0 + xx) * sxz + xz * szz,
+        zx * sxx + (1.0 + zz) * sxz,
+        zx * sxz + (1.0 + zz) * szz,
+        energy_of_strain(exx, ezz, exz, first, shear),
+    )
+
+
 def green_strain(gradient: FloatArray) -> FloatArray:
     """Green-Lagrange strain, shape (3, ...) [-]."""
     (xx, xz), (zx, zz) = gradient
@@ -84,36 +104,64 @@ def second_stress(strain: FloatArray, lame: LamePair) -> FloatArray:
 
 def first_stress(gradient: FloatArray, lame: LamePair) -> FloatArray:
     """First Piola-Kirchhoff stress P = F S, shape (2, 2, ...), force axis first [Pa]."""
-    stress = np.empty(gradient.shape)
-    points = np.ascontiguousarray(gradient.reshape(2, 2, -1))
-    out = stress.reshape(2, 2, -1)
-    weigh_stress(points, np.ones(points.shape[2]), lame.first, lame.shear, out)
-    return stress
+    (xx, xz), (zx, zz) = gradient
+    pxx, pxz, pzx, pzz, _ = stress_and_energy(xx, xz, zx, zz, lame.first, lame.shear)
+    return np.array([[pxx, pxz], [pzx, pzz]])
 
 
-@njit(cache=True)
-def weigh_stress(
-    gradient: FloatArray, weights: FloatArray, first: float, shear: float, out: FloatArray
+def _element_forces(
+    cells: IntArray,
+    gradient: FloatArray,
+    weights: FloatArray,
+    first: float,
+    shear: float,
+    displacement: FloatArray,
+    local: FloatArray,
+    out: FloatArray,
 ) -> float:
-    """First Piola-Kirchhoff stress times weight at every point, in one pass; returns the weighted energy.
+    """Gradient of the strain energy by the displacements, and the energy [J], cell by cell.
 
     Args:
-        gradient: (2, 2, q) [-]; weights: (q,) volumes [m3].
+        cells: (m, k) nodes of each cell.
+        gradient: (2, m, q, k) derivatives of the shape functions along x and z at the points [1/m].
+        weights: (m, q) volumes [m3].
         first, shear: the Lamé pair [Pa].
-        out: (2, 2, q), P times weight [N m], written.
+        displacement: (n, 2) [m].
+        local: (2, k, 2) scratch.
+        out: (n, 2) forces [N], written.
     """
     energy = 0.0
-    for q in range(weights.size):
-        xx, xz, zx, zz = gradient[0, 0, q], gradient[0, 1, q], gradient[1, 0, q], gradient[1, 1, q]
-        exx, ezz, exz = strain_components(xx, xz, zx, zz)
-        sxx, szz, sxz = stress_components(exx, ezz, exz, first, shear)
-        weight = weights[q]
-        energy += weight * energy_of_strain(exx, ezz, exz, first, shear)
-        out[0, 0, q] = weight * ((1.0 + xx) * sxx + xz * sxz)
-        out[0, 1, q] = weight * ((1.0 + xx) * sxz + xz * szz)
-        out[1, 0, q] = weight * (zx * sxx + (1.0 + zz) * sxz)
-        out[1, 1, q] = weight * (zx * sxz + (1.0 + zz) * szz)
+    for i in range(out.shape[0]):
+        out[i, 0], out[i, 1] = 0.0, 0.0
+    for c in range(cells.shape[0]):
+        for b in range(cells.shape[1]):
+            node = cells[c, b]
+            local[0, b, 0], local[0, b, 1] = displacement[node, 0], displacement[node, 1]
+            local[1, b, 0], local[1, b, 1] = 0.0, 0.0
+        for q in range(weights.shape[1]):
+            xx, xz, zx, zz = 0.0, 0.0, 0.0, 0.0
+            for b in range(cells.shape[1]):
+                by_x, by_z = gradient[0, c, q, b], gradient[1, c, q, b]
+                u, w = local[0, b, 0], local[0, b, 1]
+                xx += by_x * u
+                xz += by_z * u
+                zx += by_x * w
+                zz += by_z * w
+            pxx, pxz, pzx, pzz, density = stress_and_energy(xx, xz, zx, zz, first, shear)
+            weight = weights[c, q]
+            energy += weight * density
+            for b in range(cells.shape[1]):
+                by_x, by_z = weight * gradient[0, c, q, b], weight * gradient[1, c, q, b]
+                local[1, b, 0] += by_x * pxx + by_z * pxz
+                local[1, b, 1] += by_x * pzx + by_z * pzz
+        for b in range(cells.shape[1]):
+            node = cells[c, b]
+            out[node, 0] += local[1, b, 0]
+            out[node, 1] += local[1, b, 1]
     return energy
+
+
+element_forces = compiled(_element_forces, sources=SOURCES)
 
 
 def first_stress_tangent(gradient: FloatArray, lame: LamePair) -> FloatArray:

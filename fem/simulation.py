@@ -8,7 +8,7 @@ import os
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -20,13 +20,10 @@ from contact.stepping import (
     FAILED,
     OVERTURNED,
     Run,
-    advance,
-    advance_compiled,
-    leave_alone,
-    leave_alone_compiled,
 )
-from fem.full_body import FullBody
+from fem.full_body import FullBody, advance_body, leave_body_alone
 from fem.model import Model
+from fem.nodal_body import SOURCES
 from fem.progress import Reporter, SilentReporter
 from fem.recorder import Recorder
 from fem.verdict import MODE_NAMES, audit
@@ -92,11 +89,9 @@ def simulate(
     """
     reporter, keeper, progress = reporter or SilentReporter(), keeper or NoKeeper(), progress or Progress()
     full = isinstance(model.body, FullBody)
-    step: Any = advance if full else advance_compiled
-    if not full:
-        if not is_compiled("advance"):
-            reporter.message("compiling the stepping kernels, once after installation: about half a minute")
-        advance_compiled(model.body, model.run, 0.0)
+    if not is_compiled("advance", SOURCES if full else ()):
+        reporter.message("compiling the stepping kernels, once after installation: about half a minute")
+    advance_body(model.body, model.run, 0.0)
     duration, control, run = model.case.solver.duration_s, model.run.control, model.run
     clock, track = run.clock[0], run.track[0]
     if progress.undriven is not None:
@@ -115,7 +110,7 @@ def simulate(
                 undriven = _leave_alone(model, run, recorder)
                 progress, run = replace(progress, undriven=undriven), _on_resting_floor(run, undriven)
         began = time.process_time()
-        code = step(model.body, run, min(clock.time + ahead, until))
+        code = advance_body(model.body, run, min(clock.time + ahead, until))
         cpu = progress.stepping_cpu_s + time.process_time() - began
         progress = replace(progress, stepping_cpu_s=cpu)
         recorder.drain(run)
@@ -158,8 +153,7 @@ def _leave_alone(model: Model, run: Run, recorder: Recorder) -> tuple[float, flo
     """Go over to the frame of the floor, which is driven no more; returns since when [s] and where it stands [m]."""
     since = float(run.clock[0].time)
     displacement, velocity, _ = floor_motion(run.motion, since)
-    leave = leave_alone if isinstance(model.body, FullBody) else leave_alone_compiled
-    leave(model.body, run, velocity)
+    leave_body_alone(model.body, run, velocity)
     recorder.go_over_to_frame(velocity)
     return since, float(displacement)
 

@@ -17,7 +17,7 @@ ALLOWED = {"mesh": {"mesh"}, "contact": {"contact"}, "fem": {"mesh", "contact", 
 DOORS = {
     "skfem": {"fem/assembly.py"},
     "pyvista": {"fem/pictures.py", "fem/movie.py", "fem/opening.py"},
-    "numba": {"contact", "fem/elasticity.py", "fem/nodal_products.py"},
+    "numba": {"contact", "fem/elasticity.py", "fem/nodal_body.py"},
     "pydantic": {"fem"},
     "jinja2": {"fem/pages.py"},
 }

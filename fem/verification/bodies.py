@@ -18,9 +18,9 @@ from contact.interface import Contact, make_workspace
 from contact.laws import ELASTIC_STICK
 from contact.modal_body import ModalBody
 from contact.scheme import Scheme, generalised_alpha, newmark
-from contact.stepping import REACHED, Run, advance, advance_compiled, make_run, make_samples
+from contact.stepping import REACHED, Run, make_run, make_samples
 from fem.assembly import FiniteElements
-from fem.full_body import FullBody
+from fem.full_body import FullBody, advance_body
 from fem.model import build_model
 from fem.reduction import StaticResponse
 from fem.verification.runs import STACK, with_steps_of
@@ -59,10 +59,9 @@ class Flight:
         Raises:
             SteppingError: an iteration did not converge.
         """
-        move = advance_compiled if isinstance(self.body, ModalBody) else advance
         while self.time < until * (1.0 - 1e-12):
             stop = self.time + 0.5 * self.step if trace else until * (1.0 - 1e-12)
-            if move(self.body, self.run, stop) != REACHED:
+            if advance_body(self.body, self.run, stop) != REACHED:
                 raise SteppingError(f"t = {self.time:.6g} s: no convergence at the step {self.step:.3g} s")
             self.run.clock[0].samples_gone = self.run.clock[0].samples
             if trace:

@@ -15,6 +15,7 @@ from scipy.sparse.linalg import spsolve
 
 from contact.body import State
 from contact.scheme import Scheme, generalised_alpha
+from fem import nodal_body
 from fem.assembly import assemble
 from fem.full_body import FullBody
 from fem.verification.bodies import Flight, free_run
@@ -99,24 +100,24 @@ class DrivenBody(FullBody):
     The source is part of its internal forces, which the stepper averages over a step as it does all forces.
     """
 
+    compiled = False
+
     def drive(self, flight: Flight) -> None:
         """Tell the time by this flight from now on."""
         self._flight = flight
 
     def predict(self, scheme: Scheme, step: float, old: State, new: State) -> None:
         """See `contact.body.predict`; the source is then that of the step's end."""
-        self._time = self._flight.time + step
         super().predict(scheme, step, old, new)
+        self.nodal.source[:] = self.source(self._flight.time + step)
 
     def place_at_start(self, state: State) -> None:
         """Write position, velocity and acceleration of the motion at t = 0."""
         position, velocity, acceleration = self.motion(0.0)
         state.position[:], state.velocity[:] = position.ravel(), velocity.ravel()
-        rotation, _ = self._best_fit(position)
-        cosine, sine = math.cos(rotation), math.sin(rotation)
-        self._turn = np.array([[cosine, sine], [-sine, cosine]])
-        self._time = 0.0
-        self._forces(position, velocity)
+        self.nodal.turn[:] = nodal_body.fit(self.nodal, state.position)[2:]
+        self.nodal.source[:] = self.source(0.0)
+        self.evaluate(state)
         self.start(state, 0.0)
         state.acceleration[:] = acceleration.ravel()
 
@@ -130,6 +131,11 @@ class DrivenBody(FullBody):
         )
         return places[2], velocity, acceleration
 
+    @property
+    def weight(self) -> FloatArray:
+        """Of the nodes, upward as an internal force is, (n, 2) [N]."""
+        return np.column_stack([np.zeros(self.nodal.nodal_mass.size), self.gravity * self.nodal.nodal_mass])
+
     def source(self, time: float) -> FloatArray:
         """Nodal forces (n, 2) that make the motion exact [N]."""
         raise NotImplementedError
@@ -140,11 +146,6 @@ class DrivenBody(FullBody):
         displacement = turned_and_strained(x, z, turn, strain).T
         return self.elements.nodes + displacement + np.array([0.3 * time, HEIGHT + 2.0 * time**2])
 
-    def _forces(self, position: FloatArray, velocity: FloatArray) -> None:
-        super()._forces(position, velocity)
-        if hasattr(self, "_time"):
-            self._internal = self._internal - self.source(self._time)
-
 
 class SemiDiscreteBody(DrivenBody):
     """Its source balances the elements' own forces: exact in space."""
@@ -153,9 +154,10 @@ class SemiDiscreteBody(DrivenBody):
         """M x'' + internal forces + damping + weight of the motion."""
         position, velocity, acceleration = self.motion(time)
         internal = self.elements.internal_force(position - self.elements.nodes)
-        turned = (velocity @ self._turn).ravel()
-        damping = self.damping * (self._stiffness @ turned).reshape(-1, 2) @ self._turn.T
-        return self.elements.mass @ acceleration + internal + damping + self._weight
+        cosine, sine = self.nodal.turn
+        turn = np.array([[cosine, sine], [-sine, cosine]])
+        damping = self.damping * (self.elements.stiffness @ (velocity @ turn).ravel()).reshape(-1, 2) @ turn.T
+        return self.elements.mass @ acceleration + internal + damping + self.weight
 
 
 class ContinuumBody(DrivenBody):
@@ -182,7 +184,7 @@ class ContinuumBody(DrivenBody):
             load += self.elements.edge_load(
                 partial(_on_face, axis, place), partial(_traction, axis, sign, turn, strain)
             )
-        return load + self._weight
+        return load + self.weight
 
 
 def _on_face(axis: int, place: float, x: FloatArray, z: FloatArray) -> NDArray[np.bool_]:

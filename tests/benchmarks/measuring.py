@@ -10,9 +10,8 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from contact.stepping import advance, advance_compiled
 from fem.case import Case
-from fem.full_body import FullBody
+from fem.full_body import advance_body
 from fem.history import History
 from fem.model import Container, Model, build_model
 from fem.recorder import Recorder
@@ -82,9 +81,8 @@ class Stepped:
 def stepped(case: Case, container: Container | None = None) -> Stepped:
     """Step a case to its end, without files, fields or stresses; kernels are compiled before the clock starts."""
     model = build_model(case, container)
-    step = advance if isinstance(model.body, FullBody) else advance_compiled
     warm = build_model(case, model.container)
-    step(warm.body, warm.run, min(WARMING, case.solver.duration_s))
+    advance_body(warm.body, warm.run, min(WARMING, case.solver.duration_s))
     recorder = Recorder(model)
     ending = simulate(model, recorder)
     return Stepped(model, recorder.history(), ending)
