@@ -288,7 +288,7 @@ def resolve(case: Case, model: Model) -> Case:
 def copy_data_files(case: Case, place: RunFolder) -> None:
     """Put mesh and motion files beside `resolved.toml`, under the names it gives them."""
     for path in case.data_files.values():
-        target = place.path / path.relative_to(case.folder.resolve())
+        target = place.path / path.resolve().relative_to(case.folder.resolve())
         target.parent.mkdir(parents=True, exist_ok=True)
         if target.resolve() != path.resolve():
             shutil.copyfile(path, target)

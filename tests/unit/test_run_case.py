@@ -196,6 +196,23 @@ class TestAgain:
         run(folder, "rocking", "solver.duration_s=1", force=True)
         assert len(history_of(folder)) == 201
 
+    def test_a_motion_file_beside_the_case_goes_along_wherever_the_case_is_called_from(
+        self, tmp_path, monkeypatch
+    ):
+        (tmp_path / "floor.csv").write_text("time_s,a\n0,0\n0.5,1\n1,0\n")
+        (tmp_path / "mine.toml").write_text(load_case("rocking").text)
+        table = [
+            f"motion.{key}" for key in ("kind=table", "file=floor.csv", "quantity=acceleration", "unit=m/s2")
+        ]
+        monkeypatch.chdir(tmp_path)  # the file is then called by its bare name
+        case = load_case("mine.toml", [*QUICK, *table, "solver.duration_s=0.1"])
+        run_case(case, case_text=case.text, folder=tmp_path / "first")
+        again = load_case(tmp_path / "first" / "resolved.toml")
+        assert run_case(again, case_text=again.text, folder=tmp_path / "second").status == "completed"
+        assert (tmp_path / "second" / "history.csv").read_bytes() == (
+            tmp_path / "first" / "history.csv"
+        ).read_bytes()
+
     def test_a_failed_run_is_computed_again(self, tmp_path, monkeypatch):
         folder = tmp_path / "r"
         with monkeypatch.context() as broken:
