@@ -1,0 +1,114 @@
+"""What figures, fields and films of a run cost.
+
+Figures of a run of 20 s in less than 5 s, a film of 100 frames in less than 60 s with software rendering, and the
+fields of a `full` run in less than 5 % of its time. Figures are measured in CPU time, on one thread; fields by
+making and writing the frames of a run once more, beside the CPU time of its own stepping, since two whole runs differ
+by more than that from one another.
+"""
+
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from measuring import Figure, cpu_seconds, median_of, report
+
+import fem
+from fem.case import load_case
+from fem.fields import FieldWriter, Frame
+from fem.figures import write_figures
+from fem.model import build_model
+from fem.movie import write_movie
+from fem.opening import OpenedRun
+from fem.recovery import Recovery, recovery_of
+from fem.rendering import probe_rendering
+from fem.run import RunOptions, run_case
+
+REPEATS = 3
+FIGURES, FILM, FIELDS = 5.0, 60.0, 0.05
+FRAMES = 100
+
+
+def run_of(folder: Path, name: str, *overrides: str) -> OpenedRun:
+    case = load_case(name, ["output.figures=false", *overrides])
+    run_case(case, case_text=case.text, folder=folder, options=RunOptions(band=False))
+    return fem.open_run(folder)
+
+
+def figures_of_a_long_run(folder: Path) -> Figure:
+    """CPU time, the median; matplotlib is loaded already."""
+    run = run_of(folder, "seed_stack_plateau", "output.fields_s=0")
+    write_figures(run)  # fonts are looked for once
+    cost = median_of(REPEATS, lambda: cpu_seconds(lambda: write_figures(fem.open_run(folder))))
+    size = sum(path.stat().st_size for path in run.place.figures.iterdir())
+    return Figure(
+        f"figures of {len(run.history)} samples, CPU s ({size / 1e3:.0f} kB)",
+        f"{cost:.2f}",
+        f"< {FIGURES:g}",
+        cost < FIGURES,
+    )
+
+
+def film(folder: Path) -> Figure:
+    """Wall and CPU time of a film of the stack, rocking."""
+    if (reason := probe_rendering()) is not None:
+        return Figure(f"film of {FRAMES} frames", f"not here: {reason}")
+    run = run_of(folder, "rocking", f"solver.duration_s={0.05 * (FRAMES - 1)}", "output.fields_s=0.05")
+    began, cpu = time.perf_counter(), time.process_time()
+    path = write_movie(run)
+    wall, cpu = time.perf_counter() - began, time.process_time() - cpu
+    return Figure(
+        f"film of {len(run.fields)} frames, s ({path.stat().st_size / 1e6:.1f} MB, CPU {cpu:.0f} s)",
+        f"{wall:.1f}",
+        f"< {FILM:g}",
+        wall < FILM,
+    )
+
+
+def write_again(frames: list[Frame], recovery: Recovery, folder: Path) -> None:
+    """The frames of a run, made from its coordinates and written as a run does."""
+    first = frames[0]
+    writer = FieldWriter(folder, points=first.points, cells=first.cells, region=first.region)
+    for frame in frames:
+        made = recovery.frame((frame.points + frame.displacement).ravel(), frame.velocity.ravel())
+        writer.write(
+            frame.time,
+            displacement=made.displacement,
+            velocity=made.velocity,
+            von_mises=made.von_mises,
+            contact_pressure=frame.contact_pressure,
+            floor_displacement=frame.floor_displacement,
+        )
+    writer.close()
+
+
+def fields_of_a_full_run(folder: Path) -> Figure:
+    """CPU time of writing the fields over that of the stepping, default interval."""
+    run = run_of(folder, "rocking", "solver.model=full", "solver.duration_s=1")
+    frames, recovery = list(run.fields), recovery_of(build_model(run.case))
+    again = folder / "again"
+    cost = median_of(REPEATS, lambda: cpu_seconds(lambda: write_again(frames, recovery, again)))
+    stepping = run.result["numerics"]["stepping_cpu_s"]
+    share = cost / stepping
+    return Figure(
+        f"fields of a full run: {len(frames)} frames in {cost:.2f} s, stepping {stepping:.1f} s, share",
+        f"{share:.3f}",
+        f"< {FIELDS:g}",
+        share < FIELDS,
+    )
+
+
+def main() -> int:
+    with tempfile.TemporaryDirectory() as place:
+        return report(
+            "pictures and fields",
+            [
+                figures_of_a_long_run(Path(place) / "figures"),
+                film(Path(place) / "film"),
+                fields_of_a_full_run(Path(place) / "fields"),
+            ],
+        )
+
+
+if __name__ == "__main__":
+    sys.exit(main())
