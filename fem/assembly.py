@@ -1,8 +1,8 @@
 """Finite elements of the container: mass, stiffness and large-rotation forces, with forms in scikit-fem.
 
 The only door to scikit-fem. Total Lagrangian, plane stress, St. Venant-Kirchhoff (`fem.elasticity`);
-four-node bilinear or nine-node biquadratic quadrilaterals on straight-sided cells. 3 x 3 Gauss points: exact
-for the mass of both, and for the strain energy of a bilinear parallelogram, of degree 4 at finite strain.
+four-node bilinear or nine-node biquadratic quadrilaterals on straight-sided cells. 3 x 3 Gauss points, exact
+for the mass of both; in bilinear parallelograms 2 x 2, exact for stiffness and mass.
 Bathe, Finite Element Procedures (2014), sections 5.3, 5.5 and 6.3.
 
 Axes x to the right, z up. Displacements have shape (n, 2); in vectors and matrices of all unknowns the order

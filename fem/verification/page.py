@@ -12,6 +12,7 @@ from fem.pages import render_page, svg_element
 from fem.program import versions
 from fem.verification.ladder import Ladder, Rung
 from fem.verification.rows import Convergence, Row
+from mesh.cells import FloatArray
 
 HEADING = f"{'value':>13} {'reference':>12}  {'kind':<9} {'error':>9} {'tolerance':>9}  order"
 
@@ -70,7 +71,7 @@ def convergence_plot(convergence: Convergence, prefix: str = "plot") -> Markup:
         axes.loglog(sizes, errors, "o-", color="#20507a", label=f"observed {convergence.observed:.2f}")
         guide = errors[np.argmin(sizes)] * (sizes / sizes.min()) ** convergence.expected
         axes.loglog(sizes, guide, "--", color="#999999", label=f"order {convergence.expected:g}")
-        axes.set_xticks(sizes, [f"{size:.2g}" for size in sizes], rotation=30)
+        axes.set_xticks(sizes, _labels(sizes), rotation=30)
         axes.set_xticks([], minor=True)
         axes.set_xlabel(convergence.against)
         axes.set_ylabel("error")
@@ -80,6 +81,15 @@ def convergence_plot(convergence: Convergence, prefix: str = "plot") -> Markup:
         figure.savefig(stream, format="svg", metadata={"Date": None})
     label = f"error over {convergence.against}, observed order {convergence.observed:.2f}"
     return svg_element(stream.getvalue(), label=label, prefix=prefix)
+
+
+def _labels(sizes: FloatArray) -> list[str]:
+    """What the refinements are called on a logarithmic axis; none where it would cover the one before."""
+    labels, last = {}, -math.inf
+    for size in np.sort(sizes):
+        if math.log(size) - last > 0.1 * math.log(sizes.max() / sizes.min()):
+            labels[size], last = f"{size:.2g}", math.log(size)
+    return [labels.get(size, "") for size in sizes]
 
 
 def _row_lines(row: Row) -> list[str]:
