@@ -80,6 +80,16 @@ class RunFolder:
         """Folder of the figures."""
         return self.path / "figures"
 
+    @property
+    def report(self) -> Path:
+        """The report, unless it was asked for elsewhere."""
+        return self.path / "report.html"
+
+    @property
+    def variations(self) -> Path:
+        """What a report found of the run under other assumptions."""
+        return self.path / "variations.json"
+
     def write_result(self, result: Mapping[str, Any]) -> None:
         """Replace `run.json`; numbers that are not finite become null.
 
@@ -277,7 +287,8 @@ def _make(path: Path) -> list[Path]:
 def _remove_results(folder: RunFolder) -> None:
     """Remove what an earlier run left, and nothing else that may lie there."""
     half_written = folder.checkpoint.with_name(f".{folder.checkpoint.name}.part")
-    for file in (folder.summary, folder.history, folder.rigid_check, folder.checkpoint, half_written):
+    made = (folder.summary, folder.history, folder.rigid_check, folder.report, folder.variations)
+    for file in (*made, folder.checkpoint, half_written):
         file.unlink(missing_ok=True)
     for place, patterns in (
         (folder.fields, ("run.pvd", "frame_*.vtu", ".*.part")),

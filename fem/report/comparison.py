@@ -14,6 +14,8 @@ from fem.summary import own_motion_name, rule_says, run_slid, run_tilted
 
 Result = Mapping[str, Any]
 
+EDITION = "EN 1998-1:2004, "  #: of the clauses; it stands at the head of their column
+
 
 @dataclass(frozen=True, kw_only=True)
 class Compared:
@@ -60,7 +62,7 @@ def compared_rows(result: Result, case: Case) -> list[Compared]:
                     capacity=quantity(capacity, unit, 1e-3),
                     utilisation=number(use, figures=4),
                     exceeded=use is None or use > 1.0,
-                    clause=clause.partition(", " + check)[0],
+                    clause=clause.removeprefix(EDITION).removesuffix(f", {check}"),
                     rule=rule_says(check, use),
                     run=found(verdict) if key == "own_motion" and verdict.get("outcome") else "",
                 )

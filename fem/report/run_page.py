@@ -80,7 +80,7 @@ def run_report(
     variations = (
         variation_table(
             case,
-            run.folder,
+            run.place.variations,
             case_hash=str(result.get("case_hash")),
             container=None if case.solver.model == "full" else model.container,
             told=told,

@@ -172,7 +172,7 @@ def _code_lines(static: Mapping[str, Any], case: Case) -> list[Line]:
             value=static["period_eq3_s"],
             unit="s",
             source=(
-                f"{PAPER}, Eq. (3); limit min(4 T_C, {LIMIT_PERIOD:.1f} s) with T_C = {CONTROL_PERIOD} s, "
+                f"{PAPER}, Eq. (3); limit min(4 TC, {LIMIT_PERIOD:.1f} s) with TC = {CONTROL_PERIOD} s, "
                 f"{CLAUSE_APPLICABLE} a), Eq. (4.4)"
             ),
             verdict="applies" if static["method_applicable"] else "does not apply",

@@ -17,13 +17,12 @@ from fem.band import NO_SAMPLES_S
 from fem.case import Case
 from fem.model import Container, build_model, discretise
 from fem.recorder import Recorder
-from fem.report.quantities import degrees, quantity, short
+from fem.report.quantities import degrees, number, quantity, short
 from fem.run import versions
 from fem.run_folder import to_json, write_atomically
 from fem.simulation import cores, simulate
 from fem.verdict import outcome_of
 
-KEPT = "variations.json"
 FRICTION_FACTORS = (0.5, 0.75, 1.25, 1.5)
 DAMPING_RATIOS = (0.5, 1.0, 2.0, 4.0)
 PENALTY_FACTORS = (1.0 / 3.0, 3.0)
@@ -74,6 +73,22 @@ class VariationTable:
         return sum(line.row["outcome"] == "overturned" for line in self.lines[1:])
 
     @property
+    def sentence(self) -> str:
+        """What the table comes to."""
+        count, overturned, ratios = len(self.lines) - 1, self.overturned, self.ratios
+        words = [
+            f"The outcome is the same in all {count}."
+            if self.changed == 0
+            else f"In {self.changed} of {count} the outcome is another."
+        ]
+        if overturned and self.lines[0].row["outcome"] != "overturned":
+            words.append(f"It overturns in {overturned}.")
+        if ratios is not None:
+            low, high = (number(ratio, figures=3) for ratio in ratios)
+            words.append(f"Where it stands, the rotation ratio goes from {low} to {high}.")
+        return " ".join(words)
+
+    @property
     def ratios(self) -> tuple[float, float] | None:
         """Range of the rotation ratio over lines that stand; None if none does."""
         found = [line.row["rotation_ratio"] for line in self.lines if line.row["outcome"] != "overturned"]
@@ -83,18 +98,18 @@ class VariationTable:
 
 def variation_table(
     case: Case,
-    folder: Path,
+    kept_in: Path,
     *,
     case_hash: str,
     container: Container | None = None,
     told: Callable[[str], None] = lambda text: None,
     stop: Callable[[], bool] = lambda: False,
 ) -> VariationTable | None:
-    """The table of a run, computed unless it is kept in its folder; None if it was stopped.
+    """The table of a run, computed unless it is kept from before; None if it was stopped.
 
     Args:
         case: resolved.
-        folder: of the run; a folder that cannot be written only costs the next report its time.
+        kept_in: the file that keeps the rows; where it cannot be written, the next report computes them again.
         container: of the case with the model that is varied; None builds it.
         case_hash: of the case; kept rows of another are computed anew.
         told: a sentence for the user where it takes time.
@@ -108,16 +123,16 @@ def variation_table(
         "model": base.solver.model,
         "values": [dict(one.values) for one in variations],
     }
-    rows = _kept_rows(folder / KEPT, mark)
+    rows = _kept_rows(kept_in, mark)
     if rows is None:
         told(f"computing {len(variations)} variations of the run")
         rows = _run(base, variations, container or discretise(base), stop)
         if stop():
             return None
         try:
-            write_atomically(folder / KEPT, to_json({**mark, "rows": rows}))
+            write_atomically(kept_in, to_json({**mark, "rows": rows}))
         except OSError:
-            told(f"{folder / KEPT}: cannot be written; the next report computes the variations again")
+            told(f"{kept_in}: cannot be written; the next report computes the variations again")
     first = rows[0]["outcome"]
     lines = (
         Varied(variation=one, row=row, changed=row["outcome"] != first)
