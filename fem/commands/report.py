@@ -1,4 +1,4 @@
-"""`report`: one self-contained page from the folder of a run."""
+"""`report`: one self-contained page from the folder of a run or of a sweep."""
 
 import importlib
 from pathlib import Path
@@ -29,21 +29,22 @@ def report(
     Parameters
     ----------
     folder:
-        The folder of a run, such as outputs/my-stack.
+        The folder of a run or of a sweep, such as outputs/my-stack.
     """
     if not folder.is_dir():
-        raise FolderError(f"{folder}: no such folder; give the folder of a run, such as outputs/NAME")
-    room = importlib.import_module("fem.report.run_page")
-    opened = importlib.import_module("fem.opening").open_run(folder)
-    runs = importlib.import_module("fem.run")
-    reporter = ScreenReporter(quiet=quiet)
-    with runs.interruptible(reporter) as stop:
-        page = room.run_report(
-            opened,
-            signature=room.Signature(author=author, checker=checker, revision=revision),
-            told=reporter.message,
-            stop=stop,
+        raise FolderError(
+            f"{folder}: no such folder; give the folder of a run or a sweep, such as outputs/NAME"
         )
+    reporter = ScreenReporter(quiet=quiet)
+    runs = importlib.import_module("fem.run")
+    pages = importlib.import_module("fem.report.run_page")
+    signature = pages.Signature(author=author, checker=checker, revision=revision)
+    if (folder / "sweep.json").is_file():
+        page = importlib.import_module("fem.report.sweep_page").sweep_report(folder, signature=signature)
+    else:
+        opened = importlib.import_module("fem.opening").open_run(folder)
+        with runs.interruptible(reporter) as stop:
+            page = pages.run_report(opened, signature=signature, told=reporter.message, stop=stop)
     place = to if to is not None else folder / PAGE
     write_atomically(place, page)
     print(place)

@@ -98,12 +98,10 @@ def asked_rows(case: Case) -> list[tuple[str, str]]:
 def assumptions(result: Result, case: Case) -> list[str]:
     """What the result rests on."""
     contact, numerics = case.contact, result.get("numerics") or {}
-    penalty = (
-        quantity(contact.normal_penalty_Pa_m, "GPa/m", 1e-9)
-        if not isinstance(contact.normal_penalty_Pa_m, str)
-        else ""
-    )
-    bounce = quantity(numerics.get("contact_frequency_Hz"), "Hz", figures=3)
+    penalty, bounce = contact.normal_penalty_Pa_m, numerics.get("contact_frequency_Hz")
+    spring = "chosen by the program" if isinstance(penalty, str) else quantity(penalty, "GPa/m", 1e-9)
+    if bounce is not None:
+        spring += f" (bounce at {quantity(bounce, 'Hz', figures=3)})"
     law = (
         "regularised in displacement: a stuck container does not creep"
         if contact.friction == "elastic-stick"
@@ -111,7 +109,7 @@ def assumptions(result: Result, case: Case) -> list[str]:
     )
     said = [
         "Plane elevation, plane stress; one horizontal floor motion, the same under the whole base.",
-        f"Rigid, level floor under a unilateral contact: penalty {penalty} (bounce at {bounce}), damping ratio "
+        f"Rigid, level floor under a unilateral contact: penalty {spring}, damping ratio "
         f"{short(contact.damping_ratio)}. The penalty is a numerical input, not the stiffness of a concrete slab.",
         f"Coulomb friction, static and kinetic, {law}.",
         "Linear elastic walls (finite rotation); the fill is mass without stiffness, fixed to its place.",

@@ -97,6 +97,7 @@ def run_report(
         data={"film": _film_data(film, history, model)} if len(history) > 1 else {},
         title=case.title or run.name,
         name=run.name,
+        hash=str(result.get("case_hash") or ""),
         run=run,
         case=case,
         result=result,

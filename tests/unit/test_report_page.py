@@ -83,7 +83,7 @@ def test_names_from_the_case_stay_text(page):
 
 
 def test_the_case_in_the_page_is_the_one_that_was_run(page, folder):
-    text = re.search(r"<pre>(.*?)</pre>", page, re.DOTALL)[1]
+    text = re.search(r"<pre class=\"case\">(.*?)</pre>", page, re.DOTALL)[1]
     for escaped, sign in (("&lt;", "<"), ("&gt;", ">"), ("&#34;", '"'), ("&amp;", "&")):
         text = text.replace(escaped, sign)
     assert read_case(text).resolved() == open_run(folder).case.resolved()
