@@ -33,6 +33,7 @@ COMMANDS = {
         "Long-time motion, the frequency of the drive swept up and down.",
     ),
     "verify": ("fem.commands.verify:verify", "The verification ladder: every case with its reference."),
+    "study": ("fem.commands.study:study", "Every statement of the seed paper, tried by runs."),
     "picture": ("fem.commands.picture:picture", "One instant of a run as a picture."),
     "movie": ("fem.commands.movie:movie", "A run as a film."),
     "doctor": (

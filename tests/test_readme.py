@@ -27,6 +27,7 @@ TOUR = [line for line in LINES if line.startswith("python -m fem ")]
 SHORT = {
     "run": ("--set", "solver.duration_s=0.1", "--set", "output.fields_s=0.05", "--no-band"),
     "verify": ("--room", "limits"),
+    "study": ("--only", "half-width"),
 }
 
 

@@ -1,0 +1,98 @@
+"""`study`: every statement of the seed paper, tried."""
+
+import difflib
+import importlib
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from fem.case import CaseError
+from fem.progress import ScreenReporter
+from fem.run_folder import to_json
+
+STUDIES = ("seed",)
+EXIT_CODES = {"completed": 0, "failed": 3, "interrupted": 4}
+
+
+def study(
+    name: str = "seed",
+    /,
+    *,
+    out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/study_NAME.")] = None,
+    jobs: Annotated[
+        int | None, Parameter(name=("--jobs", "-j"), show_default=False, help="Cores; default: all.")
+    ] = None,
+    only: Annotated[
+        tuple[str, ...],
+        Parameter(negative=(), show_default=False, help="Only this statement; may be repeated."),
+    ] = (),
+    force: Annotated[
+        bool, Parameter(negative=(), show_default=False, help="Compute what is there as well.")
+    ] = False,
+    as_json: Annotated[
+        bool, Parameter(name="--json", negative=(), show_default=False, help="Print study.json.")
+    ] = False,
+    quiet: Annotated[
+        bool, Parameter(name=("--quiet", "-q"), negative=(), show_default=False, help="No progress.")
+    ] = False,
+) -> int:
+    """Try every statement of the seed paper: confirmed, confirmed within stated bounds, or refuted.
+
+    Writes study.html, one page with the run, figure and number behind each verdict, and study.json.
+    What the same program has tried before is not tried again.
+
+    Parameters
+    ----------
+    name:
+        The study: seed.
+    """
+    if name not in STUDIES:
+        raise CaseError(f"no study {name!r}{_near(name, STUDIES)} (known: {', '.join(STUDIES)})")
+    if jobs is not None and jobs < 1:
+        raise CaseError(f"-j {jobs}: at least one core is needed")
+    catalogue = importlib.import_module("fem.study.catalogue")
+    every = catalogue.all_statements()
+    known = [statement.name for _, statement in every]
+    for wanted in only:
+        if wanted not in known:
+            raise CaseError(
+                f"--only {wanted!r}: no such statement{_near(wanted, known)} (known: {', '.join(known)})"
+            )
+    chosen = [pair for pair in every if not only or pair[1].name in only]
+    folder = out if out is not None else Path("outputs") / f"study_{name}"
+    document = _conducted(folder, chosen, jobs=jobs, force=force, quiet=quiet)
+    if as_json:
+        print(to_json(document).rstrip())
+    else:
+        page = importlib.import_module("fem.study.page")
+        print("\n".join(page.table_lines(document)))
+        print(f"{folder / 'study.html'} shows the runs, figures and numbers behind them")
+    return EXIT_CODES[document["status"]]
+
+
+def _conducted(folder: Path, chosen: Any, *, jobs: int | None, force: bool, quiet: bool) -> dict[str, Any]:
+    """Try the statements, telling of each and of its runs."""
+    laboratories = importlib.import_module("fem.study.laboratory")
+    conducting = importlib.import_module("fem.study.conducting")
+    runs = importlib.import_module("fem.run")
+    reporter = ScreenReporter(quiet=quiet)
+    in_place = not quiet and sys.stderr.isatty()
+
+    def progress(done: int, total: int) -> None:
+        if in_place:
+            end = "\r" if done < total else "\r" + " " * 40 + "\r"
+            print(f"    {done} of {total} runs", end=end, file=sys.stderr, flush=True)
+
+    with runs.interruptible(reporter) as stop:
+        laboratory = laboratories.Laboratory(jobs=jobs, progress=progress, stop=stop)
+        found: dict[str, Any] = conducting.conduct(
+            folder, laboratory, statements=chosen, force=force, tell=reporter.message
+        )
+    return found
+
+
+def _near(name: str, known: Any) -> str:
+    near = difflib.get_close_matches(name, known, n=1)
+    return f"; did you mean {near[0]!r}?" if near else ""

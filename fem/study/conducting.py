@@ -1,0 +1,172 @@
+"""Trying all statements, keeping what is finished, and beginning no statement twice.
+
+`study.json` is replaced whole after every statement, its figures lie in `figures/`. A statement that was computed
+by the same program (the hash of its sources and the versions of what it computes with) is taken from there.
+"""
+
+import hashlib
+import json
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import contact
+import fem
+import mesh
+from fem.run import versions
+from fem.run_folder import FolderError, to_json, write_atomically
+from fem.study.catalogue import GROUPS, UNTRIED, all_statements
+from fem.study.laboratory import InterruptedStudyError, Laboratory
+from fem.study.page import study_page
+from fem.study.statements import Statement, Verdict
+
+#: keeps the first guess of the pace from jumping [s]
+STEADY = 20.0
+RESULT, PAGE, FIGURES = "study.json", "study.html", "figures"
+
+
+def fingerprint() -> str:
+    """Hash of this program's sources and shipped cases, and of the versions of what it computes with."""
+    digest = hashlib.sha256(json.dumps(versions(), sort_keys=True).encode())
+    for package in (contact, fem, mesh):
+        root = Path(package.__file__ or "").parent
+        for path in sorted([*root.rglob("*.py"), *root.rglob("*.toml")]):
+            digest.update(path.relative_to(root).as_posix().encode() + path.read_bytes())
+    return digest.hexdigest()
+
+
+def conduct(
+    folder: Path,
+    laboratory: Laboratory,
+    *,
+    statements: Sequence[tuple[str, Statement]] | None = None,
+    force: bool = False,
+    tell: Callable[[str], None] = lambda text: None,
+) -> dict[str, Any]:
+    """Try the statements into a folder; returns what `study.json` holds.
+
+    Args:
+        folder: made if it is not there; must hold a study, or nothing.
+        laboratory: where the runs are made.
+        statements: group and statement; all by default.
+        force: compute what is there as well.
+        tell: told of each statement before it is tried.
+
+    Raises:
+        FolderError: the folder holds something else, or cannot be written.
+    """
+    chosen = list(statements if statements is not None else all_statements())
+    program = fingerprint()
+    kept = {} if force else _finished(folder, program)
+    _prepare(folder)
+    began = time.perf_counter()
+    entries: dict[str, dict[str, Any]] = dict(kept)
+    todo = [statement for _, statement in chosen if statement.name not in kept]
+    status, spent, computed = "completed", STEADY, STEADY
+    for number, statement in enumerate(todo, start=1):
+        left = sum(one.seconds for one in todo[number - 1 :])
+        minutes = max(left * spent / computed, 1.0) / 60.0
+        tell(f"[{number}/{len(todo)}] {statement.name}, about {minutes:.1f} min left")
+        start = time.perf_counter()
+        try:
+            entries[statement.name] = _tried(statement, laboratory, folder, program)
+        except (InterruptedStudyError, KeyboardInterrupt):
+            status = "interrupted"
+            break
+        spent += time.perf_counter() - start
+        computed += statement.seconds
+        _write(folder, _document("running", program, entries, began))
+    if status == "completed" and any(
+        entry["verdict"] == Verdict.UNDECIDED.value for entry in entries.values()
+    ):
+        status = "failed"
+    document = _document(status, program, entries, began)
+    _write(folder, document)
+    svgs = {path.stem: path.read_text(encoding="utf-8") for path in (folder / FIGURES).glob("*.svg")}
+    write_atomically(folder / PAGE, study_page(json.loads(to_json(document)), svgs))
+    return document
+
+
+def _tried(statement: Statement, laboratory: Laboratory, folder: Path, program: str) -> dict[str, Any]:
+    """What trying a statement gave, as plain data; what cannot be computed says why and decides nothing."""
+    began = time.perf_counter()
+    entry: dict[str, Any] = {
+        "name": statement.name,
+        "section": statement.section,
+        "quote": statement.quote,
+        "tried": statement.tried,
+        "program": program,
+    }
+    try:
+        finding = statement.examine(laboratory)
+    except (ArithmeticError, ValueError, RuntimeError, LookupError, TypeError) as error:
+        entry |= {"verdict": Verdict.UNDECIDED.value, "error": f"{type(error).__name__}: {error}"}
+    else:
+        for one in finding.drawings:
+            write_atomically(folder / FIGURES / f"{one.name}.svg", one.svg)
+        entry |= finding.to_dict()
+    return entry | {"seconds": time.perf_counter() - began}
+
+
+def _document(status: str, program: str, entries: dict[str, dict[str, Any]], began: float) -> dict[str, Any]:
+    groups = [
+        {
+            "title": title,
+            "statements": [entries[one.name] for one in statements if one.name in entries],
+        }
+        for title, statements in GROUPS.items()
+    ]
+    counts = {
+        verdict.value: sum(entry["verdict"] == verdict.value for entry in entries.values())
+        for verdict in Verdict
+    }
+    return {
+        "study": "seed",
+        "status": status,
+        "counts": counts,
+        "statements": sum(counts.values()),
+        "groups": [group for group in groups if group["statements"]],
+        "untried": [asdict(one) for one in UNTRIED],
+        "program": program,
+        "versions": versions(),
+        "wall_s": time.perf_counter() - began,
+    }
+
+
+def _finished(folder: Path, program: str) -> dict[str, dict[str, Any]]:
+    """Statements in the folder that this very program decided, and whose figures are there."""
+    path = folder / RESULT
+    if not path.is_file():
+        return {}
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+        found = [entry for group in document["groups"] for entry in group["statements"]]
+    except (OSError, ValueError, KeyError, TypeError):
+        raise FolderError(
+            f"{path}: damaged, or not the result of a study; choose another folder with --out DIR, or "
+            "overwrite it with --force"
+        ) from None
+    return {
+        entry["name"]: entry
+        for entry in found
+        if entry.get("program") == program
+        and entry["verdict"] != Verdict.UNDECIDED.value
+        and all((folder / FIGURES / f"{one['name']}.svg").is_file() for one in entry["drawings"])
+    }
+
+
+def _prepare(folder: Path) -> None:
+    try:
+        if folder.is_dir() and any(folder.iterdir()) and not (folder / RESULT).is_file():
+            raise FolderError(f"{folder} is not empty and holds no study; choose another with --out DIR")
+        (folder / FIGURES).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FolderError(
+            f"{folder}: cannot be used ({error.strerror}); choose another folder with --out DIR"
+        ) from None
+
+
+def _write(folder: Path, document: dict[str, Any]) -> None:
+    write_atomically(folder / RESULT, to_json(document))

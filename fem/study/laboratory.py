@@ -1,0 +1,176 @@
+"""Where statements are tried: runs without files, each computed once, on all cores.
+
+Rows hold the scalars of a verdict; a history is kept where a statement needs one. A run that failed has no
+outcome and is counted nowhere as standing or fallen.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from fem.case import Case
+from fem.case_contact import normal_penalty
+from fem.history import History
+from fem.model import Model, build_model
+from fem.recorder import Recorder
+from fem.simulation import simulate
+from fem.study.statements import Band, Member, Setup
+from fem.sweep.case_maker import CaseMaker
+from fem.sweep.running import Shelf, run_cases
+
+Row = dict[str, Any]
+
+RIGID = {"solver.model": "rigid"}
+#: contact penalty over the one that "auto" chooses, and contact damping ratio, of the shell's members
+PENALTY_FACTORS = (1.0 / 3.0, 1.0, 3.0)
+DAMPING_RATIOS = (0.5, 2.0)
+SUPPORTS = ("feet", "flat")
+
+
+class InterruptedStudyError(Exception):
+    """The user has asked to stop."""
+
+    exit_code = 4
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Record:
+    """A finished run with its history."""
+
+    model: Model
+    history: History
+    status: str  #: completed | overturned | failed
+
+    @property
+    def track(self) -> Any:
+        """Extremes and events, see `contact.tracking.TRACK`."""
+        return self.model.run.track[0]
+
+
+class Laboratory:
+    """Runs setups and remembers them.
+
+    Args:
+        jobs: cores to use; None: all.
+        progress: told how many of how many runs of a batch are done.
+        stop: asked now and then; true ends the work with `InterruptedStudyError`.
+    """
+
+    def __init__(
+        self,
+        *,
+        jobs: int | None = None,
+        progress: Callable[[int, int], None] = lambda done, total: None,
+        stop: Callable[[], bool] = lambda: False,
+    ) -> None:
+        self._jobs = jobs
+        self._progress = progress
+        self._stop = stop
+        self._shelf = Shelf()
+        self._makers: dict[str, CaseMaker] = {}
+        self._rows: dict[Any, Row] = {}
+        self._records: dict[Any, Record] = {}
+
+    def case(self, setup: Setup) -> Case:
+        """The case of a setup, without reading its shipped case again.
+
+        Raises:
+            CaseError: as for a case file.
+        """
+        if setup.base not in self._makers:
+            self._makers[setup.base] = CaseMaker(Setup(base=setup.base).case)
+        return self._makers[setup.base](setup.values)
+
+    def rows(self, setups: Sequence[Setup]) -> list[Row]:
+        """Verdict scalars of each setup, in order; `status` says how each ended.
+
+        Raises:
+            CaseError: bad input.
+            InterruptedStudyError: told to stop.
+        """
+        missing = {setup.key: setup for setup in setups if setup.key not in self._rows}
+        if missing:
+            cases = [self.case(setup) for setup in missing.values()]
+            found = run_cases(
+                cases, jobs=self._jobs, done=lambda done: self._progress(done, len(cases)), stop=self._stop
+            )
+            if self._stop():
+                raise InterruptedStudyError("the study was stopped; what is finished is kept")
+            self._rows.update(zip(missing, found, strict=True))
+        return [self._rows[setup.key] for setup in setups]
+
+    def record(self, setup: Setup) -> Record:
+        """The run of a setup with its history.
+
+        Raises:
+            CaseError: bad input.
+            InterruptedStudyError: told to stop.
+        """
+        if setup.key not in self._records:
+            model = self.model(setup)
+            recorder = Recorder(model)
+            ending = simulate(model, recorder, stop=self._stop)
+            if ending.status == "interrupted":
+                raise InterruptedStudyError("the study was stopped; what is finished is kept")
+            self._records[setup.key] = Record(model=model, history=recorder.history(), status=ending.status)
+        return self._records[setup.key]
+
+    def model(self, setup: Setup) -> Model:
+        """What is stepped, at t = 0."""
+        case = self.case(setup)
+        return build_model(case, self._shelf.container_of(case))
+
+    def penalty(self, setup: Setup) -> float:
+        """Normal penalty of a setup, chosen or given [Pa/m]."""
+        case = self.case(setup)
+        return normal_penalty(case, self._shelf.container_of(case).mesh)
+
+    def variants(self, setup: Setup) -> list[Setup]:
+        """The rigid container and the shell: on corners of three penalties and two dampings, on feet, flat."""
+        shell = setup.but({"solver.model": "reduced"})
+        auto = self.penalty(shell)
+        members = [setup.but(RIGID, "rigid, corners")]
+        for factor in PENALTY_FACTORS:
+            for damping in DAMPING_RATIOS:
+                values = {
+                    "contact.normal_penalty_Pa_m": float(f"{factor * auto:.6g}"),
+                    "contact.damping_ratio": damping,
+                }
+                members.append(
+                    shell.but(values, f"shell, corners, penalty x {factor:.2g}, contact damping {damping:g}")
+                )
+        return members + [shell.but({"support.kind": kind}, f"shell, {kind}") for kind in SUPPORTS]
+
+    def band(
+        self,
+        setup: Setup,
+        *,
+        quantity: str,
+        unit: str,
+        value: Callable[[Row], float | None],
+        criterion: str,
+        holds: Callable[[Row], bool],
+        values: Mapping[str, Any] | None = None,
+    ) -> Band:
+        """One number of a setup over deformation, contact stiffness, contact damping and support.
+
+        Args:
+            setup: the statement's case.
+            quantity, unit, value: which number, of a row.
+            criterion, holds: what the statement asks of a row.
+            values: keys changed for all members, such as a shorter duration.
+        """
+        members = self.variants(setup.but(values or {}))
+        found = []
+        for member, row in zip(members, self.rows(members), strict=True):
+            stands = row["status"] != "failed"
+            found.append(
+                Member(
+                    what=member.what,
+                    command=member.command,
+                    outcome=row["outcome"],
+                    value=value(row) if stands else None,
+                    holds=holds(row) if stands else None,
+                )
+            )
+        return Band(quantity=quantity, unit=unit, criterion=criterion, members=tuple(found))

@@ -1,0 +1,564 @@
+"""What the paper says of overturning: A and a/2, reversal, and the limit cycle of its example."""
+
+import math
+
+import numpy as np
+
+from contact.closed_forms_overturning import sustained_sine_threshold_slender
+from contact.floor_acceleration import sine_floor
+from contact.rocking import first_swing_threshold
+from fem.rigid_check import block_of
+from fem.study.drawings import Line, drawing, outcome_map
+from fem.study.laboratory import RIGID, Laboratory
+from fem.study.maps import FREQUENCIES, PEAKS, Cell, doubts, outcomes, stack_map
+from fem.study.setups import ANGULAR_FREQUENCY, FOR_MAPS, PLATEAU, STACK
+from fem.study.statements import Comparison, Drawing, Finding, Setup, Statement, Table
+
+HALF_WIDTH = 0.55  # m, a/2
+NO_SLIDING = {"contact.mu_static": 1.0, "contact.mu_kinetic": 1.0}
+UPLIFT = 9.81 * 1.1 / 4.0  # m/s2, g a/c of the stack
+
+
+def half_width_is_conservative(laboratory: Laboratory) -> Finding:
+    """A <= a/2 as a bound on the safe side."""
+    block = block_of(laboratory.model(STACK.but(RIGID)))
+    threshold = first_swing_threshold(
+        block,
+        lambda peak: sine_floor(amplitude=peak / ANGULAR_FREQUENCY**2, angular_frequency=ANGULAR_FREQUENCY),
+        low=3.0,
+        high=60.0,
+        duration=8.0,
+        relative_tolerance=1e-4,
+    )
+    share = threshold / ANGULAR_FREQUENCY**2 / HALF_WIDTH
+    scan = [
+        STACK.but(
+            {
+                **FOR_MAPS,
+                **NO_SLIDING,
+                "motion.amplitude_m": round(part * HALF_WIDTH, 5),
+                "solver.duration_s": 15.0,
+            },
+            f"stack that cannot slide, A = {part:.2f} a/2 at 6.928 rad/s",
+        )
+        for part in [round(0.1 + 0.02 * n, 3) for n in range(46)]
+    ]
+    found = laboratory.rows(scan)
+    fallen = [
+        setup.values["motion.amplitude_m"] / HALF_WIDTH
+        for setup, row in zip(scan, found, strict=True)
+        if row["outcome"] == "overturned"
+    ]
+    comparisons, witnesses, tables = [], [], []
+    for name, values in (("mu 0.4/0.2", {}), ("mu 1.0", NO_SLIDING)):
+        cells = stack_map(laboratory, values, perturbed=True)
+        below = [cell for cell in cells if cell.computed and cell.amplitude <= HALF_WIDTH]
+        against = [cell for cell in below if cell.fell]
+        sure = [cell for cell in against if cell.sure]
+        comparisons.append(_none(f"{name}: sure cells of the map with A <= a/2 that overturn", len(sure)))
+        tables.append((name, len(below), len(against), len(sure), _smallest(against)))
+        witnesses += [cell.setup for cell in sorted(sure, key=lambda cell: cell.amplitude)[:1]]
+    first = scan[[row["outcome"] for row in found].index("overturned")] if fallen else scan[-1]
+    comparisons += [
+        Comparison(
+            what="smallest A/(a/2) that overturns at 6.928 rad/s, in a scan by 0.02",
+            measured=min(fallen, default=math.inf),
+            relation=">=",
+            limit=1.0,
+            unit="-",
+        ),
+        Comparison(
+            what="A/(a/2) that overturns in the first swing at 6.928 rad/s, exact block",
+            measured=share,
+            relation=">=",
+            limit=1.0,
+            unit="-",
+        ),
+    ]
+    witness = first.but({"solver.duration_s": 15.0}, first.what)
+    return Finding(
+        comparisons=tuple(comparisons),
+        reading=(
+            f"At the paper's frequency an amplitude of {share:.2f} a/2 overturns the stack in the "
+            "first swing, without "
+            "any impact (exact block), and smaller ones do so after impacts, from "
+            f"{min(fallen, default=math.nan):.2f} a/2 "
+            "on in the runs. A bound on the amplitude alone is not on the safe side: what counts "
+            "is the acceleration "
+            "over g a/c and the frequency over p, A Omega²/(g a/c) against sqrt(1 + (Omega/p)²) "
+            "in the first swing."
+        ),
+        setups=(first, *witnesses),
+        tables=(
+            Table(
+                caption="Cells of the stack's map with A <= a/2",
+                columns=(
+                    "friction",
+                    "cells",
+                    "overturn",
+                    ".. and are sure",
+                    "smallest A/(a/2) that overturns",
+                ),
+                rows=tuple(tables),
+            ),
+        ),
+        drawings=(
+            _map_of(laboratory, stack_map(laboratory, NO_SLIDING, perturbed=True), block.frequency_parameter),
+        ),
+        band=laboratory.band(
+            witness.but(
+                {"solver.model": "reduced", "solver.energy_tolerance": 1.0, "solver.duration_s": 10.0}
+            ),
+            quantity=f"rotation ratio at A = {witness.values['motion.amplitude_m'] / HALF_WIDTH:.2f} a/2",
+            unit="-",
+            value=lambda row: min(float(row["rotation_ratio"]), 1.0),
+            criterion="it stands, as A <= a/2 says",
+            holds=lambda row: row["outcome"] != "overturned",
+        ),
+    )
+
+
+def rotation_at_half_width(laboratory: Laboratory) -> Finding:
+    """phi < beta in the first quarter period for A = a/2."""
+    setups, comparisons, rows = [], [], []
+    block = block_of(laboratory.model(STACK.but(RIGID)))
+    for frequency in (2.5, 3.5, 5.0, ANGULAR_FREQUENCY, 9.0, 12.0):
+        setup = STACK.but(
+            {
+                **FOR_MAPS,
+                **NO_SLIDING,
+                "motion.amplitude_m": HALF_WIDTH,
+                "motion.angular_frequency_rad_s": frequency,
+                "solver.duration_s": 10.0,
+                "output.history_s": 0.005,
+            },
+            f"stack that cannot slide, A = a/2 at {frequency:g} rad/s",
+        )
+        record = laboratory.record(setup)
+        time, rotation = record.history["time_s"], np.abs(record.history["rotation_rad"])
+        quarter = time <= 0.5 * math.pi / frequency
+        ratio = float(rotation[quarter].max()) / block.slenderness_angle
+        fell = record.status == "overturned"
+        rows.append((frequency, HALF_WIDTH * frequency**2, ratio, "overturned" if fell else "stands"))
+        setups.append(setup)
+        comparisons += [
+            Comparison(
+                what=f"rotation in the first quarter period over beta, {frequency:g} rad/s",
+                measured=ratio,
+                relation="<=",
+                limit=1.0,
+                unit="-",
+            ),
+            Comparison(
+                what=f"overturns in the end, {frequency:g} rad/s",
+                measured=float(fell),
+                relation="<=",
+                limit=0.0,
+                unit="-",
+                inside=False,
+            ),
+        ]
+    return Finding(
+        comparisons=tuple(comparisons),
+        bounds="in the first quarter period; it says nothing of what follows",
+        reading=(
+            "Within a quarter of the first period the rotation stays below beta. That does not "
+            "save the stack: it goes on "
+            "turning with the speed it has, and overturns at most frequencies."
+        ),
+        setups=tuple(setups),
+        tables=(
+            Table(
+                caption="A = a/2 = 550 mm",
+                columns=(
+                    "frequency [rad/s]",
+                    "peak [m/s²]",
+                    "rotation/beta in the first quarter [-]",
+                    "in the end",
+                ),
+                rows=tuple(rows),
+            ),
+        ),
+    )
+
+
+def beyond_half_width(laboratory: Laboratory) -> Finding:
+    """A > a/2 and a tilting moment beyond the restoring one: overturning."""
+    cells = [cell for cell in stack_map(laboratory, NO_SLIDING, perturbed=True) if cell.computed]
+    beyond = [cell for cell in cells if cell.amplitude > HALF_WIDTH and cell.peak > UPLIFT]
+    standing = [cell for cell in beyond if not cell.fell]
+    sure = [cell for cell in standing if cell.sure]
+    limit = [
+        cell
+        for cell in sure
+        if cell.peak / UPLIFT < sustained_sine_threshold_slender(cell.angular_frequency / 1.88)
+    ]
+    return Finding(
+        comparisons=(
+            Comparison(
+                what="cells with A > a/2 and M_T > M_R that overturn, of all such cells",
+                measured=1.0 - len(standing) / len(beyond) if beyond else math.nan,
+                relation=">=",
+                limit=0.9,
+                unit="-",
+                inside=False,
+            ),
+            _none("sure cells with A > a/2 and M_T > M_R that stand", len(sure)),
+        ),
+        reading=(
+            f"Of {len(beyond)} motions with A > a/2 whose tilting moment exceeds the restoring one, "
+            f"{len(beyond) - len(standing)} overturn the stack that cannot slide and "
+            f"{len(standing)} do not, {len(sure)} "
+            f"of them surely ({len(limit)} below the exact limit of the first swing). As a "
+            "sufficient condition it "
+            "fails where the floor is slow and barely exceeds g a/c."
+        ),
+        setups=tuple(cell.setup for cell in sure[:2]),
+    )
+
+
+def beginning_is_restored(laboratory: Laboratory) -> Finding:
+    """Neither the beginning of tilting nor the loss of stiction necessarily overturns."""
+    comparisons, setups, rows = [], [], []
+    for name, values in (("mu 0.4/0.2", {}), ("mu 1.0", NO_SLIDING)):
+        cells = [cell for cell in stack_map(laboratory, values, perturbed=True) if cell.computed]
+        tilted = [cell for cell in cells if cell.tilted]
+        slid = [cell for cell in cells if cell.row["max_slip_m"] > 1.1e-4]
+        back = [cell for cell in tilted if not cell.fell and cell.sure]
+        held = [cell for cell in slid if not cell.fell and cell.sure]
+        rows.append((name, len(cells), len(tilted), len(back), len(slid), len(held)))
+        comparisons.append(_some(f"{name}: cells that tilt and surely stand", len(back)))
+        if not values:
+            comparisons.append(_some(f"{name}: cells that lose stiction and surely stand", len(held)))
+    pulse = PLATEAU.but(
+        {**RIGID, "motion.cycles": 10.0, "solver.duration_s": 25.0},
+        "stack, ten cycles of 4.0 m/s² at 6.928 rad/s, then a floor at rest",
+    )
+    row = laboratory.rows([pulse])[0]
+    setups.append(pulse)
+    comparisons.append(
+        _some(
+            "ten cycles of the plateau value: it tilts and is back on its base", float(bool(row["restored"]))
+        )
+    )
+    return Finding(
+        comparisons=tuple(comparisons),
+        reading=(
+            "Many motions tilt the stack, or make it slide, without overturning it; after ten "
+            "cycles of the plateau value "
+            "it comes back to rest on its base. The counts are of the cells of one map, not of earthquakes."
+        ),
+        setups=tuple(setups),
+        tables=(
+            Table(
+                caption="Cells of the stack's map",
+                columns=(
+                    "friction",
+                    "cells",
+                    "tilt",
+                    ".. and surely stand",
+                    "lose stiction",
+                    ".. and surely stand",
+                ),
+                rows=tuple(rows),
+            ),
+        ),
+        band=laboratory.band(
+            pulse.but({"solver.model": "reduced", "solver.duration_s": 20.0}),
+            quantity="rotation ratio",
+            unit="-",
+            value=lambda row: row["rotation_ratio"],
+            criterion="it tilts and does not overturn",
+            holds=lambda row: row["first_uplift_s"] is not None and row["outcome"] != "overturned",
+        ),
+    )
+
+
+def short_before_reversal(laboratory: Laboratory) -> Finding:
+    """Tilting that starts short before the reversal of the ground motion: how short is short."""
+    ratios = (1.01, 1.02, 1.04, 1.07, 1.1, 1.15, 1.2, 1.3, 1.4, 1.6, 1.8, 2.0, 2.5, 3.0)
+    cells = stack_map(
+        laboratory, NO_SLIDING, peaks=[float(f"{ratio * UPLIFT:.5g}") for ratio in ratios], perturbed=True
+    )
+    leads = {cell.setup.key: _lead(cell) for cell in cells}
+    fallen = [cell for cell in cells if cell.computed and cell.fell]
+    short = [cell for cell in cells if cell.computed and leads[cell.setup.key] <= 1.0 / 12.0]
+    bad = [cell for cell in short if cell.fell and cell.sure]
+    smallest = min(fallen, key=lambda cell: leads[cell.setup.key], default=None)
+    comparisons = [
+        _none("sure cells that tilt less than a twelfth of a period before reversal and overturn", len(bad)),
+        _none(
+            "sure cells that tilt at any time before reversal and overturn",
+            sum(cell.sure for cell in fallen),
+            inside=False,
+        ),
+    ]
+    least = leads[smallest.setup.key] if smallest else math.nan
+    points = [
+        Line(
+            x=[cell.angular_frequency for cell in cells if cell.fell is fell],
+            y=[leads[cell.setup.key] for cell in cells if cell.fell is fell],
+            label=label,
+            style=style,
+        )
+        for fell, label, style in ((False, "stands", "."), (True, "overturns", "x"))
+    ]
+    return Finding(
+        comparisons=tuple(comparisons),
+        bounds=(
+            "tilting begins less than a twelfth of a period before the floor reverses (peak up to 1.15 g a/c)"
+        ),
+        reading=(
+            "The least time before reversal with which the stack is still overturned is "
+            f"{least:.3f} of a period"
+            + (
+                f" ({least * 2.0 * math.pi / smallest.angular_frequency:.2f} s, at "
+                f"{smallest.angular_frequency:g} rad/s)."
+                if smallest
+                else "."
+            )
+            + " Slow motion overturns first; the floor's time to reverse must be held against 1/p = 0.53 s."
+        ),
+        setups=(smallest.setup,) if smallest else (),
+        drawings=(
+            drawing(
+                "short-before-reversal",
+                (
+                    "When the stack begins to tilt, in periods before the floor reverses, and what "
+                    "becomes of it."
+                ),
+                points,
+                x_label="angular frequency [rad/s]",
+                y_label="lead over the period [-]",
+            ),
+        ),
+    )
+
+
+def within_the_limit_cycle(laboratory: Laboratory) -> Finding:
+    """50 mm whatever the frequency: how far the stack turns, whether it diverges, whether it dies out."""
+    frequencies = [float(f"{w:.4g}") for w in np.geomspace(4.0, 40.0, 25)]
+    curves, comparisons, setups = [], [], []
+    for name, values in (("slipping, mu 0.4/0.2", {}), ("sticking, mu 1.0", NO_SLIDING)):
+        group = [
+            STACK.but(
+                {
+                    **FOR_MAPS,
+                    **values,
+                    "motion.angular_frequency_rad_s": frequency,
+                    "solver.duration_s": 20.0,
+                },
+                f"stack, {name}, 50 mm at {frequency:g} rad/s",
+            )
+            for frequency in frequencies
+        ]
+        rows = laboratory.rows(group)
+        ratios = [
+            math.nan if row["status"] == "failed" else min(float(row["rotation_ratio"]), 1.0) for row in rows
+        ]
+        worst = int(np.nanargmax(ratios))
+        setups.append(group[worst])
+        curves.append(Line(x=frequencies, y=ratios, label=name, style="o-"))
+        comparisons += [
+            Comparison(
+                what=f"{name}: rotation ratio at the paper's 6.928 rad/s",
+                measured=float(laboratory.rows([STACK.but({**FOR_MAPS, **values})])[0]["rotation_ratio"]),
+                relation="<=",
+                limit=0.5,
+                unit="-",
+            ),
+            Comparison(
+                what=f"{name}: largest rotation ratio from 4 to 40 rad/s",
+                measured=ratios[worst],
+                relation="<=",
+                limit=0.5,
+                unit="-",
+                inside=False,
+            ),
+            Comparison(
+                what=f"{name}: frequencies at which it overturns",
+                measured=float(sum(row["outcome"] == "overturned" for row in rows)),
+                relation="<=",
+                limit=0.0,
+                unit="-",
+                inside=False,
+            ),
+            Comparison(
+                what=f"{name}: rotation in the last 5 s over that before, worst frequency",
+                measured=_growth(laboratory, group[worst]),
+                relation="<=",
+                limit=1.05,
+                unit="-",
+                inside=False,
+            ),
+        ]
+        ended = group[worst].but(
+            {"motion.cycles": 20.0, "solver.duration_s": 30.0}, f"{group[worst].what}, 20 cycles, then rest"
+        )
+        row = laboratory.rows([ended])[0]
+        comparisons.append(
+            _some(
+                f"{name}: without drive the motion dies out, worst frequency",
+                float(bool(row["restored"])),
+                inside=False,
+            )
+        )
+        setups.append(ended)
+    return Finding(
+        comparisons=tuple(comparisons),
+        bounds="at the paper's frequency, where the stack does not move at all",
+        reading=(
+            "At 6.928 rad/s 50 mm are 2.4 m/s²: nothing moves, and the statement is empty. At "
+            "other frequencies "
+            "the same 50 mm turn the stack to "
+            f"{max(one.measured for one in comparisons if 'largest' in one.what):.2f} "
+            "of beta. 50 mm against a/2 says nothing of that; the drawing does."
+        ),
+        setups=tuple(setups),
+        drawings=(
+            drawing(
+                "within-the-limit-cycle",
+                "Largest rotation over beta (1: overturned) of the rigid stack under 50 mm, over frequency.",
+                curves,
+                x_label="angular frequency [rad/s]",
+                y_label="rotation ratio [-]",
+                log_x=True,
+            ),
+        ),
+        band=laboratory.band(
+            STACK.but({"solver.duration_s": 10.0}),
+            quantity="rotation ratio at the paper's frequency",
+            unit="-",
+            value=lambda row: row["rotation_ratio"],
+            criterion="at most half of beta",
+            holds=lambda row: row["outcome"] != "overturned" and row["rotation_ratio"] <= 0.5,
+        ),
+    )
+
+
+def _growth(laboratory: Laboratory, setup: Setup) -> float:
+    """Largest rotation of the last 5 s of a run over the largest before."""
+    history = laboratory.record(setup.but({"output.history_s": 0.02})).history
+    time, rotation = history["time_s"], np.abs(history["rotation_rad"])
+    late = time >= time[-1] - 5.0
+    return float(rotation[late].max() / rotation[~late].max())
+
+
+def _lead(cell: Cell) -> float:
+    """Time from the first uplift to the next reversal of the floor, over the period."""
+    phase = cell.angular_frequency * float(cell.row["first_uplift_s"] or math.nan) / (2.0 * math.pi)
+    return (0.25 - phase) % 0.5
+
+
+def _map_of(laboratory: Laboratory, cells: list[Cell], frequency_parameter: float) -> Drawing:
+    smooth = np.linspace(min(FREQUENCIES), max(FREQUENCIES), 100)
+    first = [UPLIFT * sustained_sine_threshold_slender(w / frequency_parameter) for w in smooth]
+    return outcome_map(
+        "half-width-map",
+        "Outcome of the rigid stack that cannot slide; dots: unsure cells.",
+        x=FREQUENCIES,
+        y=PEAKS,
+        outcomes=outcomes(cells),
+        unsure=doubts(cells),
+        x_label="angular frequency [rad/s]",
+        y_label="peak floor acceleration [m/s²]",
+        curves=(
+            Line(x=smooth, y=HALF_WIDTH * smooth**2, label="A = a/2"),
+            Line(x=smooth, y=np.full_like(smooth, UPLIFT), label="static rule, g a/c"),
+            Line(x=smooth, y=first, label="first swing (slender)"),
+        ),
+    )
+
+
+def _smallest(cells: list[Cell]) -> float | None:
+    return min((cell.amplitude / HALF_WIDTH for cell in cells), default=None)
+
+
+def _none(what: str, count: float, *, inside: bool = True) -> Comparison:
+    return Comparison(what=what, measured=float(count), relation="<=", limit=0.0, unit="-", inside=inside)
+
+
+def _some(what: str, count: float, *, inside: bool = True) -> Comparison:
+    return Comparison(what=what, measured=float(count), relation=">=", limit=1.0, unit="-", inside=inside)
+
+
+STATEMENTS = (
+    Statement(
+        name="beginning-is-restored",
+        section="abstract, 1",
+        quote=(
+            "neither the beginning of an overturning motion nor the loss of stiction necessarily "
+            "causes the structure to fall over"
+        ),
+        tried=(
+            "Map of the rigid stack over frequency and peak acceleration, with friction that slips "
+            "and that holds; ten cycles of the plateau value."
+        ),
+        examine=beginning_is_restored,
+        seconds=40.0,
+    ),
+    Statement(
+        name="short-before-reversal",
+        section="1",
+        quote=(
+            "if tilting starts short before reversal of the ground motion, some bumping will happen, "
+            "but the stack will not fall over"
+        ),
+        tried=(
+            "Peaks from 1.01 to 3 g a/c over frequency, stack that cannot slide: time from tilting "
+            "to reversal, and the end."
+        ),
+        examine=short_before_reversal,
+        seconds=20.0,
+    ),
+    Statement(
+        name="half-width-is-conservative",
+        section="5.3",
+        quote="the condition A <= a/2 is only a conservative description of the falling over limit",
+        tried=(
+            "The same maps below A = a/2, a scan of the amplitude at the paper's frequency, and the "
+            "exact first swing."
+        ),
+        examine=half_width_is_conservative,
+        seconds=15.0,
+    ),
+    Statement(
+        name="rotation-at-half-width",
+        section="5.3",
+        quote=(
+            "the acceleration of the center of mass during the first quarter period, leading to phi "
+            "< beta for A = a/2"
+        ),
+        tried=(
+            "A = a/2 at six frequencies, stack that cannot slide: rotation in the first quarter "
+            "period, and the end."
+        ),
+        examine=rotation_at_half_width,
+        seconds=2.0,
+    ),
+    Statement(
+        name="beyond-half-width",
+        section="5.4",
+        quote=(
+            "Overturning: tilting moment does exceed restoring moment; steady state amplitude A > "
+            "a/2 (weak condition)"
+        ),
+        tried="The map of the stack that cannot slide, above A = a/2 and g a/c.",
+        examine=beyond_half_width,
+        seconds=1.0,
+    ),
+    Statement(
+        name="within-the-limit-cycle",
+        section="7",
+        quote=(
+            "50 mm is << a/2. Regardless of sticking or slipping the tilting of the body will remain "
+            "well within the limit cycle. Thus, Lyapunov stability is given"
+        ),
+        tried=(
+            "50 mm at the paper's frequency and from 4 to 40 rad/s, slipping and sticking: rotation, "
+            "growth, decay without drive."
+        ),
+        examine=within_the_limit_cycle,
+        seconds=15.0,
+    ),
+)

@@ -1,0 +1,371 @@
+"""Sections 5.1 to 5.3: the limit conditions of sticking, sliding and tilting, Eqs. (7) to (13), one by one."""
+
+import math
+
+import numpy as np
+
+from contact.closed_forms_rocking import holding_acceleration
+from fem.rigid_check import block_of
+from fem.study.drawings import Line, drawing
+from fem.study.laboratory import RIGID, Laboratory
+from fem.study.setups import ANGULAR_FREQUENCY, BOX, FOR_MAPS, STACK, harmonic
+from fem.study.statements import Comparison, Finding, Setup, Statement, Table
+
+NO_SLIDING = {"contact.mu_static": 1.0, "contact.mu_kinetic": 1.0}
+#: a scan around a limit: peaks over the limit, and how near the onset must lie
+AROUND = tuple(round(0.95 + 0.005 * n, 4) for n in range(21))
+NEAR = 0.01
+#: a flat bed carries on its outer 15 % when the resultant is at 0.9 of the half width
+AROUND_FLAT = tuple(round(0.8 + 0.01 * n, 4) for n in range(26))
+TURNING = 0.2  #: s, in which a released container shows where it goes
+
+
+def stiction_limit(laboratory: Laboratory) -> Finding:
+    """Eq. (8): from which floor acceleration on a box slides."""
+    gravity, comparisons, setups = 9.81, [], []
+    for friction in (0.2, 0.3, 0.4, 0.5):
+        scan = [
+            BOX.but(
+                {
+                    **FOR_MAPS,
+                    "contact.mu_static": friction,
+                    "contact.mu_kinetic": 0.5 * friction,
+                    **harmonic(share * friction * gravity, ANGULAR_FREQUENCY),
+                },
+                f"box, mu_s = {friction:g}, peak {share:g} of mu_s g",
+            )
+            for share in AROUND
+        ]
+        slides = [row["outcome"] in ("slide", "slide-rock") for row in laboratory.rows(scan)]
+        comparisons.append(_onset(f"onset of sliding over mu_s g, mu_s = {friction:g}", slides))
+        setups.append(scan[slides.index(True)] if True in slides else scan[-1])
+    return Finding(
+        comparisons=tuple(comparisons),
+        reading="The box begins to slide within a scan step (0.5 %) of mu_s g, once it is exceeded.",
+        setups=tuple(setups),
+    )
+
+
+def kinetic_limit(laboratory: Laboratory) -> Finding:
+    """Eq. (11): what accelerates a sliding box."""
+    setup = BOX.but(
+        {
+            **RIGID,
+            "motion.angular_frequency_rad_s": 10.0,
+            "solver.duration_s": 8.0,
+            "output.history_s": 0.002,
+        },
+        "box, 50 mm at 10 rad/s: 5.0 m/s²",
+    )
+    record = laboratory.record(setup)
+    history, weight = record.history, record.model.static.weight
+    sliding = np.array([mode == "slide" for mode in history.modes])
+    shear = np.abs(history["shear_force_N"]) / weight
+    while_sliding = float(np.quantile(shear[sliding], 0.99))
+    floor = np.abs(history["base_acceleration_m_s2"]).max()
+    window = history["time_s"] <= 2.0
+    return Finding(
+        comparisons=(
+            Comparison(
+                what="shear force over weight while sliding, 99 % of the samples",
+                measured=while_sliding,
+                relation="<=",
+                limit=0.2 * 1.005,
+                unit="-",
+            ),
+            Comparison(
+                what="largest acceleration of the sliding box over the floor's",
+                measured=while_sliding * 9.81 / floor,
+                relation="<=",
+                limit=1.0,
+                unit="-",
+            ),
+        ),
+        reading=(
+            f"While it slides the box is accelerated by mu_k g = {0.2 * 9.81:.2f} m/s² and no "
+            "more, although the "
+            f"floor reaches {floor:.1f} m/s². The acceleration in Eq. 11 is the body's, that in "
+            "Eq. 8 the floor's; "
+            "the paper writes both a(t)."
+        ),
+        setups=(setup,),
+        drawings=(
+            drawing(
+                "kinetic-limit",
+                (
+                    "Shear force over weight of the sliding box: it never exceeds mu_s and is mu_k "
+                    "while sliding."
+                ),
+                [
+                    Line(
+                        x=history["time_s"][window],
+                        y=history["shear_force_N"][window] / weight,
+                        label="shear force / weight",
+                    ),
+                    Line(
+                        x=history["time_s"][window],
+                        y=-history["base_acceleration_m_s2"][window] / 9.81,
+                        label="what sticking would need",
+                        style="--",
+                    ),
+                ],
+                x_label="time [s]",
+                y_label="force / weight [-]",
+                levels={"mu_s": 0.4, "mu_k": 0.2},
+            ),
+        ),
+    )
+
+
+def uplift_limit(laboratory: Laboratory) -> Finding:
+    """Eqs. (9) and (10): from which floor acceleration on a stack turns about a corner."""
+    comparisons, setups = [], []
+    for boxes, kind in ((2, "corners"), (3, "corners"), (4, "corners"), (4, "flat")):
+        limit = 9.81 * 1.1 / boxes
+        values = {"container.boxes": boxes, "support.kind": kind, "solver.duration_s": 5.0}
+        shares = AROUND_FLAT if kind == "flat" else AROUND
+        scan = [
+            STACK.but(
+                {**FOR_MAPS, **NO_SLIDING, **values, **harmonic(share * limit, ANGULAR_FREQUENCY)},
+                f"{boxes} boxes on {kind}, peak {share:g} of g a/c",
+            )
+            for share in shares
+        ]
+        tilts = [row["first_uplift_s"] is not None for row in laboratory.rows(scan)]
+        what = f"onset of tilting over g a/c, {boxes} boxes on {kind}"
+        comparisons.append(_onset(what, tilts, shares, inside=kind == "corners"))
+        setups.append(scan[tilts.index(True)] if True in tilts else scan[-1])
+    values = {**FOR_MAPS, **NO_SLIDING, "support.kind": "flat", "solver.duration_s": 5.0}
+    opening = [
+        STACK.but({**values, **harmonic(share * 9.81 * 1.1 / 12.0, ANGULAR_FREQUENCY)}) for share in AROUND
+    ]
+    opens = [row["first_opening_s"] is not None for row in laboratory.rows(opening)]
+    third = _onset("first opening of an edge over g a/(3 c), 4 boxes on flat", opens)
+    return Finding(
+        comparisons=(*comparisons, third),
+        bounds="a base that stands on its two corners",
+        reading=(
+            "On corners the stack begins to turn within a scan step of g a/c. A flat base on an "
+            "elastic bed opens at "
+            "its edge at a third of that already, which is no sign of tilting, and turns about a "
+            "narrow strip at "
+            f"{comparisons[-1].measured:.2f} g a/c."
+        ),
+        setups=tuple(setups),
+    )
+
+
+def centre_or_base(laboratory: Laboratory) -> Finding:
+    """Section 5.1: a sticking body moves with the floor."""
+    comparisons, setups = [], []
+    for model in ("rigid", "reduced"):
+        setup = STACK.but(
+            {"solver.model": model, "solver.duration_s": 5.0}, f"stack, {model}, 50 mm at 6.928 rad/s"
+        )
+        record = laboratory.record(setup)
+        shear = np.abs(record.history["shear_force_N"]).max()
+        floor = record.model.container.mesh.mass * np.abs(record.history["base_acceleration_m_s2"]).max()
+        setups.append(setup)
+        comparisons.append(
+            Comparison(
+                what=f"|mean acceleration of the sticking body over the floor's - 1|, {model}",
+                measured=abs(float(shear / floor) - 1.0),
+                relation=">=",
+                limit=0.05,
+                unit="-",
+            )
+        )
+    worst = max(one.measured for one in comparisons)
+    return Finding(
+        comparisons=tuple(comparisons),
+        reading=(
+            "As long as the container sticks, its mean acceleration is the floor's, within "
+            f"{100.0 * worst:.2g} %; whether the floor or the mass centre is accelerated makes no "
+            "difference, "
+            "and the quasi-static limits may be read with the floor's acceleration. The sentence would "
+            "need a difference that mattered."
+        ),
+        setups=tuple(setups),
+    )
+
+
+def moments_of_a_tilted_body(laboratory: Laboratory) -> Finding:
+    """Eqs. (12) and (13): at which constant acceleration a tilted body begins to fall, or comes back."""
+    comparisons, rows = [], []
+    setups: list[Setup] = []
+    block = block_of(laboratory.model(STACK.but(RIGID)))
+    angle = block.slenderness_angle
+    for share in (0.2, 0.5, 0.8):
+        balance = holding_acceleration(block, share * angle)
+        back, away = (_turn(laboratory, setups, share * angle, factor * balance) for factor in (0.98, 1.02))
+        rows.append((share, balance, back, away))
+        comparisons += [
+            _sign(
+                f"turn in {TURNING} s at {share:g} of beta, 2 % below the balance of Eqs. 12, 13", back, -1.0
+            ),
+            _sign(f"turn in {TURNING} s at {share:g} of beta, 2 % above it", away, 1.0),
+        ]
+    return Finding(
+        comparisons=tuple(comparisons),
+        reading=(
+            "With the moments of Eqs. 12 and 13 in balance, a(t) = g cot(phi + alpha), the stack "
+            "neither falls nor "
+            "returns; two per cent beside it, it does one or the other, at every rotation tried."
+        ),
+        setups=tuple(setups),
+        tables=(
+            Table(
+                caption=f"Rotation after {TURNING} s less that at the start, released at rest",
+                columns=(
+                    "phi/beta [-]",
+                    "balance [m/s²]",
+                    "2 % below [mrad]",
+                    "2 % above [mrad]",
+                ),
+                rows=tuple((share, balance, 1e3 * back, 1e3 * away) for share, balance, back, away in rows),
+            ),
+        ),
+    )
+
+
+def sign_beyond_balance(laboratory: Laboratory) -> Finding:
+    """The remark below Eq. (13): the sign of the restoring moment beyond beta."""
+    block = block_of(laboratory.model(STACK.but(RIGID)))
+    angle = block.slenderness_angle
+    alpha = 0.5 * math.pi - angle
+    weight = 98100.0
+
+    def restoring(rotation: float) -> float:  # Eq. (13) as printed
+        return -weight * 0.55 / math.cos(alpha) * math.cos(rotation + alpha)
+
+    setups: list[Setup] = []
+    falls, returns = (_turn(laboratory, setups, factor * angle, 0.0) for factor in (1.02, 0.98))
+    return Finding(
+        comparisons=(
+            Comparison(
+                what="M_R of Eq. 13 at 1.02 beta",
+                measured=restoring(1.02 * angle) / 1e3,
+                relation="<=",
+                limit=0.0,
+                unit="kNm",
+            ),
+            Comparison(
+                what="-M_R of Eq. 13 at 0.98 beta",
+                measured=-restoring(0.98 * angle) / 1e3,
+                relation="<=",
+                limit=0.0,
+                unit="kNm",
+            ),
+        ),
+        reading=(
+            "As printed, Eq. 13 is negative (restoring) below beta and positive (overturning) "
+            "above: the remark has "
+            f"it the wrong way round. Released at rest, the stack turns by {1e3 * falls:+.2f} "
+            f"mrad in {TURNING} s from "
+            f"1.02 beta and by {1e3 * returns:+.2f} mrad from 0.98 beta."
+        ),
+        setups=tuple(setups),
+    )
+
+
+def _turn(laboratory: Laboratory, setups: list[Setup], rotation: float, acceleration: float) -> float:
+    """Rotation after 0.2 s on a floor of constant acceleration, released at rest, less the start [rad]."""
+    motion = (
+        {
+            "motion.kind": "pulse",
+            "motion.shape": "rectangular",
+            # a floor that goes to the left tilts the container to the right
+            "motion.peak_acceleration_m_s2": -float(f"{acceleration:.8g}"),
+            "motion.pulse_s": 1.0,
+        }
+        if acceleration
+        else {"motion.kind": "none"}
+    )
+    setup = STACK.but(
+        {
+            **RIGID,
+            **NO_SLIDING,
+            **motion,
+            "initial.rotation_rad": float(f"{rotation:.8g}"),
+            "solver.duration_s": TURNING,
+            "output.history_s": 0.01,
+        },
+        f"stack released at {rotation:.4f} rad, floor at {-acceleration:.3f} m/s²",
+    )
+    setups.append(setup)
+    history = laboratory.record(setup).history
+    # beyond the balance the run goes on until the container has fallen
+    after = float(np.interp(TURNING, history["time_s"], history["rotation_rad"]))
+    return after - float(history["rotation_rad"][0])
+
+
+def _sign(what: str, measured: float, sign: float) -> Comparison:
+    return Comparison(
+        what=what, measured=1e3 * measured, relation=">=" if sign > 0.0 else "<=", limit=0.0, unit="mrad"
+    )
+
+
+def _onset(
+    what: str, seen: list[bool], shares: tuple[float, ...] = AROUND, *, inside: bool = True
+) -> Comparison:
+    """Where a scan first sees something, if it sees it from there on; else nan."""
+    first = seen.index(True) if True in seen else None
+    clean = first is not None and all(seen[first:])
+    measured = 0.5 * (shares[first - 1] + shares[first]) if clean and first else math.nan
+    return Comparison(
+        what=what, measured=measured, relation="=", limit=1.0, unit="-", tolerance=NEAR, inside=inside
+    )
+
+
+STATEMENTS = (
+    Statement(
+        name="stiction-limit",
+        section="5.1, Eqs. 7, 8",
+        quote="F_F^S(t) = m a(t) <= G mu_s",
+        tried="Scan of the peak acceleration around mu_s g, for four coefficients of friction, rigid box.",
+        examine=stiction_limit,
+        seconds=3.0,
+    ),
+    Statement(
+        name="kinetic-limit",
+        section="5.2, Eq. 11",
+        quote="F_F^k(t) = m a(t) <= G mu_k; compared to stiction, the accelerating base shear is reduced",
+        tried="The shear force of a rigid box while it slides under 5.0 m/s², mu 0.4/0.2.",
+        examine=kinetic_limit,
+    ),
+    Statement(
+        name="uplift-limit",
+        section="5.1, Eqs. 9, 10",
+        quote="M_T(t) = m a(t) c/2, M_R = -G a/2",
+        tried="Scan of the peak acceleration around g a/c for two, three and four boxes that cannot slide.",
+        examine=uplift_limit,
+        seconds=6.0,
+    ),
+    Statement(
+        name="centre-or-base",
+        section="5.1",
+        quote=(
+            "Assessment of the quasi-static mode is possible only, if the center of gravity ... is "
+            "accelerated instead of the base"
+        ),
+        tried="Shear force of the sticking stack over mass times floor acceleration, rigid and shell.",
+        examine=centre_or_base,
+    ),
+    Statement(
+        name="moments-of-a-tilted-body",
+        section="5.3, Eqs. 12, 13",
+        quote="M_T = m a c/(2 sin alpha) sin(phi + alpha), M_R = -G a/(2 cos alpha) cos(phi + alpha)",
+        tried=(
+            "Rigid stack released at rest at three rotations on a floor that accelerates 2 % beside "
+            "their balance."
+        ),
+        examine=moments_of_a_tilted_body,
+    ),
+    Statement(
+        name="sign-beyond-balance",
+        section="5.3, below Eq. 13",
+        quote="Note, that the restoring moments is negative for phi > beta",
+        tried="The sign of Eq. 13 as printed, and the stack released at rest beside beta.",
+        examine=sign_beyond_balance,
+    ),
+)

@@ -1,0 +1,22 @@
+"""The paper's containers and motions, as shipped cases."""
+
+from fem.study.statements import Setup
+
+BOX = Setup(base="seed_box", what="one box, 50 mm at 6.928 rad/s")
+STACK = Setup(base="seed_stack", what="stack of four, 50 mm at 6.928 rad/s")
+PLATEAU = Setup(base="seed_stack_plateau", what="stack of four, 4.0 m/s² at 6.928 rad/s")
+
+ANGULAR_FREQUENCY = 6.928  #: sqrt(2.4 m/s2 / 50 mm), the paper's motion [rad/s]
+STATED_PEAK, PLATEAU_PEAK = 2.4, 4.0  #: [m/s2]
+#: the paper's g with its mass: 2500 kg
+G_TEN = {"gravity_m_s2": 10.0, "container.weight_N": 25000.0}
+#: coarser steps that a rigid container bears, for maps
+FOR_MAPS = {"solver.model": "rigid", "solver.energy_tolerance": 10.0, "output.history_s": 2.0}
+
+
+def harmonic(peak: float, angular_frequency: float) -> dict[str, float]:
+    """A harmonic motion by its peak acceleration [m/s2] and frequency [rad/s]."""
+    return {
+        "motion.peak_acceleration_m_s2": float(f"{peak:.8g}"),
+        "motion.angular_frequency_rad_s": float(f"{angular_frequency:.8g}"),
+    }

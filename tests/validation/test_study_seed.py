@@ -1,0 +1,32 @@
+"""Statements of the seed paper whose verdict is known beforehand, tried by runs of the rigid container."""
+
+import pytest
+
+from fem.study import numbers, quasi_static, rocking
+from fem.study.laboratory import Laboratory
+from fem.study.statements import Verdict
+
+
+@pytest.fixture(scope="module")
+def laboratory():
+    return Laboratory()
+
+
+@pytest.mark.parametrize(
+    ("examine", "verdict"),
+    [
+        (numbers.one_box, Verdict.BOUNDED),  # with g = 9.81 the utilisation of stiction is 1.019
+        (numbers.four_boxes, Verdict.BOUNDED),
+        (numbers.half_width, Verdict.REFUTED),  # 550 mm, printed 600
+        (quasi_static.kinetic_limit, Verdict.CONFIRMED),  # Coulomb
+        (quasi_static.moments_of_a_tilted_body, Verdict.CONFIRMED),  # statics: g tan(al - theta)
+        (quasi_static.sign_beyond_balance, Verdict.REFUTED),  # the sign of a cosine
+        (rocking.eq_2, Verdict.BOUNDED),  # sqrt(3/4) of the block's period at small rotation
+        (rocking.eq_3, Verdict.BOUNDED),  # T p/4 = arccosh(1/(1 - theta/al)), which 2 pi/4 meets near 0.6 al
+        (rocking.control_periods, Verdict.BOUNDED),  # the same
+    ],
+)
+def test_verdict_on_a_statement_that_theory_decides(laboratory, examine, verdict):
+    finding = examine(laboratory)
+    assert finding.failed_runs == 0
+    assert finding.verdict is verdict
