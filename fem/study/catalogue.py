@@ -2,7 +2,18 @@
 
 from dataclasses import dataclass
 
-from fem.study import amplification, counting, numbers, overturning, quasi_static, rocking, sliding
+from fem.study import (
+    amplification,
+    counting,
+    example,
+    friction,
+    numbers,
+    overturning,
+    quasi_static,
+    rocking,
+    shape,
+    sliding,
+)
 from fem.study.statements import Statement
 
 
@@ -16,13 +27,16 @@ class Untried:
 
 
 GROUPS: dict[str, tuple[Statement, ...]] = {
+    "The central claim, counted": counting.STATEMENTS,
+    "The example of section 7": example.STATEMENTS,
     "The printed numbers": numbers.STATEMENTS,
     "Limit conditions": quasi_static.STATEMENTS,
     "Sliding": sliding.STATEMENTS,
+    "Friction": friction.STATEMENTS,
     "Rocking": rocking.STATEMENTS,
     "Response": amplification.STATEMENTS,
     "Overturning": overturning.STATEMENTS,
-    "The central claim, counted": counting.STATEMENTS,
+    "The body": shape.STATEMENTS,
 }
 
 UNTRIED = (
