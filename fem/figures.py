@@ -194,7 +194,12 @@ def forces_figure(run: OpenedRun) -> Figure:
     history, contact = run.history, run.case.contact
     time, normal, shear = history["time_s"], 1e-3 * history["normal_force_N"], 1e-3 * history["shear_force_N"]
     weight, states = 1e-3 * run.case.weight, _states(run)
-    figure, axes = time_panels((1.5, 1.7), states=states, gaps=(LEGEND_GAP,), header=3)
+    limits = [
+        _scale_without_impacts(normal, LARGE_FORCE * weight),
+        _scale_without_impacts(shear, LARGE_FORCE * contact.mu_static * weight),
+    ]
+    cut = any(limit is not None for limit in limits)
+    figure, axes = time_panels((1.5, 1.7), states=states, gaps=(LEGEND_GAP,), header=3 if cut else 2)
     for panel, force, label, colour in (
         (axes[0], normal, "normal force [kN]", BLUE),
         (axes[1], shear, "shear force [kN]", VERMILLION),
@@ -211,20 +216,16 @@ def forces_figure(run: OpenedRun) -> Figure:
         draw_limits(axes[1], mu * weight, label, color=BLACK, linestyle=style)
         if contact.mu_static == contact.mu_kinetic:
             break
-    cut = [
-        _cut_off(axes[0], time, normal, LARGE_FORCE * weight),
-        _cut_off(axes[1], time, shear, LARGE_FORCE * contact.mu_static * weight),
-    ]
-    for panel in axes[:2]:
+    for panel, force, limit in zip(axes, (normal, shear), limits, strict=False):
+        if limit is not None:
+            _cut_off(panel, time, force, limit)
         legend_above(panel)
     draw_states(axes[-1], time, history.modes, states)
     statement = (
-        f"marks at the rim: beyond the scale, up to {number(normal.max(), 4)} and {number(np.abs(shear).max(), 4)} kN, "
-        "when the contact's damper stops an impact"
-        if any(cut)
-        else ""
+        f"marks at the rim: beyond the scale, up to {number(normal.max(), 4)} and "
+        f"{number(np.abs(shear).max(), 4)} kN, when the contact's damper stops an impact"
     )
-    _head(run, figure, "Forces of the floor on the container", statement)
+    _head(run, figure, "Forces of the floor on the container", statement if cut else "")
     return figure
 
 
@@ -339,19 +340,21 @@ def _mark_impact(axes: Axes, verdict: Mapping[str, Any]) -> None:
         axes.axvline(impact, color=GREY, linestyle=(0, (1, 2)), linewidth=1.0, label=label)
 
 
-def _cut_off(axes: Axes, time: FloatArray, force: FloatArray, large: float) -> bool:
-    """Keep the scale to what lies outside impacts, with a mark at the rim for each force beyond it."""
+def _scale_without_impacts(force: FloatArray, large: float) -> float | None:
+    """Where the scale of a force ends if impacts go far beyond what lies between them; else None."""
     limit = max(large, 1.2 * float(np.quantile(np.abs(force), 0.9)))
-    if np.abs(force).max() <= OFF_SCALE * limit:
-        return False
+    return limit if np.abs(force).max() > OFF_SCALE * limit else None
+
+
+def _cut_off(axes: Axes, time: FloatArray, force: FloatArray, limit: float) -> None:
+    """End the scale at a limit, with a mark at the rim for each force beyond it."""
     axes.set_ylim(0.0 if axes.get_ylim()[0] == 0.0 else -limit, limit)
     for sign, marker in ((1.0, "^"), (-1.0, "v")):
         beyond = time[sign * force > limit]
-        # Marks as close as a thousandth of the figure would be one another's shadow.
+        # Marks closer than that would be one another's shadow.
         _, apart = np.unique(np.round(beyond / (time[-1] - time[0]) * MARKS), return_index=True)
         rim = np.full(len(apart), sign * limit)
         axes.plot(beyond[apart], rim, marker, color=GREY, markersize=3, clip_on=False)
-    return True
 
 
 def _imbalance_limits(energy: Mapping[str, Any]) -> str:

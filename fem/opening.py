@@ -118,7 +118,7 @@ class OpenedRun:
         `run.grid(1.5).warp_by_vector("displacement_m").plot(scalars="von_mises_Pa", cpos="xy")`
         """
         # pyvista takes a second to import; only who asks for a grid waits for it.
-        grid: UnstructuredGrid = importlib.import_module("fem.pictures").grid_of(self.frame(time))
+        grid: UnstructuredGrid = importlib.import_module("fem.scenery").grid_of(self.frame(time))
         return grid
 
 

@@ -16,7 +16,7 @@ ALLOWED = {"mesh": {"mesh"}, "contact": {"contact"}, "fem": {"mesh", "contact", 
 #: third-party package -> where it may be imported
 DOORS = {
     "skfem": {"fem/assembly.py"},
-    "pyvista": {"fem/pictures.py", "fem/movie.py", "fem/opening.py"},
+    "pyvista": {"fem/scenery.py", "fem/pictures.py", "fem/movie.py", "fem/opening.py"},
     "numba": {"contact", "fem/elasticity.py", "fem/nodal_body.py"},
     "pydantic": {"fem"},
     "jinja2": {"fem/pages.py"},

@@ -1,5 +1,9 @@
 """Field output: what is written comes back, in meshio and in pyvista, at every moment of a run."""
 
+import ast
+import os
+import shutil
+import subprocess
 from xml.etree import ElementTree
 
 import meshio
@@ -159,3 +163,39 @@ def test_shapes_that_do_not_fit_are_refused(tmp_path):
         FieldWriter(tmp_path, points=np.zeros((3, 3)), cells=QUADS, region=np.zeros(2, int))
     with pytest.raises(ValueError, match="cells"):
         FieldWriter(tmp_path, points=POINTS, cells=QUADS, region=np.zeros(3, int))
+
+
+PARAVIEW = """
+from paraview.simple import PVDReader, WarpByVector, servermanager
+reader = PVDReader(FileName={series!r})
+reader.UpdatePipelineInformation()
+print(list(reader.TimestepValues))
+warped = WarpByVector(Input=reader)
+warped.Vectors = ["POINTS", "displacement_m"]
+warped.UpdatePipeline(0.05)
+data = servermanager.Fetch(warped)
+print([data.GetPoint(i) for i in range(data.GetNumberOfPoints())])
+print([data.GetPointData().GetArray("von_mises_Pa").GetValue(i) for i in range(data.GetNumberOfPoints())])
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("pvpython") is None, reason="needs pvpython (Debian: python3-paraview)")
+def test_paraview_opens_the_series_and_warps_it(tmp_path):
+    out = writer(tmp_path)
+    written = [fields(), fields()]
+    out.write(0.0, **written[0])
+    out.write(0.05, **written[1])
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")}
+    result = subprocess.run(
+        ["pvpython", "-c", PARAVIEW.format(series=str(tmp_path / "run.pvd"))],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=300,
+    )
+    times, points, stresses = (ast.literal_eval(line) for line in result.stdout.splitlines()[-3:])
+    assert times == [0.0, 0.05]
+    assert np.array(points)[:, :2] == pytest.approx(POINTS + written[1]["displacement"], abs=1e-5)
+    assert stresses == pytest.approx(written[1]["von_mises"], rel=1e-5)

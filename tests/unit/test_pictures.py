@@ -17,9 +17,10 @@ from fem.case import load_case
 from fem.fields import FieldError, FieldWriter
 from fem.movie import frames_of_film, write_movie
 from fem.outline import chained, outline_edges
-from fem.pictures import Scene, View, time_of_largest_rotation, view_of, write_picture
+from fem.pictures import Scene, time_of_largest_rotation, write_picture
 from fem.run import RunOptions, run_case
 from fem.run_folder import FolderError
+from fem.scenery import View, survey
 
 SMALL = ("output.figures=false", "solver.element_size_m=0.5", "solver.elastic_modes=4")
 QUADS9 = np.array([[0, 2, 8, 6, 1, 5, 7, 3, 4]])
@@ -69,7 +70,7 @@ def pixel(view, x, z):
 class TestView:
     def test_it_encloses_the_whole_motion_at_one_scale(self, run):
         frames = list(run.fields)
-        view = view_of(frames)
+        view = survey(frames).view
         left, right, low, high = view.edges
         assert (right - left) * view.pixels_per_metre == pytest.approx(view.size[0])
         assert (high - low) * view.pixels_per_metre == pytest.approx(view.size[1])
