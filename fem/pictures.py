@@ -83,7 +83,7 @@ class Scene:
         """The picture of a frame."""
         places = spatial(frame.points + frame.displacement)
         self._body.points = places
-        self._outline.points = places + (0.0, 0.0, 0.5)  # before the body
+        self._outline.points = places + np.array([0.0, 0.0, 0.5])  # before the body
         if self._stress_limit > 0.0:
             self._body.point_data["stress"] = 1e-6 * frame.von_mises
         for part in (self._hatches, self._mark):
