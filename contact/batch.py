@@ -2,8 +2,11 @@
 
 The container (points, modes, masses) is shared; floor, motion, friction, initial state and control differ from row
 to row. Each row starts from its own initial state on scratch arrays of its thread, so that a row's result is the same
-bytes whatever the number of threads and whichever rows run beside it. There is no history and no Python
-object within a step; accelerations of the contents, which need samples, are not followed.
+bytes whatever the number of threads and whichever rows run beside it. There is no Python object within a step.
+
+No history is kept. Where samples are asked for, as many as a history would have, the largest acceleration and the
+sway of the contents are followed in them; the slip of the last cycle is kept, and the coordinates of the most
+strained samples, for whoever wants their stresses.
 """
 
 import math
@@ -25,6 +28,8 @@ from contact.stepping import (
     CLOCK,
     OVERTURNED,
     REACHED,
+    ROW_SLIP,
+    ROW_STRAIN,
     Control,
     Run,
     Samples,
@@ -38,6 +43,7 @@ CONTACT_NUMBERS = tuple(
     name for name in Contact._fields if name not in ("normal_stiffness", "tangential_stiffness")
 )
 ROWS_AT_A_TIME = 8  #: handed to a thread: small enough to share the work evenly and to report progress
+MOST_STRAINED = 4  #: samples kept of each slice between two looks at them
 
 
 class Rows(NamedTuple):
@@ -67,6 +73,8 @@ class Rows(NamedTuple):
     stick: FloatArray  #: (k, n)
     pose: FloatArray  #: (k, 6)
     energy: FloatArray  #: (k, 3)
+    interval: FloatArray  #: (k,) of the samples; infinite for none [s]
+    slip_until: FloatArray  #: (k,) the slip is kept of the samples up to this time [s]
 
 
 class Outcomes(NamedTuple):
@@ -77,6 +85,19 @@ class Outcomes(NamedTuple):
     clock: Any  #: (k,) of stepping.CLOCK
     ledger: FloatArray  #: (k, 5) [J]
     rotation: FloatArray  #: (k,) at the end [rad]
+    residual: FloatArray  #: (k,) of the contact forces in the last iteration [N]
+    slip: FloatArray  #: (k, n_k) sample i up to `slip_until` stands in column i modulo n_k [m]
+    strain: FloatArray  #: (k, n_s) strain energy of the most strained samples; -1 where there is none [J]
+    strained: FloatArray  #: (k, n_s, n_d) their coordinates
+
+
+class Sampling(NamedTuple):
+    """What of the samples is kept."""
+
+    cycle: float = 0.0  #: the slip of so long before `slip_until` [s]
+    strained: bool = False  #: the most strained samples of every slice
+    slice: float = 0.25  #: the stepping goes so far before it looks at its samples [s]
+    room: int = 1024  #: samples held at a time, at the least
 
 
 class Scratch(NamedTuple):
@@ -96,8 +117,17 @@ class Scratch(NamedTuple):
     frames: Samples
 
 
-def pack_rows(runs: Sequence[Run], durations: Sequence[float], aftermaths: Sequence[float]) -> Rows:
-    """Rows from runs at t = 0 that share one body (see `contact.stepping.make_run`)."""
+def pack_rows(
+    runs: Sequence[Run],
+    durations: Sequence[float],
+    aftermaths: Sequence[float],
+    *,
+    slip_until: Sequence[float] | None = None,
+) -> Rows:
+    """Rows from runs at t = 0 that share one body (see `contact.stepping.make_run`).
+
+    With `slip_until` the rows have samples, at the intervals of the runs' histories.
+    """
     motions = [run.motion for run in runs]
     olds = [run.old for run in runs]
 
@@ -129,10 +159,20 @@ def pack_rows(runs: Sequence[Run], durations: Sequence[float], aftermaths: Seque
         stick=stacked("stick"),
         pose=stacked("pose"),
         energy=stacked("energy"),
+        interval=np.array([np.inf if slip_until is None else run.history.interval for run in runs]),
+        slip_until=np.array(np.zeros(len(runs)) if slip_until is None else slip_until, dtype=float),
     )
 
 
-def run_rows(body: ModalBody, scheme: Scheme, rows: Rows, tracks: Any, *, threads: int = 1) -> Outcomes:
+def run_rows(
+    body: ModalBody,
+    scheme: Scheme,
+    rows: Rows,
+    tracks: Any,
+    *,
+    threads: int = 1,
+    sampling: Sampling | None = None,
+) -> Outcomes:
     """Step every row to its end.
 
     Args:
@@ -141,22 +181,34 @@ def run_rows(body: ModalBody, scheme: Scheme, rows: Rows, tracks: Any, *, thread
         rows: the inputs.
         tracks: records (k,) of TRACK as the runs have them at t = 0; copied.
         threads: to share the rows among; it does not change a bit of the results.
+        sampling: what is kept of the samples; None follows none.
     """
     count = rows.duration.size
+    kept = sampling or Sampling()
+    cycle = 1 if sampling is None else math.ceil(kept.cycle / float(rows.interval.min())) + 2
+    room = 0
+    if sampling is not None and kept.strained:
+        room = MOST_STRAINED * (math.ceil(float(rows.duration.max()) / kept.slice) + 2)
     outcomes = Outcomes(
         status=np.zeros(count, dtype=np.int64),
         track=np.array(tracks).view(np.recarray),
         clock=np.zeros(count, CLOCK).view(np.recarray),
         ledger=np.zeros((count, LEDGER_ROWS)),
         rotation=np.zeros(count),
+        residual=np.zeros(count),
+        slip=np.zeros((count, cycle)),
+        strain=np.full((count, room), -1.0),
+        strained=np.zeros((count, room, rows.position.shape[1])),
     )
     outcomes.clock["smallest_step"] = np.inf
     firsts = range(0, count, ROWS_AT_A_TIME)
 
     def work(thread: int) -> None:
-        scratch = _make_scratch(body, rows)
+        scratch = _make_scratch(body, rows, None if sampling is None else kept)
+        ahead = math.inf if sampling is None else kept.slice
         for first in firsts[thread::threads]:
-            advance_rows(scheme, rows, scratch, outcomes, first, min(first + ROWS_AT_A_TIME, count))
+            last = min(first + ROWS_AT_A_TIME, count)
+            advance_rows(scheme, rows, scratch, outcomes, ahead, first, last)
 
     if threads <= 1:
         work(0)
@@ -166,20 +218,33 @@ def run_rows(body: ModalBody, scheme: Scheme, rows: Rows, tracks: Any, *, thread
     return outcomes
 
 
-def _make_scratch(body: ModalBody, rows: Rows) -> Scratch:
-    points = body.point.shape[0]
+def _make_scratch(body: ModalBody, rows: Rows, sampling: Sampling | None) -> Scratch:
+    points, coordinates = body.point.shape[0], rows.position.shape[1]
+    own = with_own_scratch(body)
+    history = make_samples(math.inf, 4, points)
+    if sampling is not None:
+        own = own._replace(monitor=body.monitor, monitor_shape=body.monitor_shape)
+        in_two_steps = 2 * math.ceil(float(rows.control[:, 0].max() / rows.interval.min())) + 4
+        history = make_samples(
+            math.inf,
+            max(sampling.room, in_two_steps),
+            points,
+            columns=True,
+            position=coordinates if sampling.strained else 0,
+        )
+    monitors = own.monitor.shape[0]
     return Scratch(
-        body=with_own_scratch(body),
-        old=make_state(rows.position.shape[1], points, 0),
-        new=make_state(rows.position.shape[1], points, 0),
+        body=own,
+        old=make_state(coordinates, points, monitors),
+        new=make_state(coordinates, points, monitors),
         work=make_workspace(points),
         slip=np.zeros(points),
         floor=np.zeros((2, 3)),
         change=np.zeros(LEDGER_ROWS),
-        watched=np.zeros((0, 2)),
+        watched=np.zeros((monitors, 2)),
         uniform=np.zeros(3),
         never=np.full(1, np.inf),
-        history=make_samples(math.inf, 4, points),
+        history=history,
         frames=make_samples(math.inf, 4, points),
     )
 
@@ -210,6 +275,8 @@ def _load_row(rows: Rows, k: int, scratch: Scratch) -> None:
         old.pose[c] = rows.pose[k, c]
     for c in range(old.energy.size):
         old.energy[c] = rows.energy[k, c]
+    for i in range(scratch.watched.shape[0]):
+        scratch.watched[i, 0], scratch.watched[i, 1] = 0.0, 0.0
     work.factored_step[0] = -1.0
     for slot in range(body.cached_step.size - 1):
         body.cached_step[slot] = -1.0
@@ -219,7 +286,65 @@ def _load_row(rows: Rows, k: int, scratch: Scratch) -> None:
 load_row = compiled(_load_row)
 
 
-def _advance_rows(scheme: Scheme, rows: Rows, scratch: Scratch, out: Outcomes, first: int, last: int) -> None:
+def _keep_slip(run: Run, until: float, kept: FloatArray) -> None:
+    """Enter the slip of the new samples up to a time into a ring (n_k,)."""
+    clock, samples = run.clock[0], run.history
+    for i in range(clock.samples - clock.samples_gone):
+        index = clock.samples_gone + i
+        if index * samples.interval <= until + 1e-9:
+            kept[index % kept.size] = samples.columns[i, ROW_SLIP]
+
+
+keep_slip = compiled(_keep_slip)
+
+
+def _keep_most_strained(run: Run, strain: FloatArray, strained: FloatArray) -> None:
+    """Keep the most strained of the new samples: (n_s,) and (n_s, n_d), the least strained makes room."""
+    clock, samples = run.clock[0], run.history
+    count = clock.samples - clock.samples_gone
+    for _ in range(min(count, MOST_STRAINED)):
+        best = 0
+        for i in range(count):
+            if samples.columns[i, ROW_STRAIN] > samples.columns[best, ROW_STRAIN]:
+                best = i
+        place = 0
+        for i in range(strain.size):
+            if strain[i] < strain[place]:
+                place = i
+        if samples.columns[best, ROW_STRAIN] <= strain[place]:
+            return
+        strain[place] = samples.columns[best, ROW_STRAIN]
+        for j in range(strained.shape[1]):
+            strained[place, j] = samples.position[best, j]
+        samples.columns[best, ROW_STRAIN] = -1.0  # taken
+
+
+keep_most_strained = compiled(_keep_most_strained)
+
+
+def _advance_in_slices(
+    body: ModalBody, run: Run, rows: Rows, out: Outcomes, k: int, ahead: float, until: float
+) -> int:
+    """Step row k to `until`, looking at its samples every `ahead` [s]."""
+    clock = run.clock[0]
+    while clock.time < until:
+        status = advance_compiled(body, run, min(clock.time + ahead, until))
+        if run.history.columns.shape[1] > 0:
+            keep_slip(run, rows.slip_until[k], out.slip[k])
+            if out.strain.shape[1] > 0:
+                keep_most_strained(run, out.strain[k], out.strained[k])
+            clock.samples_gone = clock.samples
+        if status != REACHED:
+            return status
+    return REACHED
+
+
+advance_in_slices = compiled(_advance_in_slices)
+
+
+def _advance_rows(
+    scheme: Scheme, rows: Rows, scratch: Scratch, out: Outcomes, ahead: float, first: int, last: int
+) -> None:
     """Step the rows first .. last - 1 one after the other."""
     for k in range(first, last):
         load_row(rows, k, scratch)
@@ -258,7 +383,7 @@ def _advance_rows(scheme: Scheme, rows: Rows, scratch: Scratch, out: Outcomes, f
             slenderness_angle=b[18],
             width=b[19],
             stop_when_overturned=b[20] != 0.0,
-            top_monitors=0,
+            top_monitors=int(b[21]),
             base_points=int(b[22]),
         )
         motion = FloorMotion(
@@ -286,22 +411,35 @@ def _advance_rows(scheme: Scheme, rows: Rows, scratch: Scratch, out: Outcomes, f
             out.clock[k : k + 1],
             out.track[k : k + 1],
             scratch.watched,
-            scratch.history,
+            Samples(
+                rows.interval[k],
+                scratch.history.columns,
+                scratch.history.mode,
+                scratch.history.position,
+                scratch.history.velocity,
+                scratch.history.force,
+            ),
             scratch.frames,
         )
-        status = advance_compiled(scratch.body, run, rows.duration[k])
+        status = advance_in_slices(scratch.body, run, rows, out, k, ahead, rows.duration[k])
         rotation = abs(scratch.old.pose[ROTATION])
-        if status == REACHED and control.slenderness_angle < rotation < 0.5 * math.pi:
-            status = follow_aftermath(scratch, run, rows.duration[k] + rows.aftermath[k])
+        undecided = rotation > control.slenderness_angle and not out.track[k].overturned_at < np.inf
+        if status == REACHED and undecided:
+            status = follow_aftermath(scratch, run, rows, out, k)
         if status == REACHED and out.track[k].overturned_at < np.inf:
             status = OVERTURNED
         out.status[k] = status
         out.rotation[k] = scratch.old.pose[ROTATION]
+        for i in range(scratch.work.force.shape[0]):
+            for c in range(2):
+                residual = abs(scratch.work.law[i, c] - scratch.work.force[i, c])
+                out.residual[k] = max(out.residual[k], residual)
 
 
-def _follow_aftermath(scratch: Scratch, run: Run, until: float) -> int:
+def _follow_aftermath(scratch: Scratch, run: Run, rows: Rows, out: Outcomes, k: int) -> int:
     """Leave the floor alone until the container falls or is back below its slenderness angle."""
     clock = run.clock[0]
+    until = rows.duration[k] + rows.aftermath[k]
     x, v, _ = floor_motion(run.motion, clock.time)
     leave_alone(scratch.body, run, v)
     scratch.uniform[0], scratch.uniform[1], scratch.uniform[2] = clock.time, x, 0.0
@@ -327,9 +465,11 @@ def _follow_aftermath(scratch: Scratch, run: Run, until: float) -> int:
         run.frames,
     )
     while clock.time < until:
-        status = advance_compiled(scratch.body, alone, min(clock.time + AFTERMATH_SLICE, until))
+        ahead = min(clock.time + AFTERMATH_SLICE, until)
+        status = advance_in_slices(scratch.body, alone, rows, out, k, AFTERMATH_SLICE, ahead)
         rotation = abs(scratch.old.pose[ROTATION])
-        if status != REACHED or rotation < run.control.slenderness_angle or rotation >= 0.5 * math.pi:
+        decided = rotation <= run.control.slenderness_angle or run.track[0].overturned_at < np.inf
+        if status != REACHED or decided:
             return status
     return REACHED
 
@@ -337,4 +477,4 @@ def _follow_aftermath(scratch: Scratch, run: Run, until: float) -> int:
 follow_aftermath = compiled(_follow_aftermath)
 advance_rows = compiled(_advance_rows)
 
-__all__ = ["CONTACT_NUMBERS", "TRACK", "Outcomes", "Rows", "pack_rows", "run_rows"]
+__all__ = ["CONTACT_NUMBERS", "TRACK", "Outcomes", "Rows", "Sampling", "pack_rows", "run_rows"]

@@ -148,6 +148,8 @@ class HarmonicMotion:
         full = self.amplitude * self.angular_frequency**2
         plateau = (self.ramp, min(self.end_time - self.ramp, self.duration))
         floor = full if plateau[1] - plateau[0] >= 0.5 * self.time_scale else 0.0
+        if floor == full and self.ramp == 0.0:
+            return full  # nothing lifts it above its own amplitude
         reach = SEARCHED_CYCLES * self.time_scale
         spans = (
             (plateau[0] - reach, plateau[0] + self.time_scale),

@@ -35,6 +35,10 @@ def peak_acceleration_within(motion: BaseMotion, duration: float) -> float:
     """
     if isinstance(motion, NoMotion | HarmonicMotion):
         return motion.peak_acceleration  # knows the duration of its case
+    if isinstance(motion, PulseMotion):  # between these its size rises or falls
+        quarters = motion.delay + motion.pulse * np.array([0.0, 0.25, 0.5, 0.75])
+        instants = np.append(quarters, duration)
+        return float(np.abs(motion.evaluate(instants[instants <= duration])[2]).max())
     instants = np.concatenate(
         [
             np.linspace(0.0, duration, PEAK_SAMPLES),

@@ -118,7 +118,8 @@ def simulate(
         reporter.update(float(clock.time), ratio, MODE_NAMES[int(track.mode)])
         if code == FAILED:
             reporter.finish()
-            return Ending(status="failed", stepping_cpu_s=cpu, error=_failure(model))
+            residual = float(np.abs(run.work.law - run.work.force).max())
+            return Ending(status="failed", stepping_cpu_s=cpu, error=stepping_failure(model, residual))
         if code == OVERTURNED:
             break
     reporter.finish()
@@ -164,10 +165,9 @@ def _on_resting_floor(run: Run, undriven: tuple[float, float]) -> Run:
     return run._replace(motion=still, breaks=np.full(1, np.inf))
 
 
-def _failure(model: Model) -> str:
-    """Where and why the stepping gave up, and what to try."""
-    clock, work = model.run.clock[0], model.run.work
-    residual = float(np.abs(work.law - work.force).max())
+def stepping_failure(model: Model, residual: float) -> str:
+    """Where and why the stepping gave up, and what to try; `residual` is that of the contact forces [N]."""
+    clock = model.run.clock[0]
     step = model.run.control.smallest_step
     return (
         f"step {int(clock.steps) + 1}, t = {float(clock.time):.6g} s: the contact forces are out of balance "

@@ -35,12 +35,32 @@ def outcome_of(model: Model) -> str:
 
 def verdict_of(model: Model, history: History, largest_von_mises: float | None) -> dict[str, Any]:
     """The `verdict` of a result; what was not reached is None."""
+    time, slip = history["time_s"], history["slip_m"]
+    end = float(time[-1]) if time.size else None
+    return verdict_from(model, end, time, slip, largest_von_mises)
+
+
+def verdict_from(
+    model: Model,
+    end: float | None,
+    time: np.ndarray,
+    slip: np.ndarray,
+    largest_von_mises: float | None,
+) -> dict[str, Any]:
+    """The `verdict` of a model that was stepped to its end.
+
+    Args:
+        model: the run's record is all that is asked of it.
+        end: time of the last sample [s]; None if there is none.
+        time, slip: of the samples, as far back as a cycle of the drive at least [s], [m].
+        largest_von_mises: [Pa].
+    """
     track, run = model.run.track[0], model.run
+    sampled = end is not None and end > 0.0
     angle = model.static.slenderness_angle
     outcome = outcome_of(model)
     rocked = outcome in ("rock", "slide-rock")
     at_end = abs(float(run.old.pose[0]))
-    slip = history["slip_m"]
     return {
         "outcome": outcome,
         "modes": _modes_seen(model, outcome),
@@ -48,7 +68,7 @@ def verdict_of(model: Model, history: History, largest_von_mises: float | None) 
         "rotation_ratio": float(track.max_rotation) / angle,
         "max_slip_m": float(track.max_slip),
         "residual_slip_m": float(run.clock[0].slip),
-        "slip_peak_to_peak_m": _peak_to_peak(model, history["time_s"], slip),
+        "slip_peak_to_peak_m": _peak_to_peak(model, end, time, slip),
         "slip_travel_m": float(track.slip_travel),
         "max_uplift_m": float(track.max_uplift),
         "impacts": int(track.impacts),
@@ -59,8 +79,8 @@ def verdict_of(model: Model, history: History, largest_von_mises: float | None) 
         "restored": rocked and at_end < ROCKING * angle,
         "restitution_first": _restitution(model),
         "max_corner_force_N": float(track.max_corner_force),
-        "max_top_displacement_m": float(track.max_top_displacement) if len(history) > 1 else None,
-        "max_acceleration_m_s2": float(track.max_acceleration) if len(history) > 1 else None,
+        "max_top_displacement_m": float(track.max_top_displacement) if sampled else None,
+        "max_acceleration_m_s2": float(track.max_acceleration) if sampled else None,
         "max_von_mises_Pa": largest_von_mises,
         "basis": "study",
         "band": None,
@@ -142,16 +162,21 @@ def _modes_seen(model: Model, outcome: str) -> list[str]:
     return [name for name in MODE_NAMES.values() if name in seen or name == outcome]
 
 
-def _peak_to_peak(model: Model, time: np.ndarray, slip: np.ndarray) -> float | None:
+def end_of_drive(model: Model) -> float:
+    """When the floor stops, or the run that it is asked for [s]."""
+    return min(model.case.solver.duration_s, getattr(model.motion, "end_time", math.inf))
+
+
+def _peak_to_peak(model: Model, last: float | None, time: np.ndarray, slip: np.ndarray) -> float | None:
     """Largest less smallest slip over the last full cycle of a harmonic drive [m]."""
-    if model.case.motion.kind != "harmonic" or time.size == 0:
+    if model.case.motion.kind != "harmonic" or last is None:
         return None
     period = 2.0 * math.pi / model.case.angular_frequency
-    end = min(float(time[-1]), model.case.solver.duration_s, getattr(model.motion, "end_time", math.inf))
+    end = min(last, end_of_drive(model))
     if end < period * (1.0 - 1e-9):
         return None
-    last = slip[(time >= end - period - 1e-9) & (time <= end + 1e-9)]
-    return float(last.max() - last.min())
+    cycle = slip[(time >= end - period - 1e-9) & (time <= end + 1e-9)]
+    return float(cycle.max() - cycle.min())
 
 
 def _restitution(model: Model) -> float | None:

@@ -7,9 +7,10 @@ status "failed" and the reason; it never has an outcome.
 import os
 import threading
 import time
-from collections.abc import Callable, Hashable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
+    BrokenExecutor,
     Executor,
     Future,
     ProcessPoolExecutor,
@@ -23,13 +24,19 @@ from multiprocessing import get_context
 from operator import itemgetter
 from typing import Any, TypeVar
 
+import numpy as np
+
+from contact.batch import Outcomes, Sampling, pack_rows, run_rows
+from contact.body import ROTATION
+from contact.modal_body import ModalBody
+from contact.stepping import FAILED as STEPPING_FAILED
 from fem.case import Case
-from fem.model import Container, build_model, discretise
+from fem.model import Container, Model, build_model, discretise
 from fem.recorder import Recorder
-from fem.recovery import recovery_of
-from fem.simulation import cores, simulate
+from fem.recovery import Recovery, recovery_of
+from fem.simulation import AFTERMATH, SLICE_REDUCED, cores, simulate, stepping_failure
 from fem.sweep.table import SCALARS
-from fem.verdict import verdict_of
+from fem.verdict import audit, end_of_drive, verdict_from, verdict_of
 
 #: cases handed to a core at a time
 CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}
@@ -37,6 +44,14 @@ CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}
 AHEAD = 2
 
 Row = dict[str, Any]
+
+
+class WorkersLostError(RuntimeError):
+    """The workers died; what they had computed before is kept."""
+
+    exit_code = 3
+
+
 ItemT = TypeVar("ItemT")
 
 
@@ -145,7 +160,14 @@ def run_items(
                 break
             finished, _ = wait(waiting, timeout=0.5, return_when=FIRST_COMPLETED)
             for future in finished:
-                yield waiting.pop(future), future.result()
+                try:
+                    rows = future.result()
+                except BrokenExecutor as error:
+                    raise WorkersLostError(
+                        f"a worker process died ({error}); perhaps it ran out of memory: --resume goes on, -j 1 needs "
+                        "less"
+                    ) from None
+                yield waiting.pop(future), rows
             if stop():
                 for future in [future for future in waiting if future.cancel()]:
                     del waiting[future]
@@ -155,8 +177,116 @@ def run_items(
 
 
 def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row]:
-    """Run the cases of some items one after the other."""
-    return [_run_one(make, item) for item in items]
+    """Run the cases of some items: one after the other, or those of one compiled container in one call."""
+    began = time.perf_counter()
+    prepared = [_prepare(make, item) for item in items]
+    rows: list[Row | None] = [one if isinstance(one, dict) else None for one in prepared]
+    models = {k: one for k, one in enumerate(prepared) if isinstance(one, Model)}
+    for group in _of_one_body(models):
+        try:
+            found = run_models([models[k] for k in group])
+        except (ValueError, ArithmeticError, RuntimeError) as error:  # one that spoils the others goes alone
+            found = [_row_without_outcome("failed", str(error))]
+            if len(group) > 1:
+                found = [run_chunk(make, [items[k]])[0] for k in group]
+        for k, row in zip(group, found, strict=True):
+            rows[k] = row
+    return _with_wall([row for row in rows if row is not None], models, time.perf_counter() - began)
+
+
+def _prepare(make: Callable[[ItemT], Case], item: ItemT) -> Model | Row:
+    """The model of an item; or its row, where there is nothing to be computed in common."""
+    try:
+        case = make(item)
+        if case.output.fields_s > 0.0:
+            case = case.with_values({"output.fields_s": 0.0})
+        if case.solver.model == "full":
+            return _run_full(case)
+        return build_model(case, _SHELF.container_of(case))
+    except (ValueError, ArithmeticError, RuntimeError) as error:  # bad input, no stance, a singular matrix
+        return _row_without_outcome("failed", str(error))
+
+
+def _of_one_body(models: Mapping[int, Model]) -> Iterable[list[int]]:
+    """Groups of models that differ in floor, motion and start alone."""
+    groups: dict[Hashable, list[int]] = {}
+    for k, model in models.items():
+        assert isinstance(model.body, ModalBody)
+        key = (id(model.container), model.body.tolerance, model.run.scheme)
+        groups.setdefault(key, []).append(k)
+    return groups.values()
+
+
+def run_models(models: Sequence[Model]) -> list[Row]:
+    """Step compiled models of one body to their ends in one call."""
+    body = models[0].body
+    assert isinstance(body, ModalBody)
+    elastic = models[0].case.solver.model == "reduced"
+    ends = [end_of_drive(model) for model in models]
+    rows = pack_rows(
+        [model.run for model in models],
+        [model.case.solver.duration_s for model in models],
+        [AFTERMATH / model.run.control.frequency_parameter for model in models],
+        slip_until=ends,
+    )
+    periods = [min(model.case.motion.period, model.case.solver.duration_s) for model in models]
+    outcomes = run_rows(
+        body,
+        models[0].run.scheme,
+        rows,
+        np.concatenate([model.run.track for model in models]),
+        sampling=Sampling(cycle=max(periods), strained=elastic, slice=SLICE_REDUCED),
+    )
+    return [_row_of(model, outcomes, k, ends[k]) for k, model in enumerate(models)]
+
+
+def _row_of(model: Model, outcomes: Outcomes, k: int, until: float) -> Row:
+    """The row of a model, from what the batch found of it."""
+    run = model.run
+    run.track[0], run.clock[0] = outcomes.track[k], outcomes.clock[k]
+    run.ledger[:], run.old.pose[ROTATION] = outcomes.ledger[k], outcomes.rotation[k]
+    count, interval = int(run.clock[0].samples), run.history.interval
+    kept = outcomes.slip[k]
+    last = min(count - 1, int((until + 1e-9) / interval))
+    numbers = np.arange(max(0, last + 1 - kept.size), last + 1)
+    stress = None
+    if outcomes.strain.shape[1]:
+        positions = outcomes.strained[k, outcomes.strain[k] >= 0.0]
+        stress = _SHELF.recovery_of(model).largest_von_mises(positions)
+    end = (count - 1) * interval if count else None
+    verdict = verdict_from(model, end, numbers * interval, kept[numbers % kept.size], stress)
+    if outcomes.status[k] == STEPPING_FAILED:
+        return _row_without_outcome(
+            "failed", stepping_failure(model, float(outcomes.residual[k]))
+        ) | _figures(verdict)
+    error = audit(model)
+    if error is not None:
+        return _row_without_outcome("failed", error) | _figures(verdict)
+    status = "overturned" if verdict["outcome"] == "overturned" else "completed"
+    return _row_without_outcome(status, None) | _figures(verdict) | {"outcome": verdict["outcome"]}
+
+
+def _figures(verdict: Mapping[str, Any]) -> Row:
+    """The figures of a verdict, without its outcome."""
+    return {name: verdict[name] for name in SCALARS if name != "outcome"}
+
+
+def _run_full(case: Case) -> Row:
+    model = build_model(case, _SHELF.container_of(case))
+    recorder = Recorder(model, recovery_of(model))
+    ending = simulate(model, recorder)
+    verdict = verdict_of(model, recorder.history(), recorder.largest_von_mises)
+    row = _row_without_outcome(ending.status, ending.error) | _figures(verdict)
+    return row if ending.status == "failed" else row | {"outcome": verdict["outcome"]}
+
+
+def _with_wall(rows: list[Row], models: Mapping[int, Model], wall: float) -> list[Row]:
+    """Give each row its share of the time that all took, by the steps it took."""
+    steps = [float(models[k].run.clock[0].steps) if k in models else 0.0 for k in range(len(rows))]
+    total = sum(steps) or 1.0
+    for row, own in zip(rows, steps, strict=True):
+        row["wall_s"] = wall * own / total if models else wall / len(rows)
+    return rows
 
 
 class Shelf:
@@ -166,6 +296,7 @@ class Shelf:
         self._room = room
         self._lock = threading.Lock()
         self._held: dict[Hashable, Future[Container]] = {}
+        self._recoveries: dict[int, tuple[Container, Recovery]] = {}
 
     def container_of(self, case: Case) -> Container:
         """The case's container, built if it is not there.
@@ -188,31 +319,25 @@ class Shelf:
                 promise.set_exception(error)
         return promise.result()
 
+    def recovery_of(self, model: Model) -> Recovery:
+        """How the stresses of a model's container are had; made once a container."""
+        key = id(model.container)
+        with self._lock:
+            found = self._recoveries.get(key)
+        if found is not None and found[0] is model.container:
+            return found[1]
+        made = recovery_of(model)
+        with self._lock:
+            self._recoveries[key] = (model.container, made)
+            while len(self._recoveries) > self._room:
+                del self._recoveries[next(iter(self._recoveries))]
+        return made
+
 
 _SHELF = Shelf()
 
 
-def _run_one(make: Callable[[ItemT], Case], item: ItemT) -> Row:
-    began = time.perf_counter()
-    try:
-        case = make(item)
-        quiet = case.with_values({"output.fields_s": 0.0}) if case.output.fields_s > 0.0 else case
-        model = build_model(quiet, _SHELF.container_of(case))
-        recorder = Recorder(model, recovery_of(model))
-        ending = simulate(model, recorder)
-        rigid = case.solver.model == "rigid"
-        found = verdict_of(model, recorder.history(), None if rigid else recorder.largest_von_mises)
-    except (ValueError, ArithmeticError, RuntimeError) as error:  # bad input, no stance, a singular matrix
-        row = _row_without_outcome("failed", str(error))
-    else:
-        row = {"status": ending.status, "reason": ending.error}
-        row |= {name: found[name] for name in SCALARS}
-        if ending.status == "failed":
-            row["outcome"] = None
-    return row | {"wall_s": time.perf_counter() - began}
-
-
-def _row_without_outcome(status: str, reason: str) -> Row:
+def _row_without_outcome(status: str, reason: str | None) -> Row:
     return {"status": status, "reason": reason, "wall_s": 0.0} | dict.fromkeys(SCALARS)
 
 
