@@ -125,7 +125,7 @@ def run_case(
                 if added or not place.figures.is_dir():
                     draw(case, place, reporter)
                 return RunResult(status=str(result["status"]), result=result, history=History.empty())
-            copy_data_files(case, place)
+            copy_data_files(case, place.path)
             result |= {
                 "status": "running",
                 "case": case.name,
@@ -285,10 +285,10 @@ def resolve(case: Case, model: Model) -> Case:
     return case.with_values(chosen) if chosen else case
 
 
-def copy_data_files(case: Case, place: RunFolder) -> None:
-    """Put mesh and motion files beside `resolved.toml`, under the names it gives them."""
+def copy_data_files(case: Case, folder: Path) -> None:
+    """Put mesh and motion files into the folder, under the names that the case gives them."""
     for path in case.data_files.values():
-        target = place.path / path.resolve().relative_to(case.folder.resolve())
+        target = folder / path.resolve().relative_to(case.folder.resolve())
         target.parent.mkdir(parents=True, exist_ok=True)
         if target.resolve() != path.resolve():
             shutil.copyfile(path, target)

@@ -19,6 +19,9 @@ DOORS = {
     "pyvista": {"fem/scenery.py", "fem/pictures.py", "fem/movie.py", "fem/opening.py"},
     "numba": {"contact", "fem/elasticity.py", "fem/nodal_body.py"},
     "pydantic": {"fem"},
+    # optional, and slow to import: loaded where a cluster is asked for
+    "dask": {"fem/sweep/cluster.py"},
+    "distributed": {"fem/sweep/cluster.py"},
     "jinja2": {"fem/pages.py"},
 }
 

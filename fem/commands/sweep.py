@@ -2,7 +2,9 @@
 
 import importlib
 import json
+from contextlib import ExitStack
 from pathlib import Path
+from types import ModuleType
 from typing import Annotated, Any
 
 from cyclopts import Parameter
@@ -22,6 +24,10 @@ def sweep(
     out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/NAME.")] = None,
     jobs: Annotated[
         int | None, Parameter(name=("--jobs", "-j"), show_default=False, help="Cores; default: all.")
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        Parameter(show_default=False, help="Address of a dask scheduler, such as tcp://127.0.0.1:8786."),
     ] = None,
     resume: Annotated[
         bool, Parameter(negative=(), show_default=False, help="Go on with the rows that are there.")
@@ -50,11 +56,33 @@ def sweep(
     folder = out if out is not None else Path("outputs") / asked.name
     # The solver is loaded only now: bad input is answered before anything is compiled.
     solver = importlib.import_module("fem.sweep.sweeping")
-    info = solver.run_sweep(
-        asked, folder, jobs=jobs, resume=resume, force=force, reporter=ScreenReporter(quiet=quiet)
-    )
+    with ExitStack() as stack:
+        workers_of = None
+        if scheduler is not None:
+            workers_of = stack.enter_context(_cluster_module().cluster(scheduler))
+        info = solver.run_sweep(
+            asked,
+            folder,
+            jobs=jobs,
+            workers_of=workers_of,
+            resume=resume,
+            force=force,
+            reporter=ScreenReporter(quiet=quiet),
+        )
     print(to_json(info).rstrip() if as_json else page_of(json.loads(to_json(info)), folder))
     return EXIT_CODES[info["status"]]
+
+
+def _cluster_module() -> ModuleType:
+    """Loaded where it is asked for: dask is an extra, and takes a second."""
+    try:
+        return importlib.import_module("fem.sweep.cluster")
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
+            raise
+        raise CaseError(
+            "--scheduler needs the extra 'cluster': python -m pip install \"unanchored[cluster]\""
+        ) from None
 
 
 def page_of(info: dict[str, Any], folder: Path) -> str:
@@ -69,6 +97,8 @@ def page_of(info: dict[str, Any], folder: Path) -> str:
             f"of {info['perturbed']} cells perturbed"
         )
     lines.append(f"  {folder}: table.csv, sweep.json" + "".join(f", {name}" for name in info["maps"]))
+    if info["changes"] is not None:
+        lines.append(f"  {folder}: thresholds.csv, {info['changes']} changes of outcome closed in on")
     if info["status"] == "interrupted":
         lines.append("  --resume goes on from here")
     return "\n".join(lines)

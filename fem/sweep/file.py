@@ -218,6 +218,10 @@ def _threshold(tables: Mapping[str, Any], axes: tuple[Axis, ...]) -> Threshold |
         )
     if not known[threshold.axis].is_numeric:
         raise CaseError(f"[threshold] axis {threshold.axis!r} needs two or more numbers that rise")
+    if any(isinstance(value, int) for value in known[threshold.axis].values):
+        raise CaseError(
+            f"[threshold] axis {threshold.axis!r} takes whole numbers: nothing lies between its cells"
+        )
     return threshold
 
 

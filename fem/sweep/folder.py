@@ -14,6 +14,8 @@ from typing import Any
 
 from fem.case import case_hash
 from fem.case_toml import toml_document
+from fem.folder_lock import LOCK_NAME
+from fem.program import program_identity
 from fem.run_folder import FolderError, to_json, write_atomically
 from fem.sweep.plan import Sweep
 from fem.sweep.table import read_info
@@ -104,7 +106,7 @@ def open_sweep_folder(path: Path, sweep: Sweep, *, force: bool, resume: bool) ->
         if path.exists() and not path.is_dir():
             raise FolderError(f"{path} is a file, not a folder; choose another with --out DIR")
         path.mkdir(parents=True, exist_ok=True)
-        names = {entry.name for entry in path.iterdir() if not entry.name.endswith(".part")}
+        names = {entry.name for entry in path.iterdir() if not entry.name.endswith(".part")} - {LOCK_NAME}
         if force:
             folder.remove_results()
             return folder
@@ -117,13 +119,16 @@ def open_sweep_folder(path: Path, sweep: Sweep, *, force: bool, resume: bool) ->
             raise FolderError(f"{path} holds the results of another sweep; {REMEDY}")
         same_band = found.get("band_hash") == band_hash(sweep)
         if found.get("status") == "completed" and folder.table.is_file():
-            return SweepFolder(path=path, finished=same_band, same_band=same_band)
-        if folder.rows.is_file() and not resume:
+            if same_band:
+                return SweepFolder(path=path, finished=True, same_band=True)
+        elif folder.rows.is_file() and not resume:
             count = max(folder.rows.read_bytes().count(b"\n") - 1, 0)
             raise FolderError(
                 f"{path} holds this sweep, unfinished, with {count} of {sweep.count} rows; --resume goes on with "
                 "it, --force begins anew"
             )
+        if found.get("program") != program_identity()["sources"]:
+            raise FolderError(f"{path} holds rows of another version of the program; {REMEDY}")
     except OSError as error:
         raise FolderError(
             f"{path}: cannot be used ({error.strerror}); choose another folder with --out DIR"

@@ -117,6 +117,17 @@ class Sweep:
         cell, member = item
         return self.case_at(self.point(cell), self.member_changes(cell)[member])
 
+    def tried_case(self, item: tuple[int, float]) -> Case:
+        """The case between cells that a threshold tries: a cell of the line, and the value on the axis."""
+        cell, value = item
+        return self.case_at(self.point(cell) | {self.threshold_axis.key: value})
+
+    @property
+    def threshold_axis(self) -> Axis:
+        """The axis along which changes of outcome are closed in on; only where that is asked for."""
+        assert self.threshold is not None
+        return next(axis for axis in self.axes if axis.key == self.threshold.axis)
+
     def by_container(self, cells: Iterable[int]) -> list[int]:
         """The cells in an order in which those of one container stand together."""
         moving = {axis.key for axis in self.axes} | {one.key for one in self.derived}

@@ -16,10 +16,13 @@ import numpy as np
 
 from fem.case import Case, case_hash
 from fem.case_reading import CaseError
+from fem.folder_lock import held_folder
+from fem.program import program_identity, versions
 from fem.progress import Reporter, SilentReporter, clock_time
-from fem.run import interruptible, versions
+from fem.run import copy_data_files, interruptible
 from fem.simulation import cores
 from fem.sweep.band import (
+    KIND_NAMES,
     OVERTURNED,
     STANDING,
     UNKNOWN,
@@ -32,6 +35,7 @@ from fem.sweep.band import (
     near_cells,
 )
 from fem.sweep.folder import SweepFolder, band_hash, open_sweep_folder, sweep_hash, write_info, write_plan
+from fem.sweep.maps import draw_maps
 from fem.sweep.plan import Sweep
 from fem.sweep.running import Row, Workers, local_workers, run_items
 from fem.sweep.table import (
@@ -40,11 +44,13 @@ from fem.sweep.table import (
     band_columns,
     fields_of,
     line_of,
+    open_sweep,
     read_info,
     read_lines,
     row_columns,
     write_table,
 )
+from fem.sweep.threshold import Change, changes_of, values_to_try
 
 #: cells that a sweep may have unless it is forced
 MOST_CELLS = 1_000_000
@@ -54,6 +60,7 @@ BYTES_A_ROW = 350
 #: how often `sweep.json` tells how far the sweep has come [s]
 NOTE_S = 10.0
 
+TRIED_COLUMNS = ("cell", "value", "status", "outcome", "rotation_ratio", "reason")
 MEMBER_COLUMNS = ("cell", "member", "change", "status", "outcome", "rotation_ratio", "reason")
 
 WorkersOf = Callable[[str], AbstractContextManager[Workers]]
@@ -77,16 +84,36 @@ class Found:
         self.outcomes[word] = self.outcomes.get(word, 0) + 1
 
 
+@dataclass(frozen=True, kw_only=True)
+class Member:
+    """A perturbed copy of a cell."""
+
+    line: str  #: as it stands in the log
+    kind: int  #: see `band`
+    ratio: float | None  #: rotation ratio
+
+
 @dataclass(kw_only=True)
 class Band:
     """What the perturbed copies say."""
 
-    members: dict[int, list[tuple[str, str, float | None]]] = field(default_factory=dict)
+    members: dict[int, dict[int, Member]] = field(default_factory=dict)  #: by cell and number
+
+    def note(self, line: str) -> None:
+        """Enter a line of the log."""
+        cell, member, _, status, outcome, ratio, _ = fields_of(line)
+        found = Member(line=line, kind=kind_of(status, outcome), ratio=float(ratio) if ratio else None)
+        self.members.setdefault(int(cell), {})[int(member)] = found
 
     def is_unsure(self, cell: int, kind: int) -> bool:
         """Whether a copy is of another kind than the cell; of a cell that failed nothing is sure."""
-        kinds = {kind_of(status, outcome) for status, outcome, _ in self.members.get(cell, [])}
+        kinds = {member.kind for member in self.members.get(cell, {}).values()}
         return kind not in (STANDING, OVERTURNED) or bool(kinds - {kind})
+
+    def lines(self) -> Iterator[str]:
+        """The log, in the order of cells and members."""
+        for cell in sorted(self.members):
+            yield from (self.members[cell][member].line for member in sorted(self.members[cell]))
 
 
 def run_sweep(
@@ -116,22 +143,24 @@ def run_sweep(
     Raises:
         CaseError: too many cells.
         FolderError: the folder holds something else.
+        FolderLockedError: another process writes into it.
+        WorkersLostError: a worker died; what was computed is kept.
     """
     reporter = reporter or SilentReporter()
     jobs = jobs or cores()
     check_size(sweep, jobs, force)
-    place = open_sweep_folder(folder, sweep, force=force, resume=resume)
-    if place.finished:
-        reporter.message(f"{folder} holds this sweep already; --force computes it again")
-        return read_info(place.path)
-    work = _Work(
-        sweep=sweep,
-        place=place,
-        reporter=reporter,
-        workers_of=workers_of or (lambda model: local_workers(model, jobs)),
-        info=_asked(sweep) | {"jobs": jobs},
-    )
-    with interruptible(reporter) as stop:
+    with held_folder(folder), interruptible(reporter) as stop:
+        place = open_sweep_folder(folder, sweep, force=force, resume=resume)
+        if place.finished:
+            reporter.message(f"{folder} holds this sweep already; --force computes it again")
+            return read_info(place.path)
+        work = _Work(
+            sweep=sweep,
+            place=place,
+            reporter=reporter,
+            workers_of=workers_of or (lambda model: local_workers(model, jobs)),
+            info=_asked(sweep) | {"jobs": jobs},
+        )
         return work.run(stop)
 
 
@@ -179,6 +208,7 @@ def _asked(sweep: Sweep) -> dict[str, Any]:
         "unsure": None,
         "changes": None,
         "maps": [],
+        "program": program_identity()["sources"],
         "versions": versions(),
     }
 
@@ -198,16 +228,23 @@ class _Work:
         began = time.perf_counter()
         found = self._known_rows()
         write_plan(self.place, self.sweep, self.info)
+        copy_data_files(self.sweep.base, self.place.path)
         if not self.place.same_band:
-            self.place.members.unlink(missing_ok=True)
+            for file in (self.place.members, self.place.tried, self.place.thresholds):
+                file.unlink(missing_ok=True)
         self._compute_rows(found, stop)
         band = None if stop() else self._perturb(found, stop)
+        changes = None if stop() else self._refine(found, stop)
         if stop():
             self.info["status"] = "interrupted"
         else:
             unsure = self._write_table(found, band)
+            if band is not None:
+                write_table(self.place.members, MEMBER_COLUMNS, band.lines())
+            self._write_changes(changes)
             self.info["unsure"] = None if unsure is None else int(unsure.sum())
             self.info["status"] = "completed" if self._any_outcome(found) else "failed"
+            self.info["maps"] = draw_maps(open_sweep(self.place.path), self.place.maps)
         self.info["wall_s"] = time.perf_counter() - began
         self._note(found, force=True)
         if self.info["status"] != "interrupted":
@@ -306,9 +343,7 @@ class _Work:
             return None
         band = Band()
         for line in read_lines(self.place.members, line_of(MEMBER_COLUMNS)):
-            fields = fields_of(line)
-            ratio = float(fields[5]) if fields[5] else None
-            band.members.setdefault(int(fields[0]), []).append((fields[3], fields[4], ratio))
+            band.note(line)
         kind = found.kind.reshape(shape)
         ratios = found.rotation_ratio.reshape(shape)
         wanted = near_cells(self.sweep.axes, kind, ratios, self.sweep.perturbation.close)
@@ -335,28 +370,82 @@ class _Work:
 
     def _run_members(self, cells: Iterable[int], band: Band, log: RowLog, stop: Callable[[], bool]) -> None:
         """Run the copies of some cells that are not there yet."""
-        items = []
-        for cell in self.sweep.by_container(int(cell) for cell in cells):
-            there = len(band.members.get(cell, []))
-            count = len(self.sweep.member_changes(cell))
-            if there < count:  # a chunk may have been cut within a cell: then all of it again
-                band.members[cell] = []
-                items += [(cell, member) for member in range(count)]
-        members: dict[int, dict[int, tuple[str, str, float | None]]] = {}
+        items = [
+            (cell, member)
+            for cell in self.sweep.by_container(int(cell) for cell in cells)
+            for member in range(len(self.sweep.member_changes(cell)))
+            if member not in band.members.get(cell, {})
+        ]
         for chunk, rows in self._computed("perturbed copies", items, self.sweep.member_case, stop):
             lines = []
             for (cell, member), row in zip(chunk, rows, strict=True):
                 change = self.sweep.member_changes(cell)[member]
                 words = " ".join(f"{key}={value!r}" for key, value in change.items())
                 lines.append(line_of((cell, member, words, *(row[name] for name in MEMBER_COLUMNS[3:]))))
-                members.setdefault(cell, {})[member] = (
-                    row["status"],
-                    row["outcome"] or "",
-                    row["rotation_ratio"],
-                )
             log.append(lines)
-        for cell, by_number in members.items():
-            band.members[cell] = [by_number[number] for number in sorted(by_number)]
+            for line in lines:
+                band.note(line)
+
+    # threshold
+
+    def _refine(self, found: Found, stop: Callable[[], bool]) -> list[tuple[int, Change]] | None:
+        """Close in on the changes of outcome along the axis asked for, on all lines of cells at once."""
+        wanted = self.sweep.threshold
+        if wanted is None:
+            return None
+        values = self.sweep.threshold_axis.values
+        place = self.sweep.axes.index(self.sweep.threshold_axis)
+        numbers = np.moveaxis(np.arange(self.sweep.count).reshape(self.sweep.shape), place, -1)
+        lines = {
+            int(cells[0]): {
+                float(value): KIND_NAMES[int(found.kind[cell])]
+                for value, cell in zip(values, cells, strict=True)
+            }
+            for cells in numbers.reshape(-1, len(values))
+        }
+        with RowLog(self.place.tried, line_of(TRIED_COLUMNS)) as log:
+            for line in log.lines:
+                fields = fields_of(line)
+                kind = kind_of(fields[2], fields[3])
+                lines[int(fields[0])][float(fields[1])] = KIND_NAMES[kind]
+            while not stop():
+                items = [
+                    (first, value)
+                    for first in self.sweep.by_container(lines)
+                    for value in values_to_try(lines[first], resolution=wanted.resolution, inner=wanted.inner)
+                ]
+                if not items:
+                    break
+                for chunk, rows in self._computed("cases between cells", items, self.sweep.tried_case, stop):
+                    log.append(
+                        [
+                            line_of((*item, *(row[name] for name in TRIED_COLUMNS[2:])))
+                            for item, row in zip(chunk, rows, strict=True)
+                        ]
+                    )
+                    for (first, value), row in zip(chunk, rows, strict=True):
+                        lines[first][value] = KIND_NAMES[kind_of(row["status"], row["outcome"])]
+            log.sync()
+        return [(first, change) for first in sorted(lines) for change in changes_of(lines[first])]
+
+    def _write_changes(self, changes: list[tuple[int, Change]] | None) -> None:
+        if changes is None:
+            return
+        others = [axis.key for axis in self.sweep.axes if axis is not self.sweep.threshold_axis]
+        write_table(
+            self.place.thresholds,
+            (*others, "low", "high", "value", "below", "above"),
+            (
+                line_of(
+                    (
+                        *(self.sweep.point(first)[key] for key in others),
+                        *(change.low, change.high, change.value, change.below, change.above),
+                    )
+                )
+                for first, change in changes
+            ),
+        )
+        self.info["changes"] = len(changes)
 
     # table
 
@@ -375,12 +464,13 @@ class _Work:
         def whole(cell: int) -> str:
             if band is None or unsure is None:
                 return found.lines[cell] + "," * len(band_columns(axes))
-            ratios = [ratio for _, _, ratio in band.members.get(cell, []) if ratio is not None]
+            copies = band.members.get(cell, {}).values()
+            ratios = [copy.ratio for copy in copies if copy.ratio is not None]
             low = high = None
             if ratios and np.isfinite(found.rotation_ratio[cell]):
                 ratios.append(float(found.rotation_ratio[cell]))
                 low, high = min(ratios), max(ratios)
-            own = (len(band.members.get(cell, [])), unsure[cell], low, high)
+            own = (len(copies), unsure[cell], low, high)
             return found.lines[cell] + "," + line_of((*own, *(width[cell] for width in widths)))
 
         write_table(

@@ -186,7 +186,7 @@ def open_sweep(folder: Path | str) -> SweepTable:
         rows = row_columns(axes, info["derived"])
         names = (*rows, *band_columns(axes))
         source = folder / "table.csv"
-        if info["status"] != "completed" and (folder / "rows.csv").is_file():
+        if not source.is_file():
             source, names = folder / "rows.csv", rows
         lines = [fields_of(line) for line in read_lines(source, line_of(names))]
         return SweepTable(info=info, axes=axes, columns=_columns(info, axes, names, lines))

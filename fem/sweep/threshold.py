@@ -6,7 +6,7 @@ between any two of these that differ, until the bracket is narrow enough. A chan
 none of the values tried goes unnoticed: the step of the scan is the finest island that is sure to be seen.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Annotated
@@ -68,17 +68,22 @@ def refine_changes(
         The brackets by rising value; several where the outcome changes to and fro.
     """
     known = dict(zip(values, outcomes, strict=True))
-    while True:
-        wide = [change for change in changes_of(known) if _is_wide(change, resolution)]
-        if not wide:
-            return changes_of(known)
-        tried = [
-            float(value) for change in wide for value in np.linspace(change.low, change.high, inner + 2)[1:-1]
-        ]
+    while tried := values_to_try(known, resolution=resolution, inner=inner):
         known |= dict(zip(tried, judge(tried), strict=True))
+    return changes_of(known)
 
 
-def changes_of(known: dict[float, str]) -> list[Change]:
+def values_to_try(known: Mapping[float, str], *, resolution: float, inner: int) -> list[float]:
+    """Values within the brackets that are still too wide; none if all are narrow enough."""
+    return [
+        float(value)
+        for change in changes_of(known)
+        if change.high - change.low > resolution * max(abs(change.low), abs(change.high))
+        for value in np.linspace(change.low, change.high, inner + 2)[1:-1]
+    ]
+
+
+def changes_of(known: Mapping[float, str]) -> list[Change]:
     """Neighbouring values of different outcome."""
     values = sorted(known)
     return [
@@ -86,8 +91,3 @@ def changes_of(known: dict[float, str]) -> list[Change]:
         for low, high in pairwise(values)
         if known[low] != known[high]
     ]
-
-
-def _is_wide(change: Change, resolution: float) -> bool:
-    size = max(abs(change.low), abs(change.high))
-    return change.high - change.low > resolution * size

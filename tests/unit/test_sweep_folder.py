@@ -10,26 +10,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from small_sweep import SMALL, rows_without_wall
 
 from fem.__main__ import main
 from fem.case_reading import CaseError
 from fem.run_folder import FolderError
 from fem.sweep.file import load_sweep
 from fem.sweep.sweeping import check_size, run_sweep
-from fem.sweep.table import fields_of, open_sweep
+from fem.sweep.table import open_sweep
 
 ROOT = Path(__file__).parents[2]
-SMALL = """
-case = "seed_stack_plateau"
-[set]
-"solver.model" = "rigid"
-"solver.duration_s" = 2.0
-[axes]
-"motion.angular_frequency_rad_s" = { from = 2.0, to = 6.0, count = 4 }
-"motion.peak_acceleration_m_s2" = { from = 2.0, to = 14.0, count = 5 }
-[derived]
-"contact.mu_kinetic" = "0.5 * contact.mu_static"
-"""
 
 
 @pytest.fixture
@@ -37,13 +27,6 @@ def small(tmp_path):
     path = tmp_path / "small.toml"
     path.write_text(SMALL, encoding="utf-8")
     return load_sweep(path)
-
-
-def rows_without_wall(folder, name="table.csv"):
-    """The fields of a table, but for the wall time."""
-    header, *rows = (fields_of(line) for line in (folder / name).read_text().splitlines())
-    wall = header.index("wall_s")
-    return [fields[:wall] + fields[wall + 1 :] for fields in (header, *rows)]
 
 
 def test_the_table_does_not_depend_on_the_jobs(small, tmp_path):

@@ -1,0 +1,95 @@
+"""Outcome maps of the stack: what they cost on one core and on two, with and without perturbed copies.
+
+`rigid`: 100 x 100 cells over frequency and peak acceleration, 20 s each; `reduced` (20 modes, corners): 50 x 50. The
+settings are those of the shipped sweep `outcome_map`. Wall time, since it is cores that are compared; kernels are
+compiled and loaded before the clock starts. `--quick` takes a ninth of the cells.
+"""
+
+import sys
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from measuring import Figure, report
+
+from fem.model import build_model, discretise
+from fem.sweep.axes import read_axis
+from fem.sweep.file import load_sweep
+from fem.sweep.plan import Sweep
+from fem.sweep.running import run_cases
+from fem.sweep.sweeping import run_sweep
+
+FREQUENCY, PEAK = "motion.angular_frequency_rad_s", "motion.peak_acceleration_m_s2"
+RIGID_CELLS, REDUCED_CELLS = 100, 50
+RIGID_S, REDUCED_S, SPEEDUP = 30.0, 300.0, 1.8
+BUILDS = 500
+
+
+def map_of(model: str, cells: int, *, band: bool) -> Sweep:
+    """The shipped outcome map with so many cells along each axis."""
+    shipped = load_sweep("outcome_map")
+    axes = (
+        read_axis(FREQUENCY, {"from": 1.5, "to": 12.0, "count": cells, "scale": "log"}),
+        read_axis(PEAK, {"from": 1.0, "to": 16.0, "count": cells}),
+    )
+    perturbation = shipped.perturbation.model_copy(update={"cells": "near" if band else "none"})
+    base = shipped.base.with_values({"solver.model": model})
+    return replace(shipped, base=base, axes=axes, perturbation=perturbation)
+
+
+def seconds(sweep: Sweep, jobs: int) -> tuple[float, dict[str, Any]]:
+    """Wall time of a whole sweep into a folder, and what it found."""
+    with tempfile.TemporaryDirectory() as folder:
+        began = time.perf_counter()
+        info = run_sweep(sweep, Path(folder) / "map", jobs=jobs)
+        return time.perf_counter() - began, info
+
+
+def figures_of(model: str, cells: int, limit: float, *, share: float) -> list[Figure]:
+    """Cost of one map; `limit` holds for the whole one, `share` of which is computed."""
+    plain = map_of(model, cells, band=False)
+    run_cases([plain.case(0), plain.case(plain.count - 1)], jobs=2)  # compiled and loaded
+    one, _ = seconds(plain, 1)
+    two, info = seconds(plain, 2)
+    name = f"{model}, {cells} x {cells} cells"
+    failed = info["outcomes"].get("failed", 0)
+    found = ", ".join(f"{word} {count}" for word, count in info["outcomes"].items())
+    banded, whole = seconds(map_of(model, cells, band=True), 2)
+    return [
+        Figure(f"{name}, two cores", f"{two:.1f} s", f"<= {share * limit:.0f} s", two <= share * limit),
+        Figure(f"{name}: one core over two", f"{one / two:.2f}", f">= {SPEEDUP:g}", one / two >= SPEEDUP),
+        Figure(f"{name}: outcomes", found, "none failed", failed == 0),
+        Figure(
+            f"{name}, two cores, with its band",
+            f"{banded:.1f} s; {whole['perturbed']} cells perturbed, {whole['unsure']} unsure",
+        ),
+    ]
+
+
+def cost_of_a_cell() -> Figure:
+    """From a cell's number to what is stepped."""
+    sweep = map_of("rigid", RIGID_CELLS, band=False)
+    container = discretise(sweep.case(0))
+    times = []
+    for cell in range(BUILDS):
+        began = time.process_time()
+        build_model(sweep.case(cell), container)
+        times.append(time.process_time() - began)
+    typical = 1e3 * float(np.median(times))
+    return Figure("from a cell's number to its model", f"{typical:.2f} ms", "< 1 ms", typical < 1.0)
+
+
+def main() -> int:
+    third = 3 if "--quick" in sys.argv else 1
+    share = 1.0 / third**2
+    figures = [cost_of_a_cell()]
+    figures += figures_of("rigid", RIGID_CELLS // third, RIGID_S, share=share)
+    figures += figures_of("reduced", REDUCED_CELLS // third, REDUCED_S, share=share)
+    return report("outcome map of the stack, 20 s a cell", figures)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,61 @@
+"""Changes of outcome along an axis: all of them are found and closed in on, islands kept."""
+
+import numpy as np
+import pytest
+
+from fem.sweep.threshold import refine_changes
+
+SCAN = [1.0, 2.0, 3.0, 4.0, 5.0]
+
+
+def islands(values):
+    """Overturns in (1.3, 2.2) and beyond 4.61: a safe island lies between."""
+    return ["overturned" if 1.3 < v < 2.2 or v > 4.61 else "standing" for v in values]
+
+
+def test_every_change_is_closed_in_on():
+    changes = refine_changes(SCAN, islands(SCAN), islands, resolution=1e-3)
+    assert [(c.below, c.above) for c in changes] == [
+        ("standing", "overturned"),
+        ("overturned", "standing"),
+        ("standing", "overturned"),
+    ]
+    for change, exact in zip(changes, (1.3, 2.2, 4.61), strict=True):
+        assert change.low <= exact <= change.high
+        assert change.high - change.low <= 1e-3 * change.high
+
+
+def test_an_island_inside_a_bracket_is_kept():
+    # Between 1 and 2 alone: overturned beyond 1.2, standing again in (1.45, 1.55), as the values tried within show.
+    def judge(values):
+        return ["overturned" if v > 1.2 and not 1.45 < v < 1.55 else "standing" for v in values]
+
+    changes = refine_changes([1.0, 2.0], judge([1.0, 2.0]), judge, resolution=0.01, inner=3)
+    assert [c.value for c in changes] == pytest.approx([1.2, 1.45, 1.55], abs=0.02)
+
+
+def test_without_a_change_nothing_is_tried():
+    def judge(values):
+        raise AssertionError(values)
+
+    assert refine_changes(SCAN, ["standing"] * 5, judge) == []
+
+
+def test_a_failed_value_is_a_kind_of_its_own():
+    def judge(values):
+        return ["failed" if 2.0 < v < 2.5 else "standing" for v in values]
+
+    changes = refine_changes([1.0, 2.25, 3.0], judge([1.0, 2.25, 3.0]), judge, resolution=0.01)
+    assert [c.value for c in changes] == pytest.approx([2.0, 2.5], abs=0.03)
+    assert {c.below for c in changes} == {"standing", "failed"}
+
+
+def test_the_number_of_values_tried_grows_with_the_logarithm():
+    tried = []
+
+    def judge(values):
+        tried.extend(values)
+        return ["overturned" if v > np.pi else "standing" for v in values]
+
+    refine_changes(SCAN, judge(SCAN), judge, resolution=1e-6)
+    assert len(tried) < 60
