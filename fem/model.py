@@ -80,16 +80,35 @@ class Container:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class Footing:
+    """How a container stands on its floor before that moves."""
+
+    penalty: float  #: [Pa/m]
+    contact: Contact
+    body: ModalBody | FullBody
+    stance: Stance  #: the floor being at x = 0
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Model:
     """One case, ready to be stepped."""
 
     case: Case
     container: Container
-    penalty: float  #: [Pa/m]
+    footing: Footing
     motion: BaseMotion
     static: StaticChecks
-    body: ModalBody | FullBody
     run: Run
+
+    @property
+    def penalty(self) -> float:
+        """Normal stiffness of the base over width times depth [Pa/m]."""
+        return self.footing.penalty
+
+    @property
+    def body(self) -> ModalBody | FullBody:
+        """What is stepped."""
+        return self.footing.body
 
     @property
     def base_stiffness(self) -> float:
@@ -144,8 +163,42 @@ def discretise(case: Case) -> Container:
     )
 
 
-def build_model(case: Case, container: Container | None = None) -> Model:
-    """Discretise a case, unless its container is given, and put it on its floor, settled, at t = 0.
+def set_down(case: Case, container: Container) -> Footing:
+    """Put the container on the floor, settled; models of it share a body's scratch: step one at a time.
+
+    Raises:
+        SettlingError: no equilibrium at the start.
+    """
+    penalty = normal_penalty(case, container.mesh)
+    springs = container.support.normal_stiffness(penalty)
+    base = springs.size
+    springs = np.concatenate([springs, np.full(container.nodes.size - base, 0.5 * springs.sum())])
+    contact = _contact(case, container.mesh, springs, base)
+    return Footing(
+        penalty=penalty,
+        contact=contact,
+        body=_body(case, container, contact),
+        stance=_stance(case, container, contact),
+    )
+
+
+def stands_like(case: Case, other: Case) -> bool:
+    """Whether two cases of one container have the same footing."""
+    return (
+        case.contact == other.contact
+        and case.initial == other.initial
+        and case.gravity_m_s2 == other.gravity_m_s2
+        and case.solver.model == other.solver.model
+    )
+
+
+def build_model(case: Case, container: Container | None = None, footing: Footing | None = None) -> Model:
+    """Discretise a case and put it on its floor, unless that is given, settled, at t = 0.
+
+    Args:
+        case: what to build.
+        container: its container, built before.
+        footing: how that container stands, where `stands_like` says that it is the same.
 
     Raises:
         CaseError, MeshError: bad input.
@@ -154,24 +207,18 @@ def build_model(case: Case, container: Container | None = None) -> Model:
     motion = build_motion(case)
     if container is None:
         container = discretise(case)
-    mesh, nodes = container.mesh, container.nodes
-    penalty = normal_penalty(case, mesh)
-    springs = container.support.normal_stiffness(penalty)
-    base = springs.size
-    springs = np.concatenate([springs, np.full(nodes.size - base, 0.5 * springs.sum())])
+    footing = footing or set_down(case, container)
+    mesh, nodes, contact, body = container.mesh, container.nodes, footing.contact, footing.body
     static = checks_of(case, mesh, motion)
-    contact = _contact(case, mesh, springs, base)
     control = _control(case, container, static, motion, contact)
-    scheme = _scheme(case, container, penalty, control, contact)
-    body = _body(case, container, contact)
+    scheme = _scheme(case, container, footing.penalty, control, contact)
     full = isinstance(body, FullBody)
     coordinates = body.coordinates if isinstance(body, FullBody) else 3 + body.stiffness.size
     old, new = (make_state(coordinates, nodes.size, container.monitors.size) for _ in range(2))
-    stance = _stance(case, container, contact)
     compiled_motion = motion.compiled()
     floor, floor_velocity, _ = floor_motion(compiled_motion, 0.0)
     drift = floor_velocity if case.motion.start == "moving" else 0.0
-    _place(body, old, stance.moved(floor), container.response, floor, drift, contact)
+    _place(body, old, footing.stance.moved(floor), container.response, floor, drift, contact)
     interval, fields = case.output.history_s, case.output.fields_s
     stacked = case.container.boxes > 1  # the forces in its joints follow from the motion
     run = make_run(
@@ -200,9 +247,7 @@ def build_model(case: Case, container: Container | None = None) -> Model:
         ),
     )
     begin(run.track[0], control, old)
-    return Model(
-        case=case, container=container, penalty=penalty, motion=motion, static=static, body=body, run=run
-    )
+    return Model(case=case, container=container, footing=footing, motion=motion, static=static, run=run)
 
 
 def checks_of(case: Case, mesh: ContainerMesh, motion: BaseMotion) -> StaticChecks:

@@ -299,7 +299,8 @@ def _runs(laboratory: Laboratory, ratio: float) -> tuple[float, float, Setup]:
         if wanted is not None:
             square = block_of(model).radius ** 2
             inertia = model.container.mesh.mass * square * (wanted - 1.0)
-            model = replace(model, body=model.body._replace(inertia=inertia))  # type: ignore[union-attr]
+            body = model.body._replace(inertia=inertia)  # type: ignore[union-attr]
+            model = replace(model, footing=replace(model.footing, body=body))
         recorder = Recorder(model)
         simulate(model, recorder)
         history = recorder.history()

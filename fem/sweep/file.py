@@ -8,6 +8,7 @@ The file is TOML:
     [derived]                              # keys that follow, as expressions of others
     [perturbation]                         # how sure is a cell: see `perturbation`
     [threshold]                            # where the outcome changes along one axis: see `threshold`
+    [maps]                                 # x, y: the axes that span them; fixed: values of others
 """
 
 from collections.abc import Mapping
@@ -25,7 +26,7 @@ from fem.case_tables import Table
 from fem.sweep.axes import NO_AXIS, Axis, AxisError, field_of, read_axis
 from fem.sweep.expressions import Expression, ExpressionError, parse_expression
 from fem.sweep.perturbation import Perturbation
-from fem.sweep.plan import Derived, Sweep, in_order, value_in
+from fem.sweep.plan import Derived, MapChoice, Sweep, in_order, value_in
 from fem.sweep.shipped import SHIPPED_SWEEPS, shipped_sweep_text
 from fem.sweep.threshold import Threshold
 
@@ -41,7 +42,7 @@ class SweepHeading(Table):
     title: str = Field(default="", max_length=500, description="for people")
 
 
-SUBTABLES = ("set", "axes", "derived", "perturbation", "threshold")
+SUBTABLES = ("set", "axes", "derived", "perturbation", "threshold", "maps")
 
 
 def load_sweep(name_or_path: str | Path) -> Sweep:
@@ -92,6 +93,7 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
         derived=derived,
         perturbation=_table("perturbation", Perturbation, tables.get("perturbation", {})),
         threshold=_threshold(tables, axes),
+        maps=_maps(tables.get("maps", {}), axes),
     )
     _try_cells(sweep)
     return sweep
@@ -223,6 +225,28 @@ def _threshold(tables: Mapping[str, Any], axes: tuple[Axis, ...]) -> Threshold |
             f"[threshold] axis {threshold.axis!r} takes whole numbers: nothing lies between its cells"
         )
     return threshold
+
+
+def _maps(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> MapChoice:
+    fixed = content.get("fixed", {})
+    given = dict(content) | ({"fixed": _flat("maps.fixed", fixed)} if isinstance(fixed, dict) else {})
+    choice: MapChoice = _table("maps", MapChoice, given)
+    known = {axis.key: axis.values for axis in axes}
+    for key in (choice.x, choice.y, *choice.fixed):
+        if key is not None and key not in known:
+            near = did_you_mean(key, known)
+            raise CaseError(
+                f"[maps] {key!r} is none of the axes{'; ' + near if near else ''} (axes: {', '.join(known)})"
+            )
+    for key, value in choice.fixed.items():
+        if value not in known[key]:
+            listed = ", ".join(str(one) for one in known[key])
+            raise CaseError(f"[maps] {key!r} has no value {value!r} (values: {listed})")
+        if key in (choice.x, choice.y):
+            raise CaseError(f"[maps] {key!r} cannot span the map and be fixed as well")
+    if choice.x is not None and choice.x == choice.y:
+        raise CaseError(f"[maps] a map needs two axes, got {choice.x!r} twice")
+    return choice
 
 
 def _try_cells(sweep: Sweep) -> None:

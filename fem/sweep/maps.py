@@ -38,13 +38,20 @@ class MapError(ValueError):
     """A map that cannot be drawn as asked."""
 
 
-def draw_maps(table: SweepTable, folder: Path) -> list[str]:
-    """Write every map of a sweep into a folder as SVG; returns their names there."""
+def draw_maps(
+    table: SweepTable,
+    folder: Path,
+    x: str | None = None,
+    y: str | None = None,
+    fixed: Mapping[str, Any] | None = None,
+) -> list[str]:
+    """Write every map of a sweep into a folder as SVG; returns their names there. Axes as for `outcome_map`."""
     folder.mkdir(exist_ok=True)
     if len(table.axes) == 1 or sum(len(axis.values) > 1 for axis in table.axes) < 2:
         figures = {"rotation": rotation_curve(table)}
     else:
-        figures = {"outcome": outcome_map(table), "rotation": rotation_map(table), "slip": slip_map(table)}
+        kinds = {"outcome": outcome_map, "rotation": rotation_map, "slip": slip_map}
+        figures = {name: draw(table, x, y, fixed) for name, draw in kinds.items()}
     for name, figure in figures.items():
         write_atomically(folder / f"{name}.svg", svg_of(figure))
     return [f"{folder.name}/{name}.svg" for name in figures]

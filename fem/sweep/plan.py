@@ -10,9 +10,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from pydantic import Field
+
 from fem.case import Case
 from fem.case_reading import CaseError, known_keys
-from fem.case_tables import TABLES
+from fem.case_tables import TABLES, Table
 from fem.sweep.axes import Axis
 from fem.sweep.case_maker import CaseMaker
 from fem.sweep.expressions import Expression, ExpressionError
@@ -40,6 +42,16 @@ class Derived:
     expression: Expression
 
 
+class MapChoice(Table):
+    """Which axes span the maps."""
+
+    x: str | None = Field(default=None, description="key of an axis; default: one with the most values")
+    y: str | None = Field(default=None, description="key of another axis")
+    fixed: dict[str, Any] = Field(
+        default={}, description="values at which further axes are held; the rest has a panel each"
+    )
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Sweep:
     """What a sweep file asks for."""
@@ -52,6 +64,7 @@ class Sweep:
     derived: tuple[Derived, ...]  #: in an order in which each follows what it refers to
     perturbation: Perturbation
     threshold: Threshold | None
+    maps: MapChoice
 
     @property
     def shape(self) -> tuple[int, ...]:

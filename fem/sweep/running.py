@@ -5,6 +5,7 @@ status "failed" and the reason; it never has an outcome.
 """
 
 import os
+import signal
 import threading
 import time
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
@@ -21,6 +22,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import islice
 from multiprocessing import get_context
+from multiprocessing.synchronize import Event
 from operator import itemgetter
 from typing import Any, TypeVar
 
@@ -31,7 +33,7 @@ from contact.body import ROTATION
 from contact.modal_body import ModalBody
 from contact.stepping import FAILED as STEPPING_FAILED
 from fem.case import Case
-from fem.model import Container, Model, build_model, discretise
+from fem.model import Container, Model, build_model, discretise, stands_like
 from fem.recorder import Recorder
 from fem.recovery import Recovery, recovery_of
 from fem.simulation import AFTERMATH, SLICE_REDUCED, cores, simulate, stepping_failure
@@ -122,8 +124,12 @@ def local_workers(model: str, jobs: int) -> Iterator[Workers]:
     """Threads for the compiled models, which work without the interpreter's lock, and processes for `full`."""
     if model == "full":
         context = get_context("spawn")
-        with ProcessPoolExecutor(jobs, context, _end_with_parent, (os.getpid(),)) as processes:
-            yield Workers(pool=processes, count=jobs)
+        over = context.Event()
+        with ProcessPoolExecutor(jobs, context, _end_with_parent, (os.getpid(), over)) as processes:
+            try:
+                yield Workers(pool=processes, count=jobs)
+            finally:  # a stop does not wait for the cases under way, which may take an hour
+                over.set()
     else:
         with ThreadPoolExecutor(jobs) as threads:
             yield Workers(pool=threads, count=jobs)
@@ -145,7 +151,7 @@ def run_items(
             method of something that can be pickled.
         model: of all these cases.
         workers: from `local_workers`, or a cluster.
-        stop: asked now and then; true ends the work when what has begun is done.
+        stop: asked now and then; true ends the work when what has begun is done, and at once for `full`.
     """
     remaining = iter(items)
     waiting: dict[Future[list[Row]], list[ItemT]] = {}
@@ -171,6 +177,8 @@ def run_items(
             if stop():
                 for future in [future for future in waiting if future.cancel()]:
                     del waiting[future]
+                if model == "full":
+                    break
     finally:
         for future in waiting:
             future.cancel()
@@ -179,7 +187,10 @@ def run_items(
 def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row]:
     """Run the cases of some items: one after the other, or those of one compiled container in one call."""
     began = time.perf_counter()
-    prepared = [_prepare(make, item) for item in items]
+    prepared: list[Model | Row] = []
+    for item in items:
+        before = prepared[-1] if prepared and isinstance(prepared[-1], Model) else None
+        prepared.append(_prepare(make, item, before))
     rows: list[Row | None] = [one if isinstance(one, dict) else None for one in prepared]
     models = {k: one for k, one in enumerate(prepared) if isinstance(one, Model)}
     for group in _of_one_body(models):
@@ -194,15 +205,20 @@ def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row
     return _with_wall([row for row in rows if row is not None], models, time.perf_counter() - began)
 
 
-def _prepare(make: Callable[[ItemT], Case], item: ItemT) -> Model | Row:
-    """The model of an item; or its row, where there is nothing to be computed in common."""
+def _prepare(make: Callable[[ItemT], Case], item: ItemT, before: Model | None) -> Model | Row:
+    """The model of an item; or its row, where there is nothing to be computed in common.
+
+    It stands as the one before does, if nothing but the motion of the floor is another.
+    """
     try:
         case = make(item)
         if case.output.fields_s > 0.0:
             case = case.with_values({"output.fields_s": 0.0})
         if case.solver.model == "full":
             return _run_full(case)
-        return build_model(case, _SHELF.container_of(case))
+        container = _SHELF.container_of(case)
+        same = before is not None and before.container is container and stands_like(case, before.case)
+        return build_model(case, container, before.footing if before is not None and same else None)
     except (ValueError, ArithmeticError, RuntimeError) as error:  # bad input, no stance, a singular matrix
         return _row_without_outcome("failed", str(error))
 
@@ -341,12 +357,13 @@ def _row_without_outcome(status: str, reason: str | None) -> Row:
     return {"status": status, "reason": reason, "wall_s": 0.0} | dict.fromkeys(SCALARS)
 
 
-def _end_with_parent(parent: int) -> None:
-    """End this worker when the process that started it is gone, however it went."""
+def _end_with_parent(parent: int, over: Event) -> None:
+    """End this worker when the work is over, or the process that started it is gone, however it went."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is heard by the process that started it
 
     def watch() -> None:
-        while os.getppid() == parent:
-            time.sleep(1.0)
+        while os.getppid() == parent and not over.wait(1.0):
+            pass
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()

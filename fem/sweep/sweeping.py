@@ -153,7 +153,7 @@ def run_sweep(
         place = open_sweep_folder(folder, sweep, force=force, resume=resume)
         if place.finished:
             reporter.message(f"{folder} holds this sweep already; --force computes it again")
-            return read_info(place.path)
+            return _with_maps(place, sweep)
         work = _Work(
             sweep=sweep,
             place=place,
@@ -162,6 +162,20 @@ def run_sweep(
             info=_asked(sweep) | {"jobs": jobs},
         )
         return work.run(stop)
+
+
+def _with_maps(place: SweepFolder, sweep: Sweep) -> dict[str, Any]:
+    """A finished sweep; its maps are drawn anew if they are to be others."""
+    info = read_info(place.path)
+    asked = sweep.maps.model_dump()
+    if info.get("map_axes") != asked:
+        info |= {"map_axes": asked, "maps": _draw(place, sweep)}
+        write_info(place, info)
+    return info
+
+
+def _draw(place: SweepFolder, sweep: Sweep) -> list[str]:
+    return draw_maps(open_sweep(place.path), place.maps, **sweep.maps.model_dump())
 
 
 def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
@@ -207,6 +221,7 @@ def _asked(sweep: Sweep) -> dict[str, Any]:
         "perturbed": 0,
         "unsure": None,
         "changes": None,
+        "map_axes": sweep.maps.model_dump(),
         "maps": [],
         "program": program_identity()["sources"],
         "versions": versions(),
@@ -244,7 +259,7 @@ class _Work:
             self._write_changes(changes)
             self.info["unsure"] = None if unsure is None else int(unsure.sum())
             self.info["status"] = "completed" if self._any_outcome(found) else "failed"
-            self.info["maps"] = draw_maps(open_sweep(self.place.path), self.place.maps)
+            self.info["maps"] = _draw(self.place, self.sweep)
         self.info["wall_s"] = time.perf_counter() - began
         self._note(found, force=True)
         if self.info["status"] != "interrupted":

@@ -173,6 +173,16 @@ def test_a_million_cells_need_force(tmp_path):
     check_size(load_sweep(path), 2, True)
 
 
+def test_shipped_sweeps_are_listed_and_written_out(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["list"]) == 0
+    listed = capsys.readouterr().out
+    assert all(name in listed for name in ("outcome_map", "friction_slenderness", "rigid_to_soft"))
+    assert main(["init", "outcome_map", "--to", "mine.toml"]) == 0
+    assert "python -m fem sweep mine.toml" in capsys.readouterr().out
+    assert load_sweep("mine.toml").count == load_sweep("outcome_map").count
+
+
 def test_the_command_answers_bad_input_with_2(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["sweep", "nowhere.toml"]) == 2
