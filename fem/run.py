@@ -143,7 +143,7 @@ def run_case(
                 lock.check()
                 store(result, case, place)
                 if ending.status in FINISHED:
-                    place.checkpoint.unlink(missing_ok=True)  # nothing is left to go on with
+                    place.remove_checkpoint()  # nothing is left to go on with
                 if not (
                     once_more and add_checks(result, model, place, options, reporter=reporter, stop=stop)
                 ):
@@ -193,12 +193,12 @@ def naming_what_failed(place: RunFolder, result: dict[str, Any]) -> Iterator[Non
 
 
 def store(result: dict[str, Any], case: Case, place: RunFolder) -> None:
-    """Write `run.json` with its warnings, and the summary."""
+    """Write the summary, then `run.json` with its warnings: a run that says it is finished has both."""
     result["warnings"] = warnings_for(result, case)
-    place.write_result(result)
     place.write_summary(
         plain_summary(result, title=case.title or case.name, folder=place.path, warnings=result["warnings"])
     )
+    place.write_result(result)
 
 
 def draw(case: Case, place: RunFolder, reporter: Reporter) -> None:

@@ -101,6 +101,11 @@ class RunFolder:
             raise ValueError(f"unknown status {result.get('status')!r}; known: {', '.join(sorted(STATUSES))}")
         write_atomically(self.result, to_json(result))
 
+    def remove_checkpoint(self) -> None:
+        """Remove the checkpoint, and what a kill may have left of the next one."""
+        self.checkpoint.unlink(missing_ok=True)
+        self.checkpoint.with_name(f".{self.checkpoint.name}.part").unlink(missing_ok=True)
+
     def write_summary(self, text: str) -> None:
         """Replace `summary.txt`."""
         write_atomically(self.summary, text)
@@ -286,9 +291,9 @@ def _make(path: Path) -> list[Path]:
 
 def _remove_results(folder: RunFolder) -> None:
     """Remove what an earlier run left, and nothing else that may lie there."""
-    half_written = folder.checkpoint.with_name(f".{folder.checkpoint.name}.part")
+    folder.remove_checkpoint()
     made = (folder.summary, folder.history, folder.rigid_check, folder.report, folder.variations)
-    for file in (*made, folder.checkpoint, half_written):
+    for file in made:
         file.unlink(missing_ok=True)
     for place, patterns in (
         (folder.fields, ("run.pvd", "frame_*.vtu", ".*.part")),
