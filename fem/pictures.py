@@ -126,7 +126,7 @@ class Scene:
             )
         else:
             plotter.add_mesh(self._body, color=BODY, lighting=False)
-        plotter.add_mesh(self._outline, color=EDGE, line_width=2, lighting=False)
+        plotter.add_mesh(self._outline, color=EDGE, line_width=3, lighting=False, render_lines_as_tubes=True)
         plotter.add_mesh(self._arrows, color=ARROW, lighting=False)
 
     def _stand(self) -> None:

@@ -12,7 +12,7 @@ import pyvista
 from numpy.typing import NDArray
 
 from fem.fields import Frame
-from fem.outline import outline_edges
+from fem.outline import chained, outline_edges
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -121,9 +121,10 @@ def body_of(frame: Frame) -> pyvista.PolyData:
 
 def outline_of(frame: Frame, boxes: int) -> pyvista.PolyData:
     """Outer edges of the container and the joints of its boxes, as lines on its nodes."""
-    edges = outline_edges(frame.points, frame.cells, boxes)
-    lines = np.column_stack([np.full(len(edges), 2), edges])
-    return pyvista.PolyData(spatial(frame.points), lines=lines.ravel())
+    lines = chained(outline_edges(frame.points, frame.cells, boxes))
+    return pyvista.PolyData(
+        spatial(frame.points), lines=np.concatenate([[len(line), *line] for line in lines])
+    )
 
 
 def hatches_of(view: View) -> pyvista.PolyData:
