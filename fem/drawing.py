@@ -67,6 +67,9 @@ STYLE: dict[Any, Any] = {
     "ytick.color": BLACK,
 }
 TIME = "time [s]"
+NEAR_LIMIT = (
+    0.15  #: share of the slenderness angle, or of the energy to overturn, from which it is drawn to scale
+)
 STRETCHES = 800  #: of a long curve, each drawn by its extremes: finer than print
 
 
@@ -145,8 +148,9 @@ def time_panels(
     return figure, axes
 
 
-def head(figure: Figure, title: str, statement: str = "") -> None:
-    """Title, and below it a statement in smaller letters."""
+def head(figure: Figure, title: str, statement: str = "", *, status: str = "completed") -> None:
+    """Title, with a word on a run that is not whole, and below it a statement in smaller letters."""
+    title = title if status in ("completed", "overturned") else f"{title} ({status})"
     width, height = figure.get_size_inches()
     for row, (text, size, colour) in enumerate(((title, 10.0, BLACK), (statement, 8.0, GREY))):
         if text:

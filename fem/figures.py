@@ -22,10 +22,8 @@ from fem.drawing import (
     GREEN,
     GREY,
     LEGEND_GAP,
-    ORANGE,
-    PURPLE,
+    NEAR_LIMIT,
     STATE_COLOURS,
-    TIME,
     VERMILLION,
     WIDTH,
     draw_curve,
@@ -43,16 +41,15 @@ from fem.drawing import (
     zero_line,
 )
 from fem.figures_checks import band_figure, rigid_check_figure
-from fem.history import FloatArray, History
+from fem.figures_energy import energy_figure
+from fem.history import FloatArray
 from fem.opening import OpenedRun
 from fem.run_folder import write_atomically
-from fem.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT, SLIDING
+from fem.verdict import SLIDING
 
-NEAR_LIMIT = 0.15  #: rotation ratio from which the slenderness angle is drawn to scale
 LARGE_FORCE = 2.5  #: times weight, or its static friction: beyond are impacts, not the motion between them
 OFF_SCALE = 1.3  #: forces beyond the scale by more than this are cut off and told
 MARKS = 300  #: of forces off the scale, side by side
-NAMES = 0.09  #: of a figure's width, for the names beside bars
 LEAST_MOTION = 1e-3  #: of the floor, on its axes [mm, m/s, m/s2]
 
 
@@ -140,9 +137,8 @@ def rotation_figure(run: OpenedRun) -> Figure:
     _mark_impact(axes, verdict)
     legend_above(axes)
     found = math.degrees(verdict.get("max_rotation_rad") or math.radians(largest))
-    _head(
-        run, figure, f"Rotation: {number(found)}° at most, {number(found / angle)} of the slenderness angle"
-    )
+    title = f"Rotation: {number(found)}° at most, {number(found / angle)} of the slenderness angle"
+    head(figure, title, status=run.status)
     return figure
 
 
@@ -160,10 +156,10 @@ def slip_figure(run: OpenedRun) -> Figure:
         legend_above(axes)
     largest = 1e3 * (verdict.get("max_slip_m") or 0.0)
     travel = 1e3 * (verdict.get("slip_travel_m") or 0.0)
-    _head(
-        run,
+    head(
         figure,
         f"Slip: {number(largest)} mm at most, {number(slip[-1])} mm at the end, {number(travel)} mm travelled",
+        status=run.status,
     )
     return figure
 
@@ -185,7 +181,7 @@ def uplift_figure(run: OpenedRun) -> Figure:
         if largest > 0.0
         else "The base never opens"
     )
-    _head(run, figure, title)
+    head(figure, title, status=run.status)
     return figure
 
 
@@ -225,7 +221,7 @@ def forces_figure(run: OpenedRun) -> Figure:
         f"marks at the rim: beyond the scale, up to {number(normal.max(), 4)} and "
         f"{number(np.abs(shear).max(), 4)} kN, when the contact's damper stops an impact"
     )
-    _head(run, figure, "Forces of the floor on the container", statement if cut else "")
+    head(figure, "Forces of the floor on the container", statement if cut else "", status=run.status)
     return figure
 
 
@@ -250,47 +246,7 @@ def phase_portrait_figure(run: OpenedRun) -> Figure:
     axes.set_xlabel("rotation [degrees]")
     axes.set_ylabel("angular velocity [degrees/s]")
     legend_above(axes)
-    _head(run, figure, "Phase portrait of the rotation")
-    return figure
-
-
-def energy_figure(run: OpenedRun) -> Figure:
-    """Stored energies and the imbalance over time; what went in and where it went, at the end."""
-    history, energy = run.history, run.result.get("energy") or {}
-    time, reference = history["time_s"], energy.get("reference_J")
-    figure, axes = panels((2.0, 0.9, 1.1), gaps=(LEGEND_GAP, 0.55), header=2)
-    stored, imbalance, budget = axes
-    # From the height of the mass centre of the container that stands: what its weight could still do.
-    centroid = float((run.result.get("static") or {}).get("centroid_m") or 0.0)
-    raised = history["potential_J"] - run.case.weight * centroid
-    for values, name, colour, style in (
-        (history["kinetic_J"], "kinetic", BLUE, "-"),
-        (raised, "gravity and contact springs", VERMILLION, "--"),
-        (history["strain_J"], "strain", GREEN, ":"),
-    ):
-        draw_curve(stored, time, 1e-3 * values, color=colour, linestyle=style, label=name)
-    if reference and raised.max() > NEAR_LIMIT * reference:
-        label = f"to overturn, {number(1e-3 * reference)} kJ"
-        stored.axhline(1e-3 * reference, color=BLACK, linestyle="-.", linewidth=0.9, label=label)
-    stored.set_ylabel("energy [kJ]")
-    legend_above(stored)
-    zero_line(imbalance)
-    draw_curve(imbalance, time, history["imbalance_J"], color=PURPLE, label=_imbalance_limits(energy))
-    imbalance.set_ylabel("imbalance [J]")
-    imbalance.set_xlabel(TIME)
-    legend_above(imbalance)
-    stored.sharex(imbalance)
-    stored.tick_params(labelbottom=False)
-    for panel in (stored, imbalance):
-        panel.set_gid(TIME)
-    box = budget.get_position()
-    budget.set_position((box.x0 + NAMES, box.y0, box.width - NAMES, box.height))
-    _draw_budget(budget, energy, history)
-    closure = energy.get("closure_error")
-    share = (
-        "" if closure is None else f": largest imbalance {number(closure, 2)} of what it takes to overturn"
-    )
-    _head(run, figure, f"Energy{share}")
+    head(figure, "Phase portrait of the rotation", status=run.status)
     return figure
 
 
@@ -326,12 +282,6 @@ def _verdict(run: OpenedRun) -> Mapping[str, Any]:
     return run.result.get("verdict") or {}
 
 
-def _head(run: OpenedRun, figure: Figure, title: str, statement: str = "") -> None:
-    """Title and statement, with a word on a run that is not whole."""
-    whole = run.status in ("completed", "overturned")
-    head(figure, title if whole else f"{title} ({run.status})", statement)
-
-
 def _mark_impact(axes: Axes, verdict: Mapping[str, Any]) -> None:
     """A line at the first impact, if there is one."""
     impact = verdict.get("first_impact_s")
@@ -355,46 +305,3 @@ def _cut_off(axes: Axes, time: FloatArray, force: FloatArray, limit: float) -> N
         _, apart = np.unique(np.round(beyond / (time[-1] - time[0]) * MARKS), return_index=True)
         rim = np.full(len(apart), sign * limit)
         axes.plot(beyond[apart], rim, marker, color=GREY, markersize=3, clip_on=False)
-
-
-def _imbalance_limits(energy: Mapping[str, Any]) -> str:
-    """What the scheme lost or won, and what would fail the run."""
-    told, reference = "lost (> 0) or won by the time stepping", energy.get("reference_J")
-    if not reference:
-        return told
-    spent = sum(energy.get(key) or 0.0 for key in ("friction_J", "contact_damping_J", "material_damping_J"))
-    loss = max(LOSS_SHARE_LIMIT * spent, LOSS_LIMIT * reference)
-    return f"{told}; to lose {number(loss)} J or win {number(GAIN_LIMIT * reference, 2)} J would fail the run"
-
-
-def _draw_budget(axes: Axes, energy: Mapping[str, Any], history: History) -> None:
-    """Bars of what the floor put in and what took it."""
-    stored = sum(
-        float(history[key][-1] - history[key][0]) for key in ("kinetic_J", "strain_J", "potential_J")
-    )
-    bars = (
-        ("work of the floor", energy.get("base_work_J"), BLUE),
-        ("stored since the start", stored, GREY),
-        ("friction", energy.get("friction_J"), VERMILLION),
-        ("contact damping", energy.get("contact_damping_J"), GREEN),
-        ("material damping", energy.get("material_damping_J"), ORANGE),
-        ("imbalance", energy.get("numerical_J"), PURPLE),
-    )
-    known = [(name, 1e-3 * float(value), colour) for name, value, colour in bars if value is not None]
-    for row, (_, value, colour) in enumerate(known):
-        axes.barh(row, value, height=0.72, color=colour)
-        axes.annotate(
-            number(value),
-            (max(value, 0.0), row),
-            xytext=(3, 0),
-            textcoords="offset points",
-            va="center",
-            fontsize=8,
-        )
-    axes.axvline(0.0, color=GREY, linewidth=0.7)
-    axes.set_yticks(range(len(known)), [name for name, *_ in known], fontsize=7.5)
-    axes.tick_params(axis="y", length=0)
-    axes.invert_yaxis()
-    axes.set_xmargin(0.13)
-    axes.grid(visible=False, axis="y")
-    axes.set_xlabel("over the whole run [kJ]")
