@@ -20,14 +20,21 @@ FLAGS = ("--help", "-h", "--version")
 COMMANDS = {
     "run": ("fem.commands.run:run", "Compute a case: rest, slide, rock, slide-rock or overturn."),
     "check": ("fem.commands.check:check", "Static checks, derived numbers and chosen numerics; no solution."),
-    "init": ("fem.commands.init:init", "Write a commented case or sweep file to start from."),
-    "list": ("fem.commands.list_cases:list_cases", "The shipped cases and sweeps, and what each shows."),
+    "init": ("fem.commands.init:init", "Write a commented case, sweep or ensemble file to start from."),
+    "list": (
+        "fem.commands.list_cases:list_cases",
+        "The shipped cases, sweeps and ensembles, and what each shows.",
+    ),
     "modes": ("fem.commands.modes:modes", "Elastic frequencies and shapes of the free container."),
     "sweep": (
         "fem.commands.sweep:sweep",
         "Compute many cases, over ranges of some keys.",
     ),
     "report": ("fem.commands.report:report", "One self-contained page from a run, to send and print."),
+    "ensemble": (
+        "fem.commands.ensemble:ensemble",
+        "Probability of overturning: fragility curve, or boundary over two axes.",
+    ),
     "response": (
         "fem.commands.response:response",
         "Long-time motion, the frequency of the drive swept up and down.",

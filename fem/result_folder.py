@@ -8,13 +8,14 @@ import contextlib
 import io
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from fem.folder_lock import held_folder
 from fem.run_folder import FolderError, to_json, write_atomically
 
 COMPLETED = "completed"
@@ -70,7 +71,8 @@ class ResultFolder:
             raise FolderError(f"{place}: damaged ({error}); --force computes everything anew") from None
 
 
-def open_result_folder(
+@contextlib.contextmanager
+def opened_result_folder(
     path: Path,
     *,
     mark: str,
@@ -79,8 +81,8 @@ def open_result_folder(
     own: Sequence[str],
     force: bool = False,
     resume: bool = False,
-) -> ResultFolder:
-    """Make or reuse a folder and mark it as running.
+) -> Iterator[ResultFolder]:
+    """Make or reuse a folder, hold it for this process, and mark it as running.
 
     A finished result of the same request is left untouched and returned, unless `force`; an unfinished one is begun
     anew, or gone on with under `resume`.
@@ -94,32 +96,53 @@ def open_result_folder(
 
     Raises:
         FolderError: it holds something else (without `force`), is no folder, or cannot be written.
+        FolderLockedError: another process writes into it.
     """
+    _look_into(path, mark=mark, kind=kind, asked=asked, force=force)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FolderError(
+            f"{path}: cannot be made ({error.strerror}); choose another folder with --out DIR"
+        ) from None
+    with held_folder(path):
+        found = _look_into(path, mark=mark, kind=kind, asked=asked, force=force)
+        same = found.get("asked") == asked and not force
+        if same and found.get("status") == COMPLETED:
+            yield ResultFolder(path=path, mark=mark, finished=found)
+            return
+        folder = ResultFolder(path=path, mark=mark)
+        try:
+            folder.write_result({"status": "running", "asked": asked})
+            if not (same and resume):
+                for pattern in own:
+                    for file in path.glob(pattern):
+                        file.unlink(missing_ok=True)
+        except OSError as error:
+            raise FolderError(
+                f"{path}: cannot be written ({error.strerror}); choose another folder with --out DIR"
+            ) from None
+        yield folder
+
+
+def _look_into(path: Path, *, mark: str, kind: str, asked: str, force: bool) -> dict[str, Any]:
+    """What the mark of the folder says; refuses what is not of this request, unless forced."""
     remedy = "choose another folder with --out DIR, or overwrite it with --force"
     if path.exists() and not path.is_dir():
         raise FolderError(f"{path} is a file, not a folder; choose another with --out DIR")
-    found: dict[str, Any] = {}
-    if path.exists() and any(not entry.name.endswith(".part") for entry in path.iterdir()):
-        found = _read_mark(path / mark)
-        if found.get("asked") != asked and not force:
-            holds = f"another {kind}" if found else f"no {kind}"
-            raise FolderError(f"{path} holds {holds}; {remedy}")
-    same = found.get("asked") == asked and not force
-    if same and found.get("status") == COMPLETED:
-        return ResultFolder(path=path, mark=mark, finished=found)
-    folder = ResultFolder(path=path, mark=mark)
     try:
-        path.mkdir(parents=True, exist_ok=True)
-        folder.write_result({"status": "running", "asked": asked})
-        if not (same and resume):
-            for pattern in own:
-                for file in path.glob(pattern):
-                    file.unlink(missing_ok=True)
+        empty = not path.exists() or all(entry.name.startswith(".") for entry in path.iterdir())
     except OSError as error:
         raise FolderError(
-            f"{path}: cannot be written ({error.strerror}); choose another folder with --out DIR"
+            f"{path}: cannot be read ({error.strerror}); choose another folder with --out DIR"
         ) from None
-    return folder
+    if empty:
+        return {}
+    found = _read_mark(path / mark)
+    if found.get("asked") != asked and not force:
+        holds = f"another {kind}" if found else f"no {kind}"
+        raise FolderError(f"{path} holds {holds}; {remedy}")
+    return found
 
 
 def _read_mark(path: Path) -> dict[str, Any]:

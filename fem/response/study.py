@@ -28,7 +28,7 @@ from fem.response.record import (
     record_of,
 )
 from fem.response.request import ResponseRequest
-from fem.result_folder import COMPLETED, ResultFolder, open_result_folder
+from fem.result_folder import COMPLETED, ResultFolder, opened_result_folder
 from fem.run import interruptible, versions
 from fem.run_folder import FolderError
 from fem.verdict import MODE_NAMES
@@ -60,25 +60,27 @@ def run_response(
         CaseError, MeshError, FolderError: bad input.
     """
     reporter = reporter or SilentReporter()
-    place = open_result_folder(
-        folder, mark=MARK, kind="response curve", asked=request.hash, own=OWN, force=force, resume=resume
-    )
-    if place.finished is not None:
-        reporter.message(f"{folder} holds this response curve already; --force computes it again")
-        return ResponseResult(status=COMPLETED, result=place.finished, records=())
-    place.write_text("case.toml", to_toml(request.case))
-    records, saved = read_state(place)
-    with interruptible(reporter) as stop:
+    with (
+        opened_result_folder(
+            folder, mark=MARK, kind="response curve", asked=request.hash, own=OWN, force=force, resume=resume
+        ) as place,
+        interruptible(reporter) as stop,
+    ):
+        if place.finished is not None:
+            reporter.message(f"{folder} holds this response curve already; --force computes it again")
+            return ResponseResult(status=COMPLETED, result=place.finished, records=())
+        place.write_text("case.toml", to_toml(request.case))
+        records, saved = read_state(place)
         status = _sweep(request, place, records, saved, reporter=reporter, stop=stop)
-    result = result_of(request, records, status)
-    place.write_text("response.csv", csv_of_rows(records))
-    place.write_text("sections.csv", csv_of_sections(records))
-    place.write_text("portraits.csv", csv_of_portraits(records))
-    for name, svg in response_figures(request, records).items():
-        place.write_text(f"figures/{name}.svg", svg)
-    place.write_result(result)
-    if status == COMPLETED:
-        (place.path / STATE).unlink(missing_ok=True)
+        result = result_of(request, records, status)
+        place.write_text("response.csv", csv_of_rows(records))
+        place.write_text("sections.csv", csv_of_sections(records))
+        place.write_text("portraits.csv", csv_of_portraits(records))
+        for name, svg in response_figures(request, records).items():
+            place.write_text(f"figures/{name}.svg", svg)
+        place.write_result(result)
+        if status == COMPLETED:
+            (place.path / STATE).unlink(missing_ok=True)
     return ResponseResult(status=status, result=result, records=tuple(records))
 
 

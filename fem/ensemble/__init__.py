@@ -1,0 +1,1 @@
+"""Probability of overturning from a seeded ensemble: fragility curves and confidence boundaries."""

@@ -1,0 +1,150 @@
+"""The fragility curve: probability of overturning over the strength of the motion, and a lognormal one fitted to it.
+
+p(a) = Phi(ln(a/median)/deviation), by the largest binomial likelihood of the counts: probit regression on ln a. The
+band is that of a bootstrap. A lognormal curve rises for ever; rocking need not: a stronger motion may leave standing
+what a weaker one overturned. So the counts with their intervals come first, and how far the fitted curve misses them,
+and where they fall, is said beside it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import ndtr
+from scipy.stats import binom
+
+from mesh.cells import FloatArray
+
+BOOTSTRAPS = 1000
+SCORINGS = 60  #: of Fisher's method
+TIGHT = 1e-9  #: change of the coefficients at which it ends
+STEEPEST = 200.0  #: 1/deviation beyond which the counts are told apart by a step
+TAIL = 8.0  #: deviations from the median to which tails are followed
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lognormal:
+    """A fitted fragility curve."""
+
+    median: float  #: strength of motion at which half overturn, unit of the axis
+    deviation: float  #: of its logarithm
+
+    def probability(self, strengths: FloatArray) -> FloatArray:
+        """Of overturning, shape as given."""
+        return np.asarray(ndtr(np.log(strengths / self.median) / self.deviation))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fall:
+    """A stronger motion that overturns less often than a weaker one, beyond what the intervals allow."""
+
+    weaker: float
+    stronger: float
+    probability_weaker: float
+    probability_stronger: float
+
+
+def fit_lognormal(strengths: FloatArray, overturned: FloatArray, draws: FloatArray) -> Lognormal | None:
+    """The lognormal curve of largest likelihood; None where there is none (a step, no events, a falling curve).
+
+    Args:
+        strengths: (n,) positive; overturned: (n,) counts; draws: (n,) of which.
+    """
+    slopes, intercepts, sound = _probit(np.log(strengths), overturned[None], draws)
+    if not sound[0]:
+        return None
+    return Lognormal(median=float(np.exp(-intercepts[0] / slopes[0])), deviation=float(1.0 / slopes[0]))
+
+
+def bootstrap_fits(
+    strengths: FloatArray, counts: FloatArray, sizes: FloatArray, *, seed: int, independent: bool
+) -> tuple[FloatArray, FloatArray]:
+    """Medians and deviations of curves fitted to resampled counts, shape (k,), k the resamples that have one.
+
+    Independent draws are resampled draw by draw, replicates as a whole.
+
+    Args:
+        strengths: (n,); counts: (n, r) overturned in each replicate; sizes: (n, r) draws that have an outcome.
+        seed: of the resampling.
+        independent: each replicate's draws are independent of one another.
+    """
+    generator = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(2**32 - 1,)))
+    totals = sizes.sum(axis=1)
+    if independent:
+        shares = np.divide(counts.sum(axis=1), totals, out=np.zeros(len(totals)), where=totals > 0.0)
+        drawn = generator.binomial(totals.astype(int), shares, size=(BOOTSTRAPS, len(totals))).astype(float)
+        weights = totals
+    else:
+        picked = generator.integers(counts.shape[1], size=(BOOTSTRAPS, *counts.shape))
+        levels = np.arange(len(totals))[:, None]
+        # Replicates lose draws that failed; a picked one counts as if it had lost as many as they do on average.
+        share = np.divide(counts, sizes, out=np.zeros_like(counts), where=sizes > 0.0)
+        drawn = share[levels, picked].mean(axis=2) * totals
+        weights = totals
+    slopes, intercepts, sound = _probit(np.log(strengths), drawn, weights)
+    return np.exp(-intercepts[sound] / slopes[sound]), 1.0 / slopes[sound]
+
+
+def falls(strengths: FloatArray, values: FloatArray, low: FloatArray, high: FloatArray) -> list[Fall]:
+    """Where the curve falls: for each level, the weaker one whose interval lies highest above its own."""
+    found = []
+    for k in range(1, len(strengths)):
+        before = int(np.argmax(low[:k]))
+        if high[k] < low[before]:
+            found.append(
+                Fall(
+                    weaker=float(strengths[before]),
+                    stronger=float(strengths[k]),
+                    probability_weaker=float(values[before]),
+                    probability_stronger=float(values[k]),
+                )
+            )
+    return found
+
+
+def misses(curve: Lognormal, strengths: FloatArray, low: FloatArray, high: FloatArray) -> int:
+    """Levels whose interval does not hold the curve."""
+    fitted = curve.probability(strengths)
+    return int(np.sum((fitted < low) | (fitted > high)))
+
+
+def misses_by_chance(levels: int, confidence: float) -> int:
+    """As many levels may miss a true curve, in nineteen of twenty such studies."""
+    return int(binom.ppf(0.95, levels, 1.0 - confidence))
+
+
+def _probit(
+    logarithms: FloatArray, overturned: FloatArray, draws: FloatArray
+) -> tuple[FloatArray, FloatArray, np.ndarray]:
+    """Probit regressions p = Phi(intercept + slope x) side by side, by Fisher's scoring.
+
+    Args:
+        logarithms: (n,); overturned: (k, n); draws: (n,).
+
+    Returns:
+        Slopes (k,), intercepts (k,), and which of them are sound: converged, rising, and no step.
+    """
+    middle = float(np.average(logarithms, weights=np.maximum(draws, 1e-9)))
+    x = logarithms - middle
+    share = (overturned + 0.5) / (draws + 1.0)
+    count = len(overturned)
+    slope, intercept = np.full(count, 1.0 / max(float(np.std(x)), 1e-9)), np.zeros(count)
+    intercept += np.clip((share.mean(axis=1) - 0.5) * 2.0, -1.0, 1.0)
+    converged = np.zeros(count, dtype=bool)
+    for _ in range(SCORINGS):
+        z = np.clip(intercept[:, None] + slope[:, None] * x, -TAIL, TAIL)
+        density = np.exp(-0.5 * z * z) / np.sqrt(2.0 * np.pi)
+        p = ndtr(z)
+        spread = np.maximum(p * ndtr(-z), 1e-300)
+        weight = draws * density**2 / spread
+        score = density * (overturned - draws * p) / spread
+        a, b, c = weight.sum(axis=1), (weight * x).sum(axis=1), (weight * x * x).sum(axis=1)
+        first, second = score.sum(axis=1), (score * x).sum(axis=1)
+        determinant = np.maximum(a * c - b * b, 1e-300)
+        change = np.array([(c * first - b * second) / determinant, (a * second - b * first) / determinant])
+        change = np.clip(change, -0.5 * (1.0 + np.abs(slope)), 0.5 * (1.0 + np.abs(slope)))
+        intercept, slope = intercept + change[0], slope + change[1]
+        converged = np.abs(change).max(axis=0) < TIGHT * (1.0 + np.abs(slope))
+        if converged.all():
+            break
+    sound = converged & (slope > 1e-3) & (slope < STEEPEST)
+    return slope, intercept - slope * middle, sound

@@ -1,0 +1,1 @@
+"""Shipped ensembles, a commented TOML file each."""
