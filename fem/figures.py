@@ -97,8 +97,8 @@ def base_motion_figure(run: OpenedRun) -> Figure:
         keep_visible(panel, LEAST_MOTION)
     peak, moved = float(np.abs(acceleration).max()), float(np.abs(displacement).max())
     for limit, style, name in (
-        (static.get("uplift_acceleration_m_s2"), "--", "as a static load it tilts the container"),
-        (run.case.contact.mu_static * run.case.gravity_m_s2, ":", "slides it"),
+        (static.get("uplift_acceleration_m_s2"), "--", "a static load tilts it"),
+        (run.case.contact.mu_static * run.case.gravity_m_s2, ":", "a static load slides it"),
     ):
         if limit and limit < 1.3 * peak:
             draw_limits(axes[2], limit, f"{name} from {number(limit)} m/s²", color=BLACK, linestyle=style)
