@@ -13,6 +13,8 @@ from importlib import metadata
 
 from cyclopts import App, CycloptsError
 
+from fem.threads import use_one_blas_thread
+
 BAD_INPUT, FAILED, INTERRUPTED = 2, 3, 4
 OWN_PACKAGES = {"fem", "mesh", "contact"}
 
@@ -71,6 +73,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Args:
         arguments: what stands behind `python -m fem`; None takes it from the process.
     """
+    use_one_blas_thread()
     tokens = list(sys.argv[1:] if arguments is None else arguments)
     if tokens and tokens[0] not in COMMANDS and tokens[0] not in FLAGS:
         return _refuse(_unknown_command(tokens[0]))

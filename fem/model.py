@@ -32,6 +32,7 @@ from fem.full_body import FullBody
 from fem.modes import elastic_modes
 from fem.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
 from fem.static_checks import StaticChecks, static_checks
+from fem.threads import use_one_blas_thread
 from mesh.cells import FloatArray, IntArray
 from mesh.container import ContainerMesh
 from mesh.region import Region
@@ -130,6 +131,7 @@ def discretise(case: Case) -> Container:
     Raises:
         CaseError, MeshError: bad input.
     """
+    use_one_blas_thread()
     mesh = build_container(case)
     elements = assemble(
         mesh,

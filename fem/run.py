@@ -19,7 +19,7 @@ import numpy as np
 
 from contact.event_driven import EventError
 from fem.band import band_of, wants_band
-from fem.case import Case, case_hash, to_toml
+from fem.case import Case, CaseError, case_hash, to_toml
 from fem.fields import FieldWriter
 from fem.figures import write_figures
 from fem.folder_lock import FolderLock, FolderLostError, held_folder
@@ -94,6 +94,7 @@ def run_case(
     model = build_model(case)
     resolved = resolve(case, model)
     mark = case_hash(resolved)
+    require_names_of_their_own(case, RunFolder(path=folder))
     found = finished_run(folder, case_hash=mark, force=options.force)
     if found is not None:
         reporter.message(f"{folder} holds this run already; --force computes it again")
@@ -285,10 +286,26 @@ def resolve(case: Case, model: Model) -> Case:
     return case.with_values(chosen) if chosen else case
 
 
+def require_names_of_their_own(case: Case, place: RunFolder) -> None:
+    """Refuse a mesh or motion file whose copy would lie where results are written.
+
+    Raises:
+        CaseError: with the key and the name.
+    """
+    for key, path in case.data_files.items():
+        name = path.relative_to(case.folder)
+        if place.path / name.parts[0] in place.own:
+            table, _, word = key.partition(".")
+            raise CaseError(
+                f"[{table}] {word} is named {str(name)!r}, as a result of the run is, which would take its place "
+                "in the folder of results; give the file another name"
+            )
+
+
 def copy_data_files(case: Case, folder: Path) -> None:
     """Put mesh and motion files into the folder, under the names that the case gives them."""
     for path in case.data_files.values():
-        target = folder / path.resolve().relative_to(case.folder.resolve())
+        target = folder / path.relative_to(case.folder)
         target.parent.mkdir(parents=True, exist_ok=True)
         if target.resolve() != path.resolve():
             shutil.copyfile(path, target)

@@ -90,6 +90,13 @@ class RunFolder:
         """What a report found of the run under other assumptions."""
         return self.path / "variations.json"
 
+    @property
+    def own(self) -> tuple[Path, ...]:
+        """Every file and folder that a run writes."""
+        results = (self.result, self.summary, self.history, self.rigid_check, self.fields, self.figures)
+        reports = (self.report, self.variations)
+        return (self.case, self.resolved, *results, *reports, self.checkpoint, self.path / LOCK_NAME)
+
     def write_result(self, result: Mapping[str, Any]) -> None:
         """Replace `run.json`; numbers that are not finite become null.
 

@@ -277,3 +277,18 @@ def test_what_was_written_behind_the_checkpoint_is_cut_off(tmp_path, monkeypatch
         json.dumps(json.loads((folder / "run.json").read_text()) | {"status": "running"})
     )
     require_going_on(folder, whole)
+
+
+def test_a_motion_file_may_not_lie_where_results_are_written(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("history.csv").write_text("time_s,acceleration_m_s2\n0,0\n0.5,1\n1,0\n")
+    changes = (
+        "motion.kind=table",
+        "motion.file=history.csv",
+        "motion.quantity=acceleration",
+        "motion.unit=m/s2",
+    )
+    assert main(["init", "seed_box", "--to", "mine.toml"]) == 0
+    assert main(["run", "mine.toml", "-q", *(word for c in changes for word in ("--set", c))]) == 2
+    assert "[motion] file is named 'history.csv'" in capsys.readouterr().err
+    assert not Path("outputs").exists()
