@@ -7,12 +7,14 @@ from importlib import metadata
 from pathlib import Path
 
 PACKAGES = ("fem", "mesh", "contact")
+DISTRIBUTIONS = ("unanchored", "numpy", "scipy", "scikit-fem", "numba", "meshio")
+
+_version = cache(metadata.version)
 
 
 def versions() -> dict[str, str]:
     """Of the program and of what its numbers depend on."""
-    packages = ("unanchored", "numpy", "scipy", "scikit-fem", "numba", "meshio")
-    return {"python": platform.python_version()} | {name: metadata.version(name) for name in packages}
+    return {"python": platform.python_version()} | {name: _version(name) for name in DISTRIBUTIONS}
 
 
 @cache
