@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 
-BLACK, GREY = "#222222", "#777777"
+BLACK, GREY = "#222222", "#6E6E6E"
 BLUE, VERMILLION, GREEN, ORANGE, SKY, PURPLE = (
     "#0072B2",
     "#D55E00",

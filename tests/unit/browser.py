@@ -1,0 +1,161 @@
+"""A headless Chromium that a test drives over a pipe, by the DevTools protocol; no network, no port."""
+
+import base64
+import itertools
+import json
+import os
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+PATIENCE_S = 60.0
+
+
+class Browser:
+    """One page in a browser of its own; a context manager.
+
+    It notes every request the page makes, every exception and every error on its console.
+    """
+
+    def __init__(self, profile: Path) -> None:
+        to_browser, self._to = os.pipe()
+        self._from, from_browser = os.pipe()
+        flags = "--headless --no-sandbox --disable-gpu --disable-extensions --remote-debugging-pipe"
+        # The protocol speaks on the file descriptors 3 and 4.
+        script = f'exec 3<&{to_browser} 4>&{from_browser}; exec "$0" "$@"'
+        self._process = subprocess.Popen(
+            ["bash", "-c", script, CHROMIUM, *flags.split(), f"--user-data-dir={profile}", "about:blank"],
+            pass_fds=(to_browser, from_browser),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        os.close(to_browser)
+        os.close(from_browser)
+        self._numbers, self._rest, self._session = itertools.count(1), b"", None
+        self.requests: list[str] = []
+        self.errors: list[str] = []
+        targets = self.call("Target.getTargets")["targetInfos"]
+        page = next(target["targetId"] for target in targets if target["type"] == "page")
+        self._session = self.call("Target.attachToTarget", targetId=page, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Network", "Log", "Accessibility"):
+            self.call(f"{domain}.enable")
+
+    def call(self, method: str, **parameters):
+        """Send a command and wait for its answer."""
+        number = next(self._numbers)
+        message = {"id": number, "method": method, "params": parameters}
+        if self._session is not None:
+            message["sessionId"] = self._session
+        os.write(self._to, json.dumps(message).encode() + b"\0")
+        end = time.monotonic() + PATIENCE_S
+        while time.monotonic() < end:
+            for answer in self._receive():
+                if answer.get("id") == number:
+                    if "error" in answer:
+                        raise RuntimeError(f"{method}: {answer['error']}")
+                    return answer["result"]
+        raise TimeoutError(method)
+
+    def open(self, path: Path, fragment: str = "") -> None:
+        """Load a file anew and wait until it is there."""
+        self.call(
+            "Page.navigate", url="about:blank"
+        )  # else another fragment would only move about in the page
+        self.wait("location.href === 'about:blank'")
+        self.requests.clear()
+        self.errors.clear()
+        self.call("Page.navigate", url=path.as_uri() + fragment)
+        self.wait("location.protocol === 'file:' && document.readyState === 'complete'")
+
+    def evaluate(self, expression: str):
+        """The value of an expression in the page."""
+        result = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in result:
+            raise RuntimeError(f"{expression}: {result['exceptionDetails']}")
+        return result["result"].get("value")
+
+    def wait(self, expression: str) -> None:
+        """Wait until an expression is true."""
+        end = time.monotonic() + PATIENCE_S
+        while not self.evaluate(expression):
+            if time.monotonic() > end:
+                raise TimeoutError(expression)
+            time.sleep(0.05)
+
+    def press(self, key: str, code: int = 0, text: str | None = None) -> None:
+        """A key, down and up."""
+        key_of = {"key": key, "windowsVirtualKeyCode": code}
+        self.call("Input.dispatchKeyEvent", type="keyDown", **key_of, **({"text": text} if text else {}))
+        self.call("Input.dispatchKeyEvent", type="keyUp", **key_of)
+
+    def click(self, selector: str, x: float = 0.5, y: float = 0.5) -> None:
+        """A click into an element, at shares of its width and height."""
+        box = self.evaluate(
+            f"(() => {{ const e = document.querySelector({selector!r}); e.scrollIntoView({{block: 'center', "
+            "behavior: 'instant'}); const b = e.getBoundingClientRect(); return [b.x, b.y, b.width, b.height]; })()"
+        )
+        place = {"x": box[0] + x * box[2], "y": box[1] + y * box[3]}
+        self.call("Input.dispatchMouseEvent", type="mouseMoved", **place)
+        for kind in ("mousePressed", "mouseReleased"):
+            self.call("Input.dispatchMouseEvent", type=kind, button="left", clickCount=1, **place)
+
+    def window(self, width: int, height: int) -> None:
+        """The size of the view."""
+        self.call(
+            "Emulation.setDeviceMetricsOverride",
+            width=width, height=height, deviceScaleFactor=1, mobile=False,
+        )  # fmt: skip
+
+    def prefer(self, **features: str) -> None:
+        """Media features, such as prefers_reduced_motion="reduce"."""
+        named = [{"name": name.replace("_", "-"), "value": value} for name, value in features.items()]
+        self.call("Emulation.setEmulatedMedia", features=named)
+
+    def screenshot(self) -> bytes:
+        """The view as PNG."""
+        return base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
+
+    def pdf(self) -> bytes:
+        """The page as it would be printed."""
+        return base64.b64decode(self.call("Page.printToPDF", preferCSSPageSize=True)["data"])
+
+    def _receive(self):
+        data = os.read(self._from, 1 << 20)
+        if not data:
+            raise RuntimeError("the browser has gone")
+        *whole, self._rest = (self._rest + data).split(b"\0")
+        messages = [json.loads(message) for message in whole]
+        for message in messages:
+            self._note(message)
+        return messages
+
+    def _note(self, message) -> None:
+        parameters = message.get("params", {})
+        match message.get("method"):
+            case "Network.requestWillBeSent":
+                self.requests.append(parameters["request"]["url"])
+            case "Runtime.exceptionThrown":
+                self.errors.append(str(parameters["exceptionDetails"]))
+            case "Log.entryAdded" if parameters["entry"]["level"] == "error":
+                self.errors.append(parameters["entry"]["text"])
+            case "Runtime.consoleAPICalled" if parameters["type"] == "error":
+                self.errors.append(str(parameters["args"]))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_) -> None:
+        try:
+            self._session = None
+            self.call("Browser.close")
+        except (OSError, RuntimeError, TimeoutError):
+            self._process.terminate()
+        try:
+            self._process.wait(10)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        os.close(self._to)
+        os.close(self._from)
