@@ -32,7 +32,7 @@ COMMANDS = {
         "fem.commands.sweep:sweep",
         "Compute many cases, over ranges of some keys.",
     ),
-    "report": ("fem.commands.report:report", "One self-contained page from a run, to send and print."),
+    "report": ("fem.commands.report:report", "One self-contained page from a run, a sweep or a study."),
     "ensemble": (
         "fem.commands.ensemble:ensemble",
         "Probability of overturning: fragility curve, or boundary over two axes.",

@@ -1,4 +1,4 @@
-"""`report`: one self-contained page from the folder of a run or of a sweep."""
+"""`report`: one self-contained page from the folder of a run, a sweep or a study."""
 
 import importlib
 from pathlib import Path
@@ -29,11 +29,11 @@ def report(
     Parameters
     ----------
     folder:
-        The folder of a run or of a sweep, such as outputs/my-stack.
+        The folder of a run, a sweep or a study, such as outputs/my-stack.
     """
     if not folder.is_dir():
         raise FolderError(
-            f"{folder}: no such folder; give the folder of a run or a sweep, such as outputs/NAME"
+            f"{folder}: no such folder; give the folder of a run, a sweep or a study, such as outputs/NAME"
         )
     reporter = ScreenReporter(quiet=quiet)
     runs = importlib.import_module("fem.run")
@@ -41,6 +41,8 @@ def report(
     signature = pages.Signature(author=author, checker=checker, revision=revision)
     if (folder / "sweep.json").is_file():
         page = importlib.import_module("fem.report.sweep_page").sweep_report(folder, signature=signature)
+    elif (folder / "study.json").is_file():
+        page = importlib.import_module("fem.report.study_page").study_report(folder)
     else:
         opened = importlib.import_module("fem.opening").open_run(folder)
         with runs.interruptible(reporter) as stop:

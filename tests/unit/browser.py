@@ -134,7 +134,7 @@ class Browser:
     def _note(self, message) -> None:
         parameters = message.get("params", {})
         match message.get("method"):
-            case "Network.requestWillBeSent":
+            case "Network.requestWillBeSent" if not parameters["request"]["url"].startswith("data:"):
                 self.requests.append(parameters["request"]["url"])
             case "Runtime.exceptionThrown":
                 self.errors.append(str(parameters["exceptionDetails"]))

@@ -104,3 +104,8 @@ class TestRefusals:
     def test_a_folder_without_a_run(self, tmp_path, capsys):
         assert main(["report", str(tmp_path)]) == 2
         assert "run.json" in capsys.readouterr().err
+
+    def test_a_damaged_study(self, tmp_path, capsys):
+        (tmp_path / "study.json").write_text('{"groups": 3}')
+        assert main(["report", str(tmp_path)]) == 2
+        assert "not the result of a study" in capsys.readouterr().err

@@ -1,0 +1,27 @@
+"""The report of a study: its page, made anew from the folder in which it was conducted."""
+
+import json
+from pathlib import Path
+
+from fem.run_folder import FolderError
+from fem.study.page import study_page
+
+RESULT, FIGURES = "study.json", "figures"
+
+
+def study_report(folder: Path) -> str:
+    """The page, as the text of an HTML file.
+
+    Raises:
+        FolderError: `study.json` is missing, damaged, or not that of a study.
+    """
+    path = folder / RESULT
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+        svgs = {one.stem: one.read_text(encoding="utf-8") for one in (folder / FIGURES).glob("*.svg")}
+        return study_page(document, svgs)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise FolderError(
+            f"{path}: damaged, or not the result of a study ({error}); make it anew with "
+            "python -m fem study seed --force"
+        ) from None
