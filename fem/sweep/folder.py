@@ -121,8 +121,7 @@ def open_sweep_folder(path: Path, sweep: Sweep, *, force: bool, resume: bool) ->
         if found.get("status") == "completed" and folder.table.is_file():
             if same_band:
                 return SweepFolder(path=path, finished=True, same_band=True)
-        elif folder.rows.is_file() and not resume:
-            count = max(folder.rows.read_bytes().count(b"\n") - 1, 0)
+        elif not resume and (count := _rows_in(folder.rows)) > 0:
             raise FolderError(
                 f"{path} holds this sweep, unfinished, with {count} of {sweep.count} rows; --resume goes on with "
                 "it, --force begins anew"
@@ -146,6 +145,11 @@ def write_plan(folder: SweepFolder, sweep: Sweep, info: Mapping[str, Any]) -> No
 def write_info(folder: SweepFolder, info: Mapping[str, Any]) -> None:
     """Replace `sweep.json`."""
     write_atomically(folder.info, to_json(info))
+
+
+def _rows_in(log: Path) -> int:
+    """Whole lines behind the header."""
+    return max(log.read_bytes().count(b"\n") - 1, 0) if log.is_file() else 0
 
 
 def _info_of(folder: SweepFolder) -> dict[str, Any]:

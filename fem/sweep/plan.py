@@ -21,6 +21,8 @@ from fem.sweep.expressions import Expression, ExpressionError
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.threshold import Threshold
 
+#: cells whose perturbed copies are remembered
+REMEMBERED = 4096
 #: tables and keys that make another container, or another way of computing it: see `running.container_key`
 OF_THE_CONTAINER = (
     "gravity_m_s2",
@@ -123,7 +125,13 @@ class Sweep:
 
     def member_changes(self, cell: int) -> list[dict[str, Any]]:
         """The keys that each perturbed copy of a cell sets besides."""
-        return self.perturbation.members(self.case(cell))
+        found = self._changes.get(cell)
+        if found is None:
+            found = self.perturbation.members(self.case(cell))
+            if len(self._changes) >= REMEMBERED:
+                self._changes.clear()
+            self._changes[cell] = found
+        return found
 
     def member_case(self, item: tuple[int, int]) -> Case:
         """The case of a perturbed copy: cell and number of the copy."""
@@ -155,6 +163,11 @@ class Sweep:
     def _container_values(self, cell: int) -> str:
         values = self.values(self.point(cell))
         return repr([value for key, value in values.items() if key.startswith(OF_THE_CONTAINER)])
+
+    @cached_property
+    def _changes(self) -> dict[int, list[dict[str, Any]]]:
+        """Of the cells last asked for: each is asked for by every one of its copies."""
+        return {}
 
     @cached_property
     def _make(self) -> CaseMaker:
