@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
@@ -57,9 +58,9 @@ def draw_fragility(ensemble: Ensemble, points: Sequence[PointResult], fragility:
         if "resampled" in fitted:
             low, high = band_of(fitted["resampled"], strengths, ensemble.confidence)
             axes.fill_between(
-                strengths, low, high, color=BLUE, alpha=0.18, linewidth=0, label="its bootstrap band"
+                strengths, low, high, color=BLUE, alpha=0.18, linewidth=0, label="bootstrap band"
             )
-        word = "lognormal fit" if fitted["adequate"] else "lognormal fit, which does not describe the counts"
+        word = "lognormal fitted" if fitted["adequate"] else "lognormal, which does not fit"
         axes.plot(strengths, curve.probability(strengths), color=BLUE, linestyle="--", label=word)
     known = [point for point in points if point.estimate.value is not None]
     value = np.array([point.estimate.value for point in known], dtype=float)
@@ -74,7 +75,7 @@ def draw_fragility(ensemble: Ensemble, points: Sequence[PointResult], fragility:
         markersize=3.0,
         linewidth=0.8,
         capsize=2.0,
-        label=f"counted, {100.0 * ensemble.confidence:g} % intervals",
+        label=f"counted, {100.0 * ensemble.confidence:g} % interval",
     )
     axes.axhline(ensemble.probability, color=GREY, linewidth=0.8, linestyle=":")
     axes.set_ylim(-0.02, 1.02)
@@ -157,9 +158,11 @@ def _statement(ensemble: Ensemble) -> str:
 def _draw_panel(axes: Axes, across: Axis, down: Axis, regions: np.ndarray, values: FloatArray) -> None:
     """Cells in the colour of their region, each with its probability in per cent."""
     xs, ys = _edges(across), _edges(down)
-    for name, colour in COLOURS.items():
-        shown = np.ma.masked_where(regions != name, np.ones(regions.shape))
-        axes.pcolormesh(xs, ys, shown, color=colour, edgecolor="white", linewidth=0.4)
+    codes = np.vectorize(list(COLOURS).index, otypes=[float])(regions)
+    colours = ListedColormap(list(COLOURS.values()))
+    axes.pcolormesh(
+        xs, ys, codes, cmap=colours, vmin=-0.5, vmax=len(COLOURS) - 0.5, edgecolor="white", linewidth=0.4
+    )
     if values.size <= MOST_NUMBERS:
         for row, y in enumerate(down.values):
             for column, x in enumerate(across.values):

@@ -10,6 +10,7 @@ from fem.__main__ import main
 from fem.case_reading import CaseError
 from fem.ensemble import study
 from fem.ensemble.counting import FAILED, OVERTURNED, STOOD, count_point
+from fem.ensemble.figures import COLOURS
 from fem.ensemble.file import load_ensemble
 from fem.ensemble.plan import Ensemble
 from fem.ensemble.scatter import draw_shares, read_random
@@ -230,4 +231,6 @@ def test_two_axes_make_a_boundary(tmp_path):
     done = run_ensemble(load_ensemble(path), folder=tmp_path / "b")
     assert done.status == "completed" and len(done.points) == 4
     assert done.result["fragility"] is None
-    assert (tmp_path / "b" / "figures" / "boundary.svg").is_file()
+    drawn = (tmp_path / "b" / "figures" / "boundary.svg").read_text().lower()
+    for region in {point.region for point in done.points}:
+        assert drawn.count(f"fill: {COLOURS[region].lower()}") > 1  # the legend has one
