@@ -26,6 +26,7 @@ from contact.scheme import Scheme
 from contact.stepping import (
     AFTERMATH_SLICE,
     CLOCK,
+    FAILED,
     OVERTURNED,
     REACHED,
     ROW_SLIP,
@@ -36,6 +37,7 @@ from contact.stepping import (
     advance_compiled,
     leave_alone,
     make_samples,
+    most_attempts,
 )
 from contact.tracking import TRACK
 
@@ -62,6 +64,7 @@ class Rows(NamedTuple):
     aftermath: (
         FloatArray  #: (k,) how long a container beyond its slenderness angle is followed afterwards [s]
     )
+    attempt_limit: IntArray  #: (k,) steps that may be tried
     position: FloatArray  #: (k, n_d) initial state, and so on
     velocity: FloatArray
     acceleration: FloatArray
@@ -80,7 +83,7 @@ class Rows(NamedTuple):
 class Outcomes(NamedTuple):
     """Results of k runs."""
 
-    status: IntArray  #: (k,) REACHED, OVERTURNED or FAILED
+    status: IntArray  #: (k,) REACHED, OVERTURNED or FAILED (a stuck one too: its clock stands at its limit)
     track: Any  #: (k,) of tracking.TRACK
     clock: Any  #: (k,) of stepping.CLOCK
     ledger: FloatArray  #: (k, 5) [J]
@@ -148,6 +151,13 @@ def pack_rows(
         breaks=_padded([run.breaks for run in runs], np.inf),
         duration=np.array(durations, dtype=float),
         aftermath=np.array(aftermaths, dtype=float),
+        attempt_limit=np.array(
+            [
+                most_attempts(run.control, duration + aftermath)
+                for run, duration, aftermath in zip(runs, durations, aftermaths, strict=True)
+            ],
+            dtype=np.int64,
+        ),
         position=stacked("position"),
         velocity=stacked("velocity"),
         acceleration=stacked("acceleration"),
@@ -201,6 +211,7 @@ def run_rows(
         strained=np.zeros((count, room, rows.position.shape[1])),
     )
     outcomes.clock["smallest_step"] = np.inf
+    outcomes.clock["attempt_limit"] = rows.attempt_limit
     firsts = range(0, count, ROWS_AT_A_TIME)
 
     def work(thread: int) -> None:
@@ -336,6 +347,8 @@ def _advance_in_slices(
             clock.samples_gone = clock.samples
         if status != REACHED:
             return status
+        if clock.time < until and clock.steps + clock.rejected >= clock.attempt_limit:
+            return FAILED
     return REACHED
 
 

@@ -64,6 +64,10 @@ HELD_STEPS = 6  #: after a rejection
 ROOM_SHARE = 0.1  #: of what is left before the ledger wins, for the gain of one step
 FADING = 0.8  #: of the memory for the imbalance, a step
 
+UNLIMITED = 2**62
+#: a run that tries more steps than so many each 1/p, and each largest step, makes no headway
+ATTEMPTS_OF_ROCKING, ATTEMPTS_OF_STEP, ATTEMPTS_SPARE = 1e6, 100.0, 1e6
+
 #: what `advance` returns
 REACHED, OVERTURNED, FAILED, UNPREPARED = 0, 1, 2, 3
 OVERTURNING_ROTATION = 0.5 * np.pi
@@ -150,6 +154,7 @@ CLOCK = np.dtype(
         ("least_imbalance", "f8"),
         ("most_imbalance", "f8"),
         ("dissipated", "f8"),  # when these were taken
+        ("attempt_limit", "i8"),  # of steps, accepted and rejected, at which `advance` returns
     ],
     align=True,
 )
@@ -219,6 +224,7 @@ def make_run(
     n = old.point.shape[0]
     clock = np.zeros(1, CLOCK).view(np.recarray)
     clock["smallest_step"] = NEVER
+    clock["attempt_limit"] = UNLIMITED
     return Run(
         scheme=scheme,
         contact=contact,
@@ -756,13 +762,20 @@ def leave_alone(body: Any, run: Run, floor_velocity: float) -> None:
     run.clock[0].next_break = 0
 
 
+def most_attempts(control: Control, time: float) -> int:
+    """Steps, accepted and rejected, that a run may have tried in `time` [s]; beyond, it is stuck."""
+    rate = max(ATTEMPTS_OF_ROCKING * control.frequency_parameter, ATTEMPTS_OF_STEP / control.largest_step)
+    return int(ATTEMPTS_SPARE + rate * time)
+
+
 AFTERMATH_SLICE = 0.05  #: how often a container left alone is looked at [s]
 
 
 def advance(body: Any, run: Run, until: float) -> int:
     """Step the body to the time `until` [s] or, as no step is cut for it, just beyond; changes `run` in place.
 
-    It also returns when the arrays of samples are full, so that no sample is lost.
+    It also returns when the arrays of samples are full, so that no sample is lost, and at `clock.attempt_limit`, so
+    that whoever called can look up.
 
     Returns:
         REACHED, OVERTURNED (90 degrees, where `control.stop_when_overturned`), FAILED: no convergence at
@@ -772,7 +785,7 @@ def advance(body: Any, run: Run, until: float) -> int:
     control, clock, track = run.control, run.clock[0], run.track[0]
     if not sizes_hold(body, run):
         return FAILED
-    while clock.time < until and not _is_full(run):
+    while clock.time < until and clock.steps + clock.rejected < clock.attempt_limit and not _is_full(run):
         step = next_step(run)
         if not prepared(body, step):
             clock.due_step = step

@@ -17,7 +17,7 @@ from contact.initial import Stance, standing, tilted
 from contact.interface import Contact, make_workspace
 from contact.laws import ELASTIC_STICK, REGULARISED
 from contact.modal_body import ModalBody, make_modal_body
-from contact.motion import BaseMotion
+from contact.motion import BaseMotion, PulseMotion, TableMotion
 from contact.penalty import relaxation_time
 from contact.scheme import Scheme, generalised_alpha, newmark
 from contact.stepping import Control, Run, make_run, make_samples
@@ -39,6 +39,12 @@ from mesh.region import Region
 
 #: largest step over the time scale of rocking, 1/p, and over that of the base motion
 STEP_OF_ROCKING, STEP_OF_MOTION = 0.01, 0.02
+#: .. of a motion shorter than this share of the run only while it lasts, in at most so many steps
+SHORT_SHARE, MOST_PIECES = 0.5, 2000
+#: a given step may be at most this share of the shortest period of the motion
+COARSE_STEP = 0.1
+#: .. and any step so many intervals of the history: the samples of a step are held in memory
+MOST_SAMPLES_A_STEP = 64
 #: over the largest step: the step in which friction may change between sticking and sliding
 EVENT_SHARE = 0.01
 SMALLEST_SHARE = 1e-7
@@ -212,7 +218,8 @@ def build_model(case: Case, container: Container | None = None, footing: Footing
     footing = footing or set_down(case, container)
     mesh, nodes, contact, body = container.mesh, container.nodes, footing.contact, footing.body
     static = checks_of(case, mesh, motion)
-    control = _control(case, container, static, motion, contact)
+    largest, breaks = _largest_step(case, static, motion)
+    control = _control(case, container, static, largest, contact)
     scheme = _scheme(case, container, footing.penalty, control, contact)
     full = isinstance(body, FullBody)
     coordinates = body.coordinates if isinstance(body, FullBody) else 3 + body.stiffness.size
@@ -227,7 +234,7 @@ def build_model(case: Case, container: Container | None = None, footing: Footing
         scheme=scheme,
         contact=contact,
         motion=compiled_motion,
-        breaks=_breaks(motion, case.solver.duration_s),
+        breaks=breaks,
         control=control,
         old=old,
         new=new,
@@ -276,9 +283,45 @@ def reference_energy(mesh: ContainerMesh, static: StaticChecks, gravity: float) 
     return mesh.mass * gravity * static.radius * (1.0 - math.cos(static.slenderness_angle))
 
 
-def _breaks(motion: BaseMotion, duration: float) -> FloatArray:
-    inside = [time for time in motion.break_times if 0.0 < time < duration]
-    return np.array([*inside, duration])
+def _largest_step(case: Case, static: StaticChecks, motion: BaseMotion) -> tuple[float, FloatArray]:
+    """Largest step of the run [s], and the instants that a step must end on, rising [s].
+
+    A pulse or a record that is over long before the run is makes small steps while it lasts, by instants closely
+    set, and not ever after.
+
+    Raises:
+        CaseError: a step given that would step over the motion.
+    """
+    solver, output = case.solver, case.output
+    free, wanted = STEP_OF_ROCKING / static.frequency_parameter, STEP_OF_MOTION * motion.time_scale
+    ends = [time for time in motion.break_times if 0.0 < time < solver.duration_s]
+    begin, end = _span(motion)
+    pieces = (end - begin) / wanted if math.isfinite(end) else math.inf
+    short = pieces <= MOST_PIECES and end - begin < SHORT_SHARE * solver.duration_s
+    if short and wanted < (free if solver.step_s == "auto" else solver.step_s):
+        inside = np.linspace(begin, end, math.ceil(pieces) + 1)
+        ends = sorted({*ends, *inside[(inside > 0.0) & (inside < solver.duration_s)].tolist()})
+        wanted = math.inf
+    largest = min(free, wanted)
+    if solver.step_s != "auto":
+        if solver.step_s > COARSE_STEP * motion.time_scale and not short:
+            raise CaseError(
+                f"[solver] step_s = {solver.step_s:g} s would step over the motion of the floor, whose shortest period "
+                f"is {motion.time_scale:.3g} s; take at most {COARSE_STEP * motion.time_scale:.2g} s, or \"auto\""
+            )
+        largest = solver.step_s
+    interval = min(output.history_s, output.fields_s or math.inf)
+    largest = min(largest, solver.duration_s, MOST_SAMPLES_A_STEP * interval)
+    return largest, np.array([*ends, solver.duration_s])
+
+
+def _span(motion: BaseMotion) -> tuple[float, float]:
+    """When a pulse or a record begins and ends; a drive is taken to go on [s]."""
+    if isinstance(motion, PulseMotion):
+        return motion.delay, motion.delay + motion.pulse
+    if isinstance(motion, TableMotion):
+        return float(motion.times[0]), float(motion.times[-1])
+    return 0.0, math.inf
 
 
 def _chunk(wanted: int, largest_step: float, interval: float) -> int:
@@ -337,16 +380,11 @@ def _struck_mass(case: Case, container: Container) -> float:
 
 
 def _control(
-    case: Case, container: Container, static: StaticChecks, motion: BaseMotion, contact: Contact
+    case: Case, container: Container, static: StaticChecks, largest: float, contact: Contact
 ) -> Control:
     mesh, base = container.mesh, container.support.index.size
     reference = reference_energy(mesh, static, case.gravity_m_s2)
     rate = static.frequency_parameter
-    if case.solver.step_s == "auto":
-        largest = min(STEP_OF_ROCKING / rate, STEP_OF_MOTION * motion.time_scale)
-    else:
-        largest = case.solver.step_s
-    largest = min(largest, case.solver.duration_s)
     loose, rigid = case.solver.energy_tolerance, case.solver.model == "rigid"
     spring = float(contact.normal_stiffness[0])
     struck = _struck_mass(case, container)

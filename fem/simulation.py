@@ -20,6 +20,7 @@ from contact.stepping import (
     FAILED,
     OVERTURNED,
     Run,
+    most_attempts,
 )
 from fem.full_body import FullBody, advance_body, leave_body_alone
 from fem.model import Model
@@ -30,6 +31,8 @@ from fem.verdict import MODE_NAMES, audit
 
 #: how far the stepping goes before it looks up, in simulated seconds
 SLICE_REDUCED, SLICE_FULL = 0.25, 0.01
+#: .. and in steps tried: less than a second of work
+LOOK_REDUCED, LOOK_FULL = 100_000, 200
 #: a container left beyond its slenderness angle at the end falls or comes back within so many times 1/p
 AFTERMATH = 50.0
 
@@ -110,13 +113,16 @@ def simulate(
                 undriven = _leave_alone(model, run, recorder)
                 progress, run = replace(progress, undriven=undriven), _on_resting_floor(run, undriven)
         began = time.process_time()
+        looked = LOOK_FULL if full else LOOK_REDUCED
+        clock.attempt_limit = clock.steps + clock.rejected + looked
         code = advance_body(model.body, run, min(clock.time + ahead, until))
         cpu = progress.stepping_cpu_s + time.process_time() - began
         progress = replace(progress, stepping_cpu_s=cpu)
         recorder.drain(run)
         ratio = abs(float(run.old.pose[ROTATION])) / control.slenderness_angle
         reporter.update(float(clock.time), ratio, MODE_NAMES[int(track.mode)])
-        if code == FAILED:
+        stuck = clock.steps + clock.rejected >= most_attempts(control, float(clock.time))
+        if code == FAILED or stuck and code != OVERTURNED:
             reporter.finish()
             residual = float(np.abs(run.work.law - run.work.force).max())
             return Ending(status="failed", stepping_cpu_s=cpu, error=stepping_failure(model, residual))
@@ -168,6 +174,12 @@ def _on_resting_floor(run: Run, undriven: tuple[float, float]) -> Run:
 def stepping_failure(model: Model, residual: float) -> str:
     """Where and why the stepping gave up, and what to try; `residual` is that of the contact forces [N]."""
     clock = model.run.clock[0]
+    if clock.steps + clock.rejected >= most_attempts(model.run.control, float(clock.time)):
+        return (
+            f"t = {float(clock.time):.6g} s: no headway after {int(clock.steps)} steps and {int(clock.rejected)} "
+            f"rejected ones, the smallest of {float(clock.smallest_step):.1g} s; try a softer "
+            "contact.normal_penalty_Pa_m, contact.weakening_m > 0, or a larger solver.energy_tolerance"
+        )
     step = model.run.control.smallest_step
     return (
         f"step {int(clock.steps) + 1}, t = {float(clock.time):.6g} s: the contact forces are out of balance "
