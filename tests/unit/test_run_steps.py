@@ -1,0 +1,89 @@
+"""How long a step may be, and that no run goes on without headway."""
+
+import pytest
+
+import contact.stepping
+from contact.batch import pack_rows, run_rows
+from contact.stepping import FAILED, REACHED
+from fem.case import CaseError, load_case
+from fem.model import build_model
+from fem.recorder import Recorder
+from fem.simulation import simulate
+
+PULSE = {
+    "motion.kind": "pulse",
+    "motion.shape": "half-sine",
+    "motion.delay_s": 0.5,
+    "solver.duration_s": 4.0,
+    "output.fields_s": 0.0,
+}
+
+
+def rigid(**changes):
+    values = {"solver.model": "rigid"} | {key.replace("__", "."): value for key, value in changes.items()}
+    return load_case("rocking").with_values(values)
+
+
+def finished(case):
+    model = build_model(case)
+    ending = simulate(model, Recorder(model))
+    return model, ending
+
+
+def test_a_pulse_of_microseconds_is_met_and_does_not_set_the_step_of_the_whole_run():
+    """0.3 m/s given to the floor in 20 us: 4e5 times shorter than the run."""
+    speed, pulse = 0.3, 2e-5
+    values = {
+        "motion.peak_acceleration_m_s2": speed / (pulse * 2.0 / 3.141592653589793),
+        "motion.pulse_s": pulse,
+    }
+    case = rigid().with_values(PULSE | values | {"motion.peak_acceleration_m_s2": 100.0})
+    model, ending = finished(case)
+    assert ending.status == "completed", ending.error
+    assert model.run.clock[0].steps < 20_000
+    assert float(model.run.floor[0, 1]) == pytest.approx(100.0 * pulse * 2.0 / 3.141592653589793, rel=1e-12)
+    assert model.run.clock[0].smallest_step <= pulse / 50.0
+
+
+def test_a_short_pulse_rocks_the_container_as_small_steps_throughout_do():
+    values = PULSE | {"motion.peak_acceleration_m_s2": 50.0, "motion.pulse_s": 0.04}
+    auto, _ = finished(rigid().with_values(values))
+    fine, _ = finished(rigid().with_values(values | {"solver.step_s": 0.04 * 0.02}))
+    assert auto.run.clock[0].steps < 0.7 * fine.run.clock[0].steps
+    rotation = fine.run.track[0].max_rotation
+    assert rotation > 0.05 * fine.static.slenderness_angle
+    assert auto.run.track[0].max_rotation == pytest.approx(rotation, rel=2e-3)
+
+
+def test_a_step_that_would_step_over_the_motion_is_refused():
+    case = rigid(motion__frequency_Hz=20.0, solver__step_s=0.02)
+    with pytest.raises(CaseError, match=r"step_s = 0\.02 s would step over the motion.* at most 0\.005 s"):
+        build_model(case)
+
+
+def test_no_step_is_longer_than_the_samples_in_memory_reach():
+    case = rigid(output__history_s=1e-6, output__fields_s=0.0)
+    model = build_model(case)
+    assert model.run.control.largest_step == pytest.approx(64e-6)
+    assert model.run.history.mode.size < 2000
+
+
+def test_a_run_without_headway_fails_and_says_so(monkeypatch):
+    monkeypatch.setattr(contact.stepping, "ATTEMPTS_SPARE", 50.0)
+    monkeypatch.setattr(contact.stepping, "ATTEMPTS_OF_ROCKING", 1.0)
+    monkeypatch.setattr(contact.stepping, "ATTEMPTS_OF_STEP", 0.1)
+    _, ending = finished(rigid())
+    assert ending.status == "failed"
+    assert ending.error is not None and "no headway after" in ending.error
+
+
+def test_a_row_of_a_batch_without_headway_is_a_failed_one():
+    model = build_model(rigid(solver__duration_s=2.0))
+    rows = pack_rows([model.run] * 2, [2.0, 2.0], [20.0, 20.0])
+    limits = rows.attempt_limit.copy()
+    limits[1] = 30
+    outcomes = run_rows(
+        model.body, model.run.scheme, rows._replace(attempt_limit=limits), [model.run.track[0]] * 2
+    )
+    assert outcomes.status.tolist() == [REACHED, FAILED]
+    assert outcomes.clock["time"][1] < 2.0 <= outcomes.clock["time"][0]
