@@ -14,6 +14,11 @@ from contact.interface import Contact, FloatArray
 BASE_WORK, FRICTION, CONTACT_DAMPING, MATERIAL_DAMPING, IMBALANCE = 0, 1, 2, 3, 4
 ROWS = 5
 
+#: how far a ledger may be open in the end, whatever a step may lose: over the energy to overturn, what may be won ..
+GAIN_LIMIT = 1e-4
+#: .. and lost, or over what was dissipated, if that is more
+LOSS_LIMIT, LOSS_SHARE_LIMIT = 1e-3, 1e-2
+
 
 def _spring_energy(contact: Contact, point: FloatArray, stick: FloatArray) -> float:
     """Energy stored in the contact springs [J]: points (n, 2) relative to the floor, sticks (n,)."""

@@ -44,7 +44,10 @@ from contact.ledger import (
     BASE_WORK,
     CONTACT_DAMPING,
     FRICTION,
+    GAIN_LIMIT,
     IMBALANCE,
+    LOSS_LIMIT,
+    LOSS_SHARE_LIMIT,
     MATERIAL_DAMPING,
     contact_losses,
     spring_energy,
@@ -62,6 +65,8 @@ STEPS_PER_OCTAVE = 3  #: of the ladder of step sizes
 NEIGHBOUR = 0.25  #: base points nearer than this, over the width, close as one
 HELD_STEPS = 6  #: after a rejection
 ROOM_SHARE = 0.1  #: of what is left before the ledger wins, for the gain of one step
+#: from this share of its limits on the ledger as a whole holds the steps small; but not smaller than for this share
+NEAR_LIMIT, LEAST_ROOM = 0.4, 1e-5
 FADING = 0.8  #: of the memory for the imbalance, a step
 
 UNLIMITED = 2**62
@@ -633,6 +638,27 @@ def _allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
 allowed_imbalance = compiled(_allowed_imbalance, inline=True)
 
 
+def _room_of_ledger(run: Run) -> float:
+    """Imbalance that the ledger as a whole has room for in the step attempted [J]; infinite far from its limits.
+
+    A share of what a step dissipates may be much against the energy to overturn, as when a low container slides far.
+    """
+    control, ledger, change = run.control, run.ledger, run.change
+    if change[IMBALANCE] < 0.0:
+        limit, used = GAIN_LIMIT * control.reference_energy, -ledger[IMBALANCE]
+    else:
+        dissipated = ledger[FRICTION] + ledger[CONTACT_DAMPING] + ledger[MATERIAL_DAMPING]
+        dissipated += change[FRICTION] + change[CONTACT_DAMPING] + change[MATERIAL_DAMPING]
+        limit = max(LOSS_LIMIT * control.reference_energy, LOSS_SHARE_LIMIT * dissipated)
+        used = ledger[IMBALANCE]
+    if used + abs(change[IMBALANCE]) < NEAR_LIMIT * limit:
+        return np.inf
+    return max(ROOM_SHARE * (limit - used), LEAST_ROOM * limit)
+
+
+room_of_ledger = compiled(_room_of_ledger, inline=True)
+
+
 def _change_level(level: int, used: float, not_held: bool) -> int:
     """Level of the next step, when the last one used that share of the imbalance allowed to it.
 
@@ -817,6 +843,7 @@ def advance(body: Any, run: Run, until: float) -> int:
         if run.change[IMBALANCE] < 0.0:  # a gain: small once the ledger as a whole comes near one
             room = ROOM_SHARE * (run.ledger[IMBALANCE] + control.gain_room * control.reference_energy)
             allowed = min(allowed, max(room, control.gain_share * allowed))
+        allowed = min(allowed, room_of_ledger(run))
         used = abs(run.change[IMBALANCE]) / allowed
         switches = (clock.sliding == 1) != every and run.contact.mu_static > 0.0
         if switches and step > 1.01 * control.event_step:

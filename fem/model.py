@@ -307,7 +307,7 @@ def _largest_step(case: Case, static: StaticChecks, motion: BaseMotion) -> tuple
         if solver.step_s > COARSE_STEP * motion.time_scale and not short:
             raise CaseError(
                 f"[solver] step_s = {solver.step_s:g} s would step over the motion of the floor, whose shortest period "
-                f"is {motion.time_scale:.3g} s; take at most {COARSE_STEP * motion.time_scale:.2g} s, or \"auto\""
+                f'is {motion.time_scale:.3g} s; take at most {COARSE_STEP * motion.time_scale:.2g} s, or "auto"'
             )
         largest = solver.step_s
     interval = min(output.history_s, output.fields_s or math.inf)

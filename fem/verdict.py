@@ -9,7 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from contact.ledger import BASE_WORK, CONTACT_DAMPING, FRICTION, IMBALANCE, MATERIAL_DAMPING
+from contact.ledger import (
+    BASE_WORK,
+    CONTACT_DAMPING,
+    FRICTION,
+    GAIN_LIMIT,
+    IMBALANCE,
+    LOSS_LIMIT,
+    LOSS_SHARE_LIMIT,
+    MATERIAL_DAMPING,
+)
 from contact.penalty import contact_frequency
 from contact.tracking import FALLEN, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
 from fem.history import History
@@ -17,10 +26,6 @@ from fem.model import Model
 
 MODE_NAMES = {REST: "rest", SLIDE: "slide", ROCK: "rock", SLIDE_ROCK: "slide-rock", FALLEN: "overturned"}
 SLIDING = 1e-4  #: slip over the width that counts as sliding
-#: limits of the energy ledger
-GAIN_LIMIT = 1e-4  #: of the reference energy, what the scheme may win
-LOSS_LIMIT = 1e-3  #: of the reference energy, or
-LOSS_SHARE_LIMIT = 1e-2  #: of what was dissipated, what the scheme may lose
 
 
 def outcome_of(model: Model) -> str:
