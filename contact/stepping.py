@@ -65,8 +65,8 @@ STEPS_PER_OCTAVE = 3  #: of the ladder of step sizes
 NEIGHBOUR = 0.25  #: base points nearer than this, over the width, close as one
 HELD_STEPS = 6  #: after a rejection
 ROOM_SHARE = 0.1  #: of what is left before the ledger wins, for the gain of one step
-#: from this share of its limits on the ledger as a whole holds the steps small; but not smaller than for this share
-NEAR_LIMIT, LEAST_ROOM = 0.4, 1e-5
+#: from this share of its limits on the ledger as a whole holds the steps small, down to this share of what any may lose
+NEAR_LIMIT, LEAST_ROOM = 0.4, 1e-2
 FADING = 0.8  #: of the memory for the imbalance, a step
 
 UNLIMITED = 2**62
@@ -638,7 +638,7 @@ def _allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
 allowed_imbalance = compiled(_allowed_imbalance, inline=True)
 
 
-def _room_of_ledger(run: Run) -> float:
+def _room_of_ledger(run: Run, step: float) -> float:
     """Imbalance that the ledger as a whole has room for in the step attempted [J]; infinite far from its limits.
 
     A share of what a step dissipates may be much against the energy to overturn, as when a low container slides far.
@@ -653,7 +653,8 @@ def _room_of_ledger(run: Run) -> float:
         used = ledger[IMBALANCE]
     if used + abs(change[IMBALANCE]) < NEAR_LIMIT * limit:
         return np.inf
-    return max(ROOM_SHARE * (limit - used), LEAST_ROOM * limit)
+    least = control.energy_floor + control.energy_rate * step  # what any step may lose
+    return max(ROOM_SHARE * (limit - used), LEAST_ROOM * control.reference_energy * least)
 
 
 room_of_ledger = compiled(_room_of_ledger, inline=True)
@@ -843,7 +844,7 @@ def advance(body: Any, run: Run, until: float) -> int:
         if run.change[IMBALANCE] < 0.0:  # a gain: small once the ledger as a whole comes near one
             room = ROOM_SHARE * (run.ledger[IMBALANCE] + control.gain_room * control.reference_energy)
             allowed = min(allowed, max(room, control.gain_share * allowed))
-        allowed = min(allowed, room_of_ledger(run))
+        allowed = min(allowed, room_of_ledger(run, step))
         used = abs(run.change[IMBALANCE]) / allowed
         switches = (clock.sliding == 1) != every and run.contact.mu_static > 0.0
         if switches and step > 1.01 * control.event_step:

@@ -13,7 +13,7 @@ import numpy as np
 from contact import modal_body
 from contact.body import State, make_state
 from contact.floor_motion import floor_motion
-from contact.initial import Stance, standing, tilted
+from contact.initial import SettlingError, Stance, standing, tilted
 from contact.interface import Contact, make_workspace
 from contact.laws import ELASTIC_STICK, REGULARISED
 from contact.modal_body import ModalBody, make_modal_body
@@ -175,18 +175,19 @@ def set_down(case: Case, container: Container) -> Footing:
     """Put the container on the floor, settled; models of it share a body's scratch: step one at a time.
 
     Raises:
-        SettlingError: no equilibrium at the start.
+        CaseError: no equilibrium at the start.
     """
     penalty = normal_penalty(case, container.mesh)
     springs = container.support.normal_stiffness(penalty)
     base = springs.size
     springs = np.concatenate([springs, np.full(container.nodes.size - base, 0.5 * springs.sum())])
     contact = _contact(case, container.mesh, springs, base)
+    try:
+        stance = _stance(case, container, contact)
+    except SettlingError as error:
+        raise CaseError(f"[initial] no equilibrium at the start: {error}") from error
     return Footing(
-        penalty=penalty,
-        contact=contact,
-        body=_body(case, container, contact),
-        stance=_stance(case, container, contact),
+        penalty=penalty, contact=contact, body=_body(case, container, contact), stance=stance
     )
 
 
@@ -209,8 +210,7 @@ def build_model(case: Case, container: Container | None = None, footing: Footing
         footing: how that container stands, where `stands_like` says that it is the same.
 
     Raises:
-        CaseError, MeshError: bad input.
-        SettlingError: no equilibrium at the start.
+        CaseError, MeshError: bad input, no equilibrium at the start.
     """
     motion = build_motion(case)
     if container is None:

@@ -122,7 +122,7 @@ def simulate(
         ratio = abs(float(run.old.pose[ROTATION])) / control.slenderness_angle
         reporter.update(float(clock.time), ratio, MODE_NAMES[int(track.mode)])
         stuck = clock.steps + clock.rejected >= most_attempts(control, float(clock.time))
-        if code == FAILED or stuck and code != OVERTURNED:
+        if code == FAILED or (stuck and code != OVERTURNED):
             reporter.finish()
             residual = float(np.abs(run.work.law - run.work.force).max())
             return Ending(status="failed", stepping_cpu_s=cpu, error=stepping_failure(model, residual))
