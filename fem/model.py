@@ -186,9 +186,7 @@ def set_down(case: Case, container: Container) -> Footing:
         stance = _stance(case, container, contact)
     except SettlingError as error:
         raise CaseError(f"[initial] no equilibrium at the start: {error}") from error
-    return Footing(
-        penalty=penalty, contact=contact, body=_body(case, container, contact), stance=stance
-    )
+    return Footing(penalty=penalty, contact=contact, body=_body(case, container, contact), stance=stance)
 
 
 def stands_like(case: Case, other: Case) -> bool:
