@@ -13,7 +13,8 @@ from fem import case_quantities as q
 from fem.case_problem import Problem, Rule, leaves_the_folder
 from fem.case_rules_motion import harmonic_angular_frequency
 
-MOST_SAMPLES = 2e7  # 16 columns of 8 bytes: 2.6 GB
+MOST_SAMPLES = 2e7
+MOST_HISTORY = 2.6e9  # bytes in memory: so many samples of a single box
 MOST_FRAMES = 1e6
 MOST_STEPS = 1e9
 
@@ -211,13 +212,16 @@ def pulse_begins_within_the_run(case: Any) -> Problem | None:
 def history_fits_into_memory(case: Any) -> Problem | None:
     """The samples of the history can be held."""
     samples = case.solver.duration_s / case.output.history_s + 1.0
-    if samples <= MOST_SAMPLES:
+    columns = 16 + 3 * (case.container.boxes - 1)  # three for every joint of a stack
+    size = 8.0 * columns * samples
+    if samples <= MOST_SAMPLES and size <= MOST_HISTORY:
         return None
     return Problem(
         table="output",
         key="history_s",
         reason=f"= {case.output.history_s:g} s makes {samples:.3g} samples of duration_s = "
-        f"{case.solver.duration_s:g} s, more than {MOST_SAMPLES:.0e}; take a longer interval",
+        f"{case.solver.duration_s:g} s, {size / 1e9:.2g} GB in memory and some {2.4 * size / 1e9:.2g} GB of text; "
+        f"at most {min(MOST_SAMPLES, MOST_HISTORY / (8.0 * columns)):.1g} are kept: take a longer interval",
     )
 
 

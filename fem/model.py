@@ -26,11 +26,12 @@ from contact.tracking import begin
 from fem.assembly import FiniteElements, assemble
 from fem.case import Case, CaseError
 from fem.case_contact import build_support, normal_penalty
-from fem.case_container import build_container
+from fem.case_container import build_container, node_count
 from fem.case_motion import build_motion, peak_acceleration_within
 from fem.full_body import FullBody
 from fem.modes import elastic_modes
 from fem.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
+from fem.required_memory import require_memory
 from fem.static_checks import StaticChecks, static_checks
 from fem.threads import use_one_blas_thread
 from mesh.cells import FloatArray, IntArray
@@ -139,13 +140,14 @@ def discretise(case: Case) -> Container:
     """
     use_one_blas_thread()
     mesh = build_container(case)
+    support = build_support(case, mesh)
+    require_memory(case, node_count(mesh, case.solver.order), support.index.size)
     elements = assemble(
         mesh,
         youngs_modulus=case.container.youngs_modulus_Pa,
         poisson_ratio=case.container.poisson_ratio,
         order=case.solver.order,
     )
-    support = build_support(case, mesh)
     nodes = elements.base_nodes[support.index]
     if not case.output.stop_when_overturned:  # it will come to lie on its side: the upper corners touch too
         nodes = np.concatenate([nodes, _upper_corners(elements)])

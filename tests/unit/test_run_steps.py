@@ -3,11 +3,13 @@
 import pytest
 
 import contact.stepping
+import fem.required_memory
 from contact.batch import pack_rows, run_rows
 from contact.stepping import FAILED, REACHED
 from fem.case import CaseError, load_case
-from fem.model import build_model
+from fem.model import build_model, discretise
 from fem.recorder import Recorder
+from fem.required_memory import required_memory
 from fem.simulation import simulate
 
 PULSE = {
@@ -87,3 +89,23 @@ def test_a_row_of_a_batch_without_headway_is_a_failed_one():
     )
     assert outcomes.status.tolist() == [REACHED, FAILED]
     assert outcomes.clock["time"][1] < 2.0 <= outcomes.clock["time"][0]
+
+
+def test_a_container_too_large_for_the_memory_is_refused_before_it_is_taken(monkeypatch):
+    monkeypatch.setattr(fem.required_memory, "_machine_memory", lambda: 1e9)
+    case = rigid(solver__element_size_m=0.005, support__kind="flat")
+    with pytest.raises(
+        CaseError, match=r"would take about .* GB; this machine has 1 GB: take larger elements"
+    ):
+        discretise(case)
+
+
+def test_the_memory_told_is_about_what_is_taken():
+    """Peak memory of processes that made these (MB): see the docstring of the module."""
+    for nodes, contact_nodes, model, modes, measured in (
+        (46217, 2, "rigid", 20, 381),
+        (46217, 2, "reduced", 200, 986),
+        (21637, 77, "reduced", 20, 429),
+    ):
+        case = rigid(solver__model=model, solver__elastic_modes=modes)
+        assert 0.8 < required_memory(case, nodes, contact_nodes) / (1e6 * measured) < 1.7
