@@ -1,13 +1,17 @@
 """The base motion of a case, as the stepping takes it."""
 
+import math
 from typing import TypeVar
 
 import numpy as np
 
 from contact.motion import BaseMotion, HarmonicMotion, NoMotion, PulseMotion, TableMotion
 from contact.motion_file import read_motion_table
+from fem import case_quantities as q
 from fem.case import Case, CaseError
 
+DRIFT = 0.1  #: velocity of the floor at the end of a table that is worth telling, over the largest
+COARSE = 2.0 * math.sin(math.pi / 10.0)  #: change between samples of a sine with ten a period, over its size
 PEAK_SAMPLES = 20_001  #: over a run, beside the instants at which a pulse or a table changes
 
 ValueT = TypeVar("ValueT")
@@ -50,6 +54,42 @@ def peak_acceleration_within(motion: BaseMotion, duration: float) -> float:
     return float(np.abs(motion.evaluate(inside)[2]).max())
 
 
+def motion_notes(motion: BaseMotion) -> list[str]:
+    """What is doubtful in a recorded motion: a drift, samples too far apart for it."""
+    if not isinstance(motion, TableMotion):
+        return []
+    said = []
+    velocity, values = motion.evaluate(motion.times)[1], motion.accelerations
+    last, largest = float(velocity[-1]), float(np.abs(velocity).max())
+    if motion.quantity == "acceleration" and abs(last) > DRIFT * largest > 0.0:
+        said.append(
+            f"motion.file: its mean acceleration, {last / np.ptp(motion.times):.3g} m/s2, leaves the floor with "
+            f'{last:.3g} m/s at the end of the table: it drifts; baseline = "mean" lets it end at rest, "linear" at '
+            "rest where it began"
+        )
+    size, change = float(np.sqrt(np.mean(values**2))), float(np.sqrt(np.mean(np.diff(values) ** 2)))
+    if change > COARSE * size:
+        said.append(
+            f"motion.file: the acceleration changes by {change / size:.2g} of its own size from one sample to the next "
+            f"({COARSE:.2g} is ten samples a period): the samples, {np.median(np.diff(motion.times)):.3g} s apart, are "
+            "too coarse for this motion; take a record sampled more closely"
+        )
+    return said
+
+
+def _plausible(motion: TableMotion) -> TableMotion:
+    peak = motion.peak_acceleration
+    if q.PEAK_ACCELERATION.allows(peak):
+        return motion
+    guess = (
+        q.PEAK_ACCELERATION.guess(peak) or "is its unit right, and are displacements sampled closely enough?"
+    )
+    raise CaseError(
+        f"[motion] file: its accelerations reach {peak:.4g} m/s2, at most {q.PEAK_ACCELERATION.most:g} m/s2 are "
+        f"taken; {guess}"
+    )
+
+
 def _build(case: Case) -> BaseMotion:
     motion = case.motion
     match motion.kind:
@@ -72,12 +112,14 @@ def _build(case: Case) -> BaseMotion:
                 delay=motion.delay_s,
             )
         case "table":
-            return read_motion_table(
-                case.data_files["motion.file"],
-                quantity=_given(motion.quantity, "quantity"),
-                unit=_given(motion.unit, "unit"),
-                scale=motion.scale,
-                baseline=motion.baseline,
+            return _plausible(
+                read_motion_table(
+                    case.data_files["motion.file"],
+                    quantity=_given(motion.quantity, "quantity"),
+                    unit=_given(motion.unit, "unit"),
+                    scale=motion.scale,
+                    baseline=motion.baseline,
+                )
             )
 
 

@@ -20,6 +20,7 @@ import numpy as np
 from contact.event_driven import EventError
 from fem.band import band_of, wants_band
 from fem.case import Case, CaseError, case_hash, to_toml
+from fem.case_motion import motion_notes
 from fem.fields import FieldWriter
 from fem.figures import write_figures
 from fem.folder_lock import FolderLock, FolderLostError, held_folder
@@ -133,6 +134,7 @@ def run_case(
                 "title": case.title,
                 "case_hash": mark,
                 "static": model.static.to_dict(),
+                "motion": {"notes": motion_notes(model.motion)},
                 "versions": versions(),
             }
             place.write_result(result)

@@ -150,6 +150,11 @@ def lateral_force_method_does_not_apply(result: Result, case: Case) -> str | Non
     )
 
 
+def motion_is_doubtful(result: Result, case: Case) -> str | None:
+    """A recorded motion that drifts, or whose samples are too far apart."""
+    return "; ".join(_part(result, "motion").get("notes") or ()) or None
+
+
 def rest_proves_nothing(result: Result, case: Case) -> str | None:
     """Where the static rule also says that it stands, a run at rest is no argument against the rule."""
     own = _action(result, "own_motion")
@@ -185,6 +190,7 @@ def steps_were_rejected(result: Result, case: Case) -> str | None:
 
 CHECKS: tuple[Callable[[Result, Case], str | None], ...] = (
     band_is_unsure,
+    motion_is_doubtful,
     energy_is_near_its_limits,
     contact_penetrates,
     regularised_friction_creeps,

@@ -165,6 +165,9 @@ def notes(case: Case, static: StaticChecks, peak: float) -> list[str]:
             f"the lateral force method does not apply: rocking period {limit.demand:.2f} s > "
             f"{limit.capacity:.1f} s ({limit.clause})"
         )
+    if case.motion.kind == "table":
+        room = importlib.import_module("fem.case_motion")
+        said += room.motion_notes(room.build_motion(case))
     if case.contact.friction == "regularised":
         said.append("friction regularised in velocity creeps under constant load; elastic-stick does not")
     if case.motion.start == "rest" and case.motion.kind == "harmonic":
