@@ -31,8 +31,8 @@ from fem.verdict import MODE_NAMES, audit
 
 #: how far the stepping goes before it looks up, in simulated seconds
 SLICE_REDUCED, SLICE_FULL = 0.25, 0.01
-#: .. and in steps tried: less than a second of work
-LOOK_REDUCED, LOOK_FULL = 100_000, 200
+#: .. and in steps tried: a second or two of work
+LOOK_REDUCED, LOOK_FULL = 100_000, 2000
 #: a container left beyond its slenderness angle at the end falls or comes back within so many times 1/p
 AFTERMATH = 50.0
 
