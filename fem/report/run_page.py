@@ -14,8 +14,10 @@ from typing import Any
 import numpy as np
 
 from contact.event_driven import EventError
+from fem.drawing import house_style
 from fem.fields import Fields
 from fem.figures import figures_of
+from fem.figures_modes import modes_figure
 from fem.history import History
 from fem.model import Model, build_model
 from fem.modes import ElasticModes, elastic_mode_table, elastic_modes
@@ -23,7 +25,7 @@ from fem.opening import OpenedRun
 from fem.pages import render_page
 from fem.report.animation import Film, exaggeration, exaggerations, film_of, player_data
 from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions, compared_rows
-from fem.report.curves import curves_of
+from fem.report.curves import Curve, curves_of
 from fem.report.quantities import degrees, number, quantity, short
 from fem.report.sketch import sketch
 from fem.report.static_sheet import static_sheet
@@ -34,7 +36,7 @@ from fem.run_folder import FINISHED, FolderError
 from fem.summary import BAND_NOTE, CODE_NOTE, MARGIN_NOTE, outcome_sentence, run_rows
 from fem.summary_joints import JOINTS_NOTE
 
-MODES = 6  #: elastic modes in the table
+MODES = 5  #: elastic modes in table and figure: one row of shapes
 COLOURS = 64  #: of the stress scale in the animation
 #: figures beside the animation, in the order of reading; the others stand in their own sections
 MOTION = ("rotation", "base_motion", "slip", "uplift", "forces", "phase_portrait", "energy")
@@ -77,6 +79,7 @@ def run_report(
     drawn = curves_of(figures_of(run)) if len(history) > 1 else {}
     check = rigid_check(run, model, history)
     finished = run.status in FINISHED
+    modes = elastic_modes(model.container.elements, MODES)  # whether or not they take part
     variations = (
         variation_table(
             case,
@@ -116,14 +119,14 @@ def run_report(
         film=film,
         exaggerations=exaggerations(film, model.container.mesh.height),
         film_exaggeration=exaggeration(film, model.container.mesh.height),
-        mode_figure=None,
+        mode_figure=_mode_curve(model, modes, run.name),
         colours=colours(COLOURS),
         stills=_stills(film, history, model, verdict),
         motion=[drawn[name] for name in MOTION if name in drawn],
         drawn=drawn,
         check=check,
         variations=variations,
-        modes=_modes(model),
+        modes=elastic_mode_table(modes),
         resolved=run.place.resolved.read_text(encoding="utf-8"),
         computed=_written(run.place.result),
         version=metadata.version("unanchored"),
@@ -186,10 +189,18 @@ def _fields(run: OpenedRun, told: Callable[[str], None]) -> Fields | None:
         return None
 
 
-def _modes(model: Model) -> list[dict[str, float]]:
-    """Elastic modes of the free container, whether or not they take part."""
-    found: ElasticModes = elastic_modes(model.container.elements, MODES)
-    return elastic_mode_table(found)
+def _mode_curve(model: Model, modes: ElasticModes, name: str) -> Curve:
+    """The shapes over the container at rest."""
+    elements = model.container.elements
+    with house_style():
+        figure = modes_figure(
+            points=elements.nodes,
+            cells=elements.cells,
+            modes=modes,
+            boxes=model.case.container.boxes,
+            name=name,
+        )
+    return curves_of({"modes": figure})["modes"]
 
 
 def _standing(run: OpenedRun) -> str:

@@ -184,9 +184,8 @@
     const shares = places.map((_, k) => frame ? Math.max(between(normals, contacts, frame, k), 0) : 0);
     for (let k = 0; k < contacts; k++) sum += shares[k];
     if (!(sum > 0) || Math.abs(value("rotation", now)) > 0.02 * film.angle) {  // it stands on one side
-      const side = value("rotation", now) > 0 ? contacts - 1 : 0;
       const rightmost = places.indexOf(Math.max(...places)), leftmost = places.indexOf(Math.min(...places));
-      shares.fill(0); shares[value("rotation", now) > 0 ? rightmost : leftmost] = 1; sum = 1; void side;
+      shares.fill(0); shares[value("rotation", now) > 0 ? rightmost : leftmost] = 1; sum = 1;
     }
     places.forEach((x, k) => {
       const force = total * shares[k] / sum;
