@@ -67,6 +67,7 @@ HELD_STEPS = 6  #: after a rejection
 ROOM_SHARE = 0.1  #: of what is left before the ledger wins, for the gain of one step
 #: from this share of its limits on the ledger as a whole holds the steps small, down to this share of what any may lose
 NEAR_LIMIT, LEAST_ROOM = 0.4, 1e-2
+SAME_INSTANT = 1e-12  #: difference of two times, over their size, that is rounding
 FADING = 0.8  #: of the memory for the imbalance, a step
 
 UNLIMITED = 2**62
@@ -503,12 +504,12 @@ def sample(
     Positions by cubics through both ends' positions and velocities, everything else linear.
     """
     old, new, clock = run.old, run.new, run.clock[0]
-    observed = False
+    observed, end = False, clock.time + step
     while written - origin < samples.mode.size:
         time = written * samples.interval if written > 0 else 0.0
-        if time > clock.time + step:
+        if time - end > SAME_INSTANT * end:  # 12 x 0.1 s is more than 1.2 s by rounding
             break
-        s = (time - clock.time) / step
+        s = min((time - clock.time) / step, 1.0)
         at = written - origin
         for i in range(new.point.shape[0]):
             for k in range(2):

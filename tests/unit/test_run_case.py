@@ -275,6 +275,21 @@ class TestChecks:
         assert "rigid_check" not in found.result
 
 
+def test_the_last_sample_and_frame_fall_on_the_end_though_rounding_puts_them_beyond(tmp_path):
+    assert 12 * 0.1 > 1.2
+    folder = tmp_path / "r"
+    run(
+        folder,
+        "free_rocking",
+        "solver.model=rigid",
+        "solver.duration_s=1.2",
+        "output.history_s=0.1",
+        "output.fields_s=0.1",
+    )
+    assert len(read_history(folder / "history.csv")) == 13
+    assert (folder / "fields" / "frame_00012.vtu").is_file()
+
+
 class TestSignals:
     def test_the_first_signal_asks_and_the_second_insists(self):
         reporter = Collecting()
