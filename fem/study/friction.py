@@ -84,6 +84,14 @@ def reversal(laboratory: Laboratory) -> Finding:
                 rows=tuple(table),
             ),
         ),
+        band=laboratory.band(
+            STACK.but({**harmonic(5.0, 10.0), "solver.duration_s": 6.0}),
+            quantity="rotation ratio of the stack at 5.0 m/s², 10 rad/s, mu 0.4/0.2",
+            unit="-",
+            value=lambda row: row["rotation_ratio"],
+            criterion="it stands",
+            holds=lambda row: row["outcome"] != "overturned",
+        ),
     )
 
 
@@ -95,7 +103,10 @@ def halt_at_extremes(laboratory: Laboratory) -> Finding:
     for peak in peaks:
         slider = RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=gravity)
         floor = sine_floor(amplitude=peak / frequency**2, angular_frequency=frequency)
-        motion = simulate_sliding(slider, floor, duration=12.0 * math.pi / frequency)
+        # at rest while the floor starts with its largest velocity: it does not drift to one side
+        motion = simulate_sliding(
+            slider, floor, duration=12.0 * math.pi / frequency, slip_velocity=-peak / frequency
+        )
         ends = [one.end for one in motion.intervals if one.direction][-5:-1]
         phases = np.array(ends) * frequency % math.pi  # the extremes lie at pi/2
         lags.append(float(np.degrees(np.abs(phases - 0.5 * math.pi)).max()))

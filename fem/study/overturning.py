@@ -11,7 +11,7 @@ from fem.rigid_check import block_of
 from fem.study.drawings import Line, drawing, outcome_map
 from fem.study.laboratory import RIGID, Laboratory
 from fem.study.maps import FREQUENCIES, PEAKS, Cell, doubts, outcomes, stack_map
-from fem.study.setups import ANGULAR_FREQUENCY, FOR_MAPS, PLATEAU, STACK
+from fem.study.setups import ANGULAR_FREQUENCY, FOR_MAPS, PLATEAU, STACK, harmonic
 from fem.study.statements import Comparison, Drawing, Finding, Statement, Table
 
 HALF_WIDTH = 0.55  # m, a/2
@@ -217,7 +217,22 @@ def beyond_half_width(laboratory: Laboratory) -> Finding:
             "falling the condition is good on "
             "this map; it is the reverse, A <= a/2, that does not protect."
         ),
-        setups=tuple(cell.setup for cell in sure[:2]),
+        setups=tuple(cell.setup for cell in [*sure[:2], *beyond[:1]]),
+        band=laboratory.band(
+            STACK.but(
+                {
+                    **NO_SLIDING,
+                    "motion.amplitude_m": 0.66,
+                    "motion.angular_frequency_rad_s": 2.5,
+                    "solver.duration_s": 8.0,
+                }
+            ),
+            quantity="rotation ratio at A = 1.2 a/2, 2.5 rad/s (1: overturned)",
+            unit="-",
+            value=lambda row: min(float(row["rotation_ratio"]), 1.0),
+            criterion="it overturns",
+            holds=lambda row: row["outcome"] == "overturned",
+        ),
     )
 
 
@@ -346,6 +361,14 @@ def short_before_reversal(laboratory: Laboratory) -> Finding:
                 x_label="angular frequency [rad/s]",
                 y_label="lead over the period [-]",
             ),
+        ),
+        band=laboratory.band(
+            STACK.but({**NO_SLIDING, **harmonic(1.1 * UPLIFT, ANGULAR_FREQUENCY), "solver.duration_s": 8.0}),
+            quantity="rotation ratio at 1.1 g a/c, 6.928 rad/s",
+            unit="-",
+            value=lambda row: row["rotation_ratio"],
+            criterion="it stands",
+            holds=lambda row: row["outcome"] != "overturned",
         ),
     )
 

@@ -43,6 +43,14 @@ def stiction_limit(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         reading="The box begins to slide within a scan step (0.5 %) of mu_s g, once it is exceeded.",
         setups=tuple(setups),
+        band=laboratory.band(
+            BOX.but({**harmonic(0.98 * 0.4 * gravity, ANGULAR_FREQUENCY), "solver.duration_s": 5.0}),
+            quantity="slip at 0.98 mu_s g",
+            unit="m",
+            value=lambda row: row["max_slip_m"],
+            criterion="it sticks",
+            holds=lambda row: row["outcome"] == "rest",
+        ),
     )
 
 
@@ -152,6 +160,20 @@ def uplift_limit(laboratory: Laboratory) -> Finding:
             f"{comparisons[-1].measured:.2f} g a/c."
         ),
         setups=tuple(setups),
+        band=laboratory.band(
+            STACK.but(
+                {
+                    **NO_SLIDING,
+                    **harmonic(0.97 * 9.81 * 1.1 / 4.0, ANGULAR_FREQUENCY),
+                    "solver.duration_s": 5.0,
+                }
+            ),
+            quantity="rotation ratio at 0.97 g a/c",
+            unit="-",
+            value=lambda row: row["rotation_ratio"],
+            criterion="it does not rock (rotation ratio below 0.01)",
+            holds=lambda row: row["rotation_ratio"] < 0.01,
+        ),
     )
 
 

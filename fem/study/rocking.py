@@ -176,6 +176,24 @@ def eq_3(laboratory: Laboratory) -> Finding:
                 y_label="period [s]",
             ),
         ),
+        band=_band_of_periods(laboratory),
+    )
+
+
+def _band_of_periods(laboratory: Laboratory) -> Band:
+    """Period at half of beta over deformation, contact and support, over the exact block's."""
+    block = block_of(laboratory.model(STACK.but(RIGID)))
+    rotation = 0.5 * block.slenderness_angle
+    exact = quarter_period(block, rotation)
+    return laboratory.band(
+        STACK.but({**FREE, "initial.rotation_rad": float(f"{rotation:.8g}"), "solver.duration_s": 1.5}),
+        quantity="period of the stack released at 0.5 beta over the exact block's",
+        unit="-",
+        value=lambda row: None if row["first_impact_s"] is None else row["first_impact_s"] / exact,
+        criterion="within 5 % of the exact block's",
+        holds=lambda row: (
+            row["first_impact_s"] is not None and abs(row["first_impact_s"] / exact - 1.0) <= 0.05
+        ),
     )
 
 

@@ -8,7 +8,7 @@ from fem.study.drawings import Line, drawing
 from fem.study.laboratory import Laboratory, Row
 from fem.study.maps import Cell, stack_map
 from fem.study.setups import FOR_MAPS, PLATEAU, STACK, harmonic
-from fem.study.statements import Comparison, Finding, Setup, Statement, Table
+from fem.study.statements import Band, Comparison, Finding, Setup, Statement, Table
 
 #: c/a of the stack is 3.636: below a/c = 0.275 it slides before it tilts
 WIDTH_OVER_HEIGHT = 1.1 / 4.0
@@ -66,6 +66,26 @@ def number_of_boxes(laboratory: Laboratory) -> Finding:
                 rows=tuple(rows_of_table),
             ),
         ),
+        band=_band_of_paths(laboratory),
+    )
+
+
+def _band_of_paths(laboratory: Laboratory) -> Band:
+    """Path of the stack that stays flat, over that of one rigid box under the same floor."""
+    values = {
+        "contact.mu_static": 0.2,
+        "contact.mu_kinetic": 0.1,
+        "solver.duration_s": 5.0,
+        **harmonic(5.0, 10.0),
+    }
+    path = laboratory.rows([STACK.but({**FOR_MAPS, **values, "container.boxes": 1})])[0]["slip_travel_m"]
+    return laboratory.band(
+        STACK.but(values),
+        quantity="path of four boxes over that of one rigid box, mu 0.2/0.1, 5.0 m/s² at 10 rad/s",
+        unit="-",
+        value=lambda row: row["slip_travel_m"] / path,
+        criterion="within 5 % of one rigid box",
+        holds=lambda row: abs(row["slip_travel_m"] / path - 1.0) <= 0.05,
     )
 
 
@@ -170,10 +190,11 @@ def same_amplitude(laboratory: Laboratory) -> Finding:
         bounds=f"mu_s below a/c = {WIDTH_OVER_HEIGHT:.3f}",
         reading=(
             "At equal amplitude no friction tried turns the stack further than friction that "
-            "holds. With mu_s below a/c it "
-            "slides and does not turn; as a rigid block that rocks first it keeps its grip, and "
-            "friction then changes "
-            "little, as the drawing shows."
+            "holds (1.0). It overturns "
+            f"at {int((held >= 1.0).sum())} of {len(amplitudes)} amplitudes with friction that holds and at "
+            f"{sum(one >= 1.0 for one in curves['mu 0.4/0.2'])} with 0.4/0.2, where the grip is "
+            "lost at strong motion and the "
+            "stack slides instead. With mu_s below a/c it does not turn at all."
         ),
         setups=tuple(setups),
         drawings=(
@@ -189,6 +210,14 @@ def same_amplitude(laboratory: Laboratory) -> Finding:
                 x_label="amplitude A [mm]",
                 y_label="rotation ratio [-]",
             ),
+        ),
+        band=laboratory.band(
+            STACK.but({"motion.amplitude_m": 0.1, "solver.duration_s": 8.0}),
+            quantity="rotation ratio at 100 mm, mu 0.4/0.2",
+            unit="-",
+            value=lambda row: row["rotation_ratio"],
+            criterion=f"no more than the rigid stack that cannot slide ({held[5]:.3f})",
+            holds=lambda row: row["rotation_ratio"] <= held[5] * LARGER,
         ),
     )
 
