@@ -63,21 +63,18 @@ def mass_centre(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         bounds="eta above sqrt 2, among the cases that stand",
         reading=(
-            "eta is taken with the paper's Eq. 3. A rocking mass centre is left behind by the "
-            "floor. Near eta = 1 most "
-            f"of the motions overturn the stack ({counted} of {len(PEAKS) * len(RATIOS)} runs "
-            "do), and a displacement factor says "
-            "nothing of that; for a linear oscillator DAF < 1 needs eta > sqrt 2, not 1. A "
-            "container that only "
-            "sticks moves with the floor: DAF = 1, not less."
+            "eta is taken with the paper's Eq. 3. A rocking mass centre is left behind by the floor. Near "
+            f"eta = 1 most of the motions overturn the stack ({counted} of {len(PEAKS) * len(RATIOS)} runs "
+            "do), and a displacement factor says nothing of that; for a linear oscillator DAF < 1 needs "
+            "eta > sqrt 2, not 1. A container that only sticks moves with the floor: DAF = 1, not less."
         ),
         setups=tuple(setups),
         drawings=(
             drawing(
                 "mass-centre",
                 (
-                    "Displacement amplitude of the mass centre over that of the floor, last three "
-                    "cycles; gaps: overturned."
+                    "Displacement amplitude of the mass centre over that of the floor, last three cycles; "
+                    "gaps: overturned."
                 ),
                 [*curves, _linear()],
                 x_label="eta = Omega / omega (Eq. 3) [-]",
@@ -142,14 +139,11 @@ def no_amplification(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         bounds="95 % of the time: outside impacts",
         reading=(
-            "Between impacts a rocking container is pushed with less than the plateau load: it "
-            "can take no more than "
-            "g tan(beta - phi). An impact is another matter: its horizontal impulse, spread over "
-            "50 ms, is up to "
-            f"{max(row[2] for row in table):.2f} of the plateau load, and its peak "
-            f"{max(row[1] for row in table):.0f} times "
-            "that, a number that belongs to the contact and not to the container. Loads for "
-            "bolts come from impacts."
+            "Between impacts a rocking container is pushed with less than the plateau load: it can take "
+            "no more than g tan(beta - phi). An impact is another matter: its horizontal impulse, spread "
+            f"over 50 ms, is up to {max(row[2] for row in table):.2f} of the plateau load, and its peak "
+            f"{max(row[1] for row in table):.0f} times that, a number that belongs to the contact and not "
+            "to the container. Loads for bolts come from impacts."
         ),
         setups=tuple(setups[:2]),
         tables=(
@@ -224,13 +218,12 @@ STATEMENTS = (
         name="mass-centre",
         section="4.2",
         quote=(
-            "With a prescribed base displacement and eta > 1, even for a steady state drive the "
-            "DAF for the absolute "
-            "amplitude of the oscillator remains < 1"
+            "With a prescribed base displacement and eta > 1, even for a steady state drive the DAF for "
+            "the absolute amplitude of the oscillator remains < 1"
         ),
         tried=(
-            "Rigid stack, mu 0.4/0.2, three peaks, eta from 1 to 7: amplitude of the mass centre "
-            "over the floor's."
+            "Rigid stack, mu 0.4/0.2, three peaks, eta from 1 to 7: amplitude of the mass centre over the "
+            "floor's."
         ),
         examine=mass_centre,
         seconds=15.0,

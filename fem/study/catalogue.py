@@ -56,10 +56,9 @@ UNTRIED = (
             "there is no simple engineering solution published, which includes friction with belt-reversals"
         ),
         reason=(
-            "A statement on the literature. Westermo and Udwadia (1983) give the sliding oscillator "
-            "on a reversing "
-            "floor in closed form; rocking and sliding together have criteria of initiation (Shenton "
-            "1996), no more."
+            "A statement on the literature. Westermo and Udwadia (1983) give the sliding oscillator on a "
+            "reversing floor in closed form; rocking and sliding together have criteria of initiation "
+            "(Shenton 1996), no more."
         ),
     ),
     Untried(

@@ -35,10 +35,9 @@ def box_sticks(laboratory: Laboratory) -> Finding:
         bounds="under the stated motion, and up to half a per cent below the plateau value with g = 10",
         reading=(
             'The box does not tilt. "Just sticks" has no margin: at the plateau value the utilisation of stiction '
-            "is 1.000 with "
-            f"g = 10, and the box slides by up to {1e3 * rows[3]['max_slip_m']:.0f} mm as "
-            "rounding exceeds it; with "
-            f"9.81 by {1e3 * rows[4]['max_slip_m']:.0f} mm. Neither is of any danger to it."
+            f"is 1.000 with g = 10, and the box slides by up to {1e3 * rows[3]['max_slip_m']:.0f} mm as "
+            f"rounding exceeds it; with 9.81 by {1e3 * rows[4]['max_slip_m']:.0f} mm. Neither is of any "
+            "danger to it."
         ),
         setups=tuple(setup for setup, _ in cases),
         band=laboratory.band(
@@ -65,10 +64,9 @@ def stack_tilts_at_plateau(laboratory: Laboratory) -> Finding:
         cases,
         bounds="the rigid body",
         reading=(
-            "The rigid stack tilts as the paper says and does not slide, even with g = 9.81, "
-            "where its static check of "
-            "sliding fails: once it rocks, its base is not pushed with m a(t) any more. It rocks "
-            "and stands; the paper's "
+            "The rigid stack tilts as the paper says and does not slide, even with g = 9.81, where its "
+            "static check of sliding fails: once it rocks, its base is not pushed with m a(t) any more. "
+            "It rocks and stands; the paper's "
             '"will tilt" must not be read as "falls". The shell loses its grip at an impact and slides as well.'
         ),
         band_of=PLATEAU.but({"solver.duration_s": 10.0}),
@@ -88,11 +86,10 @@ def stack_tilts_as_stated(laboratory: Laboratory) -> Finding:
         cases,
         bounds="",
         reading=(
-            "Under the motion that the paper states, 50 mm and 2.4 m/s², the stack does not "
-            "tilt: 2.4 is below g a/c = 2.70 "
-            "m/s². The 80 kNm are those of the plateau value, an amplified response, not of this "
-            "motion. Only if the "
-            "floor starts with a jerk of 0.35 m/s under a container at rest does it rock, by that jerk."
+            "Under the motion that the paper states, 50 mm and 2.4 m/s², the stack does not tilt: 2.4 is "
+            "below g a/c = 2.70 m/s². The 80 kNm are those of the plateau value, an amplified response, "
+            "not of this motion. Only if the floor starts with a jerk of 0.35 m/s under a container at "
+            "rest does it rock, by that jerk."
         ),
         band_of=STACK.but({"solver.duration_s": 10.0}),
     )
@@ -233,12 +230,11 @@ def within_the_limit_cycle(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         bounds="at the paper's frequency, where the stack does not move at all",
         reading=(
-            "At 6.928 rad/s 50 mm are 2.4 m/s²: nothing moves, and the statement is empty. At "
-            "other frequencies the same "
-            f"50 mm turn the stack to {max(float(np.nanmax(line.y)) for line in curves):.2f} of "
-            "beta (1: overturned): 50 mm "
-            "against a/2 says nothing of that. What does not overturn keeps its amplitude, and "
-            "dies out without drive."
+            "At 6.928 rad/s 50 mm are 2.4 m/s²: nothing moves, and the statement is empty. At other "
+            "frequencies the same 50 mm turn the stack to "
+            f"{max(float(np.nanmax(line.y)) for line in curves):.2f} of beta (1: overturned): 50 mm "
+            "against a/2 says nothing of that. What does not overturn keeps its amplitude, and dies out "
+            "without drive."
         ),
         setups=tuple(setups),
         drawings=(
@@ -317,8 +313,8 @@ STATEMENTS = (
         name="within-the-limit-cycle",
         section="7",
         quote=(
-            "50 mm is << a/2. Regardless of sticking or slipping the tilting of the body will remain "
-            "well within the limit cycle. Thus, Lyapunov stability is given"
+            "50 mm is << a/2. Regardless of sticking or slipping the tilting of the body will remain well "
+            "within the limit cycle. Thus, Lyapunov stability is given"
         ),
         tried=(
             "50 mm at the paper's frequency and from 4 to 40 rad/s, slipping and sticking: rotation, "

@@ -63,11 +63,9 @@ def reversal(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         bounds="whether it stands; not how far it slides, nor whether it slides or rocks",
         reading=(
-            "With mu_s = 0.4 in place of 0.2 at every reversal, and mu_k = 0.2 in both, nothing "
-            "falls that stood. How "
-            "far a box slides changes where it comes to stops; and the stack begins to rock "
-            "where it only slid, "
-            "for what starts a motion from rest is mu_s."
+            "With mu_s = 0.4 in place of 0.2 at every reversal, and mu_k = 0.2 in both, nothing falls "
+            "that stood. How far a box slides changes where it comes to stops; and the stack begins to "
+            "rock where it only slid, for what starts a motion from rest is mu_s."
         ),
         setups=tuple(setups),
         tables=(
@@ -132,11 +130,9 @@ def halt_at_extremes(laboratory: Laboratory) -> Finding:
         ),
         bounds="strong motion: mu_k g below a quarter of the floor's peak acceleration",
         reading=(
-            "The slip of the exact slider vanishes close to the extreme points of the floor only "
-            "under strong motion. "
-            f"Just above stiction it vanishes {max(lags):.0f}° of phase beside them: the body "
-            "still has the speed "
-            "that friction gave it."
+            "The slip of the exact slider vanishes close to the extreme points of the floor only under "
+            f"strong motion. Just above stiction it vanishes {max(lags):.0f}° of phase beside them: the "
+            "body still has the speed that friction gave it."
         ),
         setups=(
             BOX.but(
@@ -147,8 +143,8 @@ def halt_at_extremes(laboratory: Laboratory) -> Finding:
             drawing(
                 "halt-at-extremes",
                 (
-                    "Phase between the end of a slip and the extreme point of the floor; exact "
-                    "slider, mu 0.4/0.2."
+                    "Phase between the end of a slip and the extreme point of the floor; exact slider, mu "
+                    "0.4/0.2."
                 ),
                 [Line(x=peaks, y=lags, style="o-")],
                 x_label="peak floor acceleration [m/s²]",
@@ -219,12 +215,10 @@ def friction_ratio(laboratory: Laboratory) -> Finding:
         bounds="whether the rigid stack overturns; not how far anything slides",
         reading=(
             f"The largest slip of a box under 5.0 m/s² is {1e3 * slips[0]:.0f} mm at 50 %, "
-            f"{1e3 * slips[1]:.0f} mm at 92 % and "
-            f"{1e3 * slips[2]:.0f} mm at 100 %. The rigid stack ends otherwise in {table[0][2]} "
-            f"and {table[1][2]} of its "
-            f"{table[0][1]} cells, {table[0][3]} and {table[1][3]} of them surely: the choice is "
-            "arbitrary, as the paper says, "
-            "and it is not without consequence."
+            f"{1e3 * slips[1]:.0f} mm at 92 % and {1e3 * slips[2]:.0f} mm at 100 %. The rigid stack ends "
+            f"otherwise in {table[0][2]} and {table[1][2]} of its {table[0][1]} cells, {table[0][3]} and "
+            f"{table[1][3]} of them surely: the choice is arbitrary, as the paper says, and it is not "
+            "without consequence."
         ),
         setups=(*setups, *boxes),
         tables=(
@@ -266,8 +260,8 @@ STATEMENTS = (
         section="3",
         quote="stick-slip phenomena towards the reversal ... do not affect the findings of this study",
         tried=(
-            "Box and stack with the same kinetic friction and with or without more static friction "
-            "at the reversals."
+            "Box and stack with the same kinetic friction and with or without more static friction at the "
+            "reversals."
         ),
         examine=reversal,
         seconds=2.0,

@@ -87,9 +87,9 @@ def one_box(laboratory: Laboratory) -> Finding:
         ),
         bounds="g = 10 m/s²",
         reading=(
-            f"Every printed number follows with g = 10 m/s². With 9.81 the base shear is "
-            f"{honest.code.sliding.utilisation:.3f} of the stiction limit, so the paper's own "
-            "static rule says "
+            "Every printed number follows with g = 10 m/s². With 9.81 the base shear is "
+            f"{honest.code.sliding.utilisation:.3f} of the stiction limit, so the paper's own static rule "
+            "says "
             '"slides" where the paper says "just sticks": the verdict hangs on the rounding of g.'
         ),
         tables=(_side_by_side(1),),
@@ -111,9 +111,8 @@ def four_boxes(laboratory: Laboratory) -> Finding:
         ),
         bounds="g = 10 m/s²",
         reading=(
-            "Every printed number follows with g = 10 m/s²; with 9.81 the static rule says that "
-            "the stack slides "
-            f"({honest.code.sliding.utilisation:.3f}) as well as tilts "
+            "Every printed number follows with g = 10 m/s²; with 9.81 the static rule says that the stack "
+            f"slides ({honest.code.sliding.utilisation:.3f}) as well as tilts "
             f"({honest.code.overturning.utilisation:.3f})."
         ),
         tables=(_side_by_side(4),),
@@ -172,13 +171,11 @@ def design_amplitude(laboratory: Laboratory) -> Finding:
         ),
         bounds=f"between {short:.0f} mm and {long:.0f} mm, depending on the ground",
         reading=(
-            "EN 1998-1:2004, Eq. 3.12, d_g = 0.025 a_g S T_C T_D, gives "
-            f"{long:.0f} mm with the paper's T_C = 0.8 s (ground D, type 1) and {short:.0f} mm "
-            "with the row that its "
-            "S = 1.5 belongs to (ground C, type 2, T_C = 0.25 s): S and T_C are of two different "
-            "grounds. 50 mm lies "
-            "between them. At 2.4 m/s² the stack rests with either; at 4.0 m/s² the longer the amplitude the "
-            "more it rocks, as the table shows."
+            f"EN 1998-1:2004, Eq. 3.12, d_g = 0.025 a_g S T_C T_D, gives {long:.0f} mm with the paper's "
+            f"T_C = 0.8 s (ground D, type 1) and {short:.0f} mm with the row that its S = 1.5 belongs to "
+            "(ground C, type 2, T_C = 0.25 s): S and T_C are of two different grounds. 50 mm lies between "
+            "them. At 2.4 m/s² the stack rests with either; at 4.0 m/s² the longer the amplitude the more "
+            "it rocks, as the table shows."
         ),
         setups=tuple(setups),
         tables=(
@@ -222,9 +219,8 @@ STATEMENTS = (
         section="7",
         quote="a harmonic base acceleration of 2,4 m/s² corresponding to ... an amplitude of app. 50 mm",
         tried=(
-            "Held against the design ground displacement of the code; the stack run with the "
-            "amplitudes of both "
-            "grounds at the stated and at the plateau acceleration."
+            "Held against the design ground displacement of the code; the stack run with the amplitudes "
+            "of both grounds at the stated and at the plateau acceleration."
         ),
         examine=design_amplitude,
         seconds=2.0,

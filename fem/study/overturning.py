@@ -82,14 +82,11 @@ def half_width_is_conservative(laboratory: Laboratory) -> Finding:
     return Finding(
         comparisons=tuple(comparisons),
         reading=(
-            f"At the paper's frequency an amplitude of {share:.2f} a/2 overturns the stack in the "
-            "first swing, without "
-            "any impact (exact block), and smaller ones do so after impacts, from "
-            f"{min(fallen, default=math.nan):.2f} a/2 "
-            "on in the runs. A bound on the amplitude alone is not on the safe side: what counts "
-            "is the acceleration "
-            "over g a/c and the frequency over p, A Omega²/(g a/c) against sqrt(1 + (Omega/p)²) "
-            "in the first swing."
+            f"At the paper's frequency an amplitude of {share:.2f} a/2 overturns the stack in the first "
+            "swing, without any impact (exact block), and smaller ones do so after impacts, from "
+            f"{min(fallen, default=math.nan):.2f} a/2 on in the runs. A bound on the amplitude alone is "
+            "not on the safe side: what counts is the acceleration over g a/c and the frequency over p, A "
+            "Omega²/(g a/c) against sqrt(1 + (Omega/p)²) in the first swing."
         ),
         setups=(first, witness, *witnesses),
         tables=(
@@ -165,9 +162,8 @@ def rotation_at_half_width(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         bounds="in the first quarter period; it says nothing of what follows",
         reading=(
-            "Within a quarter of the first period the rotation stays below beta. That does not "
-            "save the stack: it goes on "
-            "turning with the speed it has, and overturns at "
+            "Within a quarter of the first period the rotation stays below beta. That does not save the "
+            "stack: it goes on turning with the speed it has, and overturns at "
             f"{sum(row[3] == 'overturned' for row in rows)} of {len(rows)} frequencies."
         ),
         setups=tuple(setups),
@@ -211,11 +207,10 @@ def beyond_half_width(laboratory: Laboratory) -> Finding:
         ),
         reading=(
             f"Of {len(beyond)} motions with A > a/2 whose tilting moment exceeds the restoring one, "
-            f"{len(beyond) - len(standing)} overturn the stack that cannot slide and "
-            f"{len(standing)} do not, {len(sure)} of them "
-            f"surely ({len(limit)} below the exact limit of the first swing). As a sign of "
-            "falling the condition is good on "
-            "this map; it is the reverse, A <= a/2, that does not protect."
+            f"{len(beyond) - len(standing)} overturn the stack that cannot slide and {len(standing)} do "
+            f"not, {len(sure)} of them surely ({len(limit)} below the exact limit of the first swing). As "
+            "a sign of falling the condition is good on this map; it is the reverse, A <= a/2, that does "
+            "not protect."
         ),
         setups=tuple(cell.setup for cell in [*sure[:2], *beyond[:1]]),
         band=laboratory.band(
@@ -263,9 +258,9 @@ def beginning_is_restored(laboratory: Laboratory) -> Finding:
     return Finding(
         comparisons=tuple(comparisons),
         reading=(
-            "Many motions tilt the stack, or make it slide, without overturning it; after ten "
-            "cycles of the plateau value "
-            "it comes back to rest on its base. The counts are of the cells of one map, not of earthquakes."
+            "Many motions tilt the stack, or make it slide, without overturning it; after ten cycles of "
+            "the plateau value it comes back to rest on its base. The counts are of the cells of one map, "
+            "not of earthquakes."
         ),
         setups=tuple(setups),
         tables=(
@@ -309,8 +304,8 @@ def short_before_reversal(laboratory: Laboratory) -> Finding:
     comparisons = [
         _none(
             (
-                "sure cells that tilt less than a twelfth of a period before reversal and overturn, "
-                "Omega above 3 p"
+                "sure cells that tilt less than a twelfth of a period before reversal and overturn, Omega "
+                "above 3 p"
             ),
             len(bad),
         ),
@@ -334,13 +329,12 @@ def short_before_reversal(laboratory: Laboratory) -> Finding:
     return Finding(
         comparisons=tuple(comparisons),
         bounds=(
-            "a floor faster than three times p, tilting that begins less than a twelfth of a "
-            "period before it "
-            "reverses (peak up to 1.15 g a/c)"
+            "a floor faster than three times p, tilting that begins less than a twelfth of a period "
+            "before it reverses (peak up to 1.15 g a/c)"
         ),
         reading=(
-            "The least time before reversal with which the stack is still overturned is "
-            f"{least:.3f} of a period"
+            f"The least time before reversal with which the stack is still overturned is {least:.3f} of a "
+            "period"
             + (
                 f" ({least * 2.0 * math.pi / smallest.angular_frequency:.2f} s, at "
                 f"{smallest.angular_frequency:g} rad/s)."
@@ -416,12 +410,12 @@ STATEMENTS = (
         name="beginning-is-restored",
         section="abstract, 1",
         quote=(
-            "neither the beginning of an overturning motion nor the loss of stiction necessarily "
-            "causes the structure to fall over"
+            "neither the beginning of an overturning motion nor the loss of stiction necessarily causes "
+            "the structure to fall over"
         ),
         tried=(
-            "Map of the rigid stack over frequency and peak acceleration, with friction that slips "
-            "and that holds; ten cycles of the plateau value."
+            "Map of the rigid stack over frequency and peak acceleration, with friction that slips and "
+            "that holds; ten cycles of the plateau value."
         ),
         examine=beginning_is_restored,
         seconds=40.0,
@@ -430,12 +424,12 @@ STATEMENTS = (
         name="short-before-reversal",
         section="1",
         quote=(
-            "if tilting starts short before reversal of the ground motion, some bumping will happen, "
-            "but the stack will not fall over"
+            "if tilting starts short before reversal of the ground motion, some bumping will happen, but "
+            "the stack will not fall over"
         ),
         tried=(
-            "Peaks from 1.01 to 3 g a/c over frequency, stack that cannot slide: time from tilting "
-            "to reversal, and the end."
+            "Peaks from 1.01 to 3 g a/c over frequency, stack that cannot slide: time from tilting to "
+            "reversal, and the end."
         ),
         examine=short_before_reversal,
         seconds=20.0,
@@ -445,8 +439,8 @@ STATEMENTS = (
         section="5.3",
         quote="the condition A <= a/2 is only a conservative description of the falling over limit",
         tried=(
-            "The same maps below A = a/2, a scan of the amplitude at the paper's frequency, and the "
-            "exact first swing."
+            "The same maps below A = a/2, a scan of the amplitude at the paper's frequency, and the exact "
+            "first swing."
         ),
         examine=half_width_is_conservative,
         seconds=15.0,
@@ -455,12 +449,12 @@ STATEMENTS = (
         name="rotation-at-half-width",
         section="5.3",
         quote=(
-            "the acceleration of the center of mass during the first quarter period, leading to phi "
-            "< beta for A = a/2"
+            "the acceleration of the center of mass during the first quarter period, leading to phi < "
+            "beta for A = a/2"
         ),
         tried=(
-            "A = a/2 at six frequencies, stack that cannot slide: rotation in the first quarter "
-            "period, and the end."
+            "A = a/2 at six frequencies, stack that cannot slide: rotation in the first quarter period, "
+            "and the end."
         ),
         examine=rotation_at_half_width,
         seconds=2.0,
@@ -469,8 +463,8 @@ STATEMENTS = (
         name="beyond-half-width",
         section="5.4",
         quote=(
-            "Overturning: tilting moment does exceed restoring moment; steady state amplitude A > "
-            "a/2 (weak condition)"
+            "Overturning: tilting moment does exceed restoring moment; steady state amplitude A > a/2 "
+            "(weak condition)"
         ),
         tried="The map of the stack that cannot slide, above A = a/2 and g a/c.",
         examine=beyond_half_width,

@@ -90,19 +90,17 @@ def kinetic_limit(laboratory: Laboratory) -> Finding:
             ),
         ),
         reading=(
-            f"While it slides the box is accelerated by mu_k g = {0.2 * 9.81:.2f} m/s² and no "
-            "more, although the "
-            f"floor reaches {floor:.1f} m/s². The acceleration in Eq. 11 is the body's, that in "
-            "Eq. 8 the floor's; "
-            "the paper writes both a(t)."
+            f"While it slides the box is accelerated by mu_k g = {0.2 * 9.81:.2f} m/s² and no more, "
+            f"although the floor reaches {floor:.1f} m/s². The acceleration in Eq. 11 is the body's, that "
+            "in Eq. 8 the floor's; the paper writes both a(t)."
         ),
         setups=(setup,),
         drawings=(
             drawing(
                 "kinetic-limit",
                 (
-                    "Shear force over weight of the sliding box: it never exceeds mu_s and is mu_k "
-                    "while sliding."
+                    "Shear force over weight of the sliding box: it never exceeds mu_s and is mu_k while "
+                    "sliding."
                 ),
                 [
                     Line(
@@ -153,11 +151,9 @@ def uplift_limit(laboratory: Laboratory) -> Finding:
         comparisons=(*comparisons, third),
         bounds="a base that stands on its two corners",
         reading=(
-            "On corners the stack begins to turn within a scan step of g a/c. A flat base on an "
-            "elastic bed opens at "
-            "its edge at a third of that already, which is no sign of tilting, and turns about a "
-            "narrow strip at "
-            f"{comparisons[-1].measured:.2f} g a/c."
+            "On corners the stack begins to turn within a scan step of g a/c. A flat base on an elastic "
+            "bed opens at its edge at a third of that already, which is no sign of tilting, and turns "
+            f"about a narrow strip at {comparisons[-1].measured:.2f} g a/c."
         ),
         setups=tuple(setups),
         band=laboratory.band(
@@ -203,9 +199,8 @@ def centre_or_base(laboratory: Laboratory) -> Finding:
         reading=(
             "As long as the container sticks, its mean acceleration is the floor's, within "
             f"{100.0 * worst:.2g} %; whether the floor or the mass centre is accelerated makes no "
-            "difference, "
-            "and the quasi-static limits may be read with the floor's acceleration. The sentence would "
-            "need a difference that mattered."
+            "difference, and the quasi-static limits may be read with the floor's acceleration. The "
+            "sentence would need a difference that mattered."
         ),
         setups=tuple(setups),
     )
@@ -230,9 +225,8 @@ def moments_of_a_tilted_body(laboratory: Laboratory) -> Finding:
     return Finding(
         comparisons=tuple(comparisons),
         reading=(
-            "With the moments of Eqs. 12 and 13 in balance, a(t) = g cot(phi + alpha), the stack "
-            "neither falls nor "
-            "returns; two per cent beside it, it does one or the other, at every rotation tried."
+            "With the moments of Eqs. 12 and 13 in balance, a(t) = g cot(phi + alpha), the stack neither "
+            "falls nor returns; two per cent beside it, it does one or the other, at every rotation tried."
         ),
         setups=tuple(setups),
         tables=(
@@ -280,11 +274,9 @@ def sign_beyond_balance(laboratory: Laboratory) -> Finding:
             ),
         ),
         reading=(
-            "As printed, Eq. 13 is negative (restoring) below beta and positive (overturning) "
-            "above: the remark has "
-            f"it the wrong way round. Released at rest, the stack turns by {1e3 * falls:+.2f} "
-            f"mrad in {TURNING} s from "
-            f"1.02 beta and by {1e3 * returns:+.2f} mrad from 0.98 beta."
+            "As printed, Eq. 13 is negative (restoring) below beta and positive (overturning) above: the "
+            f"remark has it the wrong way round. Released at rest, the stack turns by {1e3 * falls:+.2f} "
+            f"mrad in {TURNING} s from 1.02 beta and by {1e3 * returns:+.2f} mrad from 0.98 beta."
         ),
         setups=tuple(setups),
     )
@@ -378,8 +370,8 @@ STATEMENTS = (
         section="5.3, Eqs. 12, 13",
         quote="M_T = m a c/(2 sin alpha) sin(phi + alpha), M_R = -G a/(2 cos alpha) cos(phi + alpha)",
         tried=(
-            "Rigid stack released at rest at three rotations on a floor that accelerates 2 % beside "
-            "their balance."
+            "Rigid stack released at rest at three rotations on a floor that accelerates 2 % beside their "
+            "balance."
         ),
         examine=moments_of_a_tilted_body,
     ),

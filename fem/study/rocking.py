@@ -81,11 +81,9 @@ def eq_2(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         bounds="a point mass, rotations up to 0.1 beta",
         reading=(
-            f"At small rotation Eq. 2 gives {small:.3f} of the stack's period, sqrt(3/4) = 0.866: "
-            "what the paper "
-            "remarks, a point mass without rotational inertia. Towards beta the true period "
-            "grows without bound, and "
-            "Eq. 2 does not."
+            f"At small rotation Eq. 2 gives {small:.3f} of the stack's period, sqrt(3/4) = 0.866: what the "
+            "paper remarks, a point mass without rotational inertia. Towards beta the true period grows "
+            "without bound, and Eq. 2 does not."
         ),
         setups=tuple(setups),
     )
@@ -159,11 +157,10 @@ def eq_3(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         bounds="as the period of a hanging bar; as that of rocking near phi_0 = 0.6 beta alone",
         reading=(
-            "A rocking block has no natural period: from nothing at small rotation its period "
-            "grows beyond every "
-            "bound at beta. Eq. 3, 2 pi/p, crosses it near 0.6 beta. The median distance of Eq. "
-            "3 from the runs is "
-            f"{100.0 * typical['Eq. 3']:.0f} %, that of Eq. 2 {100.0 * typical['Eq. 2']:.0f} %."
+            "A rocking block has no natural period: from nothing at small rotation its period grows "
+            "beyond every bound at beta. Eq. 3, 2 pi/p, crosses it near 0.6 beta. The median distance of "
+            f"Eq. 3 from the runs is {100.0 * typical['Eq. 3']:.0f} %, that of Eq. 2 "
+            f"{100.0 * typical['Eq. 2']:.0f} %."
         ),
         setups=tuple(setups),
         tables=tuple(tables),
@@ -231,11 +228,10 @@ def control_periods(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         bounds="rotations of 0.7 beta and more",
         reading=(
-            "Periods of 2 s and more belong to large rotations. A container that just begins to "
-            "rock has a period of "
-            "a fraction of a second, in the middle of the plateau; only as it turns further does it leave "
-            "it. T_C = 0.8 s belongs to ground D of EN 1998-1 Table 3.2, the paper's S = 1.5 to "
-            "another ground."
+            "Periods of 2 s and more belong to large rotations. A container that just begins to rock has "
+            "a period of a fraction of a second, in the middle of the plateau; only as it turns further "
+            "does it leave it. T_C = 0.8 s belongs to ground D of EN 1998-1 Table 3.2, the paper's S = "
+            "1.5 to another ground."
         ),
         setups=tuple(setups),
     )
@@ -251,8 +247,8 @@ def semi_stable_orbit(laboratory: Laboratory) -> Finding:
         comparisons.append(
             Comparison(
                 what=(
-                    f"{name}, rigid: largest kick that returns over p sqrt(2 (1 - cos beta)) = "
-                    f"{kick:.4f} rad/s"
+                    f"{name}, rigid: largest kick that returns over p sqrt(2 (1 - cos beta)) = {kick:.4f} "
+                    "rad/s"
                 ),
                 measured=largest,
                 relation="=",
@@ -295,11 +291,10 @@ def semi_stable_orbit(laboratory: Laboratory) -> Finding:
     return Finding(
         comparisons=tuple(comparisons),
         reading=(
-            "Inside the orbit through rest at beta the container comes back and comes to rest, "
-            "outside it falls. The "
-            "largest kick that it bears as a rigid body is the analytic one; over deformation, "
-            "contact and support it lies "
-            f"between {band.low:.2f} and {band.high:.2f} of it (scanned by 0.02)."
+            "Inside the orbit through rest at beta the container comes back and comes to rest, outside it "
+            "falls. The largest kick that it bears as a rigid body is the analytic one; over deformation, "
+            f"contact and support it lies between {band.low:.2f} and {band.high:.2f} of it (scanned by "
+            "0.02)."
         ),
         setups=tuple(setups),
         drawings=(
@@ -377,8 +372,8 @@ STATEMENTS = (
         section="4.2, Eq. 2",
         quote="T = 8 sqrt(phi_0 r²/(a g)) ... a mathematical pendulum rather than a physical pendulum",
         tried=(
-            "Rigid stack released at twelve rotations; four times the time to its first impact; the "
-            "exact point mass."
+            "Rigid stack released at twelve rotations; four times the time to its first impact; the exact "
+            "point mass."
         ),
         examine=eq_2,
         seconds=3.0,
@@ -406,12 +401,12 @@ STATEMENTS = (
         name="semi-stable-orbit",
         section="2, Lyapunov stability, Klotter",
         quote=(
-            "semi-stable ... perturbations to the outside are divergent while perturbations to the "
-            "inside are stable"
+            "semi-stable ... perturbations to the outside are divergent while perturbations to the inside "
+            "are stable"
         ),
         tried=(
-            "Kicks at rest scanned around the analytic limit, and release beside beta; box and "
-            "stack, rigid and shell."
+            "Kicks at rest scanned around the analytic limit, and release beside beta; box and stack, "
+            "rigid and shell."
         ),
         examine=semi_stable_orbit,
         seconds=40.0,

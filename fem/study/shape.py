@@ -84,8 +84,8 @@ def cylinder(laboratory: Laboratory) -> Finding:
     comparisons.append(
         Comparison(
             what=(
-                "largest rotation of the first two swings at the plateau value, run of the cylinder "
-                "over run of the prism"
+                "largest rotation of the first two swings at the plateau value, run of the cylinder over "
+                "run of the prism"
             ),
             measured=run_cylinder / run_prism,
             relation="=",
@@ -110,16 +110,13 @@ def cylinder(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         bounds="motion in one plane, homogeneous body",
         reading=(
-            "A slender cylinder of the same width and height has I_O/(M R²) = "
-            f"{solid.inertia_ratio:.4f} in place of 4/3: p "
-            f"changes by {100.0 * (changes['frequency parameter p'] - 1.0):+.2f} %, e by "
-            f"{100.0 * (changes[next(iter(list(changes)[1:2]))] - 1.0):+.2f} %. In the plane the "
-            "findings hold. A cylinder "
-            "does not stay in the plane: it can roll on its rim, which no model of this program "
-            "knows. The case file "
-            "knows prisms alone: the run is one of the rigid model with the cylinder's inertia "
-            "put in its place, not "
-            "repeatable from the command line; the other figures are of the analytic block."
+            f"A slender cylinder of the same width and height has I_O/(M R²) = {solid.inertia_ratio:.4f} "
+            f"in place of 4/3: p changes by {100.0 * (changes['frequency parameter p'] - 1.0):+.2f} %, e "
+            f"by {100.0 * (changes[next(iter(list(changes)[1:2]))] - 1.0):+.2f} %. In the plane the "
+            "findings hold. A cylinder does not stay in the plane: it can roll on its rim, which no model "
+            "of this program knows. The case file knows prisms alone: the run is one of the rigid model "
+            "with the cylinder's inertia put in its place, not repeatable from the command line; the "
+            "other figures are of the analytic block."
         ),
         setups=(setup,),
         tables=(
@@ -190,11 +187,9 @@ def rigid_assumption(laboratory: Laboratory) -> Finding:
         bounds="whether the stack stands at the plateau value; not how it moves",
         reading=(
             f"The rigid block {_verb(outcomes[0])} to {ratios[0]:.3f} of beta. The shell "
-            f"{_verb(outcomes[1])} to "
-            f"{ratios[1]:.3f} with mu 0.4/0.2, where an impact shakes it loose, and "
-            f"{_verb(outcomes[4])} to {ratios[4]:.3f} with "
-            "mu_k = mu_s. Whipping of a bolted stack is small; what deformation changes is what "
-            "an impact leaves."
+            f"{_verb(outcomes[1])} to {ratios[1]:.3f} with mu 0.4/0.2, where an impact shakes it loose, "
+            f"and {_verb(outcomes[4])} to {ratios[4]:.3f} with mu_k = mu_s. Whipping of a bolted stack is "
+            "small; what deformation changes is what an impact leaves."
         ),
         setups=tuple(group),
         drawings=(
@@ -255,10 +250,9 @@ def gaps_between_boxes(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         bounds="as long as the stack rests; a rocking one needs its bolts",
         reading=(
-            "At rest the weight keeps every joint closed. At an impact of rocking the joints "
-            "would open and slide without "
-            "bolts; the tension of the shell at that instant is that of a collision, and depends "
-            "on the contact."
+            "At rest the weight keeps every joint closed. At an impact of rocking the joints would open "
+            "and slide without bolts; the tension of the shell at that instant is that of a collision, "
+            "and depends on the contact."
         ),
         setups=tuple(setups),
         tables=(
@@ -328,8 +322,8 @@ STATEMENTS = (
         section="3",
         quote="Thus, the findings do also hold for a vertical cylindrical body instead of a prism",
         tried=(
-            "Inertia in the plane of motion: closed forms, analytic blocks, and the rigid model with "
-            "the cylinder's inertia."
+            "Inertia in the plane of motion: closed forms, analytic blocks, and the rigid model with the "
+            "cylinder's inertia."
         ),
         examine=cylinder,
         seconds=4.0,
@@ -339,8 +333,8 @@ STATEMENTS = (
         section="3",
         quote="body and surface are rigid; the stack remains rigid, whipping is excluded",
         tried=(
-            "The plateau value with the rigid block, the shell of 8 mm and solid steel, with mu_k of "
-            "50 and 100 %."
+            "The plateau value with the rigid block, the shell of 8 mm and solid steel, with mu_k of 50 "
+            "and 100 %."
         ),
         examine=rigid_assumption,
         seconds=10.0,

@@ -54,9 +54,8 @@ def number_of_boxes(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         bounds="as long as no stack lifts from the floor",
         reading=(
-            "Stacks that stay flat on the floor slide alike, whatever their height. A higher "
-            "stack lifts earlier "
-            "(g a/c against mu_s g), and then slides less, or rocks instead of sliding."
+            "Stacks that stay flat on the floor slide alike, whatever their height. A higher stack lifts "
+            "earlier (g a/c against mu_s g), and then slides less, or rocks instead of sliding."
         ),
         setups=tuple(setups),
         tables=(
@@ -189,19 +188,18 @@ def same_amplitude(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         bounds=f"mu_s below a/c = {WIDTH_OVER_HEIGHT:.3f}",
         reading=(
-            "At equal amplitude no friction tried turns the stack further than friction that "
-            "holds (1.0). It overturns "
-            f"at {int((held >= 1.0).sum())} of {len(amplitudes)} amplitudes with friction that holds and at "
-            f"{sum(one >= 1.0 for one in curves['mu 0.4/0.2'])} with 0.4/0.2, where the grip is "
-            "lost at strong motion and the "
-            "stack slides instead. With mu_s below a/c it does not turn at all."
+            "At equal amplitude no friction tried turns the stack further than friction that holds (1.0). "
+            f"It overturns at {int((held >= 1.0).sum())} of {len(amplitudes)} amplitudes with friction "
+            f"that holds and at {sum(one >= 1.0 for one in curves['mu 0.4/0.2'])} with 0.4/0.2, where the "
+            "grip is lost at strong motion and the stack slides instead. With mu_s below a/c it does not "
+            "turn at all."
         ),
         setups=tuple(setups),
         drawings=(
             drawing(
                 "same-amplitude",
-                "Largest rotation over the slenderness angle (1: overturned) over the floor's "
-                "amplitude at 6.928 rad/s; "
+                "Largest rotation over the slenderness angle (1: overturned) over the floor's amplitude "
+                "at 6.928 rad/s; "
                 "rigid stack.",
                 [
                     Line(x=1e3 * np.array(amplitudes), y=values, label=name, style="o-")
@@ -227,12 +225,9 @@ def _reading_of_slipping(table: list[tuple[str, int, int, int, int, int]]) -> st
     _, cells, saved, lost, sure, more = (list(column) for column in zip(*table, strict=True))
     return (
         f"Of {sum(cells)} motions that make the stack slip, over all frictions, slipping saves "
-        f"{sum(saved)} from "
-        f"overturning and overturns {sum(lost)} that would have stood ({sum(sure)} of them "
-        f"surely); {sum(more)} turn further "
-        "than without slipping, because it changes when the container is set down. Friction "
-        "below a/c keeps the stack "
-        "from tilting at all."
+        f"{sum(saved)} from overturning and overturns {sum(lost)} that would have stood ({sum(sure)} of "
+        f"them surely); {sum(more)} turn further than without slipping, because it changes when the "
+        "container is set down. Friction below a/c keeps the stack from tilting at all."
     )
 
 
@@ -271,8 +266,8 @@ STATEMENTS = (
         name="number-of-boxes",
         section="8",
         quote=(
-            "Slipping is not affected by the number of boxes in the stack, only by the base "
-            "acceleration and the coefficient of friction"
+            "Slipping is not affected by the number of boxes in the stack, only by the base acceleration "
+            "and the coefficient of friction"
         ),
         tried="One to six boxes under the same floor, two pairs of friction, three peaks.",
         examine=number_of_boxes,
@@ -283,8 +278,8 @@ STATEMENTS = (
         section="8",
         quote="According to the above findings slipping leads to increased overall stability",
         tried=(
-            "Maps of the rigid stack over frequency and peak acceleration with five frictions, "
-            "against friction that holds."
+            "Maps of the rigid stack over frequency and peak acceleration with five frictions, against "
+            "friction that holds."
         ),
         examine=slipping_stabilises,
         seconds=60.0,
@@ -293,8 +288,8 @@ STATEMENTS = (
         name="same-amplitude",
         section="5.2",
         quote=(
-            "the body is less accelerated, leading to a smaller rotation phi if tilting. With the "
-            "same displacement amplitude A, the motion of the body becomes less critical"
+            "the body is less accelerated, leading to a smaller rotation phi if tilting. With the same "
+            "displacement amplitude A, the motion of the body becomes less critical"
         ),
         tried="Amplitudes from 50 to 200 mm at the paper's frequency with four frictions, rigid stack.",
         examine=same_amplitude,

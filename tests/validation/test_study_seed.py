@@ -1,8 +1,9 @@
 """Statements of the seed paper whose verdict is known beforehand, tried by runs of the rigid container."""
 
+import numpy as np
 import pytest
 
-from fem.study import numbers, quasi_static, rocking
+from fem.study import numbers, quasi_static, rocking, shape
 from fem.study.laboratory import Laboratory
 from fem.study.statements import Verdict
 
@@ -30,3 +31,17 @@ def test_verdict_on_a_statement_that_theory_decides(laboratory, examine, verdict
     finding = examine(laboratory)
     assert finding.failed_runs == 0
     assert finding.verdict is verdict
+
+
+def test_inertia_of_a_cylinder_about_the_edge_of_its_base():
+    # Slices of the elevation: chord 2 sqrt(r^2 - x^2) at x, each a rod of height c; midpoint rule.
+    radius, height = 0.55, 4.0
+    x = (np.arange(20000) + 0.5) / 20000 * 2.0 * radius - radius
+    chord = 2.0 * np.sqrt(radius**2 - x**2)
+    about_edge = np.average((x + radius) ** 2 + height**2 / 3.0, weights=chord)
+    ratio = about_edge / (radius**2 + 0.25 * height**2)
+    assert shape.inertia_ratio(cylinder=True) == pytest.approx(ratio, rel=1e-6)
+    assert shape.inertia_ratio(cylinder=False) == pytest.approx(4.0 / 3.0, rel=1e-12)
+    # a thin wall: all mass at distance r from the axis, whose mean square of x is r^2/2
+    wall = (0.5 * radius**2 + radius**2 + height**2 / 3.0) / (radius**2 + 0.25 * height**2)
+    assert shape.inertia_ratio(cylinder=True, hollow=True) == pytest.approx(wall, rel=1e-12)
