@@ -181,6 +181,8 @@ def _peak_to_peak(model: Model, last: float | None, time: np.ndarray, slip: np.n
     if end < period * (1.0 - 1e-9):
         return None
     cycle = slip[(time >= end - period - 1e-9) & (time <= end + 1e-9)]
+    if cycle.size < 2:  # sampled more coarsely than a cycle
+        return None
     return float(cycle.max() - cycle.min())
 
 

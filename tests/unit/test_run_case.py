@@ -308,3 +308,20 @@ class TestSignals:
         with interruptible(SilentReporter()) as stop:
             os.kill(os.getpid(), signal.SIGTERM)
             assert stop()
+
+
+def test_a_history_coarser_than_the_drive_has_no_peak_to_peak_and_the_run_stands(tmp_path):
+    overrides = (
+        "solver.model=rigid",
+        "motion.cycles=2",
+        "solver.duration_s=3.0",
+        "output.history_s=2.5",
+        "output.fields_s=0",
+    )
+    assert (
+        main(["run", "seed_box", *(f"--set={one}" for one in overrides), "-q", "--out", str(tmp_path / "r")])
+        == 0
+    )
+    result = read_result(tmp_path / "r" / "run.json")
+    assert result["status"] == "completed"
+    assert result["verdict"]["slip_peak_to_peak_m"] is None
