@@ -170,7 +170,7 @@ class Laboratory:
                     command=member.command,
                     outcome=row["outcome"],
                     value=value(row) if stands else None,
-                    holds=holds(row) if stands else None,
+                    holds=bool(holds(row)) if stands else None,
                 )
             )
         return Band(quantity=quantity, unit=unit, criterion=criterion, members=tuple(found))

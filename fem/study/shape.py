@@ -271,8 +271,8 @@ def _first_swing(body: RigidBlock) -> float:
         lambda peak: sine_floor(amplitude=peak / ANGULAR_FREQUENCY**2, angular_frequency=ANGULAR_FREQUENCY),
         low=3.0,
         high=60.0,
-        duration=8.0,
-        relative_tolerance=1e-4,
+        duration=4.0,
+        relative_tolerance=1e-3,
     )
 
 

@@ -3,6 +3,7 @@
 import json
 import math
 
+import numpy as np
 import pytest
 
 from fem.__main__ import main
@@ -94,6 +95,22 @@ def test_a_band_says_how_often_it_holds_and_leaves_failed_members_out():
     assert band_of(True, True).summary.endswith("do not change it")
     assert band_of(False, False).summary.endswith("it holds in none of them")
     assert math.isnan(band_of(None).low)
+
+
+def test_a_band_takes_a_truth_of_any_kind(monkeypatch):
+    laboratory = Laboratory()
+    row = {"status": "completed", "outcome": "rock", "rotation_ratio": 0.4}
+    monkeypatch.setattr(laboratory, "variants", lambda setup: [setup])
+    monkeypatch.setattr(laboratory, "rows", lambda setups: [row])
+    band = laboratory.band(
+        STACK,
+        quantity="a ratio",
+        unit="-",
+        value=lambda row: row["rotation_ratio"],
+        criterion="small",
+        holds=lambda row: np.float64(row["rotation_ratio"]) < 0.5,  # a truth of numpy's
+    )
+    assert band.holding == 1
 
 
 def test_the_command_of_a_setup_runs_the_very_case():
