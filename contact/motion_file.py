@@ -52,6 +52,7 @@ SPELLINGS: dict[str, str] = {
         )
     },
 }
+LARGEST_NUMBER = 1e12  #: of seconds or of any unit: beyond, the motion's integrals lose all meaning
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?", re.ASCII)
 
 
@@ -141,7 +142,7 @@ def _number(field: str, place: str) -> float:
     if not NUMBER.fullmatch(field):
         raise ValueError(f"{place}: {field[:40]!r} is not a number (a decimal point, no unit, no text)")
     number = float(field.replace("d", "e").replace("D", "e"))
-    if not math.isfinite(number):
+    if not abs(number) <= LARGEST_NUMBER:
         raise ValueError(f"{place}: {field[:40]!r} is too large for a number")
     return number
 

@@ -51,6 +51,7 @@ def test_baseline_is_passed_on(tmp_path):
         ("0,1\n0.1,inf\n", "line 2: 'inf' is not a number"),
         ("0,1\n0.1,1_0\n", "line 2: '1_0' is not a number"),
         ("0,1\n0.1,1e999\n", "line 2: '1e999' is too large"),
+        ("0,1\n1e300,1\n", "line 2: '1e300' is too large"),
         ("0,1\n,2\n", "line 2: '' is not a number"),
         ("0,1\n0.1\n", "line 2: two columns are needed, time and value, found 1"),
         ("0,1,5\n0.1,2,5\n", "line 1: two columns are needed, time and value, found 3"),
