@@ -61,6 +61,7 @@ def build_app() -> App:
         help_format="plaintext",
         version=lambda: metadata.version("unanchored"),
         result_action="return_value",
+        suppress_keyboard_interrupt=False,  # it would end the process with a code of its own
     )
     for name, (place, help_line) in COMMANDS.items():
         app.command(place, name=name, help=help_line)

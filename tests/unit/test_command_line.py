@@ -321,3 +321,12 @@ class TestDoctor:
         began = time.monotonic()
         assert rendering.probe_rendering() == "rendering did not end within 0.5 s"
         assert time.monotonic() - began < 30.0
+
+
+def test_an_interrupt_before_the_solver_listens_ends_with_4_and_no_traceback(monkeypatch, capsys):
+    def interrupted(*arguments, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("fem.commands.check.load_case", interrupted)
+    assert command_line.main(["check"]) == 4
+    assert capsys.readouterr().err.strip() == "interrupted"
