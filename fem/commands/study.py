@@ -13,6 +13,7 @@ from fem.progress import ScreenReporter
 from fem.run_folder import to_json
 
 STUDIES = ("seed",)
+LONG = 10.0  #: s, from which a statement is worth compiling for beforehand
 EXIT_CODES = {"completed": 0, "failed": 3, "interrupted": 4}
 
 
@@ -87,6 +88,8 @@ def _conducted(folder: Path, chosen: Any, *, jobs: int | None, force: bool, quie
 
     with runs.interruptible(reporter) as stop:
         laboratory = laboratories.Laboratory(jobs=jobs, progress=progress, stop=stop)
+        if any(statement.seconds > LONG for _, statement in chosen):
+            laboratory.warm_up(reporter.message)
         found: dict[str, Any] = conducting.conduct(
             folder, laboratory, statements=chosen, force=force, tell=reporter.message
         )

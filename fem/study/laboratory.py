@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from contact.compiled import is_compiled
 from fem.case import Case
 from fem.case_contact import normal_penalty
 from fem.history import History
@@ -70,6 +71,15 @@ class Laboratory:
         self._makers: dict[str, CaseMaker] = {}
         self._rows: dict[Any, Row] = {}
         self._records: dict[Any, Record] = {}
+
+    def warm_up(self, tell: Callable[[str], None]) -> None:
+        """Have the kernels of rigid container and shell compiled, where they are not."""
+        if is_compiled("advance"):
+            return
+        tell("compiling the stepping kernels, once after installation: a minute or two")
+        for model in ("rigid", "reduced"):
+            values = {"solver.model": model, "solver.duration_s": 0.01, "output.history_s": 0.01}
+            self.rows([Setup(base="seed_stack", values=values)])
 
     def case(self, setup: Setup) -> Case:
         """The case of a setup, without reading its shipped case again.
