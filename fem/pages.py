@@ -11,6 +11,7 @@ import hashlib
 import json
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from typing import Any
@@ -19,6 +20,15 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 TEMPLATES = "templates"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Signature:
+    """Who answers for a page; may be left to be filled in."""
+
+    author: str = ""
+    checker: str = ""
+    revision: str = ""
 
 
 def render_page(

@@ -42,7 +42,7 @@ def report(
     if (folder / "sweep.json").is_file():
         page = importlib.import_module("fem.report.sweep_page").sweep_report(folder, signature=signature)
     elif (folder / "study.json").is_file():
-        page = importlib.import_module("fem.report.study_page").study_report(folder)
+        page = importlib.import_module("fem.report.study_page").study_report(folder, signature=signature)
     else:
         opened = importlib.import_module("fem.opening").open_run(folder)
         with runs.interruptible(reporter) as stop:

@@ -6,7 +6,6 @@ numbers, the outcome under other assumptions, the elastic modes, the rigid block
 
 import datetime as dt
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -22,7 +21,7 @@ from fem.history import History
 from fem.model import Model, build_model
 from fem.modes import ElasticModes, elastic_mode_table, elastic_modes
 from fem.opening import OpenedRun
-from fem.pages import render_page
+from fem.pages import Signature, render_page
 from fem.report.animation import Film, exaggeration, exaggerations, film_of, player_data
 from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions, compared_rows
 from fem.report.curves import Curve, curves_of
@@ -40,15 +39,6 @@ MODES = 5  #: elastic modes in table and figure: one row of shapes
 COLOURS = 64  #: of the stress scale in the animation
 #: figures beside the animation, in the order of reading; the others stand in their own sections
 MOTION = ("rotation", "base_motion", "slip", "uplift", "forces", "phase_portrait", "energy")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Signature:
-    """Who answers for a report; may be left to be filled in."""
-
-    author: str = ""
-    checker: str = ""
-    revision: str = ""
 
 
 def run_report(

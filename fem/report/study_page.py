@@ -3,14 +3,19 @@
 import json
 from pathlib import Path
 
+from fem.pages import Signature
 from fem.run_folder import FolderError
 from fem.study.page import study_page
 
 RESULT, FIGURES = "study.json", "figures"
 
 
-def study_report(folder: Path) -> str:
+def study_report(folder: Path, *, signature: Signature | None = None) -> str:
     """The page, as the text of an HTML file.
+
+    Args:
+        folder: of the study, finished or not.
+        signature: author, checker, revision.
 
     Raises:
         FolderError: `study.json` is missing, damaged, or not that of a study.
@@ -19,7 +24,7 @@ def study_report(folder: Path) -> str:
     try:
         document = json.loads(path.read_text(encoding="utf-8"))
         svgs = {one.stem: one.read_text(encoding="utf-8") for one in (folder / FIGURES).glob("*.svg")}
-        return study_page(document, svgs)
+        return study_page(document, svgs, signature=signature)
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise FolderError(
             f"{path}: damaged, or not the result of a study ({error}); make it anew with "

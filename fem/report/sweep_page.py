@@ -8,10 +8,9 @@ from pathlib import Path
 from markupsafe import Markup
 
 from fem.case import load_case
-from fem.pages import render_page, svg_element
+from fem.pages import Signature, render_page, svg_element
 from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions
 from fem.report.quantities import number, short
-from fem.report.run_page import Signature
 from fem.report.sweep_data import QUANTITIES, axis_label, counts, failures, map_data
 from fem.run_folder import FolderError
 from fem.sweep.table import SweepTable, open_sweep

@@ -1,9 +1,10 @@
 """The page of a study, and its table for a terminal, from what `study.json` holds."""
 
+import datetime as dt
 from collections.abc import Mapping
 from typing import Any
 
-from fem.pages import render_page, svg_element
+from fem.pages import Signature, render_page, svg_element
 from fem.study.statements import Verdict
 
 MARKS = {
@@ -14,15 +15,22 @@ MARKS = {
 }
 
 
-def study_page(document: Mapping[str, Any], svgs: Mapping[str, str]) -> str:
+def study_page(
+    document: Mapping[str, Any], svgs: Mapping[str, str], *, signature: Signature | None = None
+) -> str:
     """One self-contained HTML page.
 
     Args:
         document: a `study.json`.
         svgs: its figures, by their names.
+        signature: author, checker, revision.
     """
     return render_page(
         "study.html.j2",
+        scripts=["signature.js"],
+        name=f"study_{document['study']}",
+        signature=signature or Signature(),
+        today=dt.date.today().isoformat(),
         study=document,
         marks=MARKS,
         figures={

@@ -220,6 +220,17 @@ def test_what_cannot_be_computed_is_no_verdict_and_ends_as_failed(three, tmp_pat
     assert "no balance" in page and "as read" in page
 
 
+def test_a_study_is_signed_in_its_report(three, tmp_path):
+    pairs, _ = three
+    conduct(tmp_path / "study", Laboratory(), statements=pairs[:1])
+    assert 'name="author" value=""' in (tmp_path / "study" / "study.html").read_text()
+    words = ["--author", 'A. "Author" <a@b>', "--checker", "C. Checker", "--revision", "B"]
+    assert main(["report", str(tmp_path / "study"), *words]) == 0
+    page = (tmp_path / "study" / "report.html").read_text()
+    assert 'value="A. &#34;Author&#34; &lt;a@b&gt;"' in page
+    assert 'value="C. Checker"' in page and 'value="B"' in page
+
+
 def test_a_second_call_tries_only_what_is_not_decided_and_force_tries_all(three, tmp_path):
     pairs, calls = three
     for force in (False, False, True):
@@ -270,7 +281,8 @@ def test_the_command_writes_page_and_document(tmp_path, capsys):
     assert verdicts == {"numbers-one-box": "confirmed within stated bounds", "half-width": "refuted"}
     page = (tmp_path / "s" / "study.html").read_text()
     assert page.count("<article") == 2
-    assert "src=" not in page and "<script" not in page  # nothing to load, nothing that runs
+    assert "src=" not in page  # nothing to load
+    assert page.count("<script") == 1 and 'id="save"' in page  # what keeps author and checker in a copy
 
 
 @pytest.mark.parametrize(
