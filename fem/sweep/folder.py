@@ -15,7 +15,7 @@ from typing import Any
 from fem.case import case_hash
 from fem.case_toml import toml_document
 from fem.folder_lock import LOCK_NAME
-from fem.program import program_identity
+from fem.program import program_identity, versions
 from fem.run_folder import FolderError, to_json, write_atomically
 from fem.sweep.plan import Sweep
 from fem.sweep.table import read_info
@@ -128,11 +128,22 @@ def open_sweep_folder(path: Path, sweep: Sweep, *, force: bool, resume: bool) ->
             )
         if found.get("program") != program_identity()["sources"]:
             raise FolderError(f"{path} holds rows of another version of the program; {REMEDY}")
+        if (other := _other_library(found.get("versions"))) is not None:
+            raise FolderError(f"{path} holds rows computed with another {other}; {REMEDY}")
     except OSError as error:
         raise FolderError(
             f"{path}: cannot be used ({error.strerror}); choose another folder with --out DIR"
         ) from None
     return SweepFolder(path=path, same_band=same_band)
+
+
+def _other_library(recorded: Any) -> str | None:
+    """A library on which numbers depend, of another version than here."""
+    theirs = recorded if isinstance(recorded, dict) else {}
+    for name, mine in versions().items():
+        if theirs.get(name) != mine:
+            return f"version of {name} ({theirs.get(name)}, here {mine})"
+    return None
 
 
 def write_plan(folder: SweepFolder, sweep: Sweep, info: Mapping[str, Any]) -> None:

@@ -50,12 +50,12 @@ from fem.sweep.table import (
     row_columns,
     write_table,
 )
-from fem.sweep.threshold import Change, changes_of, values_to_try
+from fem.sweep.threshold import Change, changes_of, least_width, values_to_try
 
 #: cells that a sweep may have unless it is forced
 MOST_CELLS = 1_000_000
 #: rough CPU time of a simulated second [s], and bytes of a row: to say what a very large sweep would take
-SECONDS_PER_SECOND = {"rigid": 3e-4, "reduced": 6e-3, "full": 6.0}
+SECONDS_PER_SECOND = {"rigid": 3e-4, "reduced": 3e-3, "full": 6.0}
 BYTES_A_ROW = 350
 #: how often `sweep.json` tells how far the sweep has come [s]
 NOTE_S = 10.0
@@ -187,7 +187,10 @@ def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
     if sweep.count <= MOST_CELLS or force:
         return
     model = sweep.base.solver.model
-    seconds = sweep.count * sweep.base.solver.duration_s * SECONDS_PER_SECOND[model] / jobs
+    axes = {axis.key: axis.values for axis in sweep.axes}
+    durations = axes.get("solver.duration_s", (sweep.base.solver.duration_s,))
+    speeds = [SECONDS_PER_SECOND[one] for one in axes.get("solver.model", (model,))]
+    seconds = sweep.count * float(np.mean(durations)) * float(np.mean(speeds)) / jobs
     sizes = " x ".join(str(size) for size in sweep.shape)
     raise CaseError(
         f"{sweep.name}: [axes] make {sizes} = {sweep.count} cells, more than {MOST_CELLS}: about "
@@ -242,11 +245,13 @@ class _Work:
     def run(self, stop: Callable[[], bool]) -> dict[str, Any]:
         began = time.perf_counter()
         found = self._known_rows()
-        write_plan(self.place, self.sweep, self.info)
-        copy_data_files(self.sweep.base, self.place.path)
         if not self.place.same_band:
+            # Told first: a kill must not leave the copies of another band beside the hash of this one.
+            write_info(self.place, self.info | {"band_hash": None})
             for file in (self.place.members, self.place.tried, self.place.thresholds):
                 file.unlink(missing_ok=True)
+        write_plan(self.place, self.sweep, self.info)
+        copy_data_files(self.sweep.base, self.place.path)
         self._compute_rows(found, stop)
         band = None if stop() else self._perturb(found, stop)
         changes = None if stop() else self._refine(found, stop)
@@ -308,6 +313,7 @@ class _Work:
                     found.note(cell, line, row["status"], row["outcome"], row["rotation_ratio"])
                 self._note(found)
             log.sync()
+        self.place.table.unlink(missing_ok=True)  # that of another band: its rows stand in the log now
 
     def _row(self, cell: int, row: Row) -> Iterator[Any]:
         point = self.sweep.point(cell)
@@ -409,6 +415,7 @@ class _Work:
         if wanted is None:
             return None
         values = self.sweep.threshold_axis.values
+        least = least_width(values, wanted.resolution)
         place = self.sweep.axes.index(self.sweep.threshold_axis)
         numbers = np.moveaxis(np.arange(self.sweep.count).reshape(self.sweep.shape), place, -1)
         lines = {
@@ -427,7 +434,9 @@ class _Work:
                 items = [
                     (first, value)
                     for first in self.sweep.by_container(lines)
-                    for value in values_to_try(lines[first], resolution=wanted.resolution, inner=wanted.inner)
+                    for value in values_to_try(
+                        lines[first], resolution=wanted.resolution, inner=wanted.inner, least=least
+                    )
                 ]
                 if not items:
                     break

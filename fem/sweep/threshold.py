@@ -61,25 +61,42 @@ def refine_changes(
         values: of the scan, rising.
         outcomes: at these values.
         judge: the outcomes at further values; called with those of all brackets at once.
-        resolution: width of a bracket over its larger end (in magnitude) at which it is left.
+        resolution: width of a bracket over its larger end (in magnitude) at which it is left; a bracket that
+            holds zero is left at this share of the scan's smallest step or value.
         inner: values tried within a bracket at a time.
 
     Returns:
         The brackets by rising value; several where the outcome changes to and fro.
     """
     known = dict(zip(values, outcomes, strict=True))
-    while tried := values_to_try(known, resolution=resolution, inner=inner):
+    least = least_width(values, resolution)
+    while tried := values_to_try(known, resolution=resolution, inner=inner, least=least):
         known |= dict(zip(tried, judge(tried), strict=True))
     return changes_of(known)
 
 
-def values_to_try(known: Mapping[float, str], *, resolution: float, inner: int) -> list[float]:
-    """Values within the brackets that are still too wide; none if all are narrow enough."""
+def least_width(values: Sequence[float], resolution: float) -> float:
+    """Width at which a bracket around zero is narrow enough, where no share of its value can be."""
+    steps = [high - low for low, high in pairwise(values)]
+    return resolution * min([*steps, *(abs(value) for value in values if value)])
+
+
+def values_to_try(
+    known: Mapping[float, str], *, resolution: float, inner: int, least: float = 0.0
+) -> list[float]:
+    """Values within the brackets that are still too wide; none if all are narrow enough.
+
+    Args:
+        known: outcome by value.
+        resolution, inner: as `refine_changes`.
+        least: width at which any bracket is narrow enough, from `least_width`.
+    """
     return [
         float(value)
         for change in changes_of(known)
-        if change.high - change.low > resolution * max(abs(change.low), abs(change.high))
+        if change.high - change.low > max(resolution * max(abs(change.low), abs(change.high)), least)
         for value in np.linspace(change.low, change.high, inner + 2)[1:-1]
+        if change.low < value < change.high  # not between two neighbouring floating-point numbers
     ]
 
 

@@ -22,6 +22,12 @@ from fem.sweep.table import open_sweep
 ROOT = Path(__file__).parents[2]
 
 
+@pytest.fixture(autouse=True)
+def undrawn(monkeypatch):
+    """Maps take four fifths of the time of so small a sweep, and are tested by themselves."""
+    monkeypatch.setattr("fem.sweep.sweeping.draw_maps", lambda table, folder, **asked: [])
+
+
 @pytest.fixture
 def small(tmp_path):
     path = tmp_path / "small.toml"
@@ -171,6 +177,52 @@ def test_a_million_cells_need_force(tmp_path):
         check_size(load_sweep(path), 2, False)
     assert all(words in str(refused.value) for words in ("4000000 cells", " on 2 cores", "GB", "--force"))
     check_size(load_sweep(path), 2, True)
+
+
+def test_the_time_of_a_huge_sweep_counts_the_models_and_durations_of_its_axes(tmp_path):
+    axes = """"solver.duration_s" = { from = 2.0, to = 6.0, count = 1100 }
+"solver.model" = ["rigid", "full"]
+"""
+    text = SMALL.replace("count = 4", "count = 30").replace("count = 5", "count = 20")
+    path = tmp_path / "huge.toml"
+    path.write_text(text.replace("[derived]", axes + "[derived]"))
+    with pytest.raises(CaseError, match="1320000 cells") as refused:
+        check_size(load_sweep(path), 1, False)
+    # half of the cells are of the full model, which takes 6 s a second simulated: 660000 x 4 s x 6
+    assert "4400 h" in str(refused.value)
+
+
+def test_a_kill_while_the_band_is_changed_leaves_no_copies_of_the_other(small, tmp_path, monkeypatch):
+    folder = tmp_path / "out"
+    run_sweep(small, folder)
+    path = tmp_path / "small.toml"
+    path.write_text(SMALL + "[perturbation]\namplitude_share = 0.1\n", encoding="utf-8")
+    other = load_sweep(path)
+
+    def killed(*arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("fem.sweep.sweeping.write_plan", killed)
+    with pytest.raises(KeyboardInterrupt):
+        run_sweep(other, folder)
+    monkeypatch.undo()
+    run_sweep(other, folder, resume=True)
+    run_sweep(other, tmp_path / "alone")
+    for name in ("table.csv", "members.csv"):
+        mine, alone = ((one / name).read_text().splitlines() for one in (folder, tmp_path / "alone"))
+        assert [line.split(",")[1:3] for line in mine] == [line.split(",")[1:3] for line in alone]
+    assert rows_without_wall(folder) == rows_without_wall(tmp_path / "alone")
+
+
+def test_rows_of_another_library_are_not_gone_on_with(small, tmp_path):
+    folder = tmp_path / "out"
+    info = run_sweep(small, folder)
+    versions = info["versions"] | {"numpy": "1.0"}
+    (folder / "sweep.json").write_text(
+        json.dumps(info | {"status": "running", "versions": versions}, default=list)
+    )
+    with pytest.raises(FolderError, match=r"another version of numpy \(1.0, here .*--force"):
+        run_sweep(small, folder, resume=True)
 
 
 def test_shipped_sweeps_are_listed_and_written_out(tmp_path, monkeypatch, capsys):

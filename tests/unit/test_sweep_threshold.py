@@ -34,6 +34,26 @@ def test_an_island_inside_a_bracket_is_kept():
     assert [c.value for c in changes] == pytest.approx([1.2, 1.45, 1.55], abs=0.02)
 
 
+@pytest.mark.parametrize("last_standing", [0.0, -1e-9])
+def test_a_change_at_zero_is_closed_in_on_and_left(last_standing):
+    # No share of a value is narrow enough there: the scan's step tells.
+    def judge(values):
+        return ["overturned" if v > last_standing else "standing" for v in values]
+
+    scan = [-0.2, -0.1, 0.0, 0.1, 0.2]
+    (change,) = refine_changes(scan, judge(scan), judge, resolution=0.01)
+    assert change.low <= last_standing <= change.high
+    assert change.high - change.low <= 0.001
+
+
+def test_a_resolution_finer_than_numbers_ends_between_two_neighbours():
+    def judge(values):
+        return ["overturned" if v > np.pi else "standing" for v in values]
+
+    (change,) = refine_changes(SCAN, judge(SCAN), judge, resolution=1e-300)
+    assert change.high == np.nextafter(change.low, np.inf)
+
+
 def test_without_a_change_nothing_is_tried():
     def judge(values):
         raise AssertionError(values)
