@@ -5,12 +5,14 @@ import math
 import numpy as np
 
 from fem.history import FloatArray, History
+from fem.static_checks import period_eq3
 from fem.study.drawings import Line, drawing
 from fem.study.laboratory import Laboratory, Record
-from fem.study.setups import FOR_MAPS, PLATEAU, PLATEAU_PEAK, STACK, harmonic
+from fem.study.setups import FOR_MAPS, GRAVITY, HEIGHT, PLATEAU, PLATEAU_PEAK, STACK, WIDTH, harmonic
 from fem.study.statements import Band, Comparison, Finding, Member, Setup, Statement, Table
 
-OMEGA_EQ_3 = 2.0 * math.pi / 3.336  #: of the stack with g = 9.81 [rad/s]
+#: of the stack with g = 9.81 [rad/s]
+OMEGA_EQ_3 = 2.0 * math.pi / period_eq3(radius=0.5 * math.hypot(WIDTH, HEIGHT), gravity=GRAVITY)
 PEAKS = (2.4, 2.9, 3.4, 4.0)  #: m/s2
 RATIOS = (1.05, 1.1, 1.2, 1.41, 1.6, 1.8, 2.0, 2.5, 3.0, 3.68, 4.5, 5.5, 7.0)
 IMPACT = 0.05  #: s, over which a horizontal load is averaged where an impact is not to count
@@ -19,7 +21,7 @@ TOLERANCE = 0.01  #: a factor that near to 1 is 1
 
 def mass_centre(laboratory: Laboratory) -> Finding:
     """Displacement amplitude of the mass centre over that of the floor, over eta."""
-    curves, comparisons, setups, counted = [], [], [], 0
+    curves, comparisons, setups, counted, counted_near = [], [], [], 0, 0
     for peak in PEAKS:
         found = []
         for ratio in RATIOS:
@@ -32,10 +34,11 @@ def mass_centre(laboratory: Laboratory) -> Finding:
                 },
                 f"stack, {peak:g} m/s² at eta = {ratio:g}",
             )
-            record = laboratory.record(setup)
+            record = laboratory.attempt(setup)
             factor = _factor(record) if record.status == "completed" else math.nan
             found.append(factor)
             counted += record.status == "overturned"
+            counted_near += record.status == "overturned" and ratio <= math.sqrt(2.0)
             if ratio in (1.2, 2.0):
                 setups.append(setup)
         values = np.array(found)
@@ -63,10 +66,10 @@ def mass_centre(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         bounds="eta above sqrt 2, among the cases that stand",
         reading=(
-            "eta is taken with the paper's Eq. 3. A rocking mass centre is left behind by the floor. Near "
-            f"eta = 1 most of the motions overturn the stack ({counted} of {len(PEAKS) * len(RATIOS)} runs "
-            "do), and a displacement factor says nothing of that; for a linear oscillator DAF < 1 needs "
-            "eta > sqrt 2, not 1. A container that only sticks moves with the floor: DAF = 1, not less."
+            f"eta is taken with the paper's Eq. 3. {counted} of {len(PEAKS) * len(RATIOS)} runs overturn, of them "
+            f"{counted_near} of {len(PEAKS) * sum(one <= math.sqrt(2.0) for one in RATIOS)} with eta up to sqrt 2, and "
+            "a displacement factor says nothing of that. For a linear oscillator DAF < 1 needs eta > sqrt 2, not 1. A "
+            "container that only sticks moves with the floor: DAF = 1, not less."
         ),
         setups=tuple(setups),
         drawings=(
@@ -95,7 +98,7 @@ def _band_of_factors(laboratory: Laboratory) -> Band:
     """DAF at the plateau value, eta = 3.68."""
     members = []
     for setup in _at_plateau(laboratory):
-        record = laboratory.record(setup)
+        record = laboratory.attempt(setup)
         members.append(_member(setup, record, _factor(record) if record.status == "completed" else None))
     return Band(
         quantity="DAF of the mass centre at the plateau value, eta = 3.68",
@@ -111,7 +114,7 @@ def no_amplification(laboratory: Laboratory) -> Finding:
     comparisons, table = [], []
     members, setups = [], []
     for setup in _at_plateau(laboratory):
-        record = laboratory.record(setup)
+        record = laboratory.attempt(setup)
         if record.status == "failed":
             members.append(_member(setup, record, None))
             continue
@@ -139,12 +142,13 @@ def no_amplification(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         bounds="a rigid body outside impacts: 95 % of the time",
         reading=(
-            "Between impacts a rigid rocking container is pushed with less than the plateau load: it can "
-            "take no more than g tan(beta - phi). An impact is another matter: its horizontal impulse, "
+            f"The rigid container is pushed with up to {comparisons[0].measured:.2f} of the plateau load for 95 % of "
+            "the time. An impact is "
+            "another matter: its horizontal impulse, "
             f"spread over 50 ms, is up to {max(row[2] for row in table):.2f} of the plateau load, and its "
             f"peak {max(row[1] for row in table):.0f} times that, a number that belongs to the contact and "
-            "not to the container. A shell on a stiff floor rings on after it, up to "
-            f"{max(row[3] for row in shell):.2f} of the plateau load for one twentieth of the time."
+            "not to the container. A shell rings on after it: one twentieth of the time beyond up to "
+            f"{max(row[3] for row in shell):.2f} of the plateau load."
         ),
         setups=tuple(setups[:2]),
         tables=(
@@ -227,7 +231,7 @@ STATEMENTS = (
             "floor's."
         ),
         examine=mass_centre,
-        seconds=15.0,
+        seconds=11.0,
     ),
     Statement(
         name="no-amplification",
@@ -235,6 +239,5 @@ STATEMENTS = (
         quote="by dynamic effects, there is no amplification that leads to higher horizontal loads",
         tried="Horizontal force between floor and stack under the plateau value, over mass times 4.0 m/s².",
         examine=no_amplification,
-        seconds=20.0,
     ),
 )

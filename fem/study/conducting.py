@@ -99,6 +99,7 @@ def _tried(statement: Statement, laboratory: Laboratory, folder: Path, program: 
         "tried": statement.tried,
         "program": program,
     }
+    laboratory.failed.clear()
     try:
         finding = statement.examine(laboratory)
     except (ArithmeticError, ValueError, RuntimeError, LookupError, TypeError) as error:
@@ -106,7 +107,7 @@ def _tried(statement: Statement, laboratory: Laboratory, folder: Path, program: 
     else:
         for one in finding.drawings:
             write_atomically(folder / FIGURES / f"{one.name}.svg", one.svg)
-        entry |= finding.to_dict()
+        entry |= finding.to_dict() | {"failed_runs": len(laboratory.failed)}
     return entry | {"seconds": time.perf_counter() - began}
 
 

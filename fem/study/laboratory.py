@@ -1,7 +1,8 @@
 """Where statements are tried: runs without files, each computed once, on all cores.
 
 Rows hold the scalars of a verdict; a history is kept where a statement needs one. A run that failed has no
-outcome and is counted nowhere as standing or fallen.
+outcome and is counted nowhere as standing or fallen: where a number of it is needed, the statement is not decided;
+where runs are counted, it is left out, and the page says how many were.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -26,6 +27,10 @@ RIGID = {"solver.model": "rigid"}
 PENALTY_FACTORS = (1.0 / 3.0, 1.0, 3.0)
 DAMPING_RATIOS = (0.5, 2.0)
 SUPPORTS = ("feet", "flat")
+
+
+class FailedRunError(RuntimeError):
+    """A run whose figures a statement needs has failed."""
 
 
 class InterruptedStudyError(Exception):
@@ -71,6 +76,7 @@ class Laboratory:
         self._makers: dict[str, CaseMaker] = {}
         self._rows: dict[Any, Row] = {}
         self._records: dict[Any, Record] = {}
+        self.failed: set[Any] = set()  #: keys of the setups that failed, of those asked for; to be cleared
 
     def warm_up(self, tell: Callable[[str], None]) -> None:
         """Have the kernels of rigid container and shell compiled and loaded before a statement's clock starts."""
@@ -91,8 +97,8 @@ class Laboratory:
             self._makers[setup.base] = CaseMaker(Setup(base=setup.base).case)
         return self._makers[setup.base](setup.values)
 
-    def rows(self, setups: Sequence[Setup]) -> list[Row]:
-        """Verdict scalars of each setup, in order; `status` says how each ended.
+    def attempts(self, setups: Sequence[Setup]) -> list[Row]:
+        """Verdict scalars of each setup, in order; `status` says how each ended, `outcome` is None where it failed.
 
         Raises:
             CaseError: bad input.
@@ -107,10 +113,25 @@ class Laboratory:
             if self._stop():
                 raise InterruptedStudyError("the study was stopped; what is finished is kept")
             self._rows.update(zip(missing, found, strict=True))
-        return [self._rows[setup.key] for setup in setups]
+        rows = [self._rows[setup.key] for setup in setups]
+        self.failed |= {s.key for s, row in zip(setups, rows, strict=True) if row["status"] == "failed"}
+        return rows
 
-    def record(self, setup: Setup) -> Record:
-        """The run of a setup with its history.
+    def rows(self, setups: Sequence[Setup]) -> list[Row]:
+        """Verdict scalars of each setup, in order, of runs that all came to their end.
+
+        Raises:
+            FailedRunError: one failed.
+            CaseError, InterruptedStudyError: as `attempts`.
+        """
+        rows = self.attempts(setups)
+        for setup, row in zip(setups, rows, strict=True):
+            if row["status"] == "failed":
+                raise FailedRunError(f"{setup.what or setup.command}: {row['reason']}")
+        return rows
+
+    def attempt(self, setup: Setup) -> Record:
+        """The run of a setup with its history, failed or not.
 
         Raises:
             CaseError: bad input.
@@ -123,7 +144,22 @@ class Laboratory:
             if ending.status == "interrupted":
                 raise InterruptedStudyError("the study was stopped; what is finished is kept")
             self._records[setup.key] = Record(model=model, history=recorder.history(), status=ending.status)
-        return self._records[setup.key]
+        record = self._records[setup.key]
+        if record.status == "failed":
+            self.failed.add(setup.key)
+        return record
+
+    def record(self, setup: Setup) -> Record:
+        """The run of a setup with its history, come to its end.
+
+        Raises:
+            FailedRunError: it failed.
+            CaseError, InterruptedStudyError: as `attempt`.
+        """
+        record = self.attempt(setup)
+        if record.status == "failed":
+            raise FailedRunError(f"{setup.what or setup.command}: the run failed")
+        return record
 
     def model(self, setup: Setup) -> Model:
         """What is stepped, at t = 0."""
@@ -172,7 +208,7 @@ class Laboratory:
         """
         members = self.variants(setup.but(values or {}))
         found = []
-        for member, row in zip(members, self.rows(members), strict=True):
+        for member, row in zip(members, self.attempts(members), strict=True):
             stands = row["status"] != "failed"
             found.append(
                 Member(

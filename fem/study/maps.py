@@ -19,8 +19,8 @@ from fem.study.statements import Setup
 from fem.sweep.band import OVERTURNED, STANDING, kind_of
 from fem.sweep.perturbation import Perturbation
 
-FREQUENCIES = tuple(float(f"{w:.4g}") for w in np.linspace(1.5, 12.0, 12))  #: [rad/s]
-PEAKS = tuple(float(f"{a:.4g}") for a in np.geomspace(1.8, 12.0, 12))  #: [m/s2]
+FREQUENCIES = tuple(float(f"{w:.4g}") for w in np.linspace(1.5, 12.0, 20))  #: [rad/s]
+PEAKS = tuple(float(f"{a:.4g}") for a in np.geomspace(1.8, 12.0, 20))  #: [m/s2]
 DURATION = 15.0  #: s
 FALLEN = "overturned"
 PERTURBATION = Perturbation(contact_damping_ratios=[0.5])
@@ -48,8 +48,13 @@ class Cell:
 
     @property
     def fell(self) -> bool:
-        """Whether it overturned; False for a failed run, which `computed` tells apart."""
+        """Whether it overturned."""
         return bool(self.row["outcome"] == FALLEN)
+
+    @property
+    def stood(self) -> bool:
+        """Whether it came to its end and stands."""
+        return self.computed and not self.fell
 
     @property
     def tilted(self) -> bool:
@@ -57,7 +62,9 @@ class Cell:
         return self.row["first_uplift_s"] is not None
 
 
-def stack_setup(peak: float, angular_frequency: float, values: Mapping[str, Any] | None = None) -> Setup:
+def stack_setup(
+    peak: float, angular_frequency: float, values: Mapping[str, Any] | None = None, what: str = ""
+) -> Setup:
     """The stack under a harmonic floor, rigid unless `values` say otherwise."""
     return STACK.but(
         {
@@ -66,7 +73,7 @@ def stack_setup(peak: float, angular_frequency: float, values: Mapping[str, Any]
             **harmonic(peak, angular_frequency),
             **(values or {}),
         },
-        f"stack, {peak:g} m/s² at {angular_frequency:g} rad/s",
+        what or f"stack, {peak:g} m/s² at {angular_frequency:g} rad/s",
     )
 
 
@@ -87,7 +94,7 @@ def stack_map(
     """
     places = [(peak, frequency) for peak in peaks for frequency in frequencies]
     setups = [stack_setup(peak, frequency, values) for peak, frequency in places]
-    rows = laboratory.rows(setups)
+    rows = laboratory.attempts(setups)
     sure = [True] * len(setups)
     if perturbed:
         sure = mark_sure(laboratory, setups, rows, len(frequencies))
@@ -108,10 +115,10 @@ def mark_sure(laboratory: Laboratory, setups: Sequence[Setup], rows: Sequence[Ro
 def sure_ones(laboratory: Laboratory, setups: Sequence[Setup]) -> list[bool]:
     """For each setup, whether all its perturbed copies stand, or all fall, as it does; never where one failed."""
     copies = [perturbations(setup) for setup in setups]
-    laboratory.rows([copy for group in copies for copy in group])  # all in one batch
+    laboratory.attempts([copy for group in copies for copy in group])  # all in one batch
     found = []
     for setup, group in zip(setups, copies, strict=True):
-        rows = laboratory.rows([setup, *group])
+        rows = laboratory.attempts([setup, *group])
         kinds = {kind_of(row["status"], row["outcome"]) for row in rows}
         found.append(kinds in ({STANDING}, {OVERTURNED}))
     return found
@@ -132,17 +139,16 @@ def perturbations(setup: Setup) -> list[Setup]:
     return [setup.but(change) for change in PERTURBATION.members(setup.case)]
 
 
-def grid(cells: Sequence[Cell], frequencies: Sequence[float] = FREQUENCIES) -> list[list[Cell]]:
-    """Cells of a map as rows of rising peak."""
-    width = len(frequencies)
+def grid(cells: Sequence[Cell], width: int = len(FREQUENCIES)) -> list[list[Cell]]:
+    """Cells of a map, `width` to a row, as rows."""
     return [list(cells[first : first + width]) for first in range(0, len(cells), width)]
 
 
-def outcomes(cells: Sequence[Cell], frequencies: Sequence[float] = FREQUENCIES) -> list[list[str]]:
+def outcomes(cells: Sequence[Cell], width: int = len(FREQUENCIES)) -> list[list[str]]:
     """Outcome of each cell, "failed" where there is none."""
-    return [[cell.row["outcome"] or "failed" for cell in row] for row in grid(cells, frequencies)]
+    return [[cell.row["outcome"] or "failed" for cell in row] for row in grid(cells, width)]
 
 
-def doubts(cells: Sequence[Cell], frequencies: Sequence[float] = FREQUENCIES) -> list[list[bool]]:
+def doubts(cells: Sequence[Cell], width: int = len(FREQUENCIES)) -> list[list[bool]]:
     """Which cells are not sure."""
-    return [[not cell.sure for cell in row] for row in grid(cells, frequencies)]
+    return [[not cell.sure for cell in row] for row in grid(cells, width)]

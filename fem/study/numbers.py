@@ -5,9 +5,10 @@ ten per cent.
 """
 
 import math
+from collections.abc import Sequence
 
 from fem.static_checks import StaticChecks
-from fem.study.laboratory import RIGID, Laboratory
+from fem.study.laboratory import RIGID, Laboratory, Row
 from fem.study.setups import PLATEAU
 from fem.study.statements import Comparison, Finding, Statement, Table
 from fem.verification.statics import BOX_HEIGHT, BOX_MASS, WIDTH, seed_checks
@@ -30,6 +31,10 @@ def _just_sticks(checks: StaticChecks, gravity: float, *, inside: bool) -> Compa
         unit="-",
         inside=inside,
     )
+
+
+def _following(printed: Sequence[Comparison]) -> str:
+    return f"{sum(one.holds for one in printed)} of {len(printed)} printed numbers follow"
 
 
 def _side_by_side(boxes: int) -> Table:
@@ -73,24 +78,26 @@ def one_box(laboratory: Laboratory) -> Finding:
     """Eqs. (14) to (19), and the density."""
     checks, honest = (seed_checks(boxes=1, gravity=gravity) for gravity in (10.0, 9.81))
     density = BOX_MASS / (WIDTH * WIDTH * BOX_HEIGHT)
+    printed = (
+        _printed("virtual density", density, 2066.0, "kg/m³", 0.5),
+        _printed("Eq. 14, stiction limit", checks.sliding_limit_static / 1e3, 10.0, "kN", 0.5),
+        _printed("Eq. 15, restoring moment", checks.restoring_moment / 1e3, 13.8, "kNm", 0.05 + 1e-9),
+        _printed("Eq. 16, sliding limit", checks.sliding_limit_kinetic / 1e3, 5.0, "kN", 0.5),
+        _printed("Eq. 17, plateau base shear", checks.code.sliding.demand / 1e3, 10.0, "kN", 0.5),
+        _printed("Eq. 18, tilting moment", checks.code.overturning.demand / 1e3, 5.0, "kNm", 0.5),
+        _printed("Eq. 19, period", checks.period_eq3, 1.98, "s", 0.005),
+    )
     return Finding(
         comparisons=(
-            _printed("virtual density", density, 2066.0, "kg/m³", 0.5),
-            _printed("Eq. 14, stiction limit", checks.sliding_limit_static / 1e3, 10.0, "kN", 0.5),
-            _printed("Eq. 15, restoring moment", checks.restoring_moment / 1e3, 13.8, "kNm", 0.05 + 1e-9),
-            _printed("Eq. 16, sliding limit", checks.sliding_limit_kinetic / 1e3, 5.0, "kN", 0.5),
-            _printed("Eq. 17, plateau base shear", checks.code.sliding.demand / 1e3, 10.0, "kN", 0.5),
-            _printed("Eq. 18, tilting moment", checks.code.overturning.demand / 1e3, 5.0, "kNm", 0.5),
-            _printed("Eq. 19, period", checks.period_eq3, 1.98, "s", 0.005),
+            *printed,
             _just_sticks(checks, 10.0, inside=True),
             _just_sticks(honest, 9.81, inside=False),
         ),
         bounds="g = 10 m/s²",
         reading=(
-            "Every printed number follows with g = 10 m/s². With 9.81 the base shear is "
-            f"{honest.code.sliding.utilisation:.3f} of the stiction limit, so the paper's own static rule "
-            "says "
-            '"slides" where the paper says "just sticks": the verdict hangs on the rounding of g.'
+            f"{_following(printed)} with g = 10 m/s². The base shear is {checks.code.sliding.utilisation:.3f} of the "
+            f"stiction limit with it and {honest.code.sliding.utilisation:.3f} with 9.81, where more than 1 is "
+            '"slides" by the paper\'s own static rule, not "just sticks".'
         ),
         tables=(_side_by_side(1),),
     )
@@ -99,24 +106,31 @@ def one_box(laboratory: Laboratory) -> Finding:
 def four_boxes(laboratory: Laboratory) -> Finding:
     """The numbers of the stack."""
     checks, honest = (seed_checks(boxes=4, gravity=gravity) for gravity in (10.0, 9.81))
+    printed = (
+        _printed("stiction limit", checks.sliding_limit_static / 1e3, 40.0, "kN", 0.5),
+        _printed("restoring moment", checks.restoring_moment / 1e3, 55.0, "kNm", 0.05),
+        _printed("plateau base shear", checks.code.sliding.demand / 1e3, 40.0, "kN", 0.5),
+        _printed("tilting moment", checks.code.overturning.demand / 1e3, 80.0, "kNm", 0.5),
+        _printed("period", checks.period_eq3, 3.30, "s", 0.005),
+    )
     return Finding(
         comparisons=(
-            _printed("stiction limit", checks.sliding_limit_static / 1e3, 40.0, "kN", 0.5),
-            _printed("restoring moment", checks.restoring_moment / 1e3, 55.0, "kNm", 0.05),
-            _printed("plateau base shear", checks.code.sliding.demand / 1e3, 40.0, "kN", 0.5),
-            _printed("tilting moment", checks.code.overturning.demand / 1e3, 80.0, "kNm", 0.5),
-            _printed("period", checks.period_eq3, 3.30, "s", 0.005),
+            *printed,
             _just_sticks(checks, 10.0, inside=True),
             _just_sticks(honest, 9.81, inside=False),
         ),
         bounds="g = 10 m/s²",
         reading=(
-            "Every printed number follows with g = 10 m/s²; with 9.81 the static rule says that the stack "
-            f"slides ({honest.code.sliding.utilisation:.3f}) as well as tilts "
-            f"({honest.code.overturning.utilisation:.3f})."
+            f"{_following(printed)} with g = 10 m/s². With 9.81 the utilisation of stiction is "
+            f"{honest.code.sliding.utilisation:.3f} and that of tilting {honest.code.overturning.utilisation:.3f}; "
+            "beyond 1 the static rule says that the stack does it."
         ),
         tables=(_side_by_side(4),),
     )
+
+
+def _ratios(rows: Sequence[Row]) -> str:
+    return ", ".join(f"{row['rotation_ratio']:.2g}" for row in rows)
 
 
 def half_width(laboratory: Laboratory) -> Finding:
@@ -124,7 +138,7 @@ def half_width(laboratory: Laboratory) -> Finding:
     half = 0.5 * WIDTH * 1e3
     return Finding(
         comparisons=(_printed("a/2 of a container 1.100 mm wide", half, 600.0, "mm", 5.0),),
-        reading=f"a/2 is {half:.0f} mm; 600 mm is a slip of the pen, of no consequence for 50 mm.",
+        reading=f"a/2 is {half:.0f} mm; in print it is {600.0 / half - 1.0:.0%} more.",
     )
 
 
@@ -173,9 +187,9 @@ def design_amplitude(laboratory: Laboratory) -> Finding:
         reading=(
             f"EN 1998-1:2004, Eq. 3.12, d_g = 0.025 a_g S T_C T_D, gives {long:.0f} mm with the paper's "
             f"T_C = 0.8 s (ground D, type 1) and {short:.0f} mm with the row that its S = 1.5 belongs to "
-            "(ground C, type 2, T_C = 0.25 s): S and T_C are of two different grounds. 50 mm lies between "
-            "them. At 2.4 m/s² the stack rests with either; at 4.0 m/s² the longer the amplitude the more "
-            "it rocks, as the table shows."
+            "(ground C, type 2, T_C = 0.25 s): S and T_C are of two different grounds. With the smaller, the "
+            "paper's and the larger amplitude the stack turns to "
+            f"{_ratios(rows[::2])} of beta at 2.4 m/s² and to {_ratios(rows[1::2])} at 4.0 m/s²."
         ),
         setups=tuple(setups),
         tables=(
@@ -188,7 +202,6 @@ def design_amplitude(laboratory: Laboratory) -> Finding:
                 ),
             ),
         ),
-        failed_runs=sum(row["status"] == "failed" for row in rows),
     )
 
 
@@ -223,6 +236,5 @@ STATEMENTS = (
             "of both grounds at the stated and at the plateau acceleration."
         ),
         examine=design_amplitude,
-        seconds=2.0,
     ),
 )

@@ -1,6 +1,7 @@
 """Sections 5.1 to 5.3: the limit conditions of sticking, sliding and tilting, Eqs. (7) to (13), one by one."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -8,10 +9,19 @@ from contact.closed_forms_rocking import holding_acceleration
 from fem.rigid_check import block_of
 from fem.study.drawings import Line, drawing
 from fem.study.laboratory import RIGID, Laboratory
-from fem.study.setups import ANGULAR_FREQUENCY, BOX, FOR_MAPS, STACK, harmonic
+from fem.study.setups import (
+    ANGULAR_FREQUENCY,
+    BOX,
+    FOR_MAPS,
+    GRAVITY,
+    HALF_WIDTH,
+    NO_SLIDING,
+    STACK,
+    WIDTH,
+    harmonic,
+)
 from fem.study.statements import Comparison, Finding, Setup, Statement, Table
 
-NO_SLIDING = {"contact.mu_static": 1.0, "contact.mu_kinetic": 1.0}
 #: a scan around a limit: peaks over the limit, and how near the onset must lie
 AROUND = tuple(round(0.95 + 0.005 * n, 4) for n in range(21))
 NEAR = 0.01
@@ -22,7 +32,7 @@ TURNING = 0.2  #: s, in which a released container shows where it goes
 
 def stiction_limit(laboratory: Laboratory) -> Finding:
     """Eq. (8): from which floor acceleration on a box slides."""
-    gravity, comparisons, setups = 9.81, [], []
+    comparisons, setups = [], []
     for friction in (0.2, 0.3, 0.4, 0.5):
         scan = [
             BOX.but(
@@ -30,7 +40,7 @@ def stiction_limit(laboratory: Laboratory) -> Finding:
                     **FOR_MAPS,
                     "contact.mu_static": friction,
                     "contact.mu_kinetic": 0.5 * friction,
-                    **harmonic(share * friction * gravity, ANGULAR_FREQUENCY),
+                    **harmonic(share * friction * GRAVITY, ANGULAR_FREQUENCY),
                 },
                 f"box, mu_s = {friction:g}, peak {share:g} of mu_s g",
             )
@@ -41,10 +51,13 @@ def stiction_limit(laboratory: Laboratory) -> Finding:
         setups.append(scan[slides.index(True)] if True in slides else scan[-1])
     return Finding(
         comparisons=tuple(comparisons),
-        reading="The box begins to slide within a scan step (0.5 %) of mu_s g, once it is exceeded.",
+        reading=(
+            f"In a scan by {100.0 * (AROUND[1] - AROUND[0]):.1f} % the box begins to slide at {_between(comparisons)} "
+            "of mu_s g."
+        ),
         setups=tuple(setups),
         band=laboratory.band(
-            BOX.but({**harmonic(0.98 * 0.4 * gravity, ANGULAR_FREQUENCY), "solver.duration_s": 5.0}),
+            BOX.but({**harmonic(0.98 * 0.4 * GRAVITY, ANGULAR_FREQUENCY), "solver.duration_s": 5.0}),
             quantity="slip at 0.98 mu_s g",
             unit="m",
             value=lambda row: row["max_slip_m"],
@@ -83,25 +96,22 @@ def kinetic_limit(laboratory: Laboratory) -> Finding:
             ),
             Comparison(
                 what="largest acceleration of the sliding box over the floor's",
-                measured=while_sliding * 9.81 / floor,
+                measured=while_sliding * GRAVITY / floor,
                 relation="<=",
                 limit=1.0,
                 unit="-",
             ),
         ),
         reading=(
-            f"While it slides the box is accelerated by mu_k g = {0.2 * 9.81:.2f} m/s² and no more, "
-            f"although the floor reaches {floor:.1f} m/s². The acceleration in Eq. 11 is the body's, that "
-            "in Eq. 8 the floor's; the paper writes both a(t)."
+            f"While it slides the box is accelerated by up to {while_sliding * GRAVITY:.2f} m/s², against mu_k g = "
+            f"{0.2 * GRAVITY:.2f} m/s² and {floor:.1f} m/s² of the floor. The acceleration in Eq. 11 is the body's, "
+            "that in Eq. 8 the floor's; the paper writes both a(t)."
         ),
         setups=(setup,),
         drawings=(
             drawing(
                 "kinetic-limit",
-                (
-                    "Shear force over weight of the sliding box: it never exceeds mu_s and is mu_k while "
-                    "sliding."
-                ),
+                "Shear force over weight of the box, and what sticking would need.",
                 [
                     Line(
                         x=history["time_s"][window],
@@ -110,7 +120,7 @@ def kinetic_limit(laboratory: Laboratory) -> Finding:
                     ),
                     Line(
                         x=history["time_s"][window],
-                        y=-history["base_acceleration_m_s2"][window] / 9.81,
+                        y=-history["base_acceleration_m_s2"][window] / GRAVITY,
                         label="what sticking would need",
                         style="--",
                     ),
@@ -127,7 +137,7 @@ def uplift_limit(laboratory: Laboratory) -> Finding:
     """Eqs. (9) and (10): from which floor acceleration on a stack turns about a corner."""
     comparisons, setups = [], []
     for boxes, kind in ((2, "corners"), (3, "corners"), (4, "corners"), (4, "flat")):
-        limit = 9.81 * 1.1 / boxes
+        limit = GRAVITY * WIDTH / boxes
         values = {"container.boxes": boxes, "support.kind": kind, "solver.duration_s": 5.0}
         shares = AROUND_FLAT if kind == "flat" else AROUND
         scan = [
@@ -143,7 +153,8 @@ def uplift_limit(laboratory: Laboratory) -> Finding:
         setups.append(scan[tilts.index(True)] if True in tilts else scan[-1])
     values = {**FOR_MAPS, **NO_SLIDING, "support.kind": "flat", "solver.duration_s": 5.0}
     opening = [
-        STACK.but({**values, **harmonic(share * 9.81 * 1.1 / 12.0, ANGULAR_FREQUENCY)}) for share in AROUND
+        STACK.but({**values, **harmonic(share * GRAVITY * WIDTH / 12.0, ANGULAR_FREQUENCY)})
+        for share in AROUND
     ]
     opens = [row["first_opening_s"] is not None for row in laboratory.rows(opening)]
     third = _onset("first opening of an edge over g a/(3 c), 4 boxes on flat", opens)
@@ -151,16 +162,17 @@ def uplift_limit(laboratory: Laboratory) -> Finding:
         comparisons=(*comparisons, third),
         bounds="a base that stands on its two corners",
         reading=(
-            "On corners the stack begins to turn within a scan step of g a/c. A flat base on an elastic "
-            "bed opens at its edge at a third of that already, which is no sign of tilting, and turns "
-            f"about a narrow strip at {comparisons[-1].measured:.2f} g a/c."
+            f"On corners the stack begins to turn at {_between(comparisons[:-1])} of g a/c. A flat base on an "
+            f"elastic bed opens at its edge at {third.measured:.2f} of g a/(3 c) already, as a linear pressure "
+            "leaves the middle third, which is no sign of tilting; it turns, about a narrow strip, at "
+            f"{comparisons[-1].measured:.2f} g a/c."
         ),
         setups=tuple(setups),
         band=laboratory.band(
             STACK.but(
                 {
                     **NO_SLIDING,
-                    **harmonic(0.97 * 9.81 * 1.1 / 4.0, ANGULAR_FREQUENCY),
+                    **harmonic(0.97 * GRAVITY * WIDTH / 4.0, ANGULAR_FREQUENCY),
                     "solver.duration_s": 5.0,
                 }
             ),
@@ -197,10 +209,9 @@ def centre_or_base(laboratory: Laboratory) -> Finding:
     return Finding(
         comparisons=tuple(comparisons),
         reading=(
-            "As long as the container sticks, its mean acceleration is the floor's, within "
-            f"{100.0 * worst:.2g} %; whether the floor or the mass centre is accelerated makes no "
-            "difference, and the quasi-static limits may be read with the floor's acceleration. The "
-            "sentence would need a difference that mattered."
+            "As long as the container sticks, its mean acceleration is the floor's within "
+            f"{100.0 * worst:.2g} %. By so much can it matter to the quasi-static limits whether the floor or the "
+            "mass centre is accelerated; the sentence needs a difference that counts, here 5 %."
         ),
         setups=tuple(setups),
     )
@@ -225,8 +236,9 @@ def moments_of_a_tilted_body(laboratory: Laboratory) -> Finding:
     return Finding(
         comparisons=tuple(comparisons),
         reading=(
-            "With the moments of Eqs. 12 and 13 in balance, a(t) = g cot(phi + alpha), the stack neither "
-            "falls nor returns; two per cent beside it, it does one or the other, at every rotation tried."
+            "The moments of Eqs. 12 and 13 balance at a(t) = g cot(phi + alpha). Two per cent below it the stack "
+            f"comes back from {sum(back < 0.0 for _, _, back, _ in rows)} of {len(rows)} rotations, two per cent "
+            f"above it falls from {sum(away > 0.0 for *_, away in rows)}."
         ),
         setups=tuple(setups),
         tables=(
@@ -249,10 +261,10 @@ def sign_beyond_balance(laboratory: Laboratory) -> Finding:
     block = block_of(laboratory.model(STACK.but(RIGID)))
     angle = block.slenderness_angle
     alpha = 0.5 * math.pi - angle
-    weight = 98100.0
+    weight = 98100.0  # N
 
     def restoring(rotation: float) -> float:  # Eq. (13) as printed
-        return -weight * 0.55 / math.cos(alpha) * math.cos(rotation + alpha)
+        return -weight * HALF_WIDTH / math.cos(alpha) * math.cos(rotation + alpha)
 
     setups: list[Setup] = []
     falls, returns = (_turn(laboratory, setups, factor * angle, 0.0) for factor in (1.02, 0.98))
@@ -274,9 +286,10 @@ def sign_beyond_balance(laboratory: Laboratory) -> Finding:
             ),
         ),
         reading=(
-            "As printed, Eq. 13 is negative (restoring) below beta and positive (overturning) above: the "
-            f"remark has it the wrong way round. Released at rest, the stack turns by {1e3 * falls:+.2f} "
-            f"mrad in {TURNING} s from 1.02 beta and by {1e3 * returns:+.2f} mrad from 0.98 beta."
+            f"As printed, Eq. 13 is {restoring(0.98 * angle) / 1e3:+.2f} kNm at 0.98 beta and "
+            f"{restoring(1.02 * angle) / 1e3:+.2f} kNm at 1.02 beta; a moment that restores is negative. Released at "
+            f"rest, the stack turns by {1e3 * returns:+.2f} mrad in {TURNING} s from 0.98 beta and by "
+            f"{1e3 * falls:+.2f} mrad from 1.02 beta."
         ),
         setups=tuple(setups),
     )
@@ -313,6 +326,12 @@ def _turn(laboratory: Laboratory, setups: list[Setup], rotation: float, accelera
     return after - float(history["rotation_rad"][0])
 
 
+def _between(onsets: Sequence[Comparison]) -> str:
+    """The smallest and the largest of some onsets."""
+    values = [one.measured for one in onsets]
+    return f"{min(values):.4f} to {max(values):.4f}"
+
+
 def _sign(what: str, measured: float, sign: float) -> Comparison:
     return Comparison(
         what=what, measured=1e3 * measured, relation=">=" if sign > 0.0 else "<=", limit=0.0, unit="mrad"
@@ -338,7 +357,7 @@ STATEMENTS = (
         quote="F_F^S(t) = m a(t) <= G mu_s",
         tried="Scan of the peak acceleration around mu_s g, for four coefficients of friction, rigid box.",
         examine=stiction_limit,
-        seconds=3.0,
+        seconds=2.0,
     ),
     Statement(
         name="kinetic-limit",
@@ -353,7 +372,7 @@ STATEMENTS = (
         quote="M_T(t) = m a(t) c/2, M_R = -G a/2",
         tried="Scan of the peak acceleration around g a/c for two, three and four boxes that cannot slide.",
         examine=uplift_limit,
-        seconds=6.0,
+        seconds=5.0,
     ),
     Statement(
         name="centre-or-base",

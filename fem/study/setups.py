@@ -1,6 +1,15 @@
 """The paper's containers and motions, as shipped cases."""
 
+import math
+
 from fem.study.statements import Setup
+
+GRAVITY, WIDTH, HEIGHT = 9.81, 1.1, 4.0  #: m/s2; of the stack [m]
+BOX_WEIGHT = 24525.0  #: of one box, 1 m high [N]
+HALF_WIDTH = 0.5 * WIDTH  #: a/2 [m]
+UPLIFT = GRAVITY * WIDTH / HEIGHT  #: acceleration at which the stack tilts, g a/c [m/s2]
+#: p of a homogeneous block as large as the stack, p^2 = 3 g/(4 R) [1/s]
+FREQUENCY_PARAMETER = math.sqrt(0.75 * GRAVITY / (0.5 * math.hypot(WIDTH, HEIGHT)))
 
 BOX = Setup(base="seed_box", what="one box, 50 mm at 6.928 rad/s")
 STACK = Setup(base="seed_stack", what="stack of four, 50 mm at 6.928 rad/s")
@@ -10,6 +19,7 @@ ANGULAR_FREQUENCY = 6.928  #: sqrt(2.4 m/s2 / 50 mm), the paper's motion [rad/s]
 STATED_PEAK, PLATEAU_PEAK = 2.4, 4.0  #: [m/s2]
 #: the paper's g with its mass: 2500 kg
 G_TEN = {"gravity_m_s2": 10.0, "container.weight_N": 25000.0}
+NO_SLIDING = {"contact.mu_static": 1.0, "contact.mu_kinetic": 1.0}
 #: coarser steps that a rigid container bears, for maps
 FOR_MAPS = {"solver.model": "rigid", "solver.energy_tolerance": 10.0, "output.history_s": 2.0}
 

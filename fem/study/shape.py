@@ -15,11 +15,20 @@ from fem.rigid_check import block_of, first_peaks
 from fem.simulation import simulate
 from fem.study.drawings import Line, drawing
 from fem.study.laboratory import RIGID, Laboratory
-from fem.study.setups import ANGULAR_FREQUENCY, PLATEAU, STACK
+from fem.study.setups import (
+    ANGULAR_FREQUENCY,
+    GRAVITY,
+    HALF_WIDTH,
+    HEIGHT,
+    NO_SLIDING,
+    PLATEAU,
+    PLATEAU_PEAK,
+    STACK,
+    WIDTH,
+)
 from fem.study.statements import Comparison, Finding, Setup, Statement, Table
 
-NO_SLIDING = {"contact.mu_static": 1.0, "contact.mu_kinetic": 1.0}
-WIDTH, HEIGHT = 1.1, 4.0  # m, the stack
+RESTITUTION = "Housner's restitution"
 
 
 def inertia_ratio(
@@ -37,7 +46,9 @@ def inertia_ratio(
 
 def block(ratio: float) -> RigidBlock:
     """The stack with another inertia."""
-    return RigidBlock(half_width=0.5 * WIDTH, centroid_height=0.5 * HEIGHT, gravity=9.81, inertia_ratio=ratio)
+    return RigidBlock(
+        half_width=HALF_WIDTH, centroid_height=0.5 * HEIGHT, gravity=GRAVITY, inertia_ratio=ratio
+    )
 
 
 def cylinder(laboratory: Laboratory) -> Finding:
@@ -65,7 +76,7 @@ def cylinder(laboratory: Laboratory) -> Finding:
     solid = bodies["cylinder"]
     changes = {
         "frequency parameter p": solid.frequency_parameter / prism.frequency_parameter,
-        "Housner's restitution": solid.housner_restitution / prism.housner_restitution,
+        RESTITUTION: solid.housner_restitution / prism.housner_restitution,
         "acceleration of tilting, g a/c": solid.uplift_acceleration / prism.uplift_acceleration,
         "acceleration that overturns in the first swing": first["cylinder"] / first["prism"],
     }
@@ -95,7 +106,7 @@ def cylinder(laboratory: Laboratory) -> Finding:
         )
     )
     box = [inertia_ratio(cylinder=one, height=1.0) for one in (False, True)]
-    square = 1.0 - (1.0 - math.cos(2.0 * math.atan2(0.55, 0.5))) / np.array(box)
+    square = 1.0 - (1.0 - math.cos(2.0 * math.atan2(HALF_WIDTH, 0.5))) / np.array(box)
     comparisons.append(
         Comparison(
             what="Housner's restitution of one box, cylinder less prism",
@@ -112,11 +123,11 @@ def cylinder(laboratory: Laboratory) -> Finding:
         reading=(
             f"A slender cylinder of the same width and height has I_O/(M R²) = {solid.inertia_ratio:.4f} "
             f"in place of 4/3: p changes by {100.0 * (changes['frequency parameter p'] - 1.0):+.2f} %, e "
-            f"by {100.0 * (changes[next(iter(list(changes)[1:2]))] - 1.0):+.2f} %. In the plane the "
-            "findings hold. A cylinder does not stay in the plane: it can roll on its rim, which no model "
-            "of this program knows. The case file knows prisms alone: the run is one of the rigid model "
-            "with the cylinder's inertia put in its place, not repeatable from the command line; the "
-            "other figures are of the analytic block."
+            f"by {100.0 * (changes[RESTITUTION] - 1.0):+.2f} %, and the largest rotation in the runs by "
+            f"{100.0 * (run_cylinder / run_prism - 1.0):+.2f} %. This is motion in the plane. A cylinder does not "
+            "stay in it: it can roll on its rim, which no model of this program knows. The case file knows prisms "
+            "alone: the run is one of the rigid model with the cylinder's inertia put in its place, not "
+            "repeatable from the command line; the other figures are of the analytic block."
         ),
         setups=(setup,),
         tables=(
@@ -186,10 +197,11 @@ def rigid_assumption(laboratory: Laboratory) -> Finding:
         ),
         bounds="whether the stack stands at the plateau value; not how it moves",
         reading=(
-            f"The rigid block {_verb(outcomes[0])} to {ratios[0]:.3f} of beta. The shell "
-            f"{_verb(outcomes[1])} to {ratios[1]:.3f} with mu 0.4/0.2, where an impact shakes it loose, "
-            f"and {_verb(outcomes[4])} to {ratios[4]:.3f} with mu_k = mu_s. Whipping of a bolted stack is "
-            "small; what deformation changes is what an impact leaves."
+            f"With mu 0.4/0.2 the rigid block {_verb(outcomes[0])} to {ratios[0]:.3f} of beta. The shell "
+            f"{_verb(outcomes[1])} to {ratios[1]:.3f} with mu 0.4/0.2, and {_verb(outcomes[4])} to {ratios[4]:.3f} "
+            "with mu_k = mu_s; solid steel "
+            f"{_verb(outcomes[2])} to {ratios[2]:.3f}. What deformation can change is what an impact leaves: it "
+            "sets the shell ringing, and with its ringing the normal force and the grip."
         ),
         setups=tuple(group),
         drawings=(
@@ -250,9 +262,12 @@ def gaps_between_boxes(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         bounds="as long as the stack rests; a rocking one needs its bolts",
         reading=(
-            "At rest the weight keeps every joint closed. At an impact of rocking the joints would open "
-            "and slide without bolts; the tension of the shell at that instant is that of a collision, "
-            "and depends on the contact."
+            "What the bolts of the joints carry: "
+            + "; ".join(
+                f"{run}: {tension:.1f} kN at an edge, would open without bolts: {opened}, would slide: {slid}"
+                for run, tension, opened, slid in table
+            )
+            + ". The tension of a rocking shell is that of a collision at an impact, and depends on the contact."
         ),
         setups=tuple(setups),
         tables=(
@@ -277,7 +292,7 @@ def _first_swing(body: RigidBlock) -> float:
 
 
 def _largest_at_plateau(body: RigidBlock) -> float:
-    floor = sine_floor(amplitude=4.0 / ANGULAR_FREQUENCY**2, angular_frequency=ANGULAR_FREQUENCY)
+    floor = sine_floor(amplitude=PLATEAU_PEAK / ANGULAR_FREQUENCY**2, angular_frequency=ANGULAR_FREQUENCY)
     return simulate_rocking(body, floor, duration=8.0).largest_rotation / body.slenderness_angle
 
 
@@ -326,7 +341,7 @@ STATEMENTS = (
             "cylinder's inertia."
         ),
         examine=cylinder,
-        seconds=4.0,
+        seconds=3.0,
     ),
     Statement(
         name="rigid-assumption",
@@ -337,7 +352,6 @@ STATEMENTS = (
             "and 100 %."
         ),
         examine=rigid_assumption,
-        seconds=10.0,
     ),
     Statement(
         name="gaps-between-boxes",
@@ -347,6 +361,5 @@ STATEMENTS = (
         ),
         tried="Forces in the joints of the stack, rigid and shell, at rest and rocking.",
         examine=gaps_between_boxes,
-        seconds=10.0,
     ),
 )

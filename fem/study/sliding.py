@@ -1,17 +1,18 @@
 """What the paper says of slipping: it does not depend on the number of boxes, and it stabilises."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from fem.study.drawings import Line, drawing
-from fem.study.laboratory import Laboratory, Row
+from fem.study.laboratory import RIGID, Laboratory, Row
 from fem.study.maps import Cell, stack_map
-from fem.study.setups import FOR_MAPS, PLATEAU, STACK, harmonic
+from fem.study.setups import FOR_MAPS, HEIGHT, NO_SLIDING, PLATEAU, STACK, WIDTH, harmonic
 from fem.study.statements import Band, Comparison, Finding, Setup, Statement, Table
 
 #: c/a of the stack is 3.636: below a/c = 0.275 it slides before it tilts
-WIDTH_OVER_HEIGHT = 1.1 / 4.0
+WIDTH_OVER_HEIGHT = WIDTH / HEIGHT
 FRICTIONS = ((0.2, 0.1), (0.25, 0.125), (0.3, 0.15), (0.4, 0.2), (0.4, 0.4))
 LARGER = 1.05  #: a rotation that much larger counts as larger
 
@@ -54,8 +55,9 @@ def number_of_boxes(laboratory: Laboratory) -> Finding:
         comparisons=tuple(comparisons),
         bounds="as long as no stack lifts from the floor",
         reading=(
-            "Stacks that stay flat on the floor slide alike, whatever their height. A higher stack lifts "
-            "earlier (g a/c against mu_s g), and then slides less, or rocks instead of sliding."
+            f"The paths of stacks that stay flat differ by up to {_worst(comparisons, inside=True):.2%}, those of all "
+            f"by up to {_worst(comparisons, inside=False):.0%}: a higher stack lifts earlier (g a/c against mu_s g), "
+            "and what rocks slides otherwise."
         ),
         setups=tuple(setups),
         tables=(
@@ -88,9 +90,17 @@ def _band_of_paths(laboratory: Laboratory) -> Band:
     )
 
 
+def _worst(comparisons: Sequence[Comparison], *, inside: bool) -> float:
+    return max((one.measured for one in comparisons if one.inside is inside), default=math.nan)
+
+
 def slipping_stabilises(laboratory: Laboratory) -> Finding:
     """The same map with friction that holds and with friction that gives way."""
-    holding = stack_map(laboratory, {"contact.mu_static": 1.0, "contact.mu_kinetic": 1.0}, perturbed=True)
+    holding = stack_map(laboratory, NO_SLIDING, perturbed=True)
+    fixed = laboratory.rows([PLATEAU.but({**RIGID, **NO_SLIDING, "solver.duration_s": 10.0})])[0][
+        "rotation_ratio"
+    ]
+    low_tilted = low_cells = 0
     comparisons, table, worse = [], [], []
     for static, kinetic in FRICTIONS:
         values = {"contact.mu_static": static, "contact.mu_kinetic": kinetic}
@@ -105,6 +115,9 @@ def slipping_stabilises(laboratory: Laboratory) -> Finding:
         sure_lost = [pair for pair in lost if pair[0].sure and pair[1].sure]
         more = [pair for pair in pairs if _turns_more(*pair)]
         inside = static < WIDTH_OVER_HEIGHT
+        if inside:
+            low_tilted += sum(cell.tilted for cell in slipping if cell.computed)
+            low_cells += sum(cell.computed for cell in slipping)
         name = f"mu {static:g}/{kinetic:g}"
         comparisons += [
             _count(f"{name}: sure cells that fall only because they slip", len(sure_lost), inside=inside),
@@ -119,7 +132,10 @@ def slipping_stabilises(laboratory: Laboratory) -> Finding:
     return Finding(
         comparisons=tuple(comparisons),
         bounds=f"mu_s below a/c = {WIDTH_OVER_HEIGHT:.3f}: the stack slides before it could tilt",
-        reading=_reading_of_slipping(table),
+        reading=(
+            f"{_reading_of_slipping(table)} With mu_s below a/c the stack lifts from the floor in {low_tilted} of "
+            f"{low_cells} cells."
+        ),
         setups=tuple(cell.setup for cell in worse),
         tables=(
             Table(
@@ -142,8 +158,8 @@ def slipping_stabilises(laboratory: Laboratory) -> Finding:
             quantity="rotation ratio at the plateau value",
             unit="-",
             value=lambda row: row["rotation_ratio"],
-            criterion="it slides and turns less than the rigid block that does not slide (0.399)",
-            holds=lambda row: row["outcome"] == "slide-rock" and row["rotation_ratio"] < 0.399,
+            criterion=f"it slides and turns less than the rigid block that cannot slide ({fixed:.3f})",
+            holds=lambda row: row["outcome"] == "slide-rock" and row["rotation_ratio"] < fixed,
         ),
     )
 
@@ -167,7 +183,7 @@ def same_amplitude(laboratory: Laboratory) -> Finding:
             )
             for amplitude in amplitudes
         ]
-        rows = laboratory.rows(group)
+        rows = laboratory.attempts(group)
         curves[f"mu {static:g}/{kinetic:g}"] = [_capped(row) for row in rows]
         setups.append(group[-1])
     held = np.array(curves["mu 1/1"])
@@ -184,15 +200,19 @@ def same_amplitude(laboratory: Laboratory) -> Finding:
                 inside=float(name.split()[1].split("/")[0]) < WIDTH_OVER_HEIGHT,
             )
         )
+    further = ", ".join(
+        f"{int(np.sum(np.array(values) > held * LARGER + 0.01))} ({name})"
+        for name, values in list(curves.items())[1:]
+    )
+    at_100 = held[amplitudes.index(0.1)]
     return Finding(
         comparisons=tuple(comparisons),
         bounds=f"mu_s below a/c = {WIDTH_OVER_HEIGHT:.3f}",
         reading=(
-            "At equal amplitude no friction tried turns the stack further than friction that holds (1.0). "
-            f"It overturns at {int((held >= 1.0).sum())} of {len(amplitudes)} amplitudes with friction "
-            f"that holds and at {sum(one >= 1.0 for one in curves['mu 0.4/0.2'])} with 0.4/0.2, where the "
-            "grip is lost at strong motion and the stack slides instead. With mu_s below a/c it does not "
-            "turn at all."
+            "Of the amplitudes tried the stack turns further than with friction that holds (1.0) at "
+            f"{further}, of {len(amplitudes)} each. It overturns at {int((held >= 1.0).sum())} with friction that "
+            f"holds and at {sum(one >= 1.0 for one in curves['mu 0.4/0.2'])} with 0.4/0.2. With mu 0.25/0.125, below "
+            f"a/c, its largest rotation is {max(curves['mu 0.25/0.125']):.2g} of beta."
         ),
         setups=tuple(setups),
         drawings=(
@@ -214,8 +234,8 @@ def same_amplitude(laboratory: Laboratory) -> Finding:
             quantity="rotation ratio at 100 mm, mu 0.4/0.2",
             unit="-",
             value=lambda row: row["rotation_ratio"],
-            criterion=f"no more than the rigid stack that cannot slide ({held[5]:.3f})",
-            holds=lambda row: row["rotation_ratio"] <= held[5] * LARGER,
+            criterion=f"no more than the rigid stack that cannot slide ({at_100:.3f})",
+            holds=lambda row: row["rotation_ratio"] <= at_100 * LARGER,
         ),
     )
 
@@ -226,8 +246,8 @@ def _reading_of_slipping(table: list[tuple[str, int, int, int, int, int]]) -> st
     return (
         f"Of {sum(cells)} motions that make the stack slip, over all frictions, slipping saves "
         f"{sum(saved)} from overturning and overturns {sum(lost)} that would have stood ({sum(sure)} of "
-        f"them surely); {sum(more)} turn further than without slipping, because it changes when the "
-        "container is set down. Friction below a/c keeps the stack from tilting at all."
+        f"them surely); {sum(more)} turn further than without slipping, which changes when the container is set "
+        "down."
     )
 
 
@@ -271,7 +291,6 @@ STATEMENTS = (
         ),
         tried="One to six boxes under the same floor, two pairs of friction, three peaks.",
         examine=number_of_boxes,
-        seconds=3.0,
     ),
     Statement(
         name="slipping-stabilises",
@@ -282,7 +301,7 @@ STATEMENTS = (
             "friction that holds."
         ),
         examine=slipping_stabilises,
-        seconds=60.0,
+        seconds=23.0,
     ),
     Statement(
         name="same-amplitude",
@@ -293,6 +312,6 @@ STATEMENTS = (
         ),
         tried="Amplitudes from 50 to 200 mm at the paper's frequency with four frictions, rigid stack.",
         examine=same_amplitude,
-        seconds=3.0,
+        seconds=2.0,
     ),
 )

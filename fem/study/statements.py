@@ -167,7 +167,6 @@ class Finding:
     tables: tuple[Table, ...] = ()
     drawings: tuple[Drawing, ...] = ()
     band: Band | None = None
-    failed_runs: int = 0  #: left out of every count
 
     @property
     def verdict(self) -> Verdict:

@@ -11,7 +11,7 @@ from fem.case import load_case
 from fem.run_folder import FolderError
 from fem.study.catalogue import all_statements
 from fem.study.conducting import conduct
-from fem.study.counting import Motion, contingency, mode_said, paper_criteria, static_rule
+from fem.study.criteria import Motion, contingency, mode_said, paper_criteria, static_rule
 from fem.study.laboratory import InterruptedStudyError, Laboratory
 from fem.study.maps import near_change
 from fem.study.setups import STACK, harmonic
@@ -101,7 +101,7 @@ def test_a_band_takes_a_truth_of_any_kind(monkeypatch):
     laboratory = Laboratory()
     row = {"status": "completed", "outcome": "rock", "rotation_ratio": 0.4}
     monkeypatch.setattr(laboratory, "variants", lambda setup: [setup])
-    monkeypatch.setattr(laboratory, "rows", lambda setups: [row])
+    monkeypatch.setattr(laboratory, "attempts", lambda setups: [row])
     band = laboratory.band(
         STACK,
         quantity="a ratio",
