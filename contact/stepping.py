@@ -93,9 +93,13 @@ LYING_DOWN = 2e-3
     ROW_KINETIC,
     ROW_STRAIN,
     ROW_POTENTIAL,
+    ROW_BASE_WORK,  # this and the following in the order of the ledger
+    ROW_FRICTION,
+    ROW_CONTACT_DAMPING,
+    ROW_MATERIAL_DAMPING,
     ROW_IMBALANCE,
-) = range(12)
-ROW_COLUMNS = 12
+) = range(16)
+ROW_COLUMNS = 16
 
 
 class Control(NamedTuple):
@@ -170,7 +174,7 @@ class Samples(NamedTuple):
     """What is kept on an exact grid of times, as much of it as the arrays hold: n_s samples."""
 
     interval: float  #: [s]
-    columns: FloatArray  #: (n_s, 12 or 0) of a history, see ROW_...
+    columns: FloatArray  #: (n_s, 16 or 0) of a history, see ROW_...
     mode: npt.NDArray[np.int64]  #: (n_s,)
     position: FloatArray  #: (n_s, n_d or 0) coordinates of the body
     velocity: FloatArray  #: (n_s, n_d or 0)
@@ -453,7 +457,8 @@ def _write_columns(
         row[ROW_NORMAL] += force[i, 1]
     for k in range(3):
         row[ROW_KINETIC + k] = (1.0 - s) * old.energy[k] + s * new.energy[k]
-    row[ROW_IMBALANCE] = run.ledger[IMBALANCE] + s * run.change[IMBALANCE]
+    for k in range(LEDGER_ROWS):
+        row[ROW_BASE_WORK + k] = run.ledger[k] + s * run.change[k]
 
 
 write_columns = compiled(_write_columns, inline=True)

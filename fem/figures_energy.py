@@ -1,4 +1,4 @@
-"""The figure of the energy: what is stored over time, what the time stepping lost, and where all of it went."""
+"""The figure of the energy over time: what is stored, what came in and where it went, what the time stepping lost."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -12,6 +12,7 @@ from fem.drawing import (
     GREEN,
     GREY,
     LEGEND_GAP,
+    LINE,
     NEAR_LIMIT,
     ORANGE,
     PURPLE,
@@ -28,47 +29,69 @@ from fem.history import History
 from fem.opening import OpenedRun
 from fem.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 
-NAMES = 0.09  #: of a figure's width, for the names beside bars
-
 
 def energy_figure(run: OpenedRun) -> Figure:
-    """Stored energies and the imbalance over time; what went in and where it went, at the end."""
+    """What is stored, what the floor put in and where it went, and what the time stepping lost, over time."""
     history, energy = run.history, run.result.get("energy") or {}
-    time, reference = history["time_s"], energy.get("reference_J")
-    figure, axes = panels((2.0, 0.9, 1.1), gaps=(LEGEND_GAP, 0.55), header=2)
-    stored, imbalance, budget = axes
-    # From the height of the mass centre of the container that stands: what its weight could still do.
-    centroid = float((run.result.get("static") or {}).get("centroid_m") or 0.0)
-    raised = history["potential_J"] - run.case.weight * centroid
-    for values, name, colour, style in (
-        (history["kinetic_J"], "kinetic", BLUE, "-"),
-        (raised, "gravity and contact springs", VERMILLION, "--"),
-        (history["strain_J"], "strain", GREEN, ":"),
-    ):
-        draw_curve(stored, time, 1e-3 * values, color=colour, linestyle=style, label=name)
-    if reference and raised.max() > NEAR_LIMIT * reference:
-        label = f"to overturn, {number(1e-3 * reference)} kJ"
-        stored.axhline(1e-3 * reference, color=BLACK, linestyle="-.", linewidth=0.9, label=label)
-    stored.set_ylabel("energy [kJ]")
-    legend_above(stored)
+    figure, axes = panels((1.7, 1.9, 0.9), gaps=(LEGEND_GAP + LINE, LEGEND_GAP), header=2)
+    stored, passed, imbalance = axes
+    _draw_stored(stored, run)
+    _draw_passed(passed, history)
     zero_line(imbalance)
-    draw_curve(imbalance, time, history["imbalance_J"], color=PURPLE, label=_imbalance_limits(energy))
+    draw_curve(
+        imbalance, history["time_s"], history["imbalance_J"], color=PURPLE, label=_imbalance_limits(energy)
+    )
     imbalance.set_ylabel("imbalance [J]")
     imbalance.set_xlabel(TIME)
-    legend_above(imbalance)
-    stored.sharex(imbalance)
-    stored.tick_params(labelbottom=False)
-    for panel in (stored, imbalance):
+    for panel in axes:
         panel.set_gid(TIME)
-    box = budget.get_position()
-    budget.set_position((box.x0 + NAMES, box.y0, box.width - NAMES, box.height))
-    _draw_budget(budget, energy, history)
+    for panel in (stored, passed):
+        panel.sharex(imbalance)
+        panel.tick_params(labelbottom=False)
+    legend_above(stored)
+    legend_above(passed, columns=3)
+    legend_above(imbalance)
     closure = energy.get("closure_error")
     share = (
         "" if closure is None else f": largest imbalance {number(closure, 2)} of what it takes to overturn"
     )
     head(figure, f"Energy{share}", status=run.status)
     return figure
+
+
+def _draw_stored(axes: Axes, run: OpenedRun) -> None:
+    """Energy of motion, height and strain, with what it takes to overturn."""
+    history, reference = run.history, (run.result.get("energy") or {}).get("reference_J")
+    # From the height of the mass centre of the container that stands: what its weight could still do.
+    centroid = float((run.result.get("static") or {}).get("centroid_m") or 0.0)
+    raised = history["potential_J"] - run.case.weight * centroid
+    for values, name, colour, style in (
+        (history["kinetic_J"], "kinetic", BLUE, "-"),
+        (raised, "gravity", VERMILLION, "--"),
+        (history["strain_J"], "strain", GREEN, ":"),
+    ):
+        draw_curve(axes, history["time_s"], 1e-3 * values, color=colour, linestyle=style, label=name)
+    if reference and raised.max() > NEAR_LIMIT * reference:
+        label = f"to overturn, {number(1e-3 * reference)} kJ"
+        axes.axhline(1e-3 * reference, color=BLACK, linestyle="-.", linewidth=0.9, label=label)
+    axes.set_ylabel("stored [kJ]")
+
+
+def _draw_passed(axes: Axes, history: History) -> None:
+    """Sums since the start; what is left of the floor's work is stored, in the springs of the contact too."""
+    taken = ("friction_J", "contact_damping_J", "material_damping_J", "imbalance_J")
+    stored = history["base_work_J"] - sum(history[name] for name in taken)
+    zero_line(axes)
+    for values, name, colour, style in (
+        (history["base_work_J"], "work of the floor", BLUE, "-"),
+        (stored, "stored", GREY, "-"),
+        (history["friction_J"], "friction", VERMILLION, "--"),
+        (history["contact_damping_J"], "contact damping", GREEN, "-."),
+        (history["material_damping_J"], "material damping", ORANGE, ":"),
+    ):
+        label = f"{name}, {number(1e-3 * values[-1])} kJ"
+        draw_curve(axes, history["time_s"], 1e-3 * values, color=colour, linestyle=style, label=label)
+    axes.set_ylabel("since the start [kJ]")
 
 
 def _imbalance_limits(energy: Mapping[str, Any]) -> str:
@@ -79,36 +102,3 @@ def _imbalance_limits(energy: Mapping[str, Any]) -> str:
     spent = sum(energy.get(key) or 0.0 for key in ("friction_J", "contact_damping_J", "material_damping_J"))
     loss = max(LOSS_SHARE_LIMIT * spent, LOSS_LIMIT * reference)
     return f"{told}; to lose {number(loss)} J or win {number(GAIN_LIMIT * reference, 2)} J would fail the run"
-
-
-def _draw_budget(axes: Axes, energy: Mapping[str, Any], history: History) -> None:
-    """Bars of what the floor put in and what took it."""
-    stored = sum(
-        float(history[key][-1] - history[key][0]) for key in ("kinetic_J", "strain_J", "potential_J")
-    )
-    bars = (
-        ("work of the floor", energy.get("base_work_J"), BLUE),
-        ("stored since the start", stored, GREY),
-        ("friction", energy.get("friction_J"), VERMILLION),
-        ("contact damping", energy.get("contact_damping_J"), GREEN),
-        ("material damping", energy.get("material_damping_J"), ORANGE),
-        ("imbalance", energy.get("numerical_J"), PURPLE),
-    )
-    known = [(name, 1e-3 * float(value), colour) for name, value, colour in bars if value is not None]
-    for row, (_, value, colour) in enumerate(known):
-        axes.barh(row, value, height=0.72, color=colour)
-        axes.annotate(
-            number(value),
-            (max(value, 0.0), row),
-            xytext=(3, 0),
-            textcoords="offset points",
-            va="center",
-            fontsize=8,
-        )
-    axes.axvline(0.0, color=GREY, linewidth=0.7)
-    axes.set_yticks(range(len(known)), [name for name, *_ in known], fontsize=7.5)
-    axes.tick_params(axis="y", length=0)
-    axes.invert_yaxis()
-    axes.set_xmargin(0.13)
-    axes.grid(visible=False, axis="y")
-    axes.set_xlabel("over the whole run [kJ]")

@@ -24,6 +24,7 @@ from fem.run_folder import write_atomically
 FloatArray = NDArray[np.float64]
 
 #: Columns of `history.csv`, in a stack followed by those of its joints; `mode` is a word, all others are numbers.
+#: The last four are sums since the start: work of the floor on the container, and where energy went.
 HISTORY_COLUMNS = (
     "time_s",
     "base_displacement_m",
@@ -42,7 +43,12 @@ HISTORY_COLUMNS = (
     "potential_J",
     "imbalance_J",
     "mode",
+    "base_work_J",
+    "friction_J",
+    "contact_damping_J",
+    "material_damping_J",
 )
+MODE = HISTORY_COLUMNS.index("mode")  #: column of the word
 NUMBERS = len(HISTORY_COLUMNS) - 1
 #: Columns of one joint.
 JOINT_COLUMNS = ("joint_{}_normal_N", "joint_{}_shear_N", "joint_{}_moment_Nm")
@@ -64,7 +70,7 @@ class History:
         ValueError: arrays whose shapes do not fit the columns or each other.
     """
 
-    values: FloatArray  #: shape (n_samples, 16 + 3 joints (+ 1)), units as in the columns' names
+    values: FloatArray  #: shape (n_samples, 20 + 3 joints (+ 1)), units as in the columns' names
     modes: tuple[str, ...]  #: state of motion at each sample, length n_samples
 
     def __post_init__(self) -> None:
@@ -152,11 +158,11 @@ class HistoryWriter:
         os.fsync(self._file.fileno())
 
     def append(self, rows: FloatArray, modes: Sequence[str]) -> None:
-        """Write samples: rows of numbers, shape (n, 16 + 3 joints), and their modes, length n."""
+        """Write samples: rows of numbers, shape (n, 20 + 3 joints), and their modes, length n."""
         _require_columns(rows, modes)
         for row, mode in zip(rows.tolist(), modes, strict=True):
             words = [repr(number) for number in row]
-            self._write(",".join([*words[:NUMBERS], mode, *words[NUMBERS:]]) + "\n")
+            self._write(",".join([*words[:MODE], mode, *words[MODE:]]) + "\n")
 
     def close(self) -> None:
         """Close the file; closing twice does no harm."""
@@ -201,9 +207,9 @@ def read_history(path: Path) -> History:
     values, modes = np.empty((len(lines) - 1, numbers)), []
     for number, line in enumerate(lines[1:]):
         fields = line.split(",")
-        mode = "".join(fields[NUMBERS : NUMBERS + 1])
+        mode = "".join(fields[MODE : MODE + 1])
         try:
-            values[number] = [float(field) for field in fields[:NUMBERS] + fields[NUMBERS + 1 :]]
+            values[number] = [float(field) for field in fields[:MODE] + fields[MODE + 1 :]]
         except ValueError:
             raise ValueError(f"{path}, line {number + 2}: {numbers} numbers and a mode are needed") from None
         modes.append(mode)

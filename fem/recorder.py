@@ -12,10 +12,14 @@ from contact.body import ROTATION, State
 from contact.floor_motion import floor_history, floor_motion
 from contact.stepping import (
     ROW_ANGULAR_VELOCITY,
+    ROW_BASE_WORK,
     ROW_CENTRE_X,
     ROW_CENTRE_Z,
+    ROW_CONTACT_DAMPING,
+    ROW_FRICTION,
     ROW_IMBALANCE,
     ROW_KINETIC,
+    ROW_MATERIAL_DAMPING,
     ROW_NORMAL,
     ROW_POTENTIAL,
     ROW_ROTATION,
@@ -47,6 +51,10 @@ ORDER = (
     ROW_STRAIN,
     ROW_POTENTIAL,
     ROW_IMBALANCE,
+    ROW_BASE_WORK,
+    ROW_FRICTION,
+    ROW_CONTACT_DAMPING,
+    ROW_MATERIAL_DAMPING,
 )
 
 #: samples searched for the largest stress at each emptying, those of the largest strain energy
@@ -62,7 +70,7 @@ class Recorder:
     Args:
         model: what is stepped.
         recovery: how its fields are had; None leaves fields and stresses out.
-        history_sink: called with new rows (k, 16 + 3 joints) and their modes.
+        history_sink: called with new rows (k, 20 + 3 joints) and their modes.
         frame_sink: called with time, fields, contact pressures (n,) at the nodes and floor displacement.
     """
 

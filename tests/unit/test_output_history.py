@@ -22,7 +22,7 @@ from fem.history import (
     read_history,
 )
 
-ROWS = np.random.default_rng(3).normal(size=(7, 16)) * 10.0 ** np.arange(-8, 8)
+ROWS = np.random.default_rng(3).normal(size=(7, 20)) * 10.0 ** np.arange(-10, 10)
 MODES = ["rest", "rock", "slide", "slide-rock", "rock", "rest", "overturned"]
 
 
@@ -33,7 +33,7 @@ def test_columns_are_the_documented_ones_in_their_order(tmp_path):
     assert header == (
         "time_s,base_displacement_m,base_velocity_m_s,base_acceleration_m_s2,rotation_rad,angular_velocity_rad_s,"
         "slip_m,uplift_m,centre_x_m,centre_z_m,normal_force_N,shear_force_N,kinetic_J,strain_J,potential_J,"
-        "imbalance_J,mode"
+        "imbalance_J,mode,base_work_J,friction_J,contact_damping_J,material_damping_J"
     )
 
 
@@ -48,23 +48,24 @@ def test_numbers_come_back_to_the_last_bit(tmp_path):
     assert len(history) == 7
 
 
-def test_a_stack_has_three_columns_for_every_joint_behind_the_word(tmp_path):
+def test_a_stack_has_three_columns_for_every_joint_behind_all_others(tmp_path):
     with HistoryWriter(tmp_path / "h.csv", joints=2) as writer:
         writer.append(np.hstack([ROWS, ROWS[:, :6]]), MODES)
     header = (tmp_path / "h.csv").read_text().splitlines()[0]
     assert header.endswith(
-        "imbalance_J,mode,joint_1_normal_N,joint_1_shear_N,joint_1_moment_Nm,joint_2_normal_N,joint_2_shear_N,"
+        "material_damping_J,joint_1_normal_N,joint_1_shear_N,joint_1_moment_Nm,joint_2_normal_N,joint_2_shear_N,"
         "joint_2_moment_Nm"
     )
     history = read_history(tmp_path / "h.csv")
     assert history.joints == 2 and history.modes == tuple(MODES)
     assert history["imbalance_J"].tolist() == ROWS[:, 15].tolist()
+    assert history["base_work_J"].tolist() == ROWS[:, 16].tolist()
     assert history["joint_2_shear_N"].tolist() == ROWS[:, 4].tolist()
     with pytest.raises(KeyError, match="no column 'joint_3_shear_N'"):
         history["joint_3_shear_N"]
 
 
-@given(st.lists(st.floats(allow_nan=False), min_size=16, max_size=16))
+@given(st.lists(st.floats(allow_nan=False), min_size=20, max_size=20))
 def test_every_double_survives(tmp_path_factory, row):
     path = tmp_path_factory.mktemp("h") / "h.csv"
     with HistoryWriter(path) as writer:
@@ -89,7 +90,7 @@ def test_a_killed_writer_leaves_whole_lines(tmp_path):
         writer = HistoryWriter(Path(sys.argv[1]))
         print("ready", flush=True)
         while True:
-            writer.append(np.random.normal(size=(50, 16)), ["rock"] * 50)
+            writer.append(np.random.normal(size=(50, 20)), ["rock"] * 50)
     """)
     path = tmp_path / "h.csv"
     process = subprocess.Popen([sys.executable, "-c", script, str(path)], stdout=subprocess.PIPE)
@@ -99,7 +100,7 @@ def test_a_killed_writer_leaves_whole_lines(tmp_path):
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     process.stdout.close()
-    assert path.read_bytes().endswith(b",rock\n")
+    assert path.read_bytes().endswith(b"\n")
     history = read_history(path)
     assert len(history) > 100 and np.isfinite(history.values).all()
 
@@ -154,7 +155,7 @@ def test_a_line_that_does_not_go_through_is_cut_off(tmp_path):
         writer = HistoryWriter(Path(sys.argv[1]), position={limit - 100})
         resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}))
         try:
-            writer.append(np.full((3, 16), 1.0 / 3.0), ["rock"] * 3)
+            writer.append(np.full((3, 20), 1.0 / 3.0), ["rock"] * 3)
         except OSError as error:
             print(error.strerror)
     """)
@@ -171,11 +172,11 @@ def test_unknown_columns_and_wrong_shapes_are_named(tmp_path):
     history = History(values=ROWS, modes=tuple(MODES))
     with pytest.raises(KeyError, match="no column 'rotation'; known: time_s"):
         history["rotation"]
-    with pytest.raises(ValueError, match="16 columns"):
-        History(values=ROWS[:, :15], modes=tuple(MODES))
-    with HistoryWriter(tmp_path / "h.csv") as writer, pytest.raises(ValueError, match="16 columns"):
+    with pytest.raises(ValueError, match="20 columns"):
+        History(values=ROWS[:, :19], modes=tuple(MODES))
+    with HistoryWriter(tmp_path / "h.csv") as writer, pytest.raises(ValueError, match="20 columns"):
         writer.append(ROWS, MODES[:-1])
-    assert len(HISTORY_COLUMNS) == 17
+    assert len(HISTORY_COLUMNS) == 21
 
 
 @pytest.mark.parametrize(
@@ -194,7 +195,7 @@ def test_files_that_are_no_history_are_refused(tmp_path, text, words):
 
 def test_nan_is_written_and_read_as_nan(tmp_path):
     with HistoryWriter(tmp_path / "h.csv") as writer:
-        writer.append(np.full((1, 16), math.nan), ["rest"])
+        writer.append(np.full((1, 20), math.nan), ["rest"])
     assert np.isnan(read_history(tmp_path / "h.csv").values).all()
 
 
