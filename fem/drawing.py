@@ -6,6 +6,7 @@ grey. Units are those of people: mm, kN, degrees, s.
 """
 
 import io
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -39,6 +40,7 @@ STATE_COLOURS = {
 WIDTH = 7.0  #: of a figure [inch], the text width of an A4 page
 LEFT, RIGHT, FOOTER = 0.8, 0.15, 0.45  #: margins [inch]
 GAP, LEGEND_GAP = 0.1, 0.3  #: between panels, without and with a legend in between [inch]
+COORDINATE = re.compile(r"(?<=\.\d\d)\d+")  #: digits beyond a hundredth of a point
 LINE = 0.21  #: height of a line of text above the panels [inch]
 STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",  # text stays text: small, searchable
@@ -62,6 +64,7 @@ STYLE: dict[Any, Any] = {
     "legend.fontsize": 8.0,
     "legend.columnspacing": 1.4,
     "legend.handlelength": 2.2,
+    "hatch.linewidth": 0.6,
     "text.color": BLACK,
     "xtick.color": BLACK,
     "ytick.color": BLACK,
@@ -183,6 +186,12 @@ def draw_states(axes: Axes, time: FloatArray, modes: Sequence[str], states: Sequ
     axes.grid(visible=False, axis="y")
 
 
+def states_of(modes: Sequence[str]) -> list[str]:
+    """States that a history passes through, in their order."""
+    seen = set(modes)
+    return [state for state in STATE_COLOURS if state in seen]
+
+
 def kept_samples(*columns: FloatArray) -> NDArray[np.int64]:
     """Samples that draw the same curves: of every stretch the ends and the extremes of each column.
 
@@ -240,7 +249,7 @@ def svg_of(figure: Figure, prefix: str = "") -> str:
     stream = io.StringIO()
     with house_style():
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
-    text = stream.getvalue()
+    text = re.sub(r' d="[^"]*"', lambda path: COORDINATE.sub("", path[0]), stream.getvalue())
     if prefix:
         for before in ('id="', 'href="#', "url(#"):
             text = text.replace(before, before + prefix)

@@ -23,7 +23,6 @@ from fem.drawing import (
     GREY,
     LEGEND_GAP,
     NEAR_LIMIT,
-    STATE_COLOURS,
     VERMILLION,
     WIDTH,
     draw_curve,
@@ -36,20 +35,19 @@ from fem.drawing import (
     legend_above,
     number,
     panels,
+    states_of,
     svg_of,
     time_panels,
     zero_line,
 )
 from fem.figures_checks import band_figure, rigid_check_figure
 from fem.figures_energy import energy_figure
-from fem.history import FloatArray
+from fem.figures_forces import forces_figure
+from fem.figures_joints import joints_figure
 from fem.opening import OpenedRun
 from fem.run_folder import write_atomically
 from fem.verdict import SLIDING
 
-LARGE_FORCE = 2.5  #: times weight, or its static friction: beyond are impacts, not the motion between them
-OFF_SCALE = 1.3  #: forces beyond the scale by more than this are cut off and told
-MARKS = 300  #: of forces off the scale, side by side
 LEAST_MOTION = 1e-3  #: of the floor, on its axes [mm, m/s, m/s2]
 
 
@@ -185,46 +183,6 @@ def uplift_figure(run: OpenedRun) -> Figure:
     return figure
 
 
-def forces_figure(run: OpenedRun) -> Figure:
-    """Normal and shear force of the floor on the container."""
-    history, contact = run.history, run.case.contact
-    time, normal, shear = history["time_s"], 1e-3 * history["normal_force_N"], 1e-3 * history["shear_force_N"]
-    weight, states = 1e-3 * run.case.weight, _states(run)
-    limits = [
-        _scale_without_impacts(normal, LARGE_FORCE * weight),
-        _scale_without_impacts(shear, LARGE_FORCE * contact.mu_static * weight),
-    ]
-    cut = any(limit is not None for limit in limits)
-    figure, axes = time_panels((1.5, 1.7), states=states, gaps=(LEGEND_GAP,), header=3 if cut else 2)
-    for panel, force, label, colour in (
-        (axes[0], normal, "normal force [kN]", BLUE),
-        (axes[1], shear, "shear force [kN]", VERMILLION),
-    ):
-        draw_curve(panel, time, force, color=colour, linewidth=0.8)
-        panel.set_ylabel(label)
-    axes[0].axhline(
-        weight, color=BLACK, linestyle="--", linewidth=0.9, label=f"weight, {number(weight, 4)} kN"
-    )
-    axes[0].set_ylim(bottom=0.0)
-    friction = {"static": (contact.mu_static, "--"), "kinetic": (contact.mu_kinetic, ":")}
-    for name, (mu, style) in friction.items():
-        label = f"{name} friction of the weight, ±{number(mu * weight)} kN"
-        draw_limits(axes[1], mu * weight, label, color=BLACK, linestyle=style)
-        if contact.mu_static == contact.mu_kinetic:
-            break
-    for panel, force, limit in zip(axes, (normal, shear), limits, strict=False):
-        if limit is not None:
-            _cut_off(panel, time, force, limit)
-        legend_above(panel)
-    draw_states(axes[-1], time, history.modes, states)
-    statement = (
-        f"marks at the rim: beyond the scale, up to {number(normal.max(), 4)} and "
-        f"{number(np.abs(shear).max(), 4)} kN, when the contact's damper stops an impact"
-    )
-    head(figure, "Forces of the floor on the container", statement if cut else "", status=run.status)
-    return figure
-
-
 def phase_portrait_figure(run: OpenedRun) -> Figure:
     """Angular velocity over rotation, within the curve that a free rigid block returns from."""
     angle, parameter = run.slenderness_angle, (run.result.get("static") or {}).get("frequency_parameter_1_s")
@@ -256,6 +214,7 @@ FIGURES: dict[str, Callable[[OpenedRun], Figure | None]] = {
     "slip": slip_figure,
     "uplift": uplift_figure,
     "forces": forces_figure,
+    "joints": joints_figure,
     "phase_portrait": phase_portrait_figure,
     "energy": energy_figure,
     "rigid_check": rigid_check_figure,
@@ -265,17 +224,11 @@ FIGURES: dict[str, Callable[[OpenedRun], Figure | None]] = {
 
 def _panel_with_states(run: OpenedRun, label: str, *, legend: bool) -> tuple[Figure, Axes]:
     """One panel over time, with room for a legend above and the states of motion below."""
-    states = _states(run)
+    states = states_of(run.history.modes)
     figure, (axes, below) = time_panels((2.3,), states=states, header=2 if legend else 1)
     axes.set_ylabel(label)
     draw_states(below, run.history["time_s"], run.history.modes, states)
     return figure, axes
-
-
-def _states(run: OpenedRun) -> list[str]:
-    """States that the history passes through, in their order."""
-    seen = set(run.history.modes)
-    return [state for state in STATE_COLOURS if state in seen]
 
 
 def _verdict(run: OpenedRun) -> Mapping[str, Any]:
@@ -288,20 +241,3 @@ def _mark_impact(axes: Axes, verdict: Mapping[str, Any]) -> None:
     if impact is not None:
         label = f"first impact, {impact:.3f} s"
         axes.axvline(impact, color=GREY, linestyle=(0, (1, 2)), linewidth=1.0, label=label)
-
-
-def _scale_without_impacts(force: FloatArray, large: float) -> float | None:
-    """Where the scale of a force ends if impacts go far beyond what lies between them; else None."""
-    limit = max(large, 1.2 * float(np.quantile(np.abs(force), 0.9)))
-    return limit if np.abs(force).max() > OFF_SCALE * limit else None
-
-
-def _cut_off(axes: Axes, time: FloatArray, force: FloatArray, limit: float) -> None:
-    """End the scale at a limit, with a mark at the rim for each force beyond it."""
-    axes.set_ylim(0.0 if axes.get_ylim()[0] == 0.0 else -limit, limit)
-    for sign, marker in ((1.0, "^"), (-1.0, "v")):
-        beyond = time[sign * force > limit]
-        # Marks closer than that would be one another's shadow.
-        _, apart = np.unique(np.round(beyond / (time[-1] - time[0]) * MARKS), return_index=True)
-        rim = np.full(len(apart), sign * limit)
-        axes.plot(beyond[apart], rim, marker, color=GREY, markersize=3, clip_on=False)

@@ -31,7 +31,7 @@ MOST_PANELS = 12
 COLUMNS = 3
 LEAST_SLIP_MM = 1e-2  #: below, nothing has slid
 TICKS = 7
-HATCH = "/////"
+HATCH = "////"
 
 
 class MapError(ValueError):
@@ -191,7 +191,6 @@ class _Maps:
                     band = self._plane_of(unsure == 1.0, pick)
                     _hatch(axes, band & fallen, "#FFFFFF")
                     _hatch(axes, band & ~fallen, BLACK)
-                    _outline(axes, band, VERMILLION, 1.0)
                 _outline(axes, fallen, "#FFFFFF", 1.6)
                 _outline(axes, fallen, BLACK, 0.7)
                 axes.set_title(name, fontsize=8.5)
