@@ -18,12 +18,14 @@ from fem.case import Case
 from fem.model import Container, build_model
 from fem.recorder import Recorder
 from fem.simulation import cores, simulate
-from fem.verdict import MODE_NAMES, outcome_of
+from fem.verdict import MODE_NAMES, in_short
 
 PENALTY_FACTORS = (1.0 / 3.0, 1.0, 3.0)
 DAMPING_RATIOS = (0.5, 2.0)
 #: outcomes that depend on impacts, or may
 DEPENDENT = frozenset({"rock", "slide-rock", "overturned"})
+#: of a verdict, kept of every member
+IN_SHORT = ("outcome", "rotation_ratio", "max_slip_m", "residual_slip_m", "max_uplift_m")
 NO_SAMPLES_S = 1e4  #: interval of a history of which nobody will read more than its first row
 
 
@@ -37,6 +39,9 @@ class Member:
     outcome: str | None  #: None where it failed
     rotation_ratio: float | None  #: largest |rotation| over the slenderness angle; None where it failed
     error: str | None = None
+    max_slip_m: float | None = None
+    residual_slip_m: float | None = None  #: signed, at the end
+    max_uplift_m: float | None = None
 
 
 def wants_band(asked: bool | None, case: Case, verdict: Mapping[str, Any]) -> bool:
@@ -73,8 +78,7 @@ def band_of(
         normal_penalty_Pa_m=penalty,
         damping_ratio=case.contact.damping_ratio,
         status="overturned" if verdict["outcome"] == "overturned" else "completed",
-        outcome=verdict["outcome"],
-        rotation_ratio=verdict["rotation_ratio"],
+        **{name: verdict[name] for name in IN_SHORT},
     )
     floors = _other_floors(penalty, case.contact.damping_ratio)
     # The full model is stepped by the interpreter, under its lock: threads would gain nothing.
@@ -115,8 +119,7 @@ def _run_member(
     """One member; whatever keeps it from an outcome is its error, never an outcome."""
     penalty, damping_ratio = floor
     status, error = "failed", None
-    outcome: str | None = None
-    ratio: float | None = None
+    found: dict[str, Any] = dict.fromkeys(IN_SHORT)
     try:
         changed = case.with_values(
             {
@@ -133,13 +136,11 @@ def _run_member(
     else:
         status, error = ending.status, ending.error
         if status in ("completed", "overturned"):
-            outcome = outcome_of(model)
-            ratio = float(model.run.track[0].max_rotation) / model.static.slenderness_angle
+            found = in_short(model)
     return Member(
         normal_penalty_Pa_m=penalty,
         damping_ratio=damping_ratio,
         status=status,
-        outcome=outcome,
-        rotation_ratio=ratio,
         error=error,
+        **found,
     )

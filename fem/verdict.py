@@ -92,6 +92,18 @@ def verdict_from(
     }
 
 
+def in_short(model: Model) -> dict[str, Any]:
+    """What of a verdict a run is told by that takes no samples."""
+    track = model.run.track[0]
+    return {
+        "outcome": outcome_of(model),
+        "rotation_ratio": float(track.max_rotation) / model.static.slenderness_angle,
+        "max_slip_m": float(track.max_slip),
+        "residual_slip_m": float(model.run.clock[0].slip),
+        "max_uplift_m": float(track.max_uplift),
+    }
+
+
 def energy_of(model: Model) -> dict[str, float]:
     """The `energy` of a result [J]."""
     ledger, clock = model.run.ledger, model.run.clock[0]

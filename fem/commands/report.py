@@ -20,6 +20,15 @@ def report(
     author: Annotated[str, Parameter(show_default=False, help="Who made it; may be filled in later.")] = "",
     checker: Annotated[str, Parameter(show_default=False, help="Who checked it.")] = "",
     revision: Annotated[str, Parameter(show_default=False, help="Which revision it is.")] = "",
+    all_variations: Annotated[
+        bool,
+        Parameter(
+            name="--all-variations",
+            negative=(),
+            show_default=False,
+            help="Compute every variation of a run, however long it takes.",
+        ),
+    ] = False,
     quiet: Annotated[
         bool, Parameter(name=("--quiet", "-q"), negative=(), show_default=False, help="No progress.")
     ] = False,
@@ -46,7 +55,13 @@ def report(
     else:
         opened = importlib.import_module("fem.opening").open_run(folder)
         with runs.interruptible(reporter) as stop:
-            page = pages.run_report(opened, signature=signature, told=reporter.message, stop=stop)
+            page = pages.run_report(
+                opened,
+                signature=signature,
+                every_variation=all_variations,
+                told=reporter.message,
+                stop=stop,
+            )
     place = to if to is not None else folder / PAGE
     write_atomically(place, page)
     print(place)

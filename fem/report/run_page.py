@@ -29,7 +29,7 @@ from fem.report.quantities import degrees, number, quantity, short
 from fem.report.sketch import sketch
 from fem.report.static_sheet import static_sheet
 from fem.report.stills import Still, colours, stills
-from fem.report.variations import variation_table
+from fem.report.variation_table import variation_table
 from fem.rigid_check import check_against_rigid_block
 from fem.run_folder import FINISHED, FolderError
 from fem.summary import BAND_NOTE, CODE_NOTE, MARGIN_NOTE, outcome_sentence, run_rows
@@ -45,6 +45,7 @@ def run_report(
     run: OpenedRun,
     *,
     signature: Signature | None = None,
+    every_variation: bool = False,
     told: Callable[[str], None] = lambda text: None,
     stop: Callable[[], bool] = lambda: False,
 ) -> str:
@@ -53,6 +54,7 @@ def run_report(
     Args:
         run: opened; finished or not.
         signature: author, checker, revision.
+        every_variation: compute those too that would take long.
         told: a sentence for the user where something takes time or cannot be had.
         stop: asked now and then; true leaves out what has not been computed.
 
@@ -74,7 +76,8 @@ def run_report(
         variation_table(
             case,
             run.place.variations,
-            case_hash=str(result.get("case_hash")),
+            result=result,
+            every=every_variation,
             container=None if case.solver.model == "full" else model.container,
             told=told,
             stop=stop,

@@ -3,11 +3,15 @@
 import re
 
 import pytest
+from markupsafe import escape
 
 from fem.__main__ import main
 from fem.case import read_case
 from fem.opening import open_run
+from fem.report import variation_table as variation_table_module
 from fem.report.run_page import Signature, run_report
+from fem.report.variation_table import variation_table
+from fem.report.variations import by_importance, variations_of
 from fem.run import run_case
 
 HOSTILE = "</title><script>alert(1)</script> & co"
@@ -90,10 +94,39 @@ def test_the_case_in_the_page_is_the_one_that_was_run(page, folder):
 
 
 def test_variations_are_kept_beside_the_run(folder, page):
-    said = []
-    assert (folder / "variations.json").is_file()
-    run_report(open_run(folder), told=said.append)
+    said, run = [], open_run(folder)
+    table = variation_table(run.case, run.place.variations, result=run.result, told=said.append)
     assert said == []
+    assert table.left_out == () and all(escape(line.variation.change) in page for line in table.lines)
+
+
+def test_variations_that_take_long_are_named_and_computed_when_asked_for(folder, tmp_path, monkeypatch):
+    run = open_run(folder)
+    kept = tmp_path / "variations.json"
+    some = [one for one in variations_of(run.case) if one.subject in ("contact damping", "contact penalty")]
+    monkeypatch.setattr(variation_table_module, "variations_of", lambda case: some)
+    monkeypatch.setattr(variation_table_module, "AFFORDED_CPU_S", 0.0)
+    short = variation_table(run.case, kept, result=run.result)
+    known = {line.variation.command: line.row for line in short.lines}
+    assert len(known) == 4  # the run itself and those members of its band that differ in one thing
+    assert [one.change for one in short.left_out] == ["ratio 1", "ratio 4"]
+    again = variation_table(run.case, kept, result=run.result)
+    assert again == short  # not computed behind one's back by a second report
+    full = variation_table(run.case, kept, result=run.result, every=True)
+    assert full.left_out == ()
+    # A run that nobody has computed before comes to the same rows.
+    bare = {**run.result, "verdict": {**run.result["verdict"], "band": None}}
+    fresh = variation_table(run.case, tmp_path / "other.json", result=bare, every=True)
+    assert [line.row for line in fresh.lines] == [line.row for line in full.lines]
+
+
+def test_moderate_variations_of_every_subject_come_first(folder):
+    variations = list(variations_of(open_run(folder).case))
+    first = [variations[index] for index in by_importance(variations)]
+    subjects = {one.subject for one in variations}
+    assert {one.subject for one in first[: len(subjects)]} == subjects
+    frictions = [one.change.rpartition("× ")[2] for one in first if one.subject == "friction"]
+    assert frictions == ["0.75)", "1.25)", "0.5)", "1.5)"]
 
 
 class TestRefusals:
