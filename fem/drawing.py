@@ -73,6 +73,7 @@ TIME = "time [s]"
 NEAR_LIMIT = (
     0.15  #: share of the slenderness angle, or of the energy to overturn, from which it is drawn to scale
 )
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 STRETCHES = 800  #: of a long curve, each drawn by its extremes: finer than print
 
 
@@ -229,8 +230,10 @@ def zero_line(axes: Axes) -> None:
 
 
 def number(value: float, digits: int = 3) -> str:
-    """A number for people: 1350 rather than 1.35e+03, with a minus and not a hyphen."""
-    return f"{float(f'{value:.{digits}g}'):.{max(digits, 6)}g}".replace("-", "−")
+    """A number for people: 1350 rather than 1.35e+03, 2 × 10⁻⁵ rather than 2e-05, a minus and not a hyphen."""
+    mantissa, power, exponent = f"{float(f'{value:.{digits}g}'):.{max(digits, 6)}g}".partition("e")
+    tens = f" × 10{str(int(exponent)).translate(SUPERSCRIPTS)}" if power else ""
+    return mantissa.replace("-", "−") + tens
 
 
 def keep_visible(axes: Axes, least: float) -> None:

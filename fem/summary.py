@@ -196,7 +196,7 @@ def run_rows(result: Result) -> list[tuple[str, str]]:
         *_rigid_rows(result.get("rigid_check") or {}, static.get("slenderness_angle_rad")),
         ("energy closure", _closure(energy)),
         ("steps", _steps(numerics)),
-        ("time", _times(result, numerics)),
+        ("computed in", _times(result, numerics)),
     ]
     return [(name, value) for name, value in rows if value]
 
@@ -260,8 +260,8 @@ def _closure(energy: Mapping[str, Any]) -> str:
     error, reference, final = (energy.get(key) for key in ("closure_error", "reference_J", "numerical_J"))
     if error is None or reference is None:
         return ""
-    side = "" if not final else f", {'lost' if final > 0.0 else 'won'} by the stepping {abs(final):.2g} J"
-    return f"{error:.1e} of the {reference:.4g} J it takes to overturn{side}"
+    side = "" if not final else f"; the stepping {'lost' if final > 0.0 else 'won'} {abs(final):.3g} J"
+    return f"{error:.2g} of the {reference:.4g} J it takes to overturn{side}"
 
 
 def _steps(numerics: Mapping[str, Any]) -> str:

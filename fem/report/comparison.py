@@ -115,7 +115,8 @@ def assumptions(result: Result, case: Case) -> list[str]:
         "Linear elastic walls (finite rotation); the fill is mass without stiffness, fixed to its place.",
     ]
     if case.container.boxes > 1:
-        said.append("The boxes are bolted and do not part; what the joints carry is listed below.")
+        listed = "; what the joints carry is listed below" if result.get("joints") else ""
+        said.append(f"The boxes are bolted and do not part{listed}.")
     if case.solver.model == "rigid":
         said.append("The container is rigid: no elastic mode takes part.")
     return said

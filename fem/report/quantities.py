@@ -4,6 +4,7 @@ A trailing zero is kept where it is known (98.10, not 98.1), so that the figures
 """
 
 import math
+import re
 
 ABSENT = "–"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -37,6 +38,15 @@ def quantity(value: float | None, unit: str, factor: float = 1.0, figures: int =
 def degrees(value: float | None, figures: int = 4) -> str:
     """An angle given in radians."""
     return quantity(value, "°", 180.0 / math.pi, figures).replace("\u00a0", "")
+
+
+def typeset(text: str) -> str:
+    """A line made for a terminal as it stands in a page: true minus signs, powers of ten, m/s²."""
+    text = text.replace("m/s2", "m/s²")
+    text = re.sub(r"(?<![\w.)-])-(?=\d)", "−", text)
+    return re.sub(
+        r"(?<=\d)e([+-]\d+)\b", lambda power: f" × 10{str(int(power[1])).translate(SUPERSCRIPTS)}", text
+    )
 
 
 def _minus(text: str) -> str:

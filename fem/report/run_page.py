@@ -25,7 +25,7 @@ from fem.pages import Signature, render_page
 from fem.report.animation import Film, exaggeration, exaggerations, film_of, player_data
 from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions, compared_rows
 from fem.report.curves import Curve, curves_of
-from fem.report.quantities import degrees, number, quantity, short
+from fem.report.quantities import degrees, number, quantity, short, typeset
 from fem.report.sketch import sketch
 from fem.report.static_sheet import static_sheet
 from fem.report.stills import Still, colours, stills
@@ -38,7 +38,7 @@ from fem.summary_joints import JOINTS_NOTE
 MODES = 5  #: elastic modes in table and figure: one row of shapes
 COLOURS = 64  #: of the stress scale in the animation
 #: figures beside the animation, in the order of reading; the others stand in their own sections
-MOTION = ("rotation", "base_motion", "slip", "uplift", "forces", "phase_portrait", "energy")
+MOTION = ("rotation", "slip", "base_motion", "uplift", "forces", "phase_portrait", "energy")
 
 
 def run_report(
@@ -99,7 +99,7 @@ def run_report(
         result=result,
         verdict=verdict,
         static=static,
-        sentence=outcome_sentence(result),
+        sentence=typeset(outcome_sentence(result)),
         standing=_standing(run),
         signature=signature or Signature(),
         sketch=sketch(case, centroid=static["centroid_m"], peak_acceleration=peak),
@@ -108,14 +108,19 @@ def run_report(
         exclusions=EXCLUSIONS,
         compared=compared_rows(result, case),
         sheet=static_sheet(result, case),
-        found=run_rows(result),
+        found=[(name, typeset(value)) for name, value in run_rows(result)],
+        warnings=[typeset(warning) for warning in result.get("warnings") or ()],
         film=film,
         exaggerations=exaggerations(film, model.container.mesh.height),
         film_exaggeration=exaggeration(film, model.container.mesh.height),
         mode_figure=_mode_curve(model, modes, run.name),
         colours=colours(COLOURS),
         stills=_stills(film, history, model, verdict),
-        motion=[drawn[name] for name in MOTION if name in drawn],
+        motion=[
+            drawn[name]
+            for name in MOTION
+            if name in drawn and (name != "base_motion" or case.motion.kind != "none")
+        ],
         drawn=drawn,
         check=check,
         variations=variations,

@@ -90,7 +90,7 @@ def _instants(film: Film, history: History, verdict: Mapping[str, Any]) -> dict[
 
 
 def _caption(frame: Split, name: str, angle: float) -> str:
-    ratio = f"{frame.rotation / angle:.3f}".replace("-", "−")
+    ratio = f"{round(frame.rotation / angle, 3) + 0.0:.3f}".replace("-", "−")  # never −0.000
     return f"t = {frame.time:.3f} s, {name}; rotation ratio {ratio}"
 
 

@@ -10,7 +10,7 @@ from markupsafe import Markup
 from fem.case import load_case
 from fem.pages import Signature, render_page, svg_element
 from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions
-from fem.report.quantities import number, short
+from fem.report.quantities import number, short, typeset
 from fem.report.sweep_data import QUANTITIES, axis_label, counts, failures, map_data
 from fem.run_folder import FolderError
 from fem.sweep.table import SweepTable, open_sweep
@@ -71,7 +71,7 @@ def _axis_row(key: str, unit: str, values: tuple[object, ...], scale: str) -> tu
     else:
         words = ", ".join(str(value) for value in values[:12]) + (" ..." if len(values) > 12 else "")
         words += f" {unit}" if unit else ""
-    return key, words, str(len(values))
+    return key, typeset(words), str(len(values))
 
 
 def _longest(table: SweepTable) -> tuple[int, int]:

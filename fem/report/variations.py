@@ -95,7 +95,7 @@ def _strengths(case: Case) -> Iterator[Variation]:
         if motion.kind != "table":
             shown = f", peak {quantity(factor * (case.nominal_peak_acceleration or 0.0), 'm/s²', figures=3)}"
         yield Variation(
-            subject="strength of the motion",
+            subject="strength",
             change=f"× {factor:g}{shown}",
             values={f"motion.{key}": factor * given},
         )

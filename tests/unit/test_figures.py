@@ -315,7 +315,7 @@ def test_a_fault_in_the_drawing_does_not_spoil_a_run(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(1349.6, "1350"), (-0.00184, "−0.00184"), (0.0, "0"), (5e-9, "5e−09"), (15.376, "15.4")],
+    [(1349.6, "1350"), (-0.00184, "−0.00184"), (0.0, "0"), (5e-9, "5 × 10⁻⁹"), (15.376, "15.4")],
 )
 def test_numbers_are_for_people(value, text):
     assert number(value) == text

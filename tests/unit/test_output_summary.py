@@ -151,7 +151,7 @@ def test_run_table_holds_what_the_run_found_in_units_for_people():
         "117.6 mm",
         "210.5 kN",
         "0.895 (Housner 0.894)",
-        "1.0e-05 of the 7300 J it takes to overturn, lost by the stepping 0.05 J",
+        "1e-05 of the 7300 J it takes to overturn; the stepping lost 0.05 J",
         "12000, 100 rejected, 23 unknowns",
     ):
         assert words in text

@@ -9,6 +9,7 @@ from fem.__main__ import main
 from fem.case import read_case
 from fem.opening import open_run
 from fem.report import variation_table as variation_table_module
+from fem.report.quantities import typeset
 from fem.report.run_page import Signature, run_report
 from fem.report.variation_table import variation_table
 from fem.report.variations import by_importance, variations_of
@@ -142,3 +143,16 @@ class TestRefusals:
         (tmp_path / "study.json").write_text('{"groups": 3}')
         assert main(["report", str(tmp_path)]) == 2
         assert "not the result of a study" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("line", "shown"),
+    [
+        ("192.2, -184.3 mm", "192.2, −184.3 mm"),
+        ("6.5e-05 of it, 172 m/s2", "6.5 × 10⁻⁵ of it, 172 m/s²"),
+        ("2.5e+06 N (-3)", "2.5 × 10⁶ N (−3)"),
+        ("EN 1998-1:2004, 2026-11-21, slide-rock", "EN 1998-1:2004, 2026-11-21, slide-rock"),
+    ],
+)
+def test_lines_of_the_summary_are_typeset_in_the_page(line, shown):
+    assert typeset(line) == shown
