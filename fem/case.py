@@ -165,6 +165,15 @@ class Case(Heading):
         """
         return _read(with_overrides(self.given(), values), self.origin_with(values), values)
 
+    def without_fields(self) -> "Case":
+        """This case without frames; not read again, for nothing depends on them."""
+        if self.output.fields_s == 0.0:
+            return self
+        output = self.output.model_copy(update={"fields_s": 0.0})
+        return self.model_copy(update={"output": output}).from_origin(
+            self.origin_with({"output.fields_s": 0.0})
+        )
+
     def origin_with(self, values: Mapping[str, Any]) -> Origin:
         """Where this case with dotted keys set comes from."""
         overrides = (*self.overrides, *(f"{key}={value}" for key, value in values.items()))

@@ -82,12 +82,12 @@ class ContainerMesh:
                 f"the base must be centred on x = 0, it reaches from x = {corners[0]} to {corners[1]} m"
             )
 
-    @property
+    @cached_property
     def width(self) -> float:
         """Largest extent along x [m]."""
         return float(np.ptp(self.points[:, 0]))
 
-    @property
+    @cached_property
     def height(self) -> float:
         """Largest extent along z, all boxes [m]."""
         return float(np.ptp(self.points[:, 1]))

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
@@ -42,7 +43,7 @@ class Axis:
     scale: str = "list"  #: linear | log | list
     unit: str = ""  #: of the key
 
-    @property
+    @cached_property
     def is_numeric(self) -> bool:
         """Whether its values are numbers that rise, so that cells have neighbours along it."""
         numbers = [value for value in self.values if not isinstance(value, bool | str)]

@@ -171,7 +171,7 @@ class Sweep:
 
     @cached_property
     def _make(self) -> CaseMaker:
-        return CaseMaker(self.base)
+        return CaseMaker(self.base.without_fields())
 
     def _value_of(self, key: str, values: Mapping[str, Any]) -> float:
         """Value of a key that an expression refers to: set here, given in the base, or a default."""

@@ -211,9 +211,7 @@ def _prepare(make: Callable[[ItemT], Case], item: ItemT, before: Model | None) -
     It stands as the one before does, if nothing but the motion of the floor is another.
     """
     try:
-        case = make(item)
-        if case.output.fields_s > 0.0:
-            case = case.with_values({"output.fields_s": 0.0})
+        case = make(item).without_fields()
         if case.solver.model == "full":
             return _run_full(case)
         container = _SHELF.container_of(case)

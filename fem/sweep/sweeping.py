@@ -485,9 +485,11 @@ class _Work:
             widths = [band_width(axes, unsure, k).ravel() for k, axis in enumerate(axes) if axis.is_numeric]
             unsure = unsure.ravel()
 
+        columns = band_columns(axes)
+
         def whole(cell: int) -> str:
             if band is None or unsure is None:
-                return found.lines[cell] + "," * len(band_columns(axes))
+                return found.lines[cell] + "," * len(columns)
             copies = band.members.get(cell, {}).values()
             ratios = [copy.ratio for copy in copies if copy.ratio is not None]
             low = high = None
@@ -499,7 +501,7 @@ class _Work:
 
         write_table(
             self.place.table,
-            (*self._columns, *band_columns(axes)),
+            (*self._columns, *columns),
             (whole(cell) for cell in range(self.sweep.count)),
         )
         return unsure

@@ -46,6 +46,8 @@ def seconds(sweep: Sweep, jobs: int) -> tuple[float, float, dict[str, Any]]:
     with tempfile.TemporaryDirectory() as folder:
         began = time.perf_counter(), time.process_time()
         info = run_sweep(sweep, Path(folder) / "map", jobs=jobs)
+        if info["status"] != "completed":
+            raise RuntimeError(f"the sweep was {info['status']}: its time means nothing")
         return time.perf_counter() - began[0], time.process_time() - began[1], info
 
 

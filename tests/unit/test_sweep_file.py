@@ -43,7 +43,7 @@ def test_a_cell_is_the_base_with_its_keys_set(sweep_of):
     )
     for cell in range(sweep.count):
         case = sweep.case(cell)
-        long_way = sweep.base.with_values(sweep.values(sweep.point(cell)))
+        long_way = sweep.base.with_values(sweep.values(sweep.point(cell)) | {"output.fields_s": 0.0})
         assert case == long_way
         assert case.given() == long_way.given()
         assert case_hash(case) == case_hash(long_way)
