@@ -16,9 +16,15 @@ from typing import Any
 import numpy as np
 
 from fem.folder_lock import held_folder
-from fem.run_folder import FolderError, to_json, write_atomically
+from fem.program import program_identity, versions
+from fem.run_folder import FolderError, naming_what_cannot_be_written, to_json, write_atomically
 
 COMPLETED = "completed"
+
+
+def program_of_results() -> dict[str, Any]:
+    """What every marking file says of the program that made it: only such results are gone on with."""
+    return {"program": program_identity()["sources"], "versions": versions()}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,6 +103,7 @@ def opened_result_folder(
     Raises:
         FolderError: it holds something else (without `force`), is no folder, or cannot be written.
         FolderLockedError: another process writes into it.
+        OutputError: in the place of an OSError on the way.
     """
     _look_into(path, mark=mark, kind=kind, asked=asked, force=force)
     try:
@@ -108,12 +115,18 @@ def opened_result_folder(
     with held_folder(path):
         found = _look_into(path, mark=mark, kind=kind, asked=asked, force=force)
         same = found.get("asked") == asked and not force
+        by_another = any(found.get(key) != value for key, value in program_of_results().items())
+        if same and resume and found.get("status") != COMPLETED and by_another:
+            raise FolderError(
+                f"{path} holds this {kind}, unfinished, by another version of the program or of its libraries; --force "
+                "begins anew"
+            )
         if same and found.get("status") == COMPLETED:
             yield ResultFolder(path=path, mark=mark, finished=found)
             return
         folder = ResultFolder(path=path, mark=mark)
         try:
-            folder.write_result({"status": "running", "asked": asked})
+            folder.write_result({"status": "running", "asked": asked} | program_of_results())
             if not (same and resume):
                 for pattern in own:
                     for file in path.glob(pattern):
@@ -122,7 +135,8 @@ def opened_result_folder(
             raise FolderError(
                 f"{path}: cannot be written ({error.strerror}); choose another folder with --out DIR"
             ) from None
-        yield folder
+        with naming_what_cannot_be_written(path, "--resume goes on"):
+            yield folder
 
 
 def _look_into(path: Path, *, mark: str, kind: str, asked: str, force: bool) -> dict[str, Any]:

@@ -37,6 +37,7 @@ from fem.rigid_check import check_against_rigid_block, wants_rigid_check
 from fem.run_folder import (
     FINISHED,
     FolderError,
+    OutputError,
     RunFolder,
     finished_run,
     open_run_folder,
@@ -66,12 +67,6 @@ class RunResult:
     status: str  #: completed | overturned | failed | interrupted
     result: dict[str, Any]  #: as in run.json
     history: History
-
-
-class OutputError(RuntimeError):
-    """Results could not be written any more; the message says where and why, and how to go on."""
-
-    exit_code = 3
 
 
 def run_case(

@@ -10,7 +10,8 @@ import json
 import math
 import os
 import shutil
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,32 @@ STATUSES = FINISHED | {"failed", "interrupted", "running"}
 
 class FolderError(ValueError):
     """The folder of results cannot be used as asked; the message names the way out."""
+
+
+class OutputError(RuntimeError):
+    """Results could not be written any more; the message says where and why, and how to go on."""
+
+    exit_code = 3
+
+
+@contextmanager
+def naming_what_cannot_be_written(folder: Path, way_on: str) -> Iterator[None]:
+    """Turn a disk that is full, or a folder that is gone, into a message.
+
+    Args:
+        folder: of the results.
+        way_on: what to do when there is room again.
+
+    Raises:
+        OutputError: in the place of an OSError.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise OutputError(
+            f"{error.filename or folder}: cannot be written ({error.strerror or error}); what was written before can "
+            f"be read; when there is room again, {way_on}"
+        ) from None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -96,7 +96,8 @@ def page_of(info: dict[str, Any], folder: Path) -> str:
             f"  {'unsure':12} {info['unsure']:>8}  {100.0 * info['unsure'] / max(info['rows'], 1):5.1f} %  "
             f"of {info['perturbed']} cells perturbed"
         )
-    lines.append(f"  {folder}: table.csv, sweep.json" + "".join(f", {name}" for name in info["maps"]))
+    table = "rows.csv" if info["status"] == "interrupted" else "table.csv"
+    lines.append(f"  {folder}: {table}, sweep.json" + "".join(f", {name}" for name in info["maps"]))
     if info["changes"] is not None:
         lines.append(f"  {folder}: thresholds.csv, {info['changes']} changes of outcome closed in on")
     if info["status"] == "interrupted":

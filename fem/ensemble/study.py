@@ -28,8 +28,8 @@ from fem.ensemble.counting import (
 from fem.ensemble.figures import ensemble_figures
 from fem.ensemble.plan import Ensemble
 from fem.progress import Reporter, SilentReporter, clock_time
-from fem.result_folder import COMPLETED, ResultFolder, opened_result_folder
-from fem.run import interruptible, versions
+from fem.result_folder import COMPLETED, ResultFolder, opened_result_folder, program_of_results
+from fem.run import interruptible
 from fem.run_folder import FolderError
 from fem.sweep.running import Row, run_cases
 
@@ -138,8 +138,7 @@ def result_of(
         "regions": {name: regions.count(name) for name in ("below", "undecided", "above")},
         "failed": sum(point.failed for point in points),
         "fragility": fragility,
-        "versions": versions(),
-    }
+    } | program_of_results()
 
 
 def page_of(result: dict[str, Any], folder: Path) -> str:

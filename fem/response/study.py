@@ -28,8 +28,8 @@ from fem.response.record import (
     record_of,
 )
 from fem.response.request import ResponseRequest
-from fem.result_folder import COMPLETED, ResultFolder, opened_result_folder
-from fem.run import interruptible, versions
+from fem.result_folder import COMPLETED, ResultFolder, opened_result_folder, program_of_results
+from fem.run import interruptible
 from fem.run_folder import FolderError
 from fem.verdict import MODE_NAMES
 
@@ -95,8 +95,7 @@ def result_of(request: ResponseRequest, records: Sequence[Record], status: str) 
         "points": [dict(record.row) for record in records],
         **branches_of(records),
         "stable_everywhere": all(record.row["stable"] for record in records) if records else None,
-        "versions": versions(),
-    }
+    } | program_of_results()
 
 
 def page_of(request: ResponseRequest, result: Mapping[str, Any], folder: Path) -> str:

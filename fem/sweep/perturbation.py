@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from fem.case import Case
-from fem.case_quantities import Quantity
+from fem.case_quantities import CONTACT_DAMPING, Quantity
 from fem.case_tables import Table
 
 SHARE = Quantity(unit="", least=0.0, most=0.5, advice="0.02 is two per cent")
@@ -39,7 +39,7 @@ class Perturbation(Table):
     phase_rad: Annotated[float, PHASE_STEP] = Field(
         default=0.3142, description="added to and taken from the phase; a twentieth of a turn"
     )
-    contact_damping_ratios: list[float] = Field(
+    contact_damping_ratios: list[Annotated[float, CONTACT_DAMPING]] = Field(
         default=[0.5, 1.0, 2.0], description="tried in place of the cell's own"
     )
     close: Annotated[float, CLOSE] = Field(

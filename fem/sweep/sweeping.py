@@ -20,6 +20,7 @@ from fem.folder_lock import held_folder
 from fem.program import program_identity, versions
 from fem.progress import Reporter, SilentReporter, clock_time
 from fem.run import copy_data_files, interruptible
+from fem.run_folder import naming_what_cannot_be_written
 from fem.simulation import cores
 from fem.sweep.band import (
     KIND_NAMES,
@@ -145,11 +146,12 @@ def run_sweep(
         FolderError: the folder holds something else.
         FolderLockedError: another process writes into it.
         WorkersLostError: a worker died; what was computed is kept.
+        OutputError: the disk is full, the folder was removed; what was written is kept.
     """
     reporter = reporter or SilentReporter()
     jobs = jobs or cores()
     check_size(sweep, jobs, force)
-    with held_folder(folder), interruptible(reporter) as stop:
+    with held_folder(folder) as lock, interruptible(reporter) as stop:
         place = open_sweep_folder(folder, sweep, force=force, resume=resume)
         if place.finished:
             reporter.message(f"{folder} holds this sweep already; --force computes it again")
@@ -160,8 +162,10 @@ def run_sweep(
             reporter=reporter,
             workers_of=workers_of or (lambda model: local_workers(model, jobs)),
             info=_asked(sweep) | {"jobs": jobs},
+            check=lock.check,
         )
-        return work.run(stop)
+        with naming_what_cannot_be_written(folder, "--resume goes on"):
+            return work.run(stop)
 
 
 def _with_maps(place: SweepFolder, sweep: Sweep) -> dict[str, Any]:
@@ -240,6 +244,7 @@ class _Work:
     reporter: Reporter
     workers_of: WorkersOf
     info: dict[str, Any]
+    check: Callable[[], None]  #: raises FolderLostError once the folder is another's
     _noted: float = 0.0
 
     def run(self, stop: Callable[[], bool]) -> dict[str, Any]:
@@ -258,6 +263,7 @@ class _Work:
         if stop():
             self.info["status"] = "interrupted"
         else:
+            self.check()
             unsure = self._write_table(found, band)
             if band is not None:
                 write_table(self.place.members, MEMBER_COLUMNS, band.lines())
@@ -512,6 +518,7 @@ class _Work:
         if not force and now - self._noted < NOTE_S:
             return
         self._noted = now
+        self.check()
         self.info["rows"] = len(found.lines)
         self.info["outcomes"] = dict(sorted(found.outcomes.items()))
         write_info(self.place, self.info)

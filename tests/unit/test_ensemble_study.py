@@ -1,7 +1,9 @@
 """An ensemble from its file to its folder: seeded, the same on any number of cores, resumed, and refused."""
 
 import csv
+import errno
 import json
+import os
 
 import numpy as np
 import pytest
@@ -16,6 +18,7 @@ from fem.ensemble.plan import Ensemble
 from fem.ensemble.scatter import draw_shares, read_random
 from fem.ensemble.shipped import SHIPPED_ENSEMBLES
 from fem.ensemble.study import code_of, run_ensemble
+from fem.run_folder import FolderError, OutputError
 
 FILE = """
 case = "seed_stack_plateau"
@@ -95,6 +98,27 @@ def test_the_same_seed_gives_the_same_files_on_any_number_of_cores_and_after_a_c
     for point in one.points:
         found = [row["outcome"] for row in rows[8 * one.points.index(point) :][:8]]
         assert found.count("overturned") == point.overturned
+
+
+def test_draws_of_another_program_are_not_gone_on_with(tmp_path, monkeypatch):
+    ensemble = load_ensemble(written(tmp_path))
+    folder = tmp_path / "out"
+    with monkeypatch.context() as patch:
+        patch.setattr("fem.result_folder.program_identity", lambda: {"sources": "other"})
+        patch.setattr(study, "run_cases", lambda cases, **options: (_ for _ in ()).throw(KeyboardInterrupt))
+        with pytest.raises(KeyboardInterrupt):
+            run_ensemble(ensemble, folder=folder)
+    with pytest.raises(FolderError, match="another version of the program or of its libraries; --force"):
+        run_ensemble(ensemble, folder=folder, resume=True)
+
+
+def test_a_disk_that_fills_up_is_told_with_the_file_and_the_way_on(tmp_path, monkeypatch):
+    def full(self, name, arrays):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(self.path / name))
+
+    monkeypatch.setattr("fem.result_folder.ResultFolder.write_arrays", full)
+    with pytest.raises(OutputError, match=r"state.npz: cannot be written \(No space left.*--resume goes on"):
+        run_ensemble(load_ensemble(written(tmp_path)), folder=tmp_path / "out")
 
 
 def test_another_seed_draws_others_and_a_point_does_not_depend_on_its_neighbours():

@@ -118,6 +118,10 @@ def test_a_default_that_follows_an_axis_is_the_cells_own(sweep_of):
         (f'[axes]\n{FREQUENCY}[derived]\n{FREQUENCY.split("=")[0]} = "1.0"\n', ["is an axis already"]),
         (f"[axes]\n{FREQUENCY}[threshold]\naxis = 'contact.mu_static'\n", ["none of the axes"]),
         (f"[axes]\n{FREQUENCY}[perturbation]\nmue = 0.02\n", ["unknown key 'mue'", "did you mean 'mu'"]),
+        (
+            f"[axes]\n{FREQUENCY}[perturbation]\ncontact_damping_ratios = [0.5, -1.0]\n",
+            ["[perturbation] contact_damping_ratios", "-1"],
+        ),
         (f"[axes]\n{FREQUENCY}[maps]\nx = 'contact.mu_static'\n", ["[maps]", "none of the axes"]),
         (f"[axis]\n{FREQUENCY}", ["unknown table", "did you mean 'axes'"]),
     ],

@@ -1,8 +1,10 @@
 """A sweep from its file to its table: the same whatever the jobs, cut off or not."""
 
+import errno
 import json
 import os
 import random
+import shutil
 import subprocess
 import sys
 import time
@@ -14,10 +16,11 @@ from small_sweep import SMALL, rows_without_wall
 
 from fem.__main__ import main
 from fem.case_reading import CaseError
-from fem.run_folder import FolderError
+from fem.run_folder import FolderError, OutputError
+from fem.sweep.band import around
 from fem.sweep.file import load_sweep
 from fem.sweep.sweeping import check_size, run_sweep
-from fem.sweep.table import open_sweep
+from fem.sweep.table import RowLog, open_sweep
 
 ROOT = Path(__file__).parents[2]
 
@@ -212,6 +215,44 @@ def test_a_kill_while_the_band_is_changed_leaves_no_copies_of_the_other(small, t
         mine, alone = ((one / name).read_text().splitlines() for one in (folder, tmp_path / "alone"))
         assert [line.split(",")[1:3] for line in mine] == [line.split(",")[1:3] for line in alone]
     assert rows_without_wall(folder) == rows_without_wall(tmp_path / "alone")
+
+
+def test_a_disk_that_fills_up_is_told_with_the_way_on(small, tmp_path, monkeypatch):
+    folder = tmp_path / "out"
+    append, written = RowLog.append, []
+
+    def filling(self, lines):
+        if written:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        written.extend(lines)
+        append(self, lines)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(RowLog, "append", filling)
+        with pytest.raises(
+            OutputError, match=r"out: cannot be written \(No space left.*--resume goes on"
+        ) as told:
+            run_sweep(small, folder, jobs=1)
+    assert told.value.exit_code == 3
+    assert run_sweep(small, folder, resume=True)["status"] == "completed"
+    run_sweep(small, tmp_path / "alone")
+    assert rows_without_wall(folder) == rows_without_wall(tmp_path / "alone")
+
+
+def test_a_folder_that_another_took_is_left_alone(small, tmp_path, monkeypatch):
+    folder = tmp_path / "out"
+    draw = around
+
+    def taken(axes, cells):
+        shutil.rmtree(folder)
+        folder.mkdir()
+        (folder / "sweep.json").write_text("another's")
+        return draw(axes, cells)
+
+    monkeypatch.setattr("fem.sweep.sweeping.around", taken)
+    with pytest.raises(OutputError, match="emptied or taken by another"):
+        run_sweep(small, folder)
+    assert (folder / "sweep.json").read_text() == "another's"
 
 
 def test_rows_of_another_library_are_not_gone_on_with(small, tmp_path):
