@@ -7,6 +7,7 @@ floating frame with elastic modes, `fem.nodal_body` for the nodes of a mesh; cal
 of the body. The stepper is written once, against these functions.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -37,26 +38,32 @@ class State(NamedTuple):
     pose: FloatArray  #: (6,) best-fit rotation, its rate, mass centre and its velocity (absolute)
     energy: FloatArray  #: (3,) kinetic, strain, gravity potential [J]
     monitor: FloatArray  #: (n_m, 4) monitored points: displacement relative to the floor [m], velocity [m/s]
+    numbers: FloatArray  #: all of it but the monitored points: the other fields look into it
 
 
 def make_state(coordinates: int, points: int, monitors: int) -> State:
     """Allocate a state of so many coordinates, base points and monitored points."""
-    return State(
-        position=np.zeros(coordinates),
-        velocity=np.zeros(coordinates),
-        acceleration=np.zeros(coordinates),
-        jerk=np.zeros(coordinates),
-        internal=np.zeros(coordinates),
-        damping=np.zeros(coordinates),
-        external=np.zeros(coordinates),
-        point=np.zeros((points, 2)),
-        force=np.zeros((points, 2)),
-        descent=np.zeros((points, 2)),
-        stick=np.zeros(points),
-        pose=np.zeros(6),
-        energy=np.zeros(3),
-        monitor=np.zeros((monitors, 4)),
-    )
+    vector, pairs = (coordinates,), (points, 2)
+    shapes = {
+        "position": vector,
+        "velocity": vector,
+        "acceleration": vector,
+        "jerk": vector,
+        "internal": vector,
+        "damping": vector,
+        "external": vector,
+        "point": pairs,
+        "force": pairs,
+        "descent": pairs,
+        "stick": (points,),
+        "pose": (6,),
+        "energy": (3,),
+    }
+    ends = np.cumsum([math.prod(shape) for shape in shapes.values()])
+    numbers = np.zeros(ends[-1])
+    parts = np.split(numbers, ends[:-1])
+    fields = {name: part.reshape(shape) for (name, shape), part in zip(shapes.items(), parts, strict=True)}
+    return State(**fields, monitor=np.zeros((monitors, 4)), numbers=numbers)
 
 
 def predict(body: Any, scheme: Scheme, step: float, old: State, new: State) -> None:

@@ -7,6 +7,7 @@ make these data, and say what they mean, stand in `contact.motion`.
 """
 
 import math
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -39,7 +40,7 @@ class FloorMotion(NamedTuple):
     coefficients: FloatArray
 
 
-@compiled
+@partial(compiled, inline=True)
 def _window(u: float) -> tuple[float, float, float]:
     """Smooth step from 0 at u <= 0 to 1 at u >= 1, and its first two derivatives; C2 (quintic Hermite)."""
     if u <= 0.0:
@@ -50,7 +51,7 @@ def _window(u: float) -> tuple[float, float, float]:
     return u * u * u * (10.0 - 15.0 * u + 6.0 * u * u), 30.0 * u * u * v * v, 60.0 * u * v * (v - u)
 
 
-@compiled
+@partial(compiled, inline=True)
 def _harmonic(parameters: FloatArray, time: float) -> tuple[float, float, float]:
     amplitude, omega, phase, ramp, end = parameters
     if time >= end:
@@ -102,7 +103,7 @@ def _piecewise(breaks: FloatArray, coefficients: FloatArray, time: float) -> tup
     )
 
 
-@compiled
+@partial(compiled, inline=True)
 def floor_motion(motion: FloorMotion, time: float) -> tuple[float, float, float]:
     """Displacement [m], velocity [m/s] and acceleration [m/s2] of the floor at `time` [s]."""
     if motion.kind == HARMONIC:

@@ -150,23 +150,21 @@ def _evaluate_laws(
 evaluate_laws = compiled(_evaluate_laws, inline=True)
 
 
-def _turn_compliance(
-    compliance: FloatArray, cosine: float, sine: float, share: float, out: FloatArray
-) -> None:
-    """`share` R C R^T of every 2 x 2 block of a compliance (2 n, 2 n), R = [[cos, sin], [-sin, cos]]."""
+def _add_turned(compliance: FloatArray, cosine: float, sine: float, share: float, out: FloatArray) -> None:
+    """Add `share` R C R^T of every 2 x 2 block of a compliance (2 n, 2 n), R = [[cos, sin], [-sin, cos]]."""
     for i in range(compliance.shape[0] // 2):
         for j in range(compliance.shape[1] // 2):
             xx, xz = compliance[2 * i, 2 * j], compliance[2 * i, 2 * j + 1]
             zx, zz = compliance[2 * i + 1, 2 * j], compliance[2 * i + 1, 2 * j + 1]
             ax, az = cosine * xx + sine * zx, cosine * xz + sine * zz
             bx, bz = -sine * xx + cosine * zx, -sine * xz + cosine * zz
-            out[2 * i, 2 * j] = share * (ax * cosine + az * sine)
-            out[2 * i, 2 * j + 1] = share * (-ax * sine + az * cosine)
-            out[2 * i + 1, 2 * j] = share * (bx * cosine + bz * sine)
-            out[2 * i + 1, 2 * j + 1] = share * (-bx * sine + bz * cosine)
+            out[2 * i, 2 * j] += share * (ax * cosine + az * sine)
+            out[2 * i, 2 * j + 1] += share * (-ax * sine + az * cosine)
+            out[2 * i + 1, 2 * j] += share * (bx * cosine + bz * sine)
+            out[2 * i + 1, 2 * j + 1] += share * (-bx * sine + bz * cosine)
 
 
-turn_compliance = compiled(_turn_compliance, inline=True)
+add_turned = compiled(_add_turned, inline=True)
 
 
 def _move_points(velocity_slope: float, force: FloatArray, work: Workspace) -> None:

@@ -34,7 +34,7 @@ def _normal_force(
     """
     if penetration <= 0.0:
         return 0.0, 0.0, 0.0
-    if rate < penetration / step:
+    if rate * step < penetration:
         force = stiffness * penetration + damping * rate
         if force <= 0.0:
             return 0.0, 0.0, 0.0

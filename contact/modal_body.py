@@ -32,7 +32,7 @@ from contact.body import (
 )
 from contact.compiled import compiled
 from contact.initial import Stance
-from contact.interface import FloatArray, Workspace, turn_compliance
+from contact.interface import FloatArray, IntArray, Workspace, add_turned
 from contact.scheme import Scheme
 
 STEP_SLOTS = 16  #: step sizes whose effective compliance is kept
@@ -54,6 +54,7 @@ class ModalBody(NamedTuple):
     tolerance: float  #: error of a base point at which an iteration stops [m]
     #: scratch, rewritten by the stepper: for each of so many step sizes ..
     cached_step: FloatArray  #: (slots + 1,) the step [s]; last, the slot to use next
+    recent: IntArray  #: (1,) the slot asked for last
     inverse: FloatArray  #: (slots, 3 + m) inverse effective masses
     elastic_compliance: FloatArray  #: (slots, 2 n, 2 n) effective compliance of the modes, body's frame [m/N]
     arm: FloatArray  #: (n, 2) base points relative to the mass centre, turned
@@ -105,6 +106,7 @@ def make_modal_body(
         damping=2.0 * zeta * omega,
         tolerance=float(tolerance),
         cached_step=np.append(np.full(STEP_SLOTS, -1.0), 0.0),
+        recent=np.zeros(1, dtype=np.int64),
         inverse=np.zeros((STEP_SLOTS, 3 + m)),
         elastic_compliance=np.zeros((STEP_SLOTS, 2 * n, 2 * n)),
         arm=np.zeros((n, 2)),
@@ -129,6 +131,7 @@ def with_own_scratch(body: ModalBody) -> ModalBody:
         monitor=np.zeros((0, 2)),
         monitor_shape=np.zeros((0, 2, body.stiffness.size)),
         cached_step=np.append(np.full(STEP_SLOTS, -1.0), 0.0),
+        recent=np.zeros(1, dtype=np.int64),
         inverse=np.zeros_like(body.inverse),
         elastic_compliance=np.zeros_like(body.elastic_compliance),
         arm=np.zeros_like(body.arm),
@@ -147,13 +150,16 @@ def _predict(body: ModalBody, scheme: Scheme, step: float, old: State, new: Stat
 
 def _effective_slot(body: ModalBody, scheme: Scheme, step: float) -> int:
     """Where the inverse effective masses and the elastic compliance of this step size lie; made if missing."""
+    if body.cached_step[body.recent[0]] == step:
+        return body.recent[0]
     slots = body.cached_step.size - 1
     for slot in range(slots):
         if body.cached_step[slot] == step:
+            body.recent[0] = slot
             return slot
     slot = int(body.cached_step[slots])  # the oldest makes room
     body.cached_step[slots] = (slot + 1) % slots
-    body.cached_step[slot] = step
+    body.cached_step[slot], body.recent[0] = step, slot
     m = body.stiffness.size
     now = 1.0 - scheme.alpha_f
     inertial = (1.0 - scheme.alpha_m) / (scheme.newmark_beta * step * step)
@@ -254,14 +260,15 @@ def _release(
         work.free[i, 1] += moved_z
         work.free_velocity[i, 0] += slope * moved_x
         work.free_velocity[i, 1] += slope * moved_z
-    turn_compliance(body.elastic_compliance[slot], cosine, sine, now, work.compliance)
     drift, turn = now * inverse[0], now * inverse[2]
     for i in range(n):
         for j in range(n):
-            work.compliance[2 * i, 2 * j] += drift + turn * body.arm[i, 1] * body.arm[j, 1]
-            work.compliance[2 * i, 2 * j + 1] -= turn * body.arm[i, 1] * body.arm[j, 0]
-            work.compliance[2 * i + 1, 2 * j] -= turn * body.arm[i, 0] * body.arm[j, 1]
-            work.compliance[2 * i + 1, 2 * j + 1] += drift + turn * body.arm[i, 0] * body.arm[j, 0]
+            work.compliance[2 * i, 2 * j] = drift + turn * body.arm[i, 1] * body.arm[j, 1]
+            work.compliance[2 * i, 2 * j + 1] = -turn * body.arm[i, 1] * body.arm[j, 0]
+            work.compliance[2 * i + 1, 2 * j] = -turn * body.arm[i, 0] * body.arm[j, 1]
+            work.compliance[2 * i + 1, 2 * j + 1] = drift + turn * body.arm[i, 0] * body.arm[j, 0]
+    if m > 0:
+        add_turned(body.elastic_compliance[slot], cosine, sine, now, work.compliance)
 
 
 def _gather_force(
@@ -381,6 +388,8 @@ def _state_of_block_on_corners(state: State) -> bool:
     if state.external.size != 3 or state.pose.size != 6 or state.energy.size != 3 or state.stick.size != 2:
         return False
     if state.point.shape[0] != 2 or state.force.shape[0] != 2 or state.descent.shape[0] != 2:
+        return False
+    if state.numbers.size != 44:
         return False
     return bool(state.point.shape[1] == 2 and state.force.shape[1] == 2 and state.descent.shape[1] == 2)
 

@@ -10,6 +10,7 @@ ledger shows that the step lost or won more than its share; it grows by 2^(1/3) 
 contact solver and ledger.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -62,6 +63,7 @@ ITERATION_LIMIT = 12  #: of free motion, contact, response within one step
 WEAKENING_LIMIT = 8  #: repetitions of a step for friction that falls with its slip
 WEAKENING_TOLERANCE = 1e-9  #: change of the coefficient at which they end
 STEPS_PER_OCTAVE = 3  #: of the ladder of step sizes
+OCTAVE = tuple(2.0 ** (-level / STEPS_PER_OCTAVE) for level in range(STEPS_PER_OCTAVE))  #: its first steps
 NEIGHBOUR = 0.25  #: base points nearer than this, over the width, close as one
 HELD_STEPS = 6  #: after a rejection
 ROOM_SHARE = 0.1  #: of what is left before the ledger wins, for the gain of one step
@@ -290,11 +292,12 @@ rebase_acceleration = compiled(_rebase_acceleration, inline=True)
 
 def _note_rates(step: float, old: State, new: State, work: Workspace) -> None:
     """Velocities of the base points and rates of change over the step, for the step control."""
+    per_second = 1.0 / step
     for i in range(new.descent.shape[0]):
         new.descent[i, 0] = -work.velocity[i, 1]
-        new.descent[i, 1] = (new.descent[i, 0] - old.descent[i, 0]) / step
+        new.descent[i, 1] = (new.descent[i, 0] - old.descent[i, 0]) * per_second
     for j in range(new.jerk.size):
-        new.jerk[j] = (new.acceleration[j] - old.acceleration[j]) / step
+        new.jerk[j] = (new.acceleration[j] - old.acceleration[j]) * per_second
 
 
 note_rates = compiled(_note_rates, inline=True)
@@ -403,19 +406,7 @@ account = compiled(_account, inline=True)
 
 
 def _copy_state(old: State, new: State) -> None:
-    copy_vector(old.position, new.position)
-    copy_vector(old.velocity, new.velocity)
-    copy_vector(old.acceleration, new.acceleration)
-    copy_vector(old.jerk, new.jerk)
-    copy_vector(old.internal, new.internal)
-    copy_vector(old.damping, new.damping)
-    copy_vector(old.external, new.external)
-    copy_rows(old.point, new.point)
-    copy_rows(old.force, new.force)
-    copy_rows(old.descent, new.descent)
-    copy_vector(old.stick, new.stick)
-    copy_vector(old.pose, new.pose)
-    copy_vector(old.energy, new.energy)
+    copy_vector(old.numbers, new.numbers)
 
 
 copy_state = compiled(_copy_state, inline=True)
@@ -586,20 +577,20 @@ def _next_step(run: Run) -> float:
     An instant that a step must end on: the step ends there.
     """
     clock, control = run.clock[0], run.control
-    step = control.largest_step * 2.0 ** (-clock.level / STEPS_PER_OCTAVE)
+    step = ladder_step(control.largest_step, clock.level)
     if step > control.closing_step:
         due = max(closing_time(control, run.old, step), control.closing_step)
         if (
             due < step
         ):  # on the ladder, just short of it: a new step size is dear to a body that factors a matrix
             due_level = ladder_level(control.largest_step, due)
-            step = control.largest_step * 2.0 ** (-due_level / STEPS_PER_OCTAVE)
+            step = ladder_step(control.largest_step, due_level)
             if due == control.closing_step:
                 clock.level = due_level
     if step > control.event_step:
         due = max(switching_time(clock, step), control.event_step)
         if due < step:
-            step = control.largest_step * 2.0 ** (-ladder_level(control.largest_step, due) / STEPS_PER_OCTAVE)
+            step = ladder_step(control.largest_step, ladder_level(control.largest_step, due))
     while run.breaks[clock.next_break] <= clock.time:
         clock.next_break += 1
     left = run.breaks[clock.next_break] - clock.time
@@ -698,6 +689,15 @@ def _ladder_level(largest_step: float, step: float) -> int:
 ladder_level = compiled(_ladder_level)
 
 
+def _ladder_step(largest_step: float, level: int) -> float:
+    """Step of that level of the ladder; as a product, for a power costs as much as the contact of a corner."""
+    octave = level // STEPS_PER_OCTAVE
+    return math.ldexp(largest_step * OCTAVE[level - octave * STEPS_PER_OCTAVE], -octave)
+
+
+ladder_step = compiled(_ladder_step, inline=True)
+
+
 def _note_step(run: Run, step: float, slip_step: float, slip_velocity: float, every: bool) -> None:
     """Friction's state and the record of the run, from the step about to be accepted."""
     clock = run.clock[0]
@@ -777,7 +777,7 @@ def _is_full(run: Run) -> bool:
     clock = run.clock[0]
     room = run.history.mode.size - (clock.samples - clock.samples_gone)
     room_of_frames = run.frames.mode.size - (clock.frames - clock.frames_gone)
-    return room < ahead / run.history.interval + 1.0 or room_of_frames < ahead / run.frames.interval + 1.0
+    return (room - 1) * run.history.interval < ahead or (room_of_frames - 1) * run.frames.interval < ahead
 
 
 @register_jitable(forceinline=True)
@@ -862,7 +862,8 @@ def advance(body: Any, run: Run, until: float) -> int:
             continue
         if switches:  # what follows has the time scale of the contact again
             clock.level = max(clock.level, ladder_level(control.largest_step, control.event_step))
-        clock.trail = clock.trail * np.exp(-step / control.trail_time) + max(dissipated, 0.0)
+        late = step / control.trail_time
+        clock.trail = clock.trail / (1.0 + late * (1.0 + 0.5 * late)) + max(dissipated, 0.0)
         _accept(body, run, step, slip_step, slip_velocity, every, iterations)
         # One step's imbalance may vanish by chance while it changes sign: look at three.
         recent = max(min(used, 1.0), FADING * clock.used)

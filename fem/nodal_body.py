@@ -28,7 +28,7 @@ from contact.body import (
     State,
 )
 from contact.compiled import compiled
-from contact.interface import Workspace, turn_compliance
+from contact.interface import Workspace, add_turned
 from contact.scheme import Scheme
 from contact.stepping import advance, leave_alone
 from fem.elasticity import FloatArray, element_forces
@@ -235,7 +235,8 @@ def _release(
             work.free_velocity[a, c] = new.velocity[j] + slope * body.free_change[j]
         work.free[a, 0] -= floor
         work.free_velocity[a, 0] -= floor_velocity
-    turn_compliance(body.base_compliance[slot], cosine, sine, 1.0 - scheme.alpha_f, work.compliance)
+    work.compliance[:, :] = 0.0
+    add_turned(body.base_compliance[slot], cosine, sine, 1.0 - scheme.alpha_f, work.compliance)
 
 
 def _respond(body: NodalBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:

@@ -17,7 +17,7 @@ import numpy as np
 from contact.body import CENTRE_X
 from contact.floor_motion import HARMONIC, UNIFORM, FloorMotion, as_floor_motion, floor_motion
 from contact.modal_body import ModalBody
-from contact.stepping import STEPS_PER_OCTAVE, Run, ladder_level, make_samples
+from contact.stepping import Run, ladder_level, ladder_step, make_samples
 from fem.case import Case
 from fem.model import Container, Model, build_model
 from fem.response.request import Hold
@@ -113,7 +113,7 @@ def carry_state(before: Run, after: Run) -> None:
     after.old.pose[CENTRE_X] += shift
     for name in CARRIED:
         after.clock[name] = before.clock[name]
-    step = before.control.largest_step * 2.0 ** (-int(before.clock.level[0]) / STEPS_PER_OCTAVE)
+    step = ladder_step(before.control.largest_step, int(before.clock.level[0]))
     after.clock.level = ladder_level(after.control.largest_step, min(step, after.control.largest_step))
     after.track[:] = before.track
 
