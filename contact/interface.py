@@ -28,6 +28,10 @@ WORTH_KEEPING = 5  #: active points from which an old factorisation is tried bef
 FORCE_TOLERANCE = 1e-11
 
 
+#: tangential force over its limit from which a point counts as sliding
+SLIDING = 1.0 - 1e-6
+
+
 class Contact(NamedTuple):
     """What the floor is made of: constants of one run, shapes (n,) over the base points."""
 
@@ -315,6 +319,48 @@ def _newton_change(work: Workspace) -> None:
 newton_change = compiled(_newton_change, inline=True)
 
 
+def _start_from_places(
+    contact: Contact, velocity_slope: float, mu: float, start: FloatArray, work: Workspace
+) -> bool:
+    """Put points that the floor held at the beginning of the step back there: the first place to linearise at.
+
+    `work.force` is a guess from before the step. Its error is magnified by compliance times stiffness in the places
+    that follow from it, an error of the place by as much in the force: beyond one, the place is the better guess.
+    A gap, or a spring that slides, has no stiffness: there the force is. `work.trial` takes how far each was put back;
+    returns whether any was.
+    """
+    placed = False
+    magnified = 1.0 + contact.relaxation_time * velocity_slope
+    for i in range(work.force.shape[0]):
+        tangential, normal = work.force[i, 0], work.force[i, 1]
+        closed = normal > 0.0 and start[i, 1] < 0.0
+        stuck = closed and contact.friction == ELASTIC_STICK and abs(tangential) < SLIDING * mu * normal
+        for k in range(2):
+            stiffness = contact.tangential_stiffness[i] if k == 0 else contact.normal_stiffness[i]
+            held = stuck if k == 0 else closed
+            work.trial[i, k] = 0.0
+            if held and magnified * stiffness * work.compliance[2 * i + k, 2 * i + k] > 1.0:
+                back = start[i, k] - work.point[i, k]
+                work.point[i, k] += back
+                work.velocity[i, k] += velocity_slope * back
+                work.trial[i, k] = back
+                placed = True
+    return placed
+
+
+start_from_places = compiled(_start_from_places, inline=True)
+
+
+def _carry_laws(work: Workspace) -> None:
+    """Carry the laws' forces along their tangents to where the points were before they were put back."""
+    for i in range(work.force.shape[0]):
+        work.law[i, 0] += work.slope[i, 0] * work.trial[i, 0] + work.slope[i, 1] * work.trial[i, 1]
+        work.law[i, 1] += work.slope[i, 2] * work.trial[i, 1]
+
+
+carry_laws = compiled(_carry_laws, inline=True)
+
+
 def _solve_contact(
     contact: Contact,
     step: float,
@@ -338,14 +384,17 @@ def _solve_contact(
     before = np.inf
     for iteration in range(NEWTON_LIMIT):
         move_points(velocity_slope, work.force, work)
+        placed = iteration == 0 and start_from_places(contact, velocity_slope, mu, start, work)
         evaluate_laws(contact, step, velocity_slope, mu, start, stick, work)
+        if placed:
+            carry_laws(work)
         residual, largest, stiffest = 0.0, contact.force_scale, 0.0
         for i in range(n):
             stiffest = max(stiffest, work.slope[i, 0], work.slope[i, 2])
             for k in range(2):
                 residual = max(residual, abs(work.law[i, k] - work.force[i, k]))
                 largest = max(largest, abs(work.force[i, k]))
-        if residual <= FORCE_TOLERANCE * largest + contact.resolution * stiffest:
+        if not placed and residual <= FORCE_TOLERANCE * largest + contact.resolution * stiffest:
             return iteration
         # Old factors serve as long as they serve well: an unchanged contact is the rule, not the exception.
         if not factor_is_current(step, work) or residual > 0.1 * before:
