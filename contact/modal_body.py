@@ -146,6 +146,11 @@ def _predict(body: ModalBody, scheme: Scheme, step: float, old: State, new: Stat
         new.position[j] = old.position[j] + step * (old.velocity[j] + 0.5 * step * old.acceleration[j])
         new.velocity[j] = old.velocity[j] + step * old.acceleration[j]
         new.acceleration[j] = old.acceleration[j]
+    # The rotation alone enters nonlinearly: the nearer it is guessed, the fewer iterations.
+    change = step * old.jerk[2]
+    new.position[2] += scheme.newmark_beta * step * step * change
+    new.velocity[2] += scheme.newmark_gamma * step * change
+    new.acceleration[2] += change
 
 
 def _effective_slot(body: ModalBody, scheme: Scheme, step: float) -> int:

@@ -26,7 +26,7 @@ STACK_RATE, BOX_RATE = 500.0, 100.0  # runs per second and core
 ACCURACY, COUNT = 0.02, 6
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
 #: as maps would be computed; the penalty is the one chosen for the stack and for the box
-SETTING = ("solver.energy_tolerance=10", "solver.step_s=0.014", "contact.normal_penalty_Pa_m=1e9")
+SETTING = ("solver.energy_tolerance=10", "solver.step_s=0.024", "contact.normal_penalty_Pa_m=1.2e9")
 JERK = ("solver.model=rigid", "container.section=solid", "contact.mu_static=0.4", "contact.mu_kinetic=0.4")
 FLOOR = ("motion.amplitude_m=0.05", "motion.angular_frequency_rad_s=6.93", "motion.start=rest")
 
