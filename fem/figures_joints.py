@@ -47,7 +47,7 @@ def joints_figure(run: OpenedRun) -> Figure | None:
     )
     above = 1e-3 * case.weight * (1.0 - 1.0 / case.container.boxes)  # the lowest joint
     states = states_of(history.modes)
-    figure, axes = time_panels((1.2, 1.2, 1.2, 1.1), states=states, gaps=(0.1, 0.1, LEGEND_GAP), header=3)
+    figure, axes = time_panels((1.0, 1.0, 1.0, 0.9), states=states, gaps=(0.1, 0.1, LEGEND_GAP), header=3)
     shown = _shown(history.joints)
     beyond = False
     for panel, forces, label, large in (

@@ -7,6 +7,7 @@ import math
 import re
 
 ABSENT = "–"
+LEAST_LENGTH = 1e-5  #: [m]
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -33,6 +34,13 @@ def quantity(value: float | None, unit: str, factor: float = 1.0, figures: int =
     """A number with its unit, held together by a space that does not break."""
     text = number(value, factor, figures)
     return text if text == ABSENT else f"{text}\u00a0{unit}"
+
+
+def millimetres(value: float | None, figures: int = 3) -> str:
+    """A length given in metres, without its unit; what is below 0.01 mm is nobody's measure."""
+    if value is not None and 0.0 < abs(value) < LEAST_LENGTH:
+        return f"< {short(LEAST_LENGTH, 1000.0)}"
+    return number(value, 1000.0, figures)
 
 
 def degrees(value: float | None, figures: int = 4) -> str:

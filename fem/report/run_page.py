@@ -25,7 +25,7 @@ from fem.pages import Signature, render_page
 from fem.report.animation import Film, exaggeration, exaggerations, film_of, player_data
 from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions, compared_rows
 from fem.report.curves import Curve, curves_of
-from fem.report.quantities import degrees, number, quantity, short, typeset
+from fem.report.quantities import degrees, millimetres, number, quantity, short, typeset
 from fem.report.sketch import sketch
 from fem.report.static_sheet import static_sheet
 from fem.report.stills import Still, colours, stills
@@ -131,6 +131,7 @@ def run_report(
         today=dt.date.today().isoformat(),
         notes={"code": CODE_NOTE, "margin": MARGIN_NOTE, "band": BAND_NOTE, "joints": JOINTS_NOTE},
         degrees=degrees,
+        millimetres=millimetres,
         number=number,
         quantity=quantity,
         short=short,
