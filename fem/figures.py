@@ -156,7 +156,7 @@ def slip_figure(run: OpenedRun) -> Figure:
     travel = 1e3 * (verdict.get("slip_travel_m") or 0.0)
     head(
         figure,
-        f"Slip: {number(largest)} mm at most, {number(slip[-1])} mm at the end, {number(travel)} mm travelled",
+        f"Slip: {_millimetres(largest)} at most, {_millimetres(slip[-1])} at the end, {_millimetres(travel)} travelled",
         status=run.status,
     )
     return figure
@@ -233,6 +233,11 @@ def _panel_with_states(run: OpenedRun, label: str, *, legend: bool) -> tuple[Fig
 
 def _verdict(run: OpenedRun) -> Mapping[str, Any]:
     return run.result.get("verdict") or {}
+
+
+def _millimetres(value: float) -> str:
+    """A slip as told in a title; what is below 0.01 mm is nobody's measure."""
+    return "< 0.01 mm" if 0.0 < abs(value) < 0.01 else f"{number(value)} mm"
 
 
 def _mark_impact(axes: Axes, verdict: Mapping[str, Any]) -> None:
