@@ -1,0 +1,341 @@
+"""What the fuzz feeds the program with, as strategies of hypothesis: case tables, TOML bytes, meshes, motion tables.
+
+Tables of a case are drawn from the models of `fem.case_tables` themselves: a new key, choice or range is tried without
+a change here. Only what makes a run long is bounded, in `CHEAP`.
+"""
+
+import tempfile
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from types import NoneType
+from typing import Any, Literal, get_args, get_origin
+
+import numpy as np
+from hypothesis import strategies as st
+from pydantic.fields import FieldInfo
+
+from fem.case_files import shipped_cases, shipped_text
+from fem.case_overrides import with_overrides
+from fem.case_quantities import Quantity
+from fem.case_reading import known_keys, quantity_of
+from fem.case_tables import TABLES, Heading
+from fem.case_toml import toml_value
+from mesh.container import build_container_mesh
+from mesh.files import write_container_mesh
+from mesh.fill import MassFill
+from mesh.geometry import ContainerGeometry, Section
+from mesh.untrusted import FORMATS
+
+Tables = dict[str, Any]
+Draw = Any
+
+
+@dataclass(frozen=True, kw_only=True)
+class Input:
+    """Files in a folder of their own, and what stands behind `python -m fem` there."""
+
+    arguments: tuple[str, ...]
+    files: Mapping[str, bytes] = field(default_factory=dict)
+
+
+#: every key of a case file, dotted
+FIELDS: dict[str, FieldInfo] = known_keys(Heading) | {
+    f"{table}.{key}": info for table, model in TABLES.items() for key, info in known_keys(model).items()
+}
+#: ranges, for values that are meant to be valid, of what a run takes long for
+CHEAP = {
+    "solver.duration_s": (1e-3, 0.4),
+    "solver.step_s": (1e-5, 10.0),
+    "solver.elastic_modes": (0, 30),
+    "output.history_s": (1e-4, 10.0),
+    "output.fields_s": (0.02, 10.0),
+}
+CELLS = 200  #: about as many at most, of a mesh that is meant to be valid
+FULL_DURATION = 0.03  #: of the full model, whose steps are dear [s]
+NASTY = (
+    "-1", "0", "1e-300", "1e300", "nan", "inf", "-inf", '"text"', '""', "true", "[]", "[1, 2]", "{}", "1979-05-27",
+    "10000000000000000000000", '"../../etc/passwd"', '"/etc/passwd"', '"auto"', '"a\\u0000b"', "0x7fffffff", "1e-9",
+)  # fmt: skip
+PIECES = (b"9", b"-", b"e", b".", b"0", b"nan", b"1e999", b"\n", b'"', b"[", b",", b"\x00", b"\xff")
+FILE_NAMES = ("floor.csv", "mesh.msh", "case.toml", "../floor.csv", "/dev/zero", "none.csv", "")
+SINE = "".join(f"{0.01 * k:.2f},{np.sin(0.3 * k):.6f}\n" for k in range(60))
+
+
+@st.composite
+def runs(draw: Draw) -> Input:
+    """A shipped case with keys of the schema changed to anything that they allow, and a little nonsense, run."""
+    tables = draw(cases_by_schema())
+    text = document_of(tables, draw(st.lists(damages(), max_size=2)) if draw(st.integers(0, 2)) == 0 else [])
+    files = {"case.toml": text, "floor.csv": SINE.encode(), "mesh.msh": mesh_of(".msh", shell=False)}
+    return Input(arguments=("run", "case.toml", "--out", "out", "-q", "--no-band"), files=files)
+
+
+@st.composite
+def cases_by_schema(draw: Draw) -> Tables:
+    """A shipped case, up to nine keys of which hold other values that their fields allow; cheap to run."""
+    tables = tomllib.loads(shipped_text(draw(st.sampled_from(shipped_cases()))))
+    quick = {
+        "solver.model": draw(st.sampled_from(("rigid",) * 5 + ("reduced",) * 2 + ("full",))),
+        "solver.duration_s": draw(st.floats(0.01, 0.3)),
+        "output.figures": False,
+        "output.fields_s": 0.0,
+    }
+    tables = with_overrides(tables, quick)
+    chosen = draw(st.sets(st.sampled_from(sorted(FIELDS)), max_size=9))
+    values = {key: draw(values_of(key, present(tables, key))) for key in sorted(chosen)}
+    tables = with_overrides(tables, values)
+    bound_the_cost(tables)
+    return tables
+
+
+def present(tables: Tables, key: str) -> Any:
+    table, _, name = key.rpartition(".")
+    return (tables.get(table, {}) if table else tables).get(name)
+
+
+def bound_the_cost(tables: Tables) -> None:
+    """Elements as large, and runs of the full model as short, as a fuzz can wait for."""
+    box, solver = tables["container"], tables["solver"]
+    boxes, foot = box.get("boxes", 1), tables.get("support", {}).get("foot_m", 1.0)
+    area = box["width_m"] * box["height_m"] * boxes
+    least = (area / CELLS) ** 0.5
+    solver["element_size_m"] = max(solver.get("element_size_m", 0.1), least, 0.5 * box["width_m"])
+    if solver["model"] == "full":
+        solver["duration_s"] = min(solver["duration_s"], FULL_DURATION)
+        solver["element_size_m"] = max(solver["element_size_m"], 0.5 * box["height_m"], 0.5 * foot)
+
+
+def values_of(key: str, now: Any) -> st.SearchStrategy[Any]:
+    """What a field allows, of each of the types that it may hold."""
+    info = FIELDS[key]
+    quantity = quantity_of(info.annotation, info.metadata)
+    kinds = [kind for kind in types_in(info.annotation) if kind is not NoneType]
+    return st.one_of(*(values_of_type(key, kind, quantity, now) for kind in kinds))
+
+
+def types_in(annotation: Any) -> list[Any]:
+    """Plain types and literals in an annotation."""
+    parts = [part for part in get_args(annotation) if not isinstance(part, Quantity)]
+    if get_origin(annotation) is Literal or not parts:
+        return [annotation]
+    return [kind for part in parts if isinstance(part, type) or get_args(part) for kind in types_in(part)]
+
+
+def values_of_type(key: str, kind: Any, quantity: Quantity | None, now: Any) -> st.SearchStrategy[Any]:
+    if get_origin(kind) is Literal:
+        return st.sampled_from(get_args(kind))
+    if kind is bool:
+        # figures take a second to draw
+        return st.sampled_from((False,) * 20 + (True,)) if key == "output.figures" else st.booleans()
+    if kind is str:
+        return st.sampled_from(FILE_NAMES) | st.text(max_size=30) if "file" in key else st.text(max_size=600)
+    assert quantity is not None and kind in (int, float), f"{key}: no strategy for {kind}"
+    return numbers(quantity, CHEAP.get(key), kind, now)
+
+
+def numbers(
+    quantity: Quantity, cheap: tuple[float, float] | None, kind: type, now: Any
+) -> st.SearchStrategy[Any]:
+    """Near what stands there, at the ends of the range, and anywhere in it by the number or its magnitude."""
+    low, high = bounds(quantity)
+    if cheap is not None:
+        low, high = max(low, cheap[0]), min(high, cheap[1])
+    if kind is int:
+        return st.integers(int(low), int(high))
+    least = low if low > 0.0 else 1e-9 * high
+    spread = st.floats(np.log(least), np.log(high)).map(np.exp).map(float)
+    middle = now if isinstance(now, int | float) and now else quantity.typical or min(max(low, 1.0), high)
+    near = st.floats(-1.0, 1.0).map(lambda power: float(middle * 3.0**power))
+    anywhere = st.sampled_from((low, high)) | st.floats(low, high) | spread
+    if low < 0.0:
+        anywhere = anywhere | spread.map(lambda value: -value)
+    return st.one_of(near, near, near, anywhere).map(lambda value: float(min(max(value, low), high)))
+
+
+def bounds(quantity: Quantity) -> tuple[float, float]:
+    """The smallest and the largest number that a quantity allows."""
+    low = quantity.least if quantity.above is None else float(np.nextafter(quantity.above, np.inf))
+    high = quantity.most if quantity.below is None else float(np.nextafter(quantity.below, -np.inf))
+    return 0.0 if low is None else low, 1e12 if high is None else high
+
+
+@st.composite
+def damages(draw: Draw) -> tuple[str, str, str, str]:
+    """One thing wrong: which key, what is done, and what to."""
+    dotted = draw(st.sampled_from(sorted(FIELDS)))
+    table, _, key = dotted.rpartition(".")
+    kind = draw(st.sampled_from(("replace", "replace", "drop", "misspell", "retable")))
+    return kind, table, key, draw(st.sampled_from(NASTY) | st.floats().map(repr))
+
+
+def document_of(tables: Tables, wrong: list[tuple[str, str, str, str]]) -> bytes:
+    """The text of a case with these damages."""
+    top = {key: toml_value(value) for key, value in tables.items() if not isinstance(value, dict)}
+    text = {
+        name: {key: toml_value(value) for key, value in content.items()}
+        for name, content in tables.items()
+        if isinstance(content, dict)
+    }
+    for kind, table, key, value in wrong:
+        content = text.setdefault(table, {}) if table else top
+        match kind:
+            case "replace":
+                content[key] = value
+            case "drop":
+                content.pop(key, None)
+            case "misspell":
+                content[f"{key[:-1]}x"] = content.pop(key, value)
+            case "retable":
+                text.setdefault(f"{table}x", {})[key] = content.pop(key, value)
+    lines = [f"{key} = {value}" for key, value in top.items()]
+    for name, content in text.items():
+        lines += [f"[{name}]", *(f"{key} = {value}" for key, value in content.items())]
+    return "\n".join(lines).encode()
+
+
+@st.composite
+def damaged(draw: Draw, content: bytes) -> bytes:
+    """One to six bytes or pieces changed, dropped, doubled or moved."""
+    data = bytearray(content)
+    place, length = st.integers(0, len(content)), st.integers(1, 40)
+    for _ in range(draw(st.integers(1, 6))):
+        at, many = draw(place), draw(length)
+        match draw(st.integers(0, 4)):
+            case 0:
+                data[at : at + 1] = draw(st.binary(min_size=1, max_size=1))
+            case 1:
+                del data[at : at + many]
+            case 2:
+                data[at:at] = data[at : at + many]
+            case 3:
+                data[at : at + 1] = draw(st.sampled_from(PIECES))
+            case _:
+                other = draw(place)
+                data[at:at] = data[other : other + many]
+    return bytes(data)
+
+
+def toml_trees() -> st.SearchStrategy[str]:
+    """TOML documents of any content: nested tables and lists under names that are known or are not."""
+    scalars = (
+        st.sampled_from(NASTY)
+        | st.integers().map(str)
+        | st.floats().map(repr)
+        | st.text(max_size=20).map(toml_value)
+    )
+    values = st.recursive(
+        scalars,
+        lambda inner: st.lists(inner, max_size=3).map(lambda parts: f"[{', '.join(parts)}]"),
+        max_leaves=8,
+    )
+    names = st.sampled_from(sorted({key.rpartition(".")[2] for key in FIELDS})) | st.text(max_size=8).map(
+        toml_value
+    )
+    lines = st.lists(st.tuples(names, values).map(" = ".join), max_size=6).map("\n".join)
+    tables = st.lists(st.tuples(st.sampled_from([*TABLES, '"x.y"', "container.width_m"]), lines), max_size=4)
+    return st.tuples(lines, tables).map(
+        lambda parts: "\n".join([parts[0], *(f"[{name}]\n{content}" for name, content in parts[1])])
+    )
+
+
+@st.composite
+def texts(draw: Draw) -> Input:
+    """A shipped case with bytes changed, TOML of no meaning, any bytes, or any `--set`; checked."""
+    shipped = shipped_text(draw(st.sampled_from(shipped_cases()))).encode()
+    what = draw(st.integers(0, 9))
+    if what == 0:
+        words = (
+            draw(st.sampled_from(sorted(FIELDS)) | st.text(max_size=9)),
+            draw(st.sampled_from(NASTY) | st.text(max_size=20)),
+        )
+        return Input(arguments=("check", "case.toml", "--set", "=".join(words)), files={"case.toml": shipped})
+    if what == 1:
+        content = draw(st.binary(max_size=400))
+    elif what == 2:
+        content = draw(toml_trees()).encode()
+    else:
+        content = draw(damaged(shipped))
+    return Input(arguments=("check", "case.toml"), files={"case.toml": content})
+
+
+@cache
+def mesh_of(suffix: str, *, shell: bool) -> bytes:
+    """A mesh file of a stack of two boxes."""
+    geometry = ContainerGeometry(
+        width=1.1, height=1.0, depth=1.1, boxes=2, section=Section.SHELL if shell else Section.SOLID,
+        wall=0.02 if shell else None,
+    )  # fmt: skip
+    mesh = build_container_mesh(geometry, MassFill(mass=2500.0, centroid_height=0.5), element_size=0.5)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"mesh{suffix}"
+        write_container_mesh(path, mesh)
+        return path.read_bytes()
+
+
+@st.composite
+def meshes(draw: Draw) -> Input:
+    """A mesh file with bytes changed, of a block or a shell of two boxes; checked."""
+    suffix, shell = draw(st.sampled_from(sorted(FORMATS))), draw(st.booleans())
+    whole = mesh_of(suffix, shell=shell)
+    wall = "wall_m = 0.02" if shell else 'section = "solid"'
+    case = (
+        f"[container]\nwidth_m = 1.1\nheight_m = 1.0\nboxes = 2\nweight_N = 24525.0\n{wall}\n"
+        f'mesh_file = "mesh{suffix}"\n[contact]\nmu_static = 0.4\n[motion]\nkind = "none"\n'
+    )
+    content = draw(st.just(whole) | damaged(whole) | damaged(whole) | damaged(whole))
+    return Input(
+        arguments=("check", "case.toml"), files={"case.toml": case.encode(), f"mesh{suffix}": content}
+    )
+
+
+@st.composite
+def motion_tables(draw: Draw) -> Input:
+    """A motion table with bytes changed, or columns of any numbers; run."""
+    words = {"quantity": "acceleration", "unit": draw(st.sampled_from(("m/s2", "g")))}
+    if draw(st.integers(0, 3)) == 0:
+        words = {"quantity": "displacement", "unit": "m"}
+    if draw(st.integers(0, 3)) == 0:
+        names = ("quantity", "unit", "baseline", "scale", "start")
+        words |= {name: draw(values_of(f"motion.{name}", None)) for name in names}
+    heading = draw(
+        st.sampled_from(("", "", "time_s,value\n", "time_s,acc_m_s2\n", "t [s],disp [m]\n", "t,a_g\n"))
+    )
+    rows = draw(st.just(SINE) | any_rows())
+    content = (heading + rows).encode()
+    if draw(st.booleans()):
+        content = draw(damaged(content))
+    lines = "".join(f"{key} = {toml_value(value)}\n" for key, value in words.items())
+    case = (
+        "[container]\nwidth_m = 1.1\nheight_m = 4.0\ndensity_kg_m3 = 2000.0\n[contact]\nmu_static = 0.4\n"
+        f'[motion]\nkind = "table"\nfile = "floor.csv"\n{lines}'
+        '[solver]\nmodel = "rigid"\nduration_s = 0.4\nelement_size_m = 2.0\n[output]\nfields_s = 0.0\nfigures = false\n'
+    )
+    return Input(
+        arguments=("run", "case.toml", "--out", "out", "-q", "--no-band"),
+        files={"case.toml": case.encode(), "floor.csv": content},
+    )
+
+
+@st.composite
+def any_rows(draw: Draw) -> str:
+    """Rows of a table: rising times and moderate values, some of them replaced by any number."""
+    steps = draw(st.lists(st.floats(1e-6, 1.0), max_size=30))
+    times = [float(instant) for instant in np.cumsum(steps)]
+    values = draw(st.lists(st.floats(-3.0, 3.0), min_size=len(times), max_size=len(times)))
+    for column in (times, values):
+        for _ in range(draw(st.integers(0, 2)) if column and draw(st.booleans()) else 0):
+            column[draw(st.integers(0, len(column) - 1))] = draw(st.floats() | st.sampled_from(column))
+    mark = draw(st.sampled_from((",", ",", ";", " ", "\t")))
+    return "".join(f"{t!r}{mark}{v!r}\n" for t, v in zip(times, values, strict=True))
+
+
+#: by name: inputs, and the share of them in the whole
+KINDS: dict[str, tuple[st.SearchStrategy[Input], float]] = {
+    "case": (runs(), 0.4),
+    "text": (texts(), 0.25),
+    "mesh": (meshes(), 0.15),
+    "table": (motion_tables(), 0.2),
+}
