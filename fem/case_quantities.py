@@ -119,7 +119,7 @@ TONNES = {"t/m3 (g/cm3)": 1e3}
 
 LENGTH = Quantity(unit="m", least=1e-3, most=100.0, typical=1.0, slips=MILLI_AND_CENTI)
 WALL = Quantity(unit="m", least=1e-6, most=50.0, typical=0.01, slips=MILLI_AND_CENTI)
-FOOT = Quantity(unit="m", above=0.0, most=100.0, typical=0.1, slips=MILLI_AND_CENTI)
+FOOT = Quantity(unit="m", least=1e-6, most=100.0, typical=0.1, slips=MILLI_AND_CENTI)
 ELEMENT_SIZE = Quantity(unit="m", least=1e-5, most=100.0, typical=0.1, slips=MILLI_AND_CENTI)
 GRAVITY = Quantity(unit="m/s2", least=1e-2, most=100.0, typical=9.81, slips={"cm/s2": 1e-2, "mm/s2": 1e-3})
 WEIGHT = Quantity(unit="N", above=0.0, typical=25e3, slips={"kilonewtons": 1e3, "meganewtons": 1e6})
@@ -141,14 +141,14 @@ FRICTION = Quantity(
 )
 SLIP_VELOCITY = Quantity(
     unit="m/s",
-    above=0.0,
+    least=1e-9,
     most=1.0,
     typical=1e-3,
     slips={"mm/s": 1e-3},
     advice="about 1e-3 of the largest slip velocity is usual",
 )
-PENALTY = Quantity(unit="Pa/m", above=0.0, most=1e20, advice='"auto" chooses it')
-RATIO = Quantity(unit="", above=0.0, most=1e3, advice="1 is usual")
+PENALTY = Quantity(unit="Pa/m", least=1.0, most=1e20, advice='"auto" chooses it')
+RATIO = Quantity(unit="", least=1e-6, most=1e3, advice="1 is usual")
 WEAKENING = Quantity(
     unit="m", least=0.0, most=0.1, typical=1e-4, slips={"micrometres": 1e-6, "millimetres": 1e-3}
 )
@@ -166,7 +166,7 @@ PHASE = Quantity(
 )
 CYCLES = Quantity(unit="", above=0.0, most=1e7)
 RAMP_CYCLES = Quantity(unit="", least=0.0, most=1e7)
-PULSE_DURATION = Quantity(unit="s", above=0.0, most=1e4, advice="milliseconds are 1e-3 s")
+PULSE_DURATION = Quantity(unit="s", least=1e-9, most=1e4, advice="milliseconds are 1e-3 s")
 DELAY = Quantity(unit="s", least=0.0, most=1e4)
 SCALE = Quantity(unit="", least=-1e6, most=1e6)
 ROTATION = Quantity(

@@ -10,6 +10,10 @@ from typing import Any
 from fem import case_quantities as q
 from fem.case_problem import Problem, leaves_the_folder
 
+#: peak acceleration of a harmonic floor given by amplitude and frequency [m/s2]: a hundred times gravity, which a
+#: vibration test at 100 Hz may reach; ten times that is a slip, and steps of nanoseconds
+MOST_PEAK = 1e3
+
 
 def harmonic_angular_frequency(motion: Any) -> float | None:
     """Omega [rad/s] from the keys given; None where they do not tell."""
@@ -96,6 +100,23 @@ def harmonic_amplitude_is_computable(motion: Any) -> Problem | None:
         key="peak_acceleration_m_s2",
         reason=f"= {motion.peak_acceleration_m_s2:g} m/s2 at {harmonic_angular_frequency(motion):g} rad/s "
         f"is an amplitude of {amplitude:g} m; it must be {q.AMPLITUDE.range_in_words} m",
+    )
+
+
+def harmonic_peak_is_computable(motion: Any) -> Problem | None:
+    """A peak acceleration that follows from amplitude and frequency is one that a floor may have."""
+    if motion.kind != "harmonic" or motion.peak_acceleration_m_s2 is not None:
+        return None
+    frequency = harmonic_angular_frequency(motion)
+    if frequency is None or motion.amplitude_m is None:
+        return None
+    peak = motion.amplitude_m * frequency**2
+    if peak <= MOST_PEAK:
+        return None
+    return Problem(
+        key="amplitude_m",
+        reason=f"= {motion.amplitude_m:g} m at {frequency:g} rad/s is a peak acceleration of {peak:.4g} m/s2; it must "
+        f"be at most {MOST_PEAK:g} m/s2; are the amplitude in m and the frequency as its key says?",
     )
 
 

@@ -25,9 +25,10 @@ from contact.support import Support
 from contact.tracking import begin
 from fem.assembly import FiniteElements, assemble
 from fem.case import Case, CaseError
-from fem.case_contact import build_support, normal_penalty
+from fem.case_contact import build_support, normal_penalty, require_firm_floor
 from fem.case_container import build_container, node_count
 from fem.case_motion import build_motion, peak_acceleration_within
+from fem.firm_start import require_firm_start
 from fem.full_body import FullBody
 from fem.modes import elastic_modes
 from fem.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
@@ -182,6 +183,7 @@ def set_down(case: Case, container: Container) -> Footing:
     penalty = normal_penalty(case, container.mesh)
     springs = container.support.normal_stiffness(penalty)
     base = springs.size
+    require_firm_floor(case, container.mesh, float(springs.sum()))
     springs = np.concatenate([springs, np.full(container.nodes.size - base, 0.5 * springs.sum())])
     contact = _contact(case, container.mesh, springs, base)
     try:
@@ -228,6 +230,9 @@ def build_model(case: Case, container: Container | None = None, footing: Footing
     floor, floor_velocity, _ = floor_motion(compiled_motion, 0.0)
     drift = floor_velocity if case.motion.start == "moving" else 0.0
     _place(body, old, footing.stance.moved(floor), container.response, floor, drift, contact)
+    require_firm_start(
+        case, width=mesh.width, reference_energy=control.reference_energy, contact=contact, start=old
+    )
     interval, fields = case.output.history_s, case.output.fields_s
     stacked = case.container.boxes > 1  # the forces in its joints follow from the motion
     run = make_run(
@@ -507,7 +512,8 @@ def _place(
 ) -> None:
     """Write the initial state: the stance on the floor where it is at t = 0."""
     state.force[:] = stance.force
-    state.stick[:] = -stance.force[:, 0] / contact.tangential_stiffness
+    if contact.friction == ELASTIC_STICK:  # friction regularised in velocity has no springs
+        state.stick[:] = -stance.force[:, 0] / contact.tangential_stiffness
     if isinstance(body, FullBody):
         body.place(state, stance, response, floor_velocity)
         body.start(state, floor)

@@ -11,7 +11,7 @@ from cyclopts import Parameter
 from contact.penalty import contact_frequency
 from fem.calibration import apparent_restitution
 from fem.case import Case, case_hash, load_case
-from fem.case_contact import build_support, normal_penalty
+from fem.case_contact import build_support, normal_penalty, require_firm_floor
 from fem.case_container import build_container, node_count
 from fem.static_checks import StaticChecks, static_checks
 from mesh.container import ContainerMesh
@@ -114,6 +114,7 @@ def chosen_numerics(case: Case, mesh: ContainerMesh) -> dict[str, Any]:
     penalty = normal_penalty(case, mesh)
     springs = build_support(case, mesh).normal_stiffness(penalty)
     stiffness = float(springs.sum())
+    require_firm_floor(case, mesh, stiffness)
     return {
         "model": solver.model,
         "scheme": solver.scheme,
