@@ -64,9 +64,11 @@ def write_checkpoint(path: Path, about: Mapping[str, Any], arrays: Mapping[str, 
             file.flush()
             os.fsync(file.fileno())
         os.replace(part, path)
-    except BaseException:
+    except BaseException as error:
         with contextlib.suppress(OSError):
             part.unlink()
+        if isinstance(error, OSError):
+            raise OSError(error.errno, error.strerror, str(path)) from None
         raise
 
 

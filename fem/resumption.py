@@ -1,8 +1,8 @@
 """Going on where a run was cut off: what a checkpoint takes of it, and how that is put back.
 
-A checkpoint is made between two slices of the stepping, when no sample waits in memory. It takes everything of
-the run that changes - coordinates, velocities, friction springs, kept factors of the contact, ledger, step
-control, record - bit for bit, the recorder's memory, and how far history and frames had come. What only follows
+A checkpoint is made in a pause of the stepping. It takes everything of the run that changes - coordinates,
+velocities, friction springs, kept factors of the contact, ledger, step control, record, samples not yet written -
+bit for bit, the recorder's memory, and how far history and frames had come. What only follows
 from the case (mesh, modes, floor) is built anew; factors of the bodies follow from the step size alone.
 """
 
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from contact.body import State
 from contact.interface import Workspace
+from contact.stepping import Run
 from fem.checkpoint import Checkpoint, CheckpointError, read_checkpoint, write_checkpoint
 from fem.fields import FieldWriter, frame_name
 from fem.folder_lock import FolderLock
@@ -29,9 +30,12 @@ from fem.recorder import Recorder
 from fem.run_folder import RunFolder
 from fem.simulation import Progress
 
-CHECKPOINT_S = 15.0  #: wall time between checkpoints; a slice of the stepping may come on top of it
-#: parts of `contact.stepping.Run` that do not change, or hold no sample when a checkpoint is made
-CONSTANT = frozenset({"scheme", "contact", "motion", "breaks", "control", "history", "frames"})
+#: wall time between checkpoints; what passes between two pauses of the stepping may come on top of it, some five
+#: seconds, and the writing of a few frames
+CHECKPOINT_S = 15.0
+#: parts of `contact.stepping.Run` that do not change, and those of which a part is kept
+CONSTANT = frozenset({"scheme", "contact", "motion", "breaks", "control"})
+SAMPLES = frozenset({"history", "frames"})
 RECORDED, BODY = "recorder.", "body."
 
 Arrays = dict[str, NDArray[Any]]
@@ -117,11 +121,12 @@ def beginning_in(place: RunFolder, model: Model, case_hash: str) -> Beginning:
     _require_fit(place.checkpoint, found, model)
     try:
         about = found.about
-        undriven = about["progress"]["undriven"]
+        undriven, under_way = about["progress"]["undriven"], about["progress"]["slice"]
         beginning = Beginning(
             progress=Progress(
                 stepping_cpu_s=float(about["progress"]["stepping_cpu_s"]),
                 undriven=None if undriven is None else (float(undriven[0]), float(undriven[1])),
+                slice=None if under_way is None else (float(under_way[0]), int(under_way[1])),
             ),
             history_bytes=int(about["history"]["bytes"]),
             frames_s=tuple(float(instant) for instant in about["frames_s"]),
@@ -143,7 +148,7 @@ def beginning_in(place: RunFolder, model: Model, case_hash: str) -> Beginning:
 
 def state_of(model: Model, recorder: Recorder) -> Arrays:
     """Everything that changes in a run, by name; the arrays themselves, not copies, where they are kept."""
-    found = _changing(model)
+    found = _changing(model) | _waiting(model.run, model.run.clock)
     if isinstance(model.body, FullBody):
         found |= {BODY + name: array for name, array in model.body.memory().items()}
     return found | {RECORDED + name: array for name, array in recorder.memory().items()}
@@ -152,6 +157,8 @@ def state_of(model: Model, recorder: Recorder) -> Arrays:
 def put_back(model: Model, recorder: Recorder, arrays: Mapping[str, NDArray[Any]]) -> None:
     """Give run, body and recorder the state that `state_of` took."""
     for name, array in _changing(model).items():
+        np.copyto(array, arrays[name])
+    for name, array in _waiting(model.run, model.run.clock).items():  # the clock is put back by now
         np.copyto(array, arrays[name])
     if isinstance(model.body, FullBody):
         model.body.recall(_named(arrays, BODY))
@@ -169,12 +176,25 @@ def spent_since(began: tuple[float, float], before: Spent) -> Spent:
 def _changing(model: Model) -> Arrays:
     found: Arrays = {}
     for name, part in model.run._asdict().items():
-        if name in CONSTANT:
+        if name in CONSTANT | SAMPLES:
             continue
         if isinstance(part, State | Workspace):
             found |= {f"{name}.{key}": array for key, array in part._asdict().items()}
         else:
             found[name] = part
+    return found
+
+
+def _waiting(run: Run, clock: NDArray[Any]) -> Arrays:
+    """The samples of a run that no file has yet, as many as this clock says."""
+    found: Arrays = {}
+    for name, samples, so_far, gone in (
+        ("history", run.history, "samples", "samples_gone"),
+        ("frames", run.frames, "frames", "frames_gone"),
+    ):
+        count = int(clock[so_far][0] - clock[gone][0])
+        parts = samples._asdict().items()
+        found |= {f"{name}.{key}": array[:count] for key, array in parts if isinstance(array, np.ndarray)}
     return found
 
 
@@ -184,7 +204,12 @@ def _named(arrays: Mapping[str, NDArray[Any]], prefix: str) -> Arrays:
 
 def _require_fit(path: Path, found: Checkpoint, model: Model) -> None:
     """Refuse arrays that are not those of this model's run."""
-    for name, mine in _changing(model).items():
+    _require_same(path, found, _changing(model))
+    _require_same(path, found, _waiting(model.run, found.arrays["clock"]))
+
+
+def _require_same(path: Path, found: Checkpoint, arrays: Arrays) -> None:
+    for name, mine in arrays.items():
         theirs = found.arrays.get(name)
         if theirs is None or theirs.shape != mine.shape or theirs.dtype.descr != mine.dtype.descr:
             raise _misfit(path, f"its {name} is not that of this run")

@@ -1,5 +1,9 @@
 """Stepping a model to its end: in slices, so that samples are taken, progress is told and a stop is heard.
 
+A slice is so much simulated time, or so many steps tried: what is done between slices (samples, the decision to go on)
+falls on the same instants however fast the machine is. A slice of a large mesh may take minutes; so it is interrupted
+by pauses, in which nothing is decided and the clock on the wall is looked at: a stop is heard, the state is kept.
+
 A container that the end of a run finds beyond its slenderness angle has neither fallen nor come back: it is
 followed in the frame of its floor, undriven and so at rest there, until it has done one or the other.
 """
@@ -19,6 +23,7 @@ from contact.stepping import (
     AFTERMATH_SLICE,
     FAILED,
     OVERTURNED,
+    REACHED,
     Run,
     most_attempts,
 )
@@ -31,8 +36,10 @@ from fem.verdict import MODE_NAMES, audit
 
 #: how far the stepping goes before it looks up, in simulated seconds
 SLICE_REDUCED, SLICE_FULL = 0.25, 0.01
-#: .. and in steps tried: a second or two of work
+#: .. and in steps tried
 LOOK_REDUCED, LOOK_FULL = 100_000, 2000
+#: wall time between pauses [s]; steps tried until the first one; how many times more until the next, at most
+PAUSE_S, FIRST_PAUSE, LONGER = 5.0, 16, 8
 #: a container left beyond its slenderness angle at the end falls or comes back within so many times 1/p
 AFTERMATH = 50.0
 
@@ -44,13 +51,28 @@ class Progress:
     stepping_cpu_s: float = 0.0
     #: since when the floor is left at rest [s], and where it stands [m]; None while it is driven
     undriven: tuple[float, float] | None = None
+    #: of a slice that is under way: the time it goes to [s], and the steps tried at which it ends before
+    slice: tuple[float, int] | None = None
+
+
+class Pace:
+    """How many steps are tried until the next pause, by the wall time that the last ones took."""
+
+    def __init__(self) -> None:
+        self.attempts = FIRST_PAUSE
+
+    def note(self, attempts: int, wall_s: float) -> None:
+        """Take in what so many steps tried took."""
+        if attempts > 0:
+            affordable = int(PAUSE_S * attempts / max(wall_s, 1e-9))
+            self.attempts = max(1, min(affordable, LONGER * self.attempts, LOOK_REDUCED))
 
 
 class Keeper(Protocol):
     """Somebody who may want to keep the state of a simulation."""
 
     def keep(self, progress: Progress, *, at_once: bool = False) -> None:
-        """Called between slices, when no sample waits in memory; `at_once`: the simulation ends here, unfinished."""
+        """Called in pauses and between slices; `at_once`: the simulation ends here, unfinished."""
 
 
 class NoKeeper:
@@ -100,32 +122,35 @@ def simulate(
     if progress.undriven is not None:
         run = _on_resting_floor(run, progress.undriven)
     reporter.start(duration, float(clock.time))
-    while _goes_on(model):
+    pace = Pace()
+    while progress.slice is not None or _goes_on(model):
         stopped = stop()
         keeper.keep(progress, at_once=stopped)
         if stopped:
             reporter.finish()
             return Ending(status="interrupted", stepping_cpu_s=progress.stepping_cpu_s)
-        until, ahead = duration, SLICE_FULL if full else SLICE_REDUCED
-        if clock.time >= duration:
-            until, ahead = _end_of_aftermath(model), AFTERMATH_SLICE
-            if progress.undriven is None:
-                undriven = _leave_alone(model, run, recorder)
-                progress, run = replace(progress, undriven=undriven), _on_resting_floor(run, undriven)
-        began = time.process_time()
-        looked = LOOK_FULL if full else LOOK_REDUCED
-        clock.attempt_limit = clock.steps + clock.rejected + looked
-        code = advance_body(model.body, run, min(clock.time + ahead, until))
-        cpu = progress.stepping_cpu_s + time.process_time() - began
-        progress = replace(progress, stepping_cpu_s=cpu)
-        recorder.drain(run)
+        if progress.slice is None:
+            until, ahead = duration, SLICE_FULL if full else SLICE_REDUCED
+            if clock.time >= duration:
+                until, ahead = _end_of_aftermath(model), AFTERMATH_SLICE
+                if progress.undriven is None:
+                    undriven = _leave_alone(model, run, recorder)
+                    progress, run = replace(progress, undriven=undriven), _on_resting_floor(run, undriven)
+            most = _attempts(run) + (LOOK_FULL if full else LOOK_REDUCED)
+            progress = replace(progress, slice=(min(float(clock.time) + ahead, until), most))
+        code, progress = _advance(model, run, progress, pace)
+        if progress.slice is None:
+            recorder.drain(run)
         ratio = abs(float(run.old.pose[ROTATION])) / control.slenderness_angle
         reporter.update(float(clock.time), ratio, MODE_NAMES[int(track.mode)])
-        stuck = clock.steps + clock.rejected >= most_attempts(control, float(clock.time))
+        if progress.slice is not None:
+            continue
+        stuck = _attempts(run) >= most_attempts(control, float(clock.time))
         if code == FAILED or (stuck and code != OVERTURNED):
             reporter.finish()
             residual = float(np.abs(run.work.law - run.work.force).max())
-            return Ending(status="failed", stepping_cpu_s=cpu, error=stepping_failure(model, residual))
+            failure = stepping_failure(model, residual)
+            return Ending(status="failed", stepping_cpu_s=progress.stepping_cpu_s, error=failure)
         if code == OVERTURNED:
             break
     reporter.finish()
@@ -134,6 +159,30 @@ def simulate(
         return Ending(status="failed", stepping_cpu_s=progress.stepping_cpu_s, error=error)
     status = "overturned" if np.isfinite(track.overturned_at) else "completed"
     return Ending(status=status, stepping_cpu_s=progress.stepping_cpu_s)
+
+
+def _advance(model: Model, run: Run, progress: Progress, pace: Pace) -> tuple[int, Progress]:
+    """Step to the end of the slice or to the next pause; returns the code of `advance`, and how far it has come."""
+    assert progress.slice is not None  # for the type checker
+    until, most = progress.slice
+    clock, before = run.clock[0], _attempts(run)
+    pause = min(most, before + pace.attempts)
+    clock.attempt_limit = pause
+    began, wall = time.process_time(), time.perf_counter()
+    code = advance_body(model.body, run, until)
+    pace.note(_attempts(run) - before, time.perf_counter() - wall)
+    # Where the arrays of samples are full as well, the next call makes no step, and the slice ends then.
+    pausing = code == REACHED and clock.time < until and _attempts(run) == pause < most
+    return code, replace(
+        progress,
+        stepping_cpu_s=progress.stepping_cpu_s + time.process_time() - began,
+        slice=progress.slice if pausing else None,
+    )
+
+
+def _attempts(run: Run) -> int:
+    """Steps tried so far, accepted and rejected."""
+    return int(run.clock[0].steps + run.clock[0].rejected)
 
 
 def cores() -> int:

@@ -12,7 +12,7 @@ from fem.run import RunOptions, RunResult, run_case
 from fem.run_folder import read_result
 
 RIGID = ("solver.model=rigid", "solver.duration_s=1.2", "output.fields_s=0.1")
-REDUCED = ("solver.duration_s=1", "output.fields_s=0.1")
+REDUCED = ("solver.duration_s=0.7", "output.fields_s=0.1")
 FLAT = (*REDUCED, "support.kind=flat", "container.wall_m=0.02", "solver.elastic_modes=4")
 FULL = ("solver.model=full", "solver.duration_s=0.12", "solver.element_size_m=0.5", "output.fields_s=0.02")
 COARSE = ("solver.model=full", "solver.element_size_m=0.5")
@@ -64,6 +64,7 @@ def same(one: Path, other: Path) -> None:
 def test_a_run_cut_off_after_every_slice_is_the_run_left_alone(tmp_path, monkeypatch, kind):
     name, overrides = CASES[kind]
     monkeypatch.setattr(fem.simulation, "SLICE_FULL", 0.03)
+    monkeypatch.setattr(fem.simulation, "FIRST_PAUSE", 400)
     monkeypatch.setattr(fem.simulation, "AFTERMATH_SLICE", 0.15)
     run(tmp_path / "whole", name, overrides)
     stepping = fem.run.simulate
@@ -77,3 +78,28 @@ def test_a_run_cut_off_after_every_slice_is_the_run_left_alone(tmp_path, monkeyp
         assert (tmp_path / "cut" / "checkpoint.npz").is_file()
     assert cuts >= 2
     same(tmp_path / "cut", tmp_path / "whole")
+
+
+@pytest.mark.parametrize("kind", ["rigid", "reduced, flat base", "full", "aftermath"])
+def test_a_run_paused_after_every_step_is_the_run_that_never_pauses(tmp_path, monkeypatch, kind):
+    # Where the pauses fall depends on the clock on the wall; nothing else may.
+    name, overrides = CASES[kind]
+    for folder, first, longer in (("paused", 1, 1), ("whole", 10**9, 8)):
+        monkeypatch.setattr(fem.simulation, "FIRST_PAUSE", first)
+        monkeypatch.setattr(fem.simulation, "LONGER", longer)
+        run(tmp_path / folder, name, (*overrides, "solver.duration_s=0.1"))
+    same(tmp_path / "paused", tmp_path / "whole")
+
+
+def test_pauses_come_every_few_seconds_whatever_a_step_takes():
+    for seconds in (1e-6, 1e-3, 0.1, 3.0):  # of wall time a step
+        pace, pauses = fem.simulation.Pace(), []
+        for _ in range(40):
+            pauses.append(pace.attempts * seconds)
+            pace.note(pace.attempts, pauses[-1])
+        assert max(pauses[1:]) <= fem.simulation.PAUSE_S
+        assert pauses[0] <= fem.simulation.FIRST_PAUSE * seconds
+    pace.note(1, 60.0)  # a factorisation
+    assert pace.attempts == 1
+    pace.note(1, 1e-3)
+    assert pace.attempts == fem.simulation.LONGER  # the next pause is not far, whatever comes
