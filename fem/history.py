@@ -2,9 +2,12 @@
 
 SI units, named in the columns; x positive to the right, z up, rotation positive toward +x, forces on the
 container. Numbers are written so that reading them gives the same bits (shortest exact decimal form). The
-file grows by whole lines and is readable while the run goes on and after it was killed. A stack has three columns
-more for every joint between its boxes (`fem.joints`), counted from the floor up, behind these. A run that was compared
-with the rigid block (`fem.rigid_check`) has the block's rotation as its last column, nan where it is not followed.
+file grows by whole lines and is readable while the run goes on. A kill -9 amid a write may leave the first part of
+what was to be written, for the system writes page by page: then the last line has no end, and is nobody's sample.
+`read_history` leaves it out, a run that is gone on with cuts it off; any other reader has to drop what follows the
+last line end. A stack has three columns more for every joint between its boxes (`fem.joints`), counted from the floor
+up, behind these. A run that was compared with the rigid block (`fem.rigid_check`) has the block's rotation as its last
+column, nan where it is not followed.
 """
 
 import contextlib
@@ -110,8 +113,8 @@ class History:
 class HistoryWriter:
     """Appends samples to a history file; a context manager.
 
-    A line is one write to the file, with nothing held back, so a kill leaves whole lines. When the disk is
-    full, the part of a line that went through is cut off again before the error is passed on.
+    The lines of one `append` are one write to the file, with nothing held back. When the disk is full, what went
+    through of them is cut off again before the error is passed on.
 
     Args:
         path: the file; made anew, unless `position` is given.
@@ -127,14 +130,9 @@ class HistoryWriter:
         self.path = path
         self._digest = hashlib.sha256()
         if position is None:
-            self._file = open(path, "wb", buffering=0)  # noqa: SIM115 (closed by `close`)
-            self._position = 0
-            try:
-                self._write(",".join(history_columns(joints)) + "\n")
-            except OSError:
-                self._file.close()
-                raise
-            return
+            header = ",".join(history_columns(joints)) + "\n"
+            write_atomically(path, header)
+            position = len(header)
         if not path.is_file() or path.stat().st_size < position:
             raise ValueError(f"{path}: the history ends before byte {position}, where the run is to go on")
         self._file = open(path, "r+b", buffering=0)  # noqa: SIM115
@@ -176,8 +174,8 @@ class HistoryWriter:
     ) -> None:
         self.close()
 
-    def _write(self, line: str) -> None:
-        data = line.encode()
+    def _write(self, text: str) -> None:
+        data = text.encode()
         try:
             done = 0
             while done < len(data):

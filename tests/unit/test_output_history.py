@@ -6,7 +6,6 @@ import signal
 import subprocess
 import sys
 import textwrap
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -81,16 +80,16 @@ def test_samples_are_on_disk_as_soon_as_they_are_appended(tmp_path):
     writer.close()
 
 
-def test_a_killed_writer_leaves_whole_lines(tmp_path):
+def test_a_killed_writer_leaves_whole_lines_and_at_most_a_torn_last_one(tmp_path):
     script = textwrap.dedent("""
         import sys
         from pathlib import Path
         import numpy as np
-        from fem.history import HistoryWriter
+        from fem.history import NUMBERS, HistoryWriter
         writer = HistoryWriter(Path(sys.argv[1]))
         print("ready", flush=True)
         while True:
-            writer.append(np.random.normal(size=(50, 20)), ["rock"] * 50)
+            writer.append(np.arange(50.0 * NUMBERS).reshape(50, -1), ["rock"] * 50)
     """)
     path = tmp_path / "h.csv"
     process = subprocess.Popen([sys.executable, "-c", script, str(path)], stdout=subprocess.PIPE)
@@ -100,17 +99,32 @@ def test_a_killed_writer_leaves_whole_lines(tmp_path):
     os.kill(process.pid, signal.SIGKILL)
     process.wait()
     process.stdout.close()
-    assert path.read_bytes().endswith(b"\n")
     history = read_history(path)
-    assert len(history) > 100 and np.isfinite(history.values).all()
+    # every sample is one that was written, in its order: nothing is made up, nothing but the end is missing
+    assert len(history) == path.read_bytes().count(b"\n") - 1 > 100
+    counted = np.arange(NUMBERS) + float(NUMBERS) * (np.arange(len(history)) % 50)[:, None]
+    assert np.array_equal(history.values, counted)
 
 
-def test_a_torn_last_line_is_left_out(tmp_path):
-    with HistoryWriter(tmp_path / "h.csv") as writer:
-        writer.append(ROWS, MODES)
-    data = (tmp_path / "h.csv").read_bytes()
-    (tmp_path / "h.csv").write_bytes(data[:-30])
-    assert len(read_history(tmp_path / "h.csv")) == 6
+def test_wherever_a_file_is_torn_its_whole_lines_are_read_and_nothing_else(tmp_path):
+    # A kill amid a write leaves any first part of it: every one is tried.
+    path = tmp_path / "h.csv"
+    with HistoryWriter(path) as writer:
+        writer.append(ROWS[:2], MODES[:2])
+        settled = writer.position
+        writer.append(ROWS[2:5], MODES[2:5])
+    data = path.read_bytes()
+    for end in range(settled, len(data) + 1):
+        path.write_bytes(data[:end])
+        history = read_history(path)
+        count = data[:end].count(b"\n") - 1
+        assert len(history) == count
+        assert history.values.tobytes() == ROWS[:count].tobytes()
+        assert history.modes == tuple(MODES[:count])
+    path.write_bytes(data[: settled + 40])
+    with HistoryWriter(path, position=settled) as writer:  # as after --resume
+        writer.append(ROWS[2:5], MODES[2:5])
+    assert path.read_bytes() == data
 
 
 def test_going_on_from_a_position_gives_the_bytes_of_an_uninterrupted_history(tmp_path):
@@ -132,12 +146,6 @@ def test_going_on_in_a_history_that_is_too_short_or_missing_is_refused(tmp_path)
     for path in (tmp_path / "h.csv", tmp_path / "none.csv"):
         with pytest.raises(ValueError, match="ends before byte 99999"):
             HistoryWriter(path, position=99999)
-
-
-@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")
-def test_a_full_disk_is_an_error_and_not_silence():
-    with pytest.raises(OSError, match="No space left"):
-        HistoryWriter(Path("/dev/full"))
 
 
 def test_a_line_that_does_not_go_through_is_cut_off(tmp_path):

@@ -59,11 +59,11 @@ def end_when(process: subprocess.Popen, folder: Path, frames: int, delay: float,
 
 
 def everything_reads(folder: Path) -> None:
-    """Whatever the moment: no file is half written."""
+    """Whatever the moment: no file is half written, but for a last line of the history without its end."""
     read_result(folder / "run.json")
     if (folder / "history.csv").exists():
-        assert (folder / "history.csv").read_bytes().endswith(b"\n")
-        read_history(folder / "history.csv")
+        whole_lines = (folder / "history.csv").read_bytes().count(b"\n")
+        assert len(read_history(folder / "history.csv")) == whole_lines - 1
     if (folder / "fields" / "run.pvd").exists():
         for frame in open_fields(folder / "fields"):
             assert frame.points.size > 0
