@@ -6,6 +6,7 @@ result), 2 bad input, 3 the solution failed, 4 interrupted.
 """
 
 import difflib
+import errno
 import os
 import sys
 from collections.abc import Sequence
@@ -16,6 +17,7 @@ from cyclopts import App, CycloptsError
 from fem.threads import use_one_blas_thread
 
 BAD_INPUT, FAILED, INTERRUPTED = 2, 3, 4
+NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 OWN_PACKAGES = {"fem", "mesh", "contact"}
 
 FLAGS = ("--help", "-h", "--version")
@@ -91,7 +93,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except OSError as error:
-        return _refuse(f"{error.filename or 'input or output'}: {error.strerror or error}")
+        code = FAILED if error.errno in NO_ROOM else BAD_INPUT
+        return _refuse(f"{error.filename or 'input or output'}: {error.strerror or error}", code)
     except Exception as error:
         if type(error).__module__.partition(".")[0] not in OWN_PACKAGES:
             raise  # not the user's fault: show where

@@ -32,6 +32,7 @@ from fem.program import versions
 from fem.progress import Reporter, SilentReporter
 from fem.recorder import Recorder
 from fem.recovery import Frame, recovery_of
+from fem.required_disk import require_disk
 from fem.resumption import Beginning, CheckpointKeeper, beginning_in, put_back, spent_since
 from fem.rigid_check import check_against_rigid_block, wants_rigid_check
 from fem.run_folder import (
@@ -82,7 +83,8 @@ def run_case(
     A finished run of the same case is not computed again; a band or a rigid check that it lacks is added.
 
     Raises:
-        CaseError, MeshError, FolderError, FolderLockedError, CheckpointError: bad input; nothing is left behind.
+        CaseError, MeshError, FolderError, FolderLockedError, CheckpointError: bad input, or no room for the
+            results; nothing is left behind.
         OutputError: the disk is full, the folder was removed; what was written can be read.
     """
     options, reporter = options or RunOptions(), reporter or SilentReporter()
@@ -96,6 +98,8 @@ def run_case(
         reporter.message(f"{folder} holds this run already; --force computes it again")
     if found is not None and _is_whole(found, RunFolder(path=folder), case, options):
         return RunResult(status=str(found["status"]), result=found, history=History.empty())
+    if found is None:
+        require_disk(case, len(model.container.elements.nodes), folder)
     beginning = Beginning()
 
     def inspect(place: RunFolder) -> None:

@@ -13,6 +13,7 @@ from fem.calibration import apparent_restitution
 from fem.case import Case, case_hash, load_case
 from fem.case_contact import build_support, normal_penalty, require_firm_floor
 from fem.case_container import build_container, node_count
+from fem.required_disk import frames_of, in_units, required_disk, samples_of
 from fem.static_checks import StaticChecks, static_checks
 from mesh.container import ContainerMesh
 
@@ -109,7 +110,7 @@ def derived_numbers(case: Case, mesh: ContainerMesh, peak: float) -> dict[str, f
 
 def chosen_numerics(case: Case, mesh: ContainerMesh) -> dict[str, Any]:
     """Model, scheme and sizes of the computation."""
-    solver, output = case.solver, case.output
+    solver = case.solver
     nodes = node_count(mesh, solver.order)
     penalty = normal_penalty(case, mesh)
     springs = build_support(case, mesh).normal_stiffness(penalty)
@@ -127,10 +128,9 @@ def chosen_numerics(case: Case, mesh: ContainerMesh) -> dict[str, Any]:
         "contact_frequency_Hz": contact_frequency(mesh.mass, stiffness),
         "static_penetration_m": mesh.mass * case.gravity_m_s2 / stiffness,
         "duration_s": solver.duration_s,
-        "history_samples": math.floor(solver.duration_s / output.history_s * (1.0 + 1e-12)) + 1,
-        "field_frames": math.floor(solver.duration_s / output.fields_s * (1.0 + 1e-12)) + 1
-        if output.fields_s
-        else 0,
+        "history_samples": samples_of(case),
+        "field_frames": frames_of(case),
+        "output_bytes": required_disk(case, nodes),
     }
 
 
@@ -192,7 +192,7 @@ def page_of_numerics(numerics: Mapping[str, Any]) -> list[str]:
         f"{numerics['contact_frequency_Hz']:.4g} Hz, "
         f"sinks in by {1e6 * numerics['static_penetration_m']:.3g} um",
         f"  output      {numerics['history_samples']} samples, {numerics['field_frames']} frames "
-        f"over {numerics['duration_s']:g} s",
+        f"over {numerics['duration_s']:g} s, about {in_units(numerics['output_bytes'])}",
     ]
 
 

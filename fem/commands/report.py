@@ -7,7 +7,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from fem.progress import ScreenReporter
-from fem.run_folder import FolderError, write_atomically
+from fem.run_folder import FolderError, naming_what_cannot_be_written, write_atomically
 
 PAGE = "report.html"
 
@@ -63,5 +63,6 @@ def report(
                 stop=stop,
             )
     place = to if to is not None else folder / PAGE
-    write_atomically(place, page)
+    with naming_what_cannot_be_written(place.parent, "ask again, or elsewhere with --to FILE"):
+        write_atomically(place, page)
     print(place)

@@ -12,6 +12,7 @@ from fem.case import Case, CaseError, load_case
 from fem.case_container import build_container
 from fem.commands.check import chosen_numerics, page_of_numerics, peak_floor_acceleration
 from fem.progress import ScreenReporter
+from fem.required_disk import free_disk, in_units
 from fem.run_folder import read_result
 
 EXIT_CODES = {"completed": 0, "overturned": 0, "failed": 3, "interrupted": 4}
@@ -106,6 +107,7 @@ def plan_of(case: Case, folder: Path) -> dict[str, Any]:
     return {
         "case": case.name,
         "folder": str(folder),
+        "free_bytes": free_disk(folder),
         "peak_floor_acceleration_m_s2": peak_floor_acceleration(case),
         "numerics": chosen_numerics(case, build_container(case)),
     }
@@ -114,6 +116,8 @@ def plan_of(case: Case, folder: Path) -> dict[str, Any]:
 def page_of_plan(case: Case, plan: dict[str, Any]) -> str:
     """The same for people."""
     there = " (exists)" if Path(plan["folder"]).exists() else ""
+    if plan["free_bytes"] is not None:
+        there += f", room for {in_units(plan['free_bytes'])}"
     lines = [
         f"{case.name}: {case.title}" if case.title else case.name,
         f"  folder      {plan['folder']}{there}",

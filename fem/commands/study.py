@@ -10,7 +10,7 @@ from cyclopts import Parameter
 
 from fem.case import CaseError
 from fem.progress import ScreenReporter
-from fem.run_folder import to_json
+from fem.run_folder import naming_what_cannot_be_written, to_json
 
 STUDIES = ("seed",)
 LONG = 10.0  #: s, from which a statement is worth compiling for beforehand
@@ -90,9 +90,10 @@ def _conducted(folder: Path, chosen: Any, *, jobs: int | None, force: bool, quie
         laboratory = laboratories.Laboratory(jobs=jobs, progress=progress, stop=stop)
         if any(statement.seconds > LONG for _, statement in chosen):
             laboratory.warm_up(reporter.message)
-        found: dict[str, Any] = conducting.conduct(
-            folder, laboratory, statements=chosen, force=force, tell=reporter.message
-        )
+        with naming_what_cannot_be_written(folder, "the same command goes on from there"):
+            found: dict[str, Any] = conducting.conduct(
+                folder, laboratory, statements=chosen, force=force, tell=reporter.message
+            )
     return found
 
 

@@ -1,4 +1,4 @@
-"""Fuzz: the program fed with what hypothesis draws, by hand: `python tests/fuzz/fuzz.py 10000 [SEED [FOLDER]]`.
+"""Fuzz: the program fed with what hypothesis draws: `python tests/fuzz/fuzz.py 10000 [SEED [FOLDER [KIND ..]]]`.
 
 Every input goes through the command line, in this process: it must end with 0, 2 (refused, with words), 3 (failed,
 with words) or 4 (stopped by the clock here, which a long run must hear), never with a traceback, and within two
@@ -121,7 +121,8 @@ if __name__ == "__main__":
     warm_up()
     wanted, first = int(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 0
     place = Path(sys.argv[3] if len(sys.argv) > 3 else tempfile.mkdtemp(prefix="fuzz-kept-"))
-    for each, (_, share) in KINDS.items():
+    for each in sys.argv[4:] or KINDS:
+        share = KINDS[each][1]
         start = time.monotonic()
         found = fuzz(each, round(share * wanted), first, place)
         print(each, found.total(), dict(found), f"{time.monotonic() - start:.0f} s", flush=True)

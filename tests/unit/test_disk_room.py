@@ -1,0 +1,177 @@
+"""Room on the disk: told and asked for ahead, and what happens on file systems that are really full or read-only."""
+
+import contextlib
+import json
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from small_sweep import SMALL
+
+import fem.report.run_page
+import fem.required_disk
+import fem.run
+import fem.sweep.sweeping
+from fem.__main__ import main
+from fem.case import load_case
+from fem.case_container import build_container, node_count
+from fem.fields import open_fields
+from fem.history import read_history
+from fem.required_disk import required_disk
+from fem.run_folder import read_result
+from fem.sweep.table import open_sweep
+
+COMMON = ("solver.model=rigid", "solver.duration_s=2", "output.figures=false", "output.fields_s=0.05")
+BESIDE = 4e6  #: told for a report, figures and a checkpoint, none of which are written here [bytes]
+ROOM = (
+    400_000  #: of the small file system [bytes]: less than the run's two megabytes, more than its beginning
+)
+
+
+def run(folder: Path, *options: str) -> int:
+    changes = [word for override in COMMON for word in ("--set", override)]
+    return main(["run", "rocking", "--out", str(folder), "--no-band", "-q", *changes, *options])
+
+
+@pytest.fixture
+def small(tmp_path) -> Iterator[Path]:
+    """A file system of its own with little room."""
+    place = tmp_path / "small"
+    place.mkdir()
+    command = ["mount", "-t", "tmpfs", "-o", f"size={ROOM}", "tmpfs", str(place)]
+    if shutil.which("mount") is None or subprocess.run(command, capture_output=True, check=False).returncode:
+        pytest.skip("mounting is not allowed here")
+    yield place
+    subprocess.run(["umount", "-l", str(place)], check=True)
+
+
+def remount_read_only(place: Path) -> None:
+    subprocess.run(["mount", "-o", "remount,ro", str(place)], check=True)
+
+
+@contextlib.contextmanager
+def unforeseen() -> Iterator[None]:
+    """As when others fill the disk while the run is under way."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(fem.run, "require_disk", lambda *_: None)
+        yield
+
+
+def told_of(name: str) -> float:
+    case = load_case(name, COMMON)
+    return required_disk(case, node_count(build_container(case), case.solver.order))
+
+
+def everything_reads(folder: Path) -> None:
+    assert len(read_history(folder / "history.csv")) > 10
+    assert all(frame.points.size for frame in open_fields(folder / "fields"))
+    assert not list(folder.rglob("*.part"))
+
+
+def test_what_a_run_writes_is_told_ahead(tmp_path, capsys):
+    told = told_of("rocking")
+    assert run(tmp_path / "r") == 0
+    written = sum(path.stat().st_size for path in (tmp_path / "r").rglob("*") if path.is_file())
+    assert written < told < 1.6 * written + BESIDE
+    capsys.readouterr()
+    assert main(["check", "rocking", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["numerics"]["output_bytes"] > written
+    assert main(["run", "rocking", "--dry-run", "--out", str(tmp_path)]) == 0
+    page = capsys.readouterr().out
+    assert "room for" in page and "about" in page
+
+
+def test_a_run_that_does_not_fit_is_refused_before_anything_is_written(tmp_path, capsys, monkeypatch):
+    free = shutil.disk_usage(tmp_path)._replace(free=2_000_000)
+    monkeypatch.setattr(fem.required_disk.shutil, "disk_usage", lambda _: free)
+    assert run(tmp_path / "r") == 2
+    message = capsys.readouterr().err
+    assert "would write about" in message and "room for 2 MB" in message and "output.fields_s" in message
+    assert not (tmp_path / "r").exists()
+
+
+def test_results_that_are_replaced_make_room(tmp_path, monkeypatch):
+    assert run(tmp_path / "r") == 0
+    size = sum(path.stat().st_size for path in (tmp_path / "r").rglob("*") if path.is_file())
+    free = shutil.disk_usage(tmp_path)._replace(free=int(told_of("rocking") - 0.9 * size))
+    monkeypatch.setattr(fem.required_disk.shutil, "disk_usage", lambda _: free)
+    assert run(tmp_path / "r", "--force") == 0
+    assert run(tmp_path / "other") == 2
+
+
+def test_a_full_disk_ends_a_run_with_3_and_leaves_what_was_written(small, capsys):
+    with unforeseen():
+        assert run(small / "r") == 3
+    message = capsys.readouterr().err
+    assert "No space left on device" in message and str(small / "r") in message and "--resume" in message
+    everything_reads(small / "r")
+    assert read_result(small / "r" / "run.json")["status"] in ("failed", "running")
+
+
+def test_a_disk_that_turns_read_only_ends_a_run_with_3(small, capsys, monkeypatch):
+    def update(self, time, rotation_ratio, mode):
+        if time >= 0.3:
+            remount_read_only(small)
+
+    monkeypatch.setattr(fem.progress.ScreenReporter, "update", update)
+    with unforeseen():
+        assert run(small / "r") == 3
+    message = capsys.readouterr().err
+    assert "Read-only file system" in message or "No space left" in message
+    everything_reads(small / "r")
+
+
+def test_a_read_only_folder_is_refused_with_2(small, capsys):
+    remount_read_only(small)
+    with unforeseen():
+        assert run(small / "r") == 2
+    assert "Read-only file system" in capsys.readouterr().err
+
+
+def test_a_sweep_on_a_full_disk_ends_with_3_keeps_its_rows_and_goes_on(small, capsys, tmp_path):
+    (tmp_path / "small.toml").write_text(SMALL)
+    command = ["sweep", str(tmp_path / "small.toml"), "--out", str(small / "s"), "-q", "-j", "1"]
+    with open(small / "filler", "wb") as filler:
+        filler.write(bytes(ROOM - 3 * 4096 - 4096))
+    assert main(command) in (2, 3)
+    os.truncate(small / "filler", ROOM - 8 * 4096)
+    assert main([*command, "--resume"]) == 3
+    message = capsys.readouterr().err
+    assert "No space left on device" in message and "--resume" in message
+    (small / "filler").unlink()
+    assert main([*command, "--resume"]) == 0
+    assert len(open_sweep(small / "s")["cell"]) == 20
+
+
+def test_a_folder_removed_during_a_sweep_ends_it_with_3(tmp_path, capsys, monkeypatch):
+    (tmp_path / "small.toml").write_text(SMALL)
+    draw = fem.sweep.sweeping._draw
+
+    def removed(place, sweep):
+        shutil.rmtree(place.path)
+        return draw(place, sweep)
+
+    monkeypatch.setattr(fem.sweep.sweeping, "_draw", removed)
+    assert main(["sweep", str(tmp_path / "small.toml"), "--out", str(tmp_path / "s"), "-q", "-j", "1"]) in (
+        2,
+        3,
+    )
+    message = capsys.readouterr().err
+    assert str(tmp_path / "s") in message and "Traceback" not in message
+
+
+def test_a_report_that_cannot_be_written_ends_with_3_and_names_another_place(
+    small, capsys, monkeypatch, tmp_path
+):
+    assert run(tmp_path / "r", "--set", "output.fields_s=0") == 0
+    shutil.copytree(tmp_path / "r", small / "r")
+    remount_read_only(small)
+    monkeypatch.setattr(fem.report.run_page, "run_report", lambda *_, **__: "<html></html>")  # takes long
+    capsys.readouterr()
+    assert main(["report", str(small / "r")]) == 3
+    message = capsys.readouterr().err
+    assert "report.html: cannot be written (Read-only file system)" in message and "--to FILE" in message
+    assert main(["report", str(small / "r"), "--to", str(tmp_path / "page.html")]) == 0
