@@ -18,7 +18,16 @@ from contact.laws import ELASTIC_STICK
 from contact.modal_body import ModalBody, make_modal_body, place, start
 from contact.motion import HarmonicMotion, PulseMotion
 from contact.scheme import Scheme, generalised_alpha
-from contact.stepping import ROW_ROTATION, ROW_SLIP, Control, Run, advance_compiled, make_run, make_samples
+from contact.stepping import (
+    ROW_ROTATION,
+    ROW_SLIP,
+    Control,
+    Run,
+    advance_compiled,
+    make_run,
+    make_samples,
+    most_attempts,
+)
 
 GRAVITY = 9.81
 LOOSE = 1e30  #: a tolerance that never cuts a step
@@ -113,8 +122,11 @@ class Rig:
 
     def advance(self, until: float) -> "Rig":
         """Step to `until` [s] or, as no step is cut for it, just beyond."""
+        limit = most_attempts(self.run.control, until)
+        self.clock.attempt_limit = limit
         status = advance_compiled(self.body, self.run, until)
         assert status == 0, f"stopped with status {status} at {self.time} s"
+        assert self.clock.steps + self.clock.rejected < limit, f"makes no headway at {self.time} s"
         assert self.time >= until, f"no room for more samples at {self.time} s"
         return self
 
