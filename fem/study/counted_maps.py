@@ -21,7 +21,7 @@ SHAPE_FREQUENCIES = (2.5, 4.0, ANGULAR_FREQUENCY)  #: [rad/s]
 #: what of the grids is computed with the shell, and how
 SHELL_FREQUENCIES, SHELL_PEAKS = FREQUENCIES[::2], PEAKS[1::2]
 SHELL_SLENDERNESS, SHELL_FRICTION = SLENDERNESS[1::2], FRICTION[1::2]
-SHELL = {"solver.model": "reduced", "solver.energy_tolerance": 1.0, "solver.duration_s": 10.0}
+SHELL = {"solver.model": "reduced", "solver.duration_s": 10.0}
 
 
 @dataclass(frozen=True, kw_only=True)

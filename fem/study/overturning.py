@@ -111,9 +111,7 @@ def half_width_is_conservative(laboratory: Laboratory) -> Finding:
             _map_of(laboratory, stack_map(laboratory, NO_SLIDING, perturbed=True), block.frequency_parameter),
         ),
         band=laboratory.band(
-            witness.but(
-                {"solver.model": "reduced", "solver.energy_tolerance": 1.0, "solver.duration_s": 10.0}
-            ),
+            witness.but({"solver.model": "reduced", "solver.duration_s": 10.0}),
             quantity=f"rotation ratio at A = {witness.values['motion.amplitude_m'] / HALF_WIDTH:.2f} a/2",
             unit="-",
             value=lambda row: min(float(row["rotation_ratio"]), 1.0),

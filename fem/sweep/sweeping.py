@@ -8,7 +8,7 @@ where it was, and its table does not tell that it ever was.
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -29,16 +29,17 @@ from fem.sweep.band import (
     UNKNOWN,
     BoolArray,
     FloatArray,
-    IntArray,
     around,
     band_width,
     kind_of,
     near_cells,
 )
+from fem.sweep.findings import Band, Found
 from fem.sweep.folder import SweepFolder, band_hash, open_sweep_folder, sweep_hash, write_info, write_plan
 from fem.sweep.maps import draw_maps
 from fem.sweep.plan import Sweep
 from fem.sweep.running import Row, Workers, local_workers, run_items
+from fem.sweep.size import check_size
 from fem.sweep.table import (
     FOUND,
     RowLog,
@@ -53,11 +54,6 @@ from fem.sweep.table import (
 )
 from fem.sweep.threshold import Change, changes_of, least_width, values_to_try
 
-#: cells that a sweep may have unless it is forced
-MOST_CELLS = 1_000_000
-#: rough CPU time of a simulated second [s], and bytes of a row: to say what a very large sweep would take
-SECONDS_PER_SECOND = {"rigid": 3e-4, "reduced": 3e-3, "full": 6.0}
-BYTES_A_ROW = 350
 #: how often `sweep.json` tells how far the sweep has come [s]
 NOTE_S = 10.0
 
@@ -65,56 +61,6 @@ TRIED_COLUMNS = ("cell", "value", "status", "outcome", "rotation_ratio", "reason
 MEMBER_COLUMNS = ("cell", "member", "change", "status", "outcome", "rotation_ratio", "reason")
 
 WorkersOf = Callable[[str], AbstractContextManager[Workers]]
-
-
-@dataclass(kw_only=True)
-class Found:
-    """What is known of the cells so far."""
-
-    lines: dict[int, str] = field(default_factory=dict)  #: row of each cell, as it stands in the log
-    kind: IntArray  #: (n_cells,) see `band`
-    rotation_ratio: FloatArray  #: (n_cells,)
-    outcomes: dict[str, int] = field(default_factory=dict)  #: how often each was found; "failed" too
-
-    def note(self, cell: int, line: str, status: str, outcome: str | None, ratio: float | None) -> None:
-        """Enter a cell's row."""
-        self.lines[cell] = line
-        self.kind[cell] = kind_of(status, outcome)
-        self.rotation_ratio[cell] = np.nan if ratio is None else ratio
-        word = outcome if outcome and status != "failed" else "failed"
-        self.outcomes[word] = self.outcomes.get(word, 0) + 1
-
-
-@dataclass(frozen=True, kw_only=True)
-class Member:
-    """A perturbed copy of a cell."""
-
-    line: str  #: as it stands in the log
-    kind: int  #: see `band`
-    ratio: float | None  #: rotation ratio
-
-
-@dataclass(kw_only=True)
-class Band:
-    """What the perturbed copies say."""
-
-    members: dict[int, dict[int, Member]] = field(default_factory=dict)  #: by cell and number
-
-    def note(self, line: str) -> None:
-        """Enter a line of the log."""
-        cell, member, _, status, outcome, ratio, _ = fields_of(line)
-        found = Member(line=line, kind=kind_of(status, outcome), ratio=float(ratio) if ratio else None)
-        self.members.setdefault(int(cell), {})[int(member)] = found
-
-    def is_unsure(self, cell: int, kind: int) -> bool:
-        """Whether a copy is of another kind than the cell; of a cell that failed nothing is sure."""
-        kinds = {member.kind for member in self.members.get(cell, {}).values()}
-        return kind not in (STANDING, OVERTURNED) or bool(kinds - {kind})
-
-    def lines(self) -> Iterator[str]:
-        """The log, in the order of cells and members."""
-        for cell in sorted(self.members):
-            yield from (self.members[cell][member].line for member in sorted(self.members[cell]))
 
 
 def run_sweep(
@@ -180,27 +126,6 @@ def _with_maps(place: SweepFolder, sweep: Sweep) -> dict[str, Any]:
 
 def _draw(place: SweepFolder, sweep: Sweep) -> list[str]:
     return draw_maps(open_sweep(place.path), place.maps, **sweep.maps.model_dump())
-
-
-def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
-    """Refuse more cells than anybody asks for on purpose.
-
-    Raises:
-        CaseError: says how many, how long, how much disk.
-    """
-    if sweep.count <= MOST_CELLS or force:
-        return
-    model = sweep.base.solver.model
-    axes = {axis.key: axis.values for axis in sweep.axes}
-    durations = axes.get("solver.duration_s", (sweep.base.solver.duration_s,))
-    speeds = [SECONDS_PER_SECOND[one] for one in axes.get("solver.model", (model,))]
-    seconds = sweep.count * float(np.mean(durations)) * float(np.mean(speeds)) / jobs
-    sizes = " x ".join(str(size) for size in sweep.shape)
-    raise CaseError(
-        f"{sweep.name}: [axes] make {sizes} = {sweep.count} cells, more than {MOST_CELLS}: about "
-        f"{clock_time(seconds)} on {jobs} core{'s' * (jobs > 1)} with the {model} model, and "
-        f"{sweep.count * BYTES_A_ROW / 1e9:.1f} GB of table; take fewer values, or say --force"
-    )
 
 
 def _asked(sweep: Sweep) -> dict[str, Any]:

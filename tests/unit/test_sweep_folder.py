@@ -19,7 +19,8 @@ from fem.case_reading import CaseError
 from fem.run_folder import FolderError, OutputError
 from fem.sweep.band import around
 from fem.sweep.file import load_sweep
-from fem.sweep.sweeping import check_size, run_sweep
+from fem.sweep.size import check_size
+from fem.sweep.sweeping import run_sweep
 from fem.sweep.table import RowLog, open_sweep
 
 ROOT = Path(__file__).parents[2]
@@ -205,10 +206,10 @@ def test_a_kill_while_the_band_is_changed_leaves_no_copies_of_the_other(small, t
     def killed(*arguments):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("fem.sweep.sweeping.write_plan", killed)
-    with pytest.raises(KeyboardInterrupt):
-        run_sweep(other, folder)
-    monkeypatch.undo()
+    with monkeypatch.context() as patch:
+        patch.setattr("fem.sweep.sweeping.write_plan", killed)
+        with pytest.raises(KeyboardInterrupt):
+            run_sweep(other, folder)
     run_sweep(other, folder, resume=True)
     run_sweep(other, tmp_path / "alone")
     for name in ("table.csv", "members.csv"):
