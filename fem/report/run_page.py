@@ -85,12 +85,14 @@ def run_report(
         if finished
         else None
     )
+    played = _film_data(film, history, model) if len(history) > 1 else {}
     static, verdict = result["static"], result.get("verdict") or {}
     peak = static["own_motion"]["base_shear_N"] / (static["weight_N"] / case.gravity_m_s2)
     return render_page(
         "run.html.j2",
         scripts=["player.js", "signature.js"] if len(history) > 1 else ["signature.js"],
-        data={"film": _film_data(film, history, model)} if len(history) > 1 else {},
+        data={"film": played} if played else {},
+        played=played,
         title=case.title or run.name,
         name=run.name,
         hash=str(result.get("case_hash") or ""),
