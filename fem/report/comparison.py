@@ -8,7 +8,7 @@ from typing import Any
 from markupsafe import Markup
 
 from fem.case import Case
-from fem.report.quantities import degrees, number, quantity, short
+from fem.report.quantities import degrees, number, quantity, short, typeset
 from fem.static_checks import CLAUSE_OVERTURNING, CLAUSE_SLIDING
 from fem.summary import own_motion_name, rule_says, run_slid, run_tilted
 
@@ -64,7 +64,7 @@ def compared_rows(result: Result, case: Case) -> list[Compared]:
                     exceeded=use is None or use > 1.0,
                     clause=clause.removeprefix(EDITION).removesuffix(f", {check}"),
                     rule=rule_says(check, use),
-                    run=found(verdict) if key == "own_motion" and verdict.get("outcome") else "",
+                    run=typeset(found(verdict)) if key == "own_motion" and verdict.get("outcome") else "",
                 )
             )
     return rows
