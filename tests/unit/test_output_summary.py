@@ -329,6 +329,15 @@ def test_solid_blocks_are_not_measured_against_the_yield_strength_of_a_steel_she
     assert warnings_for(result, read_case(CASE.replace("wall_m = 0.008\n", ""))) == []
 
 
+def test_a_container_too_soft_for_the_linear_model_is_told():
+    soft = CASE.replace("wall_m = 0.008\n", 'section = "solid"\nyoungs_modulus_Pa = 1e7\n')
+    (warning,) = warnings_for(changed(verdict__max_von_mises_Pa=1.2e5), read_case(soft))
+    assert "strain reached 1.2 %" in warning and 'solver.model = "full"' in warning
+    assert warnings_for(changed(verdict__max_von_mises_Pa=0.9e5), read_case(soft)) == []
+    full = read_case(soft + '[solver]\nmodel = "full"\n')
+    assert warnings_for(changed(verdict__max_von_mises_Pa=1.2e5), full) == []
+
+
 @pytest.mark.parametrize(
     "result", [{"status": "failed"}, {"status": "running", "verdict": None, "static": None}]
 )
