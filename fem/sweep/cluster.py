@@ -22,7 +22,7 @@ class SchedulerError(ValueError):
 
 
 @contextmanager
-def cluster(address: str) -> Iterator[Callable[[str], AbstractContextManager[Workers]]]:
+def cluster(address: str) -> Iterator[Callable[[str, int], AbstractContextManager[Workers]]]:
     """Connect to a scheduler; yields who computes the cases of a model.
 
     Raises:
@@ -48,7 +48,7 @@ def cluster(address: str) -> Iterator[Callable[[str], AbstractContextManager[Wor
         _require_the_same_program(client, address)
 
         @contextmanager
-        def workers_of(model: str) -> Iterator[Workers]:
+        def workers_of(model: str, count: int) -> Iterator[Workers]:
             threads = sum(client.nthreads().values())
             with client.get_executor(pure=False) as pool:
                 try:

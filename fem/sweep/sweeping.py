@@ -60,7 +60,7 @@ NOTE_S = 10.0
 TRIED_COLUMNS = ("cell", "value", "status", "outcome", "rotation_ratio", "reason")
 MEMBER_COLUMNS = ("cell", "member", "change", "status", "outcome", "rotation_ratio", "reason")
 
-WorkersOf = Callable[[str], AbstractContextManager[Workers]]
+WorkersOf = Callable[[str, int], AbstractContextManager[Workers]]
 
 
 def run_sweep(
@@ -79,7 +79,7 @@ def run_sweep(
         sweep: what is asked.
         folder: of the results.
         jobs: cores to use; all by default. The table does not depend on it.
-        workers_of: who computes the cases of a model, in place of this machine's cores.
+        workers_of: who computes so many cases of a model, in place of this machine's cores.
         resume: go on with what is there.
         force: begin anew over what is there; also lifts the limit on the number of cells.
         reporter: told of the progress.
@@ -106,7 +106,7 @@ def run_sweep(
             sweep=sweep,
             place=place,
             reporter=reporter,
-            workers_of=workers_of or (lambda model: local_workers(model, jobs)),
+            workers_of=workers_of or (lambda model, count: local_workers(model, jobs, count)),
             info=_asked(sweep) | {"jobs": jobs},
             check=lock.check,
         )
@@ -267,7 +267,7 @@ class _Work:
         began = time.perf_counter()
         for model, some in self._by_model(items).items():
             with ExitStack() as stack:
-                workers = stack.enter_context(self.workers_of(model))
+                workers = stack.enter_context(self.workers_of(model, len(some)))
                 for chunk, rows in run_items(some, make, model, workers, stop=stop):
                     yield chunk, rows
                     done += len(chunk)

@@ -49,6 +49,15 @@ def test_rows_come_in_the_order_of_the_cases_whatever_the_jobs(cases):
     assert [row["outcome"] for row in one[:2]] == ["rock", "overturned"]
 
 
+def test_processes_give_the_rows_that_threads_give(cases, monkeypatch):
+    few = [case for case in cases if case.solver.model == "rigid"]
+    assert len(few) > 1
+    threads = run_cases(few, jobs=2)
+    monkeypatch.setattr("fem.sweep.running.WORTH_PROCESSES", {"rigid": 2, "reduced": 2})
+    monkeypatch.setattr("fem.sweep.running.ThreadPoolExecutor", None)
+    assert without_wall(run_cases(few, jobs=2)) == without_wall(threads)
+
+
 def test_a_case_that_cannot_be_computed_has_a_reason_and_no_outcome(cases):
     missing = cases[0].with_values(
         {
