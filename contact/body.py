@@ -59,10 +59,11 @@ def make_state(coordinates: int, points: int, monitors: int) -> State:
         "pose": (6,),
         "energy": (3,),
     }
-    ends = np.cumsum([math.prod(shape) for shape in shapes.values()])
-    numbers = np.zeros(ends[-1])
-    parts = np.split(numbers, ends[:-1])
-    fields = {name: part.reshape(shape) for (name, shape), part in zip(shapes.items(), parts, strict=True)}
+    numbers = np.zeros(sum(math.prod(shape) for shape in shapes.values()))
+    fields, begin = {}, 0
+    for name, shape in shapes.items():
+        end = begin + math.prod(shape)
+        fields[name], begin = numbers[begin:end].reshape(shape), end
     return State(**fields, monitor=np.zeros((monitors, 4)), numbers=numbers)
 
 

@@ -8,7 +8,8 @@ recorded motion stand in `contact.motion_table`.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -138,38 +139,13 @@ class HarmonicMotion:
     @property
     def break_times(self) -> FloatArray:
         """Instants in (0, duration] where the acceleration jumps or its formula changes, shape (n,) [s]."""
-        ends = np.array([self.ramp, self.end_time - self.ramp, self.end_time])
-        return np.unique(ends[(ends > 0.0) & (ends <= self.duration)])
+        ends = {self.ramp, self.end_time - self.ramp, self.end_time}
+        return np.array(sorted(end for end in ends if 0.0 < end <= self.duration), dtype=float)
 
     @property
     def peak_acceleration(self) -> float:
         """Largest |acceleration| within the run [m/s2]: A Omega^2 once a whole half cycle is not tapered."""
-        end = min(self.end_time, self.duration)
-        full = self.amplitude * self.angular_frequency**2
-        plateau = (self.ramp, min(self.end_time - self.ramp, self.duration))
-        floor = full if plateau[1] - plateau[0] >= 0.5 * self.time_scale else 0.0
-        if floor == full and self.ramp == 0.0:
-            return full  # nothing lifts it above its own amplitude
-        reach = SEARCHED_CYCLES * self.time_scale
-        spans = (
-            (plateau[0] - reach, plateau[0] + self.time_scale),
-            (plateau[1] - self.time_scale, plateau[1] + reach),
-        )
-        return max(floor, *(self._peak_between(max(0.0, low), min(end, high)) for low, high in spans))
-
-    def _peak_between(self, low: float, high: float) -> float:
-        """Largest |acceleration| in [low, high) by sampling, then by closing in on the largest sample."""
-        if high <= low:
-            return 0.0
-        count = int(SAMPLES_PER_CYCLE * (high - low) / self.time_scale) + 9
-        # Just short of the end: at `end_time` itself the floor already stands.
-        times, peak = np.linspace(low, np.nextafter(high, 0.0), count), 0.0
-        for _ in range(6):
-            sizes = np.abs(self.evaluate(times)[2])
-            best = int(np.argmax(sizes))
-            peak = max(peak, float(sizes[best]))
-            times = np.linspace(times[max(best - 1, 0)], times[min(best + 1, times.size - 1)], 33)
-        return peak
+        return self.amplitude * _peak_of_unit(replace(self, amplitude=1.0))
 
     def compiled(self) -> FloorMotion:
         """Data for `floor_motion`."""
@@ -180,6 +156,38 @@ class HarmonicMotion:
     def evaluate(self, times: FloatArray) -> FloatArray:
         """Displacement, velocity, acceleration at the times [s], shape (3, n_times)."""
         return floor_history(self.compiled(), times)
+
+
+@lru_cache(maxsize=256)  # the cells of a map differ in the amplitude first
+def _peak_of_unit(motion: HarmonicMotion) -> float:
+    """Largest |acceleration| of a motion of amplitude 1 m [m/s2]."""
+    end = min(motion.end_time, motion.duration)
+    full = motion.angular_frequency**2
+    plateau = (motion.ramp, min(motion.end_time - motion.ramp, motion.duration))
+    floor = full if plateau[1] - plateau[0] >= 0.5 * motion.time_scale else 0.0
+    if floor == full and motion.ramp == 0.0:
+        return full  # nothing lifts it above its own amplitude
+    reach = SEARCHED_CYCLES * motion.time_scale
+    spans = (
+        (plateau[0] - reach, plateau[0] + motion.time_scale),
+        (plateau[1] - motion.time_scale, plateau[1] + reach),
+    )
+    return max(floor, *(_peak_between(motion, max(0.0, low), min(end, high)) for low, high in spans))
+
+
+def _peak_between(motion: HarmonicMotion, low: float, high: float) -> float:
+    """Largest |acceleration| in [low, high) by sampling, then by closing in on the largest sample."""
+    if high <= low:
+        return 0.0
+    count = int(SAMPLES_PER_CYCLE * (high - low) / motion.time_scale) + 9
+    # Just short of the end: at `end_time` itself the floor already stands.
+    times, peak = np.linspace(low, np.nextafter(high, 0.0), count), 0.0
+    for _ in range(6):
+        sizes = np.abs(motion.evaluate(times)[2])
+        best = int(np.argmax(sizes))
+        peak = max(peak, float(sizes[best]))
+        times = np.linspace(times[max(best - 1, 0)], times[min(best + 1, times.size - 1)], 33)
+    return peak
 
 
 @dataclass(frozen=True, kw_only=True)
