@@ -11,6 +11,7 @@ A stale lock is taken over; a live one is never broken, by no option.
 """
 
 import contextlib
+import errno
 import json
 import os
 import socket
@@ -29,11 +30,18 @@ except ImportError:  # Windows: the owner's word alone counts
 LOCK_NAME = ".lock"
 HEARTBEAT_S = 20.0  #: between signs of life
 SILENCE_S = 120.0  #: after which an owner on another host counts as dead
+UNWRITABLE = {errno.EROFS, errno.EACCES, errno.EPERM, errno.ENOSPC, errno.EDQUOT}
 LARGEST_LOCK = 10_000  #: bytes that are read of one
 
 
 class FolderLockedError(ValueError):
     """Another process writes into the folder; the message names it and the way out."""
+
+
+class FolderUnwritableError(RuntimeError):
+    """The folder cannot be made or written; the message names it, the reason and the way out."""
+
+    exit_code = 3
 
 
 class FolderLostError(OSError):
@@ -115,12 +123,20 @@ def held_folder(folder: Path) -> Iterator[FolderLock]:
 
     Raises:
         FolderLockedError: another process holds it, or another part of this one.
-        OSError: it cannot be made or written.
+        FolderUnwritableError: a read-only place, or a full one.
+        OSError: it cannot be made for another reason, as where a file stands in the way.
     """
     missing = [place for place in (folder, *folder.parents) if not place.exists()]
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        lock = _take(folder / LOCK_NAME)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            lock = _take(folder / LOCK_NAME)
+        except OSError as error:
+            if error.errno not in UNWRITABLE:
+                raise
+            raise FolderUnwritableError(
+                f"{folder}: cannot be written ({error.strerror}); choose another folder with --out DIR"
+            ) from None
         try:
             yield lock
         finally:

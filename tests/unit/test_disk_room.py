@@ -124,11 +124,12 @@ def test_a_disk_that_turns_read_only_ends_a_run_with_3(small, capsys, monkeypatc
     everything_reads(small / "r")
 
 
-def test_a_read_only_folder_is_refused_with_2(small, capsys):
+def test_a_read_only_folder_ends_a_run_with_3_before_it_begins(small, capsys):
     remount_read_only(small)
     with unforeseen():
-        assert run(small / "r") == 2
-    assert "Read-only file system" in capsys.readouterr().err
+        assert run(small / "r") == 3
+    message = capsys.readouterr().err
+    assert "cannot be written (Read-only file system)" in message and "--out DIR" in message
 
 
 def test_a_sweep_on_a_full_disk_ends_with_3_keeps_its_rows_and_goes_on(small, capsys, tmp_path):
