@@ -129,8 +129,7 @@ def held_folder(folder: Path) -> Iterator[FolderLock]:
     missing = [place for place in (folder, *folder.parents) if not place.exists()]
     try:
         try:
-            folder.mkdir(parents=True, exist_ok=True)
-            lock = _take(folder / LOCK_NAME)
+            lock = _make_and_take(folder)
         except OSError as error:
             if error.errno not in UNWRITABLE:
                 raise
@@ -145,6 +144,16 @@ def held_folder(folder: Path) -> Iterator[FolderLock]:
         for place in missing:
             with contextlib.suppress(OSError):
                 place.rmdir()
+
+
+def _make_and_take(folder: Path) -> FolderLock:
+    while True:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            return _take(folder / LOCK_NAME)
+        except (FileExistsError, FileNotFoundError):
+            if os.path.lexists(folder) and not folder.is_dir():
+                raise  # else who held it has just taken it away again, empty
 
 
 def _take(path: Path) -> FolderLock:

@@ -1,6 +1,8 @@
 """The command line: exit codes, one message without a traceback, nothing written on bad input."""
 
+import errno
 import json
+import os
 import subprocess
 import sys
 import time
@@ -103,13 +105,14 @@ def test_an_interrupted_command_ends_with_4(monkeypatch, capsys):
     assert capsys.readouterr().err == "interrupted\n"
 
 
-def test_a_full_disk_or_missing_folder_is_told_without_a_traceback(monkeypatch, capsys):
-    def full(*_, **__):
-        raise OSError(28, "No space left on device", "history.csv")
+@pytest.mark.parametrize(("number", "code"), [(errno.ENOSPC, 3), (errno.ENOENT, 2)])
+def test_a_full_disk_or_missing_folder_is_told_without_a_traceback(monkeypatch, capsys, number, code):
+    def fail(*_, **__):
+        raise OSError(number, os.strerror(number), "history.csv")
 
-    monkeypatch.setattr(command_line, "build_app", lambda: full)
-    assert command_line.main(["list"]) == 2
-    assert capsys.readouterr().err == "history.csv: No space left on device\n"
+    monkeypatch.setattr(command_line, "build_app", lambda: fail)
+    assert command_line.main(["list"]) == code
+    assert capsys.readouterr().err == f"history.csv: {os.strerror(number)}\n"
 
 
 def test_a_reader_that_leaves_early_is_no_error():

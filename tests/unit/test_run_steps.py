@@ -58,7 +58,7 @@ def test_a_short_pulse_rocks_the_container_as_small_steps_throughout_do():
 
 
 def test_a_step_that_would_step_over_the_motion_is_refused():
-    case = rigid(motion__frequency_Hz=20.0, solver__step_s=0.02)
+    case = rigid(motion__frequency_Hz=20.0, motion__amplitude_m=0.01, solver__step_s=0.02)
     with pytest.raises(CaseError, match=r"step_s = 0\.02 s would step over the motion.* at most 0\.005 s"):
         build_model(case)
 
