@@ -192,12 +192,12 @@ def test_two_runs_do_not_write_into_one_folder(tmp_path, capsys):
     assert contents(tmp_path / "r").keys() == {"keep"}
 
 
-def test_a_folder_that_cannot_be_written_is_bad_input(tmp_path, capsys, monkeypatch):
+def test_a_folder_that_cannot_be_written_ends_with_3(tmp_path, capsys, monkeypatch):
     def refuse(*_, **__):
         raise OSError(errno.EROFS, os.strerror(errno.EROFS))
 
     monkeypatch.setattr(fem.folder_lock.os, "open", refuse)
-    assert command(tmp_path / "r") == 2
+    assert command(tmp_path / "r") == 3
     message = capsys.readouterr().err
     assert "Read-only file system" in message and "--out" in message
     assert not (tmp_path / "r").exists()
