@@ -160,7 +160,8 @@ def held(folder: Path) -> Iterator[FolderLock]:
 
     Raises:
         FolderLockedError: another run writes there.
-        FolderError: it cannot be made or written.
+        FolderUnwritableError: a read-only place, or a full one.
+        FolderError: it cannot be made for another reason.
     """
     with ExitStack() as stack:
         try:
