@@ -5,13 +5,13 @@ alone writes. Mesh and motion files are read by the workers where they lie here:
 """
 
 import asyncio
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 from distributed import CancelledError, Client, KilledWorker, rpc
 
 from fem.program import program_identity
-from fem.sweep.running import Workers, WorkersLostError
+from fem.sweep.workers import Pool, WorkersLostError, WorkersOf
 
 ANSWER_S = 5.0  #: within which a scheduler answers
 WORKER_S = 10.0  #: within which it has a worker
@@ -22,11 +22,12 @@ class SchedulerError(ValueError):
 
 
 @contextmanager
-def cluster(address: str) -> Iterator[Callable[[str, int], AbstractContextManager[Workers]]]:
+def cluster(address: str) -> Iterator[WorkersOf]:
     """Connect to a scheduler; yields who computes the cases of a model.
 
     Raises:
         SchedulerError: it does not answer, has no workers, or they run another version of this program.
+        WorkersLostError: they died on the way.
     """
     try:
         # Asked by itself first: a client waits for ever for a peer that takes the connection and says nothing.
@@ -47,18 +48,17 @@ def cluster(address: str) -> Iterator[Callable[[str, int], AbstractContextManage
             ) from None
         _require_the_same_program(client, address)
 
-        @contextmanager
-        def workers_of(model: str, count: int) -> Iterator[Workers]:
-            threads = sum(client.nthreads().values())
-            with client.get_executor(pure=False) as pool:
-                try:
-                    yield Workers(pool=pool, count=max(threads, 1))
-                except (KilledWorker, CancelledError) as error:
-                    raise WorkersLostError(
-                        f"the workers of {address} died ({error}); --resume goes on from here"
-                    ) from None
+        with client.get_executor(pure=False) as executor:
 
-        yield workers_of
+            def workers_of(model: str, count: int) -> Sequence[Pool]:
+                return [Pool(executor, max(sum(client.nthreads().values()), 1))]
+
+            try:
+                yield workers_of
+            except (KilledWorker, CancelledError) as error:
+                raise WorkersLostError(
+                    f"the workers of {address} died ({error}); --resume goes on from here"
+                ) from None
 
 
 async def _identity(address: str) -> object:

@@ -4,25 +4,11 @@ Cases that have the same container share its mesh and modes. A case that cannot 
 status "failed" and the reason; it never has an outcome.
 """
 
-import os
-import signal
 import threading
 import time
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    BrokenExecutor,
-    Executor,
-    Future,
-    ProcessPoolExecutor,
-    ThreadPoolExecutor,
-    wait,
-)
-from contextlib import contextmanager
-from dataclasses import dataclass
-from itertools import islice
-from multiprocessing import get_context
-from multiprocessing.synchronize import Event
+from concurrent.futures import Future
+from functools import partial
 from operator import itemgetter
 from typing import Any, TypeVar
 
@@ -38,22 +24,13 @@ from fem.recorder import Recorder
 from fem.recovery import Recovery, recovery_of
 from fem.simulation import AFTERMATH, SLICE_REDUCED, cores, simulate, stepping_failure
 from fem.sweep.table import SCALARS
+from fem.sweep.workers import LocalWorkers, Pool, hand_out
 from fem.verdict import audit, end_of_drive, verdict_from, verdict_of
 
 #: cases handed to a core at a time
 CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}
-#: cases from which processes of their own, which take some seconds to start, are worth it for the compiled models
-WORTH_PROCESSES = {"rigid": 500, "reduced": 100}
-#: chunks handed out for every worker, so that none waits for the next
-AHEAD = 2
 
 Row = dict[str, Any]
-
-
-class WorkersLostError(RuntimeError):
-    """The workers died; what they had computed before is kept."""
-
-    exit_code = 3
 
 
 ItemT = TypeVar("ItemT")
@@ -68,7 +45,7 @@ def run_cases(
 ) -> list[Row]:
     """Run cases and return a row each, in their order, the same whatever `jobs`.
 
-    No files are written, no fields are kept. Many cases are run by processes (`local_workers`), so a script that calls
+    No files are written, no fields are kept. Many cases are run by processes (`LocalWorkers`), so a script that calls
     this needs the usual `if __name__ == "__main__":`.
 
     Args:
@@ -87,12 +64,14 @@ def run_cases(
         first.setdefault(container_key(case), k)
     order = sorted(range(len(cases)), key=lambda k: first[container_key(cases[k])])
     finished = 0
-    for model in ("rigid", "reduced", "full"):
-        items = [(k, cases[k]) for k in order if cases[k].solver.model == model]
-        if not items:
-            continue
-        with local_workers(model, jobs or cores(), len(items)) as workers:
-            for chunk, found in run_items(items, itemgetter(1), model, workers, stop=stop):
+    with LocalWorkers(jobs or cores()) as workers_of:
+        for model in ("rigid", "reduced", "full"):
+            items = [(k, cases[k]) for k in order if cases[k].solver.model == model]
+            if not items:
+                continue
+            for chunk, found in run_items(
+                items, itemgetter(1), model, workers_of(model, len(items)), stop=stop
+            ):
                 for (k, _), row in zip(chunk, found, strict=True):
                     rows[k] = row
                 finished += len(chunk)
@@ -116,39 +95,11 @@ def container_key(case: Case) -> Hashable:
     )
 
 
-@dataclass(frozen=True, kw_only=True)
-class Workers:
-    """Who computes: an executor, and how many chunks it works on at once."""
-
-    pool: Executor
-    count: int
-
-
-@contextmanager
-def local_workers(model: str, jobs: int, count: int) -> Iterator[Workers]:
-    """Cores of this machine for `count` cases of a model: processes for `full` and for many cases, else threads.
-
-    The compiled models step without the interpreter's lock, but two fifths of a rigid case are the making of its model
-    and its row: threads make two cores 1.3 times one, processes 1.8 times.
-    """
-    if model == "full" or (jobs > 1 and count >= WORTH_PROCESSES[model]):
-        context = get_context("spawn")
-        over = context.Event()
-        with ProcessPoolExecutor(jobs, context, _end_with_parent, (os.getpid(), over)) as processes:
-            try:
-                yield Workers(pool=processes, count=jobs)
-            finally:  # a stop does not wait for the cases under way, which may take an hour
-                over.set()
-    else:
-        with ThreadPoolExecutor(jobs) as threads:
-            yield Workers(pool=threads, count=jobs)
-
-
 def run_items(
     items: Sequence[ItemT],
     make: Callable[[ItemT], Case],
     model: str,
-    workers: Workers,
+    pools: Sequence[Pool],
     *,
     stop: Callable[[], bool] = lambda: False,
 ) -> Iterator[tuple[list[ItemT], list[Row]]]:
@@ -159,38 +110,11 @@ def run_items(
         make: the case of an item; goes to the workers, so for processes it must be a module's function or a
             method of something that can be pickled.
         model: of all these cases.
-        workers: from `local_workers`, or a cluster.
+        pools: who computes, from `LocalWorkers` or a cluster.
         stop: asked now and then; true ends the work when what has begun is done, and at once for `full`.
     """
-    remaining = iter(items)
-    waiting: dict[Future[list[Row]], list[ItemT]] = {}
-    try:
-        while waiting or not stop():
-            while len(waiting) < AHEAD * workers.count and not stop():
-                chunk = list(islice(remaining, CASES_AT_A_TIME[model]))
-                if not chunk:
-                    break
-                waiting[workers.pool.submit(run_chunk, make, chunk)] = chunk
-            if not waiting:
-                break
-            finished, _ = wait(waiting, timeout=0.5, return_when=FIRST_COMPLETED)
-            for future in finished:
-                try:
-                    rows = future.result()
-                except BrokenExecutor as error:
-                    raise WorkersLostError(
-                        f"a worker process died ({error}); perhaps it ran out of memory: --resume goes on, -j 1 needs "
-                        "less"
-                    ) from None
-                yield waiting.pop(future), rows
-            if stop():
-                for future in [future for future in waiting if future.cancel()]:
-                    del waiting[future]
-                if model == "full":
-                    break
-    finally:
-        for future in waiting:
-            future.cancel()
+    work = partial(run_chunk, make)
+    return hand_out(items, work, pools, at_a_time=CASES_AT_A_TIME[model], stop=stop, finish=model != "full")
 
 
 def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row]:
@@ -362,15 +286,3 @@ _SHELF = Shelf()
 
 def _row_without_outcome(status: str, reason: str | None) -> Row:
     return {"status": status, "reason": reason, "wall_s": 0.0} | dict.fromkeys(SCALARS)
-
-
-def _end_with_parent(parent: int, over: Event) -> None:
-    """End this worker when the work is over, or the process that started it is gone, however it went."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is heard by the process that started it
-
-    def watch() -> None:
-        while os.getppid() == parent and not over.wait(1.0):
-            pass
-        os._exit(1)
-
-    threading.Thread(target=watch, daemon=True).start()

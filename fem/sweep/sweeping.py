@@ -7,7 +7,7 @@ where it was, and its table does not tell that it ever was.
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, ExitStack
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -38,7 +38,7 @@ from fem.sweep.findings import Band, Found
 from fem.sweep.folder import SweepFolder, band_hash, open_sweep_folder, sweep_hash, write_info, write_plan
 from fem.sweep.maps import draw_maps
 from fem.sweep.plan import Sweep
-from fem.sweep.running import Row, Workers, local_workers, run_items
+from fem.sweep.running import Row, run_items
 from fem.sweep.size import check_size
 from fem.sweep.table import (
     FOUND,
@@ -53,14 +53,13 @@ from fem.sweep.table import (
     write_table,
 )
 from fem.sweep.threshold import Change, changes_of, least_width, values_to_try
+from fem.sweep.workers import LocalWorkers, WorkersOf
 
 #: how often `sweep.json` tells how far the sweep has come [s]
 NOTE_S = 10.0
 
 TRIED_COLUMNS = ("cell", "value", "status", "outcome", "rotation_ratio", "reason")
 MEMBER_COLUMNS = ("cell", "member", "change", "status", "outcome", "rotation_ratio", "reason")
-
-WorkersOf = Callable[[str, int], AbstractContextManager[Workers]]
 
 
 def run_sweep(
@@ -97,7 +96,7 @@ def run_sweep(
     reporter = reporter or SilentReporter()
     jobs = jobs or cores()
     check_size(sweep, jobs, force)
-    with held_folder(folder) as lock, interruptible(reporter) as stop:
+    with held_folder(folder) as lock, interruptible(reporter) as stop, ExitStack() as held:
         place = open_sweep_folder(folder, sweep, force=force, resume=resume)
         if place.finished:
             reporter.message(f"{folder} holds this sweep already; --force computes it again")
@@ -106,7 +105,7 @@ def run_sweep(
             sweep=sweep,
             place=place,
             reporter=reporter,
-            workers_of=workers_of or (lambda model, count: local_workers(model, jobs, count)),
+            workers_of=workers_of or held.enter_context(LocalWorkers(jobs)),
             info=_asked(sweep) | {"jobs": jobs},
             check=lock.check,
         )
@@ -266,14 +265,12 @@ class _Work:
         self.reporter.start(0.0)
         began = time.perf_counter()
         for model, some in self._by_model(items).items():
-            with ExitStack() as stack:
-                workers = stack.enter_context(self.workers_of(model, len(some)))
-                for chunk, rows in run_items(some, make, model, workers, stop=stop):
-                    yield chunk, rows
-                    done += len(chunk)
-                    failed += sum(row["status"] == "failed" for row in rows)
-                    elapsed = time.perf_counter() - began
-                    self.reporter.tell(lambda: _progress(what, done, total, failed, elapsed))  # noqa: B023
+            for chunk, rows in run_items(some, make, model, self.workers_of(model, len(some)), stop=stop):
+                yield chunk, rows
+                done += len(chunk)
+                failed += sum(row["status"] == "failed" for row in rows)
+                elapsed = time.perf_counter() - began
+                self.reporter.tell(lambda: _progress(what, done, total, failed, elapsed))  # noqa: B023
         self.reporter.finish()
 
     def _by_model(self, items: Sequence[Any]) -> dict[str, list[Any]]:

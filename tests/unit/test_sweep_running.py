@@ -1,5 +1,8 @@
 """A list of cases on all cores: each row is the run of its case, whatever runs beside it."""
 
+import os
+import time
+
 import pytest
 
 from fem.case import load_case
@@ -9,6 +12,7 @@ from fem.recovery import recovery_of
 from fem.simulation import simulate
 from fem.sweep.running import run_cases
 from fem.sweep.table import SCALARS
+from fem.sweep.workers import WORTH_PROCESSES, LocalWorkers, hand_out
 from fem.verdict import verdict_of
 
 SHORT = ["solver.duration_s=2", "output.fields_s=0"]
@@ -53,9 +57,41 @@ def test_processes_give_the_rows_that_threads_give(cases, monkeypatch):
     few = [case for case in cases if case.solver.model == "rigid"]
     assert len(few) > 1
     threads = run_cases(few, jobs=2)
-    monkeypatch.setattr("fem.sweep.running.WORTH_PROCESSES", {"rigid": 2, "reduced": 2})
-    monkeypatch.setattr("fem.sweep.running.ThreadPoolExecutor", None)
+    monkeypatch.setattr("fem.sweep.workers.WORTH_PROCESSES", {"rigid": 2, "reduced": 2})
+    monkeypatch.setattr("fem.sweep.running.CASES_AT_A_TIME", {"rigid": 1, "reduced": 1})
     assert without_wall(run_cases(few, jobs=2)) == without_wall(threads)
+
+
+def who_works(chunk):
+    time.sleep(0.05)
+    return os.getpid()
+
+
+def test_many_cases_are_shared_by_this_process_and_others():
+    with LocalWorkers(2) as workers_of:
+        pools = workers_of("rigid", WORTH_PROCESSES["rigid"])
+        found = list(hand_out(range(200), who_works, pools, at_a_time=1))
+        assert sorted(item for chunk, _ in found for item in chunk) == list(range(200))
+        workers = {worker for _, worker in found}
+        assert os.getpid() in workers
+        assert len(workers) == 2
+        assert [pool.given for pool in pools] == [0, 0]
+        later = workers_of("rigid", 2)  # processes that run already are used for few cases, too
+        assert {pool.executor for pool in later} == {pool.executor for pool in pools}
+
+
+def test_a_stop_ends_the_handing_out():
+    stopped = []
+    with LocalWorkers(1) as workers_of:
+        items = hand_out(
+            range(100), who_works, workers_of("rigid", 100), at_a_time=10, stop=lambda: bool(stopped)
+        )
+        reached = []
+        for chunk, _ in items:
+            reached += chunk
+            stopped.append(True)
+    assert reached == list(range(len(reached)))
+    assert 10 <= len(reached) <= 20
 
 
 def test_a_case_that_cannot_be_computed_has_a_reason_and_no_outcome(cases):
