@@ -168,14 +168,14 @@ def _advance(model: Model, run: Run, progress: Progress, pace: Pace) -> tuple[in
     clock, before = run.clock[0], _attempts(run)
     pause = min(most, before + pace.attempts)
     clock.attempt_limit = pause
-    began, wall = time.process_time(), time.perf_counter()
+    began, wall = time.thread_time(), time.perf_counter()  # others may step in other threads
     code = advance_body(model.body, run, until)
     pace.note(_attempts(run) - before, time.perf_counter() - wall)
     # Where the arrays of samples are full as well, the next call makes no step, and the slice ends then.
     pausing = code == REACHED and clock.time < until and _attempts(run) == pause < most
     return code, replace(
         progress,
-        stepping_cpu_s=progress.stepping_cpu_s + time.process_time() - began,
+        stepping_cpu_s=progress.stepping_cpu_s + time.thread_time() - began,
         slice=progress.slice if pausing else None,
     )
 

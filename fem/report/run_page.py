@@ -6,6 +6,7 @@ numbers, the outcome under other assumptions, the elastic modes, the rigid block
 
 import datetime as dt
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -29,7 +30,7 @@ from fem.report.quantities import degrees, millimetres, number, quantity, short,
 from fem.report.sketch import sketch
 from fem.report.static_sheet import static_sheet
 from fem.report.stills import Still, colours, stills
-from fem.report.variation_table import variation_table
+from fem.report.variation_table import VariationTable, variations_meanwhile
 from fem.rigid_check import check_against_rigid_block
 from fem.run_folder import FINISHED, FolderError
 from fem.summary import BAND_NOTE, CODE_NOTE, MARGIN_NOTE, outcome_sentence, run_rows
@@ -66,14 +67,8 @@ def run_report(
         raise FolderError(f"{run.place.result}: the run has not begun; run the case, then report it")
     case, result = run.case, run.result
     model = build_model(case)
-    history = _history(run, told)
-    film = film_of(model, _fields(run, told))
-    drawn = curves_of(figures_of(run)) if len(history) > 1 else {}
-    check = rigid_check(run, model, history)
-    finished = run.status in FINISHED
-    modes = elastic_modes(model.container.elements, MODES)  # whether or not they take part
-    variations = (
-        variation_table(
+    varying = (
+        variations_meanwhile(
             case,
             run.place.variations,
             result=result,
@@ -82,9 +77,27 @@ def run_report(
             told=told,
             stop=stop,
         )
-        if finished
-        else None
+        if run.status in FINISHED
+        else nullcontext(lambda: None)
     )
+    with varying as variations:
+        return _page(run, model, signature or Signature(), variations, told)
+
+
+def _page(
+    run: OpenedRun,
+    model: Model,
+    signature: Signature,
+    variations: Callable[[], VariationTable | None],
+    told: Callable[[str], None],
+) -> str:
+    """The page; the variations are waited for last."""
+    case, result = run.case, run.result
+    history = _history(run, told)
+    film = film_of(model, _fields(run, told))
+    drawn = curves_of(figures_of(run)) if len(history) > 1 else {}
+    check = rigid_check(run, model, history)
+    modes = elastic_modes(model.container.elements, MODES)  # whether or not they take part
     played = _film_data(film, history, model) if len(history) > 1 else {}
     static, verdict = result["static"], result.get("verdict") or {}
     peak = static["own_motion"]["base_shear_N"] / (static["weight_N"] / case.gravity_m_s2)
@@ -103,7 +116,7 @@ def run_report(
         static=static,
         sentence=typeset(outcome_sentence(result)),
         standing=_standing(run),
-        signature=signature or Signature(),
+        signature=signature,
         sketch=sketch(case, centroid=static["centroid_m"], peak_acceleration=peak),
         asked=asked_rows(case),
         assumptions=assumptions(result, case),
@@ -125,7 +138,7 @@ def run_report(
         ],
         drawn=drawn,
         check=check,
-        variations=variations,
+        variations=variations(),
         modes=elastic_mode_table(modes),
         resolved=run.place.resolved.read_text(encoding="utf-8"),
         computed=_written(run.place.result),

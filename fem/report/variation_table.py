@@ -2,15 +2,17 @@
 
 Each goes through the same compiled stepping as a sweep. A case of the `full` model is varied with `reduced`, which
 takes seconds instead of hours, and the table says so. What the run itself and its band have found is not computed
-again. A report is to be there in seconds: lines are computed for so much processor time, the more important first,
-what is left out is named, and `python -m fem report --all-variations` computes it. The rows are kept beside the run, so
-that a second report has them at once.
+again. A report is to be there in seconds: lines are computed beside the drawing of the page, for so much time of every
+processor, the more important first; what is left out is named, and `python -m fem report --all-variations` computes it.
+The rows are kept beside the run, so that a second report has them at once.
 """
 
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,7 +28,7 @@ from fem.run_folder import to_json, write_atomically
 from fem.simulation import cores, simulate
 from fem.verdict import in_short
 
-AFFORDED_CPU_S = 8.0  #: of the lines together, as far as it can be told from one of them
+AFFORDED_S = 4.0  #: of the lines together, on all processors, as far as it can be told from one of them
 SHOWN = ("status", "reason", *IN_SHORT)
 
 Row = dict[str, Any]
@@ -84,6 +86,23 @@ class VariationTable:
         return (min(known), max(known)) if known else None
 
 
+@contextmanager
+def variations_meanwhile(
+    case: Case, kept_in: Path, *, stop: Callable[[], bool] = lambda: False, **asked: Any
+) -> Iterator[Callable[[], VariationTable | None]]:
+    """Compute the table of a run beside other work: what is yielded waits for it, and gives what `variation_table` gives.
+
+    The compiled stepping lets go of the interpreter's lock. Who leaves before the table is there ends its runs.
+    """
+    left = threading.Event()
+    with ThreadPoolExecutor(max_workers=1) as aside:
+        table = aside.submit(variation_table, case, kept_in, stop=lambda: left.is_set() or stop(), **asked)
+        try:
+            yield table.result
+        finally:
+            left.set()
+
+
 def variation_table(
     case: Case,
     kept_in: Path,
@@ -120,7 +139,7 @@ def variation_table(
         computing = _Computing(base, variations, container or discretise(base), stop)
         if price is None:  # no run of this model yet
             rows[missing[0]], price = computing.first(missing.pop(0))
-        wanted = missing if every else missing[: int(AFFORDED_CPU_S / max(price, 1e-6))]
+        wanted = missing if every else missing[: int(cores() * AFFORDED_S / max(price, 1e-6))]
         left = (
             f"; {len(missing) - len(wanted)} more with --all-variations" if len(wanted) < len(missing) else ""
         )
@@ -201,7 +220,7 @@ class _Computing:
         return self._row(index)
 
     def all(self, indices: Sequence[int]) -> list[Row]:
-        """Rows, side by side; the compiled stepping lets go of the interpreter's lock."""
+        """Rows, side by side."""
         with ThreadPoolExecutor(max_workers=cores()) as pool:
             return [row for row, _ in pool.map(self._row, indices)]
 

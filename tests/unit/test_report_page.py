@@ -11,7 +11,7 @@ from fem.opening import open_run
 from fem.report import variation_table as variation_table_module
 from fem.report.quantities import typeset
 from fem.report.run_page import Signature, run_report
-from fem.report.variation_table import variation_table
+from fem.report.variation_table import variation_table, variations_meanwhile
 from fem.report.variations import by_importance, variations_of
 from fem.run import run_case
 
@@ -106,7 +106,7 @@ def test_variations_that_take_long_are_named_and_computed_when_asked_for(folder,
     kept = tmp_path / "variations.json"
     some = [one for one in variations_of(run.case) if one.subject in ("contact damping", "contact penalty")]
     monkeypatch.setattr(variation_table_module, "variations_of", lambda case: some)
-    monkeypatch.setattr(variation_table_module, "AFFORDED_CPU_S", 0.0)
+    monkeypatch.setattr(variation_table_module, "AFFORDED_S", 0.0)
     short = variation_table(run.case, kept, result=run.result)
     known = {line.variation.command: line.row for line in short.lines}
     assert len(known) == 4  # the run itself and those members of its band that differ in one thing
@@ -119,6 +119,18 @@ def test_variations_that_take_long_are_named_and_computed_when_asked_for(folder,
     bare = {**run.result, "verdict": {**run.result["verdict"], "band": None}}
     fresh = variation_table(run.case, tmp_path / "other.json", result=bare, every=True)
     assert [line.row for line in fresh.lines] == [line.row for line in full.lines]
+
+
+def test_who_leaves_a_report_does_not_wait_for_its_variations(folder, tmp_path):
+    run, kept = open_run(folder), tmp_path / "variations.json"
+    endless = run.case.with_values({"solver.duration_s": 1e6})
+    bare = {**run.result, "verdict": {**run.result["verdict"], "band": None}}
+    with (
+        pytest.raises(OSError, match="disk"),
+        variations_meanwhile(endless, kept, result=bare, every=True),
+    ):
+        raise OSError("disk")
+    assert not kept.exists()
 
 
 def test_moderate_variations_of_every_subject_come_first(folder):
