@@ -90,7 +90,7 @@ class VariationTable:
 def variations_meanwhile(
     case: Case, kept_in: Path, *, stop: Callable[[], bool] = lambda: False, **asked: Any
 ) -> Iterator[Callable[[], VariationTable | None]]:
-    """Compute the table of a run beside other work: what is yielded waits for it, and gives what `variation_table` gives.
+    """Compute the table of a run beside other work: what is yielded waits for it, and gives it as `variation_table`.
 
     The compiled stepping lets go of the interpreter's lock. Who leaves before the table is there ends its runs.
     """
