@@ -54,7 +54,7 @@ class Rows(NamedTuple):
     normal_stiffness: FloatArray  #: (k, n)
     tangential_stiffness: FloatArray  #: (k, n)
     contact: FloatArray  #: (k, 8) the other numbers of `Contact`
-    control: FloatArray  #: (k, 23) numbers of `Control`
+    control: FloatArray  #: (k, 21) numbers of `Control`
     motion_kind: IntArray  #: (k,)
     motion_parameters: FloatArray  #: (k, ..) padded
     motion_breaks: FloatArray  #: (k, ..) padded with infinity
@@ -386,18 +386,16 @@ def _advance_rows(
             energy_share=b[8],
             trail_share=b[9],
             trail_time=b[10],
-            gain_room=b[11],
-            gain_share=b[12],
-            closing_share=b[13],
-            mass=b[14],
-            gravity=b[15],
-            frequency_parameter=b[16],
-            resting_energy=b[17],
-            slenderness_angle=b[18],
-            width=b[19],
-            stop_when_overturned=b[20] != 0.0,
-            top_monitors=int(b[21]),
-            base_points=int(b[22]),
+            closing_share=b[11],
+            mass=b[12],
+            gravity=b[13],
+            frequency_parameter=b[14],
+            resting_energy=b[15],
+            slenderness_angle=b[16],
+            width=b[17],
+            stop_when_overturned=b[18] != 0.0,
+            top_monitors=int(b[19]),
+            base_points=int(b[20]),
         )
         motion = FloorMotion(
             int(rows.motion_kind[k]),

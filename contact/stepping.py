@@ -66,9 +66,11 @@ STEPS_PER_OCTAVE = 3  #: of the ladder of step sizes
 OCTAVE = tuple(2.0 ** (-level / STEPS_PER_OCTAVE) for level in range(STEPS_PER_OCTAVE))  #: its first steps
 NEIGHBOUR = 0.25  #: base points nearer than this, over the width, close as one
 HELD_STEPS = 6  #: after a rejection
-ROOM_SHARE = 0.1  #: of what is left before the ledger wins, for the gain of one step
-#: from this share of its limits on the ledger as a whole holds the steps small, down to this share of what any may lose
-NEAR_LIMIT, LEAST_ROOM = 0.4, 1e-2
+#: the ledger as a whole keeps below these shares of what may be won and lost in the end, for which it holds the steps
+#: small from that share of them on ..
+GAIN_AIM, LOSS_AIM, NEAR_AIM = 0.3, 0.9, 0.4
+#: .. by the share of what is left that one step may use, and of what any step may have that it may use always
+ROOM_SHARE, LEAST_ROOM = 0.1, 1e-4
 SAME_INSTANT = 1e-12  #: difference of two times, over their size, that is rounding
 FADING = 0.8  #: of the memory for the imbalance, a step
 
@@ -118,10 +120,6 @@ class Control(NamedTuple):
     energy_share: float  #: imbalance allowed over what a step dissipates [-]
     trail_share: float  #: imbalance allowed over what was dissipated shortly before [-]
     trail_time: float  #: how long that counts [s]
-    gain_room: (
-        float  #: what the ledger may have won before gains are held small, over the reference energy [-]
-    )
-    gain_share: float  #: and then: of the imbalance allowed, what of it may be a gain [-]
     closing_share: (
         float  #: imbalance allowed when a gap closes, over the kinetic energy relative to the floor [-]
     )
@@ -638,20 +636,23 @@ allowed_imbalance = compiled(_allowed_imbalance, inline=True)
 def _room_of_ledger(run: Run, step: float) -> float:
     """Imbalance that the ledger as a whole has room for in the step attempted [J]; infinite far from its limits.
 
-    A share of what a step dissipates may be much against the energy to overturn, as when a low container slides far.
+    What one step may lose or win adds up: a share of what it dissipates may be much against the energy to overturn, as
+    when a low container slides far. From `NEAR_AIM` on a step may use a share of what is left only, so that the
+    ledger comes to rest where it aims. What is left to a step always lies above its rounding, and would take 1e5 of
+    them to reach the limit. A gain is worse than a loss: it drives what it should only follow.
     """
     control, ledger, change = run.control, run.ledger, run.change
     if change[IMBALANCE] < 0.0:
-        limit, used = GAIN_LIMIT * control.reference_energy, -ledger[IMBALANCE]
+        aim, used = GAIN_AIM * GAIN_LIMIT * control.reference_energy, -ledger[IMBALANCE]
     else:
         dissipated = ledger[FRICTION] + ledger[CONTACT_DAMPING] + ledger[MATERIAL_DAMPING]
         dissipated += change[FRICTION] + change[CONTACT_DAMPING] + change[MATERIAL_DAMPING]
-        limit = max(LOSS_LIMIT * control.reference_energy, LOSS_SHARE_LIMIT * dissipated)
+        aim = LOSS_AIM * max(LOSS_LIMIT * control.reference_energy, LOSS_SHARE_LIMIT * dissipated)
         used = ledger[IMBALANCE]
-    if used + abs(change[IMBALANCE]) < NEAR_LIMIT * limit:
+    if used + abs(change[IMBALANCE]) < NEAR_AIM * aim:
         return np.inf
-    least = control.energy_floor + control.energy_rate * step  # what any step may lose
-    return max(ROOM_SHARE * (limit - used), LEAST_ROOM * control.reference_energy * least)
+    least = control.energy_floor + control.energy_rate * step
+    return max(ROOM_SHARE * (aim - used), LEAST_ROOM * control.reference_energy * least)
 
 
 room_of_ledger = compiled(_room_of_ledger, inline=True)
@@ -847,9 +848,6 @@ def advance(body: Any, run: Run, until: float) -> int:
             continue
         dissipated = account(run)
         allowed = allowed_imbalance(run, step, dissipated)
-        if run.change[IMBALANCE] < 0.0:  # a gain: small once the ledger as a whole comes near one
-            room = ROOM_SHARE * (run.ledger[IMBALANCE] + control.gain_room * control.reference_energy)
-            allowed = min(allowed, max(room, control.gain_share * allowed))
         allowed = min(allowed, room_of_ledger(run, step))
         used = abs(run.change[IMBALANCE]) / allowed
         switches = (clock.sliding == 1) != every and run.contact.mu_static > 0.0
@@ -867,7 +865,9 @@ def advance(body: Any, run: Run, until: float) -> int:
         _accept(body, run, step, slip_step, slip_velocity, every, iterations)
         # One step's imbalance may vanish by chance while it changes sign: look at three.
         recent = max(min(used, 1.0), FADING * clock.used)
-        clock.level = change_level(clock.level, recent, clock.held == 0)
+        level = change_level(clock.level, recent, clock.held == 0)
+        if level < clock.level or step > control.smallest_step:
+            clock.level = level
         clock.used = recent
         clock.held = max(clock.held - 1, 0)
         fallen = OVERTURNING_ROTATION if control.stop_when_overturned else OVERTURNING_ROTATION - LYING_DOWN

@@ -60,8 +60,6 @@ TRAIL_SHARE, TRAIL_TIME = 2e-2, 0.1
 #: .. and however loose the tolerance: what is lost of what is dissipated is judged in the end. A rigid container
 #: does not ring: it loses at the impact itself, once
 MOST_SHARE, MOST_RIGID_SHARE, MOST_TRAIL = 8e-3, 4e-2, 3e-2
-#: a gain is worse than a loss: beyond this, over the reference energy, only so much of what is allowed may be one
-GAIN_ROOM, GAIN_SHARE = 1e-5, 0.05
 #: closings with less energy than this, over the energy to overturn, are left to the ledger
 SOFT_CLOSING = 1e-6
 #: error of a base point at which the iterations of a step stop, over the static penetration
@@ -409,8 +407,6 @@ def _control(
         energy_share=min(loose * ENERGY_SHARE, MOST_RIGID_SHARE if rigid else MOST_SHARE),
         trail_share=min(loose * TRAIL_SHARE, MOST_TRAIL),
         trail_time=TRAIL_TIME / rate,
-        gain_room=GAIN_ROOM,
-        gain_share=GAIN_SHARE,
         closing_share=loose * CLOSING_SHARE * max(1.0 - static.housner_restitution**2, LEAST_LOSS),
         mass=mesh.mass,
         gravity=case.gravity_m_s2,

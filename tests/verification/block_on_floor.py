@@ -286,8 +286,6 @@ def _control(block: Block, largest_step: float, fixed_step: bool, energy_scale: 
         energy_share=scale * 4e-3,
         trail_share=scale * 2e-2,
         trail_time=0.1 / rate,
-        gain_room=scale * 1e-5,
-        gain_share=0.05,
         closing_share=scale * 2e-3 * max(1.0 - restitution**2, 0.02),
         mass=block.mass,
         gravity=GRAVITY,
