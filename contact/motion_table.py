@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+from scipy.linalg import solve_banded
 
 from contact.floor_motion import PIECEWISE, FloatArray, FloorMotion, as_floor_motion, floor_history
 
@@ -60,7 +60,7 @@ class TableMotion:
     def accelerations(self) -> FloatArray:
         """Acceleration at the samples after the baseline correction, shape (n,) [m/s2]."""
         if self.quantity == "displacement":
-            return self._spline()(self.times, 2)
+            return _spline_accelerations(self.times, self.values)
         return self.values - _baseline(self.times, self.values, self.baseline)
 
     @property
@@ -84,7 +84,9 @@ class TableMotion:
         steps, a = np.diff(self.times), self.accelerations
         jerk = np.append(np.diff(a) / steps, 0.0)
         if self.quantity == "displacement":
-            x, v = self.values, self._spline()(self.times, 1)
+            x, mean = self.values, np.diff(self.values) / steps
+            v = mean - steps * (2.0 * a[:-1] + a[1:]) / 6.0
+            v = np.append(v, mean[-1] + steps[-1] * a[-2] / 6.0)
         else:
             v = _summed(0.5 * (a[:-1] + a[1:]) * steps)
             x = _summed(steps * (v[:-1] + steps * (2.0 * a[:-1] + a[1:]) / 6.0))
@@ -99,8 +101,20 @@ class TableMotion:
         """Displacement, velocity, acceleration at the times [s], shape (3, n_times)."""
         return floor_history(self.compiled(), times)
 
-    def _spline(self) -> CubicSpline:
-        return CubicSpline(self.times, self.values, bc_type="natural")
+
+def _spline_accelerations(times: FloatArray, displacements: FloatArray) -> FloatArray:
+    """Second derivative of the natural cubic spline at its samples (n,) [m/s2]: velocity has no jump there.
+
+    Solved here, since scipy.interpolate takes as long to load as all else that a run needs of scipy.
+    """
+    a = np.zeros(times.size)
+    steps = np.diff(times)
+    if steps.size > 1:
+        bands = np.zeros((3, steps.size - 1))  # above the diagonal, on it, below
+        bands[0, 1:], bands[2, :-1] = steps[1:-1], steps[1:-1]
+        bands[1] = 2.0 * (steps[:-1] + steps[1:])
+        a[1:-1] = solve_banded((1, 1), bands, 6.0 * np.diff(np.diff(displacements) / steps))
+    return a
 
 
 def _check_samples(times: FloatArray, values: FloatArray) -> None:

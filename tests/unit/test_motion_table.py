@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
 
 from contact.motion import TableMotion
 
@@ -120,6 +121,17 @@ def test_displacement_table_of_a_straight_line_moves_at_constant_velocity_everyw
     assert x == pytest.approx(0.2 - 0.1 * times, rel=1e-12)
     assert v == pytest.approx([-0.1] * 4, rel=1e-12)
     assert a == pytest.approx([0.0] * 4, abs=1e-10)
+
+
+@pytest.mark.parametrize("count", [2, 3, 40])
+def test_a_displacement_table_is_the_natural_spline(count):
+    times, values = TIMES[:count], VALUES[:count]
+    motion = TableMotion(times=times, values=values, quantity="displacement")
+    spline = CubicSpline(times, values, bc_type="natural")
+    within = np.linspace(times[0], times[-1], 201)
+    for order, row in enumerate(motion.evaluate(within)):
+        largest = np.abs(spline(within, order)).max()
+        assert row == pytest.approx(spline(within, order), rel=1e-9, abs=1e-9 * largest)
 
 
 def test_displacement_samples_of_a_sine_give_its_acceleration():
