@@ -22,23 +22,10 @@ from contact.floor_motion import UNIFORM, FloorMotion, floor_motion
 from contact.interface import Contact, FloatArray, IntArray, Workspace, make_workspace
 from contact.ledger import ROWS as LEDGER_ROWS
 from contact.modal_body import ModalBody, with_own_scratch
+from contact.run import CLOCK, ROW_SLIP, ROW_STRAIN, Control, Run, Samples, make_samples
 from contact.scheme import Scheme
-from contact.stepping import (
-    AFTERMATH_SLICE,
-    CLOCK,
-    FAILED,
-    OVERTURNED,
-    REACHED,
-    ROW_SLIP,
-    ROW_STRAIN,
-    Control,
-    Run,
-    Samples,
-    advance_compiled,
-    leave_alone,
-    make_samples,
-    most_attempts,
-)
+from contact.step_control import most_attempts
+from contact.stepping import AFTERMATH_SLICE, FAILED, OVERTURNED, REACHED, advance_compiled, leave_alone
 from contact.tracking import TRACK
 
 CONTACT_NUMBERS = tuple(
@@ -85,7 +72,7 @@ class Outcomes(NamedTuple):
 
     status: IntArray  #: (k,) REACHED, OVERTURNED or FAILED (a stuck one too: its clock stands at its limit)
     track: Any  #: (k,) of tracking.TRACK
-    clock: Any  #: (k,) of stepping.CLOCK
+    clock: Any  #: (k,) of run.CLOCK
     ledger: FloatArray  #: (k, 5) [J]
     rotation: FloatArray  #: (k,) at the end [rad]
     residual: FloatArray  #: (k,) of the contact forces in the last iteration [N]
@@ -127,7 +114,7 @@ def pack_rows(
     *,
     slip_until: Sequence[float] | None = None,
 ) -> Rows:
-    """Rows from runs at t = 0 that share one body (see `contact.stepping.make_run`).
+    """Rows from runs at t = 0 that share one body (see `contact.run.make_run`).
 
     With `slip_until` the rows have samples, at the intervals of the runs' histories.
     """

@@ -22,8 +22,9 @@ from contact.body import State
 from contact.initial import Stance
 from contact.interface import FloatArray, IntArray, Workspace
 from contact.modal_body import ModalBody
+from contact.run import Run
 from contact.scheme import Scheme
-from contact.stepping import UNPREPARED, Run, advance, advance_compiled, leave_alone_compiled
+from contact.stepping import UNPREPARED, advance, advance_compiled, leave_alone_compiled
 from fem import nodal_body
 from fem.assembly import FiniteElements
 from fem.nodal_body import NodalBody, advance_nodal, leave_nodal_alone

@@ -19,8 +19,8 @@ from contact.laws import ELASTIC_STICK, REGULARISED
 from contact.modal_body import ModalBody, make_modal_body
 from contact.motion import BaseMotion, PulseMotion, TableMotion
 from contact.penalty import relaxation_time
+from contact.run import Control, Run, make_run, make_samples
 from contact.scheme import Scheme, generalised_alpha, newmark
-from contact.stepping import Control, Run, make_run, make_samples
 from contact.support import Support
 from contact.tracking import begin
 from fem.assembly import FiniteElements, assemble
@@ -52,7 +52,7 @@ EVENT_SHARE = 0.01
 SMALLEST_SHARE = 1e-7
 #: over the time constant of a corner on its dashpot: the step that begins at a touch
 CLOSING_SHARE_OF_TIME = 0.02
-#: imbalance of the ledger that a step may have: see `contact.stepping.Control`
+#: imbalance of the ledger that a step may have: see `contact.run.Control`
 ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE = 1e-5, 2e-7, 4e-3
 #: .. at a first touch: over the energy that a rigid block would lose there
 CLOSING_SHARE, LEAST_LOSS = 2e-3, 0.02

@@ -10,7 +10,7 @@ import numpy as np
 
 from contact.body import ROTATION, State
 from contact.floor_motion import floor_history, floor_motion
-from contact.stepping import (
+from contact.run import (
     ROW_ANGULAR_VELOCITY,
     ROW_BASE_WORK,
     ROW_CENTRE_X,

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from contact.body import State
 from contact.interface import Workspace
-from contact.stepping import Run
+from contact.run import Run
 from fem.checkpoint import Checkpoint, CheckpointError, read_checkpoint, write_checkpoint
 from fem.fields import FieldWriter, frame_name
 from fem.folder_lock import FolderLock
@@ -33,7 +33,7 @@ from fem.simulation import Progress
 #: wall time between checkpoints; what passes between two pauses of the stepping may come on top of it, some five
 #: seconds, and the writing of a few frames
 CHECKPOINT_S = 15.0
-#: parts of `contact.stepping.Run` that do not change, and those of which a part is kept
+#: parts of `contact.run.Run` that do not change, and those of which a part is kept
 CONSTANT = frozenset({"scheme", "contact", "motion", "breaks", "control"})
 SAMPLES = frozenset({"history", "frames"})
 RECORDED, BODY = "recorder.", "body."

@@ -19,14 +19,9 @@ import numpy as np
 from contact.body import ROTATION
 from contact.compiled import is_compiled
 from contact.floor_motion import UNIFORM, as_floor_motion, floor_motion
-from contact.stepping import (
-    AFTERMATH_SLICE,
-    FAILED,
-    OVERTURNED,
-    REACHED,
-    Run,
-    most_attempts,
-)
+from contact.run import Run
+from contact.step_control import most_attempts
+from contact.stepping import AFTERMATH_SLICE, FAILED, OVERTURNED, REACHED
 from fem.full_body import FullBody, advance_body, leave_body_alone
 from fem.model import Model
 from fem.nodal_body import SOURCES

@@ -17,7 +17,8 @@ import numpy as np
 from contact.body import CENTRE_X
 from contact.floor_motion import HARMONIC, UNIFORM, FloorMotion, as_floor_motion, floor_motion
 from contact.modal_body import ModalBody
-from contact.stepping import Run, ladder_level, ladder_step, make_samples
+from contact.run import Run, make_samples
+from contact.step_control import ladder_level, ladder_step
 from fem.case import Case
 from fem.model import Container, Model, build_model
 from fem.response.request import Hold

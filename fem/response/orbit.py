@@ -13,15 +13,8 @@ import numpy as np
 
 from contact.body import ANGULAR_VELOCITY, ROTATION, VELOCITY_X
 from contact.floor_motion import floor_motion
-from contact.stepping import (
-    FAILED,
-    OVERTURNED,
-    REACHED,
-    ROW_ANGULAR_VELOCITY,
-    ROW_ROTATION,
-    ROW_SLIP,
-    advance_compiled,
-)
+from contact.run import ROW_ANGULAR_VELOCITY, ROW_ROTATION, ROW_SLIP
+from contact.stepping import FAILED, OVERTURNED, REACHED, advance_compiled
 from contact.tracking import NEVER
 from fem.response.drive import DrivenModel, section_times, with_sections
 from fem.verdict import audit

@@ -17,8 +17,9 @@ from contact.initial import Stance
 from contact.interface import Contact, make_workspace
 from contact.laws import ELASTIC_STICK
 from contact.modal_body import ModalBody
+from contact.run import Run, make_run, make_samples
 from contact.scheme import Scheme, generalised_alpha, newmark
-from contact.stepping import REACHED, Run, make_run, make_samples
+from contact.stepping import REACHED
 from fem.assembly import FiniteElements
 from fem.full_body import FullBody, advance_body
 from fem.model import build_model

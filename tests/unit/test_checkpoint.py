@@ -9,7 +9,7 @@ import zipfile
 import numpy as np
 import pytest
 
-from contact.stepping import CLOCK
+from contact.run import CLOCK
 from fem import checkpoint
 from fem.checkpoint import ABOUT, CheckpointError, read_checkpoint, write_checkpoint
 

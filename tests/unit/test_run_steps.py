@@ -2,7 +2,7 @@
 
 import pytest
 
-import contact.stepping
+import contact.step_control
 import fem.required_memory
 from contact.batch import pack_rows, run_rows
 from contact.stepping import FAILED, REACHED
@@ -71,9 +71,9 @@ def test_no_step_is_longer_than_the_samples_in_memory_reach():
 
 
 def test_a_run_without_headway_fails_and_says_so(monkeypatch):
-    monkeypatch.setattr(contact.stepping, "ATTEMPTS_SPARE", 50.0)
-    monkeypatch.setattr(contact.stepping, "ATTEMPTS_OF_ROCKING", 1.0)
-    monkeypatch.setattr(contact.stepping, "ATTEMPTS_OF_STEP", 0.1)
+    monkeypatch.setattr(contact.step_control, "ATTEMPTS_SPARE", 50.0)
+    monkeypatch.setattr(contact.step_control, "ATTEMPTS_OF_ROCKING", 1.0)
+    monkeypatch.setattr(contact.step_control, "ATTEMPTS_OF_STEP", 0.1)
     _, ending = finished(rigid())
     assert ending.status == "failed"
     assert ending.error is not None and "no headway after" in ending.error

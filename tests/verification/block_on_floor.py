@@ -17,17 +17,10 @@ from contact.interface import Contact, make_workspace
 from contact.laws import ELASTIC_STICK
 from contact.modal_body import ModalBody, make_modal_body, place, start
 from contact.motion import HarmonicMotion, PulseMotion
+from contact.run import ROW_ROTATION, ROW_SLIP, Control, Run, make_run, make_samples
 from contact.scheme import Scheme, generalised_alpha
-from contact.stepping import (
-    ROW_ROTATION,
-    ROW_SLIP,
-    Control,
-    Run,
-    advance_compiled,
-    make_run,
-    make_samples,
-    most_attempts,
-)
+from contact.step_control import most_attempts
+from contact.stepping import advance_compiled
 
 GRAVITY = 9.81
 LOOSE = 1e30  #: a tolerance that never cuts a step

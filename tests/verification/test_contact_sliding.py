@@ -16,7 +16,8 @@ from contact.interface import FloatArray
 from contact.laws import REGULARISED
 from contact.ledger import BASE_WORK, CONTACT_DAMPING, FRICTION, IMBALANCE
 from contact.motion import HarmonicMotion, PulseMotion
-from contact.stepping import ROW_CENTRE_X, advance_compiled
+from contact.run import ROW_CENTRE_X
+from contact.stepping import advance_compiled
 from fem.case import load_case
 from fem.model import build_model
 
