@@ -15,7 +15,8 @@ from itertools import product
 from typing import Any
 
 from fem.case import Case
-from fem.model import Container, build_model
+from fem.container import Container
+from fem.model import build_model
 from fem.recorder import Recorder
 from fem.simulation import cores, simulate
 from fem.verdict import MODE_NAMES, in_short

@@ -19,7 +19,8 @@ from typing import Any
 
 from fem.band import IN_SHORT, NO_SAMPLES_S
 from fem.case import Case
-from fem.model import Container, build_model, discretise
+from fem.container import Container, discretise
+from fem.model import build_model
 from fem.recorder import Recorder
 from fem.report.quantities import number
 from fem.report.variations import Variation, by_importance, variations_of

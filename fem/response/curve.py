@@ -11,7 +11,7 @@ import numpy as np
 
 from contact.tracking import ROCK, ROCKING, SLIDE
 from fem.case import Case
-from fem.model import Container, discretise
+from fem.container import Container, discretise
 from fem.response.decay import Decay, follow_decay
 from fem.response.drive import DrivenModel, begin_drive, carry_drive, driven_case
 from fem.response.long_time import LongTime, amplitude_growth, amplitudes_diverge, classify

@@ -11,7 +11,7 @@ from contact.body import ROTATION
 from contact.stepping import OVERTURNED, REACHED, advance_compiled
 from contact.tracking import ROCKING
 from fem.case import Case
-from fem.model import Container
+from fem.container import Container
 from fem.response.drive import DrivenModel, stop_drive
 from fem.verdict import audit
 

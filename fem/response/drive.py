@@ -20,7 +20,8 @@ from contact.modal_body import ModalBody
 from contact.run import Run, make_samples
 from contact.step_control import ladder_level, ladder_step
 from fem.case import Case
-from fem.model import Container, Model, build_model
+from fem.container import Container
+from fem.model import Model, build_model
 from fem.response.request import Hold
 
 SAMPLES_PER_PERIOD = 128

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from fem.case import Case, to_toml
-from fem.model import Container
+from fem.container import Container
 from fem.progress import Reporter, SilentReporter
 from fem.response.branches import branches_of, in_words
 from fem.response.curve import Standing, plan_of, sweep_points

@@ -19,7 +19,9 @@ from contact.body import ROTATION
 from contact.modal_body import ModalBody
 from contact.stepping import FAILED as STEPPING_FAILED
 from fem.case import Case
-from fem.model import Container, Model, build_model, discretise, stands_like
+from fem.container import Container, discretise
+from fem.footing import stands_like
+from fem.model import Model, build_model
 from fem.recorder import Recorder
 from fem.recovery import Recovery, recovery_of
 from fem.simulation import AFTERMATH, SLICE_REDUCED, cores, simulate, stepping_failure

@@ -24,7 +24,8 @@ from contact.floor_acceleration import FloorAcceleration, half_sine_pulse, one_s
 from contact.floor_motion import PIECEWISE, FloorMotion, as_floor_motion
 from contact.rigid_block import RigidBlock
 from contact.rocking import first_swing_threshold
-from fem.model import Container, build_model, discretise
+from fem.container import Container, discretise
+from fem.model import build_model
 from fem.verification.rows import Check, Row, count_row
 from fem.verification.runs import GRAVITY, SOLID, STACK, Finished, finish, run, with_motion
 

@@ -16,9 +16,10 @@ from contact.floor_motion import FloorMotion, floor_motion
 from contact.initial import Stance
 from contact.rigid_block import RigidBlock
 from fem.case import Case, read_case
+from fem.container import Container
 from fem.full_body import FullBody
 from fem.history import History
-from fem.model import Container, Model, build_model
+from fem.model import Model, build_model
 from fem.recorder import Recorder
 from fem.simulation import simulate
 from fem.verdict import outcome_of

@@ -20,7 +20,8 @@ from pathlib import Path
 
 from contact.penalty import contact_frequency
 from fem.case import Case, read_case
-from fem.model import Container, Model, build_model, discretise
+from fem.container import Container, discretise
+from fem.model import Model, build_model
 from fem.recorder import Recorder
 from fem.simulation import simulate
 

@@ -11,9 +11,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from fem.case import Case
+from fem.container import Container
 from fem.full_body import advance_body
 from fem.history import History
-from fem.model import Container, Model, build_model
+from fem.model import Model, build_model
 from fem.recorder import Recorder
 from fem.simulation import Ending, simulate
 from fem.verdict import GAIN_LIMIT

@@ -16,7 +16,9 @@ from typing import Any
 import numpy as np
 from measuring import Figure, report
 
-from fem.model import build_model, discretise, set_down
+from fem.container import discretise
+from fem.footing import set_down
+from fem.model import build_model
 from fem.sweep.axes import read_axis
 from fem.sweep.file import load_sweep
 from fem.sweep.plan import Sweep

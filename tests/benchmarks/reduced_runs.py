@@ -14,7 +14,7 @@ import numpy as np
 from measuring import Figure, median_of, report, stepped
 
 from fem.case import Case, load_case
-from fem.model import Container, discretise
+from fem.container import Container, discretise
 
 REPEATS = 5
 DURATION = 20.0  # s

@@ -6,7 +6,8 @@ import pytest
 from contact.batch import pack_rows, run_rows
 from contact.stepping import FAILED, OVERTURNED, REACHED, advance_compiled
 from fem.case import load_case
-from fem.model import build_model, discretise
+from fem.container import discretise
+from fem.model import build_model
 
 DURATION = 2.5
 MOTIONS = (

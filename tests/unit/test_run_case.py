@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import fem.model
+import fem.footing
+import fem.step_limits
 import fem.verdict
 from contact.floor_acceleration import still_floor
 from contact.rigid_block import RigidBlock
@@ -75,8 +76,8 @@ class TestEnd:
         self, tmp_path, monkeypatch, capsys
     ):
         # A ladder of one step, and a tolerance finer than rounding: the first step that fails is the smallest there is.
-        monkeypatch.setattr(fem.model, "SMALLEST_SHARE", 1.0)
-        monkeypatch.setattr(fem.model, "POINT_TOLERANCE", 1e-40)
+        monkeypatch.setattr(fem.step_limits, "SMALLEST_SHARE", 1.0)
+        monkeypatch.setattr(fem.footing, "POINT_TOLERANCE", 1e-40)
         folder = tmp_path / "r"
         assert command(folder, "free_rocking") == 3
         result = read_result(folder / "run.json")

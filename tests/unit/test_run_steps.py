@@ -7,7 +7,8 @@ import fem.required_memory
 from contact.batch import pack_rows, run_rows
 from contact.stepping import FAILED, REACHED
 from fem.case import CaseError, load_case
-from fem.model import build_model, discretise
+from fem.container import discretise
+from fem.model import build_model
 from fem.recorder import Recorder
 from fem.required_memory import required_memory
 from fem.simulation import simulate

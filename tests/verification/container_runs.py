@@ -11,8 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from fem.case import Case, read_case
+from fem.container import Container
 from fem.history import History
-from fem.model import Container, Model, build_model
+from fem.model import Model, build_model
 from fem.recorder import Recorder
 from fem.simulation import Ending, simulate
 

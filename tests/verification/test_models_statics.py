@@ -12,8 +12,9 @@ import scipy.sparse
 import scipy.sparse.linalg
 from container_runs import SHELL, SOLID, run, stack
 
+from fem.container import Container
 from fem.elasticity import von_mises
-from fem.model import Container, Model, build_model
+from fem.model import Model, build_model
 from fem.recovery import Frame, recovery_of
 
 SECTIONS = {"solid": SOLID, "shell": SHELL}

@@ -11,7 +11,7 @@ from contact.floor_acceleration import sine_floor, still_floor
 from contact.rigid_block import RigidBlock
 from contact.rocking import simulate_rocking
 from fem.case import read_case
-from fem.model import discretise
+from fem.container import discretise
 from fem.response.branches import branches_of
 from fem.response.curve import follow_point, sweep_points
 from fem.response.drive import begin_drive, carry_drive
