@@ -106,6 +106,7 @@ def panels(
     width: float = WIDTH,
     right: float = RIGHT,
     footer: float = FOOTER,
+    above: float = 0.0,
 ) -> tuple[Figure, list[Axes]]:
     """A figure of panels one below the other, all as wide, at places known beforehand.
 
@@ -116,11 +117,12 @@ def panels(
         width: of the figure [inch].
         right: margin beside the panels [inch].
         footer: below the last panel [inch].
+        above: room between header and first panel, for panels of another kind [inch].
     """
     gaps = gaps or [GAP] * (len(heights) - 1)
-    tall = 0.08 + header * LINE + sum(heights) + sum(gaps) + footer
+    tall = 0.08 + header * LINE + above + sum(heights) + sum(gaps) + footer
     figure = Figure(figsize=(width, tall))
-    axes, top = [], tall - 0.08 - header * LINE
+    axes, top = [], tall - 0.08 - header * LINE - above
     for height, gap in zip(heights, [*gaps, 0.0], strict=True):
         box = (LEFT / width, (top - height) / tall, (width - LEFT - right) / width, height / tall)
         axes.append(figure.add_axes(box))
@@ -130,7 +132,12 @@ def panels(
 
 
 def time_panels(
-    heights: Sequence[float], *, states: Sequence[str] = (), gaps: Sequence[float] = (), header: int = 2
+    heights: Sequence[float],
+    *,
+    states: Sequence[str] = (),
+    gaps: Sequence[float] = (),
+    header: int = 2,
+    above: float = 0.0,
 ) -> tuple[Figure, list[Axes]]:
     """Panels over a common time, with a low one for the states of motion below them if there are any.
 
@@ -139,10 +146,11 @@ def time_panels(
         states: names of the states that have a row in the lowest panel.
         gaps: between the panels [inch], that to the states left out.
         header: lines of text above the first panel.
+        above: room between them and it [inch].
     """
     rows = [*heights, *([0.06 + 0.14 * len(states)] if states else [])]
     spaces = [*(gaps or [GAP] * (len(heights) - 1)), *([GAP] if states else [])]
-    figure, axes = panels(rows, gaps=spaces, header=header)
+    figure, axes = panels(rows, gaps=spaces, header=header, above=above)
     for upper in axes[:-1]:
         upper.sharex(axes[-1])
         upper.tick_params(labelbottom=False)

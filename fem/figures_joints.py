@@ -1,8 +1,9 @@
-"""The figure of the joints between the boxes of a stack: what they carry, and whether they would hold unbolted.
+"""The figure of the joints between the boxes of a stack: what they carry, and what their bolts must hold.
 
-Forces are means over `output.history_s`, on the boxes above (`fem.joints`). An unbolted joint slides where the shear
-exceeds mu_static of the floor times the normal force, and opens at an edge where the moment exceeds the normal force
-times half the width (`fem.joint_demands`): demand over capacity, of the joint that is worst at each instant.
+Forces are means over `output.history_s`, on the boxes above (`fem.joints`). Impacts are so many and so short that
+curves of several joints over time hide one another: above stand the ranges of each force over the height of the stack,
+beside what the weight above would give; below, over time, the most that bolts must hold at any joint. Where that is
+not zero, a joint without bolts opens at an edge, or slides (`fem.joint_demands`).
 """
 
 import numpy as np
@@ -12,102 +13,140 @@ from matplotlib.figure import Figure
 from fem.drawing import (
     BLACK,
     BLUE,
-    GREEN,
+    LEFT,
     LEGEND_GAP,
-    ORANGE,
-    PURPLE,
+    LINE,
+    RIGHT,
+    SKY,
     VERMILLION,
-    draw_curve,
     draw_states,
     head,
+    keep_visible,
+    kept_samples,
     legend_above,
     number,
     states_of,
     time_panels,
     zero_line,
 )
-from fem.figures_forces import LARGE_FORCE, cut_off, scale_without_impacts
 from fem.history import JOINT_COLUMNS, FloatArray
+from fem.joint_demands import edge_forces
 from fem.opening import OpenedRun
 
-#: of the joints drawn, from the floor up
-LINES = ((BLUE, "-"), (VERMILLION, "--"), (GREEN, ":"))
-MOST_USE = 3.0  #: demand over capacity at which the scale ends
+HEADER = 3  #: lines of text above the panels of ranges: title, legend, what is largest
+RANGES, BETWEEN, BELOW = 1.4, 0.3, 0.78  #: their height, between them, from them to those over time [inch]
+USUAL = (0.05, 0.95)  #: quantiles between which a force lies nine tenths of the time
+THICK = 0.5  #: of a bar, over the height of a box
+LEAST_FORCE = 1.0  #: on the axes of what bolts hold [kN]
 
 
 def joints_figure(run: OpenedRun) -> Figure | None:
-    """Normal force, shear and moment of at most three joints; demand over capacity without bolts; None for one box."""
+    """Ranges of normal force, shear and moment over the height; what bolts hold over time; None for one box."""
     history, case = run.history, run.case
     if history.joints == 0:
         return None
-    width, mu, time = case.container.width_m, case.contact.mu_static, history["time_s"]
+    overturned_at = (run.result.get("verdict") or {}).get("overturned_at_s")
+    standing = history["time_s"] <= (np.inf if overturned_at is None else overturned_at)
+    time, half, mu = history["time_s"][standing], 0.5 * case.container.width_m, case.contact.mu_static
     normal, shear, moment = (
-        1e-3 * np.array([history[name.format(joint)] for joint in range(1, history.joints + 1)])
+        1e-3 * np.array([history[name.format(joint)][standing] for joint in range(1, history.joints + 1)])
         for name in JOINT_COLUMNS
     )
-    above = 1e-3 * case.weight * (1.0 - 1.0 / case.container.boxes)  # the lowest joint
     states = states_of(history.modes)
-    figure, axes = time_panels((1.0, 1.0, 1.0, 0.9), states=states, gaps=(0.1, 0.1, LEGEND_GAP), header=3)
-    shown = _shown(history.joints)
-    beyond = False
-    for panel, forces, label, large in (
-        (axes[0], normal, "normal [kN]", above),
-        (axes[1], shear, "shear [kN]", mu * above),
-        (axes[2], moment, "moment [kNm]", 0.5 * width * above),
-    ):
-        zero_line(panel)
-        for (colour, style), joint in zip(LINES, shown, strict=False):
-            name = f"joint {joint + 1}, {number((joint + 1) * case.container.height_m)} m above the floor"
-            draw_curve(panel, time, forces[joint], color=colour, linestyle=style, linewidth=0.7, label=name)
-        panel.set_ylabel(label)
-        largest = _largest(forces)
-        limit = scale_without_impacts(largest, LARGE_FORCE * large)
-        if limit is not None:
-            cut_off(panel, time, largest, limit)
-            panel.set_ylim(bottom=max(-limit, min(0.0, 1.05 * forces.min()) - 0.03 * limit))
-            beyond = True
-    legend_above(axes[0], columns=3)
-    _draw_use(axes[3], time, _use(mu * normal, shear), _use(0.5 * width * normal, moment))
-    draw_states(axes[-1], time, history.modes, states)
-    statement = (
-        f"marks at the rim: beyond the scale, up to {number(np.abs(normal).max())} and "
-        f"{number(np.abs(shear).max())} kN, {number(np.abs(moment).max())} kNm, in impacts"
+    figure, axes = time_panels(
+        (1.1, 0.7), states=states, gaps=(LEGEND_GAP,), header=HEADER, above=RANGES + BELOW
     )
-    head(figure, "Forces in the joints between the boxes", statement if beyond else "", status=run.status)
+    box, boxes = case.container.height_m, case.container.boxes
+    weight = 1e-3 * case.weight * (1.0 - np.arange(1, boxes) / boxes)
+    over_height = _side_by_side(figure)
+    _draw_ranges(over_height[0], box, normal, "normal", "kN", [weight])
+    _draw_ranges(over_height[1], box, shear, "shear", "kN", [mu * weight, -mu * weight])
+    _draw_ranges(over_height[2], box, moment, "moment", "kNm", [half * weight, -half * weight])
+    over_height[0].legend(
+        loc="lower left", bbox_to_anchor=(0.0, 1.0 + LINE / RANGES), ncols=3, borderaxespad=0.1
+    )
+    left, right = (np.maximum(0.0, -edge) for edge in edge_forces(normal, moment, 2.0 * half))
+    beyond = np.maximum(0.0, np.abs(shear) - mu * np.maximum(normal, 0.0))
+    zero_line(axes[0])
+    _draw_held(axes[0], time, left, "left edge", BLUE)
+    _draw_held(axes[0], time, right, "right edge", VERMILLION, sign=-1.0)
+    keep_visible(axes[0], LEAST_FORCE)
+    axes[0].yaxis.set_major_formatter(lambda value, position: f"{abs(value):g}")  # both are tension
+    _draw_held(axes[1], time, beyond, f"beyond μ = {number(mu)}", BLUE)
+    axes[1].set_ylim(0.0, max(1.08 * float(beyond.max()), LEAST_FORCE))
+    for panel, label in zip(axes, ("tension [kN]", "shear [kN]"), strict=False):
+        panel.set_ylabel(label)
+        legend_above(panel)
+    draw_states(axes[-1], history["time_s"], history.modes, states)
+    head(
+        figure,
+        "Joints between the boxes: forces over the height, and what bolts must hold",
+        status=run.status,
+    )
     return figure
 
 
-def _shown(count: int) -> list[int]:
-    """The lowest joint, the uppermost, and the one in between."""
-    return sorted({0, (count - 1) // 2, count - 1})
+def _side_by_side(figure: Figure) -> list[Axes]:
+    """Three panels over the height above the floor, below the header."""
+    wide, tall = figure.get_size_inches()
+    each = (wide - LEFT - RIGHT - 2.0 * BETWEEN) / 3.0
+    bottom = tall - 0.08 - HEADER * LINE - RANGES
+    found: list[Axes] = []
+    for place in range(3):
+        rectangle = ((LEFT + place * (each + BETWEEN)) / wide, bottom / tall, each / wide, RANGES / tall)
+        found.append(figure.add_axes(rectangle, sharey=found[0] if found else None))
+        found[-1].tick_params(labelleft=place == 0)
+    found[0].set_ylabel("above the floor [m]")
+    return found
 
 
-def _largest(forces: FloatArray) -> FloatArray:
-    """Of forces (J, n) the largest in size at every instant, with its sign, shape (n,)."""
-    return np.take_along_axis(forces, np.abs(forces).argmax(axis=0)[None], axis=0)[0]
-
-
-def _use(capacity: FloatArray, demand: FloatArray) -> FloatArray:
-    """Largest demand over capacity of the joints (J, n), beyond the scale where nothing is carried, shape (n,)."""
-    beyond = np.full(demand.shape, 2.0 * MOST_USE)
-    use = np.divide(np.abs(demand), capacity, out=beyond, where=capacity > 0.0)
-    return np.where(demand == 0.0, 0.0, np.minimum(use, 2.0 * MOST_USE)).max(axis=0)
-
-
-def _draw_use(axes: Axes, time: FloatArray, sliding: FloatArray, opening: FloatArray) -> None:
-    """Demand over capacity of the worst joint, were there no bolts."""
-    draw_curve(axes, time, sliding, color=ORANGE, linewidth=0.7, label="slides: shear over mu N")
-    draw_curve(
-        axes,
-        time,
-        opening,
-        color=PURPLE,
-        linestyle="--",
-        linewidth=0.7,
-        label="opens: moment over N a/2",
+def _draw_ranges(
+    axes: Axes, box: float, forces: FloatArray, name: str, unit: str, marks: list[FloatArray]
+) -> None:
+    """Of forces (J, n) a bar from the least to the largest for each joint, and what the weight above would give."""
+    levels = box * np.arange(1, len(forces) + 1)
+    low, high = forces.min(axis=1), forces.max(axis=1)
+    usually = np.quantile(forces, USUAL, axis=1)
+    axes.axvline(0.0, color=BLACK, linewidth=0.7)
+    for (start, end), colour, label in (
+        ((low, high), SKY, "least to largest"),
+        (usually, BLUE, "nine tenths of the time"),
+    ):
+        axes.barh(
+            levels,
+            end - start,
+            left=start,
+            height=THICK * box,
+            color=colour,
+            edgecolor=colour,
+            linewidth=0.8,
+            label=label,
+        )
+    told: str | None = "weight above: N, ±μN, ±N × width/2"
+    for mark in marks:
+        axes.plot(mark, levels, "|", color=BLACK, markersize=11.0, markeredgewidth=1.2, label=told)
+        told = None
+    axes.set_ylim(0.0, box * (len(forces) + 1))
+    axes.grid(visible=False, axis="y")
+    axes.set_xlabel(f"{name} [{unit}]")
+    axes.margins(x=0.06)
+    joint = int(np.abs(forces).max(axis=1).argmax())
+    axes.set_title(
+        f"up to {number(np.abs(forces[joint]).max())} {unit}, at {number(levels[joint])} m",
+        fontsize=8.0,
+        pad=4.0,
     )
-    axes.axhline(1.0, color=BLACK, linewidth=0.9, linestyle="-.", label="capacity without bolts")
-    largest = float(max(sliding.max(), opening.max()))
-    axes.set_ylim(0.0, min(MOST_USE, max(1.2, 1.05 * largest)))
-    axes.set_ylabel("worst joint [-]")
-    legend_above(axes, columns=3)
+
+
+def _draw_held(
+    axes: Axes, time: FloatArray, forces: FloatArray, name: str, colour: str, sign: float = 1.0
+) -> None:
+    """Of forces (J, n), none of them negative, the largest at every instant, upwards or downwards."""
+    largest = forces.max(axis=0)
+    joint, instant = np.unravel_index(int(forces.argmax()), forces.shape)
+    where = f": {number(largest[instant])} kN at most, joint {joint + 1}, {time[instant]:.3f} s"
+    if largest[instant] == 0.0:
+        axes.plot([], [], color=colour, label=f"{name}: none")
+        return
+    kept = kept_samples(largest)
+    axes.fill_between(time[kept], sign * largest[kept], color=colour, linewidth=0.4, label=name + where)

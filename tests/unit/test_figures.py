@@ -211,13 +211,31 @@ def test_the_energy_balances_at_every_instant(runs, drawn):
     assert springs.min() > -1e-6 and np.median(springs) < 3.0 * at_rest < springs.max()
 
 
-def test_the_use_of_unbolted_joints_says_when_they_open_and_slide(runs, drawn):
+def test_what_bolts_hold_is_drawn_from_the_instant_that_an_unbolted_joint_opens_or_slides(runs, drawn):
     run, figure = runs["rocking"], drawn["rocking"]["joints"]
-    for words, key in (("slides", "slides_at_s"), ("opens", "opens_at_s")):
-        (use,) = lines(figure.axes[3], words)
-        first = use.get_xdata()[np.argmax(use.get_ydata() > 1.0)]
-        assert first == min(joint[key] for joint in run.result["joints"] if joint[key] is not None)
+    joints = run.result["joints"]
+    tension, shear = figure.axes[:2]
+    for fill, key, first in (
+        (tension.collections[0], "bolt_tension_left_N", None),
+        (tension.collections[1], "bolt_tension_right_N", None),
+        (shear.collections[0], "bolt_shear_N", "slides_at_s"),
+    ):
+        time, force = fill.get_paths()[0].vertices.T
+        assert 1e3 * np.abs(force).max() == pytest.approx(max(joint[key] for joint in joints))
+        if first:
+            assert time[force != 0.0].min() == min(joint[first] for joint in joints if joint[first])
+    held = [fill.get_paths()[0].vertices for fill in tension.collections]
+    opened = min(path[path[:, 1] != 0.0, 0].min() for path in held)
+    assert opened == min(joint["opens_at_s"] for joint in joints if joint["opens_at_s"])
     assert "joints" not in drawn["sliding"]  # one box
+
+
+def test_ranges_of_joint_forces_are_those_of_the_table(runs, drawn):
+    run, figure = runs["rocking"], drawn["rocking"]["joints"]
+    normal = figure.axes[-3]
+    for bar, joint in zip(normal.containers[0], run.result["joints"], strict=True):
+        assert 1e3 * bar.get_x() == pytest.approx(joint["min_normal_N"])
+        assert 1e3 * (bar.get_x() + bar.get_width()) == pytest.approx(joint["max_normal_N"])
 
 
 def test_a_band_shows_every_member_the_fallen_above_the_slenderness_angle(runs):
