@@ -1,7 +1,10 @@
 """The verification table for people: lines for a terminal, and one self-contained page with convergence plots."""
 
+import datetime as dt
 import io
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -10,10 +13,12 @@ from matplotlib.figure import Figure
 
 from fem.pages import render_page, svg_element
 from fem.program import versions
+from fem.report.quantities import ABSENT, short, typeset
 from fem.verification.ladder import Ladder, Rung
 from fem.verification.rows import Convergence, Row
 from mesh.cells import FloatArray
 
+LEAST_SIX = 1e-3  #: smaller values are errors, and printed with three figures
 HEADING = f"{'value':>13} {'reference':>12}  {'kind':<9} {'error':>9} {'tolerance':>9}  order"
 
 
@@ -49,9 +54,12 @@ def page(ladder: Ladder) -> str:
         "verify.html.j2",
         ladder=ladder,
         versions=", ".join(f"{name} {version}" for name, version in versions().items()),
+        today=dt.date.today().isoformat(),
         rooms=rooms.items(),
+        sums={room: _sum_of([row for rung in rungs for row in rung.rows]) for room, rungs in rooms.items()},
         plots=plots,
-        number=_number,
+        number=lambda value: short(value, figures=6 if abs(value) >= LEAST_SIX else 3),
+        typeset=typeset,
         error=_error,
         tolerance=_tolerance,
         order=_order,
@@ -81,6 +89,17 @@ def convergence_plot(convergence: Convergence, prefix: str = "plot") -> Markup:
         figure.savefig(stream, format="svg", metadata={"Date": None})
     label = f"error over {convergence.against}, observed order {convergence.observed:.2f}"
     return svg_element(stream.getvalue(), label=label, prefix=prefix)
+
+
+def _sum_of(rows: Sequence[Row]) -> dict[str, Any]:
+    """What the rows of a room come to, for the overview of the page."""
+    used = [row.error / row.tolerance for row in rows if row.tolerance]
+    return {
+        "rows": len(rows),
+        "failed": sum(not row.passed for row in rows),
+        "use": f"{max(used):.2f}" if used and math.isfinite(max(used)) else ABSENT,
+        "orders": sum(row.convergence is not None for row in rows) or ABSENT,
+    }
 
 
 def _labels(sizes: FloatArray) -> list[str]:
