@@ -5,9 +5,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from markupsafe import Markup
 
 from fem.case import Case
+from fem.history import History
 from fem.report.quantities import degrees, number, quantity, short, typeset
 from fem.static_checks import CLAUSE_OVERTURNING, CLAUSE_SLIDING
 from fem.summary import own_motion_name, rule_says, run_slid, run_tilted
@@ -70,8 +72,8 @@ def compared_rows(result: Result, case: Case) -> list[Compared]:
     return rows
 
 
-def asked_rows(case: Case) -> list[tuple[str, str]]:
-    """The case in words: name and value."""
+def asked_rows(case: Case, history: History | None = None) -> list[tuple[str, str]]:
+    """The case in words: name and value; with a history, what the floor came to."""
     box, contact = case.container, case.contact
     boxes = f"{box.boxes} boxes, bolted, each " if box.boxes > 1 else ""
     wall = f"shell, walls {short(box.wall_m, 1e3)} mm" if box.section == "shell" else "solid block"
@@ -88,6 +90,7 @@ def asked_rows(case: Case) -> list[tuple[str, str]]:
             ),
         ),
         ("floor", floor_in_words(case)),
+        *_floor_peaks(case, history),
         ("start", _start(case)),
         ("model", _model(case)),
         ("time", f"{short(case.solver.duration_s)} s, g = {short(case.gravity_m_s2)} m/s²"),
@@ -158,6 +161,21 @@ def floor_in_words(case: Case) -> str:
         f"record {motion.file} ({motion.quantity}, {motion.unit}), scale {short(motion.scale)}, "
         f"baseline {motion.baseline}"
     )
+
+
+def _floor_peaks(case: Case, history: History | None) -> list[tuple[str, str]]:
+    """Largest displacement, velocity and acceleration of the floor, from the samples."""
+    if history is None or len(history) == 0 or case.motion.kind == "none":
+        return []
+    moved, speed, acceleration = (
+        float(np.abs(history[column]).max())
+        for column in ("base_displacement_m", "base_velocity_m_s", "base_acceleration_m_s2")
+    )
+    words = (
+        f"{quantity(moved, 'mm', 1e3)}, {quantity(speed, 'm/s')}, {quantity(acceleration, 'm/s²')} "
+        f"= {quantity(acceleration / case.gravity_m_s2, 'g', figures=3)}"
+    )
+    return [("its peaks", words)]
 
 
 def _support(case: Case) -> str:

@@ -118,7 +118,7 @@ def _page(
         standing=_standing(run),
         signature=signature,
         sketch=sketch(case, centroid=static["centroid_m"], peak_acceleration=peak),
-        asked=asked_rows(case),
+        asked=asked_rows(case, history),
         assumptions=assumptions(result, case),
         exclusions=EXCLUSIONS,
         compared=compared_rows(result, case),

@@ -206,7 +206,7 @@
   };
 
   // ---- words ------------------------------------------------------------------------------------------------
-  const minus = (text) => text.replace("-", "−");
+  const minus = (text) => text.replace(/^-(?=[0.]+$)/, "").replace("-", "−");
   const kilo = (force) => minus((force / 1e3).toFixed(Math.abs(force) < 1e5 ? 1 : 0));
   const millimetres = (length) => minus((1e3 * length).toFixed(1));
   const readOut = () => {

@@ -190,6 +190,14 @@ class TestTheAnimation:
         run_page.press("k", 75, "k")
         assert run_page.evaluate("document.getElementById('play').textContent") == "Play"
 
+    def test_marks_move_over_the_drawing_and_not_beside_it(self, run_page):
+        boxes = run_page.evaluate(
+            "[...document.querySelectorAll('[data-axes]')].map((one) =>"
+            " [one, one.querySelector('svg')].map((part) => part.getBoundingClientRect().width))"
+        )
+        assert len(boxes) > 6
+        assert [outer for outer, drawing in boxes] == pytest.approx([drawing for outer, drawing in boxes])
+
     def test_a_click_on_a_curve_goes_to_its_instant(self, run_page):
         axes = json.loads(run_page.evaluate("document.querySelector('[data-axes]').dataset.axes"))
         share = axes["left"] + 0.75 * (axes["right"] - axes["left"])
