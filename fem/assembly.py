@@ -172,7 +172,7 @@ class FiniteElements:
 
     def tangent(self, displacement: FloatArray) -> csc_array:
         """Derivative of `internal_force`, shape (2n, 2n), interleaved [N/m]."""
-        moduli = first_stress_tangent(self._displacement_gradient(displacement), self.lame)
+        moduli = first_stress_tangent(self.displacement_gradient(displacement), self.lame)
         cells, k = self.cells.shape
         moduli = moduli * self.weights
         shapes = self.gradient
@@ -192,7 +192,7 @@ class FiniteElements:
         cells are averaged by area, but only those of the greatest thickness there. So where a wall (thick out
         of plane) meets a sheet, the node shows the wall's stress, not diluted by the sheet's.
         """
-        stress = cauchy_stress(self._displacement_gradient(displacement), self.lame)
+        stress = cauchy_stress(self.displacement_gradient(displacement), self.lame)
         return self._recovery @ stress.reshape(3, -1).T
 
     def nodal_von_mises(self, displacement: FloatArray) -> FloatArray:
@@ -236,7 +236,7 @@ class FiniteElements:
         basis, parameters = self._vector_basis(displacement)
         return csc_array(_tangent_form.assemble(basis, **parameters))
 
-    def _displacement_gradient(self, displacement: FloatArray) -> FloatArray:
+    def displacement_gradient(self, displacement: FloatArray) -> FloatArray:
         """H_ij = d u_i / d X_j at the quadrature points, shape (2, 2, m, q)."""
         return np.einsum("jcqb,cbi->ijcq", self.gradient, np.asarray(displacement)[self.cells], optimize=True)
 

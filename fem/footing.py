@@ -12,6 +12,7 @@ from contact.penalty import relaxation_time
 from fem.case import Case, CaseError
 from fem.case_contact import normal_penalty, require_firm_floor
 from fem.container import Container
+from fem.crushing import require_uncrushed
 from fem.full_body import FullBody
 from mesh.cells import FloatArray
 from mesh.container import ContainerMesh
@@ -34,7 +35,7 @@ def set_down(case: Case, container: Container) -> Footing:
     """Put the container on the floor, settled; models of it share a body's scratch: step one at a time.
 
     Raises:
-        CaseError: no equilibrium at the start.
+        CaseError: no equilibrium at the start, or one that crushes the container.
     """
     penalty = normal_penalty(case, container.mesh)
     springs = container.support.normal_stiffness(penalty)
@@ -46,6 +47,9 @@ def set_down(case: Case, container: Container) -> Footing:
         stance = _stance(case, container, contact)
     except SettlingError as error:
         raise CaseError(f"[initial] no equilibrium at the start: {error}") from error
+    if case.solver.model != "rigid":
+        force = stance.with_points(container.nodes.size).force
+        require_uncrushed(case, container.elements, container.response, stance.rotation, force)
     return Footing(penalty=penalty, contact=contact, body=_body(case, container, contact), stance=stance)
 
 

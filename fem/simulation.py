@@ -8,6 +8,7 @@ A container that the end of a run finds beyond its slenderness angle has neither
 followed in the frame of its floor, undriven and so at rest there, until it has done one or the other.
 """
 
+import math
 import os
 import time
 from collections.abc import Callable
@@ -22,6 +23,7 @@ from contact.floor_motion import UNIFORM, as_floor_motion, floor_motion
 from contact.run import Run
 from contact.step_control import most_attempts
 from contact.stepping import AFTERMATH_SLICE, FAILED, OVERTURNED, REACHED
+from fem.crushing import least_volume_ratio
 from fem.full_body import FullBody, advance_body, leave_body_alone
 from fem.model import Model
 from fem.nodal_body import SOURCES
@@ -35,6 +37,8 @@ SLICE_REDUCED, SLICE_FULL = 0.25, 0.01
 LOOK_REDUCED, LOOK_FULL = 100_000, 2000
 #: wall time between pauses [s]; steps tried until the first one; how many times more until the next, at most
 PAUSE_S, FIRST_PAUSE, LONGER = 5.0, 16, 8
+#: imbalance of the contact forces, over the weight, that is not what keeps a step from being solved
+BALANCED = 1e-6
 #: a container left beyond its slenderness angle at the end falls or comes back within so many times 1/p
 AFTERMATH = 50.0
 
@@ -141,10 +145,12 @@ def simulate(
         if progress.slice is not None:
             continue
         stuck = _attempts(run) >= most_attempts(control, float(clock.time))
-        if code == FAILED or (stuck and code != OVERTURNED):
-            reporter.finish()
+        failure = crushing_failure(model)
+        if failure is None and (code == FAILED or (stuck and code != OVERTURNED)):
             residual = float(np.abs(run.work.law - run.work.force).max())
             failure = stepping_failure(model, residual)
+        if failure is not None:
+            reporter.finish()
             return Ending(status="failed", stepping_cpu_s=progress.stepping_cpu_s, error=failure)
         if code == OVERTURNED:
             break
@@ -215,18 +221,46 @@ def _on_resting_floor(run: Run, undriven: tuple[float, float]) -> Run:
     return run._replace(motion=still, breaks=np.full(1, np.inf))
 
 
+def crushing_failure(model: Model) -> str | None:
+    """Where a cell of a full model lies inside out, or None: what comes after that is no motion of a container."""
+    if not isinstance(model.body, FullBody):
+        return None
+    elements, clock = model.container.elements, model.run.clock[0]
+    displacement = model.run.old.position.reshape(-1, 2) - elements.nodes
+    ratio = least_volume_ratio(elements.displacement_gradient(displacement))
+    if ratio > 0.0:  # false for nan
+        return None
+    return (
+        f"step {int(clock.steps)}, t = {float(clock.time):.6g} s: the container is crushed, a cell of its mesh lies "
+        f"inside out ({ratio:.2g} of its volume is left); take a larger container.youngs_modulus_Pa, thicker walls, "
+        'a softer contact.normal_penalty_Pa_m, or solver.model = "rigid"'
+    )
+
+
 def stepping_failure(model: Model, residual: float) -> str:
     """Where and why the stepping gave up, and what to try; `residual` is that of the contact forces [N]."""
-    clock = model.run.clock[0]
-    if clock.steps + clock.rejected >= most_attempts(model.run.control, float(clock.time)):
+    control, clock = model.run.control, model.run.clock[0]
+    if clock.steps + clock.rejected >= most_attempts(control, float(clock.time)):
+        smallest = min(float(clock.smallest_step), control.largest_step)
         return (
             f"t = {float(clock.time):.6g} s: no headway after {int(clock.steps)} steps and {int(clock.rejected)} "
-            f"rejected ones, the smallest of {float(clock.smallest_step):.1g} s; try a softer "
+            f"rejected ones, the smallest of {smallest:.1g} s; try a softer "
             "contact.normal_penalty_Pa_m, contact.weakening_m > 0, or a larger solver.energy_tolerance"
         )
-    step = model.run.control.smallest_step
+    place = f"step {int(clock.steps) + 1}, t = {float(clock.time):.6g} s: "
+    smallest_tried = f"at the smallest step ({control.smallest_step:.1g} s)"
+    if not math.isfinite(residual):
+        return (
+            f"{place}the motion tried grew beyond all numbers, even {smallest_tried}; try a smaller solver.step_s, "
+            "a larger container.youngs_modulus_Pa, or a weaker motion"
+        )
+    if residual <= BALANCED * control.mass * control.gravity:
+        return (
+            f"{place}the iteration between container and floor did not settle {smallest_tried}, though the contact "
+            f"forces balance within {residual:.2g} N; try a smaller solver.step_s, a larger "
+            "container.youngs_modulus_Pa, or a softer contact.normal_penalty_Pa_m"
+        )
     return (
-        f"step {int(clock.steps) + 1}, t = {float(clock.time):.6g} s: the contact forces are out of balance "
-        f"by {residual:.2g} N after the last iteration at the smallest step ({step:.1g} s); try a softer "
-        "contact.normal_penalty_Pa_m, contact.weakening_m > 0, or a smaller solver.step_s"
+        f"{place}the contact forces are out of balance by {residual:.2g} N after the last iteration {smallest_tried}; "
+        "try a softer contact.normal_penalty_Pa_m, contact.weakening_m > 0, or a smaller solver.step_s"
     )

@@ -136,6 +136,11 @@ def audit(model: Model) -> str | None:
         f"set solver.step_s below the {model.run.control.largest_step:.2g} s used, "
         "or a softer contact.normal_penalty_Pa_m"
     )
+    if not np.all(np.isfinite(model.run.ledger)):
+        return (
+            f"t = {float(clock.time):.6g} s: the energy ledger is no longer made of numbers: the motion grew beyond "
+            f"all bounds; {remedy}"
+        )
     if won > GAIN_LIMIT * reference:
         return (
             f"the time stepping won {won:.3g} J, {won / reference:.1e} of the energy to overturn "

@@ -77,8 +77,9 @@ def torture(tmp_path: Path, overrides: tuple[str, ...], cuts: int, seed: int, st
     for _ in range(cuts):
         reached = min(reached + chance.randrange(1, step), frames - 1)
         number = chance.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
-        code = end_when(start(cut, *overrides), cut, reached, chance.uniform(0.0, 0.03), number)
-        assert code in (-signal.SIGKILL, 4, 0, -signal.SIGTERM, -signal.SIGINT)
+        process = start(cut, *overrides)
+        code = end_when(process, cut, reached, chance.uniform(0.0, 0.03), number)
+        assert code in (-signal.SIGKILL, 4, 0, -signal.SIGTERM, -signal.SIGINT), process.stderr.read()
         everything_reads(cut)
     process = start(cut, *overrides)
     assert process.wait(timeout=300) == 0, process.stderr.read()
