@@ -24,6 +24,7 @@ from contact.ledger import ROWS as LEDGER_ROWS
 from contact.modal_body import ModalBody, with_own_scratch
 from contact.run import CLOCK, ROW_SLIP, ROW_STRAIN, Control, Run, Samples, make_samples
 from contact.scheme import Scheme
+from contact.step import copy_vector
 from contact.step_control import most_attempts
 from contact.stepping import AFTERMATH_SLICE, FAILED, OVERTURNED, REACHED, advance_compiled, leave_alone
 from contact.tracking import TRACK
@@ -52,17 +53,7 @@ class Rows(NamedTuple):
         FloatArray  #: (k,) how long a container beyond its slenderness angle is followed afterwards [s]
     )
     attempt_limit: IntArray  #: (k,) steps that may be tried
-    position: FloatArray  #: (k, n_d) initial state, and so on
-    velocity: FloatArray
-    acceleration: FloatArray
-    internal: FloatArray
-    external: FloatArray
-    damping: FloatArray
-    point: FloatArray  #: (k, n, 2)
-    force: FloatArray  #: (k, n, 2)
-    stick: FloatArray  #: (k, n)
-    pose: FloatArray  #: (k, 6)
-    energy: FloatArray  #: (k, 3)
+    state: FloatArray  #: (k, ..) `State.numbers` at t = 0
     interval: FloatArray  #: (k,) of the samples; infinite for none [s]
     slip_until: FloatArray  #: (k,) the slip is kept of the samples up to this time [s]
 
@@ -119,10 +110,6 @@ def pack_rows(
     With `slip_until` the rows have samples, at the intervals of the runs' histories.
     """
     motions = [run.motion for run in runs]
-    olds = [run.old for run in runs]
-
-    def stacked(name: str) -> FloatArray:
-        return np.stack([getattr(old, name) for old in olds])
 
     return Rows(
         normal_stiffness=np.stack([run.contact.normal_stiffness for run in runs]),
@@ -145,17 +132,7 @@ def pack_rows(
             ],
             dtype=np.int64,
         ),
-        position=stacked("position"),
-        velocity=stacked("velocity"),
-        acceleration=stacked("acceleration"),
-        internal=stacked("internal"),
-        external=stacked("external"),
-        damping=stacked("damping"),
-        point=stacked("point"),
-        force=stacked("force"),
-        stick=stacked("stick"),
-        pose=stacked("pose"),
-        energy=stacked("energy"),
+        state=np.stack([run.old.numbers for run in runs]),
         interval=np.array([np.inf if slip_until is None else run.history.interval for run in runs]),
         slip_until=np.array(np.zeros(len(runs)) if slip_until is None else slip_until, dtype=float),
     )
@@ -195,7 +172,7 @@ def run_rows(
         residual=np.zeros(count),
         slip=np.zeros((count, cycle)),
         strain=np.full((count, room), -1.0),
-        strained=np.zeros((count, room, rows.position.shape[1])),
+        strained=np.zeros((count, room, 3 + body.stiffness.size)),
     )
     outcomes.clock["smallest_step"] = np.inf
     outcomes.clock["attempt_limit"] = rows.attempt_limit
@@ -217,7 +194,7 @@ def run_rows(
 
 
 def _make_scratch(body: ModalBody, rows: Rows, sampling: Sampling | None) -> Scratch:
-    points, coordinates = body.point.shape[0], rows.position.shape[1]
+    points, coordinates = body.point.shape[0], 3 + body.stiffness.size
     own = with_own_scratch(body)
     history = make_samples(math.inf, 4, points)
     if sampling is not None:
@@ -258,21 +235,8 @@ def _padded(arrays: Sequence[FloatArray], value: float) -> FloatArray:
 
 def _load_row(rows: Rows, k: int, scratch: Scratch) -> None:
     """Put the initial state of a row where its thread works, and forget the row before."""
-    old, work, body = scratch.old, scratch.work, scratch.body
-    for j in range(old.position.size):
-        old.position[j], old.velocity[j] = rows.position[k, j], rows.velocity[k, j]
-        old.acceleration[j], old.jerk[j] = rows.acceleration[k, j], 0.0
-        old.internal[j], old.external[j] = rows.internal[k, j], rows.external[k, j]
-        old.damping[j] = rows.damping[k, j]
-    for i in range(old.point.shape[0]):
-        old.stick[i] = rows.stick[k, i]
-        for c in range(2):
-            old.point[i, c], old.force[i, c] = rows.point[k, i, c], rows.force[k, i, c]
-            old.descent[i, c] = 0.0
-    for c in range(old.pose.size):
-        old.pose[c] = rows.pose[k, c]
-    for c in range(old.energy.size):
-        old.energy[c] = rows.energy[k, c]
+    work, body = scratch.work, scratch.body
+    copy_vector(scratch.old.numbers, rows.state[k])
     for i in range(scratch.watched.shape[0]):
         scratch.watched[i, 0], scratch.watched[i, 1] = 0.0, 0.0
     work.factored_step[0] = -1.0
