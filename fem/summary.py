@@ -181,7 +181,7 @@ def run_rows(result: Result) -> list[tuple[str, str]]:
         ("states seen", ", ".join(verdict.get("modes") or ())),
         ("largest rotation", _rotation(verdict)),
         (
-            "slip: largest, left, travel",
+            "slip: largest, at the end, travelled",
             _joined(verdict, ("max_slip_m", "residual_slip_m", "slip_travel_m"), "mm"),
         ),
         ("largest uplift", _unit(verdict.get("max_uplift_m"), 1e3, "mm")),
