@@ -15,6 +15,10 @@ from fem.case_problem import Problem, leaves_the_folder
 MOST_PEAK = 1e3
 
 
+#: cycles over which a taper may bring the floor to its velocity
+LEAST_RAMP = 0.01
+
+
 def harmonic_angular_frequency(motion: Any) -> float | None:
     """Omega [rad/s] from the keys given; None where they do not tell."""
     if motion.kind != "harmonic":
@@ -128,6 +132,17 @@ def ramps_fit_into_the_cycles(motion: Any) -> Problem | None:
         key="ramp_cycles",
         reason=f"must be at most half of cycles = {motion.cycles:g}, got {motion.ramp_cycles:g}; "
         "it tapers the beginning and the end",
+    )
+
+
+def tapers_take_time(motion: Any) -> Problem | None:
+    """A taper of almost no time would be a blow, of any acceleration."""
+    if motion.kind != "harmonic" or motion.ramp_cycles == 0.0 or motion.ramp_cycles >= LEAST_RAMP:
+        return None
+    return Problem(
+        key="ramp_cycles",
+        reason=f"must be 0 or at least {LEAST_RAMP:g}, got {motion.ramp_cycles:g}: so short a taper is a blow; "
+        "without one the floor moves from the beginning on (see start)",
     )
 
 

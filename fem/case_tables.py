@@ -230,6 +230,7 @@ class Motion(Table):
         motion_rules.harmonic_amplitude_is_computable,
         motion_rules.harmonic_peak_is_computable,
         motion_rules.ramps_fit_into_the_cycles,
+        motion_rules.tapers_take_time,
         motion_rules.pulse_is_complete,
         motion_rules.table_is_complete,
         motion_rules.table_unit_fits_its_quantity,

@@ -70,7 +70,22 @@ def largest_step_of(case: Case, static: StaticChecks, motion: BaseMotion) -> tup
         largest = solver.step_s
     interval = min(output.history_s, output.fields_s or math.inf)
     largest = min(largest, solver.duration_s, MOST_SAMPLES_A_STEP * interval)
-    return largest, np.array([*ends, solver.duration_s])
+    return largest, _apart(ends, solver.duration_s, SMALLEST_SHARE * largest)
+
+
+def _apart(instants: list[float], end: float, least: float) -> FloatArray:
+    """The instants (rising, before `end`) and the end, without those nearer than `least` to the one before, or the end.
+
+    No step is made shorter than the smallest for the sake of a motion that changes twice within it: the inertia over
+    the square of such a step is beyond all numbers, or noise.
+    """
+    if np.diff([0.0, *instants, end]).min() >= least:
+        return np.array([*instants, end])
+    kept = [0.0]
+    for instant in instants:
+        if instant - kept[-1] >= least and end - instant >= least:
+            kept.append(instant)
+    return np.array([*kept[1:], end])
 
 
 def _span(motion: BaseMotion) -> tuple[float, float]:

@@ -364,6 +364,10 @@ REFUSED = [
         HARMONIC | {"motion__cycles": 2.0, "motion__ramp_cycles": 1.5},
         "ramp_cycles must be at most half of cycles = 2",
     ),
+    (
+        HARMONIC | {"motion__ramp_cycles": 1e-162},
+        "[motion] ramp_cycles must be 0 or at least 0.01, got 1e-162",
+    ),
     (HARMONIC | {"motion__ramp_cycles": 20}, "[motion] ramp_cycles = 20 tapers 36.2771 s in all, more than"),
     (
         PULSE | {"motion__shape": None, "motion__pulse_s": None},

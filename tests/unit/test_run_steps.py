@@ -64,6 +64,16 @@ def test_a_step_that_would_step_over_the_motion_is_refused():
         build_model(case)
 
 
+def test_no_step_is_made_for_a_motion_that_changes_twice_within_the_smallest():
+    """A step of 1e-163 s was, over whose square the inertia is no number."""
+    values = PULSE | {"motion.peak_acceleration_m_s2": 6.0, "motion.pulse_s": 0.4, "solver.duration_s": 1.0}
+    at_once, _ = finished(rigid().with_values(values | {"motion.delay_s": 0.0}))
+    model, ending = finished(rigid().with_values(values | {"motion.delay_s": 1e-162}))
+    assert ending.status == "completed", ending.error
+    assert model.run.breaks.tolist() == at_once.run.breaks.tolist()
+    assert model.run.old.position == pytest.approx(at_once.run.old.position, rel=1e-9)
+
+
 def test_no_step_is_longer_than_the_samples_in_memory_reach():
     case = rigid(output__history_s=1e-6, output__fields_s=0.0)
     model = build_model(case)
