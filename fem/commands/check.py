@@ -4,15 +4,14 @@ import importlib
 import json
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any
-
-from cyclopts import Parameter
+from typing import Any
 
 from contact.penalty import contact_frequency
 from fem.calibration import apparent_restitution
 from fem.case import Case, case_hash, load_case
 from fem.case_contact import build_support, normal_penalty, require_firm_floor
 from fem.case_container import build_container, node_count
+from fem.commands.shared import AsJson, Overrides
 from fem.required_disk import frames_of, in_units, required_disk, samples_of
 from fem.static_checks import StaticChecks, static_checks
 from mesh.container import ContainerMesh
@@ -22,13 +21,8 @@ def check(
     case: str | None = None,
     /,
     *,
-    overrides: Annotated[
-        tuple[str, ...],
-        Parameter(name="--set", negative=(), show_default=False, help="table.key=value; may be repeated."),
-    ] = (),
-    as_json: Annotated[
-        bool, Parameter(name="--json", negative=(), show_default=False, help="Print JSON.")
-    ] = False,
+    overrides: Overrides = (),
+    as_json: AsJson = False,
 ) -> None:
     """Static checks, derived numbers and chosen numerics of a case; nothing is solved or written.
 

@@ -6,10 +6,9 @@ import platform
 import shutil
 from importlib import metadata
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
-from cyclopts import Parameter
-
+from fem.commands.shared import AsJson
 from fem.rendering import MEND_PICTURES, probe_rendering
 
 DISTRIBUTIONS = (
@@ -32,9 +31,7 @@ LEAST_FREE_GB = 1.0
 
 def doctor(
     *,
-    as_json: Annotated[
-        bool, Parameter(name="--json", negative=(), show_default=False, help="Print JSON.")
-    ] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Versions, rendering, threads and disk, and the command that mends what is missing."""
     versions = {name: _version(name) for name in DISTRIBUTIONS}

@@ -5,35 +5,21 @@ import json
 from pathlib import Path
 from typing import Annotated
 
-from cyclopts import Parameter
-
-from fem.case import CaseError
+from fem.commands.shared import EXIT_CODES, Folder, Force, Jobs, Quiet, flag, require_cores
 from fem.progress import ScreenReporter
 from fem.run_folder import to_json
-
-EXIT_CODES = {"completed": 0, "failed": 3, "interrupted": 4}
 
 
 def ensemble(
     ensemble: str,
     /,
     *,
-    out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/NAME.")] = None,
-    jobs: Annotated[
-        int | None, Parameter(name=("--jobs", "-j"), show_default=False, help="Cores; default: all.")
-    ] = None,
-    resume: Annotated[
-        bool, Parameter(negative=(), show_default=False, help="Go on with the draws that are there.")
-    ] = False,
-    force: Annotated[
-        bool, Parameter(negative=(), show_default=False, help="Compute anew, over what is there.")
-    ] = False,
-    as_json: Annotated[
-        bool, Parameter(name="--json", negative=(), show_default=False, help="Print ensemble.json.")
-    ] = False,
-    quiet: Annotated[
-        bool, Parameter(name=("--quiet", "-q"), negative=(), show_default=False, help="No progress.")
-    ] = False,
+    out: Folder = None,
+    jobs: Jobs = None,
+    resume: Annotated[bool, flag("Go on with the draws that are there.")] = False,
+    force: Force = False,
+    as_json: Annotated[bool, flag("Print ensemble.json.", "--json")] = False,
+    quiet: Quiet = False,
 ) -> int:
     """Draw what nobody knows beforehand and count what overturns, with confidence intervals.
 
@@ -42,8 +28,7 @@ def ensemble(
     ensemble:
         An ensemble file or the name of a shipped one: fragility, boundary.
     """
-    if jobs is not None and jobs < 1:
-        raise CaseError(f"-j {jobs}: at least one core is needed")
+    require_cores(jobs)
     asked = importlib.import_module("fem.ensemble.file").load_ensemble(ensemble)
     folder = out if out is not None else Path("outputs") / asked.name
     # The solver is loaded only now: bad input is answered before anything is compiled.

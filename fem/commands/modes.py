@@ -9,6 +9,7 @@ from cyclopts import Parameter
 from fem.assembly import assemble
 from fem.case import load_case
 from fem.case_container import build_container
+from fem.commands.shared import AsJson, Overrides
 from fem.drawing import house_style, svg_of
 from fem.figures_modes import modes_figure
 from fem.modes import elastic_mode_table, elastic_modes, write_modes
@@ -21,13 +22,8 @@ def modes(
     *,
     count: Annotated[int | None, Parameter(help="How many; default: solver.elastic_modes.")] = None,
     out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/NAME/modes.")] = None,
-    overrides: Annotated[
-        tuple[str, ...],
-        Parameter(name="--set", negative=(), show_default=False, help="table.key=value; may be repeated."),
-    ] = (),
-    as_json: Annotated[
-        bool, Parameter(name="--json", negative=(), show_default=False, help="Print JSON.")
-    ] = False,
+    overrides: Overrides = (),
+    as_json: AsJson = False,
 ) -> None:
     """Elastic frequencies and shapes of the container, free of the floor; the shapes go to modes.vtu and modes.svg.
 

@@ -7,6 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from fem.commands.shared import Quiet
 from fem.opening import open_run
 from fem.rendering import require_rendering
 
@@ -18,9 +19,7 @@ def movie(
     to: Annotated[
         Path | None, Parameter(help="The film, .gif or .mp4; default: figures/movie.gif of the run.")
     ] = None,
-    quiet: Annotated[
-        bool, Parameter(name=("--quiet", "-q"), negative=(), show_default=False, help="No progress.")
-    ] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Render the frames of a run into a film in real time; MP4 needs imageio-ffmpeg.
 

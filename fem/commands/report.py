@@ -6,6 +6,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from fem.commands.shared import Quiet
 from fem.progress import ScreenReporter
 from fem.run_folder import FolderError, naming_what_cannot_be_written, write_atomically
 
@@ -29,9 +30,7 @@ def report(
             help="Compute every variation of a run, however long it takes.",
         ),
     ] = False,
-    quiet: Annotated[
-        bool, Parameter(name=("--quiet", "-q"), negative=(), show_default=False, help="No progress.")
-    ] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Make one HTML file that can be sent, read without a network, and printed.
 

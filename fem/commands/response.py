@@ -8,9 +8,8 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from fem.case import load_case
+from fem.commands.shared import EXIT_CODES, Force, Overrides, Quiet, flag
 from fem.progress import ScreenReporter
-
-EXIT_CODES = {"completed": 0, "failed": 3, "interrupted": 4}
 
 
 def response(
@@ -40,22 +39,11 @@ def response(
     out: Annotated[
         Path | None, Parameter(help="Folder of the results; default: outputs/NAME-response.")
     ] = None,
-    overrides: Annotated[
-        tuple[str, ...],
-        Parameter(name="--set", negative=(), show_default=False, help="table.key=value; may be repeated."),
-    ] = (),
-    resume: Annotated[
-        bool, Parameter(negative=(), show_default=False, help="Go on where it was interrupted.")
-    ] = False,
-    force: Annotated[
-        bool, Parameter(negative=(), show_default=False, help="Compute anew, over what is there.")
-    ] = False,
-    as_json: Annotated[
-        bool, Parameter(name="--json", negative=(), show_default=False, help="Print response.json.")
-    ] = False,
-    quiet: Annotated[
-        bool, Parameter(name=("--quiet", "-q"), negative=(), show_default=False, help="No progress.")
-    ] = False,
+    overrides: Overrides = (),
+    resume: Annotated[bool, flag("Go on where it was interrupted.")] = False,
+    force: Force = False,
+    as_json: Annotated[bool, flag("Print response.json.", "--json")] = False,
+    quiet: Quiet = False,
 ) -> int:
     """Sweep the frequency of the drive up and down with the motion carried on: branches, jumps, drop-outs.
 

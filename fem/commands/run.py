@@ -11,25 +11,19 @@ from cyclopts import Parameter
 from fem.case import Case, CaseError, load_case
 from fem.case_container import build_container
 from fem.commands.check import chosen_numerics, page_of_numerics, peak_floor_acceleration
+from fem.commands.shared import EXIT_CODES, Folder, Force, Overrides, Quiet, flag
 from fem.progress import ScreenReporter
 from fem.required_disk import free_disk, in_units
 from fem.run_folder import read_result
-
-EXIT_CODES = {"completed": 0, "overturned": 0, "failed": 3, "interrupted": 4}
 
 
 def run(
     case: str | None = None,
     /,
     *,
-    out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/NAME.")] = None,
-    overrides: Annotated[
-        tuple[str, ...],
-        Parameter(name="--set", negative=(), show_default=False, help="table.key=value; may be repeated."),
-    ] = (),
-    check_rigid: Annotated[
-        bool, Parameter(negative=(), show_default=False, help="Compare with the analytic rigid block.")
-    ] = False,
+    out: Folder = None,
+    overrides: Overrides = (),
+    check_rigid: Annotated[bool, flag("Compare with the analytic rigid block.")] = False,
     band: Annotated[
         bool | None,
         Parameter(
@@ -37,24 +31,12 @@ def run(
             help="Repeat over contact penalty and damping; default: where the outcome is not rest or slide.",
         ),
     ] = None,
-    resume: Annotated[
-        bool, Parameter(negative=(), show_default=False, help="Go on from the checkpoint, if there is one.")
-    ] = False,
-    force: Annotated[
-        bool, Parameter(negative=(), show_default=False, help="Compute anew, over what is there.")
-    ] = False,
-    dry_run: Annotated[
-        bool, Parameter(negative=(), show_default=False, help="Say what would be computed, and stop.")
-    ] = False,
-    as_json: Annotated[
-        bool, Parameter(name="--json", negative=(), show_default=False, help="Print run.json.")
-    ] = False,
-    quiet: Annotated[
-        bool, Parameter(name=("--quiet", "-q"), negative=(), show_default=False, help="No progress.")
-    ] = False,
-    verbose: Annotated[
-        bool, Parameter(name=("--verbose", "-v"), negative=(), show_default=False, help="Tell more.")
-    ] = False,
+    resume: Annotated[bool, flag("Go on from the checkpoint, if there is one.")] = False,
+    force: Force = False,
+    dry_run: Annotated[bool, flag("Say what would be computed, and stop.")] = False,
+    as_json: Annotated[bool, flag("Print run.json.", "--json")] = False,
+    quiet: Quiet = False,
+    verbose: Annotated[bool, flag("Tell more.", "--verbose", "-v")] = False,
 ) -> int:
     """Compute a case: does the container rest, slide, rock, slide-rock or overturn?
 

@@ -9,12 +9,12 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from fem.case import CaseError
+from fem.commands.shared import EXIT_CODES, Jobs, Quiet, flag, require_cores
 from fem.progress import ScreenReporter
 from fem.run_folder import naming_what_cannot_be_written, to_json
 
 STUDIES = ("seed",)
 LONG = 10.0  #: s, from which a statement is worth compiling for beforehand
-EXIT_CODES = {"completed": 0, "failed": 3, "interrupted": 4}
 
 
 def study(
@@ -22,22 +22,11 @@ def study(
     /,
     *,
     out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/study_NAME.")] = None,
-    jobs: Annotated[
-        int | None, Parameter(name=("--jobs", "-j"), show_default=False, help="Cores; default: all.")
-    ] = None,
-    only: Annotated[
-        tuple[str, ...],
-        Parameter(negative=(), show_default=False, help="Only this statement; may be repeated."),
-    ] = (),
-    force: Annotated[
-        bool, Parameter(negative=(), show_default=False, help="Compute what is there as well.")
-    ] = False,
-    as_json: Annotated[
-        bool, Parameter(name="--json", negative=(), show_default=False, help="Print study.json.")
-    ] = False,
-    quiet: Annotated[
-        bool, Parameter(name=("--quiet", "-q"), negative=(), show_default=False, help="No progress.")
-    ] = False,
+    jobs: Jobs = None,
+    only: Annotated[tuple[str, ...], flag("Only this statement; may be repeated.")] = (),
+    force: Annotated[bool, flag("Compute what is there as well.")] = False,
+    as_json: Annotated[bool, flag("Print study.json.", "--json")] = False,
+    quiet: Quiet = False,
 ) -> int:
     """Try every statement of the seed paper: confirmed, confirmed within stated bounds, or refuted.
 
@@ -51,8 +40,7 @@ def study(
     """
     if name not in STUDIES:
         raise CaseError(f"no study {name!r}{_near(name, STUDIES)} (known: {', '.join(STUDIES)})")
-    if jobs is not None and jobs < 1:
-        raise CaseError(f"-j {jobs}: at least one core is needed")
+    require_cores(jobs)
     catalogue = importlib.import_module("fem.study.catalogue")
     every = catalogue.all_statements()
     known = [statement.name for _, statement in every]

@@ -10,38 +10,26 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from fem.case import CaseError
+from fem.commands.shared import EXIT_CODES, Folder, Jobs, Quiet, flag, require_cores
 from fem.progress import ScreenReporter
 from fem.run_folder import to_json
 from fem.sweep.file import load_sweep
-
-EXIT_CODES = {"completed": 0, "failed": 3, "interrupted": 4}
 
 
 def sweep(
     sweep: str,
     /,
     *,
-    out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/NAME.")] = None,
-    jobs: Annotated[
-        int | None, Parameter(name=("--jobs", "-j"), show_default=False, help="Cores; default: all.")
-    ] = None,
+    out: Folder = None,
+    jobs: Jobs = None,
     scheduler: Annotated[
         str | None,
         Parameter(show_default=False, help="Address of a dask scheduler, such as tcp://127.0.0.1:8786."),
     ] = None,
-    resume: Annotated[
-        bool, Parameter(negative=(), show_default=False, help="Go on with the rows that are there.")
-    ] = False,
-    force: Annotated[
-        bool,
-        Parameter(negative=(), show_default=False, help="Compute anew, over what is there; however many."),
-    ] = False,
-    as_json: Annotated[
-        bool, Parameter(name="--json", negative=(), show_default=False, help="Print sweep.json.")
-    ] = False,
-    quiet: Annotated[
-        bool, Parameter(name=("--quiet", "-q"), negative=(), show_default=False, help="No progress.")
-    ] = False,
+    resume: Annotated[bool, flag("Go on with the rows that are there.")] = False,
+    force: Annotated[bool, flag("Compute anew, over what is there; however many.")] = False,
+    as_json: Annotated[bool, flag("Print sweep.json.", "--json")] = False,
+    quiet: Quiet = False,
 ) -> int:
     """Compute the cases of a sweep: where does the container stand?
 
@@ -50,8 +38,7 @@ def sweep(
     sweep:
         A sweep file or the name of a shipped sweep (see `python -m fem list`).
     """
-    if jobs is not None and jobs < 1:
-        raise CaseError(f"-j {jobs}: at least one core is needed")
+    require_cores(jobs)
     asked = load_sweep(sweep)
     folder = out if out is not None else Path("outputs") / asked.name
     # The solver is loaded only now: bad input is answered before anything is compiled.

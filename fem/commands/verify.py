@@ -8,25 +8,19 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from fem.commands.shared import AsJson, Quiet, flag
+
 FAILED = 3
 FOLDER = Path("outputs") / "verify"
 
 
 def verify(
     *,
-    quick: Annotated[
-        bool, Parameter(negative=(), show_default=False, help="Leave out what takes long: two minutes.")
-    ] = False,
-    room: Annotated[
-        tuple[str, ...], Parameter(negative=(), show_default=False, help="Only this room; may be repeated.")
-    ] = (),
+    quick: Annotated[bool, flag("Leave out what takes long: two minutes.")] = False,
+    room: Annotated[tuple[str, ...], flag("Only this room; may be repeated.")] = (),
     out: Annotated[Path, Parameter(help="Folder of verify.json and verify.html.")] = FOLDER,
-    as_json: Annotated[
-        bool, Parameter(name="--json", negative=(), show_default=False, help="Print JSON.")
-    ] = False,
-    quiet: Annotated[
-        bool, Parameter(name=("--quiet", "-q"), negative=(), show_default=False, help="No progress.")
-    ] = False,
+    as_json: AsJson = False,
+    quiet: Quiet = False,
 ) -> int:
     """Compute every case that a number of this program rests on, and compare it with its reference.
 
