@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 from typing import Annotated
 
-from fem.commands.shared import EXIT_CODES, Folder, Force, Jobs, Quiet, flag, require_cores
+from fem.commands.shared import EXIT_CODES, Folder, Force, Jobs, Quiet, flag
 from fem.progress import ScreenReporter
 from fem.run_folder import to_json
 
@@ -28,7 +28,6 @@ def ensemble(
     ensemble:
         An ensemble file or the name of a shipped one: fragility, boundary.
     """
-    require_cores(jobs)
     asked = importlib.import_module("fem.ensemble.file").load_ensemble(ensemble)
     folder = out if out is not None else Path("outputs") / asked.name
     # The solver is loaded only now: bad input is answered before anything is compiled.

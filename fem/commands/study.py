@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from fem.case import CaseError
-from fem.commands.shared import EXIT_CODES, Jobs, Quiet, flag, require_cores
+from fem.commands.shared import EXIT_CODES, Jobs, Quiet, flag
 from fem.progress import ScreenReporter
 from fem.run_folder import naming_what_cannot_be_written, to_json
 
@@ -40,7 +40,6 @@ def study(
     """
     if name not in STUDIES:
         raise CaseError(f"no study {name!r}{_near(name, STUDIES)} (known: {', '.join(STUDIES)})")
-    require_cores(jobs)
     catalogue = importlib.import_module("fem.study.catalogue")
     every = catalogue.all_statements()
     known = [statement.name for _, statement in every]

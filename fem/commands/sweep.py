@@ -10,7 +10,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from fem.case import CaseError
-from fem.commands.shared import EXIT_CODES, Folder, Jobs, Quiet, flag, require_cores
+from fem.commands.shared import EXIT_CODES, Folder, Jobs, Quiet, flag
 from fem.progress import ScreenReporter
 from fem.run_folder import to_json
 from fem.sweep.file import load_sweep
@@ -38,7 +38,6 @@ def sweep(
     sweep:
         A sweep file or the name of a shipped sweep (see `python -m fem list`).
     """
-    require_cores(jobs)
     asked = load_sweep(sweep)
     folder = out if out is not None else Path("outputs") / asked.name
     # The solver is loaded only now: bad input is answered before anything is compiled.
