@@ -186,6 +186,11 @@ class Fields:
     times: FloatArray  #: shape (n_frames,) [s]
     files: tuple[Path, ...]  #: of the frames, in order
 
+    def __repr__(self) -> str:
+        """One line: what a notebook shows."""
+        span = f" from {self.times[0]:g} to {self.times[-1]:g} s" if len(self) else ""
+        return f"<fields: {len(self)} frames{span}>"
+
     def __len__(self) -> int:
         return len(self.files)
 

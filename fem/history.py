@@ -102,6 +102,10 @@ class History:
     def __len__(self) -> int:
         return len(self.modes)
 
+    def __repr__(self) -> str:
+        """One line: what a notebook shows."""
+        return f"<history: {len(self)} samples of {', '.join(self.numbers)}>"
+
     def __getitem__(self, column: str) -> FloatArray:
         """A column of numbers by its name, shape (n_samples,); KeyError names the columns there are."""
         try:

@@ -24,6 +24,15 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 
+#: what else may lie in a folder of results, by the file that marks it
+OTHERS = {
+    "sweep.json": "a sweep (its results: table.csv)",
+    "ensemble.json": "an ensemble (its results: points.csv, draws.csv)",
+    "response.json": "response curves (their results: response.csv)",
+    "study.json": "a study (its results: study.json)",
+    "verify.json": "the verification (its results: verify.json)",
+}
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class OpenedRun:
@@ -34,6 +43,12 @@ class OpenedRun:
 
     place: RunFolder
     result: dict[str, Any]  #: as in `run.json`
+
+    def __repr__(self) -> str:
+        """One line: what a notebook shows."""
+        outcome = (self.result.get("verdict") or {}).get("outcome")
+        told = f", {outcome}" if outcome else ""
+        return f"<run {self.name!r} in {str(self.folder)!r}: {self.status}{told}>"
 
     @property
     def folder(self) -> Path:
@@ -126,15 +141,18 @@ def open_run(folder: str | Path) -> OpenedRun:
     """Open the folder of a run.
 
     Args:
-        folder: that holds `run.json`; the path of `run.json` itself will do.
+        folder: that holds `run.json`; the path of `run.json` itself will do, and `~` is one's home.
 
     Raises:
         FolderError: no run is there, or its `run.json` is damaged.
     """
-    path = Path(folder)
+    path = Path(folder).expanduser()
     path = path.parent if path.name == "run.json" else path
     if not path.is_dir():
         raise FolderError(f"{path}: no such folder; give the folder of a run, such as outputs/NAME")
+    for mark, kind in OTHERS.items():
+        if (path / mark).is_file() and not (path / "run.json").is_file():
+            raise FolderError(f"{path}: the folder of {kind}; give that of a run, such as outputs/NAME")
     place = RunFolder(path=path)
     return OpenedRun(place=place, result=read_result(place.result))
 

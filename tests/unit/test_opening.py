@@ -130,6 +130,20 @@ def test_what_is_no_run_is_refused(tmp_path):
         fem.open_run(tmp_path / "nowhere")
     with pytest.raises(FolderError, match="is this the folder of a run"):
         fem.open_run(tmp_path)
+    (tmp_path / "sweep.json").write_text("{}")
+    with pytest.raises(
+        FolderError, match=r"the folder of a sweep \(its results: table.csv\); give that of a run"
+    ):
+        fem.open_run(tmp_path)
+
+
+def test_what_a_notebook_shows_of_it_is_one_line(folder, monkeypatch):
+    run = fem.open_run(folder)
+    assert repr(run) == f"<run 'free_rocking' in {str(folder)!r}: completed, rock>"
+    assert repr(run.fields) == "<fields: 5 frames from 0 to 1 s>"
+    assert repr(run.history).startswith("<history: 201 samples of time_s, base_displacement_m")
+    monkeypatch.setenv("HOME", str(folder.parent))
+    assert fem.open_run(f"~/{folder.name}").result == run.result
 
 
 def test_an_unfinished_run_opens_with_what_it_has(damaged, folder):
