@@ -13,11 +13,7 @@ from typing import Any, Self
 
 from pydantic import Field, PrivateAttr
 
-from fem.case_files import (
-    Origin,
-    find_case,
-    parse_case,
-)
+from fem.case_files import CASES, DEFAULT_CASE, Origin, parse_case
 from fem.case_overrides import parse_override, with_overrides
 from fem.case_reading import CaseError, problem_lines, read_case_tables
 from fem.case_rules import RULES_OF_A_CASE
@@ -194,7 +190,8 @@ def load_case(name_or_path: str | Path | None = None, overrides: Sequence[str] =
     Raises:
         CaseError: with one line for each reason why the case cannot be used.
     """
-    origin = replace(find_case(name_or_path), overrides=tuple(overrides))
+    found = CASES.shipped(DEFAULT_CASE) if name_or_path is None else CASES.find(name_or_path)
+    origin = replace(found, overrides=tuple(overrides))
     values = dict(parse_override(text) for text in overrides)
     return _read(with_overrides(parse_case(origin), values), origin, values)
 

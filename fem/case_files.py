@@ -1,6 +1,6 @@
-"""Find a case and read its text: a file of the user, or one of those that come with the program.
+"""Find a case, a sweep, an ensemble and read its text: a file of the user, or one that comes with the program.
 
-A case file is data from anywhere: its size is checked before it is read, and what is no text or no TOML is
+Such a file is data from anywhere: its size is checked before it is read, and what is no text or no TOML is
 refused with the line.
 """
 
@@ -28,44 +28,68 @@ class Origin:
     overrides: tuple[str, ...] = field(default=(), compare=False)  #: as given, `table.key=value`
 
 
-def shipped_cases() -> tuple[str, ...]:
-    """Names of the cases that come with the program, in alphabetical order."""
-    folder = resources.files("fem.cases")
-    return tuple(sorted(entry.name[:-5] for entry in folder.iterdir() if entry.name.endswith(".toml")))
+@dataclass(frozen=True)
+class Collection:
+    """Files of one kind that come with the program, each commented."""
+
+    kind: str  #: as messages call it
+    package: str  #: where they lie
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """In alphabetical order."""
+        entries = resources.files(self.package).iterdir()
+        return tuple(sorted(entry.name[:-5] for entry in entries if entry.name.endswith(".toml")))
+
+    def text(self, name: str) -> str:
+        """The file of this name.
+
+        Raises:
+            CaseError: if there is none; with the nearest one.
+        """
+        if name not in self.names:
+            raise CaseError(f"no shipped {self.kind} {name!r}{self.hint(name)}")
+        return (resources.files(self.package) / f"{name}.toml").read_text(encoding="utf-8")
+
+    def description(self, name: str) -> str:
+        """What it shows: the first line of its file."""
+        return self.text(name).partition("\n")[0].lstrip("# ").strip()
+
+    def find(self, name_or_path: str | Path) -> Origin:
+        """The text of a file, or of a shipped one of that name; a file wins.
+
+        The mesh and motion files of a shipped case are looked for in the current folder.
+
+        Raises:
+            CaseError: if there is neither, or if the file cannot be read.
+        """
+        name = str(name_or_path)
+        if is_there(Path.is_file, name):
+            path = Path(name)
+            return Origin(name=path.stem, place=str(path), folder=path.parent, text=_read_text(path))
+        if name in self.names:
+            return self.shipped(name)
+        if name and is_there(Path.is_dir, name):
+            example = f", for instance {Path(name) / 'resolved.toml'}" if self is CASES else ""
+            raise CaseError(f"{name!r} is a folder; give the {self.kind} file{example}")
+        name = name if len(name) <= 200 else f"{name[:200]} ..."
+        raise CaseError(
+            f"no {self.kind} file {name!r} and no shipped {self.kind} of that name{self.hint(Path(name).stem)}"
+        )
+
+    def shipped(self, name: str) -> Origin:
+        """One that comes with the program, whatever files there are."""
+        return Origin(name=name, place=name, text=self.text(name))
+
+    def hint(self, name: str) -> str:
+        """The one that may have been meant, and all there are."""
+        near = did_you_mean(name, self.names)
+        return f"{'; ' + near if near else ''} (shipped: {', '.join(self.names)})"
 
 
-def shipped_text(name: str) -> str:
-    """The commented file of a shipped case.
-
-    Raises:
-        CaseError: if there is none of this name; with the nearest one.
-    """
-    if name not in shipped_cases():
-        raise CaseError(f"no shipped case {name!r}{_shipped_names(name)}")
-    return (resources.files("fem.cases") / f"{name}.toml").read_text(encoding="utf-8")
-
-
-def shipped_description(name: str) -> str:
-    """What a shipped case shows: the first line of its file."""
-    return shipped_text(name).partition("\n")[0].lstrip("# ").strip()
-
-
-def find_case(name_or_path: str | Path | None) -> Origin:
-    """The text of a case file or of a shipped case, with its name and folder.
-
-    A file wins over a shipped case of the same name; None is the shipped default. The mesh and motion
-    files of a shipped case are looked for in the current folder.
-
-    Raises:
-        CaseError: if there is neither, or if the file cannot be read.
-    """
-    name = DEFAULT_CASE if name_or_path is None else str(name_or_path)
-    if name_or_path is not None and _is(Path.is_file, name):
-        path = Path(name)
-        return Origin(name=path.stem, place=str(path), folder=path.parent, text=_read_text(path))
-    if name in shipped_cases():
-        return Origin(name=name, place=name, text=shipped_text(name))
-    raise CaseError(_no_such_case(name))
+CASES = Collection("case", "fem.cases")
+SWEEPS = Collection("sweep", "fem.sweeps")
+ENSEMBLES = Collection("ensemble", "fem.ensembles")
 
 
 def parse_case(origin: Origin) -> dict[str, Any]:
@@ -99,21 +123,9 @@ def _read_text(path: Path) -> str:
         raise CaseError(f"{path}: not text in UTF-8 (line {line}); save the file as UTF-8") from error
 
 
-def _is(kind: Callable[[Path], bool], name: str) -> bool:
-    """Whether there is such a file or folder; not for names that none can have."""
+def is_there(kind: Callable[[Path], bool], path: str | Path) -> bool:
+    """Whether there is such a file or folder; false for names that none can have."""
     try:
-        return kind(Path(name))
+        return kind(Path(path))
     except (ValueError, OSError):  # a null character, a name too long, a folder that may not be entered
         return False
-
-
-def _no_such_case(name: str) -> str:
-    if name and _is(Path.is_dir, name):
-        return f"{name!r} is a folder; give the case file, for instance {Path(name) / 'resolved.toml'}"
-    name = name if len(name) <= 200 else f"{name[:200]} ..."
-    return f"no case file {name!r} and no shipped case of that name{_shipped_names(Path(name).stem)}"
-
-
-def _shipped_names(name: str) -> str:
-    near = did_you_mean(name, shipped_cases())
-    return f"{'; ' + near if near else ''} (shipped: {', '.join(shipped_cases())})"

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from fem.__main__ import COMMANDS
-from fem.case_files import DEFAULT_CASE, shipped_cases
+from fem.case_files import CASES, DEFAULT_CASE
 from fem.rendering import MEND_PICTURES, probe_rendering
 
 ROOT = Path(__file__).parents[1]
@@ -98,7 +98,7 @@ def test_the_tour_works_as_written(tmp_path):
         assert result.returncode == 0, f"{line}\n{result.stdout}\n{result.stderr}"
         assert result.stdout.strip(), line
         if arguments[0] == "list":
-            assert all(name in result.stdout for name in shipped_cases())
+            assert all(name in result.stdout for name in CASES.names)
         if arguments[0] == "schema":
             assert json.loads(result.stdout)["properties"]["container"]
     results = tmp_path / "outputs" / "my-stack"

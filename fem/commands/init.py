@@ -6,10 +6,8 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from fem.case import CaseError, load_case
-from fem.case_files import shipped_text
+from fem.case_files import CASES, ENSEMBLES, SWEEPS
 from fem.case_template import case_template
-from fem.ensemble.shipped import SHIPPED_ENSEMBLES, shipped_ensemble_text
-from fem.sweep.shipped import SHIPPED_SWEEPS, shipped_sweep_text
 
 
 def init(
@@ -28,12 +26,12 @@ def init(
     computed_by = ""
     if name is None:
         text = case_template(load_case())
-    elif name in SHIPPED_SWEEPS:
-        text, computed_by = shipped_sweep_text(name), "sweep"
-    elif name in SHIPPED_ENSEMBLES:
-        text, computed_by = shipped_ensemble_text(name), "ensemble"
+    elif name in SWEEPS.names:
+        text, computed_by = SWEEPS.text(name), "sweep"
+    elif name in ENSEMBLES.names:
+        text, computed_by = ENSEMBLES.text(name), "ensemble"
     else:
-        text = shipped_text(name)
+        text = CASES.text(name)
     path = to if to is not None else Path(f"{name or 'case'}.toml")
     try:
         with path.open("x", encoding="utf-8") as stream:

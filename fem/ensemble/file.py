@@ -18,16 +18,14 @@ from typing import Annotated, Any
 
 from pydantic import Field, Strict
 
-from fem.case import Case, load_case
-from fem.case_files import DEFAULT_CASE, Origin, find_case, parse_case, shipped_cases
-from fem.case_problem import leaves_the_folder
-from fem.case_reading import CaseError, did_you_mean, problem_lines, read_table
+from fem.case_files import DEFAULT_CASE, ENSEMBLES, Origin, parse_case
+from fem.case_reading import CaseError
 from fem.case_tables import Table
 from fem.ensemble.intervals import least_draws
 from fem.ensemble.plan import FREE, Ensemble
 from fem.ensemble.scatter import RandomQuantity, Sampling, read_random
-from fem.ensemble.shipped import SHIPPED_ENSEMBLES, shipped_ensemble_text
 from fem.sweep.axes import NO_AXIS, Axis, AxisError, field_of, read_axis
+from fem.sweep.base_case import base_case, read_as, split_tables
 from fem.sweep.expressions import Expression, ExpressionError, parse_expression
 from fem.sweep.plan import Derived, in_order
 
@@ -61,37 +59,26 @@ def load_ensemble(name_or_path: str | Path) -> Ensemble:
     Raises:
         CaseError: with one line for each reason why it cannot be used.
     """
-    origin = _find(str(name_or_path))
+    origin = ENSEMBLES.find(name_or_path)
+    data = parse_case(origin)
     try:
-        return _read(parse_case(origin), origin)
+        return _read(data, origin)
     except CaseError as error:
-        lines = [line.removeprefix(f"{origin.place}: ") for line in str(error).splitlines()]
-        raise CaseError("\n".join(f"{origin.place}: {line}" for line in lines)) from None
-
-
-def _find(name: str) -> Origin:
-    if name in SHIPPED_ENSEMBLES and not Path(name).is_file():
-        return Origin(name=name, place=name, text=shipped_ensemble_text(name))
-    if not Path(name).is_file():
-        near = did_you_mean(Path(name).stem, SHIPPED_ENSEMBLES)
-        raise CaseError(
-            f"no ensemble file {name!r} and no shipped ensemble of that name{'; ' + near if near else ''} "
-            f"(shipped: {', '.join(SHIPPED_ENSEMBLES)})"
-        )
-    return find_case(name)
+        raise CaseError("\n".join(f"{origin.place}: {line}" for line in str(error).splitlines())) from None
 
 
 def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
-    heading = _heading(data)
-    tables = {key: value for key, value in data.items() if isinstance(value, dict)}
-    for name in tables:
-        if name not in TABLES:
-            near = did_you_mean(name, TABLES)
-            raise CaseError(
-                f"[{name}] unknown table{'; ' + near if near else ''} (known: {', '.join(TABLES)}); "
-                'dotted keys stand in quotes, such as "contact.mu_static"'
-            )
-    base = _base(heading.case, tables.get("set", {}), origin)
+    given, tables = split_tables(data, TABLES)
+    numbers = {
+        key: float(value) if key in ("confidence", "probability") and type(value) is int else value
+        for key, value in given.items()
+    }
+    heading = read_as("", EnsembleHeading, numbers)
+    base = base_case(heading.case, tables.get("set", {}), origin)
+    if base.solver.model == "full":
+        raise CaseError(
+            '[set] "solver.model" must be "rigid" or "reduced": an ensemble of the full model would take weeks'
+        )
     axes = _axes(tables.get("axes", {}))
     random = _random(tables.get("random", {}), axes)
     ensemble = Ensemble(
@@ -112,42 +99,6 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
     _check_draws(ensemble)
     _try_cases(ensemble)
     return ensemble
-
-
-def _heading(data: Mapping[str, Any]) -> EnsembleHeading:
-    given = {key: value for key, value in data.items() if not isinstance(value, dict)}
-    wrong = [key for key in given if key in TABLES]
-    if wrong:
-        raise CaseError(f"{wrong[0]} must be a table; write [{wrong[0]}] above its keys")
-    numbers = {
-        key: float(value) if key in ("confidence", "probability") and type(value) is int else value
-        for key, value in given.items()
-    }
-    values, _, problems = read_table("", EnsembleHeading, numbers)
-    if problems:
-        raise CaseError("\n".join(problem_lines(problems)))
-    return EnsembleHeading.model_validate(values)
-
-
-def _base(name: str, values: Mapping[str, Any], origin: Origin) -> Case:
-    """The base case; a file is looked for beside the ensemble file, and wins over a shipped case."""
-    problem = leaves_the_folder("case", name)
-    if problem is not None:
-        raise CaseError(f"{problem.key} {problem.reason}")
-    path = origin.folder / name
-    if not path.is_file() and name not in shipped_cases():
-        near = did_you_mean(name, shipped_cases())
-        raise CaseError(
-            f"case {name!r} is no file in {origin.folder.resolve()} and no shipped case"
-            f"{'; ' + near if near else ''} (shipped: {', '.join(shipped_cases())})"
-        )
-    base = load_case(path if path.is_file() else name)
-    base = base.with_values(dict(values)) if values else base
-    if base.solver.model == "full":
-        raise CaseError(
-            '[set] "solver.model" must be "rigid" or "reduced": an ensemble of the full model would take weeks'
-        )
-    return base
 
 
 def _axes(content: Mapping[str, Any]) -> tuple[Axis, ...]:

@@ -18,16 +18,15 @@ from typing import Any
 
 from pydantic import Field
 
-from fem.case import Case, load_case
-from fem.case_files import DEFAULT_CASE, Origin, find_case, parse_case, shipped_cases
-from fem.case_problem import leaves_the_folder
-from fem.case_reading import CaseError, did_you_mean, problem_lines, read_table
+from fem.case import Case
+from fem.case_files import DEFAULT_CASE, SWEEPS, Origin, parse_case
+from fem.case_reading import CaseError, did_you_mean
 from fem.case_tables import Table
 from fem.sweep.axes import NO_AXIS, Axis, AxisError, field_of, read_axis
+from fem.sweep.base_case import base_case, flat, read_as, split_tables
 from fem.sweep.expressions import Expression, ExpressionError, parse_expression
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.plan import Derived, MapChoice, Sweep, in_order, value_in
-from fem.sweep.shipped import SHIPPED_SWEEPS, shipped_sweep_text
 from fem.sweep.threshold import Threshold
 
 MOST_AXES = 4
@@ -42,7 +41,7 @@ class SweepHeading(Table):
     title: str = Field(default="", max_length=500, description="for people")
 
 
-SUBTABLES = ("set", "axes", "derived", "perturbation", "threshold", "maps")
+TABLES = ("set", "axes", "derived", "perturbation", "threshold", "maps")
 
 
 def load_sweep(name_or_path: str | Path) -> Sweep:
@@ -51,7 +50,7 @@ def load_sweep(name_or_path: str | Path) -> Sweep:
     Raises:
         CaseError: with one line for each reason why it cannot be used.
     """
-    origin = _find(str(name_or_path))
+    origin = SWEEPS.find(name_or_path)
     data = parse_case(origin)
     try:
         return _read(data, origin)
@@ -59,29 +58,10 @@ def load_sweep(name_or_path: str | Path) -> Sweep:
         raise CaseError("\n".join(f"{origin.place}: {line}" for line in str(error).splitlines())) from None
 
 
-def _find(name: str) -> Origin:
-    if name in SHIPPED_SWEEPS and not Path(name).is_file():
-        return Origin(name=name, place=name, text=shipped_sweep_text(name))
-    if not Path(name).is_file():
-        near = did_you_mean(Path(name).stem, SHIPPED_SWEEPS)
-        raise CaseError(
-            f"no sweep file {name!r} and no shipped sweep of that name{'; ' + near if near else ''} "
-            f"(shipped: {', '.join(SHIPPED_SWEEPS)})"
-        )
-    return find_case(name)
-
-
 def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
-    heading = _heading({key: value for key, value in data.items() if not isinstance(value, dict)})
-    tables = {key: value for key, value in data.items() if isinstance(value, dict)}
-    for name in tables:
-        if name not in SUBTABLES:
-            near = did_you_mean(name, SUBTABLES)
-            raise CaseError(
-                f"[{name}] unknown table{'; ' + near if near else ''} (known: {', '.join(SUBTABLES)}); "
-                'dotted keys stand in quotes, such as "contact.mu_static"'
-            )
-    base = _base(heading.case, _flat("set", tables.get("set", {})), origin)
+    given, tables = split_tables(data, TABLES)
+    heading = read_as("", SweepHeading, given)
+    base = base_case(heading.case, tables.get("set", {}), origin)
     axes = _axes(tables.get("axes", {}))
     derived = _derived(tables.get("derived", {}), base, axes)
     sweep = Sweep(
@@ -91,7 +71,7 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
         base=base,
         axes=axes,
         derived=derived,
-        perturbation=_table("perturbation", Perturbation, tables.get("perturbation", {})),
+        perturbation=read_as("perturbation", Perturbation, tables.get("perturbation", {})),
         threshold=_threshold(tables, axes),
         maps=_maps(tables.get("maps", {}), axes),
     )
@@ -99,55 +79,8 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
     return sweep
 
 
-def _heading(given: Mapping[str, Any]) -> SweepHeading:
-    wrong = [key for key in given if key in SUBTABLES]
-    if wrong:
-        raise CaseError(f"{wrong[0]} must be a table; write [{wrong[0]}] above its keys")
-    return _table("", SweepHeading, given)
-
-
-def _table(name: str, model: type[Any], content: Mapping[str, Any]) -> Any:
-    given, _, problems = read_table(name, model, content)
-    if problems:
-        raise CaseError("\n".join(problem_lines(problems)))
-    return model.model_validate(given)
-
-
-def _flat(name: str, content: Mapping[str, Any]) -> dict[str, Any]:
-    """Dotted keys, whether they were written in quotes or, as TOML would have it, as tables in tables."""
-    flat: dict[str, Any] = {}
-    for key, value in content.items():
-        if isinstance(value, dict) and not {"from", "to", "count", "scale"} & value.keys():
-            inner = {f"{key}.{name}": one for name, one in value.items()}
-        else:
-            inner = {key: value}
-        for dotted, one in inner.items():
-            if dotted in flat:
-                raise CaseError(f"[{name}] {dotted} is given twice")
-            flat[dotted] = one
-    return flat
-
-
-def _base(name: str, values: Mapping[str, Any], origin: Origin) -> Case:
-    """The base case; a file is looked for beside the sweep file, and wins over a shipped case."""
-    problem = leaves_the_folder("case", name)
-    path = origin.folder / name
-    if problem is not None:
-        raise CaseError(f"{problem.key} {problem.reason}")
-    if path.is_file() and not path.resolve().is_relative_to(origin.folder.resolve()):
-        raise CaseError(f"case {name!r} leads out of the folder of the sweep file, to {path.resolve()}")
-    if not path.is_file() and name not in shipped_cases():
-        near = did_you_mean(name, shipped_cases())
-        raise CaseError(
-            f"case {name!r} is no file in {origin.folder.resolve()} and no shipped case"
-            f"{'; ' + near if near else ''} (shipped: {', '.join(shipped_cases())})"
-        )
-    base = load_case(path if path.is_file() else name)
-    return base.with_values(values) if values else base
-
-
 def _axes(content: Mapping[str, Any]) -> tuple[Axis, ...]:
-    given = _flat("axes", content)
+    given = flat("axes", content)
     if not 1 <= len(given) <= MOST_AXES:
         example = '"contact.mu_static" = [0.2, 0.3, 0.4]'
         raise CaseError(f"[axes] must hold one to {MOST_AXES} keys, got {len(given)}; for instance {example}")
@@ -163,7 +96,7 @@ def _axes(content: Mapping[str, Any]) -> tuple[Axis, ...]:
 
 
 def _derived(content: Mapping[str, Any], base: Case, axes: tuple[Axis, ...]) -> tuple[Derived, ...]:
-    given = _flat("derived", content)
+    given = flat("derived", content)
     axis_keys = {axis.key: axis for axis in axes}
     expressions: dict[str, Expression] = {}
     for key, text in given.items():
@@ -210,7 +143,7 @@ def _must_have_a_value(
 def _threshold(tables: Mapping[str, Any], axes: tuple[Axis, ...]) -> Threshold | None:
     if "threshold" not in tables:
         return None
-    threshold: Threshold = _table("threshold", Threshold, tables["threshold"])
+    threshold = read_as("threshold", Threshold, tables["threshold"])
     known = {axis.key: axis for axis in axes}
     if threshold.axis not in known:
         near = did_you_mean(threshold.axis, known)
@@ -229,8 +162,8 @@ def _threshold(tables: Mapping[str, Any], axes: tuple[Axis, ...]) -> Threshold |
 
 def _maps(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> MapChoice:
     fixed = content.get("fixed", {})
-    given = dict(content) | ({"fixed": _flat("maps.fixed", fixed)} if isinstance(fixed, dict) else {})
-    choice: MapChoice = _table("maps", MapChoice, given)
+    given = dict(content) | ({"fixed": flat("maps.fixed", fixed)} if isinstance(fixed, dict) else {})
+    choice = read_as("maps", MapChoice, given)
     known = {axis.key: axis.values for axis in axes}
     for key in (choice.x, choice.y, *choice.fixed):
         if key is not None and key not in known:

@@ -13,7 +13,7 @@ import numpy as np
 from measuring import Figure, report, stepped
 
 from fem.case import load_case
-from fem.case_files import DEFAULT_CASE, shipped_cases
+from fem.case_files import CASES, DEFAULT_CASE
 from fem.run import RunOptions, run_case
 from fem.verdict import outcome_of
 
@@ -93,7 +93,7 @@ def default_run() -> list[Figure]:
 
 
 def main() -> int:
-    figures = [figure for name in shipped_cases() for figure in case_figures(name)]
+    figures = [figure for name in CASES.names for figure in case_figures(name)]
     figures.append(order_figure())
     if "--quick" not in sys.argv[1:]:
         figures += default_run()

@@ -17,7 +17,7 @@ import numpy as np
 from hypothesis import strategies as st
 from pydantic.fields import FieldInfo
 
-from fem.case_files import shipped_cases, shipped_text
+from fem.case_files import CASES
 from fem.case_overrides import with_overrides
 from fem.case_quantities import Quantity
 from fem.case_reading import known_keys, quantity_of
@@ -76,7 +76,7 @@ def runs(draw: Draw) -> Input:
 @st.composite
 def cases_by_schema(draw: Draw) -> Tables:
     """A shipped case, up to nine keys of which hold other values that their fields allow; cheap to run."""
-    tables = tomllib.loads(shipped_text(draw(st.sampled_from(shipped_cases()))))
+    tables = tomllib.loads(CASES.text(draw(st.sampled_from(CASES.names))))
     quick = {
         "solver.model": draw(st.sampled_from(("rigid",) * 5 + ("reduced",) * 2 + ("full",))),
         "solver.duration_s": draw(st.floats(0.01, 0.3)),
@@ -244,7 +244,7 @@ def toml_trees() -> st.SearchStrategy[str]:
 @st.composite
 def texts(draw: Draw) -> Input:
     """A shipped case with bytes changed, TOML of no meaning, any bytes, or any `--set`; checked."""
-    shipped = shipped_text(draw(st.sampled_from(shipped_cases()))).encode()
+    shipped = CASES.text(draw(st.sampled_from(CASES.names))).encode()
     what = draw(st.integers(0, 9))
     if what == 0:
         words = (

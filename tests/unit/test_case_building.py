@@ -7,14 +7,14 @@ from contact.motion import HarmonicMotion, NoMotion, PulseMotion, TableMotion
 from fem.case import CaseError, load_case, read_case
 from fem.case_contact import build_support, normal_penalty
 from fem.case_container import base_positions, build_container, node_count
-from fem.case_files import shipped_cases, shipped_text
+from fem.case_files import CASES
 from fem.case_motion import build_motion
 from fem.commands.check import peak_floor_acceleration
 from mesh.errors import MeshError
 from mesh.files import write_container_mesh
 
 
-@pytest.mark.parametrize("name", shipped_cases())
+@pytest.mark.parametrize("name", CASES.names)
 def test_the_mesh_of_a_case_has_its_mass_and_mass_centre(name):
     case = load_case(name)
     mesh = build_container(case)
@@ -34,7 +34,7 @@ def test_a_mesh_file_beside_the_case_takes_the_place_of_the_structured_mesh(tmp_
     case = load_case("seed_box", ["solver.element_size_m=0.2"])
     mesh = build_container(case)
     write_container_mesh(tmp_path / "box.vtu", mesh)
-    text = shipped_text("seed_box").replace("boxes = 1 ", 'mesh_file = "box.vtu"\nboxes = 1 ')
+    text = CASES.text("seed_box").replace("boxes = 1 ", 'mesh_file = "box.vtu"\nboxes = 1 ')
     read = build_container(read_case(text, folder=tmp_path))
     assert len(read.quads) == len(mesh.quads)
     assert read.mass == pytest.approx(mesh.mass, rel=1e-9)
@@ -111,7 +111,7 @@ TABLE = 'kind = "table"\nfile = "floor.csv"\nquantity = "acceleration"\nunit = "
 
 def with_table(folder, content):
     (folder / "floor.csv").write_text(content, encoding="utf-8")
-    text = shipped_text("free_rocking").replace('kind = "none"\n', TABLE)
+    text = CASES.text("free_rocking").replace('kind = "none"\n', TABLE)
     return read_case(text, folder=folder)
 
 

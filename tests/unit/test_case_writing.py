@@ -9,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from fem.case import Case, CaseError, case_hash, load_case, read_case, to_toml
-from fem.case_files import DEFAULT_CASE, shipped_cases, shipped_description, shipped_text
+from fem.case_files import CASES, DEFAULT_CASE
 from fem.case_reading import known_keys, quantity_of
 from fem.case_tables import TABLES
 from fem.case_template import case_template
@@ -27,14 +27,14 @@ SHIPPED = {
 
 
 def test_the_shipped_cases_are_those_of_the_documentation():
-    assert set(shipped_cases()) == SHIPPED
+    assert set(CASES.names) == SHIPPED
     assert load_case().name == DEFAULT_CASE == "seed_stack_plateau"
 
 
 @pytest.mark.parametrize("name", sorted(SHIPPED))
 def test_a_shipped_case_says_in_its_first_line_what_it_shows(name):
-    assert shipped_text(name).startswith("# ")
-    assert 40 < len(shipped_description(name)) < 130
+    assert CASES.text(name).startswith("# ")
+    assert 40 < len(CASES.description(name)) < 130
 
 
 @pytest.mark.parametrize("name", sorted(SHIPPED))
@@ -104,7 +104,7 @@ class TestHash:
         assert case_hash(case.with_values(change)) != case_hash(case)
 
     def test_the_content_of_a_motion_file_changes_it(self, tmp_path):
-        text = shipped_text("seed_box").replace(
+        text = CASES.text("seed_box").replace(
             'kind = "harmonic" ', 'kind = "table"\nfile = "floor.csv"\nquantity = "acceleration"\nunit = "g" '
         )
         record = tmp_path / "floor.csv"

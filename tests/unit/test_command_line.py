@@ -13,7 +13,7 @@ import pytest
 from fem import __main__ as command_line
 from fem import rendering
 from fem.case import load_case, read_case
-from fem.case_files import shipped_cases, shipped_text
+from fem.case_files import CASES
 from fem.commands import doctor as doctor_command
 from fem.commands.run import text_with_overrides
 
@@ -161,7 +161,7 @@ class TestList:
     def test_names_every_shipped_case_and_what_it_shows(self, capsys):
         assert command_line.main(["list"]) == 0
         lines = capsys.readouterr().out.splitlines()
-        for name in shipped_cases():
+        for name in CASES.names:
             (line,) = [line for line in lines if line.split()[:1] == [name]]
             assert len(line.split()) > 5
 
@@ -170,7 +170,7 @@ class TestInit:
     def test_writes_a_shipped_case_as_it_is(self, tmp_path, monkeypatch, capsys):
         monkeypatch.chdir(tmp_path)
         assert command_line.main(["init", "rocking"]) == 0
-        assert (tmp_path / "rocking.toml").read_text(encoding="utf-8") == shipped_text("rocking")
+        assert (tmp_path / "rocking.toml").read_text(encoding="utf-8") == CASES.text("rocking")
         assert "rocking.toml" in capsys.readouterr().out
 
     def test_without_a_name_writes_a_file_with_every_key_that_can_be_run(self, tmp_path):
@@ -256,7 +256,7 @@ class TestRun:
         assert asked["options"] == {"check_rigid": False, "band": False, "resume": True, "force": False}
         assert asked["folder"] == tmp_path / "r"
         assert asked["case"].name == "seed_box"
-        assert asked["case_text"] == shipped_text("seed_box")
+        assert asked["case_text"] == CASES.text("seed_box")
 
     def test_with_json_the_result_is_printed_and_nothing_else(self, tmp_path, monkeypatch, capsys):
         install_solver(monkeypatch, "overturned")
@@ -266,7 +266,7 @@ class TestRun:
     def test_the_case_that_is_kept_tells_what_the_command_line_changed(self):
         case = load_case("seed_box", ["contact.mu_static=0.5", "title=two\nlines"])
         kept = text_with_overrides(case)
-        assert kept.startswith(shipped_text("seed_box").rstrip())
+        assert kept.startswith(CASES.text("seed_box").rstrip())
         assert "#   --set 'contact.mu_static=0.5'" in kept
         assert read_case(kept).resolved() == load_case("seed_box").resolved()
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from fem.__main__ import main
+from fem.case_files import ENSEMBLES
 from fem.case_reading import CaseError
 from fem.ensemble import study
 from fem.ensemble.counting import FAILED, OVERTURNED, STOOD, count_point
@@ -16,7 +17,6 @@ from fem.ensemble.figures import COLOURS
 from fem.ensemble.file import load_ensemble
 from fem.ensemble.plan import Ensemble
 from fem.ensemble.scatter import draw_shares, read_random
-from fem.ensemble.shipped import SHIPPED_ENSEMBLES
 from fem.ensemble.study import code_of, run_ensemble
 from fem.run_folder import FolderError, OutputError
 
@@ -185,7 +185,7 @@ def test_a_point_with_failed_draws_is_judged_with_them_against_it(tmp_path):
     assert count_point(ensemble, 0, np.array([STOOD] * 8)).region == "below"
 
 
-@pytest.mark.parametrize("name", SHIPPED_ENSEMBLES)
+@pytest.mark.parametrize("name", ENSEMBLES.names)
 def test_shipped_ensembles_can_be_read(name):
     ensemble = load_ensemble(name)
     assert isinstance(ensemble, Ensemble)

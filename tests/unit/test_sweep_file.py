@@ -3,8 +3,8 @@
 import pytest
 
 from fem.case import CaseError, case_hash
+from fem.case_files import SWEEPS
 from fem.sweep.file import load_sweep
-from fem.sweep.shipped import SHIPPED_SWEEPS
 
 HEAD = 'case = "seed_stack_plateau"\n[set]\n"solver.model" = "rigid"\n'
 FREQUENCY = '"motion.angular_frequency_rad_s" = { from = 2.0, to = 4.0, count = 3 }\n'
@@ -141,7 +141,7 @@ def test_a_base_case_outside_the_folder_is_refused(sweep_of):
         sweep_of(f"[axes]\n{FREQUENCY}", 'case = "seed_stak"\n')
 
 
-@pytest.mark.parametrize("name", SHIPPED_SWEEPS)
+@pytest.mark.parametrize("name", SWEEPS.names)
 def test_shipped_sweeps_can_be_read(name):
     sweep = load_sweep(name)
     assert sweep.title

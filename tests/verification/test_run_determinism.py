@@ -12,7 +12,7 @@ import pytest
 from fem.__main__ import main
 from fem.case import load_case
 from fem.case_container import build_container
-from fem.case_files import shipped_text
+from fem.case_files import CASES
 from fem.model import Model, build_model
 from fem.recorder import Recorder
 from fem.simulation import simulate
@@ -70,7 +70,7 @@ def test_a_resolved_case_with_its_files_beside_it_gives_the_same_bytes(tmp_path,
     times = np.arange(0.0, 1.0, 0.02)
     rows = "".join(f"{t:.2f},{4.5 * np.sin(7.0 * t):.6f}\n" for t in times)
     Path("data/floor.csv").write_text("time_s,acceleration_m_s2\n" + rows)
-    text = shipped_text("seed_box").replace("boxes = 1 ", 'mesh_file = "data/box.vtu"\nboxes = 1 ')
+    text = CASES.text("seed_box").replace("boxes = 1 ", 'mesh_file = "data/box.vtu"\nboxes = 1 ')
     before, _, rest = text.partition("[motion]")
     motion = '[motion]\nkind = "table"\nfile = "data/floor.csv"\nquantity = "acceleration"\nunit = "m/s2"\n'
     Path("mine.toml").write_text(before + motion + "\n[" + rest.partition("\n[")[2])
