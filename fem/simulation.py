@@ -114,7 +114,7 @@ def simulate(
     reporter, keeper, progress = reporter or SilentReporter(), keeper or NoKeeper(), progress or Progress()
     full = isinstance(model.body, FullBody)
     if not is_compiled("advance", SOURCES if full else ()):
-        reporter.message("compiling the stepping kernels, once after installation: about half a minute")
+        reporter.message("compiling the stepping kernels, once after installation: about a minute")
     advance_body(model.body, model.run, 0.0)
     duration, control, run = model.case.solver.duration_s, model.run.control, model.run
     clock, track = run.clock[0], run.track[0]

@@ -13,7 +13,7 @@ from fem.commands.shared import AsJson, Overrides
 from fem.drawing import house_style, svg_of
 from fem.figures_modes import modes_figure
 from fem.modes import elastic_mode_table, elastic_modes, write_modes
-from fem.run_folder import write_atomically
+from fem.run_folder import naming_what_cannot_be_written, write_atomically
 
 
 def modes(
@@ -42,8 +42,6 @@ def modes(
         order=loaded.solver.order,
     )
     found = elastic_modes(elements, loaded.solver.elastic_modes)
-    path = write_modes(elements, found, out if out is not None else Path("outputs") / loaded.name / "modes")
-    figure = path.with_suffix(".svg")
     with house_style():
         drawn = modes_figure(
             points=elements.nodes,
@@ -52,7 +50,11 @@ def modes(
             boxes=loaded.container.boxes,
             name=loaded.name,
         )
-    write_atomically(figure, svg_of(drawn))
+    folder = out if out is not None else Path("outputs") / loaded.name / "modes"
+    with naming_what_cannot_be_written(folder, "ask again, or elsewhere with --out DIR"):
+        path = write_modes(elements, found, folder)
+        figure = path.with_suffix(".svg")
+        write_atomically(figure, svg_of(drawn))
     rows = elastic_mode_table(found)
     if as_json:
         print(

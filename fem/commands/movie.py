@@ -10,6 +10,7 @@ from cyclopts import Parameter
 from fem.commands.shared import Quiet
 from fem.opening import open_run
 from fem.rendering import require_rendering
+from fem.run_folder import naming_what_cannot_be_written
 
 
 def movie(
@@ -33,7 +34,8 @@ def movie(
     require_rendering()
     # pyvista is loaded only where it can work.
     film = importlib.import_module("fem.movie")
-    print(film.write_movie(opened, path=to, progress=_ignore if quiet else _tell))
+    with naming_what_cannot_be_written(run, "ask again, or elsewhere with --to FILE"):
+        print(film.write_movie(opened, path=to, progress=_ignore if quiet else _tell))
 
 
 def _tell(done: int, count: int) -> None:

@@ -8,6 +8,7 @@ from cyclopts import Parameter
 
 from fem.opening import open_run
 from fem.rendering import require_rendering
+from fem.run_folder import naming_what_cannot_be_written
 
 
 def picture(
@@ -32,4 +33,6 @@ def picture(
     _ = opened.fields  # without fields there is nothing to probe for
     require_rendering()
     # pyvista is loaded only where it can work.
-    print(importlib.import_module("fem.pictures").write_picture(opened, time=time, path=to))
+    pictures = importlib.import_module("fem.pictures")
+    with naming_what_cannot_be_written(run, "ask again, or elsewhere with --to FILE"):
+        print(pictures.write_picture(opened, time=time, path=to))

@@ -9,6 +9,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from fem.commands.shared import AsJson, Quiet, flag
+from fem.run_folder import naming_what_cannot_be_written, write_atomically
 
 FAILED = 3
 FOLDER = Path("outputs") / "verify"
@@ -40,11 +41,13 @@ def verify(
         if not quiet:
             print(f"[{done}/{total}] {name}: {check}", file=sys.stderr, flush=True)
 
+    with naming_what_cannot_be_written(out, "ask again, or elsewhere with --out DIR"):
+        out.mkdir(parents=True, exist_ok=True)
     found = ladder.climb(quick=quick, rooms=room, before=lambda name, check: tell(name, check.name))
-    out.mkdir(parents=True, exist_ok=True)
     document = json.dumps(found.to_dict(), indent=2)
-    (out / "verify.json").write_text(document + "\n", encoding="utf-8")
-    (out / "verify.html").write_text(pages.page(found), encoding="utf-8")
+    with naming_what_cannot_be_written(out, "ask again, or elsewhere with --out DIR"):
+        write_atomically(out / "verify.json", document + "\n")
+        write_atomically(out / "verify.html", pages.page(found))
     if as_json:
         print(document)
     else:

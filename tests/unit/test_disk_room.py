@@ -176,3 +176,11 @@ def test_a_report_that_cannot_be_written_ends_with_3_and_names_another_place(
     message = capsys.readouterr().err
     assert "report.html: cannot be written (Read-only file system)" in message and "--to FILE" in message
     assert main(["report", str(small / "r"), "--to", str(tmp_path / "page.html")]) == 0
+
+
+def test_modes_and_verification_end_with_3_where_their_folder_is_read_only(small, capsys):
+    remount_read_only(small)
+    for command in (["modes", "seed_box", "--count", "1"], ["verify", "--room", "statics", "-q"]):
+        assert main([*command, "--out", str(small / "m")]) == 3
+        message = capsys.readouterr().err
+        assert "cannot be written (Read-only file system)" in message and "--out DIR" in message
