@@ -1,22 +1,26 @@
-"""What a run writes, told before it is computed; a disk that cannot hold it is no place to begin.
+"""What is written, told before it is computed; a disk that cannot hold it is no place to begin.
 
-Measured on shells and blocks of 600 to 9000 nodes: a frame takes 20 (at rest) to 38 bytes a node, zlib being what it
-is for fields in motion; a number of the history 18 to 19.4 bytes of text. Beside these lie a checkpoint and the one
-that takes its place, figures, and a page of results.
+Of a run, measured on shells and blocks of 600 to 9000 nodes: a frame takes 20 (at rest) to 38 bytes a node, zlib being
+what it is for fields in motion; a number of the history 18 to 19.4 bytes of text. Beside these lie a checkpoint and the
+one that takes its place, figures, and a page of results. Sweeps, ensembles and response curves say themselves what a
+row of theirs takes.
 """
 
 import math
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 
 from fem.case import Case
 from fem.history import history_columns
-from fem.run_folder import FolderError, RunFolder
+from fem.run_folder import FolderError
 
 BYTES_OF_A_NODE, BYTES_OF_A_FRAME = 40.0, 2e3
 BYTES_OF_A_NUMBER = 20.0
 BYTES_OF_A_CHECKPOINT_NODE = 500.0
 BYTES_BESIDE = 2e6
+#: of what an earlier run left, patterns of the files that make room for the next
+REPLACED = ("history.csv", "fields/frame_*.vtu")
 
 
 def samples_of(case: Case) -> int:
@@ -44,24 +48,44 @@ def require_disk(case: Case, nodes: int, folder: Path) -> None:
     Raises:
         FolderError: with what it would take and what there is.
     """
-    wanted, free = required_disk(case, nodes), free_disk(folder)
-    if free is None or wanted <= free:
-        return
-    raise FolderError(
-        f"{folder}: the run would write about {in_units(wanted)} ({frames_of(case)} frames of "
-        f"{in_units(BYTES_OF_A_NODE * nodes + BYTES_OF_A_FRAME)}, {samples_of(case)} rows of history), and there is "
-        f"room for {in_units(free)}; set a larger output.fields_s (0: no frames) or output.history_s, or another "
-        "folder with --out DIR"
+    require_room(
+        folder,
+        required_disk(case, nodes),
+        f"the run ({frames_of(case)} frames of {in_units(BYTES_OF_A_NODE * nodes + BYTES_OF_A_FRAME)}, "
+        f"{samples_of(case)} rows of history)",
+        "set a larger output.fields_s (0: no frames) or output.history_s",
     )
 
 
-def free_disk(folder: Path) -> float | None:
-    """Room for a run in a folder that may not exist yet, what an earlier run left there counted in [bytes]."""
+def require_room(
+    folder: Path, wanted: float, what: str, way_out: str, replaced: Sequence[str] = REPLACED
+) -> None:
+    """Refuse to begin what the file system of a folder cannot hold.
+
+    Args:
+        folder: of the results; may not exist yet.
+        wanted: they come to [bytes].
+        what: is to be computed, and what of it takes the room; way_out: other than another folder.
+        replaced: patterns of the files in the folder that make room.
+
+    Raises:
+        FolderError: with what it would take and what there is.
+    """
+    free = free_disk(folder, replaced)
+    if free is None or wanted <= free:
+        return
+    raise FolderError(
+        f"{folder}: {what} would write about {in_units(wanted)}, and there is room for {in_units(free)}; {way_out}, or "
+        "choose another folder with --out DIR"
+    )
+
+
+def free_disk(folder: Path, replaced: Sequence[str] = REPLACED) -> float | None:
+    """Room in a folder that may not exist yet, files that are replaced counted in [bytes]."""
     try:
         place = next(part for part in (folder, *folder.absolute().parents) if part.is_dir())
         free = float(shutil.disk_usage(place).free)
-        old = RunFolder(path=folder)
-        files = [old.history, *old.fields.glob("frame_*.vtu")]
+        files = [file for pattern in replaced for file in folder.glob(pattern)]
         return free + sum(file.stat().st_size for file in files if file.is_file())
     except (OSError, StopIteration):
         return None

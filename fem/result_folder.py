@@ -15,8 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from fem.folder_lock import held_folder
 from fem.program import program_identity, versions
+from fem.required_disk import require_room
+from fem.run import held
 from fem.run_folder import FolderError, naming_what_cannot_be_written, to_json, write_atomically
 
 COMPLETED = "completed"
@@ -85,6 +86,7 @@ def opened_result_folder(
     kind: str,
     asked: str,
     own: Sequence[str],
+    wanted: float,
     force: bool = False,
     resume: bool = False,
 ) -> Iterator[ResultFolder]:
@@ -99,20 +101,16 @@ def opened_result_folder(
         kind: what it holds, for messages.
         asked: hash of the request.
         own: patterns of the files that such a study makes; nothing else is ever removed.
+        wanted: room that they will take [bytes].
 
     Raises:
-        FolderError: it holds something else (without `force`), is no folder, or cannot be written.
+        FolderError: it holds something else (without `force`), is no folder, cannot be written, or has not that room.
         FolderLockedError: another process writes into it.
+        FolderUnwritableError: a read-only place, or a full one.
         OutputError: in the place of an OSError on the way.
     """
     _look_into(path, mark=mark, kind=kind, asked=asked, force=force)
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FolderError(
-            f"{path}: cannot be made ({error.strerror}); choose another folder with --out DIR"
-        ) from None
-    with held_folder(path):
+    with held(path):
         found = _look_into(path, mark=mark, kind=kind, asked=asked, force=force)
         same = found.get("asked") == asked and not force
         by_another = any(found.get(key) != value for key, value in program_of_results().items())
@@ -124,6 +122,7 @@ def opened_result_folder(
         if same and found.get("status") == COMPLETED:
             yield ResultFolder(path=path, mark=mark, finished=found)
             return
+        require_room(path, wanted, f"the {kind}", "ask for less", own)
         folder = ResultFolder(path=path, mark=mark)
         try:
             folder.write_result({"status": "running", "asked": asked} | program_of_results())

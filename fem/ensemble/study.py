@@ -35,6 +35,15 @@ from fem.sweep.running import Row, run_cases
 
 MARK, STATE = "ensemble.json", "state.npz"
 OWN = ("points.csv", "draws.csv", "base.toml", "ensemble.toml", STATE, "figures/*.svg")
+#: room on the disk: a row of draws.csv without its numbers, a number, what is kept of a draw, a row of points.csv, and
+#: figures and pages [bytes]
+BYTES_OF_A_DRAW, BYTES_OF_A_NUMBER, BYTES_OF_A_CODE, BYTES_OF_A_POINT, BYTES_BESIDE = (
+    45,
+    20,
+    10,
+    1000,
+    500_000,
+)
 BATCH = 512  #: runs between two looks and saves
 WORDS = {STOOD: "stood", OVERTURNED: "overturned", FAILED: "failed"}
 
@@ -66,7 +75,14 @@ def run_ensemble(
     asked = ensemble_hash(ensemble)
     with (
         opened_result_folder(
-            folder, mark=MARK, kind="ensemble", asked=asked, own=OWN, force=force, resume=resume
+            folder,
+            mark=MARK,
+            kind="ensemble",
+            asked=asked,
+            own=OWN,
+            wanted=required_disk(ensemble),
+            force=force,
+            resume=resume,
         ) as place,
         interruptible(reporter) as stop,
     ):
@@ -96,6 +112,12 @@ def run_ensemble(
         if status == COMPLETED:
             (place.path / STATE).unlink(missing_ok=True)
     return EnsembleResult(status=status, result=result, points=tuple(points))
+
+
+def required_disk(ensemble: Ensemble) -> float:
+    """What the folder of an ensemble comes to hold [bytes]: a row a draw, the state twice, a row a point, figures."""
+    row = BYTES_OF_A_DRAW + BYTES_OF_A_NUMBER * len(ensemble.random)
+    return ensemble.count * (ensemble.draws * (row + 2 * BYTES_OF_A_CODE) + BYTES_OF_A_POINT) + BYTES_BESIDE
 
 
 def ensemble_hash(ensemble: Ensemble) -> str:

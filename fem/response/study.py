@@ -16,8 +16,8 @@ from fem.case import Case, to_toml
 from fem.container import Container
 from fem.progress import Reporter, SilentReporter
 from fem.response.branches import branches_of, in_words
-from fem.response.curve import Standing, plan_of, sweep_points
-from fem.response.drive import DrivenModel, driven_model
+from fem.response.curve import PORTRAYED, Standing, plan_of, sweep_points
+from fem.response.drive import SAMPLES_PER_PERIOD, DrivenModel, driven_model
 from fem.response.figures import response_figures
 from fem.response.record import (
     ARRAYS,
@@ -35,6 +35,9 @@ from fem.verdict import MODE_NAMES
 
 MARK, STATE = "response.json", "state.npz"
 OWN = ("response.csv", "sections.csv", "portraits.csv", "case.toml", STATE, "figures/*.svg")
+#: room on the disk: a period in sections.csv and twice in the state, a sample in portraits.csv and twice in the state,
+#: a point in response.csv and response.json, figures [bytes]
+BYTES_OF_A_PERIOD, BYTES_OF_A_SAMPLE, BYTES_OF_A_POINT, BYTES_BESIDE = 220 + 160, 50 + 32, 2000, 1_000_000
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -62,7 +65,14 @@ def run_response(
     reporter = reporter or SilentReporter()
     with (
         opened_result_folder(
-            folder, mark=MARK, kind="response curve", asked=request.hash, own=OWN, force=force, resume=resume
+            folder,
+            mark=MARK,
+            kind="response curve",
+            asked=request.hash,
+            own=OWN,
+            wanted=required_disk(request),
+            force=force,
+            resume=resume,
         ) as place,
         interruptible(reporter) as stop,
     ):
@@ -82,6 +92,13 @@ def run_response(
         if status == COMPLETED:
             (place.path / STATE).unlink(missing_ok=True)
     return ResponseResult(status=status, result=result, records=tuple(records))
+
+
+def required_disk(request: ResponseRequest) -> float:
+    """What the folder of a response curve comes to hold [bytes]: sections, portraits, the state twice, figures."""
+    periods = request.observe * BYTES_OF_A_PERIOD
+    portrait = min(request.observe, PORTRAYED) * SAMPLES_PER_PERIOD * BYTES_OF_A_SAMPLE
+    return 2 * request.count * (periods + portrait + BYTES_OF_A_POINT) + BYTES_BESIDE
 
 
 def result_of(request: ResponseRequest, records: Sequence[Record], status: str) -> dict[str, Any]:

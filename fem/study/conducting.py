@@ -15,7 +15,9 @@ from typing import Any
 import contact
 import fem
 import mesh
-from fem.run import versions
+from fem.folder_lock import LOCK_NAME, FolderLock
+from fem.required_disk import require_room
+from fem.run import held, versions
 from fem.run_folder import FolderError, to_json, write_atomically
 from fem.study.catalogue import GROUPS, UNTRIED, all_statements
 from fem.study.laboratory import InterruptedStudyError, Laboratory
@@ -25,6 +27,8 @@ from fem.study.statements import Statement, Verdict
 #: keeps the first guess of the pace from jumping [s]
 STEADY = 20.0
 RESULT, PAGE, FIGURES = "study.json", "study.html", "figures"
+#: room that page, document and figures of a whole study take, twice while the page is written [bytes]
+ROOM = 1e7
 
 
 def fingerprint() -> str:
@@ -55,12 +59,31 @@ def conduct(
         tell: told of each statement before it is tried.
 
     Raises:
-        FolderError: the folder holds something else, or cannot be written.
+        FolderError: the folder holds something else, cannot be made, or has no room for a study.
+        FolderLockedError: another process writes there.
+        FolderUnwritableError: a read-only place, or a full one.
+        OSError: the disk is full, the folder was removed; what was written can be read.
     """
     chosen = list(statements if statements is not None else all_statements())
     program = fingerprint()
-    kept = {} if force else _finished(folder, program)
-    _prepare(folder)
+    _require_a_study(folder)
+    with held(folder) as lock:
+        kept = {} if force else _finished(folder, program)
+        require_room(folder, ROOM, "the study", "make room", (RESULT, PAGE, f"{FIGURES}/*.svg"))
+        (folder / FIGURES).mkdir(exist_ok=True)
+        return _conduct(folder, lock, laboratory, chosen, kept, program, tell)
+
+
+def _conduct(
+    folder: Path,
+    lock: FolderLock,
+    laboratory: Laboratory,
+    chosen: Sequence[tuple[str, Statement]],
+    kept: dict[str, dict[str, Any]],
+    program: str,
+    tell: Callable[[str], None],
+) -> dict[str, Any]:
+    """Try what is not kept; the document that lies in the folder then."""
     began = time.perf_counter()
     entries: dict[str, dict[str, Any]] = dict(kept)
     todo = [statement for _, statement in chosen if statement.name not in kept]
@@ -77,12 +100,14 @@ def conduct(
             break
         spent += time.perf_counter() - start
         computed += statement.seconds
+        lock.check()
         _write(folder, _document("running", program, entries, began))
     if status == "completed" and any(
         entry["verdict"] == Verdict.UNDECIDED.value for entry in entries.values()
     ):
         status = "failed"
     document = _document(status, program, entries, began)
+    lock.check()
     _write(folder, document)
     svgs = {path.stem: path.read_text(encoding="utf-8") for path in (folder / FIGURES).glob("*.svg")}
     write_atomically(folder / PAGE, study_page(json.loads(to_json(document)), svgs))
@@ -158,11 +183,13 @@ def _finished(folder: Path, program: str) -> dict[str, dict[str, Any]]:
     }
 
 
-def _prepare(folder: Path) -> None:
+def _require_a_study(folder: Path) -> None:
+    """Refuse a folder that holds something else."""
     try:
-        if folder.is_dir() and any(folder.iterdir()) and not (folder / RESULT).is_file():
-            raise FolderError(f"{folder} is not empty and holds no study; choose another with --out DIR")
-        (folder / FIGURES).mkdir(parents=True, exist_ok=True)
+        if folder.is_dir() and not (folder / RESULT).is_file():
+            others = [entry.name for entry in folder.iterdir() if entry.name not in (LOCK_NAME, FIGURES)]
+            if any(not name.endswith(".part") for name in others):
+                raise FolderError(f"{folder} is not empty and holds no study; choose another with --out DIR")
     except OSError as error:
         raise FolderError(
             f"{folder}: cannot be used ({error.strerror}); choose another folder with --out DIR"

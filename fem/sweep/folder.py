@@ -18,6 +18,7 @@ from fem.folder_lock import LOCK_NAME
 from fem.program import program_identity, versions
 from fem.run_folder import FolderError, to_json, write_atomically
 from fem.sweep.plan import Sweep
+from fem.sweep.size import check_disk
 from fem.sweep.table import read_info
 
 REMEDY = "choose another folder with --out DIR, or overwrite it with --force"
@@ -99,7 +100,7 @@ def open_sweep_folder(path: Path, sweep: Sweep, *, force: bool, resume: bool) ->
 
     Raises:
         FolderError: the folder holds another sweep or something else, an unfinished one (without `resume` or `force`),
-            is not a folder, or cannot be written.
+            is not a folder, cannot be written, or has no room for what will be.
     """
     folder = SweepFolder(path=path)
     try:
@@ -108,9 +109,11 @@ def open_sweep_folder(path: Path, sweep: Sweep, *, force: bool, resume: bool) ->
         path.mkdir(parents=True, exist_ok=True)
         names = {entry.name for entry in path.iterdir() if not entry.name.endswith(".part")} - {LOCK_NAME}
         if force:
+            check_disk(sweep, path)
             folder.remove_results()
             return folder
         if not names:
+            check_disk(sweep, path)
             return folder
         if folder.info.name not in names:
             raise FolderError(f"{path} is not empty and holds no sweep; {REMEDY}")
@@ -130,6 +133,7 @@ def open_sweep_folder(path: Path, sweep: Sweep, *, force: bool, resume: bool) ->
             raise FolderError(f"{path} holds rows of another version of the program; {REMEDY}")
         if (other := _other_library(found.get("versions"))) is not None:
             raise FolderError(f"{path} holds rows computed with another {other}; {REMEDY}")
+        check_disk(sweep, path)
     except OSError as error:
         raise FolderError(
             f"{path}: cannot be used ({error.strerror}); choose another folder with --out DIR"

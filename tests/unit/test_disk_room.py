@@ -14,11 +14,13 @@ from small_sweep import SMALL
 import fem.report.run_page
 import fem.required_disk
 import fem.run
+import fem.study.conducting
 import fem.sweep.sweeping
 from fem.__main__ import main
 from fem.case import load_case
 from fem.case_container import build_container, node_count
 from fem.fields import open_fields
+from fem.folder_lock import held_folder
 from fem.history import read_history
 from fem.required_disk import required_disk
 from fem.run_folder import read_result
@@ -56,7 +58,7 @@ def remount_read_only(place: Path) -> None:
 def unforeseen() -> Iterator[None]:
     """As when others fill the disk while the run is under way."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(fem.run, "require_disk", lambda *_: None)
+        patch.setattr(fem.required_disk, "free_disk", lambda *_: None)
         yield
 
 
@@ -137,13 +139,17 @@ def test_a_sweep_on_a_full_disk_ends_with_3_keeps_its_rows_and_goes_on(small, ca
     command = ["sweep", str(tmp_path / "small.toml"), "--out", str(small / "s"), "-q", "-j", "1"]
     with open(small / "filler", "wb") as filler:
         filler.write(bytes(ROOM - 3 * 4096 - 4096))
-    assert main(command) in (2, 3)
-    os.truncate(small / "filler", ROOM - 8 * 4096)
-    assert main([*command, "--resume"]) == 3
+    assert main(command) == 2
+    assert "the sweep (20 cells) would write about" in capsys.readouterr().err and not (small / "s").exists()
+    with unforeseen():
+        assert main(command) in (2, 3)
+        os.truncate(small / "filler", ROOM - 8 * 4096)
+        assert main([*command, "--resume"]) == 3
     message = capsys.readouterr().err
     assert "No space left on device" in message and "--resume" in message
     (small / "filler").unlink()
-    assert main([*command, "--resume"]) == 0
+    with unforeseen():
+        assert main([*command, "--resume"]) == 0
     assert len(open_sweep(small / "s")["cell"]) == 20
 
 
@@ -162,6 +168,100 @@ def test_a_folder_removed_during_a_sweep_ends_it_with_3(tmp_path, capsys, monkey
     )
     message = capsys.readouterr().err
     assert str(tmp_path / "s") in message and "Traceback" not in message
+
+
+TWO_STATEMENTS = ("study", "seed", "--only", "half-width", "--only", "numbers-one-box", "-q")
+CURVE = (
+    "response",
+    "rocking",
+    "--from",
+    "0.6",
+    "--to",
+    "1",
+    "--count",
+    "2",
+    "--settle",
+    "2",
+    "--observe",
+    "8",
+    "-q",
+)
+ENSEMBLE = """
+case = "seed_stack_plateau"
+draws = 8
+confidence = 0.9
+probability = 0.5
+[set]
+"solver.model" = "rigid"
+"solver.duration_s" = 1.0
+[axes]
+"motion.peak_acceleration_m_s2" = [2.0, 6.0]
+[random]
+"motion.phase_rad" = { distribution = "uniform", from = 0.0, to = 6.2 }
+"""
+
+
+@pytest.fixture(params=["study", "response", "ensemble"])
+def command(request, tmp_path) -> list[str]:
+    """Something that writes a folder of results and is no run."""
+    (tmp_path / "e.toml").write_text(ENSEMBLE)
+    return {
+        "study": [*TWO_STATEMENTS],
+        "response": [*CURVE, "--set", "solver.model=rigid"],
+        "ensemble": ["ensemble", str(tmp_path / "e.toml"), "-q", "-j", "1"],
+    }[request.param]
+
+
+def test_a_study_of_many_runs_that_does_not_fit_is_refused_before_anything_is_written(
+    command, tmp_path, capsys, monkeypatch
+):
+    free = shutil.disk_usage(tmp_path)._replace(free=100_000)
+    monkeypatch.setattr(fem.required_disk.shutil, "disk_usage", lambda _: free)
+    assert main([*command, "--out", str(tmp_path / "f")]) == 2
+    message = capsys.readouterr().err
+    assert "would write about" in message and "room for 100 kB" in message and "--out DIR" in message
+    assert not (tmp_path / "f").exists()
+
+
+def test_a_full_disk_ends_a_study_of_many_runs_with_3_and_it_goes_on(command, small, capsys):
+    command += ["--out", str(small / "f")]
+    with unforeseen():
+        with open(small / "filler", "wb") as filler:
+            filler.write(bytes(ROOM - 6 * 4096))
+        assert main(command) == 3
+        message = capsys.readouterr().err
+        assert "No space left on device" in message and "goes on" in message and "Traceback" not in message
+        for file in (small / "f").glob("*.json"):
+            json.loads(file.read_text())
+        (small / "filler").unlink()
+        assert main(command if command[0] == "study" else [*command, "--resume"]) == 0
+    assert not list((small / "f").rglob("*.part"))
+
+
+def test_a_read_only_folder_ends_a_study_of_many_runs_with_3(command, small, capsys):
+    remount_read_only(small)
+    with unforeseen():
+        assert main([*command, "--out", str(small / "f")]) == 3
+    message = capsys.readouterr().err
+    assert "Read-only file system" in message and "--out DIR" in message
+
+
+def test_a_folder_of_a_study_that_is_taken_or_removed_is_told(tmp_path, capsys, monkeypatch):
+    folder, command = tmp_path / "f", [*TWO_STATEMENTS, "--out", str(tmp_path / "f")]
+    with held_folder(folder):
+        assert main(command) == 2
+    assert "another run writes there" in capsys.readouterr().err
+    tried = fem.study.conducting._tried
+
+    def removed(*arguments):
+        shutil.rmtree(folder)
+        return tried(*arguments)
+
+    monkeypatch.setattr(fem.study.conducting, "_tried", removed)
+    assert main(command) == 3
+    message = capsys.readouterr().err
+    assert str(folder) in message and "Traceback" not in message
+    assert not folder.exists()
 
 
 def test_a_report_that_cannot_be_written_ends_with_3_and_names_another_place(
