@@ -11,6 +11,7 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import metadata
+from typing import NoReturn
 
 from cyclopts import App, CycloptsError
 
@@ -114,5 +115,17 @@ def _refuse(message: str, exit_code: int = BAD_INPUT) -> int:
     return exit_code
 
 
+def program() -> NoReturn:
+    """The command line as a process of its own, which ends with the exit code of `main`.
+
+    Before 3.12, Python ends itself by SIGINT instead where an interrupt has once come through `exec` of a text, as in
+    an import that makes a named tuple, however it was caught.
+    """
+    code = main()
+    if code == INTERRUPTED:
+        os._exit(code)  # both streams are flushed
+    sys.exit(code)
+
+
 if __name__ == "__main__":
-    sys.exit(main())
+    program()

@@ -44,10 +44,14 @@ def naming_what_cannot_be_written(folder: Path, way_on: str) -> Iterator[None]:
         way_on: what to do when there is room again.
 
     Raises:
-        OutputError: in the place of an OSError.
+        FolderError: a file stands where a folder should.
+        OutputError: in the place of any other OSError.
     """
     try:
         yield
+    except (FileExistsError, NotADirectoryError) as error:
+        place = error.filename or folder
+        raise FolderError(f"{place}: a file stands where a folder should; choose another place") from None
     except OSError as error:
         raise OutputError(
             f"{error.filename or folder}: cannot be written ({error.strerror or error}); what was written before can "

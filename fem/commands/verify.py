@@ -1,7 +1,6 @@
 """`verify`: climb the verification ladder and say which rows hold."""
 
 import importlib
-import json
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -9,7 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from fem.commands.shared import AsJson, Quiet, flag
-from fem.run_folder import naming_what_cannot_be_written, write_atomically
+from fem.run_folder import naming_what_cannot_be_written, to_json, write_atomically
 
 FAILED = 3
 FOLDER = Path("outputs") / "verify"
@@ -44,12 +43,12 @@ def verify(
     with naming_what_cannot_be_written(out, "ask again, or elsewhere with --out DIR"):
         out.mkdir(parents=True, exist_ok=True)
     found = ladder.climb(quick=quick, rooms=room, before=lambda name, check: tell(name, check.name))
-    document = json.dumps(found.to_dict(), indent=2)
+    document = to_json(found.to_dict())
     with naming_what_cannot_be_written(out, "ask again, or elsewhere with --out DIR"):
-        write_atomically(out / "verify.json", document + "\n")
+        write_atomically(out / "verify.json", document)
         write_atomically(out / "verify.html", pages.page(found))
     if as_json:
-        print(document)
+        print(document.rstrip())
     else:
         print("\n".join(pages.table_lines(found)))
         print(f"{out / 'verify.html'} shows the convergence plots")

@@ -105,6 +105,21 @@ def test_an_interrupted_command_ends_with_4(monkeypatch, capsys):
     assert capsys.readouterr().err == "interrupted\n"
 
 
+def test_an_interrupt_amid_an_import_ends_the_process_with_4():
+    """Imports run texts (`exec`), and CPython before 3.12 never forgets an interrupt that came through one."""
+    program = """
+import fem.__main__ as command_line
+def interrupted(*_, **__):
+    exec("raise KeyboardInterrupt")
+command_line.build_app = lambda: interrupted
+command_line.program()
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program, "list"], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr.strip()) == (4, "interrupted")
+
+
 @pytest.mark.parametrize(("number", "code"), [(errno.ENOSPC, 3), (errno.ENOENT, 2)])
 def test_a_full_disk_or_missing_folder_is_told_without_a_traceback(monkeypatch, capsys, number, code):
     def fail(*_, **__):

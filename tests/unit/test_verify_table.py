@@ -1,10 +1,13 @@
 """The verification table: a row that is off fails, whatever the way it is off; the command says so."""
 
+import errno
 import json
 import math
+import os
 
 import pytest
 
+import fem.run_folder
 from fem.__main__ import main
 from fem.verification import ladder
 from fem.verification.page import convergence_plot, page, table_lines
@@ -136,3 +139,20 @@ def test_the_command_ends_with_3_if_a_row_fails(small_ladder, tmp_path, capsys, 
 def test_an_unknown_room_is_bad_input(small_ladder, tmp_path, capsys):
     assert main(["verify", "--room", "celar", "--out", str(tmp_path)]) == 2
     assert "did you mean 'cellar'" in capsys.readouterr().err
+
+
+def test_a_place_that_cannot_be_written_is_told_and_no_half_table_is_left(
+    small_ladder, tmp_path, capsys, monkeypatch
+):
+    (tmp_path / "file").write_text("")
+    assert main(["verify", "--out", str(tmp_path / "file"), "-q"]) == 2
+    assert "a file stands where a folder should" in capsys.readouterr().err
+
+    def no_room(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(fem.run_folder.os, "fsync", no_room)
+    assert main(["verify", "--out", str(tmp_path / "v"), "-q"]) == 3
+    message = capsys.readouterr().err
+    assert "verify.json: cannot be written (No space left on device)" in message and "--out DIR" in message
+    assert list((tmp_path / "v").iterdir()) == []
