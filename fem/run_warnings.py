@@ -21,6 +21,9 @@ REJECTED_SHARE = 0.05
 #: largest von Mises stress over Young's modulus up to which `reduced` and `full` agree within 5 %: blocks of one to ten
 #: boxes, corners and flat, of 1e9 to 1.5e6 Pa; at 0.024 they part by 9 % (`fem/README.md`)
 SMALL_STRAIN = 0.01
+#: relaxation time of the contact over the time scale of rocking 1/p, from which the dashpot is more than a loss at
+#: impacts: the rotation ratio of a rigid `rocking` on its flat base is 0.85 at 0.006, 0.68 at 0.15, 0.49 at 0.31
+FAST_RELAXATION = 0.1
 YIELD_STRENGTH = 235e6  #: [Pa], S235, EN 1993-1-1 Table 3.1
 
 
@@ -197,6 +200,23 @@ def strain_is_not_small(result: Result, case: Case) -> str | None:
     )
 
 
+def contact_relaxes_slowly(result: Result, case: Case) -> str | None:
+    """A dashpot that carries the weight for a good part of a swing is a floor that creeps."""
+    frequency = _part(result, "numerics").get("contact_frequency_Hz")
+    rate = _part(result, "static").get("frequency_parameter_1_s")
+    if not frequency or not rate:
+        return None
+    # dashpot over spring, of the whole mass on half the base's stiffness: see contact.penalty.relaxation_time
+    relaxation = 2.0 * case.contact.damping_ratio * math.sqrt(2.0) / (2.0 * math.pi * frequency)
+    if relaxation * rate <= FAST_RELAXATION:
+        return None
+    return (
+        f"the contact gives way over {relaxation:.2g} s (contact.damping_ratio = {case.contact.damping_ratio:g}), not "
+        f"fast against rocking (1/p = {1.0 / rate:.2g} s): it creeps under the weight besides what it takes at impacts; "
+        "a smaller contact.damping_ratio, or a larger contact.normal_penalty_Pa_m"
+    )
+
+
 def steps_were_rejected(result: Result, case: Case) -> str | None:
     """Many steps done twice mean that the contact was hard to solve."""
     numerics = _part(result, "numerics")
@@ -213,6 +233,7 @@ CHECKS: tuple[Callable[[Result, Case], str | None], ...] = (
     contact_penetrates,
     regularised_friction_creeps,
     shell_rings_on_the_floor,
+    contact_relaxes_slowly,
     steps_were_rejected,
     strain_is_not_small,
     stress_is_beyond_yield,

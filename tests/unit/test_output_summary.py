@@ -338,6 +338,15 @@ def test_a_container_too_soft_for_the_linear_model_is_told():
     assert warnings_for(changed(verdict__max_von_mises_Pa=1.2e5), full) == []
 
 
+def test_a_contact_that_creeps_under_the_weight_is_told():
+    """2 zeta sqrt(m/(k/2)) = 2 sqrt(2) zeta/(2 pi f_c), against 1/p."""
+    result = changed(numerics__contact_frequency_Hz=50.0, static__frequency_parameter_1_s=2.0)
+    assert not any("gives way" in text for text in warnings_for(result, read_case(CASE)))  # zeta = 2: 18 ms
+    creeping = read_case(CASE.replace("[contact]\n", "[contact]\ndamping_ratio = 20.0\n"))
+    (told,) = [text for text in warnings_for(result, creeping) if "gives way" in text]
+    assert "over 0.18 s" in told and "1/p = 0.5 s" in told
+
+
 @pytest.mark.parametrize(
     "result", [{"status": "failed"}, {"status": "running", "verdict": None, "static": None}]
 )
