@@ -31,6 +31,8 @@ LOCK_NAME = ".lock"
 HEARTBEAT_S = 20.0  #: between signs of life
 SILENCE_S = 120.0  #: after which an owner on another host counts as dead
 UNWRITABLE = {errno.EROFS, errno.EACCES, errno.EPERM, errno.ENOSPC, errno.EDQUOT}
+#: to make a folder that others take away meanwhile, and between two; some places, as in /proc, have none ever
+MOST_TRIES, RETRY_S = 100, 0.005
 LARGEST_LOCK = 10_000  #: bytes that are read of one
 
 
@@ -147,13 +149,16 @@ def held_folder(folder: Path) -> Iterator[FolderLock]:
 
 
 def _make_and_take(folder: Path) -> FolderLock:
+    tries = 0
     while True:
         try:
             folder.mkdir(parents=True, exist_ok=True)
             return _take(folder / LOCK_NAME)
         except (FileExistsError, FileNotFoundError):
-            if os.path.lexists(folder) and not folder.is_dir():
+            tries += 1
+            if (os.path.lexists(folder) and not folder.is_dir()) or tries == MOST_TRIES:
                 raise  # else who held it has just taken it away again, empty
+            time.sleep(RETRY_S)
 
 
 def _take(path: Path) -> FolderLock:

@@ -212,7 +212,7 @@ def contact_relaxes_slowly(result: Result, case: Case) -> str | None:
         return None
     return (
         f"the contact gives way over {relaxation:.2g} s (contact.damping_ratio = {case.contact.damping_ratio:g}), not "
-        f"fast against rocking (1/p = {1.0 / rate:.2g} s): it creeps under the weight besides what it takes at impacts; "
+        f"fast against rocking (1/p = {1.0 / rate:.2g} s): it creeps under the weight besides its work at impacts; "
         "a smaller contact.damping_ratio, or a larger contact.normal_penalty_Pa_m"
     )
 

@@ -9,7 +9,7 @@ from cyclopts import Parameter
 from fem.assembly import assemble
 from fem.case import load_case
 from fem.case_container import build_container
-from fem.commands.shared import AsJson, Overrides
+from fem.commands.shared import AsJson, Overrides, whole
 from fem.drawing import house_style, svg_of
 from fem.figures_modes import modes_figure
 from fem.modes import elastic_mode_table, elastic_modes, write_modes
@@ -20,7 +20,7 @@ def modes(
     case: str | None = None,
     /,
     *,
-    count: Annotated[int | None, Parameter(help="How many; default: solver.elastic_modes.")] = None,
+    count: Annotated[int | None, whole("How many; default: solver.elastic_modes.")] = None,
     out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/NAME/modes.")] = None,
     overrides: Overrides = (),
     as_json: AsJson = False,

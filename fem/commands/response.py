@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from fem.case import load_case
-from fem.commands.shared import EXIT_CODES, Force, Overrides, Quiet, flag
+from fem.commands.shared import EXIT_CODES, Force, Overrides, Quiet, flag, whole
 from fem.progress import ScreenReporter
 
 
@@ -18,7 +18,7 @@ def response(
     *,
     first: Annotated[float, Parameter(name="--from", help="Lowest frequency of the drive [Hz].")],
     last: Annotated[float, Parameter(name="--to", help="Highest frequency [Hz].")],
-    count: Annotated[int, Parameter(help="Frequencies, both ends included.")] = 41,
+    count: Annotated[int, whole("Frequencies, both ends included.")] = 41,
     scale: Annotated[Literal["linear", "log"], Parameter(help="How they are spread.")] = "linear",
     hold: Annotated[
         Literal["displacement", "acceleration"] | None,
@@ -30,12 +30,12 @@ def response(
     order: Annotated[
         Literal["up-down", "down-up"], Parameter(help="Which way first; the motion is carried on.")
     ] = "up-down",
-    settle: Annotated[int, Parameter(help="Periods left out at each frequency.")] = 60,
-    observe: Annotated[int, Parameter(help="Periods by which the motion is judged.")] = 48,
+    settle: Annotated[int, whole("Periods left out at each frequency.")] = 60,
+    observe: Annotated[int, whole("Periods by which the motion is judged.")] = 48,
     tolerance: Annotated[
         float, Parameter(help="Within which two sections are the same, of the slenderness angle.")
     ] = 5e-3,
-    largest_period: Annotated[int, Parameter(help="Looked for, in periods of the drive.")] = 16,
+    largest_period: Annotated[int, whole("Looked for, in periods of the drive.")] = 16,
     out: Annotated[
         Path | None, Parameter(help="Folder of the results; default: outputs/NAME-response.")
     ] = None,

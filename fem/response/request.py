@@ -84,6 +84,10 @@ class ResponseRequest:
                 f"--tolerance must lie between 1e-6 and 0.1 of the slenderness angle, got {self.tolerance:g}; "
                 f"{TOLERANCE:g} is usual"
             )
+        if not self.case.amplitude > 0.0:
+            raise CaseError(
+                "[motion] a response curve needs a floor that moves: give amplitude_m or peak_acceleration_m_s2 above 0"
+            )
         given = motion.amplitude_m is None or motion.peak_acceleration_m_s2 is None
         stated: Hold = "acceleration" if given and motion.amplitude_m is None else "displacement"
         object.__setattr__(self, "held", self.hold or stated)

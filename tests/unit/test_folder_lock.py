@@ -180,3 +180,12 @@ def test_of_many_that_want_a_folder_one_has_it(tmp_path):
     for thread in threads:
         thread.join()
     assert most == 1 and got > 1
+
+
+@pytest.mark.parametrize("place", ["/proc/nothing/there", "dangling/there"])
+def test_a_place_where_no_folder_can_be_made_is_told_and_not_waited_for(tmp_path, place):
+    (tmp_path / "dangling").symlink_to(tmp_path / "gone")
+    began = time.monotonic()
+    with pytest.raises(OSError, match=r"No such file|File exists"), held_folder(tmp_path / place):
+        pass
+    assert time.monotonic() - began < 10.0

@@ -92,6 +92,7 @@ def test_what_is_held_is_what_the_case_states():
 @pytest.mark.parametrize(
     ("changes", "values", "message"),
     [
+        (("motion.amplitude_m=0",), {}, "needs a floor that moves"),
         (["motion.kind=none"], {}, r'\[motion\] kind must be "harmonic"'),
         (["motion.cycles=5"], {}, r"\[motion\] cycles = 5 ends the drive"),
         (["solver.model=full"], {}, r"reduced"),
@@ -139,4 +140,11 @@ def test_bad_input_ends_with_2_and_no_folder(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["response", "--from", "2", "--to", "1"]) == 2
     assert "--from must be less than --to" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_fraction_of_a_frequency_is_refused_and_not_rounded(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["response", "rocking", "--from", "1", "--to", "2", "--count", "2.5"]) == 2
+    assert "--count: a whole number is needed, not '2.5'" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
