@@ -8,6 +8,7 @@ three. So the run is repeated with the penalty divided and multiplied by three a
 that fails is no outcome and makes it unsure as well.
 """
 
+import threading
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
@@ -62,6 +63,8 @@ def band_of(
     penalty: float,
     verdict: Mapping[str, Any],
     stop: Callable[[], bool] = lambda: False,
+    kept: Sequence[Member] = (),
+    keep: Callable[[Sequence[Member]], None] = lambda members: None,
 ) -> dict[str, Any] | None:
     """Run the members of a band side by side and sum them up.
 
@@ -71,6 +74,8 @@ def band_of(
         penalty: of the run [Pa/m].
         verdict: of the run, which is itself a member.
         stop: asked now and then; true ends the band.
+        kept: members computed before, which are not computed again.
+        keep: told of all members that there are, whenever one more is finished.
 
     Returns:
         The `band` of a verdict, or None if it was stopped.
@@ -82,10 +87,23 @@ def band_of(
         **{name: verdict[name] for name in IN_SHORT},
     )
     floors = _other_floors(penalty, case.contact.damping_ratio)
+    found = {(member.normal_penalty_Pa_m, member.damping_ratio): member for member in kept}
+    one_at_a_time = threading.Lock()
+
+    def member_on(floor: tuple[float, float]) -> Member:
+        if floor in found:
+            return found[floor]
+        member = _run_member(case, container, floor, stop)
+        with one_at_a_time:
+            if not stop():  # else it may have been cut short
+                found[floor] = member
+                keep(list(found.values()))
+        return member
+
     # The full model is stepped by the interpreter, under its lock: threads would gain nothing.
     workers = 1 if case.solver.model == "full" else min(cores(), len(floors))
     with ThreadPoolExecutor(max_workers=workers) as pool:
-        members = list(pool.map(lambda floor: _run_member(case, container, floor, stop), floors))
+        members = list(pool.map(member_on, floors))
     if stop():
         return None
     return summed_up([given, *members])

@@ -19,6 +19,7 @@ import numpy as np
 
 from contact.event_driven import EventError
 from fem.band import band_of, wants_band
+from fem.band_keeping import read_members, write_members
 from fem.case import Case, CaseError, case_hash, to_toml
 from fem.case_motion import motion_notes
 from fem.fields import FieldWriter
@@ -240,9 +241,20 @@ def add_checks(
         added = True
     if _lacks_band(result, case, options) and not stop():
         reporter.message("band: the same run over contact penalty and damping")
-        verdict["band"] = band_of(case, model.container, penalty=model.penalty, verdict=verdict, stop=stop)
+        mark = str(result["case_hash"])
+        verdict["band"] = band_of(
+            case,
+            model.container,
+            penalty=model.penalty,
+            verdict=verdict,
+            stop=stop,
+            kept=read_members(place.band, mark),
+            keep=lambda members: write_members(place.band, mark, members),
+        )
         if verdict["band"] is None:
-            reporter.message("the band was stopped; run the case again to have it")
+            reporter.message("the band was stopped; run the case again to have the rest of it")
+        else:
+            place.band.unlink(missing_ok=True)
         added = added or verdict["band"] is not None
     return added
 

@@ -107,6 +107,11 @@ class RunFolder:
         return self.path / "checkpoint.npz"
 
     @property
+    def band(self) -> Path:
+        """Members of a band that is not finished."""
+        return self.path / "band.json"
+
+    @property
     def figures(self) -> Path:
         """Folder of the figures."""
         return self.path / "figures"
@@ -126,7 +131,8 @@ class RunFolder:
         """Every file and folder that a run writes."""
         results = (self.result, self.summary, self.history, self.rigid_check, self.fields, self.figures)
         reports = (self.report, self.variations)
-        return (self.case, self.resolved, *results, *reports, self.checkpoint, self.path / LOCK_NAME)
+        unfinished = (self.checkpoint, self.band)
+        return (self.case, self.resolved, *results, *reports, *unfinished, self.path / LOCK_NAME)
 
     def write_result(self, result: Mapping[str, Any]) -> None:
         """Replace `run.json`; numbers that are not finite become null.
@@ -332,7 +338,7 @@ def _make(path: Path) -> list[Path]:
 def _remove_results(folder: RunFolder) -> None:
     """Remove what an earlier run left, and nothing else that may lie there."""
     folder.remove_checkpoint()
-    made = (folder.summary, folder.history, folder.rigid_check, folder.report, folder.variations)
+    made = (folder.summary, folder.history, folder.rigid_check, folder.report, folder.variations, folder.band)
     for file in made:
         file.unlink(missing_ok=True)
     for place, patterns in (
