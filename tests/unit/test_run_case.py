@@ -90,7 +90,9 @@ class TestEnd:
         assert error.startswith("step ")
         instant = float(error.split("t = ")[1].split(" s")[0])
         assert kept["time_s"][-1] <= instant <= kept["time_s"][-1] + 0.1
-        assert "did not settle at the smallest step (0.005 s), though the contact forces balance within" in error
+        assert (
+            "did not settle at the smallest step (0.005 s), though the contact forces balance within" in error
+        )
         assert "softer contact.normal_penalty_Pa_m" in error
         page = capsys.readouterr().out
         assert "No verdict:" in page
