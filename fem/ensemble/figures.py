@@ -77,12 +77,13 @@ def draw_fragility(ensemble: Ensemble, points: Sequence[PointResult], fragility:
         capsize=2.0,
         label=f"counted, {100.0 * ensemble.confidence:g} % interval",
     )
-    axes.axhline(ensemble.probability, color=GREY, linewidth=0.8, linestyle=":")
+    asked = f"{100.0 * ensemble.probability:g} %"
+    axes.axhline(ensemble.probability, color=GREY, linewidth=0.8, linestyle=":", label=asked)
     axes.set_ylim(-0.02, 1.02)
     axes.margins(x=0.02)
     axes.set_ylabel("probability of overturning [-]")
     axes.set_xlabel(label_of(axis))
-    legend_above(axes, columns=3)
+    legend_above(axes)
     return figure
 
 

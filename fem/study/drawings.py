@@ -11,20 +11,19 @@ from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from matplotlib.patheffects import AbstractPathEffect, withStroke
 
+from fem.drawing import STATE_COLOURS, VERMILLION
 from fem.history import FloatArray
 from fem.study.statements import Drawing
 
 #: distinguishable without colour vision (Okabe and Ito) and dark enough on white
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#7a4d9f", "#333333", "#b8860b")
-OUTCOME_COLOURS = {
-    "rest": "#e8eef2",
-    "slide": "#f0e442",
-    "rock": "#56b4e9",
-    "slide-rock": "#009e73",
-    "overturned": "#d55e00",
-    "failed": "#000000",
-}
+OUTCOME_COLOURS = {**STATE_COLOURS, "failed": VERMILLION}  # as on every other map
+CASED: list[AbstractPathEffect] = [
+    withStroke(linewidth=2.8, foreground="white")
+]  #: seen on black cells as well
+DOTS: Any = {"color": "black", "markersize": 5.0, "markeredgecolor": "white", "markeredgewidth": 0.5}
 STYLE: Any = {"svg.fonttype": "none", "svg.hashsalt": "unanchored", "font.size": 9, "axes.linewidth": 0.7}
 WIDTH, HEIGHT = 6.2, 3.3  # inches
 
@@ -109,9 +108,11 @@ def outcome_map(
         )
         if unsure is not None:
             rows, columns = np.nonzero(np.array(unsure))
-            axes.plot(np.asarray(x)[columns], np.asarray(y)[rows], ".", color="black", markersize=2.5)
+            axes.plot(np.asarray(x)[columns], np.asarray(y)[rows], ".", **DOTS)
         for line, style in zip(curves, ("-", "--", ":", "-."), strict=False):
-            axes.plot(line.x, line.y, style, color="black", linewidth=1.2, label=line.label)
+            axes.plot(
+                line.x, line.y, style, color="black", linewidth=1.2, label=line.label, path_effects=CASED
+            )
         if log_y:
             axes.set_yscale("log")
             axes.set_yticks(_round_ticks(y), [f"{tick:g}" for tick in _round_ticks(y)])
