@@ -395,7 +395,8 @@ def _advance_rows(
         for i in range(scratch.work.force.shape[0]):
             for c in range(2):
                 residual = abs(scratch.work.law[i, c] - scratch.work.force[i, c])
-                out.residual[k] = max(out.residual[k], residual)
+                if residual > out.residual[k] or residual != residual:  # nan is kept, too
+                    out.residual[k] = residual
 
 
 def _follow_aftermath(scratch: Scratch, run: Run, rows: Rows, out: Outcomes, k: int) -> int:

@@ -1,5 +1,6 @@
 """How long a step may be, and that no run goes on without headway."""
 
+import numpy as np
 import pytest
 
 import contact.step_control
@@ -11,7 +12,7 @@ from fem.container import discretise
 from fem.model import build_model
 from fem.recorder import Recorder
 from fem.required_memory import required_memory
-from fem.simulation import simulate
+from fem.simulation import simulate, stepping_failure
 
 PULSE = {
     "motion.kind": "pulse",
@@ -100,6 +101,17 @@ def test_a_row_of_a_batch_without_headway_is_a_failed_one():
     )
     assert outcomes.status.tolist() == [REACHED, FAILED]
     assert outcomes.clock["time"][1] < 2.0 <= outcomes.clock["time"][0]
+
+
+def test_a_row_of_a_batch_that_left_the_numbers_says_so():
+    """A step of 1e-163 s, over whose square the inertia is no number; the residual then is none either."""
+    model = build_model(rigid(solver__duration_s=1.0))
+    rows = pack_rows([model.run], [1.0], [20.0])
+    first = np.array([[1e-163, np.inf]])
+    outcomes = run_rows(model.body, model.run.scheme, rows._replace(breaks=first), [model.run.track[0]])
+    assert outcomes.status.tolist() == [FAILED]
+    assert not np.isfinite(outcomes.residual[0])
+    assert "grew beyond all numbers" in stepping_failure(model, float(outcomes.residual[0]))
 
 
 def test_a_container_too_large_for_the_memory_is_refused_before_it_is_taken(monkeypatch):
