@@ -18,6 +18,7 @@ from contact.body import (
 from contact.compiled import compiled
 from contact.floor_motion import floor_motion
 from contact.interface import FloatArray
+from contact.interpolation import hermite
 from contact.ledger import ROWS as LEDGER_ROWS
 from contact.run import (
     ROW_ANGULAR_VELOCITY,
@@ -35,22 +36,6 @@ from contact.run import (
 )
 
 SAME_INSTANT = 1e-12  #: difference of two times, over their size, that is rounding
-
-
-def _hermite(
-    share: float, step: float, value: float, rate: float, value_new: float, rate_new: float
-) -> float:
-    """Cubic through values and rates at both ends of a step, at `share` of it."""
-    s = share
-    return (
-        (1.0 + 2.0 * s) * (1.0 - s) ** 2 * value
-        + s * (1.0 - s) ** 2 * step * rate
-        + s * s * (3.0 - 2.0 * s) * value_new
-        - s * s * (1.0 - s) * step * rate_new
-    )
-
-
-hermite = compiled(_hermite)
 
 
 def _write_columns(

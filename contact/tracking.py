@@ -13,6 +13,7 @@ import numpy as np
 from numba.extending import register_jitable
 
 from contact.body import ANGULAR_VELOCITY, POTENTIAL, ROTATION, State
+from contact.interpolation import hermite
 
 NEVER = math.inf  #: time of an event that has not happened
 
@@ -147,6 +148,11 @@ def follow(
     n = control.base_points
     rotation = new.pose[ROTATION]
     track.max_rotation = max(track.max_rotation, abs(rotation))
+    before, after = old.pose[ANGULAR_VELOCITY], new.pose[ANGULAR_VELOCITY]
+    if before * after < 0.0:  # it turned round within the step, where a sample may lie
+        share = before / (before - after)
+        peak = hermite(share, step, old.pose[ROTATION], before, rotation, after)
+        track.max_rotation = max(track.max_rotation, abs(peak))
     track.max_slip = max(track.max_slip, abs(slip))
     track.slip_travel += abs(slip_step)
     left_open, right_open, uplift, left_force, right_force = 1, 1, 0.0, 0.0, 0.0

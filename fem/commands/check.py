@@ -37,7 +37,7 @@ def check(
     static = checks_of(loaded, mesh, peak)
     document = {
         "case": loaded.name,
-        "case_hash": case_hash(loaded),
+        "asked_hash": case_hash(loaded),
         "derived": derived_numbers(loaded, mesh, peak),
         "static": static.to_dict(),
         "contact_restitution": contact_restitution(loaded, mesh, static),
