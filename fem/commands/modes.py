@@ -7,7 +7,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from fem.assembly import assemble
-from fem.case import load_case
+from fem.case import CaseError, load_case
 from fem.case_container import build_container
 from fem.commands.shared import AsJson, Overrides, whole
 from fem.drawing import house_style, svg_of
@@ -15,12 +15,14 @@ from fem.figures_modes import modes_figure
 from fem.modes import elastic_mode_table, elastic_modes, write_modes
 from fem.run_folder import naming_what_cannot_be_written, write_atomically
 
+RIGID_MODES, SHOWN = 3, 20
+
 
 def modes(
     case: str | None = None,
     /,
     *,
-    count: Annotated[int | None, whole("How many; default: solver.elastic_modes.")] = None,
+    count: Annotated[int | None, whole("How many; default: solver.elastic_modes, or 20.")] = None,
     out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/NAME/modes.")] = None,
     overrides: Overrides = (),
     as_json: AsJson = False,
@@ -33,15 +35,17 @@ def modes(
         A case file or the name of a shipped case; default: seed_stack_plateau.
     """
     loaded = load_case(case, overrides)
-    wanted = {} if count is None else {"solver.elastic_modes": count}
-    loaded = loaded.with_values(wanted) if wanted else loaded
     elements = assemble(
         build_container(loaded),
         youngs_modulus=loaded.container.youngs_modulus_Pa,
         poisson_ratio=loaded.container.poisson_ratio,
         order=loaded.solver.order,
     )
-    found = elastic_modes(elements, loaded.solver.elastic_modes)
+    available = elements.unknowns - RIGID_MODES
+    if count is not None and not 1 <= count <= available:
+        raise CaseError(f"--count {count}: this mesh has from 1 to {available} elastic modes")
+    # A case may do without elastic modes, or take all of a coarse mesh by asking for more.
+    found = elastic_modes(elements, count or min(loaded.solver.elastic_modes or SHOWN, available))
     with house_style():
         drawn = modes_figure(
             points=elements.nodes,

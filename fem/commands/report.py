@@ -11,6 +11,7 @@ from fem.progress import ScreenReporter
 from fem.run_folder import FolderError, naming_what_cannot_be_written, write_atomically
 
 PAGE = "report.html"
+SUFFIXES = (".html", ".htm")
 
 
 def report(
@@ -43,6 +44,7 @@ def report(
         raise FolderError(
             f"{folder}: no such folder; give the folder of a run, a sweep or a study, such as outputs/NAME"
         )
+    place = _place(to if to is not None else folder / PAGE)
     reporter = ScreenReporter(quiet=quiet)
     runs = importlib.import_module("fem.run")
     pages = importlib.import_module("fem.report.run_page")
@@ -61,7 +63,22 @@ def report(
                 told=reporter.message,
                 stop=stop,
             )
-    place = to if to is not None else folder / PAGE
     with naming_what_cannot_be_written(place.parent, "ask again, or elsewhere with --to FILE"):
         write_atomically(place, page)
     print(place)
+
+
+def _place(path: Path) -> Path:
+    """Where the page goes, known to be possible before anything is computed: never over a file of results."""
+    if path.suffix.lower() not in SUFFIXES:
+        raise FolderError(f"--to {path}: the page is HTML; give a name that ends in {' or '.join(SUFFIXES)}")
+    if path.is_dir():
+        raise FolderError(f"--to {path}: a folder stands there; give the name of a file in it")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = error.strerror or error
+        raise FolderError(
+            f"--to {path}: no folder can be made there ({reason}); choose another place"
+        ) from None
+    return path

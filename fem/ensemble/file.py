@@ -25,7 +25,7 @@ from fem.ensemble.intervals import least_draws
 from fem.ensemble.plan import FREE, Ensemble
 from fem.ensemble.scatter import RandomQuantity, Sampling, read_random
 from fem.sweep.axes import NO_AXIS, Axis, AxisError, field_of, read_axis
-from fem.sweep.base_case import base_case, read_as, split_tables
+from fem.sweep.base_case import base_case, read_as, require_once, split_tables
 from fem.sweep.expressions import Expression, ExpressionError, parse_expression
 from fem.sweep.plan import Derived, in_order
 
@@ -81,6 +81,8 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
         )
     axes = _axes(tables.get("axes", {}))
     random = _random(tables.get("random", {}), axes)
+    drawn = [one.key for one in random if not one.spread.relative]
+    require_once(tables.get("set", {}), [*(axis.key for axis in axes), *drawn, *tables.get("derived", {})])
     ensemble = Ensemble(
         name=origin.name,
         text=origin.text,

@@ -1,6 +1,6 @@
 """What a file that varies a case begins with: its heading, its tables, the case it starts from."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -89,3 +89,14 @@ def base_case(name: str, changes: Mapping[str, Any], origin: Origin) -> Case:
     base = load_case(path if is_file else name)
     values = flat("set", changes)
     return base.with_values(values) if values else base
+
+
+def require_once(changes: Mapping[str, Any], varied: Iterable[str]) -> None:
+    """Refuse a key of [set] that varies: one of the two would play no part.
+
+    Raises:
+        CaseError: with the key.
+    """
+    for key in varied:
+        if key in flat("set", changes):
+            raise CaseError(f"[set] {key!r} varies as well; take it out of [set], or do not vary it")

@@ -23,7 +23,7 @@ from fem.case_files import DEFAULT_CASE, SWEEPS, Origin, parse_case
 from fem.case_reading import CaseError, did_you_mean
 from fem.case_tables import Table
 from fem.sweep.axes import NO_AXIS, Axis, AxisError, field_of, read_axis
-from fem.sweep.base_case import base_case, flat, read_as, split_tables
+from fem.sweep.base_case import base_case, flat, read_as, require_once, split_tables
 from fem.sweep.expressions import Expression, ExpressionError, parse_expression
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.plan import Derived, MapChoice, Sweep, in_order, value_in
@@ -64,6 +64,8 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
     base = base_case(heading.case, tables.get("set", {}), origin)
     axes = _axes(tables.get("axes", {}))
     derived = _derived(tables.get("derived", {}), base, axes)
+    varied = [axis.key for axis in axes] + [one.key for one in derived]
+    require_once(tables.get("set", {}), varied)
     sweep = Sweep(
         name=origin.name,
         text=origin.text,

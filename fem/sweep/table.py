@@ -189,6 +189,11 @@ def open_sweep(folder: Path | str) -> SweepTable:
         if not source.is_file():
             source, names = folder / "rows.csv", rows
         lines = [fields_of(line) for line in read_lines(source, line_of(names))]
+        if info["status"] in ("completed", "failed") and len(lines) != info["cells"]:
+            raise ValueError(
+                f"{source.name} has {len(lines)} rows of {info['cells']}; compute it again: "
+                f"python -m fem sweep {info['sweep']} --out {folder} --force"
+            )
         return SweepTable(info=info, axes=axes, columns=_columns(info, axes, names, lines))
     except (KeyError, TypeError, ValueError, IndexError, OSError) as error:
         raise FolderError(f"{folder}: damaged, or not the folder of a sweep ({error})") from None

@@ -76,3 +76,17 @@ def test_dotted_keys_may_be_tables():
     }
     with pytest.raises(CaseError, match="given twice"):
         flat("set", {"contact": {"mu_static": 0.3}, "contact.mu_static": 0.4})
+
+
+@READERS
+def test_a_key_that_is_set_and_varies_is_refused(tmp_path, read, text):
+    path = written(tmp_path, text, "seed_box")
+    changed = path.read_text(encoding="utf-8")
+    changed = (
+        changed.replace("[axes]", '"contact.mu_static" = 0.5\n[axes]')
+        if "[set]" in changed
+        else (changed + '[set]\n"contact.mu_static" = 0.5\n')
+    )
+    path.write_text(changed, encoding="utf-8")
+    with pytest.raises(CaseError, match=r"\[set\] 'contact\.mu_static' varies as well"):
+        read(path)
