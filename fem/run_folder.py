@@ -9,6 +9,7 @@ import contextlib
 import json
 import math
 import os
+import re
 import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -23,6 +24,9 @@ from fem.folder_lock import LOCK_NAME
 #: Statuses after which there is nothing left to compute.
 FINISHED = frozenset({"completed", "overturned"})
 STATUSES = FINISHED | {"failed", "interrupted", "running"}
+
+#: ends of the names of numbers in a result
+MEASURED = re.compile(r"_(m|m2|m3|s|s2|N|Nm|J|Pa|Hz|rad|ratio)$")
 
 
 class FolderError(ValueError):
@@ -216,8 +220,27 @@ def read_result(path: Path) -> dict[str, Any]:
     except ValueError:
         result = None
     if not isinstance(result, dict) or not isinstance(result.get("case_hash"), str):
-        raise FolderError(f"{path}: damaged, or not the result of a run")
+        raise FolderError(f"{path}: damaged, or not the result of a run; compute it again with run --force")
+    wrong = _no_number(result)
+    if wrong is not None:
+        raise FolderError(f"{path}: damaged, {wrong} is no number; compute it again with run --force")
     return result
+
+
+def _no_number(content: Any) -> str | None:
+    """The first key that is named after a unit or a ratio and holds something else, or None."""
+    if isinstance(content, list):
+        return next((wrong for wrong in map(_no_number, content) if wrong is not None), None)
+    if not isinstance(content, dict):
+        return None
+    for key, value in content.items():
+        values = value if isinstance(value, list) else [value]
+        if MEASURED.search(key) and not all(one is None or isinstance(one, int | float) for one in values):
+            return str(key)
+        wrong = _no_number(value)
+        if wrong is not None:
+            return wrong
+    return None
 
 
 def write_atomically(path: Path, text: str) -> None:
