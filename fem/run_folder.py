@@ -235,7 +235,9 @@ def _no_number(content: Any) -> str | None:
         return None
     for key, value in content.items():
         values = value if isinstance(value, list) else [value]
-        if MEASURED.search(key) and not all(one is None or isinstance(one, int | float) for one in values):
+        if MEASURED.search(key) and not all(
+            one is None or isinstance(one, int | float | dict) for one in values
+        ):
             return str(key)
         wrong = _no_number(value)
         if wrong is not None:

@@ -98,7 +98,18 @@ def test_empty_folder_and_leavings_of_a_kill_are_taken(tmp_path):
     assert opened(tmp_path).finished is None
 
 
-@pytest.mark.parametrize("text", ["", "{", "[1]", '{"status": "completed"}', "\x00"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "{",
+        "[1]",
+        '{"status": "completed"}',
+        "\x00",
+        '{"case_hash": "ours", "verdict": {"rotation_ratio": "abc"}}',
+        '{"case_hash": "ours", "joints": [{"height_m": [1.0, "x"]}]}',
+    ],
+)
 def test_damaged_result_is_refused_by_name(tmp_path, text):
     (tmp_path / "run.json").write_text(text)
     with pytest.raises(FolderError, match=r"run\.json: damaged.*--force"):
