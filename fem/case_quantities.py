@@ -181,6 +181,9 @@ ANGULAR_VELOCITY = Quantity(unit="rad/s", least=-100.0, most=100.0, typical=0.5,
 VELOCITY = Quantity(unit="m/s", least=-100.0, most=100.0, typical=0.5, slips={"mm/s": 1e-3})
 GROUND_ACCELERATION = Quantity(unit="m/s2", least=0.0, most=50.0, typical=1.6, slips=GAL)
 SOIL_FACTOR = Quantity(unit="", least=0.1, most=5.0, advice="EN 1998-1:2004, Table 3.2 has 1.0 to 1.8")
+CORNER_PERIOD = Quantity(
+    unit="s", above=0.0, most=10.0, advice="EN 1998-1:2004, Tables 3.2 and 3.3 have 0.25 to 0.8"
+)
 BEHAVIOUR_FACTOR = Quantity(unit="", least=1.0, most=10.0, advice="1.0 is elastic, 1.5 is usual")
 IMPORTANCE_FACTOR = Quantity(unit="", least=0.1, most=5.0, advice="EN 1998-1:2004, 4.2.5 has 0.8 to 1.4")
 SPECTRAL_RADIUS = Quantity(unit="", least=0.0, most=1.0, advice="0.5 is usual; 1 does not damp")

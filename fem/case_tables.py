@@ -299,6 +299,10 @@ class StaticRule(Table):
         default=1.6, description="reference peak ground acceleration a_gR"
     )
     soil_factor: Annotated[float, q.SOIL_FACTOR] = Field(default=1.5, description="S")
+    corner_period_s: Annotated[float, q.CORNER_PERIOD] = Field(
+        default=0.8,
+        description="T_C, up to which the spectrum is level; 0.8 s: ground type D, as the paper has it",
+    )
     behaviour_factor: Annotated[float, q.BEHAVIOUR_FACTOR] = Field(default=1.5, description="q")
     importance_factor: Annotated[float, q.IMPORTANCE_FACTOR] = Field(default=1.0, description="gamma_I")
 

@@ -146,6 +146,7 @@ def checks_of(case: Case, mesh: ContainerMesh, motion: BaseMotion) -> StaticChec
         peak_floor_acceleration=peak_acceleration_within(motion, case.solver.duration_s),
         ground_acceleration=case.static.ground_acceleration_m_s2,
         soil_factor=case.static.soil_factor,
+        corner_period=case.static.corner_period_s,
         behaviour_factor=case.static.behaviour_factor,
         importance_factor=case.static.importance_factor,
         initial_rotation=case.initial.rotation_rad,

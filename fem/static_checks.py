@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from typing import Any
 
 LIMIT_PERIOD = 2.0  # s, EN 1998-1:2004, 4.3.3.2.1 (2) a), Eq. (4.4)
-CONTROL_PERIOD = 0.8  # s, T_C of the paper's Eq. (4): EN 1998-1:2004, Table 3.2, ground type D
 CREDIBLE_RESTITUTION = 0.5
 CLAUSE_APPLICABLE = "EN 1998-1:2004, 4.3.3.2.1 (2)"
 CLAUSE_SLIDING = "EN 1998-1:2004, 4.4.2.4 (1)P, sliding"
@@ -131,13 +130,13 @@ def plateau_base_shear(
     return mass * importance_factor * ground_acceleration * soil_factor * 2.5 / behaviour_factor
 
 
-def method_applicable(*, period: float, control_period: float = CONTROL_PERIOD) -> CheckResult:
+def method_applicable(*, period: float, corner_period: float) -> CheckResult:
     """The period against the limit of the lateral force method, min(4 T_C, 2.0 s) [s].
 
     EN 1998-1:2004, 4.3.3.2.1 (2) a), Eq. (4.4).
     """
     return CheckResult(
-        demand=period, capacity=min(4.0 * control_period, LIMIT_PERIOD), unit="s", clause=CLAUSE_APPLICABLE
+        demand=period, capacity=min(4.0 * corner_period, LIMIT_PERIOD), unit="s", clause=CLAUSE_APPLICABLE
     )
 
 
@@ -221,6 +220,7 @@ def static_checks(
     peak_floor_acceleration: float,
     ground_acceleration: float,
     soil_factor: float,
+    corner_period: float,
     behaviour_factor: float,
     importance_factor: float,
     initial_rotation: float = 0.0,
@@ -238,13 +238,14 @@ def static_checks(
         peak_floor_acceleration: largest |acceleration| of the floor in this run [m/s2].
         ground_acceleration: a_gR of the code [m/s2].
         soil_factor: S [-].
+        corner_period: T_C [s].
         behaviour_factor: q [-].
         importance_factor: gamma_I [-].
         initial_rotation: phi_0 of Eq. (2) [rad]; where it is 0, half the slenderness angle is taken, as an
             ordinary rotation of a rocking container.
 
     The rocking period that is held against the limit of the lateral force method is that of Eq. (3), as
-    in the paper's section 4.2, with T_C = 0.8 s.
+    in the paper's section 4.2.
 
     Raises:
         ValueError: if mass, centroid, inertia, width or gravity is not positive.
@@ -302,7 +303,7 @@ def static_checks(
         own_motion=under(mass * peak_floor_acceleration),
         code=under(code_base_shear(behaviour_factor)),
         code_q1=under(code_base_shear(1.0)),
-        applicability=method_applicable(period=period),
+        applicability=method_applicable(period=period, corner_period=corner_period),
     )
 
 

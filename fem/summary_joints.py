@@ -14,6 +14,7 @@ JOINTS_NOTE = (
     "what the bolts along one edge must carry in tension, and beside the friction of the floor in shear; and when "
     "a joint without bolts would open at an edge or slide."
 )
+LEAST_N = 1e-6  #: smaller forces and moments are rounding
 LARGEST = ("max_shear_N", "max_moment_Nm", "bolt_tension_left_N", "bolt_tension_right_N", "bolt_shear_N")
 
 
@@ -62,4 +63,4 @@ def _unbolted(joint: Mapping[str, Any]) -> str:
 
 
 def _kilo(value: float) -> str:
-    return f"{1e-3 * value:.4g}"
+    return f"{1e-3 * value:.4g}" if abs(value) >= LEAST_N else "0"

@@ -21,7 +21,7 @@ from contact.ledger import (
     MATERIAL_DAMPING,
 )
 from contact.penalty import contact_frequency
-from contact.tracking import FALLEN, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
+from contact.tracking import FALLEN, FORCE_WINDOW, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
 from fem.history import History
 from fem.model import Model
 
@@ -157,6 +157,8 @@ def numerics_of(model: Model, stepping_cpu: float) -> dict[str, Any]:
     run, container = model.run, model.container
     clock = run.clock[0]
     mass, stiffness = container.mesh.mass, model.base_stiffness
+    # Rayleigh and Ritz: the modes of the free container come first, then what its points' own forces add.
+    elastic = model.case.solver.elastic_modes if container.basis is not None else 1
     return {
         "unknowns": int(run.old.position.size),
         "contact_nodes": int(container.support.index.size),
@@ -171,7 +173,10 @@ def numerics_of(model: Model, stepping_cpu: float) -> dict[str, Any]:
         "contact_frequency_Hz": contact_frequency(mass, stiffness),
         "static_penetration_m": mass * model.case.gravity_m_s2 / stiffness,
         "max_penetration_m": float(run.track[0].max_penetration),
-        "elastic_frequencies_Hz": model.frequencies.tolist(),
+        "elastic_frequencies_Hz": model.frequencies[:elastic].tolist(),
+        "attachment_frequencies_Hz": model.frequencies[elastic:].tolist(),
+        "corner_force_window_s": FORCE_WINDOW / run.control.frequency_parameter,
+        "acceleration_window_s": run.history.interval,
     }
 
 

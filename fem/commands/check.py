@@ -80,6 +80,7 @@ def checks_of(case: Case, mesh: ContainerMesh, peak: float) -> StaticChecks:
         peak_floor_acceleration=peak,
         ground_acceleration=case.static.ground_acceleration_m_s2,
         soil_factor=case.static.soil_factor,
+        corner_period=case.static.corner_period_s,
         behaviour_factor=case.static.behaviour_factor,
         importance_factor=case.static.importance_factor,
         initial_rotation=case.initial.rotation_rad,

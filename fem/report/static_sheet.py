@@ -18,7 +18,6 @@ from fem.static_checks import (
     CLAUSE_APPLICABLE,
     CLAUSE_OVERTURNING,
     CLAUSE_SLIDING,
-    CONTROL_PERIOD,
     LIMIT_PERIOD,
 )
 
@@ -172,8 +171,8 @@ def _code_lines(static: Mapping[str, Any], case: Case) -> list[Line]:
             value=static["period_eq3_s"],
             unit="s",
             source=(
-                f"{PAPER}, Eq. (3); limit min(4 TC, {LIMIT_PERIOD:.1f} s) with TC = {CONTROL_PERIOD} s, "
-                f"{CLAUSE_APPLICABLE} a), Eq. (4.4)"
+                f"{PAPER}, Eq. (3); limit min(4 TC, {LIMIT_PERIOD:.1f} s) with TC = "
+                f"{short(case.static.corner_period_s)} s, {CLAUSE_APPLICABLE} a), Eq. (4.4)"
             ),
             verdict="applies" if static["method_applicable"] else "does not apply",
         )

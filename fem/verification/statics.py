@@ -24,6 +24,7 @@ def seed_checks(*, boxes: int, gravity: float, peak: float = 2.4) -> StaticCheck
         peak_floor_acceleration=peak,
         ground_acceleration=1.6,
         soil_factor=1.5,
+        corner_period=0.8,
         behaviour_factor=1.5,
         importance_factor=1.0,
     )

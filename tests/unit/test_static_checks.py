@@ -45,6 +45,7 @@ def block(width=1.0, height=4.0, mass=1000.0, **changes):
         "peak_floor_acceleration": 3.0,
         "ground_acceleration": 1.6,
         "soil_factor": 1.5,
+        "corner_period": 0.8,
         "behaviour_factor": 1.5,
         "importance_factor": 1.0,
     }
@@ -124,10 +125,10 @@ def test_period_of_a_point_mass_takes_the_initial_rotation_or_half_the_slenderne
 
 def test_lateral_force_method_is_limited_to_two_seconds_and_four_control_periods():
     # EN 1998-1:2004, 4.3.3.2.1 (2) a): T1 <= 4 T_C and T1 <= 2.0 s.
-    assert rules.method_applicable(period=2.0).passed
-    assert not rules.method_applicable(period=2.001).passed
-    assert rules.method_applicable(period=1.6, control_period=0.4).passed
-    assert not rules.method_applicable(period=1.7, control_period=0.4).passed
+    assert rules.method_applicable(period=2.0, corner_period=0.8).passed
+    assert not rules.method_applicable(period=2.001, corner_period=0.8).passed
+    assert rules.method_applicable(period=1.6, corner_period=0.4).passed
+    assert not rules.method_applicable(period=1.7, corner_period=0.4).passed
 
 
 def test_dictionary_has_the_keys_of_a_result():
