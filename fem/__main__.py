@@ -85,7 +85,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         result = build_app()(tokens, exit_on_error=False, print_error=False)
         sys.stdout.flush()
     except CycloptsError as error:
-        return _refuse(f"{error}\nsee python -m fem --help")
+        command = f"{tokens[0]} " if tokens and tokens[0] in COMMANDS else ""
+        return _refuse(f"{error}\nsee python -m fem {command}--help")
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED

@@ -76,6 +76,8 @@ class OpenedRun:
     @cached_property
     def case(self) -> Case:
         """With every default and "auto" replaced."""
+        if not self.place.resolved.is_file():
+            raise FolderError(f"{self.place.resolved}: missing; run the case again")
         try:
             return load_case(str(self.place.resolved))
         except ValueError as error:
@@ -123,8 +125,16 @@ class OpenedRun:
         """The frame nearest to a time [s].
 
         Raises:
-            FolderError: there are no fields, or this frame is damaged.
+            FolderError: there are no fields, or none of that time.
+            FieldError: this frame is damaged.
         """
+        times = self.fields.times
+        first, last = float(times[0]), float(times[-1])
+        beside = (last - first) / (2 * len(times)) + 1e-9
+        if not first - beside <= time <= last + beside:  # true for nan
+            raise FolderError(
+                f"{self.place.fields}: frames lie from {first:g} to {last:g} s, not at {time:g} s"
+            )
         return self.fields.frame(self.fields.nearest(time))
 
     def grid(self, time: float) -> "UnstructuredGrid":

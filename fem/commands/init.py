@@ -40,6 +40,10 @@ def init(
         raise CaseError(
             f"{path} is already there and is not overwritten; give another name with --to"
         ) from None
+    except OSError as error:
+        raise CaseError(
+            f"{path}: cannot be written ({error.strerror or error}); give another place with --to"
+        ) from None
     if computed_by:
         print(f"{path} written; python -m fem {computed_by} {path} computes it")
         return

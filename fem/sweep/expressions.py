@@ -60,11 +60,19 @@ class Expression:
         """
         try:
             found = _value(self.tree, values)
+        except ZeroDivisionError:
+            reason = "it divides by zero"
+        except OverflowError:
+            reason = "it grows beyond all numbers"
         except (ArithmeticError, ValueError, TypeError) as error:
-            raise ExpressionError(f"= {self.text!r} has no value: {error}") from None
-        if isinstance(found, complex) or not math.isfinite(found):
-            raise ExpressionError(f"= {self.text!r} is {found}, not a finite number")
-        return float(found)
+            reason = str(error)
+        else:
+            if not isinstance(found, complex) and math.isfinite(found):
+                return float(found)
+            reason = f"it is {found}, not a finite number"
+        raise ExpressionError(
+            f"= {self.text!r} has no value: {reason}; change it, or the values of the keys that it refers to"
+        )
 
 
 def parse_expression(text: str) -> Expression:

@@ -101,7 +101,7 @@ def test_a_grid_is_what_pyvista_reads_from_the_file(folder):
     [
         ("history.csv", None, "history", "history.csv: cannot be read (No such file"),
         ("history.csv", "time\n", "history", "not a history"),
-        ("resolved.toml", None, "case", "no case file"),
+        ("resolved.toml", None, "case", "resolved.toml: missing"),
         ("resolved.toml", "schema = ", "case", "not a TOML file"),
         ("rigid_check.csv", "time_s,rotation_rad\n0,a\n", "rigid_check", "rigid_check.csv: cannot be read"),
         ("fields/run.pvd", None, "fields", "no fields were written"),
@@ -162,6 +162,12 @@ def test_opening_loads_neither_the_solver_nor_pyvista(folder):
         [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True, timeout=60
     )
     assert result.stdout.strip() == ""
+
+
+@pytest.mark.parametrize("time", [float("nan"), -1.0, 1e9])
+def test_a_time_without_a_frame_is_refused(folder, time):
+    with pytest.raises(FolderError, match="frames lie from 0 to"):
+        fem.open_run(folder).frame(time)
 
 
 def test_the_package_gives_away_no_other_names():
