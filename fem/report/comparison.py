@@ -129,8 +129,7 @@ EXCLUSIONS = (
     "vertical floor motion, torsion and motion out of the plane, wind",
     "sloshing, plasticity, buckling and bending of the sheets out of their plane",
     "compliance of floor and soil, neighbours, ropes or stops, loose stacking of boxes",
-    "an ensemble of ground motions, and partial factors: EN 1998-1:2004, 4.4.2.4 (2) with 3.2.3.1.2 (4) asks for three "
-    "accelerograms or more",
+    "partial factors, and further ground motions: EN 1998-1:2004, 3.2.3.1.2 (4) asks for three or more",
 )
 
 

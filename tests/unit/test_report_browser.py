@@ -244,7 +244,13 @@ def test_assumptions_and_exclusions_stand_on_the_first_page(run_page, tmp_path):
     first = subprocess.run(
         ["pdftotext", "-l", "1", pdf, "-"], capture_output=True, text=True, check=True
     ).stdout
-    for words in ("Result:", "What was asked", "Assumptions and exclusions", "asks for more than one run"):
+    for words in (
+        "Result:",
+        "What was asked",
+        "Assumptions and exclusions",
+        "asks for three or more",
+        "Read as:",
+    ):
         assert words in first
 
 
