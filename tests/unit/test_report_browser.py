@@ -249,7 +249,6 @@ def test_assumptions_and_exclusions_stand_on_the_first_page(run_page, tmp_path):
         "What was asked",
         "Assumptions and exclusions",
         "asks for three or more",
-        "Read as:",
     ):
         assert words in first
 
