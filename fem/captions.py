@@ -80,6 +80,13 @@ def draw_stress_scale(image: Image.Image, limit: float, *, right: int, bottom: i
     pen.text((left - 4, top - 34), "von Mises\nstress [MPa]", fill=INK, font=font, anchor="ls", spacing=2)
 
 
+def draw_no_stress(image: Image.Image, *, right: int, bottom: int) -> None:
+    """Where the scale would stand: that there is none, its foot at `bottom`."""
+    pen = ImageDraw.Draw(image)
+    text = "rigid:\nno stress\nis known"
+    pen.text((image.width - right - 4, bottom), text, fill=FAINT, font=_font(14), anchor="ld", spacing=2)
+
+
 def draw_foot(image: Image.Image, pixels_per_metre: float, *, pressure: float, left: int) -> None:
     """In the lower corners: a ruler, which stands still, and what the signs on the floor mean.
 

@@ -96,7 +96,7 @@ class FieldWriter:
         *,
         displacement: FloatArray,
         velocity: FloatArray,
-        von_mises: FloatArray,
+        von_mises: FloatArray | None,
         contact_pressure: FloatArray,
         floor_displacement: float,
     ) -> Path:
@@ -106,7 +106,7 @@ class FieldWriter:
             time: [s].
             displacement: position minus `points`, the floor's motion included, shape (n, 2) [m].
             velocity: absolute, shape (n, 2) [m/s].
-            von_mises: at the nodes, shape (n,) [Pa].
+            von_mises: at the nodes, shape (n,) [Pa]; None leaves the array out.
             contact_pressure: compression positive, zero off the base, shape (n,) [Pa].
             floor_displacement: along x [m].
 
@@ -115,13 +115,14 @@ class FieldWriter:
         """
         floor = np.zeros_like(self._points)
         floor[:, 0] = floor_displacement
+        stress = {} if von_mises is None else {"von_mises_Pa": von_mises.astype(np.float32)}
         mesh = meshio.Mesh(
             self._points,
             self._cells,
             point_data={
                 "displacement_m": _padded(displacement),
                 "velocity_m_s": _padded(velocity),
-                "von_mises_Pa": von_mises.astype(np.float32),
+                **stress,
                 "contact_pressure_Pa": contact_pressure.astype(np.float32),
                 "floor_displacement_m": floor,
             },
@@ -174,7 +175,7 @@ class Frame:
     region: IntArray  #: shape (m,)
     displacement: FloatArray  #: shape (n, 2) [m]
     velocity: FloatArray  #: shape (n, 2) [m/s]
-    von_mises: FloatArray  #: shape (n,) [Pa]
+    von_mises: FloatArray | None  #: shape (n,) [Pa]; None of a rigid container, whose stress nobody knows
     contact_pressure: FloatArray  #: shape (n,) [Pa]
     floor_displacement: float  #: [m]
 
@@ -221,7 +222,7 @@ class Fields:
                 region=mesh.cell_data["region"][0],
                 displacement=data["displacement_m"][:, :2],
                 velocity=data["velocity_m_s"][:, :2],
-                von_mises=data["von_mises_Pa"],
+                von_mises=data.get("von_mises_Pa"),
                 contact_pressure=data["contact_pressure_Pa"],
                 floor_displacement=float(data["floor_displacement_m"][0, 0]),
             )

@@ -20,6 +20,7 @@ from fem.captions import (
     STRESS_MAP,
     caption,
     draw_foot,
+    draw_no_stress,
     draw_stress_scale,
     rotation_at,
     write_caption,
@@ -84,7 +85,7 @@ class Scene:
         places = spatial(frame.points + frame.displacement)
         self._body.points = places
         self._outline.points = places + np.array([0.0, 0.0, 0.5])  # before the body
-        if self._stress_limit > 0.0:
+        if self._stress_limit > 0.0 and frame.von_mises is not None:
             self._body.point_data["stress"] = 1e-6 * frame.von_mises
         for part in (self._hatches, self._mark):
             part.points = self._resting[id(part)] + (frame.floor_displacement, 0.0, 0.0)
@@ -145,9 +146,11 @@ class Scene:
         """Write what the picture shows on it."""
         view = self.view
         write_caption(image, caption(self._run, frame), SIDE)
+        surface = image.height - BOTTOM - int(view.depth * view.pixels_per_metre)
         if self._stress_limit > 0.0:
-            surface = image.height - BOTTOM - int(view.depth * view.pixels_per_metre)
             draw_stress_scale(image, self._stress_limit, right=BAR, bottom=surface - 12)
+        else:
+            draw_no_stress(image, right=BAR, bottom=surface - 12)
         pressure = float(frame.contact_pressure.max())
         draw_foot(image, view.pixels_per_metre, pressure=pressure, left=SIDE)
 

@@ -187,9 +187,10 @@ class Recorder:
             for k in range(count):
                 time = (first + k) * samples.interval
                 frame = self._recovery.frame(samples.position[k], samples.velocity[k])
-                self._note_stress(float(np.max(frame.von_mises)))
+                if frame.von_mises is not None:
+                    self._note_stress(float(np.max(frame.von_mises)))
                 if self._frame_sink is not None:
-                    pressure = np.zeros(len(frame.von_mises))
+                    pressure = np.zeros(len(frame.displacement))
                     pressure[self._model.container.nodes] = samples.force[k, :, 1] / self._area
                     floor, _, _ = floor_motion(run.motion, time)
                     self._frame_sink(time, frame, pressure, floor)

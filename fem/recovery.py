@@ -26,7 +26,7 @@ class Frame:
 
     displacement: FloatArray  #: (n, 2) from the undeformed place, absolute [m]
     velocity: FloatArray  #: (n, 2) absolute [m/s]
-    von_mises: FloatArray  #: (n,) [Pa]
+    von_mises: FloatArray | None  #: (n,) [Pa]; None of a container without elastic modes
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -58,7 +58,7 @@ class Recovery:
         return Frame(
             displacement=position[:2] + arm - nodes,
             velocity=velocity[:2] + spin + elastic_rate,
-            von_mises=von_mises(position[3:] @ self._stress),
+            von_mises=von_mises(position[3:] @ self._stress) if len(self.shapes) else None,
         )
 
     def largest_von_mises(self, position: FloatArray) -> float:

@@ -66,7 +66,8 @@ class Survey:
     view: View
     pressed: IntArray  #: nodes that ever carry contact pressure
     usual_pressure: float  #: the median over the frames of the largest [Pa]
-    usual_stress: float  #: the median over the frames of what all but a few nodes stay below [Pa]
+    #: the median over the frames of what all but a few nodes stay below [Pa]; 0 where no stress is known
+    usual_stress: float
 
 
 def survey(frames: Iterable[Frame]) -> Survey:
@@ -82,7 +83,8 @@ def survey(frames: Iterable[Frame]) -> Survey:
         pressed = carries | pressed if len(pressed) else carries
         floors.append(frame.floor_displacement)
         pressures.append(float(frame.contact_pressure.max()))
-        stresses.append(float(np.quantile(frame.von_mises, STRESSED)))
+        if frame.von_mises is not None:
+            stresses.append(float(np.quantile(frame.von_mises, STRESSED)))
     return Survey(
         view=View(
             left=float(lowest[0]),
@@ -93,7 +95,7 @@ def survey(frames: Iterable[Frame]) -> Survey:
         ),
         pressed=np.flatnonzero(pressed),
         usual_pressure=float(np.median([pressure for pressure in pressures if pressure > 0.0] or [1.0])),
-        usual_stress=float(np.median(stresses)),
+        usual_stress=float(np.median(stresses or [0.0])),
     )
 
 
@@ -107,7 +109,8 @@ def grid_of(frame: Frame) -> pyvista.UnstructuredGrid:
     grid = pyvista.UnstructuredGrid(cells, np.full(count, CELL_TYPES[size]), spatial(frame.points))
     grid.point_data["displacement_m"] = spatial(frame.displacement)
     grid.point_data["velocity_m_s"] = spatial(frame.velocity)
-    grid.point_data["von_mises_Pa"] = frame.von_mises
+    if frame.von_mises is not None:
+        grid.point_data["von_mises_Pa"] = frame.von_mises
     grid.point_data["contact_pressure_Pa"] = frame.contact_pressure
     grid.cell_data["region"] = frame.region
     return grid

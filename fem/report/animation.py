@@ -59,7 +59,7 @@ class Split:
     rotation: float  #: mass-weighted best fit [rad]
     floor: float  #: displacement of the floor [m]
     elastic: FloatArray  #: (n, 2) in the frame turning with the container [m]
-    von_mises: FloatArray  #: (n,) [Pa]
+    von_mises: FloatArray | None  #: (n,) [Pa]; None of a rigid container
     normal_force: FloatArray  #: (n_c,) at the contact nodes, compression positive [N]
 
 
@@ -77,14 +77,19 @@ class Film:
     @property
     def largest_stress(self) -> float:
         """Over the frames [Pa]."""
-        return max((float(frame.von_mises.max()) for frame in self.frames), default=0.0)
+        return max((float(stress.max()) for stress in self.stresses), default=0.0)
+
+    @property
+    def stresses(self) -> list[FloatArray]:
+        """Of the frames; none of a rigid container, whose stress nobody knows."""
+        return [frame.von_mises for frame in self.frames if frame.von_mises is not None]
 
     @property
     def stress_scale(self) -> float:
         """The end of the colour scale [Pa]; 0 where there is no stress."""
         if self.largest_stress == 0.0:
             return 0.0
-        return _round_up(float(np.percentile([frame.von_mises for frame in self.frames], STRESS_SHARE)))
+        return _round_up(float(np.percentile(self.stresses, STRESS_SHARE)))
 
     @property
     def largest_elastic(self) -> float:
@@ -184,7 +189,7 @@ def player_data(film: Film, history: History, *, model: Model) -> dict[str, Any]
         "contact": film.contact.tolist(),
         "times": [frame.time for frame in film.frames],
         "elastic": packed_floats(np.array([frame.elastic for frame in film.frames]).ravel()),
-        "stress": packed(_on_scale([frame.von_mises for frame in film.frames], scale), "u1"),
+        "stress": packed(_on_scale(film.stresses, scale), "u1"),
         "stress_scale": scale,
         "normal": packed_floats(np.array([frame.normal_force for frame in film.frames]).ravel()),
     }
@@ -241,7 +246,7 @@ def _splits(
             rotation=rotation,
             floor=frame.floor_displacement,
             elastic=elastic[drawn],
-            von_mises=np.asarray(frame.von_mises, dtype=float)[drawn],
+            von_mises=None if frame.von_mises is None else np.asarray(frame.von_mises, dtype=float)[drawn],
             normal_force=np.asarray(frame.contact_pressure, dtype=float)[contact] * area,
         )
 

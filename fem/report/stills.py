@@ -127,7 +127,7 @@ def _cells(film: Film, frame: Split, points: FloatArray) -> list[str]:
     """Cells by colour: one path each."""
     if not len(film.quads):
         return []
-    if film.stress_scale > 0.0:
+    if film.stress_scale > 0.0 and frame.von_mises is not None:
         level = frame.von_mises[film.quads].mean(axis=1) / film.stress_scale
         bins = np.clip((BINS * level).astype(int), 0, BINS - 1)
         paints = colours(BINS)

@@ -101,6 +101,12 @@ def test_open_fields_gives_the_arrays_back(tmp_path):
     assert frame.cells.tolist() == QUADS9.tolist() and frame.region.tolist() == [1, 2]
 
 
+def test_a_frame_without_stress_holds_no_array_of_it(tmp_path):
+    path = writer(tmp_path).write(0.1, **{**fields(), "von_mises": None})
+    assert "von_mises_Pa" not in meshio.read(path).point_data
+    assert open_fields(tmp_path).frame(0).von_mises is None
+
+
 def test_times_are_kept_to_the_last_bit(tmp_path):
     writer(tmp_path).write(0.1 + 0.2, **fields())
     assert open_fields(tmp_path).times[0] == 0.1 + 0.2

@@ -132,6 +132,17 @@ class TestScene:
         assert np.array_equal(before, np.asarray(scene.image(first)))
 
 
+def test_the_grid_of_an_elastic_container_is_coloured_by_its_stress(run):
+    assert run.grid(0.8).point_data["von_mises_Pa"] == pytest.approx(run.frame(0.8).von_mises)
+    assert run.frame(0.8).von_mises.max() > 1e5
+
+
+@pytest.mark.parametrize("stress", [None, np.zeros(4)])  # files of rigid runs held zeros at first
+def test_without_stress_there_is_nothing_to_colour_by(run, stress):
+    frames = [dataclasses.replace(frame, von_mises=stress) for frame in run.fields]
+    assert survey(frames).usual_stress == 0.0
+
+
 def test_a_rigid_run_has_a_plain_body(tmp_path, renders):
     plain = run_into(
         tmp_path / "r", "seed_box", "solver.model=rigid", "solver.duration_s=0.2", "output.fields_s=0.1"

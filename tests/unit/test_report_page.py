@@ -7,13 +7,15 @@ from markupsafe import escape
 
 from fem.__main__ import main
 from fem.case import read_case
+from fem.model import build_model
 from fem.opening import open_run
 from fem.report import variation_table as variation_table_module
+from fem.report.animation import film_of
 from fem.report.quantities import typeset
 from fem.report.run_page import Signature, run_report
 from fem.report.variation_table import variation_table, variations_meanwhile
 from fem.report.variations import by_importance, variations_of
-from fem.run import run_case
+from fem.run import RunOptions, run_case
 
 HOSTILE = "</title><script>alert(1)</script> & co"
 CASE = f"""
@@ -92,6 +94,14 @@ def test_the_case_in_the_page_is_the_one_that_was_run(page, folder):
     for escaped, sign in (("&lt;", "<"), ("&gt;", ">"), ("&#34;", '"'), ("&amp;", "&")):
         text = text.replace(escaped, sign)
     assert read_case(text).resolved() == open_run(folder).case.resolved()
+
+
+def test_the_animation_of_a_rigid_run_has_no_stress(tmp_path):
+    case = read_case(CASE.replace("elastic_modes = 4", 'model = "rigid"'), name="rigid")
+    run_case(case, case_text=case.text, folder=tmp_path / "r", options=RunOptions(band=False))
+    film = film_of(build_model(case), open_run(tmp_path / "r").fields)
+    assert film.stress_scale == film.largest_stress == 0.0
+    assert film.frames[0].von_mises is None and len(film.frames) == 25
 
 
 def test_variations_are_kept_beside_the_run(folder, page):
