@@ -20,6 +20,7 @@ from contact.body import State
 from contact.interface import Workspace
 from contact.run import Run
 from fem.checkpoint import Checkpoint, CheckpointError, read_checkpoint, write_checkpoint
+from fem.compilation import compilation_time
 from fem.fields import FieldWriter, frame_name
 from fem.folder_lock import FolderLock
 from fem.full_body import FullBody
@@ -43,10 +44,11 @@ Arrays = dict[str, NDArray[Any]]
 
 @dataclass(frozen=True, kw_only=True)
 class Spent:
-    """What a run has cost so far, over all its beginnings."""
+    """What a run has cost so far, over all its beginnings; or a reading of the clocks that count it."""
 
     wall_s: float = 0.0
     cpu_s: float = 0.0
+    compile_s: float = 0.0  #: of the wall time, the compilation of kernels
 
 
 class CheckpointKeeper:
@@ -63,7 +65,7 @@ class CheckpointKeeper:
         history: HistoryWriter,
         fields: FieldWriter | None,
         before: Spent,
-        began: tuple[float, float],
+        began: Spent,
     ) -> None:
         self._place, self._lock = place, lock
         self._case_hash, self._program = case_hash, program_identity()
@@ -130,7 +132,7 @@ def beginning_in(place: RunFolder, model: Model, case_hash: str) -> Beginning:
             ),
             history_bytes=int(about["history"]["bytes"]),
             frames_s=tuple(float(instant) for instant in about["frames_s"]),
-            spent=Spent(wall_s=float(about["spent"]["wall_s"]), cpu_s=float(about["spent"]["cpu_s"])),
+            spent=Spent(**{name: float(about["spent"][name]) for name in ("wall_s", "cpu_s", "compile_s")}),
             arrays=found.arrays,
         )
         digest = str(about["history"]["sha256"])
@@ -165,11 +167,18 @@ def put_back(model: Model, recorder: Recorder, arrays: Mapping[str, NDArray[Any]
     recorder.recall(_named(arrays, RECORDED))
 
 
-def spent_since(began: tuple[float, float], before: Spent) -> Spent:
-    """Wall and processor time [s] since `began`, readings of their clocks, and what was spent `before`."""
+def clock_readings() -> Spent:
+    """What the clocks say now; only differences of it mean something."""
+    return Spent(wall_s=time.perf_counter(), cpu_s=time.process_time(), compile_s=compilation_time())
+
+
+def spent_since(began: Spent, before: Spent) -> Spent:
+    """What was spent since the clocks said `began`, and `before`."""
+    now = clock_readings()
     return Spent(
-        wall_s=before.wall_s + time.perf_counter() - began[0],
-        cpu_s=before.cpu_s + time.process_time() - began[1],
+        wall_s=before.wall_s + now.wall_s - began.wall_s,
+        cpu_s=before.cpu_s + now.cpu_s - began.cpu_s,
+        compile_s=before.compile_s + now.compile_s - began.compile_s,
     )
 
 

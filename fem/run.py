@@ -7,10 +7,9 @@ they are wanted, the comparison with the rigid block and the band over the conta
 import contextlib
 import shutil
 import signal
-import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -22,6 +21,7 @@ from fem.band import band_of, wants_band
 from fem.band_keeping import read_members, write_members
 from fem.case import Case, CaseError, case_hash, to_toml
 from fem.case_motion import motion_notes
+from fem.compilation import compilation_announced
 from fem.fields import FieldWriter
 from fem.figures import write_figures
 from fem.folder_lock import FolderLock, FolderLostError, held_folder
@@ -34,7 +34,15 @@ from fem.progress import Reporter, SilentReporter
 from fem.recorder import Recorder
 from fem.recovery import Frame, recovery_of
 from fem.required_disk import require_disk
-from fem.resumption import Beginning, CheckpointKeeper, beginning_in, put_back, spent_since
+from fem.resumption import (
+    Beginning,
+    CheckpointKeeper,
+    Spent,
+    beginning_in,
+    clock_readings,
+    put_back,
+    spent_since,
+)
 from fem.rigid_check import check_against_rigid_block, wants_rigid_check
 from fem.run_folder import (
     FINISHED,
@@ -89,7 +97,7 @@ def run_case(
         OutputError: the disk is full, the folder was removed; what was written can be read.
     """
     options, reporter = options or RunOptions(), reporter or SilentReporter()
-    began = time.perf_counter(), time.process_time()
+    began = clock_readings()
     model = build_model(case)
     resolved = resolve(case, model)
     mark = case_hash(resolved)
@@ -107,7 +115,11 @@ def run_case(
         nonlocal beginning
         beginning = beginning_in(place, model, mark)
 
-    with held(folder) as lock, interruptible(reporter) as stop:
+    with (
+        held(folder) as lock,
+        interruptible(reporter) as stop,
+        compilation_announced(reporter.message),
+    ):
         place = open_run_folder(
             folder,
             case_text=case_text,
@@ -142,7 +154,7 @@ def run_case(
             result |= result_of(model, recorder, ending)
             for once_more in (True, False):  # the run is safe before its checks begin, and whole after them
                 spent = spent_since(began, beginning.spent)
-                result |= {"wall_s": spent.wall_s, "cpu_s": spent.cpu_s}
+                result |= asdict(spent)
                 lock.check()
                 store(result, case, place)
                 if ending.status in FINISHED:
@@ -357,7 +369,7 @@ def _step_into(
     stop: Callable[[], bool],
     beginning: Beginning,
     case_hash: str,
-    began: tuple[float, float],
+    began: Spent,
 ) -> tuple[Ending, Recorder]:
     """Step the model; history, fields and checkpoints go into the folder as they come."""
     with ExitStack() as stack:

@@ -18,7 +18,6 @@ from typing import Protocol
 import numpy as np
 
 from contact.body import ROTATION
-from contact.compiled import is_compiled
 from contact.floor_motion import UNIFORM, as_floor_motion, floor_motion
 from contact.run import Run
 from contact.step_control import most_attempts
@@ -26,7 +25,6 @@ from contact.stepping import AFTERMATH_SLICE, FAILED, OVERTURNED, REACHED
 from fem.crushing import least_volume_ratio
 from fem.full_body import FullBody, advance_body, leave_body_alone
 from fem.model import Model
-from fem.nodal_body import SOURCES
 from fem.progress import Reporter, SilentReporter
 from fem.recorder import Recorder
 from fem.verdict import MODE_NAMES, audit
@@ -113,8 +111,6 @@ def simulate(
     """
     reporter, keeper, progress = reporter or SilentReporter(), keeper or NoKeeper(), progress or Progress()
     full = isinstance(model.body, FullBody)
-    if not is_compiled("advance", SOURCES if full else ()):
-        reporter.message("compiling the stepping kernels, once after installation: about a minute")
     advance_body(model.body, model.run, 0.0)
     duration, control, run = model.case.solver.duration_s, model.run.control, model.run
     clock, track = run.clock[0], run.track[0]

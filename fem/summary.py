@@ -281,10 +281,11 @@ def _steps(numerics: Mapping[str, Any]) -> str:
 def _times(result: Result, numerics: Mapping[str, Any]) -> str:
     if result.get("wall_s") is None:
         return ""
-    stepping = numerics.get("stepping_cpu_s")
-    return f"{result['wall_s']:.3g} s" + (
-        f", of which stepping {stepping:.3g} s" if stepping is not None else ""
-    )
+    compiling, stepping = result.get("compile_s"), numerics.get("stepping_cpu_s")
+    parts = [f"stepping {stepping:.3g} s"] if stepping is not None else []
+    if compiling:  # zero in every run but the first ones
+        parts.insert(0, f"compiling {compiling:.3g} s (once after installation)")
+    return f"{result['wall_s']:.3g} s" + (f", of which {', '.join(parts)}" if parts else "")
 
 
 def _files(folder: Path) -> Text:

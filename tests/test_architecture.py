@@ -17,7 +17,7 @@ ALLOWED = {"mesh": {"mesh"}, "contact": {"contact"}, "fem": {"mesh", "contact", 
 DOORS = {
     "skfem": {"fem/assembly.py"},
     "pyvista": {"fem/scenery.py", "fem/pictures.py", "fem/movie.py", "fem/opening.py"},
-    "numba": {"contact", "fem/elasticity.py", "fem/nodal_body.py"},
+    "numba": {"contact", "fem/elasticity.py", "fem/nodal_body.py", "fem/compilation.py"},
     "pydantic": {"fem"},
     # optional, and slow to import: loaded where a cluster is asked for
     "dask": {"fem/sweep/cluster.py"},

@@ -223,6 +223,12 @@ def test_unfinished_results_are_shown_as_far_as_they_go():
     assert "own peak, 4 m/s2" in text_of(partial)
 
 
+def test_compiling_is_told_apart_from_computing():
+    assert "compiling" not in text_of(changed(compile_s=0.0))
+    first = " ".join(text_of(changed(wall_s=62.4, compile_s=57.12)).split())
+    assert "computed in 62.4 s, of which compiling 57.1 s (once after installation), stepping" in first
+
+
 def test_summary_says_what_to_open(tmp_path):
     assert "no fields were written" in plain_summary(RESULT, title="x", folder=tmp_path)
     (tmp_path / "fields").mkdir()

@@ -47,7 +47,7 @@ def files_of(folder: Path) -> dict[str, bytes]:
 
 
 def without_times(result: dict) -> dict:
-    kept = {key: value for key, value in result.items() if key not in ("wall_s", "cpu_s")}
+    kept = {key: value for key, value in result.items() if key not in ("wall_s", "cpu_s", "compile_s")}
     kept["numerics"] = {k: v for k, v in kept["numerics"].items() if k != "stepping_cpu_s"}
     return kept
 
