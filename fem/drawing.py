@@ -9,7 +9,6 @@ import io
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import Any
 
 import matplotlib
@@ -70,23 +69,12 @@ STYLE: dict[Any, Any] = {
     "ytick.color": BLACK,
 }
 TIME = "time [s]"
+PLANE = "plane"
 NEAR_LIMIT = (
     0.15  #: share of the slenderness angle, or of the energy to overturn, from which it is drawn to scale
 )
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 STRETCHES = 800  #: of a long curve, each drawn by its extremes: finer than print
-
-
-@dataclass(frozen=True, kw_only=True)
-class TimeAxes:
-    """Where a panel over time lies in its figure, for a cursor that moves over it."""
-
-    left: float  #: of the figure's width, from the left [-]
-    right: float
-    bottom: float  #: of the figure's height, from below [-]
-    top: float
-    start: float  #: time at the left [s]
-    end: float  #: time at the right [s]
 
 
 @contextmanager
@@ -156,7 +144,7 @@ def time_panels(
         upper.tick_params(labelbottom=False)
     axes[-1].set_xlabel(TIME)
     for panel in axes[: len(heights)]:
-        panel.set_gid(TIME)
+        panel.set_label(TIME)
     return figure, axes
 
 
@@ -250,33 +238,68 @@ def keep_visible(axes: Axes, least: float) -> None:
     axes.set_ylim(min(low, -least), max(high, least))
 
 
-def svg_of(figure: Figure, prefix: str = "") -> str:
+def title_of(figure: Figure) -> str:
+    """What `head` wrote above a figure; empty where it wrote nothing."""
+    return next((text.get_text() for text in figure.texts if text.get_text()), "")
+
+
+def svg_of(figure: Figure) -> str:
     """A figure as an SVG document, the same bytes for the same drawing.
 
     Args:
         figure: drawn in the house style.
-        prefix: put before every id, so that several figures can stand in one page.
     """
     stream = io.StringIO()
     with house_style():
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
-    text = re.sub(r' d="[^"]*"', lambda path: COORDINATE.sub("", path[0]), stream.getvalue())
-    if prefix:
-        for before in ('id="', 'href="#', "url(#"):
-            text = text.replace(before, before + prefix)
-    return text
+    return re.sub(r' d="[^"]*"', lambda path: COORDINATE.sub("", path[0]), stream.getvalue())
 
 
-def time_axes(figure: Figure) -> list[TimeAxes]:
-    """Where the panels over time lie, downwards; asked after `svg_of`, which lays the figure out."""
-    panels = []
-    for axes in figure.axes:
-        if axes.get_gid() == TIME:
-            box, (start, end) = axes.get_position(), axes.get_xlim()
-            panels.append(
-                TimeAxes(left=box.x0, right=box.x1, bottom=box.y0, top=box.y1, start=start, end=end)
-            )
-    return panels
+def follow_in_plane(axes: Axes, across: str, up: str, factor: float) -> None:
+    """Let a cursor show where the motion is in a plane of two quantities.
+
+    Args:
+        axes: of the plane.
+        across, up: the quantities, by the names that the player of a report gives them.
+        factor: from their SI units to those of the axes.
+    """
+    axes.set_label(" ".join((PLANE, across, up, repr(factor))))
+
+
+def followed(figure: Figure) -> dict[str, Any] | None:
+    """Where a cursor moves over a figure, in shares of its width and height from the lower left.
+
+    Asked after `svg_of`, which lays the figure out. A cursor over time spans all panels over time.
+    """
+    marked = [(axes, str(axes.get_label())) for axes in figure.axes]
+    over_time = [axes for axes, mark in marked if mark == TIME]
+    plane = next(((axes, mark.split()) for axes, mark in marked if mark.startswith(PLANE)), None)
+    if over_time:
+        boxes = [axes.get_position() for axes in over_time]
+        return {
+            "kind": "time",
+            "left": boxes[0].x0,
+            "right": boxes[0].x1,
+            "top": max(box.y1 for box in boxes),
+            "bottom": min(box.y0 for box in boxes),
+            "x": list(over_time[0].get_xlim()),
+        }
+    if plane is None:
+        return None
+    axes, (_, across, up, factor) = plane
+    box = axes.get_position()
+    return {
+        "kind": "plane",
+        "left": box.x0,
+        "right": box.x1,
+        "top": box.y1,
+        "bottom": box.y0,
+        "x": list(axes.get_xlim()),
+        "y": list(axes.get_ylim()),
+        "horizontal": across,
+        "vertical": up,
+        "factors": [float(factor), float(factor)],
+    }
 
 
 def _joined(starts: FloatArray, ends: FloatArray, gap: float) -> list[tuple[float, float]]:

@@ -1,13 +1,11 @@
 """The figures of a run: what the floor did, what the container did, and where the energy went.
 
-One function a figure; each takes an opened run and returns a matplotlib Figure, which stands in `figures/` as
-SVG and in the report. Titles say what one sees. Rotation in degrees, lengths in mm, forces in kN; x to the
-right, rotation > 0 toward +x, forces on the container.
+One function a figure; each takes an opened run and returns a matplotlib Figure. Titles say what one sees. Rotation in
+degrees, lengths in mm, forces in kN; x to the right, rotation > 0 toward +x, forces on the container.
 """
 
 import math
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -28,6 +26,7 @@ from fem.drawing import (
     draw_curve,
     draw_limits,
     draw_states,
+    follow_in_plane,
     head,
     house_style,
     keep_visible,
@@ -36,7 +35,6 @@ from fem.drawing import (
     number,
     panels,
     states_of,
-    svg_of,
     time_panels,
     zero_line,
 )
@@ -45,7 +43,6 @@ from fem.figures_energy import energy_figure
 from fem.figures_forces import forces_figure
 from fem.figures_joints import joints_figure
 from fem.opening import OpenedRun
-from fem.run_folder import write_atomically
 from fem.verdict import SLIDING
 
 LEAST_MOTION = 1e-3  #: of the floor, on its axes [mm, m/s, m/s2]
@@ -62,21 +59,6 @@ def figures_of(run: OpenedRun) -> dict[str, Figure]:
     with house_style():
         drawn = {name: draw(run) for name, draw in FIGURES.items()}
     return {name: figure for name, figure in drawn.items() if figure is not None}
-
-
-def write_figures(run: OpenedRun) -> list[Path]:
-    """Draw every figure of a run into its folder `figures`, as SVG.
-
-    Raises:
-        FolderError: the history is missing or damaged.
-        OSError: the folder or a file cannot be written.
-    """
-    folder, paths = run.place.figures, []
-    for name, figure in figures_of(run).items():
-        folder.mkdir(parents=True, exist_ok=True)
-        paths.append(folder / f"{name}.svg")
-        write_atomically(paths[-1], svg_of(figure))
-    return paths
 
 
 def base_motion_figure(run: OpenedRun) -> Figure:
@@ -188,6 +170,7 @@ def phase_portrait_figure(run: OpenedRun) -> Figure:
     angle, parameter = run.slenderness_angle, (run.result.get("static") or {}).get("frequency_parameter_1_s")
     rotation, rate = run.history["rotation_rad"], run.history["angular_velocity_rad_s"]
     figure, (axes,) = panels((4.0,), width=0.8 * WIDTH, header=2)
+    follow_in_plane(axes, "rotation", "rate", math.degrees(1.0))
     kept = kept_samples(rotation, rate)
     axes.plot(np.degrees(rotation[kept]), np.degrees(rate[kept]), color=BLUE, linewidth=0.7)
     axes.plot(*np.degrees([rotation[0], rate[0]]), "o", color=GREEN, label="start")

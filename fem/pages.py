@@ -20,6 +20,11 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 TEMPLATES = "templates"
+#: the tag of an element that the drawings of matplotlib do not have; a comment begins like one
+FOREIGN = re.compile(
+    r"<(?!/|!--|(?:svg|g|defs|clipPath|path|pattern|rect|circle|line|polyline|polygon|use|text|tspan|image|style|title"
+    r"|desc|metadata|rdf:RDF|cc:Work|cc:Agent|dc:(?:type|format|date|creator|title))[\s/>])[^\s/>]*"
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,10 +72,27 @@ def svg_element(text: str, *, label: str, prefix: str) -> Markup:
         text: an SVG file, as matplotlib or this program writes it; its own texts are escaped.
         label: what it shows, for those who cannot see it.
         prefix: put before every id in it, so that two drawings of a page share none.
+
+    Raises:
+        ValueError: it is none, or something else stands in it.
     """
+    require_drawing(text)
     element = text[text.index("<svg") :]
     element = re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{prefix}-", element)
     return Markup(element.replace("<svg", f'<svg role="img" aria-label="{escape(label)}"', 1))
+
+
+def require_drawing(text: str) -> None:
+    """Refuse what a page must not show as its own.
+
+    Raises:
+        ValueError: no SVG, or elements in it that no drawing has.
+    """
+    _, start, inside = text.partition("<svg")
+    if not start:
+        raise ValueError("no drawing")
+    if foreign := FOREIGN.search(inside):
+        raise ValueError(f"{foreign[0]}> stands in a drawing")
 
 
 @cache

@@ -23,7 +23,7 @@ from fem.case import Case, CaseError, case_hash, to_toml
 from fem.case_motion import motion_notes
 from fem.compilation import compilation_announced
 from fem.fields import FieldWriter
-from fem.figures import write_figures
+from fem.figures_kept import write_figures
 from fem.folder_lock import FolderLock, FolderLostError, held_folder
 from fem.history import History, HistoryWriter, add_analytic_rotation, read_history
 from fem.joint_demands import joint_demands
@@ -136,7 +136,7 @@ def run_case(
                 added = add_checks(result, model, place, options, reporter=reporter, stop=stop)
                 if added:
                     store(result, case, place)
-                if added or not place.figures.is_dir():
+                if added or not place.drawn.is_file():
                     draw(case, place, reporter)
                 return RunResult(status=str(result["status"]), result=result, history=History.empty())
             copy_data_files(case, place.path)
@@ -274,7 +274,7 @@ def add_checks(
 def _is_whole(result: dict[str, Any], place: RunFolder, case: Case, options: RunOptions) -> bool:
     """Whether a finished run has the rigid check and the band that are wanted, and its figures."""
     lacks = _lacks_rigid_check(result, case, options) or _lacks_band(result, case, options)
-    return not lacks and (place.figures.is_dir() or not case.output.figures)
+    return not lacks and (place.drawn.is_file() or not case.output.figures)
 
 
 def _lacks_rigid_check(result: dict[str, Any], case: Case, options: RunOptions) -> bool:

@@ -121,6 +121,11 @@ class RunFolder:
         return self.path / "figures"
 
     @property
+    def drawn(self) -> Path:
+        """What the figures were drawn from."""
+        return self.figures / "drawn.json"
+
+    @property
     def report(self) -> Path:
         """The report, unless it was asked for elsewhere."""
         return self.path / "report.html"
@@ -368,7 +373,7 @@ def _remove_results(folder: RunFolder) -> None:
         file.unlink(missing_ok=True)
     for place, patterns in (
         (folder.fields, ("run.pvd", "frame_*.vtu", ".*.part")),
-        (folder.figures, ("*.svg", "picture_*.png", "movie.gif", "movie.mp4")),
+        (folder.figures, ("*.svg", folder.drawn.name, "picture_*.png", "movie.gif", "movie.mp4")),
     ):
         for pattern in patterns:
             for file in place.glob(pattern):

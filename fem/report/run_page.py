@@ -16,7 +16,7 @@ import numpy as np
 from contact.event_driven import EventError
 from fem.drawing import house_style
 from fem.fields import Fields
-from fem.figures import figures_of
+from fem.figures_kept import drawing_of, drawings_of
 from fem.figures_modes import modes_figure
 from fem.history import History
 from fem.model import Model, build_model
@@ -95,7 +95,7 @@ def _page(
     case, result = run.case, run.result
     history = _history(run, told)
     film = film_of(model, _fields(run, told))
-    drawn = curves_of(figures_of(run)) if len(history) > 1 else {}
+    drawn = curves_of(drawings_of(run).values()) if len(history) > 1 else {}
     check = rigid_check(run, model, history)
     modes = elastic_modes(model.container.elements, MODES)  # whether or not they take part
     played = _film_data(film, history, model) if len(history) > 1 else {}
@@ -214,7 +214,7 @@ def _mode_curve(model: Model, modes: ElasticModes, name: str) -> Curve:
             boxes=model.case.container.boxes,
             name=name,
         )
-    return curves_of({"modes": figure})["modes"]
+    return curves_of([drawing_of("modes", figure)])["modes"]
 
 
 def _standing(run: OpenedRun) -> str:

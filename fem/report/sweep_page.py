@@ -103,5 +103,8 @@ def _maps(folder: Path, names: list[str]) -> list[Markup]:
         inside = path.resolve().is_relative_to(folder.resolve())
         if inside and path.is_file() and path.stat().st_size <= MOST_MAP_BYTES:
             text = path.read_text(encoding="utf-8")
-            drawn.append(svg_element(text, label=f"map: {path.stem.replace('_', ' ')}", prefix=f"map{k}"))
+            try:
+                drawn.append(svg_element(text, label=f"map: {path.stem.replace('_', ' ')}", prefix=f"map{k}"))
+            except ValueError as error:
+                raise FolderError(f"{path}: {error}; remove it and sweep again: it is drawn anew") from None
     return drawn

@@ -2,14 +2,15 @@
 
 Each goes through the same compiled stepping as a sweep. A case of the `full` model is varied with `reduced`, which
 takes seconds instead of hours, and the table says so. What the run itself and its band have found is not computed
-again. A report is to be there in seconds: lines are computed beside the drawing of the page, for so much time of every
-processor, the more important first; what is left out is named, and `python -m fem report --all-variations` computes it.
-The rows are kept beside the run, so that a second report has them at once.
+again. A report is to be there in seconds: lines are computed beside the rest of the page, as long as they are there in
+a few seconds, the more important first; what is left out is named, and `python -m fem report --all-variations`
+computes it. The rows are kept beside the run, so that a second report has them at once.
 """
 
 import json
 import math
 import threading
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -29,7 +30,7 @@ from fem.run_folder import to_json, write_atomically
 from fem.simulation import cores, simulate
 from fem.verdict import in_short
 
-AFFORDED_S = 4.0  #: of the lines together, on all processors, as far as it can be told from one of them
+AFFORDED_S = 4.0  #: wall time until the last line that is not asked for should be there
 SHOWN = ("status", "reason", *IN_SHORT)
 
 Row = dict[str, Any]
@@ -137,18 +138,18 @@ def variation_table(
     rows, price = kept or (_known_rows(case, variations, result), _price(case, result))
     missing = [index for index in by_importance(variations) if rows[index] is None]
     if missing and (kept is None or every):
+        told("computing variations of the run")
+        until = math.inf if every else time.monotonic() + AFFORDED_S
         computing = _Computing(base, variations, container or discretise(base), stop)
         if price is None:  # no run of this model yet
-            rows[missing[0]], price = computing.first(missing.pop(0))
-        wanted = missing if every else missing[: int(cores() * AFFORDED_S / max(price, 1e-6))]
-        left = (
-            f"; {len(missing) - len(wanted)} more with --all-variations" if len(wanted) < len(missing) else ""
-        )
-        told(f"computing {len(wanted)} variations of the run{left}")
-        for index, row in zip(wanted, computing.all(wanted), strict=True):
+            rows[missing[0]], price = computing.row(missing.pop(0))
+        for index, row in zip(missing, computing.rows(missing, price=price, until=until), strict=True):
             rows[index] = row
         if stop():
             return None
+        left = sum(row is None for row in rows)
+        if left:
+            told(f"{left} variations of the run would take longer; --all-variations computes them too")
     if kept is None or every:
         try:
             write_atomically(kept_in, to_json({**mark, "price_s": price, "rows": rows}))
@@ -216,17 +217,32 @@ class _Computing:
         self._base, self._variations = base, variations
         self._container, self._stop = container, stop
 
-    def first(self, index: int) -> tuple[Row, float]:
-        """A row computed alone, and the processor time of its stepping [s]."""
-        return self._row(index)
+    def rows(self, indices: Sequence[int], *, price: float, until: float) -> list[Row | None]:
+        """Rows, side by side; None for those that could not be there in time.
 
-    def all(self, indices: Sequence[int]) -> list[Row]:
-        """Rows, side by side."""
+        Args:
+            indices: of the lines, in the order in which they are begun.
+            price: what a line takes, about [s].
+            until: when the last of them should be there, as `time.monotonic()` tells it [s].
+        """
+
+        def in_time(index: int) -> Row | None:
+            nonlocal price
+            began = time.monotonic()
+            if began + price > until:
+                return None
+            row, _ = self.row(index)
+            price = time.monotonic() - began  # on this machine, beside everything else that it does now
+            return row
+
         with ThreadPoolExecutor(max_workers=cores()) as pool:
-            return [row for row, _ in pool.map(self._row, indices)]
+            return list(pool.map(in_time, indices))
 
-    def _row(self, index: int) -> tuple[Row, float]:
-        """One run without samples; whatever keeps it from an outcome is its reason, never an outcome."""
+    def row(self, index: int) -> tuple[Row, float]:
+        """One run without samples, and the processor time of its stepping [s].
+
+        Whatever keeps it from an outcome is its reason, never an outcome.
+        """
         values = self._variations[index].values
         row: Row = dict.fromkeys(SHOWN) | {"status": "failed"}
         try:

@@ -16,7 +16,7 @@ from measuring import Figure, cpu_seconds, median_of, report
 import fem
 from fem.case import load_case
 from fem.fields import FieldWriter, Frame
-from fem.figures import write_figures
+from fem.figures_kept import write_figures
 from fem.model import build_model
 from fem.movie import write_movie
 from fem.opening import OpenedRun

@@ -2,6 +2,7 @@
 
 import math
 import re
+import shutil
 from xml.etree import ElementTree
 
 import matplotlib
@@ -16,10 +17,12 @@ from contact.floor_acceleration import still_floor
 from contact.rigid_block import RigidBlock
 from contact.rocking import simulate_rocking
 from fem.case import load_case
-from fem.drawing import STRETCHES, TIME, house_style, kept_samples, number, svg_of, time_axes, time_panels
-from fem.figures import FIGURES, figures_of, write_figures
+from fem.drawing import STRETCHES, TIME, followed, house_style, kept_samples, number, svg_of, time_panels
+from fem.figures import FIGURES, figures_of
 from fem.figures_checks import band_figure
+from fem.figures_kept import drawings_of, write_figures
 from fem.opening import OpenedRun
+from fem.pages import svg_element
 from fem.progress import SilentReporter
 from fem.run import RunOptions, run_case
 
@@ -79,8 +82,8 @@ def lines(axes, label):
 def test_every_run_leaves_its_figures_as_svg(runs):
     for name, run in runs.items():
         wanted = set(FIGURES) if name == "rocking" else ALWAYS | ({"joints"} if run.history.joints else set())
-        assert {path.stem for path in run.place.figures.iterdir()} == wanted
-        for path in run.place.figures.iterdir():
+        assert {path.stem for path in run.place.figures.glob("*.svg")} == wanted
+        for path in run.place.figures.glob("*.svg"):
             root = ElementTree.parse(path).getroot()
             assert root.tag == "{http://www.w3.org/2000/svg}svg"
             assert path.stat().st_size < 200_000
@@ -90,6 +93,33 @@ def test_the_same_run_gives_the_same_bytes(runs):
     before = {path: path.read_bytes() for path in runs["rocking"].place.figures.iterdir()}
     write_figures(fem.open_run(runs["rocking"].folder))
     assert {path: path.read_bytes() for path in runs["rocking"].place.figures.iterdir()} == before
+
+
+def test_the_figures_in_the_folder_serve_a_report_as_long_as_they_are_those_of_the_run(
+    runs, tmp_path, monkeypatch
+):
+    folder = tmp_path / "r"
+    shutil.copytree(runs["rocking"].folder, folder)
+    run = fem.open_run(folder)
+    anew = []
+    monkeypatch.setattr("fem.figures_kept.figures_of", lambda run: anew.append(run) or figures_of(run))
+    kept = drawings_of(run)
+    assert list(kept) == list(FIGURES) and not anew
+    svg = run.place.figures / "slip.svg"
+    before = svg.read_text()
+    for path, text in (
+        (svg, before.replace("<g", "<script/><g", 1)),
+        (run.place.drawn, "{}"),
+        (run.place.history, run.place.history.read_text() + "\n"),
+        (run.place.drawn, run.place.drawn.read_text().replace("sources", "other sources")),
+    ):
+        whole = path.read_text()
+        path.write_text(text)
+        assert drawings_of(run) == kept and len(anew) == 1
+        anew.clear()
+        path.write_text(whole)
+    svg.unlink()
+    assert drawings_of(run) == kept and len(anew) == 1
 
 
 def test_axes_carry_units_and_no_text_is_cut_off(drawn):
@@ -282,19 +312,20 @@ def test_a_panel_over_time_tells_where_it_lies():
         figure, axes = time_panels((1.0, 1.0), states=("rest",))
         axes[0].plot([2.0, 6.0], [0.0, 1.0])
     svg = svg_of(figure)
-    upper, lower = time_axes(figure)
-    assert (upper.start, upper.end) == (lower.start, lower.end) == (2.0, 6.0)
-    assert upper.bottom > lower.top
+    place = followed(figure)
+    assert (place["kind"], place["x"]) == ("time", [2.0, 6.0])
     # The frame of the axes in the SVG, whose y points down.
     size = [float(figure.get_size_inches()[i]) * 72.0 for i in (0, 1)]
     spine = re.search(r'id="patch_2">\s*<path d="M ([\d.]+) ([\d.]+)', svg)
-    assert float(spine[1]) / size[0] == pytest.approx(upper.left, abs=1e-4)
-    assert 1.0 - float(spine[2]) / size[1] == pytest.approx(upper.bottom, abs=1e-4)
+    assert float(spine[1]) / size[0] == pytest.approx(place["left"], abs=1e-4)
+    upper, lower = (panel.get_position() for panel in axes[:2])
+    assert 1.0 - float(spine[2]) / size[1] == pytest.approx(upper.y0, abs=1e-4)
+    assert (place["top"], place["bottom"]) == (upper.y1, lower.y0) and upper.y0 > lower.y1
     assert axes[-1].get_xlabel() == TIME
 
 
 def test_figures_in_one_page_share_no_id(drawn):
-    pages = [svg_of(drawn["rest"][name], prefix=f"{name}-") for name in ("slip", "uplift")]
+    pages = [svg_element(svg_of(drawn["rest"][name]), label=name, prefix=name) for name in ("slip", "uplift")]
     ids = [set(re.findall(r'\bid="([^"]+)"', page)) for page in pages]
     assert ids[0] and not ids[0] & ids[1]
     for page, known in zip(pages, ids, strict=True):
@@ -316,7 +347,7 @@ def test_a_finished_run_without_figures_gets_them_and_is_not_computed_again(tmp_
     run_into(tmp_path / "r", *CASES["rest"], "output.figures=false")
     before = (tmp_path / "r" / "run.json").read_bytes()
     run = run_into(tmp_path / "r", *CASES["rest"])
-    assert {path.stem for path in run.place.figures.iterdir()} == ALWAYS
+    assert {path.stem for path in run.place.figures.glob("*.svg")} == ALWAYS
     assert (tmp_path / "r" / "run.json").read_bytes() == before
 
 

@@ -68,3 +68,11 @@ def test_drawings_of_one_page_share_no_ids():
         '<svg role="img" aria-label="a &#34;plot&#34; &lt; b"><g id="one-a"/>'
         '<use href="#one-a" clip-path="url(#one-b)"/></svg>'
     )
+
+
+@pytest.mark.parametrize(
+    "inside", ["<script>alert(1)</script>", "</svg><h1>stands</h1>", "<a href='x'/>", "<!x", "<gx>"]
+)
+def test_what_is_no_drawing_is_not_shown_as_one(inside):
+    with pytest.raises(ValueError, match="stands in a drawing"):
+        svg_element(f"<svg>{inside}</svg>", label="x", prefix="y")

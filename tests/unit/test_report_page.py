@@ -51,7 +51,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(folder):
-    return run_report(open_run(folder), signature=Signature(author="A. Author <a@b>"))
+    return run_report(open_run(folder), signature=Signature(author="A. Author <a@b>"), every_variation=True)
 
 
 def sections(page):

@@ -1,0 +1,115 @@
+"""The figures of a run in its folder: SVG files, and a page that says of which results they are.
+
+A report takes the drawings that lie there as they are: to draw them again would cost more than everything else in
+it. It does so only where the page vouches for them - the same program drew them of the same results, and nobody has
+changed them since - and draws them anew otherwise.
+"""
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from fem.drawing import followed, svg_of, title_of
+from fem.figures import figures_of
+from fem.opening import OpenedRun
+from fem.pages import require_drawing
+from fem.program import program_identity
+from fem.run_folder import RunFolder, to_json, write_atomically
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drawing:
+    """A figure as SVG."""
+
+    name: str
+    title: str
+    followed: dict[str, Any] | None  #: where a cursor moves over it, see `fem.drawing.followed`
+    svg: str  #: the text of the file
+
+
+def drawing_of(name: str, figure: Figure) -> Drawing:
+    """A figure laid out and written as SVG."""
+    svg = svg_of(figure)
+    return Drawing(
+        name=name, title=title_of(figure) or name.replace("_", " "), followed=followed(figure), svg=svg
+    )
+
+
+def write_figures(run: OpenedRun) -> list[Path]:
+    """Draw every figure of a run into its folder `figures`, as SVG.
+
+    Returns:
+        The files of the figures.
+
+    Raises:
+        FolderError: the history is missing or damaged.
+        OSError: the folder or a file cannot be written.
+    """
+    place, drawings = run.place, _drawn(run)
+    if not drawings:
+        return []
+    place.figures.mkdir(parents=True, exist_ok=True)
+    place.drawn.unlink(missing_ok=True)
+    for one in drawings:
+        write_atomically(_file(place, one.name), one.svg)
+    write_atomically(place.drawn, to_json(_identity(place) | {"figures": [_told(one) for one in drawings]}))
+    return [_file(place, one.name) for one in drawings]
+
+
+def drawings_of(run: OpenedRun) -> dict[str, Drawing]:
+    """The figures of a run by name, in the order of reading: those in its folder, or else drawn now.
+
+    Raises:
+        FolderError: the history is missing or damaged.
+    """
+    drawings = _kept(run.place)
+    return {one.name: one for one in (_drawn(run) if drawings is None else drawings)}
+
+
+def _drawn(run: OpenedRun) -> list[Drawing]:
+    return [drawing_of(name, figure) for name, figure in figures_of(run).items()]
+
+
+def _kept(place: RunFolder) -> list[Drawing] | None:
+    """The drawings in a folder; None unless they are all there, and of the results beside them."""
+    try:
+        page = json.loads(place.drawn.read_text(encoding="utf-8"))
+        told = page.pop("figures")
+        if page != _identity(place):
+            return None
+        drawings = []
+        for one in told:
+            svg = _file(place, one["name"]).read_text(encoding="utf-8")
+            require_drawing(svg)
+            drawings.append(Drawing(name=one["name"], title=one["title"], followed=one["followed"], svg=svg))
+        return drawings if [_told(one) for one in drawings] == told else None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return None
+
+
+def _identity(place: RunFolder) -> dict[str, Any]:
+    """Of the program and of the files that figures are drawn from."""
+    files = (place.result, place.resolved, place.history, place.rigid_check)
+    return {"program": program_identity(), "drawn_from": {path.name: _digest(path) for path in files}}
+
+
+def _told(drawing: Drawing) -> dict[str, Any]:
+    """What the page says of a drawing."""
+    told = asdict(drawing)
+    return told | {"svg": hashlib.sha256(told["svg"].encode()).hexdigest()}
+
+
+def _file(place: RunFolder, name: str) -> Path:
+    return place.figures / f"{name}.svg"
+
+
+def _digest(path: Path) -> str | None:
+    """SHA-256 of a file; None where there is none."""
+    if not path.is_file():
+        return None
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
