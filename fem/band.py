@@ -12,14 +12,14 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
-from itertools import product
-from typing import Any
+from itertools import count, product
+from typing import Any, Protocol
 
 from fem.case import Case
 from fem.container import Container
-from fem.model import build_model
+from fem.model import Model, build_model
 from fem.recorder import Recorder
-from fem.simulation import cores, simulate
+from fem.simulation import Keeper, NoKeeper, Progress, cores, simulate
 from fem.verdict import MODE_NAMES, in_short
 
 PENALTY_FACTORS = (1.0 / 3.0, 1.0, 3.0)
@@ -37,13 +37,41 @@ class Member:
 
     normal_penalty_Pa_m: float  # noqa: N815 - the unit, as in a case file
     damping_ratio: float  #: of the contact [-]
-    status: str  #: completed | overturned | failed
-    outcome: str | None  #: None where it failed
+    status: str  #: completed | overturned | failed | interrupted
+    outcome: str | None  #: None where it failed or was stopped
     rotation_ratio: float | None  #: largest |rotation| over the slenderness angle; None where it failed
     error: str | None = None
     max_slip_m: float | None = None
     residual_slip_m: float | None = None  #: signed, at the end
     max_uplift_m: float | None = None
+
+
+class Keeping(Protocol):
+    """Somebody who may keep what a band has come to; called by several threads."""
+
+    def members(self) -> Sequence[Member]:
+        """Computed before: they are not computed again."""
+
+    def begin(self, number: int, model: Model, recorder: Recorder) -> tuple[Keeper, Progress]:
+        """A member begins: it is put where it was cut off; returns who keeps it from there, and how far it has come."""
+
+    def finish(self, number: int, members: Sequence[Member]) -> None:
+        """A member has ended; `members` are all that there are. Only one thread calls at a time."""
+
+
+class NoKeeping:
+    """Keeps nothing."""
+
+    def members(self) -> Sequence[Member]:
+        """None."""
+        return ()
+
+    def begin(self, number: int, model: Model, recorder: Recorder) -> tuple[Keeper, Progress]:
+        """At t = 0."""
+        return NoKeeper(), Progress()
+
+    def finish(self, number: int, members: Sequence[Member]) -> None:
+        """Nothing."""
 
 
 def wants_band(asked: bool | None, case: Case, verdict: Mapping[str, Any]) -> bool:
@@ -63,8 +91,7 @@ def band_of(
     penalty: float,
     verdict: Mapping[str, Any],
     stop: Callable[[], bool] = lambda: False,
-    kept: Sequence[Member] = (),
-    keep: Callable[[Sequence[Member]], None] = lambda members: None,
+    keeping: Keeping | None = None,
 ) -> dict[str, Any] | None:
     """Run the members of a band side by side and sum them up.
 
@@ -74,12 +101,15 @@ def band_of(
         penalty: of the run [Pa/m].
         verdict: of the run, which is itself a member.
         stop: asked now and then; true ends the band.
-        kept: members computed before, which are not computed again.
-        keep: told of all members that there are, whenever one more is finished.
+        keeping: may keep what there is of it, to go on with.
 
     Returns:
         The `band` of a verdict, or None if it was stopped.
+
+    Raises:
+        OSError: something could not be kept; the other members have stopped then.
     """
+    keeping = keeping or NoKeeping()
     given = Member(
         normal_penalty_Pa_m=penalty,
         damping_ratio=case.contact.damping_ratio,
@@ -87,24 +117,39 @@ def band_of(
         **{name: verdict[name] for name in IN_SHORT},
     )
     floors = _other_floors(penalty, case.contact.damping_ratio)
-    found = {(member.normal_penalty_Pa_m, member.damping_ratio): member for member in kept}
-    one_at_a_time = threading.Lock()
+    found = {(member.normal_penalty_Pa_m, member.damping_ratio): member for member in keeping.members()}
+    one_at_a_time, broken = threading.Lock(), threading.Event()
 
-    def member_on(floor: tuple[float, float]) -> Member:
+    def halted() -> bool:
+        return stop() or broken.is_set()
+
+    def member_of(number: int, floor: tuple[float, float]) -> Member:
         if floor in found:
             return found[floor]
-        member = _run_member(case, container, floor, stop)
-        with one_at_a_time:
-            if not stop():  # else it may have been cut short
-                found[floor] = member
-                keep(list(found.values()))
+        if halted():
+            return _without_outcome(floor, "interrupted")
+        try:
+            member = _run_member(
+                case,
+                container,
+                floor,
+                stop=halted,
+                begin=lambda model, recorder: keeping.begin(number, model, recorder),
+            )
+            with one_at_a_time:
+                if member.status != "interrupted":
+                    found[floor] = member
+                    keeping.finish(number, list(found.values()))
+        except BaseException:
+            broken.set()  # else the others would be waited for
+            raise
         return member
 
     # The full model is stepped by the interpreter, under its lock: threads would gain nothing.
     workers = 1 if case.solver.model == "full" else min(cores(), len(floors))
     with ThreadPoolExecutor(max_workers=workers) as pool:
-        members = list(pool.map(member_on, floors))
-    if stop():
+        members = list(pool.map(member_of, count(1), floors))
+    if any(member.status == "interrupted" for member in members):
         return None
     return summed_up([given, *members])
 
@@ -133,12 +178,15 @@ def _other_floors(penalty: float, damping_ratio: float) -> list[tuple[float, flo
 
 
 def _run_member(
-    case: Case, container: Container, floor: tuple[float, float], stop: Callable[[], bool]
+    case: Case,
+    container: Container,
+    floor: tuple[float, float],
+    *,
+    stop: Callable[[], bool],
+    begin: Callable[[Model, Recorder], tuple[Keeper, Progress]],
 ) -> Member:
     """One member; whatever keeps it from an outcome is its error, never an outcome."""
     penalty, damping_ratio = floor
-    status, error = "failed", None
-    found: dict[str, Any] = dict.fromkeys(IN_SHORT)
     try:
         changed = case.with_values(
             {
@@ -149,17 +197,24 @@ def _run_member(
             }
         )
         model = build_model(changed, container)
-        ending = simulate(model, Recorder(model), stop=stop)
+        recorder = Recorder(model)
+        keeper, progress = begin(model, recorder)
+        ending = simulate(model, recorder, stop=stop, keeper=keeper, progress=progress)
     except (ValueError, ArithmeticError, RuntimeError) as problem:  # bad input, no stance, a singular matrix
-        error = str(problem)
-    else:
-        status, error = ending.status, ending.error
-        if status in ("completed", "overturned"):
-            found = in_short(model)
+        return _without_outcome(floor, "failed", str(problem))
+    if ending.status not in ("completed", "overturned"):
+        return _without_outcome(floor, ending.status, ending.error)
+    return Member(
+        normal_penalty_Pa_m=penalty, damping_ratio=damping_ratio, status=ending.status, **in_short(model)
+    )
+
+
+def _without_outcome(floor: tuple[float, float], status: str, error: str | None = None) -> Member:
+    penalty, damping_ratio = floor
     return Member(
         normal_penalty_Pa_m=penalty,
         damping_ratio=damping_ratio,
         status=status,
         error=error,
-        **found,
+        **dict.fromkeys(IN_SHORT),
     )

@@ -29,6 +29,10 @@ REMEDY = "begin the run anew with --force"
 class CheckpointError(ValueError):
     """A checkpoint that cannot be gone on from; the message names the file, the reason and the way out."""
 
+    def __init__(self, path: Path, reason: str, remedy: str = REMEDY) -> None:
+        super().__init__(f"{path}: {reason}; {remedy}")
+        self.path, self.reason = path, reason
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Checkpoint:
@@ -81,17 +85,18 @@ def read_checkpoint(path: Path, *, case_hash: str, program: Mapping[str, str]) -
     try:
         page, arrays = _read(path.read_bytes())
     except OSError as error:
-        raise CheckpointError(f"{path}: cannot be read ({error.strerror or error}); {REMEDY}") from None
+        raise CheckpointError(path, f"cannot be read ({error.strerror or error})") from None
     except Exception as error:  # a reader of broken archives fails in every way there is
-        raise CheckpointError(f"{path}: damaged, or no checkpoint ({error}); {REMEDY}") from None
+        raise CheckpointError(path, f"damaged, or no checkpoint ({error})") from None
     if page.get("format") != FORMAT or page.get("program") != dict(program):
         raise CheckpointError(
-            f"{path}: written by another version of the program or of a library it computes with "
-            f"({_difference(page.get('program'), program)}), which would not go on to the same bits; go on "
-            f"with that version, or {REMEDY}"
+            path,
+            "written by another version of the program or of a library it computes with "
+            f"({_difference(page.get('program'), program)}), which would not go on to the same bits",
+            f"go on with that version, or {REMEDY}",
         )
     if page.get("case_hash") != case_hash:
-        raise CheckpointError(f"{path}: belongs to another case ({page.get('case_hash')!s:.12}); {REMEDY}")
+        raise CheckpointError(path, f"belongs to another case ({page.get('case_hash')!s:.12})")
     return Checkpoint(about=page, arrays=arrays)
 
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from contact.event_driven import EventError
 from fem.band import band_of, wants_band
-from fem.band_keeping import read_members, write_members
+from fem.band_keeping import BandFolder
 from fem.case import Case, CaseError, case_hash, to_toml
 from fem.case_motion import motion_notes
 from fem.compilation import compilation_announced
@@ -34,15 +34,7 @@ from fem.progress import Reporter, SilentReporter
 from fem.recorder import Recorder
 from fem.recovery import Frame, recovery_of
 from fem.required_disk import require_disk
-from fem.resumption import (
-    Beginning,
-    CheckpointKeeper,
-    Spent,
-    beginning_in,
-    clock_readings,
-    put_back,
-    spent_since,
-)
+from fem.resumption import CheckpointKeeper, put_back
 from fem.rigid_check import check_against_rigid_block, wants_rigid_check
 from fem.run_folder import (
     FINISHED,
@@ -53,6 +45,7 @@ from fem.run_folder import (
     open_run_folder,
     write_atomically,
 )
+from fem.run_resumption import RunBeginning, Spent, beginning_in, clock_readings, settling, spent_since
 from fem.run_warnings import warnings_for
 from fem.simulation import Ending, simulate
 from fem.summary import plain_summary
@@ -77,6 +70,7 @@ class RunResult:
     status: str  #: completed | overturned | failed | interrupted
     result: dict[str, Any]  #: as in run.json
     history: History
+    stopped: bool = False  #: the stepping was interrupted, or the band behind it
 
 
 def run_case(
@@ -109,7 +103,7 @@ def run_case(
         return RunResult(status=str(found["status"]), result=found, history=History.empty())
     if found is None:
         require_disk(case, len(model.container.elements.nodes), folder)
-    beginning = Beginning()
+    beginning = RunBeginning()
 
     def inspect(place: RunFolder) -> None:
         nonlocal beginning
@@ -133,12 +127,17 @@ def run_case(
         with naming_what_failed(place, result):
             if place.finished is not None:
                 result |= place.finished
-                added = add_checks(result, model, place, options, reporter=reporter, stop=stop)
+                added = add_checks(result, model, place, lock, options, reporter=reporter, stop=stop)
                 if added:
                     store(result, case, place)
                 if added or not place.drawn.is_file():
                     draw(case, place, reporter)
-                return RunResult(status=str(result["status"]), result=result, history=History.empty())
+                return RunResult(
+                    status=str(result["status"]),
+                    result=result,
+                    history=History.empty(),
+                    stopped=_was_stopped(result, case, options),
+                )
             copy_data_files(case, place.path)
             result |= {
                 "status": "running",
@@ -157,14 +156,18 @@ def run_case(
                 result |= asdict(spent)
                 lock.check()
                 store(result, case, place)
-                if ending.status in FINISHED:
-                    place.remove_checkpoint()  # nothing is left to go on with
                 if not (
-                    once_more and add_checks(result, model, place, options, reporter=reporter, stop=stop)
+                    once_more
+                    and add_checks(result, model, place, lock, options, reporter=reporter, stop=stop)
                 ):
                     break
             draw(case, place, reporter)
-    return RunResult(status=ending.status, result=result, history=recorder.history())
+    return RunResult(
+        status=ending.status,
+        result=result,
+        history=recorder.history(),
+        stopped=_was_stopped(result, case, options),
+    )
 
 
 @contextmanager
@@ -209,12 +212,19 @@ def naming_what_failed(place: RunFolder, result: dict[str, Any]) -> Iterator[Non
 
 
 def store(result: dict[str, Any], case: Case, place: RunFolder) -> None:
-    """Write the summary, then `run.json` with its warnings: a run that says it is finished has both."""
+    """Write the summary, then `run.json` with its warnings: a run that says it is finished has both.
+
+    What was kept to go on with goes when nothing is left to go on with, and not before that is written.
+    """
     result["warnings"] = warnings_for(result, case)
     place.write_summary(
         plain_summary(result, title=case.title or case.name, folder=place.path, warnings=result["warnings"])
     )
     place.write_result(result)
+    if result["status"] in FINISHED:
+        place.remove_checkpoint()
+        if result["verdict"].get("band") is not None:
+            place.remove_band()
 
 
 def draw(case: Case, place: RunFolder, reporter: Reporter) -> None:
@@ -231,6 +241,7 @@ def add_checks(
     result: dict[str, Any],
     model: Model,
     place: RunFolder,
+    lock: FolderLock,
     options: RunOptions,
     *,
     reporter: Reporter,
@@ -253,22 +264,23 @@ def add_checks(
         added = True
     if _lacks_band(result, case, options) and not stop():
         reporter.message("band: the same run over contact penalty and damping")
-        mark = str(result["case_hash"])
         verdict["band"] = band_of(
             case,
             model.container,
             penalty=model.penalty,
             verdict=verdict,
             stop=stop,
-            kept=read_members(place.band, mark),
-            keep=lambda members: write_members(place.band, mark, members),
+            keeping=BandFolder(place, lock, case_hash=str(result["case_hash"]), reporter=reporter),
         )
-        if verdict["band"] is None:
-            reporter.message("the band was stopped; run the case again to have the rest of it")
-        else:
-            place.band.unlink(missing_ok=True)
         added = added or verdict["band"] is not None
     return added
+
+
+def _was_stopped(result: dict[str, Any], case: Case, options: RunOptions) -> bool:
+    """Whether the stepping, or the band behind it, was interrupted."""
+    if result["status"] in FINISHED:
+        return _lacks_band(result, case, options)
+    return bool(result["status"] == "interrupted")
 
 
 def _is_whole(result: dict[str, Any], place: RunFolder, case: Case, options: RunOptions) -> bool:
@@ -367,7 +379,7 @@ def _step_into(
     model: Model,
     reporter: Reporter,
     stop: Callable[[], bool],
-    beginning: Beginning,
+    beginning: RunBeginning,
     case_hash: str,
     began: Spent,
 ) -> tuple[Ending, Recorder]:
@@ -391,23 +403,20 @@ def _step_into(
             stack.callback(fields.close)
             frame_sink = _frame_writer(fields)
         recorder = Recorder(model, recovery_of(model), history.append, frame_sink)
-        if beginning.arrays is not None:
-            put_back(model, recorder, beginning.arrays)
+        simulation = beginning.simulation
+        if simulation.arrays is not None:
+            put_back(model, recorder, simulation.arrays)
             recorder.go_on(read_history(place.history))
             reporter.message(f"going on at t = {float(model.run.clock[0].time):.6g} s")
         keeper = CheckpointKeeper(
-            place,
-            lock,
+            place.checkpoint,
             case_hash=case_hash,
             model=model,
             recorder=recorder,
-            history=history,
-            fields=fields,
-            before=beginning.spent,
-            began=began,
+            settle=settling(lock, history, fields, before=beginning.spent, began=began),
         )
         ending = simulate(
-            model, recorder, reporter=reporter, stop=stop, keeper=keeper, progress=beginning.progress
+            model, recorder, reporter=reporter, stop=stop, keeper=keeper, progress=simulation.progress
         )
         return ending, recorder
 

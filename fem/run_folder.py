@@ -112,8 +112,17 @@ class RunFolder:
 
     @property
     def band(self) -> Path:
-        """Members of a band that is not finished."""
+        """Finished members of a band that is not."""
         return self.path / "band.json"
+
+    @property
+    def members(self) -> Path:
+        """Folder of the checkpoints of a band's members under way."""
+        return self.path / "members"
+
+    def member_checkpoint(self, number: int) -> Path:
+        """State to go on from with a member of a band."""
+        return self.members / f"member_{number}.npz"
 
     @property
     def figures(self) -> Path:
@@ -140,7 +149,7 @@ class RunFolder:
         """Every file and folder that a run writes."""
         results = (self.result, self.summary, self.history, self.rigid_check, self.fields, self.figures)
         reports = (self.report, self.variations)
-        unfinished = (self.checkpoint, self.band)
+        unfinished = (self.checkpoint, self.band, self.members)
         return (self.case, self.resolved, *results, *reports, *unfinished, self.path / LOCK_NAME)
 
     def write_result(self, result: Mapping[str, Any]) -> None:
@@ -158,6 +167,12 @@ class RunFolder:
         """Remove the checkpoint, and what a kill may have left of the next one."""
         self.checkpoint.unlink(missing_ok=True)
         self.checkpoint.with_name(f".{self.checkpoint.name}.part").unlink(missing_ok=True)
+
+    def remove_band(self) -> None:
+        """Remove what is kept of a band under way."""
+        self.band.unlink(missing_ok=True)
+        self.band.with_name(f".{self.band.name}.part").unlink(missing_ok=True)
+        _remove_from(self.members, ("member_*.npz", ".*.part"))
 
     def write_summary(self, text: str) -> None:
         """Replace `summary.txt`."""
@@ -368,15 +383,17 @@ def _make(path: Path) -> list[Path]:
 def _remove_results(folder: RunFolder) -> None:
     """Remove what an earlier run left, and nothing else that may lie there."""
     folder.remove_checkpoint()
-    made = (folder.summary, folder.history, folder.rigid_check, folder.report, folder.variations, folder.band)
-    for file in made:
+    folder.remove_band()
+    for file in (folder.summary, folder.history, folder.rigid_check, folder.report, folder.variations):
         file.unlink(missing_ok=True)
-    for place, patterns in (
-        (folder.fields, ("run.pvd", "frame_*.vtu", ".*.part")),
-        (folder.figures, ("*.svg", folder.drawn.name, "picture_*.png", "movie.gif", "movie.mp4")),
-    ):
-        for pattern in patterns:
-            for file in place.glob(pattern):
-                file.unlink(missing_ok=True)
-        with contextlib.suppress(OSError):  # absent, or something else lies in it
-            place.rmdir()
+    _remove_from(folder.fields, ("run.pvd", "frame_*.vtu", ".*.part"))
+    _remove_from(folder.figures, ("*.svg", folder.drawn.name, "picture_*.png", "movie.gif", "movie.mp4"))
+
+
+def _remove_from(place: Path, patterns: Sequence[str]) -> None:
+    """Remove files of these names from a folder, and the folder if nothing else lies in it."""
+    for pattern in patterns:
+        for file in place.glob(pattern):
+            file.unlink(missing_ok=True)
+    with contextlib.suppress(OSError):  # absent, or something else lies in it
+        place.rmdir()

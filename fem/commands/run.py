@@ -73,7 +73,9 @@ def run(
             f"interrupted; the same command with --resume goes on from {folder / 'checkpoint.npz'}",
             file=sys.stderr,
         )
-    return EXIT_CODES[result.status]
+    elif result.stopped:
+        print("interrupted amid the band; the same command goes on with it", file=sys.stderr)
+    return EXIT_CODES["interrupted" if result.stopped else result.status]
 
 
 def text_with_overrides(case: Case) -> str:

@@ -120,13 +120,13 @@ def test_members_run_side_by_side(monkeypatch):
     begun: list[int] = []
     lock = threading.Lock()
 
-    def meet(model, recorder, *, stop):
+    def meet(model, recorder, **options):
         with lock:
             begun.append(1)
             paired = len(begun) <= 2
         if paired:
             met.wait()
-        return simulate(model, recorder, stop=stop)
+        return simulate(model, recorder, **options)
 
     case = load_case("rocking", SHORT)
     model, verdict = finished(case)
@@ -146,8 +146,8 @@ def test_a_member_that_fails_is_named_in_a_warning_and_in_the_summary(monkeypatc
     model, verdict = finished(case)
     stiffest = 3.0 * model.penalty
 
-    def fail_on_the_stiffest(model, recorder, *, stop):
-        ending = simulate(model, recorder, stop=stop)
+    def fail_on_the_stiffest(model, recorder, **options):
+        ending = simulate(model, recorder, **options)
         if model.penalty == pytest.approx(stiffest):
             return Ending(status="failed", stepping_cpu_s=0.0, error="made to fail")
         return ending
@@ -201,11 +201,11 @@ def test_a_band_cut_off_goes_on_with_the_members_that_it_has(tmp_path, monkeypat
     assert command(tmp_path / "whole") == 0
     calls, members = [], band._run_member
 
-    def cut_off(*arguments):
+    def cut_off(*arguments, **options):
         calls.append(arguments)
         if len(calls) > 3:
             raise KeyboardInterrupt
-        return members(*arguments)
+        return members(*arguments, **options)
 
     with monkeypatch.context() as patch:
         patch.setattr(band, "cores", lambda: 1)
@@ -214,7 +214,9 @@ def test_a_band_cut_off_goes_on_with_the_members_that_it_has(tmp_path, monkeypat
     assert read_result(tmp_path / "cut" / "run.json")["status"] == "completed"
     assert (tmp_path / "cut" / "band.json").is_file()
     calls.clear()
-    monkeypatch.setattr(band, "_run_member", lambda *arguments: calls.append(1) or members(*arguments))
+    monkeypatch.setattr(
+        band, "_run_member", lambda *arguments, **options: calls.append(1) or members(*arguments, **options)
+    )
     assert command(tmp_path / "cut") == 0
     assert len(calls) == 5 - 3
     bands = [read_result(tmp_path / name / "run.json")["verdict"]["band"] for name in ("cut", "whole")]
