@@ -6,7 +6,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from fem.commands.shared import Quiet
+from fem.commands.shared import Quiet, flag
 from fem.progress import ScreenReporter
 from fem.run_folder import FolderError, naming_what_cannot_be_written, write_atomically
 
@@ -22,15 +22,7 @@ def report(
     author: Annotated[str, Parameter(show_default=False, help="Who made it; may be filled in later.")] = "",
     checker: Annotated[str, Parameter(show_default=False, help="Who checked it.")] = "",
     revision: Annotated[str, Parameter(show_default=False, help="Which revision it is.")] = "",
-    all_variations: Annotated[
-        bool,
-        Parameter(
-            name="--all-variations",
-            negative=(),
-            show_default=False,
-            help="Compute every variation of a run, however long it takes.",
-        ),
-    ] = False,
+    all_variations: Annotated[bool, flag("Compute every variation of a run, however long it takes.")] = False,
     quiet: Quiet = False,
 ) -> None:
     """Make one HTML file that can be sent, read without a network, and printed.
