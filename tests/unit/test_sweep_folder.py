@@ -251,7 +251,7 @@ def test_a_folder_that_another_took_is_left_alone(small, tmp_path, monkeypatch):
         (folder / "sweep.json").write_text("another's")
         return draw(axes, cells)
 
-    monkeypatch.setattr("fem.sweep.sweeping.around", taken)
+    monkeypatch.setattr("fem.sweep.copies.around", taken)
     with pytest.raises(OutputError, match="emptied or taken by another"):
         run_sweep(small, folder)
     assert (folder / "sweep.json").read_text() == "another's"
