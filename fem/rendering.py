@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 MEND_PICTURES = "apt-get install -y libegl1 libgl1-mesa-dri"
+MEND = f"as root, on Debian or Ubuntu: {MEND_PICTURES}"
 RENDER_SECONDS = 120
 RENDER = """
 import pyvista
@@ -33,7 +34,8 @@ def probe_rendering() -> str | None:
     if result.returncode == 0:
         return None
     if result.returncode < 0:
-        return f"rendering ended with signal {-result.returncode}"
+        # VTK looks for the library when it renders, and ends the process where it finds none.
+        return f"no OpenGL library that works was found (the trial ended with signal {-result.returncode})"
     lines = result.stderr.strip().splitlines()
     return f"rendering failed ({lines[-1] if lines else 'without a message'})"
 
@@ -42,4 +44,4 @@ def require_rendering() -> None:
     """Raises RenderingError, naming the packages to install, where nothing can be rendered."""
     reason = probe_rendering()
     if reason is not None:
-        raise RenderingError(f"no pictures here (nothing else is affected): {reason}; {MEND_PICTURES}")
+        raise RenderingError(f"no pictures here (nothing else is affected): {reason}; {MEND}")

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from fem.commands.shared import AsJson
-from fem.rendering import MEND_PICTURES, probe_rendering
+from fem.rendering import MEND, probe_rendering
 
 DISTRIBUTIONS = (
     "unanchored",
@@ -41,7 +41,7 @@ def doctor(
     if missing := [name for name, version in versions.items() if version is None]:
         remedies.append(f"missing: {', '.join(missing)}; {MEND_PACKAGES}")
     if rendering is not None:
-        remedies.append(f"no pictures and movies (runs are not affected): {rendering}; {MEND_PICTURES}")
+        remedies.append(f"no pictures and movies (runs are not affected): {rendering}; {MEND}")
     if free < LEAST_FREE_GB:
         remedies.append(f"only {free:.2f} GB free in {Path.cwd()}: write elsewhere with --out")
     report: dict[str, Any] = {

@@ -327,7 +327,13 @@ class TestDoctor:
 
     def test_a_rendering_that_ends_its_process_is_told_and_does_not_end_this_one(self, monkeypatch):
         monkeypatch.setattr(rendering, "RENDER", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
-        assert rendering.probe_rendering() == "rendering ended with signal 11"
+        assert rendering.probe_rendering() == (
+            "no OpenGL library that works was found (the trial ended with signal 11)"
+        )
+        with pytest.raises(
+            rendering.RenderingError, match=r"nothing else is affected.*Debian.*apt-get install"
+        ):
+            rendering.require_rendering()
         monkeypatch.setattr(rendering, "RENDER", "raise RuntimeError('no GL')")
         assert rendering.probe_rendering() == "rendering failed (RuntimeError: no GL)"
         monkeypatch.setattr(rendering, "RENDER", "pass")
