@@ -31,6 +31,15 @@ def known_keys(table: type[Table]) -> dict[str, FieldInfo]:
 
 
 TOP = known_keys(Heading)
+#: what values of the wrong type should have been, by pydantic's name of the fault
+KINDS = {
+    "float_type": "a number",
+    "finite_number": "a finite number",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "bool_type": "true or false",
+    "string_type": "text in quotes",
+}
 
 
 def quantity_of(annotation: Any, metadata: Iterable[Any] = ()) -> Quantity | None:
@@ -179,20 +188,33 @@ def _reason(field: FieldInfo, details: list[ErrorDetails]) -> str:
         near = did_you_mean(value, choices) if isinstance(value, str) else ""
         listed = " or ".join(f'"{choice}"' for choice in choices)
         return f"must be {listed}, got {_shown(value)}" + (f"; {near}" if near else "")
-    required = {
-        "float_type": "a number",
-        "finite_number": "a finite number",
-        "int_type": "a whole number",
-        "int_from_float": "a whole number",
-        "bool_type": "true or false",
-        "string_type": "text in quotes",
-    }
-    for kind, words in required.items():
+    for kind, words in KINDS.items():
         if kind in kinds:
             hint = _number_in_text(value, unit) if isinstance(value, str) and quantity else ""
             shown = repr(value) if isinstance(value, float) else _shown(value)
             return f"must be {words}, got {shown}{hint}"
-    return f"{detail['msg'][:1].lower()}{detail['msg'][1:]}, got {_shown(value)}"
+    return f"{requirement_of(detail)}, got {_shown(value)}"
+
+
+def requirement_of(detail: ErrorDetails) -> str:
+    """What pydantic asks of a value, in the words of this program."""
+    limits = detail.get("ctx", {})
+    match detail["type"]:
+        case kind if kind in KINDS:
+            return f"must be {KINDS[kind]}"
+        case "greater_than":
+            return f"must be greater than {limits['gt']}"
+        case "greater_than_equal":
+            return f"must be at least {limits['ge']}"
+        case "less_than":
+            return f"must be less than {limits['lt']}"
+        case "less_than_equal":
+            return f"must be at most {limits['le']}"
+        case "string_too_long":
+            return f"must have at most {limits['max_length']} characters"
+        case "literal_error":
+            return f"must be {limits['expected']}"
+    return f"cannot be used ({detail['msg'].lower()})"
 
 
 def _number_in_text(text: str, unit: str) -> str:

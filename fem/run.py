@@ -43,6 +43,7 @@ from fem.run_folder import (
     RunFolder,
     finished_run,
     open_run_folder,
+    what_is_in_the_way,
     write_atomically,
 )
 from fem.run_resumption import RunBeginning, Spent, beginning_in, clock_readings, settling, spent_since
@@ -182,8 +183,8 @@ def held(folder: Path) -> Iterator[FolderLock]:
     with ExitStack() as stack:
         try:
             lock = stack.enter_context(held_folder(folder))
-        except FileExistsError:
-            raise FolderError(f"{folder} is a file, not a folder; choose another with --out DIR") from None
+        except (FileExistsError, NotADirectoryError):
+            raise FolderError(f"{what_is_in_the_way(folder)}; choose another with --out DIR") from None
         except OSError as error:
             raise FolderError(
                 f"{folder}: cannot be made or written ({error.strerror}); choose another folder with --out DIR"

@@ -48,19 +48,32 @@ def naming_what_cannot_be_written(folder: Path, way_on: str) -> Iterator[None]:
         way_on: what to do when there is room again.
 
     Raises:
-        FolderError: a file stands where a folder should.
+        FolderError: a file stands where a folder should, or none can be made there.
         OutputError: in the place of any other OSError.
     """
+    was_there = os.path.isdir(folder)
     try:
         yield
     except (FileExistsError, NotADirectoryError) as error:
-        place = error.filename or folder
-        raise FolderError(f"{place}: a file stands where a folder should; choose another place") from None
+        place = Path(error.filename or folder)
+        raise FolderError(f"{what_is_in_the_way(place)}; choose another place") from None
     except OSError as error:
+        if isinstance(error, FileNotFoundError) and not was_there:
+            raise FolderError(f"{folder}: cannot be made ({error.strerror}); choose another place") from None
         raise OutputError(
             f"{error.filename or folder}: cannot be written ({error.strerror or error}); what was written before can "
             f"be read; when there is room again, {way_on}"
         ) from None
+
+
+def what_is_in_the_way(path: Path) -> str:
+    """What stands where a folder should, at this place or on the way to it."""
+    for place in (*reversed(path.parents), path):
+        if os.path.islink(place) and not os.path.exists(place):
+            return f"{place} is a link to {os.readlink(place)}, which is not there"
+        if os.path.exists(place) and not os.path.isdir(place):
+            break
+    return f"{place} is a file, not a folder"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -34,7 +34,7 @@ def movie(
     require_rendering()
     # pyvista is loaded only where it can work.
     film = importlib.import_module("fem.movie")
-    with naming_what_cannot_be_written(run, "ask again, or elsewhere with --to FILE"):
+    with naming_what_cannot_be_written(to.parent if to else run, "ask again, or elsewhere with --to FILE"):
         print(film.write_movie(opened, path=to, progress=_ignore if quiet else _tell))
 
 

@@ -34,5 +34,5 @@ def picture(
     require_rendering()
     # pyvista is loaded only where it can work.
     pictures = importlib.import_module("fem.pictures")
-    with naming_what_cannot_be_written(run, "ask again, or elsewhere with --to FILE"):
+    with naming_what_cannot_be_written(to.parent if to else run, "ask again, or elsewhere with --to FILE"):
         print(pictures.write_picture(opened, time=time, path=to))

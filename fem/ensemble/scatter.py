@@ -5,6 +5,7 @@ sequence go through the same door. Normal and lognormal ones are cut off a few d
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -14,6 +15,7 @@ from scipy.special import ndtr, ndtri
 from scipy.stats import qmc
 
 from fem.case import CaseError
+from fem.case_reading import requirement_of
 from mesh.cells import FloatArray
 
 Sampling = Literal["independent", "latin-hypercube", "sobol"]
@@ -85,7 +87,7 @@ def read_random(key: str, given: Any) -> RandomQuantity:
         }
         spread = Distribution.model_validate(numbers)
     except ValidationError as error:
-        reasons = [_reason(detail) for detail in error.errors(include_url=False)]
+        reasons = [_reason(detail, given) for detail in error.errors(include_url=False)]
         raise CaseError(f"{place} {'; '.join(reasons)}; {example}") from None
     needed = NEEDS[spread.distribution]
     named = {"from": spread.least, "to": spread.most, "mean": spread.mean, "median": spread.median}
@@ -139,7 +141,7 @@ def _number(value: float | None) -> float:
     return math.nan if value is None else value
 
 
-def _reason(detail: Any) -> str:
+def _reason(detail: Any, given: Mapping[str, Any]) -> str:
     name = ".".join(str(part) for part in detail["loc"])
     match detail["type"]:
         case "missing":
@@ -147,5 +149,4 @@ def _reason(detail: Any) -> str:
         case "extra_forbidden":
             known = "distribution, from, to, mean, median, deviation, cut, relative"
             return f"has the unknown key {name!r} (known: {known})"
-    message = detail["msg"]
-    return f"{name} = {detail['input']!r}: {message[:1].lower()}{message[1:]}"
+    return f"{name} {requirement_of(detail)}, got {given.get(name)!r}"

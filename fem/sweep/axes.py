@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError
 from pydantic.fields import FieldInfo
 
 from fem.case_quantities import Quantity, with_unit
-from fem.case_reading import TOP, did_you_mean, known_keys, quantity_of
+from fem.case_reading import TOP, did_you_mean, known_keys, quantity_of, requirement_of
 from fem.case_tables import TABLES
 
 #: keys that say nothing about what happens, and so make no axis
@@ -171,7 +171,7 @@ def _reason_of_range(error: ValidationError) -> str:
             case "extra_forbidden":
                 reasons.append(f"has a range with the unknown key {name!r} (known: {known})")
             case _:
-                reasons.append(f"has a range whose {name} is {detail['input']!r}: {detail['msg'].lower()}")
+                reasons.append(f"has a range whose {name} {requirement_of(detail)}, got {detail['input']!r}")
     return "; ".join(reasons) + "; a range is { from = 1.0, to = 4.0, count = 13 }"
 
 

@@ -16,10 +16,9 @@ import numpy as np
 
 from fem.case import case_hash
 from fem.case_reading import CaseError
-from fem.folder_lock import held_folder
 from fem.program import program_identity, versions
 from fem.progress import Reporter, SilentReporter
-from fem.run import copy_data_files, interruptible
+from fem.run import copy_data_files, held, interruptible
 from fem.run_folder import naming_what_cannot_be_written
 from fem.simulation import cores
 from fem.sweep import copies
@@ -85,7 +84,7 @@ def run_sweep(
     reporter = reporter or SilentReporter()
     jobs = jobs or cores()
     check_size(sweep, jobs, force)
-    with held_folder(folder) as lock, interruptible(reporter) as stop, ExitStack() as held:
+    with held(folder) as lock, interruptible(reporter) as stop, ExitStack() as stack:
         place = open_sweep_folder(folder, sweep, force=force, resume=resume)
         if place.finished:
             reporter.message(f"{folder} holds this sweep already; --force computes it again")
@@ -95,7 +94,7 @@ def run_sweep(
             place=place,
             computing=Computing(
                 sweep=sweep,
-                workers_of=workers_of or held.enter_context(LocalWorkers(jobs)),
+                workers_of=workers_of or stack.enter_context(LocalWorkers(jobs)),
                 reporter=reporter,
             ),
             info=_asked(sweep) | {"jobs": jobs},

@@ -196,7 +196,7 @@ def test_shipped_ensembles_can_be_read(name):
 @pytest.mark.parametrize(
     ("pairs", "message"),
     [
-        ([("draws = 8", "draws = 4")], "draws"),
+        ([("draws = 8", "draws = 4")], "draws must be at least 8, got 4"),
         ([("draws = 8", "draws = 8\nsampling = 'sobol'\nreplicates = 5")], "take 5 draws"),
         ([("draws = 8", "draws = 24\nsampling = 'sobol'\nreplicates = 8")], "powers of two; take 16 draws"),
         ([("probability = 0.5", "probability = 0.05")], "at least 59 are needed"),
@@ -208,7 +208,7 @@ def test_shipped_ensembles_can_be_read(name):
         ),
         (
             [('distribution = "uniform", from = 0.0', 'distribution = "unifrom", from = 0.0')],
-            "'unifrom'",
+            "distribution must be 'uniform', .* got 'unifrom'; for instance",
         ),
         ([("to = 6.2 }", "to = 62.0 }")], "phase_rad"),
         (
@@ -218,7 +218,7 @@ def test_shipped_ensembles_can_be_read(name):
         ([("free.ratio * contact", "3 * free.ratio * contact")], "must be at most mu_static"),
         ([("[2.0, 6.0, 12.0]", "[6.0, 2.0]")], "must rise"),
         ([('"solver.model" = "rigid"', '"solver.model" = "full"')], "weeks"),
-        ([("seed = 4", "seed = -4")], "seed"),
+        ([("seed = 4", "seed = -4")], "seed must be at least 0, got -4"),
         ([("draws = 8", "draws = 400000")], "runs; at most"),
         (
             [('"motion.phase_rad"', '"motion.peak_acceleration_m_s2"')],

@@ -9,7 +9,15 @@ import numpy as np
 import pytest
 
 from fem import run_folder
-from fem.run_folder import FolderError, open_run_folder, read_result, write_atomically
+from fem.run import held
+from fem.run_folder import (
+    FolderError,
+    OutputError,
+    naming_what_cannot_be_written,
+    open_run_folder,
+    read_result,
+    write_atomically,
+)
 
 CASE = {"case_text": "title = 'é'\n", "resolved_text": "schema = 1\n", "case_hash": "abc"}
 
@@ -123,6 +131,37 @@ def test_a_file_in_place_of_the_folder_is_refused(tmp_path):
         opened(tmp_path / "x")
     with pytest.raises(FolderError, match=r"--out"):
         opened(tmp_path / "x" / "y" / "z")
+
+
+@pytest.mark.parametrize("below", ["", "deep", "deep/deeper"])
+def test_a_link_to_nowhere_on_the_way_is_named(tmp_path, below):
+    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+    place, words = (
+        tmp_path / "link" / below,
+        r"link is a link to .*nowhere, which is not there; choose another",
+    )
+    with pytest.raises(FolderError, match=words), held(place):
+        pass
+    with pytest.raises(FolderError, match=words), naming_what_cannot_be_written(place, "ask again"):
+        place.mkdir(parents=True)
+    assert [entry.name for entry in tmp_path.iterdir()] == ["link"]
+
+
+def test_a_file_on_the_way_is_named(tmp_path):
+    (tmp_path / "x").write_text("")
+    with pytest.raises(FolderError, match=r"x is a file, not a folder; .*--out"), held(tmp_path / "x" / "y"):
+        pass
+
+
+def test_a_place_where_no_folder_can_be_made_is_not_one_that_was_written_to(tmp_path):
+    place = tmp_path / "gone" / "r"
+    with pytest.raises(FolderError, match="cannot be made"), naming_what_cannot_be_written(place, "wait"):
+        place.mkdir()
+    place.mkdir(parents=True)
+    words = r"what was written before can be read.*wait"
+    with pytest.raises(OutputError, match=words), naming_what_cannot_be_written(place, "wait"):
+        place.rmdir()
+        (place / "file").write_text("")
 
 
 def test_folder_that_cannot_be_made_leaves_no_parents_behind(tmp_path, monkeypatch):

@@ -85,6 +85,10 @@ def test_a_default_that_follows_an_axis_is_the_cells_own(sweep_of):
         ('[axes]\n"contact.mu_static" = []\n', ["the list is empty"]),
         ('[axes]\n"contact.mu_static" = { from = 0.2, count = 3 }\n', ["without 'to'", "a range is"]),
         ('[axes]\n"contact.mu_static" = { from = 0.2, to = 0.4, count = 1 }\n', ["empty range", "[0.2]"]),
+        (
+            '[axes]\n"contact.mu_static" = { from = 0.2, to = 0.4, count = 3.5 }\n',
+            ["count must be a whole number, got 3.5", "a range is"],
+        ),
         ('[axes]\n"contact.mu_static" = { from = 0.4, to = 0.2, count = 3 }\n', ["must be less than to"]),
         ('[axes]\n"contact.mu_static" = { from = 0.4, to = 0.4, count = 3 }\n', ["empty range"]),
         (
