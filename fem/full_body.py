@@ -32,6 +32,7 @@ from fem.reduction import StaticResponse
 
 #: residual of a step at which its iteration stops, over the weight; the next iterate would have its square
 RESIDUAL_TOLERANCE = 5e-6
+UNIT_ROUNDOFF = 2.0**-53
 FACTOR_MEMORY = 600_000_000  #: for factors of different step sizes [bytes]
 FEWEST_FACTORS, MOST_FACTORS = 8, 64
 #: arrays of the last residual
@@ -215,6 +216,16 @@ def leave_body_alone(body: ModalBody | FullBody, run: Run, floor_velocity: float
         leave_nodal_alone(body.nodal, run, floor_velocity)
 
 
+def _rounding(elements: FiniteElements) -> float:
+    """What of the internal forces at a node may be rounding of the coordinates alone [N].
+
+    More than the residual of a step may be where a wall is as thin as a hair: its stiffness across is enormous, and
+    the iterations would go on until they happen to hit.
+    """
+    stiffest = float(abs(elements.stiffness).sum(axis=1).max())
+    return UNIT_ROUNDOFF * stiffest * float(np.abs(elements.nodes).max())
+
+
 def _without_factors(body: FullBody, nodal_mass: FloatArray, mass_arm: FloatArray) -> NodalBody:
     elements = body.elements
     n, k = len(elements.nodes), elements.cells.shape[1]
@@ -224,7 +235,7 @@ def _without_factors(body: FullBody, nodal_mass: FloatArray, mass_arm: FloatArra
         inertia=body.inertia,
         gravity=float(body.gravity),
         damping=float(body.damping),
-        tolerance=RESIDUAL_TOLERANCE * body.mass * float(body.gravity),
+        tolerance=max(RESIDUAL_TOLERANCE * body.mass * float(body.gravity), _rounding(elements)),
         first=elements.lame.first,
         shear=elements.lame.shear,
         node=np.ascontiguousarray(elements.nodes),
