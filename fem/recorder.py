@@ -60,6 +60,9 @@ ORDER = (
 #: samples searched for the largest stress at each emptying, those of the largest strain energy
 STRAINED = 4
 
+#: decimals of times that people write [s], and what multiplication may make of them, relative
+DECIMALS, ROUNDING = 12, 4.0 * float(np.finfo(float).eps)
+
 HistorySink = Callable[[FloatArray, Sequence[str]], None]
 FrameSink = Callable[[float, Frame, FloatArray, float], None]
 
@@ -149,10 +152,11 @@ class Recorder:
             return
         times: FloatArray = np.arange(first, first + count, dtype=np.float64) * samples.interval
         rows = np.empty((count, self._columns))
-        rows[:, 0] = times
+        rows[:, 0] = as_written(times)
         rows[:, 1:4] = floor_history(run.motion, times).T
         rows[:, 4:NUMBERS] = samples.columns[:count, ORDER]
         rows[:, NUMBERS:] = self._forces_in_joints(samples, first, count)
+        rows += 0.0  # no minus zero
         modes = [MODE_NAMES[int(mode)] for mode in samples.mode[:count]]
         if self._recovery is not None:
             strained = np.argsort(samples.columns[:count, ROW_STRAIN])[-STRAINED:]
@@ -193,8 +197,17 @@ class Recorder:
                     pressure = np.zeros(len(frame.displacement))
                     pressure[self._model.container.nodes] = samples.force[k, :, 1] / self._area
                     floor, _, _ = floor_motion(run.motion, time)
-                    self._frame_sink(time, frame, pressure, floor)
+                    self._frame_sink(float(as_written(np.array(time))), frame, pressure, floor)
         clock.frames_gone = clock.frames
+
+
+def as_written(times: FloatArray) -> FloatArray:
+    """Instants of a grid as people write them: 0.15, where three times 0.05 is 0.15000000000000002.
+
+    Moved are only times that lie as near to a short decimal as rounding may have put them.
+    """
+    short = np.round(times, DECIMALS)
+    return np.where(np.abs(short - times) <= ROUNDING * np.abs(times), short, times)
 
 
 def _contact_areas(model: Model) -> FloatArray:
