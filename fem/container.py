@@ -14,6 +14,7 @@ from fem.case import Case
 from fem.case_contact import build_support
 from fem.case_container import build_container, node_count
 from fem.modes import elastic_modes
+from fem.parts import Parts
 from fem.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
 from fem.required_memory import require_memory
 from fem.threads import use_one_blas_thread
@@ -37,14 +38,19 @@ class Container:
     first: float  #: lowest elastic angular frequency; infinite for a rigid container [rad/s]
 
 
-def discretise(case: Case) -> Container:
-    """Mesh, elements, supporting nodes and elastic modes of a case's container.
+def discretise(case: Case, mesh: ContainerMesh | None = None, parts: Parts | None = None) -> Container:
+    """Elements, supporting nodes and elastic modes of a case's container.
+
+    Args:
+        case: what to build.
+        mesh: its mesh, built before.
+        parts: may keep what takes long.
 
     Raises:
         CaseError, MeshError: bad input.
     """
     use_one_blas_thread()
-    mesh = build_container(case)
+    mesh = mesh or build_container(case)
     support = build_support(case, mesh)
     require_memory(case, node_count(mesh, case.solver.order), support.index.size)
     elements = assemble(
@@ -56,13 +62,13 @@ def discretise(case: Case) -> Container:
     nodes = elements.base_nodes[support.index]
     if not case.output.stop_when_overturned:  # it will come to lie on its side: the upper corners touch too
         nodes = np.concatenate([nodes, _upper_corners(elements)])
-    response = static_response(elements, nodes)
+    response = static_response(elements, nodes, parts)
     basis, first, damping = None, math.inf, 0.0
     if case.solver.model == "reduced":
-        basis = reduced_basis(elements, response, case.solver.elastic_modes)
+        basis = reduced_basis(elements, response, case.solver.elastic_modes, parts)
         first = float(basis.angular_frequencies[0])
     elif case.solver.model == "full":
-        first = float(elastic_modes(elements, 1).angular_frequencies[0])
+        first = float(elastic_modes(elements, 1, parts).angular_frequencies[0])
     if math.isfinite(first):
         damping = 2.0 * case.container.damping_ratio / first
     return Container(

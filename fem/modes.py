@@ -7,16 +7,19 @@ Mathematics of Computation 35 (1980) 1251) on the complement of the rigid modes.
 """
 
 from dataclasses import dataclass
+from functools import cache
+from itertools import count as count_from
 from pathlib import Path
 
 import meshio
 import numpy as np
 from scipy.linalg import cholesky, eigh, qr, solve_triangular
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import LinearOperator, eigsh, splu
+from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
 
 from fem.assembly import FiniteElements
 from fem.elasticity import FloatArray
+from fem.parts import NoParts, Parts
 
 _DENSE_UNKNOWNS = 400  # up to here a dense solution is as quick, and it gives every mode there is
 _VTK_CELLS = {4: "quad", 9: "quad9"}
@@ -48,10 +51,10 @@ def rigid_modes(elements: FiniteElements) -> FloatArray:
     return modes / np.sqrt(_modal_masses(elements, modes))[:, None, None]
 
 
-def elastic_modes(elements: FiniteElements, count: int) -> ElasticModes:
+def elastic_modes(elements: FiniteElements, count: int, parts: Parts | None = None) -> ElasticModes:
     """The `count` lowest elastic modes; the same input gives the same shapes and signs.
 
-    The largest component of each shape is positive (the first of equals, by node).
+    The largest component of each shape is positive (the first of equals, by node). `parts` may keep solutions.
 
     Raises:
         ValueError: count below 1, or above the number of elastic modes that the mesh has.
@@ -63,7 +66,7 @@ def elastic_modes(elements: FiniteElements, count: int) -> ElasticModes:
     if elements.unknowns <= max(_DENSE_UNKNOWNS, 4 * count):
         squares, vectors = _dense_modes(elements, rigid, count)
     else:
-        squares, vectors = _lanczos_modes(elements, rigid, count)
+        squares, vectors = _lanczos_modes(elements, rigid, count, parts or NoParts())
     shapes = vectors.T.reshape(count, -1, 2)
     shapes /= np.sqrt(_modal_masses(elements, shapes))[:, None, None]
     return ElasticModes(frequencies_Hz=np.sqrt(squares) / (2.0 * np.pi), shapes=shapes * _signs(shapes))
@@ -114,20 +117,34 @@ def _dense_modes(elements: FiniteElements, rigid: FloatArray, count: int) -> tup
     return 1.0 / inverses[::-1] - shift, basis @ vectors[:, ::-1]
 
 
-def _lanczos_modes(elements: FiniteElements, rigid: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
+def _lanczos_modes(
+    elements: FiniteElements, rigid: FloatArray, count: int, parts: Parts
+) -> tuple[FloatArray, FloatArray]:
     mass, stiffness = elements.vector_mass, elements.stiffness
     shift = _first_square_estimate(elements, rigid)
+
     # K alone is singular; K + shift M is positive definite, and any shift near the first elastic mode keeps
     # both the factor well conditioned and the wanted modes apart. Symmetric mode: a third of the fill.
-    factor = splu(
-        (stiffness + shift * mass).tocsc(),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
+    @cache
+    def factor() -> SuperLU:
+        return splu(
+            (stiffness + shift * mass).tocsc(),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+
+    number = count_from(1)
 
     def solve(momentum: FloatArray) -> FloatArray:
-        return _without_rigid_motion(factor.solve(momentum), rigid, mass)
+        # The iteration asks for the same solutions in the same order every time: it can be played again.
+        solution = np.empty(momentum.shape)
+        parts.fill(
+            f"solution {next(number)}",
+            solution,
+            lambda: _without_rigid_motion(factor().solve(momentum), rigid, mass),
+        )
+        return solution
 
     start = np.random.default_rng(0).standard_normal(elements.unknowns)  # no symmetry: it misses no mode
     squares, vectors = eigsh(

@@ -6,12 +6,10 @@ they are wanted, the comparison with the rigid block and the band over the conta
 
 import contextlib
 import shutil
-import signal
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -20,15 +18,21 @@ from contact.event_driven import EventError
 from fem.band import band_of, wants_band
 from fem.band_keeping import BandFolder
 from fem.case import Case, CaseError, case_hash, to_toml
-from fem.case_motion import motion_notes
+from fem.case_contact import normal_penalty
+from fem.case_container import build_container, node_count
+from fem.case_motion import build_motion, motion_notes
 from fem.compilation import compilation_announced
+from fem.container import discretise
 from fem.fields import FieldWriter
 from fem.figures_kept import write_figures
 from fem.folder_lock import FolderLock, FolderLostError, held_folder
+from fem.full_body import advance_body
 from fem.history import History, HistoryWriter, add_analytic_rotation, read_history
+from fem.interrupts import ending_at_once, interruptible
 from fem.joint_demands import joint_demands
-from fem.model import Model, build_model
+from fem.model import Model, build_model, checks_of
 from fem.opening import open_run
+from fem.part_keeping import PartFolder
 from fem.program import versions
 from fem.progress import Reporter, SilentReporter
 from fem.recorder import Recorder
@@ -49,9 +53,11 @@ from fem.run_folder import (
 from fem.run_resumption import RunBeginning, Spent, beginning_in, clock_readings, settling, spent_since
 from fem.run_warnings import warnings_for
 from fem.simulation import Ending, simulate
+from fem.step_limits import largest_step_of
 from fem.summary import plain_summary
 from fem.verdict import energy_of, numerics_of, verdict_of
 from mesh.cells import FloatArray
+from mesh.container import ContainerMesh
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,28 +99,29 @@ def run_case(
     """
     options, reporter = options or RunOptions(), reporter or SilentReporter()
     began = clock_readings()
-    model = build_model(case)
-    resolved = resolve(case, model)
-    mark = case_hash(resolved)
-    require_names_of_their_own(case, RunFolder(path=folder))
+    mesh = build_container(case)
+    resolved = resolve(case, mesh)
+    mark, place = case_hash(resolved), RunFolder(path=folder)
+    require_names_of_their_own(case, place)
     found = finished_run(folder, case_hash=mark, force=options.force)
     if found is not None:
         reporter.message(f"{folder} holds this run already; --force computes it again")
-    if found is not None and _is_whole(found, RunFolder(path=folder), case, options):
+    if found is not None and _is_whole(found, place, case, options):
         return RunResult(status=str(found["status"]), result=found, history=History.empty())
     if found is None:
-        require_disk(case, len(model.container.elements.nodes), folder)
+        require_disk(case, node_count(mesh, case.solver.order), folder)
     beginning = RunBeginning()
 
-    def inspect(place: RunFolder) -> None:
-        nonlocal beginning
-        beginning = beginning_in(place, model, mark)
+    with ExitStack() as stack:
+        lock = stack.enter_context(held(folder))
+        stack.enter_context(compilation_announced(reporter.message))
+        model = _set_up(case, mesh, place, lock, mark, force=options.force, reporter=reporter)
+        stop = stack.enter_context(interruptible(reporter))
 
-    with (
-        held(folder) as lock,
-        interruptible(reporter) as stop,
-        compilation_announced(reporter.message),
-    ):
+        def inspect(place: RunFolder) -> None:
+            nonlocal beginning
+            beginning = beginning_in(place, model, mark)
+
         place = open_run_folder(
             folder,
             case_text=case_text,
@@ -224,6 +231,7 @@ def store(result: dict[str, Any], case: Case, place: RunFolder) -> None:
     place.write_result(result)
     if result["status"] in FINISHED:
         place.remove_checkpoint()
+        place.remove_setup()
         if result["verdict"].get("band") is not None:
             place.remove_band()
 
@@ -315,14 +323,47 @@ def result_of(model: Model, recorder: Recorder, ending: Ending) -> dict[str, Any
     return result
 
 
-def resolve(case: Case, model: Model) -> Case:
-    """The case with every "auto" replaced by what was chosen; running it again gives the same result."""
+def resolve(case: Case, mesh: ContainerMesh) -> Case:
+    """The case with every "auto" replaced by what is chosen; running it again gives the same result.
+
+    Raises:
+        CaseError: a motion that cannot be built, or that the step given would step over.
+    """
     chosen: dict[str, Any] = {}
     if case.contact.normal_penalty_Pa_m == "auto":
-        chosen["contact.normal_penalty_Pa_m"] = model.penalty
+        chosen["contact.normal_penalty_Pa_m"] = normal_penalty(case, mesh)
     if case.solver.step_s == "auto":
-        chosen["solver.step_s"] = model.run.control.largest_step
+        motion = build_motion(case)
+        chosen["solver.step_s"], _ = largest_step_of(case, checks_of(case, mesh, motion), motion)
     return case.with_values(chosen) if chosen else case
+
+
+def _set_up(
+    case: Case,
+    mesh: ContainerMesh,
+    place: RunFolder,
+    lock: FolderLock,
+    case_hash: str,
+    *,
+    force: bool,
+    reporter: Reporter,
+) -> Model:
+    """The model of a case, and the kernels that step it; what of it takes long is kept in the folder.
+
+    Raises:
+        CaseError, MeshError: it cannot be built; nothing is kept of it then.
+    """
+    if force:
+        place.remove_setup()
+    try:
+        with ending_at_once():
+            parts = PartFolder(place, lock, case_hash=case_hash, reporter=reporter)
+            model = build_model(case, discretise(case, mesh, parts))
+            advance_body(model.body, model.run, 0.0)  # no step: compiled, where that has not been done
+    except ValueError:
+        place.remove_setup()
+        raise
+    return model
 
 
 def require_names_of_their_own(case: Case, place: RunFolder) -> None:
@@ -348,30 +389,6 @@ def copy_data_files(case: Case, folder: Path) -> None:
         target.parent.mkdir(parents=True, exist_ok=True)
         if target.resolve() != path.resolve():
             shutil.copyfile(path, target)
-
-
-@contextmanager
-def interruptible(reporter: Reporter) -> Iterator[Callable[[], bool]]:
-    """Turn the first Ctrl-C or SIGTERM into a request to stop at a clean place; a second Ctrl-C insists."""
-    asked: list[int] = []
-
-    def note(number: int, frame: FrameType | None) -> None:
-        if asked and number == signal.SIGINT:
-            raise KeyboardInterrupt
-        asked.append(number)
-        reporter.message("stopping at the next clean place; once more stops at once")
-
-    before = {}
-    for number in (signal.SIGINT, signal.SIGTERM):
-        try:
-            before[number] = signal.signal(number, note)
-        except ValueError:  # not the main thread: whoever called has other means
-            break
-    try:
-        yield lambda: bool(asked)
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 def _step_into(

@@ -25,6 +25,8 @@ from fem.folder_lock import LOCK_NAME
 FINISHED = frozenset({"completed", "overturned"})
 STATUSES = FINISHED | {"failed", "interrupted", "running"}
 
+SETUP_NAME = ".setup"
+
 #: ends of the names of numbers in a result
 MEASURED = re.compile(r"_(m|m2|m3|s|s2|N|Nm|J|Pa|Hz|rad|ratio)$")
 
@@ -138,6 +140,15 @@ class RunFolder:
         return self.members / f"member_{number}.npz"
 
     @property
+    def setup(self) -> Path:
+        """Folder of the parts of a set-up under way."""
+        return self.path / SETUP_NAME
+
+    def part(self, number: int) -> Path:
+        """Parts of a set-up, those of one number together."""
+        return self.setup / f"part_{number}.npz"
+
+    @property
     def figures(self) -> Path:
         """Folder of the figures."""
         return self.path / "figures"
@@ -162,7 +173,7 @@ class RunFolder:
         """Every file and folder that a run writes."""
         results = (self.result, self.summary, self.history, self.rigid_check, self.fields, self.figures)
         reports = (self.report, self.variations)
-        unfinished = (self.checkpoint, self.band, self.members)
+        unfinished = (self.checkpoint, self.band, self.members, self.setup)
         return (self.case, self.resolved, *results, *reports, *unfinished, self.path / LOCK_NAME)
 
     def write_result(self, result: Mapping[str, Any]) -> None:
@@ -186,6 +197,10 @@ class RunFolder:
         self.band.unlink(missing_ok=True)
         self.band.with_name(f".{self.band.name}.part").unlink(missing_ok=True)
         _remove_from(self.members, ("member_*.npz", ".*.part"))
+
+    def remove_setup(self) -> None:
+        """Remove what is kept of a set-up."""
+        _remove_from(self.setup, ("part_*.npz", ".*.part"))
 
     def write_summary(self, text: str) -> None:
         """Replace `summary.txt`."""
@@ -370,11 +385,12 @@ def _prepare(
 
 
 def _names_in(path: Path) -> list[str]:
-    """What lies in a folder, without the lock and what a kill may have left half written."""
+    """What lies in a folder, without the lock, parts of a set-up, and what a kill may have left half written."""
     return [
         entry.name
         for entry in path.iterdir()
-        if entry.name != LOCK_NAME and not (entry.name.startswith(".") and entry.name.endswith(".part"))
+        if entry.name not in (LOCK_NAME, SETUP_NAME)
+        and not (entry.name.startswith(".") and entry.name.endswith(".part"))
     ]
 
 

@@ -27,9 +27,9 @@ from fem.ensemble.counting import (
 )
 from fem.ensemble.figures import ensemble_figures
 from fem.ensemble.plan import Ensemble
+from fem.interrupts import interruptible
 from fem.progress import Reporter, SilentReporter, clock_time
 from fem.result_folder import COMPLETED, ResultFolder, opened_result_folder, program_of_results
-from fem.run import interruptible
 from fem.run_folder import FolderError
 from fem.sweep.running import Row, run_cases
 

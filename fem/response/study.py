@@ -14,6 +14,7 @@ import numpy as np
 
 from fem.case import Case, to_toml
 from fem.container import Container
+from fem.interrupts import interruptible
 from fem.progress import Reporter, SilentReporter
 from fem.response.branches import branches_of, in_words
 from fem.response.curve import PORTRAYED, Standing, plan_of, sweep_points
@@ -29,7 +30,6 @@ from fem.response.record import (
 )
 from fem.response.request import ResponseRequest
 from fem.result_folder import COMPLETED, ResultFolder, opened_result_folder, program_of_results
-from fem.run import interruptible
 from fem.run_folder import FolderError
 from fem.verdict import MODE_NAMES
 

@@ -16,9 +16,10 @@ import numpy as np
 
 from fem.case import case_hash
 from fem.case_reading import CaseError
+from fem.interrupts import interruptible
 from fem.program import program_identity, versions
 from fem.progress import Reporter, SilentReporter
-from fem.run import copy_data_files, held, interruptible
+from fem.run import copy_data_files, held
 from fem.run_folder import naming_what_cannot_be_written
 from fem.simulation import cores
 from fem.sweep import copies

@@ -295,7 +295,7 @@ def install_solver(monkeypatch, status):
         folder.mkdir()
         (folder / "run.json").write_text(json.dumps({"status": status, "case_hash": "0"}), encoding="utf-8")
         (folder / "summary.txt").write_text(f"summary of {status}\n", encoding="utf-8")
-        return SimpleNamespace(status=status)
+        return SimpleNamespace(status=status, stopped=status == "interrupted")
 
     solver = SimpleNamespace(run_case=run_case, RunOptions=SimpleNamespace)
     monkeypatch.setitem(sys.modules, "fem.run", solver)

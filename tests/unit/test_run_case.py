@@ -18,8 +18,9 @@ from contact.rocking import simulate_rocking
 from fem.__main__ import main
 from fem.case import load_case
 from fem.history import History, read_history
+from fem.interrupts import interruptible
 from fem.progress import SilentReporter
-from fem.run import RunOptions, RunResult, interruptible, run_case
+from fem.run import RunOptions, RunResult, run_case
 from fem.run_folder import FolderError, read_result
 
 QUICK = ("solver.model=rigid", "output.fields_s=0", "output.figures=false")
