@@ -22,6 +22,7 @@ Result = Mapping[str, Any]
 
 TEXT_WIDTH = 110
 INVISIBLE = 1e-9  #: in the units of people: smaller numbers are rounding
+LEAST_LENGTH = 1e-5  #: [m]
 CODE_NOTE = "The code's rows hold a design response (EN 1998-1:2004, 4.3.3.2), not the motion of this floor."
 BAND_NOTE = (
     "The band repeats the run with a third and three times the contact penalty and with contact damping "
@@ -153,7 +154,7 @@ def run_slid(verdict: Mapping[str, Any]) -> str:
     if slip is None:
         return "-"
     sliding = {"slide", "slide-rock"} & {verdict.get("outcome"), *(verdict.get("modes") or ())}
-    return f"{'slides' if sliding else 'holds'}, slip {_number(slip, 1e3)} mm"
+    return f"{'slides' if sliding else 'holds'}, slip {_millimetres(slip)} mm"
 
 
 def run_tilted(verdict: Mapping[str, Any]) -> str:
@@ -183,9 +184,9 @@ def run_rows(result: Result) -> list[tuple[str, str]]:
         ("largest rotation", _rotation(verdict)),
         (
             "slip: largest, at the end, travelled",
-            _joined(verdict, ("max_slip_m", "residual_slip_m", "slip_travel_m"), "mm"),
+            _lengths(verdict, ("max_slip_m", "residual_slip_m", "slip_travel_m")),
         ),
-        ("largest uplift", _unit(verdict.get("max_uplift_m"), 1e3, "mm")),
+        ("largest uplift", _lengths(verdict, ("max_uplift_m",))),
         (
             "largest corner force",
             _mean(verdict.get("max_corner_force_N"), 1e-3, "kN", numerics.get("corner_force_window_s")),
@@ -193,7 +194,7 @@ def run_rows(result: Result) -> list[tuple[str, str]]:
         ("first uplift", _unit(verdict.get("first_uplift_s"), 1.0, "s")),
         ("impacts", _count(verdict.get("impacts"))),
         ("velocity ratio, first impact", _restitution(verdict, static)),
-        ("top against the floor", _unit(verdict.get("max_top_displacement_m"), 1e3, "mm")),
+        ("top against the floor", _lengths(verdict, ("max_top_displacement_m",))),
         (
             "acceleration of the contents",
             _mean(verdict.get("max_acceleration_m_s2"), 1.0, "m/s2", numerics.get("acceleration_window_s")),
@@ -299,9 +300,16 @@ def _files(folder: Path) -> Text:
     return Text("\n".join(lines))
 
 
-def _joined(verdict: Mapping[str, Any], keys: Sequence[str], unit: str) -> str:
+def _lengths(verdict: Mapping[str, Any], keys: Sequence[str]) -> str:
     values = [verdict.get(key) for key in keys]
-    return "" if values[0] is None else ", ".join(_number(value, 1e3) for value in values) + f" {unit}"
+    return "" if values[0] is None else f"{', '.join(_millimetres(value) for value in values)} mm"
+
+
+def _millimetres(value: float | None) -> str:
+    """A length given in metres; what is below 0.01 mm is nobody's measure."""
+    if value is not None and 1e-3 * INVISIBLE <= abs(value) < LEAST_LENGTH:
+        return f"< {1e3 * LEAST_LENGTH:g}"
+    return _number(value, 1e3)
 
 
 def _unit(value: float | None, factor: float, unit: str) -> str:

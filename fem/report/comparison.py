@@ -111,18 +111,27 @@ def assumptions(result: Result, case: Case) -> list[str]:
         else "regularised in velocity: under load it creeps"
     )
     said = [
-        "Plane elevation, plane stress; one horizontal floor motion, the same under the whole base.",
+        "Plane elevation; one horizontal floor motion, the same under the whole base.",
         f"Rigid, level floor under a unilateral contact: penalty {spring}, damping ratio "
         f"{short(contact.damping_ratio)}. The penalty is a numerical input, not the stiffness of a concrete slab.",
         f"Coulomb friction, static and kinetic, {law}.",
-        "Linear elastic walls (finite rotation); the fill is mass without stiffness, fixed to its place.",
+        _material(case),
     ]
     if case.container.boxes > 1:
         listed = "; what the joints carry is listed below" if result.get("joints") else ""
         said.append(f"The boxes are bolted and do not part{listed}.")
-    if case.solver.model == "rigid":
-        said.append("The container is rigid: no elastic mode takes part.")
     return said
+
+
+def _material(case: Case) -> str:
+    if case.solver.model == "rigid":
+        return "The container is rigid: it turns and slides as one, and its stress is not known."
+    if case.container.section == "solid":
+        return "A homogeneous block, linear elastic in plane stress (finite rotation)."
+    return (
+        "Walls linear elastic in plane stress (finite rotation); the fill is mass without stiffness, fixed to its "
+        "place."
+    )
 
 
 EXCLUSIONS = (

@@ -6,8 +6,9 @@ A trailing zero is kept where it is known (98.10, not 98.1), so that the figures
 import math
 import re
 
+from fem.summary import LEAST_LENGTH
+
 ABSENT = "–"
-LEAST_LENGTH = 1e-5  #: [m]
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 

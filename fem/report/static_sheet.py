@@ -170,10 +170,10 @@ def _code_lines(static: Mapping[str, Any], case: Case) -> list[Line]:
             numbers=f"2 × π × √(4 × {number(arm)} / (3 × {short(case.gravity_m_s2)}))",
             value=static["period_eq3_s"],
             unit="s",
-            source=(
-                f"{PAPER}, Eq. (3); limit min(4 TC, {LIMIT_PERIOD:.1f} s) with TC = "
-                f"{short(case.static.corner_period_s)} s, {CLAUSE_APPLICABLE} a), Eq. (4.4)"
-            ),
+            source=Markup(
+                "{}, Eq. (3); limit min(4 <i>T</i><sub>C</sub>, {} s) with <i>T</i><sub>C</sub> = {} s, {} a), "
+                "Eq. (4.4)"
+            ).format(PAPER, f"{LIMIT_PERIOD:.1f}", short(case.static.corner_period_s), CLAUSE_APPLICABLE),
             verdict="applies" if static["method_applicable"] else "does not apply",
         )
     )
@@ -227,7 +227,7 @@ def _mass_lines(static: Mapping[str, Any], case: Case) -> list[Line]:
         Line(
             name="floor acceleration of uplift",
             formula=Markup("<i>a</i><sub>up</sub> = <i>g</i> tan <i>α</i>"),
-            numbers=f"{g} × tan({angle})",
+            numbers=f"{g} × tan({angle}°)",
             value=static["uplift_acceleration_m_s2"],
             unit="m/s²",
             source="West (1885)",
@@ -263,7 +263,7 @@ def _mass_lines(static: Mapping[str, Any], case: Case) -> list[Line]:
             formula=Markup("<i>e</i> = 1 − <i>m</i> <i>R</i>²/<i>I</i><sub>O</sub> (1 − cos 2<i>α</i>)"),
             numbers=(
                 f"1 − {number(mass, 1.0, 5)} × {number(arm, 1.0, 5)}² / {number(about_corner, 1.0, 5)} × "
-                f"(1 − cos(2 × {angle}))"
+                f"(1 − cos(2 × {angle}°))"
             ),
             value=static["housner_restitution"],
             unit="",

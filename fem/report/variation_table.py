@@ -149,7 +149,7 @@ def variation_table(
             return None
         left = sum(row is None for row in rows)
         if left:
-            told(f"{left} variations of the run would take longer; --all-variations computes them too")
+            told(f"variations of the run that would take longer: {left}; --all-variations computes them too")
     if kept is None or every:
         try:
             write_atomically(kept_in, to_json({**mark, "price_s": price, "rows": rows}))

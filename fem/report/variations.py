@@ -41,7 +41,7 @@ def variations_of(case: Case) -> Iterator[Variation]:
         static, kinetic = (round(factor * mu, 6) for mu in (contact.mu_static, contact.mu_kinetic))
         yield Variation(
             subject="friction",
-            change=f"μs {short(static)}, μk {short(kinetic)} (× {factor:g})",
+            change=f"μₛ {short(static)}, μₖ {short(kinetic)} (× {factor:g})",
             values={"contact.mu_static": static, "contact.mu_kinetic": kinetic},
         )
     for ratio in DAMPING_RATIOS:

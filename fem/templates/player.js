@@ -102,8 +102,8 @@
     pen.setLineDash([4, 4]); pen.strokeRect(X(base - 0.5 * film.width), Z(film.height), scale * film.width, scale * film.height);
     pen.setLineDash([]);
     if (controls.view.value === "ground") {  // a mark that stays, and how far the floor is from it
-      pen.fillStyle = SHEAR; pen.beginPath();
-      pen.moveTo(X(0), z + 11); pen.lineTo(X(0) - 5, z + 20); pen.lineTo(X(0) + 5, z + 20); pen.fill();
+      pen.fillStyle = INK; pen.beginPath();  // below the words of the friction
+      pen.moveTo(X(0), z + 23); pen.lineTo(X(0) - 5, z + 32); pen.lineTo(X(0) + 5, z + 32); pen.fill();
     }
   };
 
@@ -174,6 +174,10 @@
     pen.beginPath(); pen.moveTo(x, y); pen.lineTo(x - head * ux - 0.5 * head * uy, y - head * uy + 0.5 * head * ux);
     pen.lineTo(x - head * ux + 0.5 * head * uy, y - head * uy - 0.5 * head * ux); pen.fill();
   };
+  const label = (text, x, y) => {  // readable on hatches and arrows
+    pen.strokeStyle = "#fff"; pen.lineWidth = 3.5; pen.lineJoin = "round"; pen.strokeText(text, x, y);
+    pen.fillText(text, x, y);
+  };
   const drawForces = (X, Z, scale, origin) => {
     const frame = frameAt(now), most = 1.6 * unit * scale, of = (force) => scale * unit * Math.abs(force) / film.weight;
     const total = value("normal", now), shear = value("shear", now);
@@ -195,13 +199,13 @@
     if (total > 2e-3 * film.weight) {
       pen.font = "12px system-ui, sans-serif"; pen.fillStyle = NORMAL; pen.textAlign = "left";
       const cut = of(total) > most ? " (arrow cut)" : "";
-      pen.fillText(`N ${kilo(total)} kN${cut}`, X(centre) + 8, Z(0) + Math.min(of(total), most) + 4);
+      label(`N ${kilo(total)} kN${cut}`, X(centre) + 8, Z(0) + Math.min(of(total), most) + 4);
     }
     if (Math.abs(shear) > 2e-3 * film.weight) {
       const dx = Math.sign(shear) * Math.min(of(shear), most), y = Z(0) + 14;
       arrow(X(centre) + (dx > 0 ? 6 + dx : -6 + dx), y, dx, 0, SHEAR);
       pen.font = "12px system-ui, sans-serif"; pen.fillStyle = SHEAR; pen.textAlign = dx > 0 ? "left" : "right";
-      pen.fillText(`T ${kilo(shear)} kN`, X(centre) + (dx > 0 ? dx + 12 : dx - 12), y + 4);
+      label(`T ${kilo(shear)} kN`, X(centre) + (dx > 0 ? dx + 12 : dx - 12), y + 4);
     }
   };
 

@@ -223,6 +223,14 @@ def test_unfinished_results_are_shown_as_far_as_they_go():
     assert "own peak, 4 m/s2" in text_of(partial)
 
 
+def test_a_slip_of_rounding_is_nobodys_measure():
+    text = text_of(
+        changed(verdict__max_slip_m=4.5e-10, verdict__residual_slip_m=-9e-11, verdict__outcome="rest")
+    )
+    assert row(text, "sliding", "own")[-5:] == ["holds,", "slip", "<", "0.01", "mm"]
+    assert "e-" not in text and "< 0.01, < 0.01, 0.03 mm" in text
+
+
 def test_compiling_is_told_apart_from_computing():
     assert "compiling" not in text_of(changed(compile_s=0.0))
     first = " ".join(text_of(changed(wall_s=62.4, compile_s=57.12)).split())

@@ -25,7 +25,9 @@ def sheet_of(name, *overrides):
 
 def calculated(numbers):
     """What a calculator in degrees makes of printed numbers."""
-    text = numbers.replace("×", "*").replace("−", "-").replace("²", "**2").replace("√", "sqrt")
+    text = (
+        numbers.replace("×", "*").replace("−", "-").replace("²", "**2").replace("√", "sqrt").replace("°", "")
+    )
     text = re.sub(r"(\d)\s+(?=\d)", r"\1", text)
     words = {
         "sqrt": math.sqrt,
