@@ -19,6 +19,7 @@ from fem.case import Case
 from fem.container import Container
 from fem.model import Model, build_model
 from fem.recorder import Recorder
+from fem.required_memory import fitting_full_bodies
 from fem.simulation import Keeper, NoKeeper, Progress, cores, simulate
 from fem.verdict import MODE_NAMES, in_short
 
@@ -145,8 +146,9 @@ def band_of(
             raise
         return member
 
-    # The full model is stepped by the interpreter, under its lock: threads would gain nothing.
-    workers = 1 if case.solver.model == "full" else min(cores(), len(floors))
+    workers = min(cores(), len(floors))
+    if case.solver.model == "full":
+        workers = fitting_full_bodies(workers, len(container.elements.nodes))
     with ThreadPoolExecutor(max_workers=workers) as pool:
         members = list(pool.map(member_of, count(1), floors))
     if any(member.status == "interrupted" for member in members):

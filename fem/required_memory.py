@@ -7,9 +7,12 @@ mode five columns as long as the unknowns, each contact degree of freedom six (l
 import os
 
 from fem.case import Case, CaseError
+from fem.full_body import FACTOR_MEMORY
 
 BYTES_OF_A_NODE = 10e3
 COLUMNS_OF_A_MODE, COLUMNS_OF_A_CONTACT = 5, 6
+#: of the full model: its matrix while it is factored, and the fewest factors that are kept
+BYTES_OF_A_FULL_NODE = 35e3
 SHARE = 0.8  #: of the machine's memory that one container may take
 
 
@@ -39,6 +42,19 @@ def require_memory(case: Case, nodes: int, contact_nodes: int) -> None:
         f"in contact, which would take about {wanted / 1e9:.3g} GB; this machine has {there / 1e9:.3g} GB: take larger "
         'elements, order = 1, fewer elastic_modes, or support kind = "corners"'
     )
+
+
+def fitting_full_bodies(wanted: int, nodes: int) -> int:
+    """How many of so many runs of the full model this machine holds side by side; at least one.
+
+    Args:
+        wanted: runs.
+        nodes: of the elements of each.
+    """
+    there = _machine_memory()
+    if there is None:
+        return wanted
+    return min(wanted, max(1, int(SHARE * there / (FACTOR_MEMORY + BYTES_OF_A_FULL_NODE * nodes))))
 
 
 def _machine_memory() -> float | None:

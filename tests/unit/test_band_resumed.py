@@ -109,7 +109,7 @@ def test_a_band_killed_amid_a_member_goes_on_from_its_last_checkpoint(tmp_path, 
     assert main(command(tmp_path / "cut", *MODELS["full"])) == 0
     # Two members were finished; the third goes on from its last checkpoint, the others begin.
     assert reached > 0.0
-    assert beginnings == [reached, 0.0, 0.0]
+    assert sorted(beginnings) == [0.0, 0.0, reached]
     same(tmp_path / "cut", tmp_path / "whole")
 
 

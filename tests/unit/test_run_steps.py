@@ -11,7 +11,7 @@ from fem.case import CaseError, load_case
 from fem.container import discretise
 from fem.model import build_model
 from fem.recorder import Recorder
-from fem.required_memory import required_memory
+from fem.required_memory import fitting_full_bodies, required_memory
 from fem.simulation import simulate, stepping_failure
 
 PULSE = {
@@ -132,3 +132,9 @@ def test_the_memory_told_is_about_what_is_taken():
     ):
         case = rigid(solver__model=model, solver__elastic_modes=modes)
         assert 0.8 < required_memory(case, nodes, contact_nodes) / (1e6 * measured) < 1.7
+
+
+def test_as_many_full_runs_go_side_by_side_as_the_memory_holds(monkeypatch):
+    for there, nodes, fitting in ((None, 100_000, 5), (24e9, 2619, 5), (24e9, 100_000, 4), (1e9, 100_000, 1)):
+        monkeypatch.setattr(fem.required_memory, "_machine_memory", lambda there=there: there)
+        assert fitting_full_bodies(5, nodes) == fitting
