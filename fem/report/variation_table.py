@@ -142,7 +142,8 @@ def variation_table(
         until = math.inf if every else time.monotonic() + AFFORDED_S
         computing = _Computing(base, variations, container or discretise(base), stop)
         if price is None:  # no run of this model yet
-            rows[missing[0]], price = computing.row(missing.pop(0))
+            first = missing.pop(0)
+            rows[first], price = computing.row(first)
         for index, row in zip(missing, computing.rows(missing, price=price, until=until), strict=True):
             rows[index] = row
         if stop():

@@ -131,6 +131,18 @@ def test_variations_that_take_long_are_named_and_computed_when_asked_for(folder,
     assert [line.row for line in fresh.lines] == [line.row for line in full.lines]
 
 
+def test_variations_of_a_full_run_begin_with_the_run_as_reduced(folder, tmp_path, monkeypatch):
+    run = open_run(folder)
+    some = [one for one in variations_of(run.case) if one.subject == "contact penalty"]
+    monkeypatch.setattr(variation_table_module, "variations_of", lambda case: some)
+    monkeypatch.setattr(variation_table_module, "AFFORDED_S", 0.0)
+    case = run.case.with_values({"solver.model": "full"})
+    table = variation_table(case, tmp_path / "v.json", result=run.result)
+    assert [line.variation.subject for line in table.lines] == ["as computed"]
+    assert table.lines[0].row["outcome"] == run.result["verdict"]["outcome"]
+    assert list(table.left_out) == some and table.model == "reduced"
+
+
 def test_who_leaves_a_report_does_not_wait_for_its_variations(folder, tmp_path):
     run, kept = open_run(folder), tmp_path / "variations.json"
     endless = run.case.with_values({"solver.duration_s": 1e4})
