@@ -22,7 +22,8 @@ Result = Mapping[str, Any]
 
 TEXT_WIDTH = 110
 INVISIBLE = 1e-9  #: in the units of people: smaller numbers are rounding
-LEAST_LENGTH = 1e-5  #: [m]
+#: what is smaller is told as smaller than that: lengths [m], rotations [degrees], rotation ratios
+LEAST_LENGTH, LEAST_DEGREES, LEAST_RATIO = 1e-5, 0.01, 1e-3
 CODE_NOTE = "The code's rows hold a design response (EN 1998-1:2004, 4.3.3.2), not the motion of this floor."
 BAND_NOTE = (
     "The band repeats the run with a third and three times the contact penalty and with contact damping "
@@ -162,7 +163,7 @@ def run_tilted(verdict: Mapping[str, Any]) -> str:
     ratio = verdict.get("rotation_ratio")
     if verdict.get("outcome") == "overturned":
         return "overturned"
-    return "-" if ratio is None else f"did not (ratio {ratio:.3g})"
+    return "-" if ratio is None else f"did not (ratio {ratio_in_words(ratio)})"
 
 
 def _run_table(rows: Sequence[tuple[str, str]]) -> Table:
@@ -213,7 +214,14 @@ def _rotation(verdict: Mapping[str, Any]) -> str:
     angle, ratio = verdict.get("max_rotation_rad"), verdict.get("rotation_ratio")
     if angle is None or ratio is None:
         return ""
-    return f"{math.degrees(angle):.3g} degrees, {ratio:.3g} of the slenderness angle"
+    degrees = math.degrees(angle)
+    turned = f"< {LEAST_DEGREES:g}" if 0.0 < degrees < LEAST_DEGREES else f"{degrees:.3g}"
+    return f"{turned} degrees, {ratio_in_words(ratio)} of the slenderness angle"
+
+
+def ratio_in_words(ratio: float) -> str:
+    """A rotation ratio; what is far below rocking is nobody's measure."""
+    return f"< {LEAST_RATIO:g}" if 0.0 < ratio < LEAST_RATIO else f"{ratio:.3g}"
 
 
 def _restitution(verdict: Mapping[str, Any], static: Mapping[str, Any]) -> str:
@@ -230,7 +238,7 @@ def _band(band: Mapping[str, Any]) -> str:
     members = band.get("members") or ()
     failed = sum(member["outcome"] is None for member in members)
     return (
-        f"{', '.join(band['outcomes'])}; rotation ratio {low:.3g} to {high:.3g}"
+        f"{', '.join(band['outcomes'])}; rotation ratio {ratio_in_words(low)} to {ratio_in_words(high)}"
         + (f"; {failed} of {len(members)} failed" if failed else "")
         + ("; unsure" if band.get("unsure") else "")
     )

@@ -6,7 +6,7 @@ A trailing zero is kept where it is known (98.10, not 98.1), so that the figures
 import math
 import re
 
-from fem.summary import LEAST_LENGTH
+from fem.summary import LEAST_DEGREES, LEAST_LENGTH, LEAST_RATIO
 
 ABSENT = "–"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -47,6 +47,18 @@ def millimetres(value: float | None, figures: int = 3) -> str:
 def degrees(value: float | None, figures: int = 4) -> str:
     """An angle given in radians."""
     return quantity(value, "°", 180.0 / math.pi, figures).replace("\u00a0", "")
+
+
+def turned(value: float) -> str:
+    """A largest rotation given in radians."""
+    small = 0.0 < math.degrees(value) < LEAST_DEGREES
+    return f"< {LEAST_DEGREES:g}°" if small else degrees(value, 3)
+
+
+def rotation_ratio(value: float | None) -> str:
+    """A largest rotation over the slenderness angle; far below rocking, only that it is small."""
+    small = value is not None and 0.0 < value < LEAST_RATIO
+    return f"< {LEAST_RATIO:g}" if small else number(value, figures=3)
 
 
 def typeset(text: str) -> str:

@@ -26,7 +26,15 @@ from fem.pages import Signature, render_page
 from fem.report.animation import Film, exaggeration, exaggerations, film_of, player_data
 from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions, compared_rows
 from fem.report.curves import Curve, curves_of
-from fem.report.quantities import degrees, millimetres, number, quantity, short, typeset
+from fem.report.quantities import (
+    millimetres,
+    number,
+    quantity,
+    rotation_ratio,
+    short,
+    turned,
+    typeset,
+)
 from fem.report.sketch import sketch
 from fem.report.static_sheet import static_sheet
 from fem.report.stills import Still, colours, stills
@@ -145,7 +153,8 @@ def _page(
         version=metadata.version("unanchored"),
         today=dt.date.today().isoformat(),
         notes={"code": CODE_NOTE, "margin": MARGIN_NOTE, "band": BAND_NOTE, "joints": JOINTS_NOTE},
-        degrees=degrees,
+        turned=turned,
+        rotation_ratio=rotation_ratio,
         millimetres=millimetres,
         number=number,
         quantity=quantity,

@@ -23,7 +23,7 @@ from fem.case import Case
 from fem.container import Container, discretise
 from fem.model import build_model
 from fem.recorder import Recorder
-from fem.report.quantities import number
+from fem.report.quantities import rotation_ratio
 from fem.report.variations import Variation, by_importance, variations_of
 from fem.run import versions
 from fem.run_folder import to_json, write_atomically
@@ -76,8 +76,9 @@ class VariationTable:
         if overturned and self.lines[0].row["outcome"] != "overturned":
             words.append(f"It overturns in {overturned}.")
         if ratios is not None:
-            low, high = (number(ratio, figures=3) for ratio in ratios)
-            words.append(f"Where it stands, the rotation ratio goes from {low} to {high}.")
+            low, high = (rotation_ratio(ratio) for ratio in ratios)
+            reach = f"goes from {low} to {high}" if low != high else f"is {low}"
+            words.append(f"Where it stands, the rotation ratio {reach}.")
         return " ".join(words)
 
     @property

@@ -231,6 +231,12 @@ def test_a_slip_of_rounding_is_nobodys_measure():
     assert "travelled  < 0.01, < 0.01, 0.03 mm" in text
 
 
+def test_a_rotation_far_below_rocking_is_only_told_to_be_small():
+    text = text_of(changed(verdict__max_rotation_rad=1e-5, verdict__rotation_ratio=3.7e-5))
+    assert "< 0.01 degrees, < 0.001 of the slenderness angle" in text
+    assert row(text, "overturning", "own")[-4:] == ["not", "(ratio", "<", "0.001)"]
+
+
 def test_compiling_is_told_apart_from_computing():
     assert "compiling" not in text_of(changed(compile_s=0.0))
     first = " ".join(text_of(changed(wall_s=62.4, compile_s=57.12)).split())
@@ -311,6 +317,8 @@ def test_each_doubt_raises_its_own_warning_and_no_other(result, words):
     [
         changed(static__housner_credible=None),
         changed(numerics__contact_frequency_Hz=30.0),
+        changed(numerics__contact_frequency_Hz=31.0, verdict__impacts=0),
+        changed(static__housner_credible=False, static__housner_restitution=0.17873, verdict__impacts=0),
         changed(numerics__max_penetration_m=1.4e-3),  # half of 0.01 x 0.26839 x 1.1 m is 1.476 mm
         changed(energy__numerical_J=-0.36),
         changed(energy__closure_error=6.2e-4),
