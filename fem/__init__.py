@@ -4,12 +4,20 @@
 """
 
 import importlib
+import sys
 from typing import TYPE_CHECKING, Any
+
+from fem.first_signals import end_at_once
 
 if TYPE_CHECKING:
     from fem.opening import OpenedRun, open_run
 
 __all__ = ["OpenedRun", "open_run"]
+
+if sys.argv[:1] == [
+    "-m"
+]:  # so it is while Python looks for the module of `python -m fem`, and never in a library
+    end_at_once()
 
 
 def __getattr__(name: str) -> Any:

@@ -15,9 +15,10 @@ from typing import NoReturn
 
 from cyclopts import App, CycloptsError
 
+from fem.first_signals import INTERRUPTED, raise_from_now_on
 from fem.threads import use_one_blas_thread
 
-BAD_INPUT, FAILED, INTERRUPTED = 2, 3, 4
+BAD_INPUT, FAILED = 2, 3
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 OWN_PACKAGES = {"fem", "mesh", "contact"}
 
@@ -122,6 +123,7 @@ def program() -> NoReturn:
     Before 3.12, Python ends itself by SIGINT instead where an interrupt has once come through `exec` of a text, as in
     an import that makes a named tuple, however it was caught.
     """
+    raise_from_now_on()
     code = main()
     if code == INTERRUPTED:
         os._exit(code)  # both streams are flushed

@@ -1,0 +1,44 @@
+"""Ctrl-C and SIGTERM in the first moments of the process."""
+
+import signal
+import subprocess
+import sys
+
+import pytest
+
+
+def outcome(argument: str, script: str) -> tuple[int, str]:
+    program = f"import os, signal, sys\nsys.argv[0] = {argument!r}\nimport fem\n{script}"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    return done.returncode, done.stderr
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_while_the_command_line_is_imported_a_signal_ends_the_process_in_a_line(number):
+    # "-m" is what Python itself writes there while it looks for the module to run.
+    assert outcome("-m", f"os.kill(os.getpid(), {int(number)})") == (4, "interrupted\n")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_in_a_command_that_keeps_nothing_a_signal_is_told_in_a_line(number):
+    script = f"""
+from fem import __main__ as command_line
+command_line.build_app = lambda: lambda *_, **__: os.kill(os.getpid(), {int(number)})
+command_line.program()
+"""
+    assert outcome("-m", script) == (4, "interrupted\n")
+
+
+def test_a_library_leaves_signals_alone():
+    script = (
+        "assert signal.getsignal(signal.SIGINT) is signal.default_int_handler\n"
+        "assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL"
+    )
+    assert outcome("a script", script) == (0, "")
+
+
+def test_a_signal_that_is_ignored_stays_ignored():
+    script = (
+        "signal.signal(signal.SIGINT, signal.SIG_IGN); fem.end_at_once(); os.kill(os.getpid(), signal.SIGINT)"
+    )
+    assert outcome("a script", script) == (0, "")
