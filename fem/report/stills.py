@@ -41,7 +41,7 @@ def colours(count: int) -> list[str]:
 def stills(
     film: Film, history: History, verdict: Mapping[str, Any], *, angle: float, width: float, height: float
 ) -> list[Still]:
-    """Start, first uplift, the extremes and the end, as far as frames show them.
+    """Start, first uplift, the extremes and the end, as far as frames show them and there was such a motion.
 
     Args:
         film: what is shown.
@@ -77,9 +77,11 @@ def _instants(film: Film, history: History, verdict: Mapping[str, Any]) -> dict[
     uplift = verdict.get("first_uplift_s")
     if uplift is not None:
         wanted.append((int(np.searchsorted(times, uplift)), "after the first uplift"))
-    if verdict.get("outcome") != "rest":
+    seen = {verdict.get("outcome"), *(verdict.get("modes") or ())}
+    if seen & {"rock", "slide-rock", "overturned"}:
         wanted.append((int(np.argmax(turned)), "farthest to the right"))
         wanted.append((int(np.argmin(turned)), "farthest to the left"))
+    if seen & {"slide", "slide-rock"}:
         wanted.append((int(np.argmax(np.abs(slip))), "largest slip"))
     wanted.append((len(times) - 1, "last frame"))
     chosen: dict[int, str] = {}
