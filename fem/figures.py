@@ -43,6 +43,7 @@ from fem.figures_energy import energy_figure
 from fem.figures_forces import forces_figure
 from fem.figures_joints import joints_figure
 from fem.opening import OpenedRun
+from fem.summary import LEAST_DEGREES, LEAST_RATIO
 from fem.verdict import SLIDING
 
 LEAST_MOTION = 1e-3  #: of the floor, on its axes [mm, m/s, m/s2]
@@ -117,8 +118,10 @@ def rotation_figure(run: OpenedRun) -> Figure:
     _mark_impact(axes, verdict)
     legend_above(axes)
     found = math.degrees(verdict.get("max_rotation_rad") or math.radians(largest))
-    title = f"Rotation: {number(found)}° at most, {number(found / angle)} of the slenderness angle"
-    head(figure, title, status=run.status)
+    told = f"{number(found)}° at most, {number(found / angle)} of the slenderness angle"
+    if 0.0 < found < LEAST_DEGREES and found / angle < LEAST_RATIO:
+        told = f"< {LEAST_DEGREES:g}° at most, < {LEAST_RATIO:g} of the slenderness angle"
+    head(figure, f"Rotation: {told}", status=run.status)
     return figure
 
 
@@ -136,9 +139,11 @@ def slip_figure(run: OpenedRun) -> Figure:
         legend_above(axes)
     largest = 1e3 * (verdict.get("max_slip_m") or 0.0)
     travel = 1e3 * (verdict.get("slip_travel_m") or 0.0)
+    left = verdict.get("residual_slip_m")  # the end may lie between two samples
+    end = slip[-1] if left is None else 1e3 * left
     head(
         figure,
-        f"Slip: {_millimetres(largest)} at most, {_millimetres(slip[-1])} at the end, {_millimetres(travel)} travelled",
+        f"Slip: {_millimetres(largest)} at most, {_millimetres(end)} at the end, {_millimetres(travel)} travelled",
         status=run.status,
     )
     return figure
