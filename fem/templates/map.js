@@ -90,11 +90,23 @@
     pen.strokeRect(left + place[a] * frame.w - 1, top + (b < 0 ? 0 : rowCount - 1 - place[b]) * frame.h - 1, frame.w + 2, frame.h + 2);
     legend(column, scale);
   };
+  // The labels that are shortest on the whole, so round ones where there are any: the first and every how manieth.
+  const shortest = (words, least) => {
+    let chosen = [0, least], cost = Infinity;
+    for (let every = least; every <= 2 * least && 2 * every < words.length; every++) for (let first = 0; first < every; first++) {
+      let sum = 0, shown = 0;
+      for (let k = first; k < words.length; k += every) { sum += words[k].length; shown++; }
+      if (sum / shown < cost) { cost = sum / shown; chosen = [first, every]; }
+    }
+    return chosen;
+  };
   const ticks = (axis, count, at, horizontal, wide) => {
-    const every = Math.max(1, Math.ceil(count / (horizontal ? Math.max(3, Math.floor(wide / 70)) : 14)));
+    const least = Math.max(1, Math.ceil(count / (horizontal ? Math.max(3, Math.floor(wide / 70)) : 14)));
+    const words = sweep.axes[axis].values.map((one) => figures(one, 3));
+    const [first, every] = shortest(words, least);
     pen.fillStyle = INK; pen.strokeStyle = QUIET; pen.lineWidth = 1; pen.font = "12px system-ui, sans-serif";
-    for (let k = 0; k < count; k += every) {
-      const [x, y] = at(k), text = figures(sweep.axes[axis].values[k], 3);
+    for (let k = first; k < count; k += every) {
+      const [x, y] = at(k), text = words[k];
       pen.beginPath(); pen.moveTo(x, y); pen.lineTo(x - (horizontal ? 0 : 5), y + (horizontal ? 5 : 0)); pen.stroke();
       pen.textAlign = horizontal ? "center" : "right";
       pen.fillText(text, x - (horizontal ? 0 : 8), y + (horizontal ? 18 : 4));
