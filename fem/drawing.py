@@ -144,7 +144,7 @@ def time_panels(
         upper.tick_params(labelbottom=False)
     axes[-1].set_xlabel(TIME)
     for panel in axes[: len(heights)]:
-        panel.set_label(TIME)
+        follow_over_time(panel)
     return figure, axes
 
 
@@ -253,6 +253,11 @@ def svg_of(figure: Figure) -> str:
     with house_style():
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     return re.sub(r' d="[^"]*"', lambda path: COORDINATE.sub("", path[0]), stream.getvalue())
+
+
+def follow_over_time(axes: Axes) -> None:
+    """Let a cursor show the instant on a panel over time."""
+    axes.set_label(TIME)
 
 
 def follow_in_plane(axes: Axes, across: str, up: str, factor: float) -> None:

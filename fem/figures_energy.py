@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -19,6 +20,7 @@ from fem.drawing import (
     TIME,
     VERMILLION,
     draw_curve,
+    follow_over_time,
     head,
     legend_above,
     number,
@@ -29,14 +31,19 @@ from fem.history import History
 from fem.opening import OpenedRun
 from fem.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 
+#: out of the energy that the floor puts in, as columns of a history
+TAKEN = ("friction_J", "contact_damping_J", "material_damping_J", "imbalance_J")
+SMALL = 100.0  #: energies that stand in J and not in kJ [J]
+
 
 def energy_figure(run: OpenedRun) -> Figure:
     """What is stored, what the floor put in and where it went, and what the time stepping lost, over time."""
     history, energy = run.history, run.result.get("energy") or {}
     figure, axes = panels((1.7, 1.9, 0.9), gaps=(LEGEND_GAP + LINE, LEGEND_GAP), header=2)
     stored, passed, imbalance = axes
-    _draw_stored(stored, run)
-    _draw_passed(passed, history)
+    unit = _unit(history)
+    _draw_stored(stored, run, unit)
+    _draw_passed(passed, history, unit)
     zero_line(imbalance)
     draw_curve(
         imbalance, history["time_s"], history["imbalance_J"], color=PURPLE, label=_imbalance_limits(energy)
@@ -44,7 +51,7 @@ def energy_figure(run: OpenedRun) -> Figure:
     imbalance.set_ylabel("imbalance [J]")
     imbalance.set_xlabel(TIME)
     for panel in axes:
-        panel.set_gid(TIME)
+        follow_over_time(panel)
     for panel in (stored, passed):
         panel.sharex(imbalance)
         panel.tick_params(labelbottom=False)
@@ -59,28 +66,37 @@ def energy_figure(run: OpenedRun) -> Figure:
     return figure
 
 
-def _draw_stored(axes: Axes, run: OpenedRun) -> None:
+def _unit(history: History) -> tuple[str, float]:
+    """The unit of energies and its size [J]: kJ, or J for a small container."""
+    largest = max(
+        float(np.abs(history[name]).max()) for name in ("kinetic_J", "strain_J", "base_work_J", *TAKEN)
+    )
+    return ("kJ", 1e3) if largest >= SMALL else ("J", 1.0)
+
+
+def _draw_stored(axes: Axes, run: OpenedRun, unit: tuple[str, float]) -> None:
     """Energy of motion, height and strain, with what it takes to overturn."""
     history, reference = run.history, (run.result.get("energy") or {}).get("reference_J")
     # From the height of the mass centre of the container that stands: what its weight could still do.
     centroid = float((run.result.get("static") or {}).get("centroid_m") or 0.0)
     raised = history["potential_J"] - run.case.weight * centroid
+    name_of_unit, size = unit
     for values, name, colour, style in (
         (history["kinetic_J"], "kinetic", BLUE, "-"),
         (raised, "gravity", VERMILLION, "--"),
         (history["strain_J"], "strain", GREEN, ":"),
     ):
-        draw_curve(axes, history["time_s"], 1e-3 * values, color=colour, linestyle=style, label=name)
+        draw_curve(axes, history["time_s"], values / size, color=colour, linestyle=style, label=name)
     if reference and raised.max() > NEAR_LIMIT * reference:
-        label = f"to overturn, {number(1e-3 * reference)} kJ"
-        axes.axhline(1e-3 * reference, color=BLACK, linestyle="-.", linewidth=0.9, label=label)
-    axes.set_ylabel("stored [kJ]")
+        label = f"to overturn, {number(reference / size)} {name_of_unit}"
+        axes.axhline(reference / size, color=BLACK, linestyle="-.", linewidth=0.9, label=label)
+    axes.set_ylabel(f"stored [{name_of_unit}]")
 
 
-def _draw_passed(axes: Axes, history: History) -> None:
+def _draw_passed(axes: Axes, history: History, unit: tuple[str, float]) -> None:
     """Sums since the start; what is left of the floor's work is stored, in the springs of the contact too."""
-    taken = ("friction_J", "contact_damping_J", "material_damping_J", "imbalance_J")
-    stored = history["base_work_J"] - sum(history[name] for name in taken)
+    stored = history["base_work_J"] - sum(history[name] for name in TAKEN)
+    name_of_unit, size = unit
     zero_line(axes)
     for values, name, colour, style in (
         (history["base_work_J"], "work of the floor", BLUE, "-"),
@@ -89,9 +105,9 @@ def _draw_passed(axes: Axes, history: History) -> None:
         (history["contact_damping_J"], "contact damping", GREEN, "-."),
         (history["material_damping_J"], "material damping", ORANGE, ":"),
     ):
-        label = f"{name}, {number(1e-3 * values[-1])} kJ"
-        draw_curve(axes, history["time_s"], 1e-3 * values, color=colour, linestyle=style, label=label)
-    axes.set_ylabel("since the start [kJ]")
+        label = f"{name}, {number(values[-1] / size)} {name_of_unit}"
+        draw_curve(axes, history["time_s"], values / size, color=colour, linestyle=style, label=label)
+    axes.set_ylabel(f"since the start [{name_of_unit}]")
 
 
 def _imbalance_limits(energy: Mapping[str, Any]) -> str:

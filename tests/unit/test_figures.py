@@ -324,6 +324,12 @@ def test_a_panel_over_time_tells_where_it_lies():
     assert axes[-1].get_xlabel() == TIME
 
 
+def test_a_cursor_follows_every_figure_over_time_and_the_phase_portrait(runs):
+    for drawing in drawings_of(runs["rocking"]).values():
+        kind = {"phase_portrait": "plane", "band": None}.get(drawing.name, "time")
+        assert (drawing.followed or {"kind": None})["kind"] == kind, drawing.name
+
+
 def test_figures_in_one_page_share_no_id(drawn):
     pages = [svg_element(svg_of(drawn["rest"][name]), label=name, prefix=name) for name in ("slip", "uplift")]
     ids = [set(re.findall(r'\bid="([^"]+)"', page)) for page in pages]
