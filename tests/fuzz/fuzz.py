@@ -21,8 +21,11 @@ import traceback
 from dataclasses import dataclass
 from pathlib import Path
 
+from folders import damaged_folders
 from hypothesis import HealthCheck, Phase, given, seed, settings
-from inputs import KINDS, Input
+from inputs import KINDS as KINDS_OF_FILES
+from inputs import Input
+from options import options
 
 from fem.__main__ import main
 from fem.case import load_case
@@ -30,6 +33,11 @@ from fem.model import build_model
 from fem.recorder import Recorder
 from fem.simulation import simulate
 
+KINDS = KINDS_OF_FILES | {
+    "folder": (damaged_folders(), 0.03),
+    "option": (options(reading=False), 0.1),
+    "reading": (options(reading=True), 0.02),
+}
 LONG, HANGING = 10.0, 120.0  #: a run is asked to stop after the one, and given up after the other [s]
 ALLOWED = {0, 2, 3, 4}
 SHORT_OF_WORDS = {2, 3}  #: of exit codes, those that owe an explanation
@@ -77,6 +85,7 @@ def end_of(given_input: Input) -> End:
 def write_input(given_input: Input, folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in given_input.files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_bytes(content)
 
 

@@ -2,10 +2,10 @@
 
 import extremes
 import pytest
+from fuzz import KINDS, warm_up
 from fuzz import end_of as answer_to
-from fuzz import warm_up
 from hypothesis import HealthCheck, given, settings
-from inputs import FIELDS, KINDS, values_of
+from inputs import FIELDS, values_of
 from soak import end_of
 
 from fem.case_reading import known_keys
@@ -17,7 +17,10 @@ def compiled():
     warm_up()
 
 
-@pytest.mark.parametrize(("kind", "count"), [("text", 60), ("mesh", 40), ("table", 40), ("case", 30)])
+@pytest.mark.parametrize(
+    ("kind", "count"),
+    [("text", 50), ("mesh", 35), ("table", 35), ("case", 25), ("option", 20), ("folder", 5)],
+)
 def test_any_input_is_refused_with_words_or_computed(kind, count):
     @settings(max_examples=count, suppress_health_check=list(HealthCheck))
     @given(KINDS[kind][0])

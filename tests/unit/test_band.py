@@ -5,13 +5,11 @@ import threading
 import pytest
 
 from fem import band
-from fem.__main__ import main
 from fem.band import Member, band_of, summed_up, wants_band
 from fem.band_keeping import read_members, write_members
 from fem.case import Case, load_case
 from fem.model import Model, build_model
 from fem.recorder import Recorder
-from fem.run_folder import read_result
 from fem.run_warnings import warnings_for
 from fem.simulation import Ending, simulate
 from fem.summary import plain_summary
@@ -190,40 +188,6 @@ def test_a_band_that_is_stopped_is_none():
     case = load_case("rocking", SHORT)
     model, verdict = finished(case)
     assert band_of(case, model.container, penalty=model.penalty, verdict=verdict, stop=lambda: True) is None
-
-
-def test_a_band_cut_off_goes_on_with_the_members_that_it_has(tmp_path, monkeypatch):
-    changes = [word for value in (*SHORT, "output.figures=false") for word in ("--set", value)]
-
-    def command(folder):
-        return main(["run", "rocking", "--band", "-q", "--out", str(folder), *changes])
-
-    assert command(tmp_path / "whole") == 0
-    calls, members = [], band._run_member
-
-    def cut_off(*arguments, **options):
-        calls.append(arguments)
-        if len(calls) > 3:
-            raise KeyboardInterrupt
-        return members(*arguments, **options)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(band, "cores", lambda: 1)
-        patch.setattr(band, "_run_member", cut_off)
-        assert command(tmp_path / "cut") == 4
-    assert read_result(tmp_path / "cut" / "run.json")["status"] == "completed"
-    assert (tmp_path / "cut" / "band.json").is_file()
-    calls.clear()
-    monkeypatch.setattr(
-        band, "_run_member", lambda *arguments, **options: calls.append(1) or members(*arguments, **options)
-    )
-    assert command(tmp_path / "cut") == 0
-    assert len(calls) == 5 - 3
-    bands = [read_result(tmp_path / name / "run.json")["verdict"]["band"] for name in ("cut", "whole")]
-    assert bands[0] == bands[1]
-    assert {path.name for path in (tmp_path / "cut").iterdir()} == {
-        path.name for path in (tmp_path / "whole").iterdir()
-    }
 
 
 @pytest.mark.parametrize("content", ["", "{", "[]", '{"case_hash": "a"}', '{"members": [{"status": 1}]}'])

@@ -1,0 +1,62 @@
+"""Commands with options and values of their own, as the command line itself declares them.
+
+Only what a command would compute for long is bounded: the case is a small one, a study, a ladder and a sweep are not
+begun, and nothing is written outside the folder of the input.
+"""
+
+from typing import Any
+
+from folders import CASE, finished
+from hypothesis import strategies as st
+from inputs import NASTY, Input
+
+from fem.__main__ import COMMANDS, build_app
+
+Draw = Any
+#: commands that would begin something long whatever they are told
+LONG = {"study", "verify", "ensemble", "sweep", "response"}
+PLACES = ("out", "a/b/c", "case.toml", "", ".", "x" * 300, "out\u00e9", "/dev/null/x", "/proc/x", "a\nb")
+FIRST = ("case.toml", "no.toml", "out", ".", "", "seed_bx", "case.toml/x", "-", "--", "\u0000")
+VALUES = (*NASTY, "2", "0.5", "--json", "-q", "name")
+SETTINGS = (
+    "container.width_m=1",
+    "container=1",
+    "x.y=1",
+    "=",
+    "solver.model=reduced",
+    "solver.duration_s=nan",
+    "title=[",
+)
+OPTIONS = {
+    name: list(build_app()[name].assemble_argument_collection()) for name in COMMANDS if name not in LONG
+}
+#: commands that read a folder of results
+READERS = {"report", "picture", "movie"}
+#: options whose value is a place
+PLACED = {"--out", "--to"}
+
+
+@st.composite
+def options(draw: Draw, *, reading: bool) -> Input:
+    """A command that reads results, or another, with up to four of its options, each with a value or without one."""
+    name = draw(st.sampled_from(sorted(READERS if reading else set(OPTIONS) - READERS)))
+    usual = {"list": [], "schema": [], "doctor": []}.get(name, ["out" if name in READERS else "case.toml"])
+    words = [
+        name,
+        *draw(st.just(usual) | st.just(usual) | st.lists(st.sampled_from(FIRST), min_size=1, max_size=2)),
+    ]
+    named = [argument for argument in OPTIONS[name] if argument.names[0].startswith("-")]
+    for _ in range(draw(st.integers(0, 4)) if named else 0):
+        argument = draw(st.sampled_from(named))
+        option = draw(st.sampled_from(argument.names))
+        misspelt = draw(st.integers(0, 15)) == 0
+        words.append(
+            draw(st.sampled_from((option[:-1], option + "x", option.upper()))) if misspelt else option
+        )
+        if option in PLACED:
+            words.append(draw(st.sampled_from(PLACES)))
+        elif (argument.hint in (bool, bool | None)) == (draw(st.integers(0, 15)) == 0):
+            words.append(draw(st.sampled_from(SETTINGS if option == "--set" else VALUES)))
+    return Input(
+        arguments=tuple(words), files=finished() if name in READERS else {"case.toml": CASE.encode()}
+    )
