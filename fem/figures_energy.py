@@ -33,7 +33,8 @@ from fem.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 
 #: out of the energy that the floor puts in, as columns of a history
 TAKEN = ("friction_J", "contact_damping_J", "material_damping_J", "imbalance_J")
-SMALL = 100.0  #: energies that stand in J and not in kJ [J]
+SMALL = 1e3  #: energies that stand in J and not in kJ [J]
+DECIMALS = 3  #: of an energy in a legend
 
 
 def energy_figure(run: OpenedRun) -> Figure:
@@ -105,7 +106,8 @@ def _draw_passed(axes: Axes, history: History, unit: tuple[str, float]) -> None:
         (history["contact_damping_J"], "contact damping", GREEN, "-."),
         (history["material_damping_J"], "material damping", ORANGE, ":"),
     ):
-        label = f"{name}, {number(values[-1] / size)} {name_of_unit}"
+        end = round(float(values[-1]) / size, DECIMALS) + 0.0  # no minus zero
+        label = f"{name}, {number(end)} {name_of_unit}"
         draw_curve(axes, history["time_s"], values / size, color=colour, linestyle=style, label=label)
     axes.set_ylabel(f"since the start [{name_of_unit}]")
 

@@ -146,7 +146,7 @@ def test_a_place_that_cannot_be_written_is_told_and_no_half_table_is_left(
 ):
     (tmp_path / "file").write_text("")
     assert main(["verify", "--out", str(tmp_path / "file"), "-q"]) == 2
-    assert "a file stands where a folder should" in capsys.readouterr().err
+    assert "file is a file, not a folder; choose another place" in capsys.readouterr().err
 
     def no_room(*_):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
