@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from contact.tracking import ROCKING
+from fem.container import Container
 from fem.drawing import (
     BLACK,
     BLUE,
@@ -27,6 +28,7 @@ from fem.drawing import (
     draw_limits,
     draw_states,
     follow_in_plane,
+    followed,
     head,
     house_style,
     keep_visible,
@@ -35,13 +37,18 @@ from fem.drawing import (
     number,
     panels,
     states_of,
+    svg_of,
     time_panels,
+    title_of,
     zero_line,
 )
 from fem.figures_checks import band_figure, rigid_check_figure
 from fem.figures_energy import energy_figure
 from fem.figures_forces import forces_figure
 from fem.figures_joints import joints_figure
+from fem.figures_kept import Drawing
+from fem.figures_modes import modes_figure
+from fem.modes import FEW, elastic_modes
 from fem.opening import OpenedRun
 from fem.summary import LEAST_DEGREES, LEAST_RATIO
 from fem.verdict import SLIDING
@@ -60,6 +67,31 @@ def figures_of(run: OpenedRun) -> dict[str, Figure]:
     with house_style():
         drawn = {name: draw(run) for name, draw in FIGURES.items()}
     return {name: figure for name, figure in drawn.items() if figure is not None}
+
+
+def draw_all(run: OpenedRun, container: Container) -> list[Drawing]:
+    """The figures of a run and the elastic modes of its container, whether or not they took part, as SVG.
+
+    Raises:
+        FolderError: the history is missing or damaged.
+    """
+    figures, elements = figures_of(run), container.elements
+    with house_style():
+        figures["modes"] = modes_figure(
+            points=elements.nodes,
+            cells=elements.cells,
+            modes=elastic_modes(elements, FEW),
+            boxes=run.case.container.boxes,
+            name=run.name,
+        )
+    return [_drawing(name, figure) for name, figure in figures.items()]
+
+
+def _drawing(name: str, figure: Figure) -> Drawing:
+    svg = svg_of(figure)  # which lays the figure out
+    return Drawing(
+        name=name, title=title_of(figure) or name.replace("_", " "), followed=followed(figure), svg=svg
+    )
 
 
 def base_motion_figure(run: OpenedRun) -> Figure:

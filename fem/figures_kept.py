@@ -6,15 +6,13 @@ changed them since - and draws them anew otherwise.
 """
 
 import hashlib
+import importlib
 import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from matplotlib.figure import Figure
-
-from fem.drawing import followed, svg_of, title_of
-from fem.figures import figures_of
+from fem.container import Container
 from fem.opening import OpenedRun
 from fem.pages import require_drawing
 from fem.program import program_identity
@@ -31,16 +29,12 @@ class Drawing:
     svg: str  #: the text of the file
 
 
-def drawing_of(name: str, figure: Figure) -> Drawing:
-    """A figure laid out and written as SVG."""
-    svg = svg_of(figure)
-    return Drawing(
-        name=name, title=title_of(figure) or name.replace("_", " "), followed=followed(figure), svg=svg
-    )
-
-
-def write_figures(run: OpenedRun) -> list[Path]:
+def write_figures(run: OpenedRun, container: Container) -> list[Path]:
     """Draw every figure of a run into its folder `figures`, as SVG.
+
+    Args:
+        run: finished or not.
+        container: of its case.
 
     Returns:
         The files of the figures.
@@ -49,9 +43,7 @@ def write_figures(run: OpenedRun) -> list[Path]:
         FolderError: the history is missing or damaged.
         OSError: the folder or a file cannot be written.
     """
-    place, drawings = run.place, _drawn(run)
-    if not drawings:
-        return []
+    place, drawings = run.place, _drawn(run, container)
     place.figures.mkdir(parents=True, exist_ok=True)
     place.drawn.unlink(missing_ok=True)
     for one in drawings:
@@ -60,18 +52,24 @@ def write_figures(run: OpenedRun) -> list[Path]:
     return [_file(place, one.name) for one in drawings]
 
 
-def drawings_of(run: OpenedRun) -> dict[str, Drawing]:
+def drawings_of(run: OpenedRun, container: Container) -> dict[str, Drawing]:
     """The figures of a run by name, in the order of reading: those in its folder, or else drawn now.
+
+    Args:
+        run: finished or not.
+        container: of its case.
 
     Raises:
         FolderError: the history is missing or damaged.
     """
     drawings = _kept(run.place)
-    return {one.name: one for one in (_drawn(run) if drawings is None else drawings)}
+    return {one.name: one for one in (_drawn(run, container) if drawings is None else drawings)}
 
 
-def _drawn(run: OpenedRun) -> list[Drawing]:
-    return [drawing_of(name, figure) for name, figure in figures_of(run).items()]
+def _drawn(run: OpenedRun, container: Container) -> list[Drawing]:
+    # matplotlib takes most of a second to import; who finds the figures drawn does without it.
+    drawn: list[Drawing] = importlib.import_module("fem.figures").draw_all(run, container)
+    return drawn
 
 
 def _kept(place: RunFolder) -> list[Drawing] | None:

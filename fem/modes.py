@@ -21,6 +21,7 @@ from fem.assembly import FiniteElements
 from fem.elasticity import FloatArray
 from fem.parts import NoParts, Parts
 
+FEW = 5  #: in the table and the figure of a run: one row of shapes
 _DENSE_UNKNOWNS = 400  # up to here a dense solution is as quick, and it gives every mode there is
 _VTK_CELLS = {4: "quad", 9: "quad9"}
 

@@ -139,7 +139,7 @@ def run_case(
                 if added:
                     store(result, case, place)
                 if added or not place.drawn.is_file():
-                    draw(case, place, reporter)
+                    draw(model, place, reporter)
                 return RunResult(
                     status=str(result["status"]),
                     result=result,
@@ -169,7 +169,7 @@ def run_case(
                     and add_checks(result, model, place, lock, options, reporter=reporter, stop=stop)
                 ):
                     break
-            draw(case, place, reporter)
+            draw(model, place, reporter)
     return RunResult(
         status=ending.status,
         result=result,
@@ -236,12 +236,12 @@ def store(result: dict[str, Any], case: Case, place: RunFolder) -> None:
             place.remove_band()
 
 
-def draw(case: Case, place: RunFolder, reporter: Reporter) -> None:
+def draw(model: Model, place: RunFolder, reporter: Reporter) -> None:
     """Draw the figures of what the folder holds, where they are wanted; a run stands without them."""
-    if not case.output.figures:
+    if not model.case.output.figures:
         return
     try:
-        write_figures(open_run(place.path))
+        write_figures(open_run(place.path), model.container)
     except Exception as error:  # a full disk, a history cut short, a fault of the drawing: never the run's
         reporter.message(f"figures were not drawn ({type(error).__name__}: {error}); the results are whole")
 

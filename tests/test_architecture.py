@@ -16,7 +16,7 @@ ALLOWED = {"mesh": {"mesh"}, "contact": {"contact"}, "fem": {"mesh", "contact", 
 #: third-party package -> where it may be imported
 DOORS = {
     "skfem": {"fem/assembly.py"},
-    "pyvista": {"fem/scenery.py", "fem/pictures.py", "fem/movie.py", "fem/opening.py"},
+    "pyvista": {"fem/scenery.py", "fem/pictures.py", "fem/movie.py", "fem/opening.py", "fem/figures_kept.py"},
     "numba": {"contact", "fem/elasticity.py", "fem/nodal_body.py", "fem/compilation.py"},
     "pydantic": {"fem"},
     # optional, and slow to import: loaded where a cluster is asked for
@@ -25,8 +25,8 @@ DOORS = {
     "jinja2": {"fem/pages.py"},
 }
 
-#: modules that load others by name, when they are needed: commands, the package's own names, pyvista for a grid
-LOADING_LATE = {"fem/__main__.py", "fem/__init__.py", "fem/opening.py"}
+#: modules that load others by name, when they are needed: commands, the package's own names, pyvista, matplotlib
+LOADING_LATE = {"fem/__main__.py", "fem/__init__.py", "fem/opening.py", "fem/figures_kept.py"}
 
 
 def name_of(path: Path) -> str:

@@ -14,18 +14,16 @@ from typing import Any
 import numpy as np
 
 from contact.event_driven import EventError
-from fem.drawing import house_style
 from fem.fields import Fields
-from fem.figures_kept import drawing_of, drawings_of
-from fem.figures_modes import modes_figure
+from fem.figures_kept import drawings_of
 from fem.history import History
 from fem.model import Model, build_model
-from fem.modes import ElasticModes, elastic_mode_table, elastic_modes
+from fem.modes import FEW, elastic_mode_table, elastic_modes
 from fem.opening import OpenedRun
 from fem.pages import Signature, render_page
 from fem.report.animation import Film, exaggeration, exaggerations, film_of, player_data
 from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions, compared_rows
-from fem.report.curves import Curve, curves_of
+from fem.report.curves import curves_of
 from fem.report.quantities import (
     millimetres,
     number,
@@ -44,7 +42,6 @@ from fem.run_folder import FINISHED, FolderError
 from fem.summary import BAND_NOTE, CODE_NOTE, MARGIN_NOTE, outcome_sentence, run_rows
 from fem.summary_joints import JOINTS_NOTE
 
-MODES = 5  #: elastic modes in table and figure: one row of shapes
 COLOURS = 64  #: of the stress scale in the animation
 #: figures beside the animation, in the order of reading; the others stand in their own sections
 MOTION = ("rotation", "slip", "base_motion", "uplift", "forces", "phase_portrait", "energy")
@@ -103,9 +100,9 @@ def _page(
     case, result = run.case, run.result
     history = _history(run, told)
     film = film_of(model, _fields(run, told))
-    drawn = curves_of(drawings_of(run).values()) if len(history) > 1 else {}
+    drawn = curves_of(drawings_of(run, model.container).values())
     check = rigid_check(run, model, history)
-    modes = elastic_modes(model.container.elements, MODES)  # whether or not they take part
+    modes = elastic_modes(model.container.elements, FEW)  # whether or not they take part
     played = _film_data(film, history, model) if len(history) > 1 else {}
     static, verdict = result["static"], result.get("verdict") or {}
     peak = static["own_motion"]["base_shear_N"] / (static["weight_N"] / case.gravity_m_s2)
@@ -136,7 +133,6 @@ def _page(
         film=film,
         exaggerations=exaggerations(film, model.container.mesh.height),
         film_exaggeration=exaggeration(film, model.container.mesh.height),
-        mode_figure=_mode_curve(model, modes, run.name),
         colours=colours(COLOURS),
         stills=_stills(film, history, model, verdict),
         motion=[
@@ -210,20 +206,6 @@ def _fields(run: OpenedRun, told: Callable[[str], None]) -> Fields | None:
     except FolderError as error:
         told(f"the animation shows no stresses: {error}")
         return None
-
-
-def _mode_curve(model: Model, modes: ElasticModes, name: str) -> Curve:
-    """The shapes over the container at rest."""
-    elements = model.container.elements
-    with house_style():
-        figure = modes_figure(
-            points=elements.nodes,
-            cells=elements.cells,
-            modes=modes,
-            boxes=model.case.container.boxes,
-            name=name,
-        )
-    return curves_of([drawing_of("modes", figure)])["modes"]
 
 
 def _standing(run: OpenedRun) -> str:

@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import matplotlib
 import numpy as np
 from markupsafe import Markup
 from numpy.typing import NDArray
@@ -20,7 +19,8 @@ FloatArray = NDArray[np.float64]
 
 MOST = 6
 BINS = 14  #: colours of a still
-COLOUR_MAP = "YlGnBu"
+#: of the stresses, from low to high: YlGnBu of Cynthia Brewer (colorbrewer2.org), darker and darker for anyone's eyes
+SCALE = ("ffffd9", "edf8b1", "c7e9b4", "7fcdbb", "41b6c4", "1d91c0", "225ea8", "253494", "081d58")
 STEEL, INK, QUIET = "#dfe7ee", "#1c2330", "#55606f"
 
 
@@ -34,8 +34,10 @@ class Still:
 
 def colours(count: int) -> list[str]:
     """The colour scale of the stresses, from low to high, as hexadecimal codes."""
-    scale = matplotlib.colormaps[COLOUR_MAP](np.linspace(0.0, 1.0, count))
-    return [matplotlib.colors.to_hex(colour) for colour in scale]
+    known = np.array([list(bytes.fromhex(colour)) for colour in SCALE], dtype=float)
+    places = np.linspace(0.0, len(SCALE) - 1.0, count)
+    channels = [np.interp(places, range(len(SCALE)), channel) for channel in known.T]
+    return ["#" + bytes(np.rint(colour).astype(np.uint8)).hex() for colour in np.transpose(channels)]
 
 
 def stills(

@@ -15,6 +15,7 @@ from measuring import Figure, cpu_seconds, median_of, report
 
 import fem
 from fem.case import load_case
+from fem.container import discretise
 from fem.fields import FieldWriter, Frame
 from fem.figures_kept import write_figures
 from fem.model import build_model
@@ -38,8 +39,9 @@ def run_of(folder: Path, name: str, *overrides: str) -> OpenedRun:
 def figures_of_a_long_run(folder: Path) -> Figure:
     """CPU time, the median; matplotlib is loaded already."""
     run = run_of(folder, "seed_stack_plateau", "output.fields_s=0")
-    write_figures(run)  # fonts are looked for once
-    cost = median_of(REPEATS, lambda: cpu_seconds(lambda: write_figures(fem.open_run(folder))))
+    container = discretise(run.case)
+    write_figures(run, container)  # fonts are looked for once
+    cost = median_of(REPEATS, lambda: cpu_seconds(lambda: write_figures(fem.open_run(folder), container)))
     size = sum(path.stat().st_size for path in run.place.figures.iterdir())
     return Figure(
         f"figures of {len(run.history)} samples, CPU s ({size / 1e3:.0f} kB)",
