@@ -108,7 +108,7 @@ def test_the_figures_in_the_folder_serve_a_report_as_long_as_they_are_those_of_t
     shutil.copytree(runs["rocking"].folder, folder)
     run = fem.open_run(folder)
     anew = []
-    monkeypatch.setattr("fem.figures_kept.figures_of", lambda run: anew.append(run) or {})
+    monkeypatch.setattr("fem.figures.figures_of", lambda run: anew.append(run) or {})
     container = discretise(run.case)
 
     def names():
