@@ -81,5 +81,10 @@ class PartFolder:
                 path.parent.mkdir(exist_ok=True)
                 write_checkpoint(path, {"case_hash": self._case_hash, "program": self._program}, self._made)
             self._number += 1
+        else:
+            self._reporter.message(
+                f"{path.parent}: {size / 1e9:.2g} GB of the set-up are not kept, for the disk has {room / 1e9:.2g} GB "
+                "free; a set-up that is cut off loses them"
+            )
         self._made.clear()
         self._last = time.monotonic()

@@ -59,6 +59,17 @@ def test_a_set_up_cut_off_after_every_file_is_the_set_up_left_alone(
     same(folder, tmp_path / "whole")
 
 
+def test_what_the_disk_has_no_room_for_is_not_kept_and_that_is_said(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(part_keeping, "CHECKPOINT_S", 0.0)
+    monkeypatch.setattr(part_keeping, "free_disk", lambda folder, data: 1e4)
+    quiet = command(tmp_path / "r", *FULL)
+    assert main([word for word in quiet if word != "-q"]) == 0
+    message = capsys.readouterr().err
+    assert (
+        ".setup: " in message and "GB of the set-up are not kept, for the disk has 1e-05 GB free" in message
+    )
+
+
 def test_a_damaged_part_is_named_and_the_set_up_goes_on_before_it(
     tmp_path, monkeypatch, in_many_parts, capsys
 ):
