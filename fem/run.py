@@ -14,9 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from contact.event_driven import EventError
-from fem.band import band_of, wants_band
-from fem.band_keeping import BandFolder
 from fem.case import Case, CaseError, case_hash, to_toml
 from fem.case_contact import normal_penalty
 from fem.case_container import build_container, node_count
@@ -27,7 +24,7 @@ from fem.fields import FieldWriter
 from fem.figures_kept import write_figures
 from fem.folder_lock import FolderLock, FolderLostError, held_folder
 from fem.full_body import advance_body
-from fem.history import History, HistoryWriter, add_analytic_rotation, read_history
+from fem.history import History, HistoryWriter, read_history
 from fem.interrupts import ending_at_once, interruptible
 from fem.joint_demands import joint_demands
 from fem.model import Model, build_model, checks_of
@@ -39,7 +36,7 @@ from fem.recorder import Recorder
 from fem.recovery import Frame, recovery_of
 from fem.required_disk import require_disk
 from fem.resumption import CheckpointKeeper, put_back
-from fem.rigid_check import check_against_rigid_block, wants_rigid_check
+from fem.run_checks import WantedChecks, add_checks, lacks_band, lacks_checks
 from fem.run_folder import (
     FINISHED,
     FolderError,
@@ -48,7 +45,6 @@ from fem.run_folder import (
     finished_run,
     open_run_folder,
     what_is_in_the_way,
-    write_atomically,
 )
 from fem.run_resumption import RunBeginning, Spent, beginning_in, clock_readings, settling, spent_since
 from fem.run_warnings import warnings_for
@@ -61,11 +57,9 @@ from mesh.container import ContainerMesh
 
 
 @dataclass(frozen=True, kw_only=True)
-class RunOptions:
+class RunOptions(WantedChecks):
     """What the command line asks of a run besides its case."""
 
-    check_rigid: bool = False
-    band: bool | None = None
     resume: bool = False
     force: bool = False
 
@@ -246,65 +240,16 @@ def draw(model: Model, place: RunFolder, reporter: Reporter) -> None:
         reporter.message(f"figures were not drawn ({type(error).__name__}: {error}); the results are whole")
 
 
-def add_checks(
-    result: dict[str, Any],
-    model: Model,
-    place: RunFolder,
-    lock: FolderLock,
-    options: RunOptions,
-    *,
-    reporter: Reporter,
-    stop: Callable[[], bool],
-) -> bool:
-    """Add the rigid check and the band to a finished run, where they are wanted and missing.
-
-    Returns:
-        Whether anything was added.
-
-    Raises:
-        FolderError: the history in the folder cannot be read.
-    """
-    case, verdict = model.case, result["verdict"]
-    added = False
-    if result["status"] not in FINISHED:
-        return added
-    if _lacks_rigid_check(result, case, options):
-        result["rigid_check"] = _rigid_check(model, place, verdict)
-        added = True
-    if _lacks_band(result, case, options) and not stop():
-        reporter.message("band: the same run over contact penalty and damping")
-        verdict["band"] = band_of(
-            case,
-            model.container,
-            penalty=model.penalty,
-            verdict=verdict,
-            stop=stop,
-            keeping=BandFolder(place, lock, case_hash=str(result["case_hash"]), reporter=reporter),
-        )
-        added = added or verdict["band"] is not None
-    return added
-
-
 def _was_stopped(result: dict[str, Any], case: Case, options: RunOptions) -> bool:
     """Whether the stepping, or the band behind it, was interrupted."""
     if result["status"] in FINISHED:
-        return _lacks_band(result, case, options)
+        return lacks_band(result, case, options)
     return bool(result["status"] == "interrupted")
 
 
 def _is_whole(result: dict[str, Any], place: RunFolder, case: Case, options: RunOptions) -> bool:
-    """Whether a finished run has the rigid check and the band that are wanted, and its figures."""
-    lacks = _lacks_rigid_check(result, case, options) or _lacks_band(result, case, options)
-    return not lacks and (place.drawn.is_file() or not case.output.figures)
-
-
-def _lacks_rigid_check(result: dict[str, Any], case: Case, options: RunOptions) -> bool:
-    return wants_rigid_check(options.check_rigid, case) and result.get("rigid_check") is None
-
-
-def _lacks_band(result: dict[str, Any], case: Case, options: RunOptions) -> bool:
-    verdict = result["verdict"]
-    return wants_band(options.band, case, verdict) and verdict.get("band") is None
+    """Whether a finished run has the checks that are wanted, and its figures."""
+    return not lacks_checks(result, case, options) and (place.drawn.is_file() or not case.output.figures)
 
 
 def result_of(model: Model, recorder: Recorder, ending: Ending) -> dict[str, Any]:
@@ -437,23 +382,6 @@ def _step_into(
             model, recorder, reporter=reporter, stop=stop, keeper=keeper, progress=simulation.progress
         )
         return ending, recorder
-
-
-def _rigid_check(model: Model, place: RunFolder, verdict: dict[str, Any]) -> dict[str, Any]:
-    """The comparison with the rigid block, its rotation beside the run's in a table of its own."""
-    try:
-        history = read_history(place.history)
-    except (OSError, ValueError) as error:
-        raise FolderError(
-            f"{place.history}: cannot be compared with the rigid block ({error}); --force runs it again"
-        ) from None
-    try:
-        check = check_against_rigid_block(model, history, verdict)
-    except (ValueError, EventError) as error:  # a run too short, a block that bounces without end
-        return {"reference": None, "meaningful": False, "reasons": [str(error)]}
-    write_atomically(place.rigid_check, check.table())
-    add_analytic_rotation(place.history, check.analytic_rotation)
-    return check.summary
 
 
 def _frame_writer(fields: FieldWriter) -> Callable[[float, Frame, FloatArray, float], None]:

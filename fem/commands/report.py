@@ -38,7 +38,7 @@ def report(
         )
     place = _place(to if to is not None else folder / PAGE)
     reporter = ScreenReporter(quiet=quiet)
-    runs = importlib.import_module("fem.run")
+    interrupts = importlib.import_module("fem.interrupts")
     pages = importlib.import_module("fem.report.run_page")
     signature = pages.Signature(author=author, checker=checker, revision=revision)
     if (folder / "sweep.json").is_file():
@@ -47,7 +47,7 @@ def report(
         page = importlib.import_module("fem.report.study_page").study_report(folder, signature=signature)
     else:
         opened = importlib.import_module("fem.opening").open_run(folder)
-        with runs.interruptible(reporter) as stop:
+        with interrupts.interruptible(reporter) as stop:
             page = pages.run_report(
                 opened,
                 signature=signature,

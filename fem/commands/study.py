@@ -64,7 +64,7 @@ def _conducted(folder: Path, chosen: Any, *, jobs: int | None, force: bool, quie
     """Try the statements, telling of each and of its runs."""
     laboratories = importlib.import_module("fem.study.laboratory")
     conducting = importlib.import_module("fem.study.conducting")
-    runs = importlib.import_module("fem.run")
+    interrupts = importlib.import_module("fem.interrupts")
     reporter = ScreenReporter(quiet=quiet)
     in_place = not quiet and sys.stderr.isatty()
 
@@ -73,7 +73,7 @@ def _conducted(folder: Path, chosen: Any, *, jobs: int | None, force: bool, quie
             end = "\r" if done < total else "\r" + " " * 40 + "\r"
             print(f"    {done} of {total} runs", end=end, file=sys.stderr, flush=True)
 
-    with runs.interruptible(reporter) as stop:
+    with interrupts.interruptible(reporter) as stop:
         laboratory = laboratories.Laboratory(jobs=jobs, progress=progress, stop=stop)
         if any(statement.seconds > LONG for _, statement in chosen):
             laboratory.warm_up(reporter.message)

@@ -22,10 +22,10 @@ from fem.band import IN_SHORT, NO_SAMPLES_S
 from fem.case import Case
 from fem.container import Container, discretise
 from fem.model import build_model
+from fem.program import versions
 from fem.recorder import Recorder
 from fem.report.quantities import rotation_ratio
 from fem.report.variations import Variation, by_importance, variations_of
-from fem.run import versions
 from fem.run_folder import to_json, write_atomically
 from fem.simulation import cores, simulate
 from fem.verdict import in_short

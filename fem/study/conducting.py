@@ -16,8 +16,9 @@ import contact
 import fem
 import mesh
 from fem.folder_lock import LOCK_NAME, FolderLock
+from fem.program import versions
 from fem.required_disk import require_room
-from fem.run import held, versions
+from fem.run import held
 from fem.run_folder import FolderError, to_json, write_atomically
 from fem.study.catalogue import GROUPS, UNTRIED, all_statements
 from fem.study.laboratory import InterruptedStudyError, Laboratory
