@@ -81,6 +81,8 @@ def _kept(place: RunFolder) -> list[Drawing] | None:
             return None
         drawings = []
         for one in told:
+            if not one["name"].isidentifier():  # it becomes a path, and ids in a page
+                return None
             svg = _file(place, one["name"]).read_text(encoding="utf-8")
             require_drawing(svg)
             drawings.append(Drawing(name=one["name"], title=one["title"], followed=one["followed"], svg=svg))

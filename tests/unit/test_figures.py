@@ -122,6 +122,7 @@ def test_the_figures_in_the_folder_serve_a_report_as_long_as_they_are_those_of_t
         (run.place.drawn, "{}"),
         (run.place.history, run.place.history.read_text() + "\n"),
         (run.place.drawn, run.place.drawn.read_text().replace("sources", "other sources")),
+        (run.place.drawn, run.place.drawn.read_text().replace('"slip"', '"../figures/slip"')),
     ):
         whole = path.read_text()
         path.write_text(text)
