@@ -7,10 +7,10 @@ import importlib
 import sys
 from typing import TYPE_CHECKING, Any
 
-from fem.first_signals import end_at_once
+from fem.runtime.first_signals import end_at_once
 
 if TYPE_CHECKING:
-    from fem.opening import OpenedRun, open_run
+    from fem.results.reader import OpenedRun, open_run
 
 __all__ = ["OpenedRun", "open_run"]
 
@@ -24,4 +24,4 @@ def __getattr__(name: str) -> Any:
     """What the package gives away, loaded when it is first asked for: the command line answers without it."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module("fem.opening"), name)
+    return getattr(importlib.import_module("fem.results.reader"), name)

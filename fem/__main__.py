@@ -15,8 +15,8 @@ from typing import NoReturn
 
 from cyclopts import App, CycloptsError
 
-from fem.first_signals import INTERRUPTED, raise_from_now_on
-from fem.threads import use_one_blas_thread
+from fem.runtime.first_signals import INTERRUPTED, raise_from_now_on
+from fem.runtime.threads import use_one_blas_thread
 
 BAD_INPUT, FAILED = 2, 3
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
@@ -24,36 +24,36 @@ OWN_PACKAGES = {"fem", "mesh", "contact"}
 
 FLAGS = ("--help", "-h", "--version")
 COMMANDS = {
-    "run": ("fem.commands.run:run", "Compute a case: rest, slide, rock, slide-rock or overturn."),
-    "check": ("fem.commands.check:check", "Static checks, derived numbers and chosen numerics; no solution."),
-    "init": ("fem.commands.init:init", "Write a commented case, sweep or ensemble file to start from."),
+    "run": ("fem.cli.run:run", "Compute a case: rest, slide, rock, slide-rock or overturn."),
+    "check": ("fem.cli.check:check", "Static checks, derived numbers and chosen numerics; no solution."),
+    "init": ("fem.cli.init:init", "Write a commented case, sweep or ensemble file to start from."),
     "list": (
-        "fem.commands.list_cases:list_cases",
+        "fem.cli.list_cases:list_cases",
         "The shipped cases, sweeps and ensembles, and what each shows.",
     ),
-    "modes": ("fem.commands.modes:modes", "Elastic frequencies and shapes of the free container."),
+    "modes": ("fem.cli.modes:modes", "Elastic frequencies and shapes of the free container."),
     "sweep": (
-        "fem.commands.sweep:sweep",
+        "fem.cli.sweep:sweep",
         "Compute many cases, over ranges of some keys.",
     ),
-    "report": ("fem.commands.report:report", "One self-contained page from a run, a sweep or a study."),
+    "report": ("fem.cli.report:report", "One self-contained page from a run, a sweep or a study."),
     "ensemble": (
-        "fem.commands.ensemble:ensemble",
+        "fem.cli.ensemble:ensemble",
         "Probability of overturning: fragility curve, or boundary over two axes.",
     ),
     "response": (
-        "fem.commands.response:response",
+        "fem.cli.response:response",
         "Long-time motion, the frequency of the drive swept up and down.",
     ),
-    "verify": ("fem.commands.verify:verify", "The verification ladder: every case with its reference."),
-    "study": ("fem.commands.study:study", "Every statement of the seed paper, tried by runs."),
-    "picture": ("fem.commands.picture:picture", "One instant of a run as a picture."),
-    "movie": ("fem.commands.movie:movie", "A run as a film."),
+    "verify": ("fem.cli.verify:verify", "The verification ladder: every case with its reference."),
+    "study": ("fem.cli.study:study", "Every statement of the seed paper, tried by runs."),
+    "picture": ("fem.cli.picture:picture", "One instant of a run as a picture."),
+    "movie": ("fem.cli.movie:movie", "A run as a film."),
     "doctor": (
-        "fem.commands.doctor:doctor",
+        "fem.cli.doctor:doctor",
         "Versions, pictures, threads, disk; how to mend what is missing.",
     ),
-    "schema": ("fem.commands.schema:schema", "JSON schema of the case file."),
+    "schema": ("fem.cli.schema:schema", "JSON schema of the case file."),
 }
 
 

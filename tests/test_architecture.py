@@ -1,7 +1,9 @@
 """The house stays as it was drawn: imports go one way, and each third-party package has its doors."""
 
 import ast
+from collections import Counter
 from collections.abc import Iterator
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -10,31 +12,77 @@ ROOT = Path(__file__).parents[1]
 PACKAGES = ("mesh", "contact", "fem")
 SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
 
-#: package -> the packages of this project it may import
-ALLOWED = {"mesh": {"mesh"}, "contact": {"contact"}, "fem": {"mesh", "contact", "fem"}}
+#: from the foundation up: a package imports its own modules and those of lower layers, none beside or above it
+LAYERS = (
+    ("mesh", "contact.jit", "contact.reference"),
+    ("contact.motion",),
+    ("contact.interface",),
+    ("contact.stepping",),
+    ("fem.runtime",),
+    ("fem.case",),
+    ("fem.results",),
+    ("fem.solid",),
+    ("fem.model",),
+    ("fem.assessment",),
+    ("fem.html",),
+    ("fem.figures",),
+    ("fem.render", "fem.run"),
+    ("fem.batch",),
+    ("fem.sweep", "fem.response"),
+    ("fem.ensemble", "fem.report"),
+    ("fem.verification",),
+    ("fem.paper",),
+    ("fem.cli",),
+)
+#: package -> the only packages of a lower layer that it may import, where these are not all
+NARROW = {
+    "contact.motion": {"contact.jit"},
+    "contact.interface": {"contact.jit", "contact.motion"},
+    "contact.stepping": {"contact.jit", "contact.motion", "contact.interface"},
+    "fem": {"fem.runtime", "fem.results"},  # what the package offers by name
+    "fem.__main__": {"fem.runtime", "fem.cli"},
+}
+MOST_FILES = 25  #: in one folder
 
 #: third-party package -> where it may be imported
 DOORS = {
-    "skfem": {"fem/assembly.py"},
-    "pyvista": {"fem/scenery.py", "fem/pictures.py", "fem/movie.py", "fem/opening.py", "fem/figures_kept.py"},
-    "numba": {"contact", "fem/elasticity.py", "fem/nodal_body.py", "fem/compilation.py"},
+    "skfem": {"fem/solid/assembly.py"},
+    "pyvista": {"fem/render", "fem/results/grid.py", "fem/results/reader.py"},
+    "numba": {
+        "contact",
+        "fem/solid/elasticity.py",
+        "fem/solid/nodal_kernels.py",
+        "fem/runtime/compilation.py",
+    },
     "pydantic": {"fem"},
     # optional, and slow to import: loaded where a cluster is asked for
-    "dask": {"fem/sweep/cluster.py"},
-    "distributed": {"fem/sweep/cluster.py"},
-    "jinja2": {"fem/pages.py"},
+    "dask": {"fem/batch/cluster.py"},
+    "distributed": {"fem/batch/cluster.py"},
+    "jinja2": {"fem/html/page.py"},
 }
 
 #: modules that load others by name, when they are needed: commands, the package's own names, pyvista, matplotlib
-LOADING_LATE = {"fem/__main__.py", "fem/__init__.py", "fem/opening.py", "fem/figures_kept.py"}
+LOADING_LATE = {"fem/__main__.py", "fem/__init__.py", "fem/results/reader.py", "fem/figures/cache.py"}
 
 
 def name_of(path: Path) -> str:
     return path.relative_to(ROOT).as_posix()
 
 
+def module_of(path: Path) -> str:
+    return name_of(path).removesuffix(".py").replace("/", ".").removesuffix(".__init__")
+
+
+MODULES = {module_of(path): path for path in SOURCES}
+
+
+def package_of(module: str) -> str:
+    """The part of the house that a module belongs to, as `LAYERS` names it."""
+    return "mesh" if module.split(".")[0] == "mesh" else ".".join(module.split(".")[:2])
+
+
 def imported(path: Path) -> Iterator[str]:
-    """Full names of the modules that a file imports, at any depth of it."""
+    """Full names of what a file imports, at any depth of it, by statement or by string."""
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
@@ -42,25 +90,71 @@ def imported(path: Path) -> Iterator[str]:
             assert node.level == 0, f"{name_of(path)}:{node.lineno}: relative import"
             assert node.module is not None
             yield node.module
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            name = node.value.partition(":")[0]
+            if "." in name and name in MODULES:
+                yield name
+
+
+def of_this_project(path: Path) -> set[str]:
+    """Modules of this project that a file imports, apart from the packages that hold the module named."""
+    names = {name for name in imported(path) if name in MODULES} - {module_of(path)}
+    return {name for name in names if not any(other.startswith(f"{name}.") for other in names)}
+
+
+def lower(package: str) -> set[str]:
+    """Packages that a package may import."""
+    if package in NARROW:
+        return NARROW[package]
+    floor = next(k for k, layer in enumerate(LAYERS) if package in layer)
+    return {below for layer in LAYERS[:floor] for below in layer}
 
 
 def test_there_is_something_to_look_at():
     assert {name_of(path).split("/")[0] for path in SOURCES} == set(PACKAGES)
-    assert "skfem" in set(imported(ROOT / "fem/assembly.py"))
+    assert "skfem" in set(imported(ROOT / "fem/solid/assembly.py"))
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=name_of)
-def test_imports_go_one_way(path):
-    package = name_of(path).split("/")[0]
-    ours = {name.split(".")[0] for name in imported(path)} & {*PACKAGES, "tests"}
-    assert ours <= ALLOWED[package]
+def test_imports_go_down_the_layers(path):
+    package = package_of(module_of(path))
+    others = {name: package_of(name) for name in of_this_project(path)}
+    wrong = sorted(name for name, other in others.items() if other not in {package} | lower(package))
+    assert not wrong, f"{name_of(path)} imports {wrong}"
+
+
+def test_no_module_imports_itself_by_way_of_others():
+    graph = {module_of(path): of_this_project(path) for path in SOURCES}
+    TopologicalSorter(graph).prepare()  # raises CycleError with the circle
+
+
+def test_no_folder_is_crowded():
+    folders = Counter(path.parent for path in SOURCES)
+    assert not {name_of(folder): count for folder, count in folders.items() if count > MOST_FILES}
+
+
+def test_fem_holds_packages_only():
+    assert {path.name for path in (ROOT / "fem").glob("*.py")} == {"__init__.py", "__main__.py"}
+
+
+def test_a_public_class_has_a_name_of_its_own():
+    classes = [
+        (node.name, name_of(path))
+        for path in SOURCES
+        for node in ast.parse(path.read_text()).body
+        if isinstance(node, ast.ClassDef) and not node.name.startswith("_")
+    ]
+    counts = Counter(name for name, _ in classes)
+    assert not [(name, path) for name, path in classes if counts[name] > 1]
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=name_of)
 def test_third_party_packages_come_in_by_their_doors(path):
     name = name_of(path)
     for package in {full.split(".")[0] for full in imported(path)} & set(DOORS):
-        assert {name, name.split("/")[0]} & DOORS[package], f"{name} imports {package}"
+        places = {name, *(parent.as_posix() for parent in Path(name).parents)}
+        assert places & DOORS[package], f"{name} imports {package}"
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=name_of)
@@ -81,7 +175,7 @@ def test_only_the_command_line_and_the_opening_import_by_string(path):
         and ast.unparse(node.func).split(".")[-1] in ("import_module", "__import__")
     ]
     name = name_of(path)
-    assert not calls or name.startswith("fem/commands/") or name in LOADING_LATE
+    assert not calls or name.startswith("fem/cli/") or name in LOADING_LATE
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=name_of)

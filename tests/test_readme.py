@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from fem.__main__ import COMMANDS
-from fem.case_files import CASES, DEFAULT_CASE
-from fem.rendering import MEND_PICTURES, probe_rendering
+from fem.case.files import CASES, DEFAULT_CASE
+from fem.render.opengl import MEND_PICTURES, probe_rendering
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("*/README.md"))]

@@ -9,7 +9,11 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from fem.drawing import (
+from fem.batch.axes import Axis
+from fem.ensemble.fragility import Lognormal
+from fem.ensemble.plan import FREE, Ensemble
+from fem.ensemble.statistics import PointResult
+from fem.figures.style import (
     BLACK,
     BLUE,
     GREY,
@@ -23,10 +27,6 @@ from fem.drawing import (
     panels,
     svg_of,
 )
-from fem.ensemble.counting import PointResult
-from fem.ensemble.fragility import Lognormal
-from fem.ensemble.plan import FREE, Ensemble
-from fem.sweep.axes import Axis
 from mesh.cells import FloatArray
 
 #: of the regions; lightness differs as well

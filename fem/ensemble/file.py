@@ -18,15 +18,15 @@ from typing import Annotated, Any
 
 from pydantic import Field, Strict
 
-from fem.case_files import DEFAULT_CASE, ENSEMBLES, Origin, parse_case
-from fem.case_reading import CaseError
-from fem.case_tables import Table
+from fem.batch.axes import NO_AXIS, Axis, AxisError, field_of, read_axis
+from fem.batch.base_case import base_case, read_as, require_once, split_tables
+from fem.batch.expressions import Expression, ExpressionError, parse_expression
+from fem.case.files import DEFAULT_CASE, ENSEMBLES, Origin, parse_case
+from fem.case.tables import Table
+from fem.case.validation import CaseError
+from fem.ensemble.distributions import RandomQuantity, Sampling, read_random
 from fem.ensemble.intervals import least_draws
 from fem.ensemble.plan import FREE, Ensemble
-from fem.ensemble.scatter import RandomQuantity, Sampling, read_random
-from fem.sweep.axes import NO_AXIS, Axis, AxisError, field_of, read_axis
-from fem.sweep.base_case import base_case, read_as, require_once, split_tables
-from fem.sweep.expressions import Expression, ExpressionError, parse_expression
 from fem.sweep.plan import Derived, in_order
 
 TABLES = ("set", "axes", "random", "derived")

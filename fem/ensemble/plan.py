@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from fem.case import Case, CaseError
-from fem.ensemble.scatter import RandomQuantity, Sampling, draw_shares
-from fem.sweep.axes import Axis
-from fem.sweep.case_maker import CaseMaker
-from fem.sweep.expressions import ExpressionError
+from fem.batch.axes import Axis
+from fem.batch.case_maker import CaseMaker
+from fem.batch.expressions import ExpressionError
+from fem.case.case import Case, CaseError
+from fem.ensemble.distributions import RandomQuantity, Sampling, draw_shares
 from fem.sweep.plan import Derived, value_in
 from mesh.cells import FloatArray
 

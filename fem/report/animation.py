@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from fem.assembly import FiniteElements
-from fem.fields import Fields, Frame
-from fem.history import History
-from fem.model import Model
+from fem.model.model import Model
+from fem.results.fields import Fields, Frame
+from fem.results.history import History
+from fem.solid.assembly import FiniteElements
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from fem.case import Case
-from fem.history import History
-from fem.report.quantities import degrees, number, quantity, short, typeset
-from fem.static_checks import CLAUSE_OVERTURNING, CLAUSE_SLIDING
-from fem.summary import own_motion_name, rule_says, run_slid, run_tilted
+from fem.assessment.summary import own_motion_name, rule_says, run_slid, run_tilted
+from fem.case.case import Case
+from fem.html.units import degrees, number, quantity, short, typeset
+from fem.model.static_checks import CLAUSE_OVERTURNING, CLAUSE_SLIDING
+from fem.results.history import History
 
 Result = Mapping[str, Any]
 

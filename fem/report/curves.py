@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from fem.figures_kept import Drawing
-from fem.pages import svg_element
+from fem.figures.style import Drawing
+from fem.html.page import svg_element
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,18 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from contact.event_driven import EventError
-from fem.fields import Fields
-from fem.figures_kept import drawings_of
-from fem.history import History
-from fem.model import Model, build_model
-from fem.modes import FEW, elastic_mode_table, elastic_modes
-from fem.opening import OpenedRun
-from fem.pages import Signature, render_page
-from fem.report.animation import Film, exaggeration, exaggerations, film_of, player_data
-from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions, compared_rows
-from fem.report.curves import curves_of
-from fem.report.quantities import (
+from contact.reference.event_driven import EventError
+from fem.assessment.rigid_check import check_against_rigid_block
+from fem.assessment.summary import BAND_NOTE, CODE_NOTE, MARGIN_NOTE, outcome_sentence, run_rows
+from fem.assessment.summary_joints import JOINTS_NOTE
+from fem.figures.cache import drawings_of
+from fem.html.page import Signature, render_page
+from fem.html.units import (
     millimetres,
     number,
     quantity,
@@ -33,14 +28,19 @@ from fem.report.quantities import (
     turned,
     typeset,
 )
+from fem.model.model import Model, build_model
+from fem.report.animation import Film, exaggeration, exaggerations, film_of, player_data
+from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions, compared_rows
+from fem.report.curves import curves_of
 from fem.report.sketch import sketch
 from fem.report.static_sheet import static_sheet
 from fem.report.stills import Still, colours, stills
 from fem.report.variation_table import VariationTable, variations_meanwhile
-from fem.rigid_check import check_against_rigid_block
-from fem.run_folder import FINISHED, FolderError
-from fem.summary import BAND_NOTE, CODE_NOTE, MARGIN_NOTE, outcome_sentence, run_rows
-from fem.summary_joints import JOINTS_NOTE
+from fem.results.fields import Fields
+from fem.results.history import History
+from fem.results.reader import OpenedRun
+from fem.results.run_folder import FINISHED, FolderError
+from fem.solid.modes import FEW, elastic_mode_table, elastic_modes
 
 COLOURS = 64  #: of the stress scale in the animation
 #: figures beside the animation, in the order of reading; the others stand in their own sections

@@ -7,8 +7,8 @@ import math
 
 from markupsafe import Markup, escape
 
-from fem.case import Case
-from fem.report.quantities import degrees, quantity, short
+from fem.case.case import Case
+from fem.html.units import degrees, quantity, short
 
 WIDTH = 430.0  #: of the drawing, in its own units
 BODY_WIDTH, BODY_HEIGHT = 175.0, 250.0  #: room for the container

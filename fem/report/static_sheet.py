@@ -1,7 +1,7 @@
 """The static calculation of a report: every line a formula, the same with the numbers put in, the result, the clause.
 
 It can be redone with a pocket calculator: the numbers put in are those printed, and give the printed result
-to its last figure but one. The formulas are those of `fem.static_checks`; the results are the run's own.
+to its last figure but one. The formulas are those of `fem.model.static_checks`; the results are the run's own.
 Weights in kN, moments in kNm, lengths in m.
 """
 
@@ -12,9 +12,9 @@ from typing import Any
 
 from markupsafe import Markup
 
-from fem.case import Case
-from fem.report.quantities import number, short
-from fem.static_checks import (
+from fem.case.case import Case
+from fem.html.units import number, short
+from fem.model.static_checks import (
     CLAUSE_APPLICABLE,
     CLAUSE_OVERTURNING,
     CLAUSE_SLIDING,

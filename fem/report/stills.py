@@ -12,8 +12,8 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import NDArray
 
-from fem.history import History
 from fem.report.animation import Film, Split, exaggeration
+from fem.results.history import History
 
 FloatArray = NDArray[np.float64]
 

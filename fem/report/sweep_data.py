@@ -12,9 +12,9 @@ import matplotlib
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.drawing import STATE_COLOURS, VERMILLION
+from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.report.animation import packed
-from fem.run_folder import FolderError
+from fem.results.run_folder import FolderError
 from fem.sweep.table import SweepTable
 
 #: what can be shown: column, words for it, unit, factor

@@ -7,12 +7,12 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from fem.case import load_case
-from fem.pages import Signature, render_page, svg_element
+from fem.case.case import load_case
+from fem.html.page import Signature, render_page, svg_element
+from fem.html.units import number, short, typeset
 from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions
-from fem.report.quantities import number, short, typeset
 from fem.report.sweep_data import QUANTITIES, axis_label, counts, failures, map_data
-from fem.run_folder import FolderError
+from fem.results.run_folder import FolderError
 from fem.sweep.table import SweepTable, open_sweep
 
 MOST_MAP_BYTES = 400_000  #: of a drawn map, as SVG

@@ -18,17 +18,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from fem.band import IN_SHORT, NO_SAMPLES_S
-from fem.case import Case
-from fem.container import Container, discretise
-from fem.model import build_model
-from fem.program import versions
-from fem.recorder import Recorder
-from fem.report.quantities import rotation_ratio
+from fem.assessment.verdict import in_short
+from fem.case.case import Case
+from fem.html.units import rotation_ratio
+from fem.model.container import Container, discretise
+from fem.model.model import build_model
 from fem.report.variations import Variation, by_importance, variations_of
-from fem.run_folder import to_json, write_atomically
-from fem.simulation import cores, simulate
-from fem.verdict import in_short
+from fem.results.run_folder import to_json, write_atomically
+from fem.run.band import IN_SHORT, NO_SAMPLES_S
+from fem.run.recorder import Recorder
+from fem.run.simulation import simulate
+from fem.runtime.identity import versions
+from fem.runtime.threads import cores
 
 AFFORDED_S = 4.0  #: wall time until the last line that is not asked for should be there
 SHOWN = ("status", "reason", *IN_SHORT)

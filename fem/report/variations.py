@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from fem.case import Case
-from fem.report.quantities import degrees, quantity, short
+from fem.case.case import Case
+from fem.html.units import degrees, quantity, short
 
 FRICTION_FACTORS = (0.5, 0.75, 1.25, 1.5)
 DAMPING_RATIOS = (0.5, 1.0, 2.0, 4.0)

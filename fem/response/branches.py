@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from fem.response.record import Record
+from fem.response.records import Record
 
 APART = 0.02  #: difference of rotation ratios that counts at least
 APART_STROKE = 0.05  #: of slip strokes, over the floor's amplitude

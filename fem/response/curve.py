@@ -9,15 +9,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact.tracking import ROCK, ROCKING, SLIDE
-from fem.case import Case
-from fem.container import Container, discretise
+from contact.stepping.observables import ROCK, ROCKING, SLIDE
+from fem.assessment.verdict import MODE_NAMES, SLIDING
+from fem.case.case import Case
+from fem.model.container import Container, discretise
 from fem.response.decay import Decay, follow_decay
-from fem.response.drive import DrivenModel, begin_drive, carry_drive, driven_case
-from fem.response.long_time import LongTime, amplitude_growth, amplitudes_diverge, classify
+from fem.response.model import DrivenModel, begin_drive, carry_drive, driven_case
 from fem.response.orbit import Orbit, follow_periods, step_until
 from fem.response.request import ResponseRequest
-from fem.verdict import MODE_NAMES, SLIDING
+from fem.response.stability import LongTime, amplitude_growth, amplitudes_diverge, classify
 from mesh.cells import FloatArray
 
 PORTRAYED = 16  #: last periods whose phase portrait is kept; of a periodic motion one of its periods

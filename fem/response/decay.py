@@ -7,13 +7,13 @@ kick, and the container is followed until it has come to rest or has fallen.
 
 from dataclasses import dataclass
 
-from contact.body import ROTATION
-from contact.stepping import OVERTURNED, REACHED, advance_compiled
-from contact.tracking import ROCKING
-from fem.case import Case
-from fem.container import Container
-from fem.response.drive import DrivenModel, stop_drive
-from fem.verdict import audit
+from contact.stepping.body import ROTATION
+from contact.stepping.integrator import OVERTURNED, REACHED, advance_compiled
+from contact.stepping.observables import ROCKING
+from fem.assessment.verdict import audit
+from fem.case.case import Case
+from fem.model.container import Container
+from fem.response.model import DrivenModel, stop_drive
 
 #: at rest: for so long, over 1/p, it neither turned beyond the limit of a verdict nor slid
 STILL = 2.0

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fem.drawing import (
+from fem.figures.style import (
     BLACK,
     BLUE,
     GREY,
@@ -23,7 +23,7 @@ from fem.drawing import (
     svg_of,
 )
 from fem.response.branches import coexistences, in_words
-from fem.response.record import Record
+from fem.response.records import Record
 from fem.response.request import ResponseRequest
 
 LOOKS = {

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact.body import ANGULAR_VELOCITY, ROTATION, VELOCITY_X
-from contact.floor_motion import floor_motion
-from contact.run import ROW_ANGULAR_VELOCITY, ROW_ROTATION, ROW_SLIP
-from contact.stepping import FAILED, OVERTURNED, REACHED, advance_compiled
-from contact.tracking import NEVER
-from fem.response.drive import DrivenModel, section_times, with_sections
-from fem.verdict import audit
+from contact.motion.kernel import floor_motion
+from contact.stepping.body import ANGULAR_VELOCITY, ROTATION, VELOCITY_X
+from contact.stepping.integrator import FAILED, OVERTURNED, REACHED, advance_compiled
+from contact.stepping.observables import NEVER
+from contact.stepping.state import ROW_ANGULAR_VELOCITY, ROW_ROTATION, ROW_SLIP
+from fem.assessment.verdict import audit
+from fem.response.model import DrivenModel, section_times, with_sections
 from mesh.cells import FloatArray
 
 #: a motion of hundreds of periods is audited in stretches of so many, each as a run is

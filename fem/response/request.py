@@ -7,8 +7,8 @@ from typing import Literal
 
 import numpy as np
 
-from fem.case import Case, CaseError, case_hash
-from fem.response.long_time import LARGEST_PERIOD, TOLERANCE
+from fem.case.case import Case, CaseError, case_hash
+from fem.response.stability import LARGEST_PERIOD, TOLERANCE
 
 Hold = Literal["displacement", "acceleration"]
 Order = Literal["up-down", "down-up"]
@@ -38,7 +38,7 @@ class ResponseRequest:
     order: Order = "up-down"
     settle: int = DEFAULT_SETTLED  #: periods of the drive left out at each frequency
     observe: int = DEFAULT_OBSERVED  #: periods by which the long-time motion is judged
-    tolerance: float = TOLERANCE  #: within which two sections count as the same, see `fem.response.long_time`
+    tolerance: float = TOLERANCE  #: within which two sections count as the same, see `fem.response.stability`
     largest_period: int = LARGEST_PERIOD  #: looked for, in periods of the drive
     held: Hold = field(init=False)  #: the same, decided
 

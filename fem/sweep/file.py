@@ -18,13 +18,13 @@ from typing import Any
 
 from pydantic import Field
 
-from fem.case import Case
-from fem.case_files import DEFAULT_CASE, SWEEPS, Origin, parse_case
-from fem.case_reading import CaseError, did_you_mean
-from fem.case_tables import Table
-from fem.sweep.axes import NO_AXIS, Axis, AxisError, field_of, read_axis
-from fem.sweep.base_case import base_case, flat, read_as, require_once, split_tables
-from fem.sweep.expressions import Expression, ExpressionError, parse_expression
+from fem.batch.axes import NO_AXIS, Axis, AxisError, field_of, read_axis
+from fem.batch.base_case import base_case, flat, read_as, require_once, split_tables
+from fem.batch.expressions import Expression, ExpressionError, parse_expression
+from fem.case.case import Case
+from fem.case.files import DEFAULT_CASE, SWEEPS, Origin, parse_case
+from fem.case.tables import Table
+from fem.case.validation import CaseError, did_you_mean
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.plan import Derived, MapChoice, Sweep, in_order, value_in
 from fem.sweep.threshold import Threshold

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from fem.case import case_hash
-from fem.case_toml import toml_document
-from fem.folder_lock import LOCK_NAME
-from fem.program import program_identity, versions
-from fem.run_folder import FolderError, to_json, write_atomically
+from fem.case.case import case_hash
+from fem.case.toml import toml_document
+from fem.results.lock import LOCK_NAME
+from fem.results.run_folder import FolderError, to_json, write_atomically
+from fem.runtime.identity import program_identity, versions
 from fem.sweep.plan import Sweep
 from fem.sweep.size import check_disk
 from fem.sweep.table import read_info

@@ -20,10 +20,10 @@ from matplotlib.path import Path as Path2D
 from matplotlib.ticker import LogLocator, MaxNLocator
 from matplotlib.transforms import Affine2D
 
-from fem.drawing import BLACK, GREY, STATE_COLOURS, VERMILLION, WIDTH, house_style, number, svg_of
-from fem.run_folder import write_atomically
-from fem.sweep.axes import Axis
-from fem.sweep.band import BoolArray, FloatArray
+from fem.batch.axes import Axis
+from fem.figures.style import BLACK, GREY, STATE_COLOURS, VERMILLION, WIDTH, house_style, number, svg_of
+from fem.results.run_folder import write_atomically
+from fem.sweep.neighbours import BoolArray, FloatArray
 from fem.sweep.table import SweepTable
 
 OUTCOME_COLOURS = {**STATE_COLOURS, "failed": VERMILLION, "": "#FFFFFF"}

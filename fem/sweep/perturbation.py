@@ -12,9 +12,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from fem.case import Case
-from fem.case_quantities import CONTACT_DAMPING, Quantity
-from fem.case_tables import Table
+from fem.case.case import Case
+from fem.case.quantities import CONTACT_DAMPING, Quantity
+from fem.case.tables import Table
 
 SHARE = Quantity(unit="", least=0.0, most=0.5, advice="0.02 is two per cent")
 FRICTION_STEP = Quantity(unit="", least=0.0, most=1.0, advice="0.02 is usual")

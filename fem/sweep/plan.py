@@ -12,12 +12,12 @@ from typing import Any
 
 from pydantic import Field
 
-from fem.case import Case
-from fem.case_reading import CaseError, known_keys
-from fem.case_tables import TABLES, Table
-from fem.sweep.axes import Axis
-from fem.sweep.case_maker import CaseMaker
-from fem.sweep.expressions import Expression, ExpressionError
+from fem.batch.axes import Axis
+from fem.batch.case_maker import CaseMaker
+from fem.batch.expressions import Expression, ExpressionError
+from fem.case.case import Case
+from fem.case.tables import TABLES, Table
+from fem.case.validation import CaseError, known_keys
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.threshold import Threshold
 

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from fem.case_reading import CaseError
-from fem.progress import clock_time
-from fem.required_disk import require_room
+from fem.case.validation import CaseError
+from fem.results.disk import require_room
+from fem.runtime.progress import clock_time
 from fem.sweep.plan import Sweep
 
 #: cells that a sweep may have unless it is forced

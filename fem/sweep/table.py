@@ -18,31 +18,10 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.run_folder import FolderError, write_atomically
-from fem.sweep.axes import Axis
+from fem.batch.axes import Axis
+from fem.batch.runner import SCALARS
+from fem.results.run_folder import FolderError, write_atomically
 
-#: scalars of a verdict, as columns; None where a case does not have them
-SCALARS = (
-    "outcome",
-    "max_rotation_rad",
-    "rotation_ratio",
-    "max_slip_m",
-    "residual_slip_m",
-    "slip_peak_to_peak_m",
-    "slip_travel_m",
-    "max_uplift_m",
-    "impacts",
-    "first_opening_s",
-    "first_uplift_s",
-    "first_impact_s",
-    "overturned_at_s",
-    "restored",
-    "restitution_first",
-    "max_corner_force_N",
-    "max_top_displacement_m",
-    "max_acceleration_m_s2",
-    "max_von_mises_Pa",
-)
 #: what stands behind the values of axes and derived keys in every row
 FOUND = ("status", *SCALARS, "reason", "wall_s")
 #: what the perturbed copies of a cell say; the width of the band along each numeric axis follows

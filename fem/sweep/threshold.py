@@ -14,8 +14,8 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from fem.case_quantities import Quantity
-from fem.case_tables import Table
+from fem.case.quantities import Quantity
+from fem.case.tables import Table
 
 RESOLUTION = Quantity(unit="", above=0.0, most=1.0, advice="0.01 is one per cent")
 

@@ -1,1 +1,1 @@
-"""The verification ladder: every statement that a number of this program rests on, computed anew and compared."""
+"""Verification checks: every number the program rests on beside its reference. No run depends on them."""

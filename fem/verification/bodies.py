@@ -10,20 +10,20 @@ from typing import Any
 
 import numpy as np
 
-from contact import modal_body
-from contact.body import State, make_state
-from contact.floor_motion import UNIFORM, as_floor_motion
-from contact.initial import Stance
-from contact.interface import Contact, make_workspace
-from contact.laws import ELASTIC_STICK
-from contact.modal_body import ModalBody
-from contact.run import Run, make_run, make_samples
-from contact.scheme import Scheme, generalised_alpha, newmark
-from contact.stepping import REACHED
-from fem.assembly import FiniteElements
-from fem.full_body import FullBody, advance_body
-from fem.model import build_model
-from fem.reduction import StaticResponse
+from contact.interface.equilibrium import Stance
+from contact.interface.laws import ELASTIC_STICK
+from contact.interface.solver import Contact, make_workspace
+from contact.motion.kernel import UNIFORM, as_floor_motion
+from contact.stepping import modal_body
+from contact.stepping.body import State, make_state
+from contact.stepping.integrator import REACHED
+from contact.stepping.modal_body import ModalBody
+from contact.stepping.scheme import Scheme, generalised_alpha, newmark
+from contact.stepping.state import Run, make_run, make_samples
+from fem.model.model import build_model
+from fem.solid.assembly import FiniteElements
+from fem.solid.nodal_body import FullBody, advance_body
+from fem.solid.reduction import StaticResponse
 from fem.verification.runs import STACK, with_steps_of
 from mesh.cells import FloatArray
 

@@ -9,16 +9,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from contact.body import VELOCITY_Z
-from contact.closed_forms_drop import damped_drop_restitution, drop_force
-from contact.floor_motion import PIECEWISE, FloorMotion, as_floor_motion
-from contact.initial import standing
-from contact.support import choose_support
-from fem.assembly import assemble
-from fem.full_body import FullBody
-from fem.model import Model, build_model
-from fem.reduction import static_response
-from fem.verdict import audit
+from contact.interface.equilibrium import standing
+from contact.interface.support import choose_support
+from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion
+from contact.reference.closed_forms_drop import damped_drop_restitution, drop_force
+from contact.stepping.body import VELOCITY_Z
+from fem.assessment.verdict import audit
+from fem.model.model import Model, build_model
+from fem.solid.assembly import assemble
+from fem.solid.nodal_body import FullBody
+from fem.solid.reduction import static_response
 from fem.verification.bodies import Flight, free_run
 from fem.verification.rows import Check, Convergence, Row, as_floats
 from fem.verification.runs import BOX, GRAVITY, STACK, finish, lifted, run, with_motion, with_steps_of

@@ -8,8 +8,8 @@ import math
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
-from fem.assembly import assemble
-from fem.elasticity import cauchy_stress, plane_stress_lame
+from fem.solid.assembly import assemble
+from fem.solid.elasticity import cauchy_stress, plane_stress_lame
 from fem.verification.elastic_problems import (
     cook_deflection,
     elastica_tip,

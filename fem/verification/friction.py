@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 
-from contact.closed_forms_sliding import incline_acceleration
-from contact.ledger import FRICTION
+from contact.reference.closed_forms_sliding import incline_acceleration
+from contact.stepping.ledger import FRICTION
 from fem.verification.rows import Check, Row
 from fem.verification.runs import BOX, GRAVITY, SOLID, run
 from fem.verification.sliding import OMEGA, PERIOD, STROKE_TOLERANCE, harmonic

@@ -7,11 +7,11 @@ import math
 
 import numpy as np
 
-from contact.floor_motion import PIECEWISE, FloorMotion, as_floor_motion
-from contact.scheme import generalised_alpha
-from fem.assembly import assemble
-from fem.full_body import FullBody
-from fem.model import build_model
+from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion
+from contact.stepping.scheme import generalised_alpha
+from fem.model.model import build_model
+from fem.solid.assembly import assemble
+from fem.solid.nodal_body import FullBody
 from fem.verification.bodies import Flight, body_of, free_run
 from fem.verification.contact_laws import graded_block
 from fem.verification.rows import Check, Convergence, Row, as_floats, order_row

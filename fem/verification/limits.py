@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from contact.floor_acceleration import still_floor
-from contact.rocking import simulate_rocking
-from fem.model import build_model
+from contact.reference.floor_acceleration import still_floor
+from contact.reference.rocking import simulate_rocking
+from fem.model.model import build_model
 from fem.verification.rows import Check, Convergence, Row, as_floats
 from fem.verification.runs import SOLID, STACK, Finished, run
 from mesh.cells import FloatArray

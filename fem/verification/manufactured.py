@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.linalg import spsolve
 
-from contact.body import State
-from contact.scheme import Scheme, generalised_alpha
-from fem import nodal_body
-from fem.assembly import assemble
-from fem.full_body import FullBody
+from contact.stepping.body import State
+from contact.stepping.scheme import Scheme, generalised_alpha
+from fem.solid import nodal_kernels as nodal_body
+from fem.solid.assembly import assemble
+from fem.solid.nodal_body import FullBody
 from fem.verification.bodies import Flight, free_run
 from fem.verification.meshes import PlainMesh, mapped_mesh
 from mesh.cells import FloatArray
@@ -107,7 +107,7 @@ class DrivenBody(FullBody):
         self._flight = flight
 
     def predict(self, scheme: Scheme, step: float, old: State, new: State) -> None:
-        """See `contact.body.predict`; the source is then that of the step's end."""
+        """See `contact.stepping.body.predict`; the source is then that of the step's end."""
         super().predict(scheme, step, old, new)
         self.nodal.source[:] = self.source(self._flight.time + step)
 

@@ -12,20 +12,20 @@ from typing import Any
 
 import numpy as np
 
-from contact.closed_forms_initiation import initiation_mode, rocking_friction
-from contact.closed_forms_overturning import (
+from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion
+from contact.reference.closed_forms_initiation import initiation_mode, rocking_friction
+from contact.reference.closed_forms_overturning import (
     half_sine_threshold_slender,
     one_sine_threshold_slender,
     rectangular_pulse_duration,
     sustained_sine_threshold_slender,
     velocity_step_threshold,
 )
-from contact.floor_acceleration import FloorAcceleration, half_sine_pulse, one_sine_pulse
-from contact.floor_motion import PIECEWISE, FloorMotion, as_floor_motion
-from contact.rigid_block import RigidBlock
-from contact.rocking import first_swing_threshold
-from fem.container import Container, discretise
-from fem.model import build_model
+from contact.reference.floor_acceleration import FloorAcceleration, half_sine_pulse, one_sine_pulse
+from contact.reference.rigid_block import RigidBlock
+from contact.reference.rocking import first_swing_threshold
+from fem.model.container import Container, discretise
+from fem.model.model import build_model
 from fem.verification.rows import Check, Row, count_row
 from fem.verification.runs import GRAVITY, SOLID, STACK, Finished, finish, run, with_motion
 

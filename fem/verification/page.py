@@ -11,11 +11,11 @@ import numpy as np
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from fem.pages import render_page, svg_element
-from fem.program import versions
-from fem.report.quantities import ABSENT, short, typeset
-from fem.verification.ladder import Ladder, Rung
+from fem.html.page import render_page, svg_element
+from fem.html.units import ABSENT, short, typeset
+from fem.runtime.identity import versions
 from fem.verification.rows import Convergence, Row
+from fem.verification.suite import Ladder, Rung
 from mesh.cells import FloatArray
 
 LEAST_SIX = 1e-3  #: smaller values are errors, and printed with three figures

@@ -10,8 +10,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from contact.penalty import contact_frequency
-from fem.model import build_model
+from contact.interface.penalty import contact_frequency
+from fem.model.model import build_model
 from fem.verification.rows import Check, Convergence, Row, as_floats
 from fem.verification.runs import GRAVITY, SOLID, STACK, Finished, run
 

@@ -1,6 +1,7 @@
 """Rocking without sliding: the rigid and the stiff elastic container against the exact rocking block.
 
-The block of `contact.rocking` is integrated by scipy between events and shares no code with the stepping. The stack
+The block of `contact.reference.rocking` is integrated by scipy between events and shares no code with the stepping.
+The stack
 is 1.1 x 4.0 m, homogeneous, on two corners, released from half its slenderness angle where nothing else is said.
 Housner, BSSA 53 (1963).
 """
@@ -9,7 +10,7 @@ import math
 
 import numpy as np
 
-from contact.closed_forms_rocking import (
+from contact.reference.closed_forms_rocking import (
     SymmetricOrbit,
     holding_acceleration,
     impact_friction_need,
@@ -17,10 +18,10 @@ from contact.closed_forms_rocking import (
     quarter_period,
     symmetric_orbit_slender,
 )
-from contact.floor_acceleration import FloorAcceleration, sine_floor
-from contact.rigid_block import RigidBlock
-from contact.rocking import simulate_rocking
-from fem.history import History
+from contact.reference.floor_acceleration import FloorAcceleration, sine_floor
+from contact.reference.rigid_block import RigidBlock
+from contact.reference.rocking import simulate_rocking
+from fem.results.history import History
 from fem.verification.rows import Check, Row
 from fem.verification.runs import GRAVITY, SOLID, STACK, Finished, run
 

@@ -10,19 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from contact import modal_body
-from contact.body import State
-from contact.floor_motion import FloorMotion, floor_motion
-from contact.initial import Stance
-from contact.rigid_block import RigidBlock
-from fem.case import Case, read_case
-from fem.container import Container
-from fem.full_body import FullBody
-from fem.history import History
-from fem.model import Model, build_model
-from fem.recorder import Recorder
-from fem.simulation import simulate
-from fem.verdict import outcome_of
+from contact.interface.equilibrium import Stance
+from contact.motion.kernel import FloorMotion, floor_motion
+from contact.reference.rigid_block import RigidBlock
+from contact.stepping import modal_body
+from contact.stepping.body import State
+from fem.assessment.verdict import outcome_of
+from fem.case.case import Case, read_case
+from fem.model.container import Container
+from fem.model.model import Model, build_model
+from fem.results.history import History
+from fem.run.recorder import Recorder
+from fem.run.simulation import simulate
+from fem.solid.nodal_body import FullBody
 
 GRAVITY = 9.81
 
@@ -69,7 +69,7 @@ class Finished:
 
     @property
     def track(self) -> Any:
-        """What the run is judged by, see `contact.tracking.TRACK`."""
+        """What the run is judged by, see `contact.stepping.observables.TRACK`."""
         return self.model.run.track[0]
 
     @property

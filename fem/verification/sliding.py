@@ -1,7 +1,7 @@
 """Sliding without rocking: a rigid box on Coulomb friction against the rigid slider.
 
-The slider of `contact.sliding` is event-driven, sticks truly and shares no code with the stepping; the box sticks
-by stiff springs. The box is 1.1 x 1.0 m on two corners. Den Hartog, Trans. ASME APM-53-9 (1931); Westermo and
+The slider of `contact.reference.sliding` is event-driven, sticks truly and shares no code with the stepping; the box
+sticks by stiff springs. The box is 1.1 x 1.0 m on two corners. Den Hartog, Trans. ASME APM-53-9 (1931); Westermo and
 Udwadia, Earthquake Engng Struct. Dyn. 11 (1983); Newmark, Geotechnique 15 (1965).
 """
 
@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from contact.closed_forms_sliding import never_stops_ratio, pulse_slip, steady_stroke
-from contact.floor_acceleration import sine_floor
-from contact.sliding import RigidSlider, simulate_sliding
-from fem.model import build_model
+from contact.reference.closed_forms_sliding import never_stops_ratio, pulse_slip, steady_stroke
+from contact.reference.floor_acceleration import sine_floor
+from contact.reference.sliding import RigidSlider, simulate_sliding
+from fem.model.model import build_model
 from fem.verification.rows import Check, Row
 from fem.verification.runs import BOX, GRAVITY, SOLID, Finished, run
 

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from contact.modal_body import ModalBody, make_modal_body
-from contact.scheme import Scheme, generalised_alpha, newmark
-from fem.model import build_model
+from contact.stepping.modal_body import ModalBody, make_modal_body
+from contact.stepping.scheme import Scheme, generalised_alpha, newmark
+from fem.model.model import build_model
 from fem.verification.bodies import Flight, free_run
 from fem.verification.manufactured import moving_body_error
 from fem.verification.rows import Check, Convergence, Row, as_floats, order_row

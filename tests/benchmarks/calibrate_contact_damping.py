@@ -1,4 +1,5 @@
-"""Contact damping ratio against apparent restitution of slender blocks: makes fem/data/contact_damping_restitution.csv.
+"""Contact damping ratio against apparent restitution of slender blocks: makes
+fem/model/data/contact_damping_restitution.csv.
 
     python tests/benchmarks/calibrate_contact_damping.py
 
@@ -18,12 +19,12 @@ import sys
 from itertools import product
 from pathlib import Path
 
-from contact.penalty import contact_frequency
-from fem.case import Case, read_case
-from fem.container import Container, discretise
-from fem.model import Model, build_model
-from fem.recorder import Recorder
-from fem.simulation import simulate
+from contact.interface.penalty import contact_frequency
+from fem.case.case import Case, read_case
+from fem.model.container import Container, discretise
+from fem.model.model import Model, build_model
+from fem.run.recorder import Recorder
+from fem.run.simulation import simulate
 
 WIDTH = 1.1
 HEIGHTS = (1.5, 2.0, 2.5, 3.0, 4.0, 5.0)  #: over the width
@@ -33,7 +34,7 @@ SUPPORTS = (("corners", 0.0), ("feet", 0.07), ("feet", 0.14), ("feet", 0.25), ("
 STIFFNESS_RATIO = 15.0  #: first elastic over contact frequency of the solid
 STIFFEST = 1e13  #: largest Young's modulus of a case [Pa]
 STIFFER = 3.0  #: penalty of the sensitivity column over the default
-TARGET = Path(__file__).parents[2] / "fem" / "data" / "contact_damping_restitution.csv"
+TARGET = Path(__file__).parents[2] / "fem" / "model" / "data" / "contact_damping_restitution.csv"
 
 COLUMNS = (
     "support",

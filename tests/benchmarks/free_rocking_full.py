@@ -12,11 +12,11 @@ import sys
 
 from measuring import Figure, Stepped, report, stepped
 
-from contact.closed_forms_rocking import quarter_period
-from contact.penalty import contact_frequency
-from contact.rigid_block import RigidBlock
-from fem.case import Case, load_case
-from fem.modes import elastic_modes
+from contact.interface.penalty import contact_frequency
+from contact.reference.closed_forms_rocking import quarter_period
+from contact.reference.rigid_block import RigidBlock
+from fem.case.case import Case, load_case
+from fem.solid.modes import elastic_modes
 
 YOUNGS_MODULUS = 2.1e12  # Pa, ten times the shipped case's: f1/f_c = 16
 DURATION = 1.45  # s: past the turning point that follows the first impact

@@ -12,9 +12,9 @@ import sys
 
 from measuring import BENCHMARK_BOX, Figure, Stepped, median_of, report, stepped
 
-from contact.closed_forms_rocking import quarter_period
-from contact.rigid_block import RigidBlock
-from fem.case import Case, load_case
+from contact.reference.closed_forms_rocking import quarter_period
+from contact.reference.rigid_block import RigidBlock
+from fem.case.case import Case, load_case
 
 REPEATS = 3
 DURATION = 1.0  # s: the first impact at 0.26 s, then the small ones that follow at a restitution of 0.18

@@ -10,9 +10,9 @@ import sys
 import numpy as np
 from measuring import BENCHMARK_BOX, Figure, report, stepped
 
-from contact.floor_acceleration import sine_floor
-from contact.sliding import RigidSlider, simulate_sliding
-from fem.case import load_case
+from contact.reference.floor_acceleration import sine_floor
+from contact.reference.sliding import RigidSlider, simulate_sliding
+from fem.case.case import load_case
 
 AMPLITUDE, ANGULAR_FREQUENCY, FRICTION, DURATION = 0.05, 6.93, 0.4, 3.0
 ACCURACY = 5e-3  # of the slip

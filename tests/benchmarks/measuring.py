@@ -10,14 +10,14 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from fem.case import Case
-from fem.container import Container
-from fem.full_body import advance_body
-from fem.history import History
-from fem.model import Model, build_model
-from fem.recorder import Recorder
-from fem.simulation import Ending, simulate
-from fem.verdict import GAIN_LIMIT
+from fem.assessment.verdict import GAIN_LIMIT
+from fem.case.case import Case
+from fem.model.container import Container
+from fem.model.model import Model, build_model
+from fem.results.history import History
+from fem.run.recorder import Recorder
+from fem.run.simulation import Ending, simulate
+from fem.solid.nodal_body import advance_body
 
 #: the homogeneous box of 2500 kg that general finite-element codes were measured on: 22 x 20 bilinear quads
 BENCHMARK_BOX = (

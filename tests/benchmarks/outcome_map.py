@@ -16,14 +16,14 @@ from typing import Any
 import numpy as np
 from measuring import Figure, report
 
-from fem.container import discretise
-from fem.footing import set_down
-from fem.model import build_model
-from fem.sweep.axes import read_axis
+from fem.batch.axes import read_axis
+from fem.batch.runner import run_cases
+from fem.model.container import discretise
+from fem.model.equilibrium import set_down
+from fem.model.model import build_model
 from fem.sweep.file import load_sweep
 from fem.sweep.plan import Sweep
-from fem.sweep.running import run_cases
-from fem.sweep.sweeping import run_sweep
+from fem.sweep.run import run_sweep
 
 FREQUENCY, PEAK = "motion.angular_frequency_rad_s", "motion.peak_acceleration_m_s2"
 RIGID_CELLS, REDUCED_CELLS = 100, 50

@@ -14,16 +14,16 @@ from pathlib import Path
 from measuring import Figure, cpu_seconds, median_of, report
 
 import fem
-from fem.case import load_case
-from fem.container import discretise
-from fem.fields import FieldWriter, Frame
-from fem.figures_kept import write_figures
-from fem.model import build_model
-from fem.movie import write_movie
-from fem.opening import OpenedRun
-from fem.recovery import Recovery, recovery_of
-from fem.rendering import probe_rendering
-from fem.run import RunOptions, run_case
+from fem.case.case import load_case
+from fem.figures.cache import write_figures
+from fem.model.container import discretise
+from fem.model.model import build_model
+from fem.model.recovery import Recovery, recovery_of
+from fem.render.movie import write_movie
+from fem.render.opengl import probe_rendering
+from fem.results.fields import FieldWriter, Frame
+from fem.results.reader import OpenedRun
+from fem.run.run import RunOptions, run_case
 
 REPEATS = 3
 FIGURES, FILM, FIELDS = 5.0, 60.0, 0.05

@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 from measuring import Figure, median_of, report, stepped
 
-from fem.case import Case, load_case
-from fem.container import Container, discretise
+from fem.case.case import Case, load_case
+from fem.model.container import Container, discretise
 
 REPEATS = 5
 DURATION = 20.0  # s

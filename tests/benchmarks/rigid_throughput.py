@@ -12,13 +12,13 @@ from itertools import pairwise
 import numpy as np
 from measuring import Figure, cpu_seconds, median_of, report, stepped
 
-from contact.batch import pack_rows, run_rows
-from contact.closed_forms_rocking import peak_after_impacts, quarter_period
-from contact.modal_body import ModalBody
-from contact.rigid_block import RigidBlock
-from contact.stepping import FAILED
-from fem.case import Case, load_case
-from fem.model import build_model
+from contact.reference.closed_forms_rocking import peak_after_impacts, quarter_period
+from contact.reference.rigid_block import RigidBlock
+from contact.stepping.batch import pack_rows, run_rows
+from contact.stepping.integrator import FAILED
+from contact.stepping.modal_body import ModalBody
+from fem.case.case import Case, load_case
+from fem.model.model import build_model
 
 REPEATS, ROWS = 5, 200
 DURATION = 20.0  # s

@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 from measuring import Figure, report, stepped
 
-from fem.case import load_case
-from fem.case_files import CASES, DEFAULT_CASE
-from fem.run import RunOptions, run_case
-from fem.verdict import outcome_of
+from fem.assessment.verdict import outcome_of
+from fem.case.case import load_case
+from fem.case.files import CASES, DEFAULT_CASE
+from fem.run.run import RunOptions, run_case
 
 REJECTED = 0.05  # share of the steps tried
 DEFAULT_RUN = 600.0  # CPU seconds of the whole default run, full model

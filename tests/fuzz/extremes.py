@@ -3,10 +3,10 @@
 import sys
 import time
 
-from fem.case import load_case
-from fem.model import build_model
-from fem.recorder import Recorder
-from fem.simulation import simulate
+from fem.case.case import load_case
+from fem.model.model import build_model
+from fem.run.recorder import Recorder
+from fem.run.simulation import simulate
 
 STUCK = 120.0  #: [s]
 SHORT = ("solver.duration_s=2", "output.fields_s=0", "solver.element_size_m=0.5")

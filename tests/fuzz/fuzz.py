@@ -28,10 +28,10 @@ from inputs import Input
 from options import options
 
 from fem.__main__ import main
-from fem.case import load_case
-from fem.model import build_model
-from fem.recorder import Recorder
-from fem.simulation import simulate
+from fem.case.case import load_case
+from fem.model.model import build_model
+from fem.run.recorder import Recorder
+from fem.run.simulation import simulate
 
 KINDS = KINDS_OF_FILES | {
     "folder": (damaged_folders(), 0.03),

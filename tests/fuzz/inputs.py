@@ -1,6 +1,6 @@
 """What the fuzz feeds the program with, as strategies of hypothesis: case tables, TOML bytes, meshes, motion tables.
 
-Tables of a case are drawn from the models of `fem.case_tables` themselves: a new key, choice or range is tried without
+Tables of a case are drawn from the models of `fem.case.tables` themselves: a new key, choice or range is tried without
 a change here. Only what makes a run long is bounded, in `CHEAP`.
 """
 
@@ -17,12 +17,12 @@ import numpy as np
 from hypothesis import strategies as st
 from pydantic.fields import FieldInfo
 
-from fem.case_files import CASES
-from fem.case_overrides import with_overrides
-from fem.case_quantities import Quantity
-from fem.case_reading import known_keys, quantity_of
-from fem.case_tables import TABLES, Heading
-from fem.case_toml import toml_value
+from fem.case.files import CASES
+from fem.case.overrides import with_overrides
+from fem.case.quantities import Quantity
+from fem.case.tables import TABLES, Heading
+from fem.case.toml import toml_value
+from fem.case.validation import known_keys, quantity_of
 from mesh.container import build_container_mesh
 from mesh.files import write_container_mesh
 from mesh.fill import MassFill

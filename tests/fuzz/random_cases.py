@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from fem.case import Case, CaseError, read_case
-from fem.case_toml import toml_document
+from fem.case.case import Case, CaseError, read_case
+from fem.case.toml import toml_document
 
 Tables = dict[str, Any]
 

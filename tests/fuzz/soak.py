@@ -11,10 +11,10 @@ import traceback
 
 from random_cases import random_case
 
-from fem.model import build_model
-from fem.recorder import Recorder
-from fem.simulation import simulate
-from fem.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT, MODE_NAMES, energy_of, outcome_of
+from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT, MODE_NAMES, energy_of, outcome_of
+from fem.model.model import build_model
+from fem.run.recorder import Recorder
+from fem.run.simulation import simulate
 
 STUCK = 60.0  #: [s]
 OUTCOMES = set(MODE_NAMES.values())

@@ -8,8 +8,8 @@ from hypothesis import HealthCheck, given, settings
 from inputs import FIELDS, values_of
 from soak import end_of
 
-from fem.case_reading import known_keys
-from fem.case_tables import TABLES
+from fem.case.tables import TABLES
+from fem.case.validation import known_keys
 
 
 @pytest.fixture(scope="module", autouse=True)

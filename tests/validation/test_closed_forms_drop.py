@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from contact.closed_forms_drop import damped_drop_restitution, drop_force
+from contact.reference.closed_forms_drop import damped_drop_restitution, drop_force
 
 
 @pytest.mark.parametrize("zeta", [0.0, 0.05, 0.1, 0.2, 0.5, 0.999, 1.0, 1.001, 2.0])

@@ -5,12 +5,16 @@ import itertools
 import numpy as np
 import pytest
 
-from contact.closed_forms_initiation import edge_opening_acceleration, initiation_mode, rocking_friction
-from contact.floor_acceleration import rectangular_pulse, sine_floor
-from contact.planar_block import PlanarBlock, simulate_planar_block
-from contact.planar_equations import rock
-from contact.planar_motion import PlanarMode
-from contact.rigid_block import RigidBlock
+from contact.reference.closed_forms_initiation import (
+    edge_opening_acceleration,
+    initiation_mode,
+    rocking_friction,
+)
+from contact.reference.floor_acceleration import rectangular_pulse, sine_floor
+from contact.reference.planar_block import PlanarBlock, simulate_planar_block
+from contact.reference.planar_equations import rock
+from contact.reference.planar_motion import PlanarMode
+from contact.reference.rigid_block import RigidBlock
 
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
 GRAVITY = 9.81

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from contact.closed_forms_overturning import (
+from contact.reference.closed_forms_overturning import (
     half_sine_threshold_slender,
     one_sine_threshold_slender,
     rectangular_pulse_duration,
@@ -14,16 +14,16 @@ from contact.closed_forms_overturning import (
     velocity_step_threshold,
     velocity_step_threshold_slender,
 )
-from contact.closed_forms_rocking import kick_angular_velocity
-from contact.floor_acceleration import (
+from contact.reference.closed_forms_rocking import kick_angular_velocity
+from contact.reference.floor_acceleration import (
     half_sine_pulse,
     one_sine_pulse,
     rectangular_pulse,
     sine_floor,
     still_floor,
 )
-from contact.rigid_block import RigidBlock
-from contact.rocking import RockingOutcome, first_swing_threshold, simulate_rocking
+from contact.reference.rigid_block import RigidBlock
+from contact.reference.rocking import RockingOutcome, first_swing_threshold, simulate_rocking
 
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
 BOX = RigidBlock.homogeneous(width=1.1, height=1.0)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from contact.closed_forms_rocking import (
+from contact.reference.closed_forms_rocking import (
     holding_acceleration,
     impact_friction_need,
     impact_speed,
@@ -17,10 +17,10 @@ from contact.closed_forms_rocking import (
     quarter_period_slender,
     symmetric_orbit_slender,
 )
-from contact.floor_acceleration import FloorAcceleration, rectangular_pulse, sine_floor, still_floor
-from contact.planar_block import PlanarBlock, simulate_planar_block
-from contact.rigid_block import RigidBlock
-from contact.rocking import simulate_rocking
+from contact.reference.floor_acceleration import FloorAcceleration, rectangular_pulse, sine_floor, still_floor
+from contact.reference.planar_block import PlanarBlock, simulate_planar_block
+from contact.reference.rigid_block import RigidBlock
+from contact.reference.rocking import simulate_rocking
 
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
 BOX = RigidBlock.homogeneous(width=1.1, height=1.0)

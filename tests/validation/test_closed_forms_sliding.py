@@ -5,15 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from contact.closed_forms_sliding import (
+from contact.reference.closed_forms_sliding import (
     incline_acceleration,
     never_stops_ratio,
     pulse_slip,
     steady_stroke,
     sticks,
 )
-from contact.floor_acceleration import rectangular_pulse, sine_floor
-from contact.sliding import RigidSlider, simulate_sliding
+from contact.reference.floor_acceleration import rectangular_pulse, sine_floor
+from contact.reference.sliding import RigidSlider, simulate_sliding
 
 GRAVITY = 9.81
 AMPLITUDE, FREQUENCY = 0.1, 10.0

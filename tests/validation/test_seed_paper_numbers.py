@@ -6,9 +6,9 @@ last digit printed. With g = 9.81 the mass is kept and the weight follows; those
 
 import pytest
 
-from fem.case import load_case
-from fem.case_container import build_container
-from fem.commands.check import checks_of, peak_floor_acceleration
+from fem.case.case import load_case
+from fem.cli.check import checks_of, peak_floor_acceleration
+from fem.model.geometry import build_container
 from fem.verification.statics import seed_checks
 
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-
 from fem.study import numbers, quasi_static, rocking, shape
-from fem.study.laboratory import Laboratory
-from fem.study.statements import Verdict
+
+from fem.paper.claims import Verdict
+from fem.paper.experiments import Laboratory
 
 
 @pytest.fixture(scope="module")

@@ -1,18 +1,18 @@
 """The outcome map of the rigid stack against the event-driven block: they agree wherever the band says sure.
 
-The block shares no code with the stepping: Housner's impacts, exact events (`contact.planar_block`).
+The block shares no code with the stepping: Housner's impacts, exact events (`contact.reference.planar_block`).
 """
 
 import numpy as np
 import pytest
 
-from contact.planar_block import PlanarBlock, simulate_planar_block
-from contact.planar_motion import PlanarMode
-from fem.model import build_model
-from fem.rigid_check import block_of, floor_of
-from fem.simulation import AFTERMATH
+from contact.reference.planar_block import PlanarBlock, simulate_planar_block
+from contact.reference.planar_motion import PlanarMode
+from fem.assessment.rigid_check import block_of, floor_of
+from fem.model.model import build_model
+from fem.run.simulation import AFTERMATH
 from fem.sweep.file import load_sweep
-from fem.sweep.sweeping import run_sweep
+from fem.sweep.run import run_sweep
 from fem.sweep.table import open_sweep
 
 MAP = """

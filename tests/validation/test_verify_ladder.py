@@ -2,7 +2,7 @@
 
 import pytest
 
-from fem.verification.ladder import ROOMS, chosen_checks
+from fem.verification.suite import ROOMS, chosen_checks
 
 QUICK = chosen_checks(quick=True)
 

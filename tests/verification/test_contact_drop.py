@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from block_on_floor import Block, Rig, rig
 
-from contact.closed_forms_drop import damped_drop_restitution, drop_force
-from contact.scheme import Scheme, newmark
+from contact.reference.closed_forms_drop import damped_drop_restitution, drop_force
+from contact.stepping.scheme import Scheme, newmark
 
 SPEED = 0.5  #: of the approach [m/s]
 

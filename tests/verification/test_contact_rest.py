@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from contact.stepping import advance_compiled
-from fem.case import load_case
-from fem.model import Model, build_model
+from contact.stepping.integrator import advance_compiled
+from fem.case.case import load_case
+from fem.model.model import Model, build_model
 
 SUPPORTS = ["corners", "feet", "flat"]
 

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from block_on_floor import GRAVITY, Block, Rig, rig
 
-from contact.initial import tilted
-from contact.motion import HarmonicMotion
-from contact.stepping import OVERTURNED, advance_compiled
+from contact.interface.equilibrium import tilted
+from contact.motion.base_motion import HarmonicMotion
+from contact.stepping.integrator import OVERTURNED, advance_compiled
 
 STACK = Block()
 AMPLE = replace(STACK, mu_static=1.0, mu_kinetic=1.0)

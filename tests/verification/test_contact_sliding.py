@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 from block_on_floor import GRAVITY, Block, Rig, piecewise_motion, rig
 
-from contact.closed_forms_sliding import incline_acceleration, pulse_slip, steady_stroke
-from contact.interface import FloatArray
-from contact.laws import REGULARISED
-from contact.ledger import BASE_WORK, CONTACT_DAMPING, FRICTION, IMBALANCE
-from contact.motion import HarmonicMotion, PulseMotion
-from contact.run import ROW_CENTRE_X
-from contact.stepping import advance_compiled
-from fem.case import load_case
-from fem.model import build_model
+from contact.interface.laws import REGULARISED
+from contact.interface.solver import FloatArray
+from contact.motion.base_motion import HarmonicMotion, PulseMotion
+from contact.reference.closed_forms_sliding import incline_acceleration, pulse_slip, steady_stroke
+from contact.stepping.integrator import advance_compiled
+from contact.stepping.ledger import BASE_WORK, CONTACT_DAMPING, FRICTION, IMBALANCE
+from contact.stepping.state import ROW_CENTRE_X
+from fem.case.case import load_case
+from fem.model.model import build_model
 
 #: the single box of the seed paper; 158 Hz is the penalty that a case chooses for it
 BOX = Block(height=1.0, mass=2500.0, bounce_frequency=158.0, mu_static=0.4, mu_kinetic=0.2)

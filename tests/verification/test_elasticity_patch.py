@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
-from fem.assembly import assemble
-from fem.elasticity import cauchy_stress, plane_stress_lame
+from fem.solid.assembly import assemble
+from fem.solid.elasticity import cauchy_stress, plane_stress_lame
 
 ORDERS = pytest.mark.parametrize("order", [1, 2])
 E, NU = 2.1e11, 0.3

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from container_runs import SLENDERNESS_ANGLE, Finished, stack
 
-import fem.model
-from fem.history import JOINT_COLUMNS, History
-from fem.joints import joints_of
-from fem.model import Model, build_model
-from fem.recorder import Recorder
-from fem.simulation import simulate
+import fem.model.model
+from fem.model.joints import joints_of
+from fem.model.model import Model, build_model
+from fem.results.history import JOINT_COLUMNS, History
+from fem.run.recorder import Recorder
+from fem.run.simulation import simulate
 
 WIDTH, HEIGHT, BOXES = 1.1, 4.0, 4
 WEIGHT = BOXES * 24525.0

@@ -12,10 +12,10 @@ import scipy.sparse
 import scipy.sparse.linalg
 from container_runs import SHELL, SOLID, run, stack
 
-from fem.container import Container
-from fem.elasticity import von_mises
-from fem.model import Model, build_model
-from fem.recovery import Frame, recovery_of
+from fem.model.container import Container
+from fem.model.model import Model, build_model
+from fem.model.recovery import Frame, recovery_of
+from fem.solid.elasticity import von_mises
 
 SECTIONS = {"solid": SOLID, "shell": SHELL}
 STANDING: dict[str, Any] = {"initial.rotation_rad": 0.0, "solver.duration_s": 0.05}

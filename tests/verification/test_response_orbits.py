@@ -5,18 +5,18 @@ import math
 import numpy as np
 import pytest
 
-from contact.closed_forms_rocking import symmetric_orbit_slender
-from contact.closed_forms_sliding import steady_stroke
-from contact.floor_acceleration import sine_floor, still_floor
-from contact.rigid_block import RigidBlock
-from contact.rocking import simulate_rocking
-from fem.case import read_case
-from fem.container import discretise
+from contact.reference.closed_forms_rocking import symmetric_orbit_slender
+from contact.reference.closed_forms_sliding import steady_stroke
+from contact.reference.floor_acceleration import sine_floor, still_floor
+from contact.reference.rigid_block import RigidBlock
+from contact.reference.rocking import simulate_rocking
+from fem.case.case import read_case
+from fem.model.container import discretise
 from fem.response.branches import branches_of
 from fem.response.curve import follow_point, sweep_points
-from fem.response.drive import begin_drive, carry_drive
+from fem.response.model import begin_drive, carry_drive
 from fem.response.orbit import follow_periods, step_until
-from fem.response.record import record_of
+from fem.response.records import record_of
 from fem.response.request import ResponseRequest
 
 GRAVITY = 9.81

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from fem.__main__ import main
-from fem.case import load_case
-from fem.case_container import build_container
-from fem.case_files import CASES
-from fem.model import Model, build_model
-from fem.recorder import Recorder
-from fem.simulation import simulate
+from fem.case.case import load_case
+from fem.case.files import CASES
+from fem.model.geometry import build_container
+from fem.model.model import Model, build_model
+from fem.run.recorder import Recorder
+from fem.run.simulation import simulate
 from mesh.files import write_container_mesh
 
 FULL = ("solver.model=full", "solver.element_size_m=0.5")

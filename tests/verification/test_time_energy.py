@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from block_on_floor import GRAVITY, Block, Rig, rig
 
-from contact.ledger import BASE_WORK, CONTACT_DAMPING, FRICTION, IMBALANCE, MATERIAL_DAMPING
-from contact.motion import HarmonicMotion
-from contact.scheme import Scheme, generalised_alpha, newmark
+from contact.motion.base_motion import HarmonicMotion
+from contact.stepping.ledger import BASE_WORK, CONTACT_DAMPING, FRICTION, IMBALANCE, MATERIAL_DAMPING
+from contact.stepping.scheme import Scheme, generalised_alpha, newmark
 
 SCHEMES = {
     "rho 0": generalised_alpha(0.0),

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from block_on_floor import Block, Rig, piecewise_motion, rig
 
-from contact.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION
-from contact.floor_motion import HARMONIC, as_floor_motion
-from contact.initial import Stance
-from contact.stepping import advance_compiled
-from fem.case import load_case
-from fem.full_body import advance_body
-from fem.model import build_model
+from contact.interface.equilibrium import Stance
+from contact.motion.kernel import HARMONIC, as_floor_motion
+from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION
+from contact.stepping.integrator import advance_compiled
+from fem.case.case import load_case
+from fem.model.model import build_model
+from fem.solid.nodal_body import advance_body
 
 BLOCK = Block(mu_kinetic=0.2)
 ACCELERATION, OMEGA = 4.0, 6.928  #: of the seed paper's plateau [m/s2], [rad/s]

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from block_on_floor import GRAVITY, Block, Rig, rig
 
-from contact.initial import Stance
-from contact.scheme import Scheme, generalised_alpha, newmark
+from contact.interface.equilibrium import Stance
+from contact.stepping.scheme import Scheme, generalised_alpha, newmark
 
 SECOND_ORDER = {
     "rho 0": generalised_alpha(0.0),

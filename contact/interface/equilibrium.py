@@ -1,0 +1,166 @@
+"""How a container stands before the motion begins: settled under gravity, or tilted on one corner.
+
+Both stances need only the rigid body, the contact springs and the elastic compliance seen from the base
+points (inertia relief: gravity is a uniform field and by itself strains a free body not at all).
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from contact.interface.solver import FloatArray
+
+#: force, over the weight, below which a point of the settled base may as well be open
+ROUNDING = 1e-12
+
+
+class SettlingError(ArithmeticError):
+    """The container finds no equilibrium on its supporting points."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stance:
+    """Rigid pose, its velocity, and the contact forces that go with it; n base points."""
+
+    centre: tuple[float, float]  #: mass centre, x and z above the floor [m]
+    rotation: float  #: [rad]
+    velocity: tuple[float, float]  #: of the mass centre, relative to the floor [m/s]
+    angular_velocity: float  #: [rad/s]
+    force: FloatArray  #: (n, 2) tangential and normal [N]
+
+    def turning(self, angular_velocity: float, point: FloatArray) -> "Stance":
+        """The same, turning about the right corner for a rate > 0, about the left one for < 0 [rad/s].
+
+        `point` (n, 2) are the base points relative to the mass centre, by rising x.
+        """
+        arm = point[-1] if angular_velocity > 0.0 else point[0]
+        velocity = (-angular_velocity * float(arm[1]), angular_velocity * float(arm[0]))
+        return replace(self, velocity=velocity, angular_velocity=angular_velocity)
+
+    def sliding(self, velocity: float) -> "Stance":
+        """The same, moving along the floor besides [m/s]."""
+        return replace(self, velocity=(self.velocity[0] + velocity, self.velocity[1]))
+
+    def moved(self, distance: float) -> "Stance":
+        """The same, farther along x [m]."""
+        return replace(self, centre=(self.centre[0] + distance, self.centre[1]))
+
+    def with_points(self, count: int) -> "Stance":
+        """The same with `count` contact points; the added ones carry nothing."""
+        force = np.zeros((count, 2))
+        force[: len(self.force)] = self.force
+        return replace(self, force=force)
+
+
+def standing(
+    *,
+    weight: float,
+    centroid: tuple[float, float],
+    point: FloatArray,
+    compliance: FloatArray,
+    normal_stiffness: FloatArray,
+) -> Stance:
+    """Rest under gravity on unilateral springs; friction has not been called upon.
+
+    Args:
+        weight: [N]; centroid: of the undeformed container, x from its middle, z above the base [m].
+        point: (n, 2) base points relative to the centroid [m].
+        compliance: (2n, 2n) elastic compliance in the body's frame, inertia relief [m/N].
+        normal_stiffness: (n,) [N/m].
+
+    Raises:
+        SettlingError: the weight is not between the points that carry.
+    """
+    n = point.shape[0]
+    vertical = compliance[1::2, 1::2]
+    carrying = np.ones(n, dtype=bool)
+    for _ in range(2 * n + 2):
+        chosen = np.flatnonzero(carrying)
+        m = chosen.size
+        # Unknown: normal forces, rise of the centroid above its place in the undeformed container, rotation.
+        system = np.zeros((m + 2, m + 2))
+        system[:m, :m] = vertical[np.ix_(chosen, chosen)] + np.diag(1.0 / normal_stiffness[chosen])
+        system[:m, m] = 1.0
+        system[:m, m + 1] = -point[chosen, 0]
+        system[m:, :m] = system[:m, m:].T
+        right = np.zeros(m + 2)
+        right[:m] = -(point[chosen, 1] + centroid[1])
+        right[m] = weight
+        try:
+            solution = np.linalg.solve(system, right)
+        except np.linalg.LinAlgError:
+            break
+        normal = np.zeros(n)
+        normal[chosen] = solution[:m]
+        gap = point[:, 1] + centroid[1] + solution[m] - solution[m + 1] * point[:, 0] + vertical @ normal
+        # A point may just touch: within rounding it counts as what it was, or it would change sides for ever.
+        wrong = np.where(carrying, normal < -ROUNDING * weight, gap < -ROUNDING * weight / normal_stiffness)
+        if not wrong.any():
+            force = np.column_stack([np.zeros(n), np.maximum(normal, 0.0)])
+            return Stance(
+                centre=(centroid[0], centroid[1] + solution[m]),
+                rotation=float(solution[m + 1]),
+                velocity=(0.0, 0.0),
+                angular_velocity=0.0,
+                force=force,
+            )
+        carrying ^= wrong
+    raise SettlingError("the weight of the container does not stand between its supporting points")
+
+
+def tilted(
+    *,
+    rotation: float,
+    angular_velocity: float,
+    mass: float,
+    inertia: float,
+    gravity: float,
+    point: FloatArray,
+    corner_x: float,
+    compliance: FloatArray,
+    normal_stiffness: FloatArray,
+    mu_static: float,
+) -> Stance:
+    """Turned about one corner, which carries what keeps it from accelerating; right corner for rotation > 0.
+
+    Args:
+        rotation: not 0 [rad]; angular_velocity: about that corner [rad/s].
+        mass, inertia: [kg, kg m2]; gravity: [m/s2].
+        point: (n, 2) base points relative to the mass centre, by rising x [m].
+        corner_x: where that corner stands on the floor [m].
+        compliance: (2n, 2n) elastic compliance in the body's frame, inertia relief [m/N].
+        normal_stiffness: (n,) [N/m]; mu_static: bounds the friction asked of the corner.
+
+    Raises:
+        SettlingError: the corner would have to pull.
+    """
+    corner = point.shape[0] - 1 if rotation > 0.0 else 0
+    cosine, sine = math.cos(rotation), math.sin(rotation)
+    x, z = point[corner]
+    arm = np.array([cosine * x + sine * z, -sine * x + cosine * z])
+    # Acceleration of the corner: J M^-1 (weight + J^T f) - omega^2 arm = 0.
+    jacobian = np.array([[1.0, 0.0, arm[1]], [0.0, 1.0, -arm[0]]])
+    inverse = np.diag([1.0 / mass, 1.0 / mass, 1.0 / inertia])
+    free = np.array([0.0, -gravity]) - angular_velocity**2 * arm
+    force = np.linalg.solve(jacobian @ inverse @ jacobian.T, -free)
+    if force[1] <= 0.0:
+        raise SettlingError(
+            f"the corner would have to pull: angular velocity {angular_velocity} rad/s throws the container "
+            "off the floor"
+        )
+    force[0] = np.clip(force[0], -mu_static * force[1], mu_static * force[1])
+    forces = np.zeros_like(point)
+    forces[corner] = force
+    turn = np.array([[cosine, sine], [-sine, cosine]])
+    own = compliance[2 * corner : 2 * corner + 2, 2 * corner : 2 * corner + 2]
+    strained = (
+        arm + turn @ own @ turn.T @ force
+    )  # where the corner is once the force has strained the container
+    return Stance(
+        centre=(corner_x - strained[0], -force[1] / normal_stiffness[corner] - strained[1]),
+        rotation=rotation,
+        velocity=(-angular_velocity * arm[1], angular_velocity * arm[0]),
+        angular_velocity=angular_velocity,
+        force=forces,
+    )

@@ -1,0 +1,117 @@
+"""Laws of the contact at one point of the base: force against motion, each with its tangent beside it.
+
+Penetration is positive when the point is below the floor; the normal force is positive in compression;
+slip and tangential force are along x, motion of the container relative to the floor. Forces in N at a
+point that carries a stiffness in N/m (its share of the penalty).
+
+Normal: spring and dashpot that never pull (Kelvin-Voigt with a cut-off; Wriggers, Computational Contact
+Mechanics, 2006, sec. 6). Friction: Coulomb with an elastic stick - a Kelvin-Voigt element in series with
+a slider, solved by return mapping - or Coulomb regularised in velocity.
+"""
+
+import math
+
+from contact.jit import compiled
+
+ELASTIC_STICK = 0  #: code of the friction law regularised in displacement
+REGULARISED = 1  #: code of the friction law regularised in velocity
+
+
+def _normal_force(
+    penetration: float, rate: float, stiffness: float, damping: float, step: float
+) -> tuple[float, float, float]:
+    """Normal force [N] with its derivatives by penetration [N/m] and by rate [N s/m].
+
+    k p + c min(rate, p/step), never negative, zero when open. The point cannot have moved into the floor
+    faster than p/step within a step that began outside: this makes the force continuous at first touch.
+
+    Args:
+        penetration: > 0 below the floor [m].
+        rate: its rate at the end of the step [m/s].
+        stiffness: k of this point [N/m].
+        damping: c of this point [N s/m].
+        step: the time step [s].
+    """
+    if penetration <= 0.0:
+        return 0.0, 0.0, 0.0
+    if rate * step < penetration:
+        force = stiffness * penetration + damping * rate
+        if force <= 0.0:
+            return 0.0, 0.0, 0.0
+        return force, stiffness, damping
+    slope = stiffness + damping / step
+    return slope * penetration, slope, 0.0
+
+
+normal_force = compiled(_normal_force, inline=True)
+
+
+def _stick_friction(trial: float, limit: float) -> tuple[float, float, float]:
+    """Return mapping: tangential force [N], and its derivatives by trial force and by limit [-].
+
+    Args:
+        trial: force on the container if the point stuck [N].
+        limit: mu N >= 0 [N].
+    """
+    if trial > limit:
+        return limit, 0.0, 1.0
+    if trial < -limit:
+        return -limit, 0.0, -1.0
+    return trial, 1.0, 0.0
+
+
+stick_friction = compiled(_stick_friction, inline=True)
+
+
+def _relaxed_stick(
+    stick: float, force: float, stiffness: float, relaxation_time: float, step: float
+) -> float:
+    """Elongation [m] of a Kelvin-Voigt element after one step under a constant force.
+
+    The slider holds the element at the limit force while it slides: k s + c s' = F, c/k the relaxation
+    time, integrated exactly, so that large steps end at s = F/k.
+    """
+    rest = force / stiffness
+    if relaxation_time <= 0.0:
+        return rest
+    return rest + (stick - rest) * math.exp(-step / relaxation_time)
+
+
+relaxed_stick = compiled(_relaxed_stick)
+
+
+def _regularised_friction(
+    normal: float,
+    slip_velocity: float,
+    mu_static: float,
+    mu_kinetic: float,
+    regularisation_velocity: float,
+) -> tuple[float, float, float]:
+    """Friction [N] opposing the slip velocity, with its derivatives by normal force and slip velocity.
+
+    -N mu(v) tanh(v/v_reg), mu falling from static to kinetic like exp(-(v/10 v_reg)^2) (Stribeck). No true
+    stick: under a load s mu N the block creeps at v_reg atanh(s).
+    """
+    ratio = slip_velocity / regularisation_velocity
+    fall = math.exp(-((0.1 * ratio) ** 2))
+    mu = mu_kinetic + (mu_static - mu_kinetic) * fall
+    mu_slope = -(mu_static - mu_kinetic) * fall * 0.02 * ratio / regularisation_velocity
+    sway = math.tanh(ratio)
+    sway_slope = (1.0 - sway * sway) / regularisation_velocity
+    return -normal * mu * sway, -mu * sway, -normal * (mu_slope * sway + mu * sway_slope)
+
+
+regularised_friction = compiled(_regularised_friction)
+
+
+def _weakened_mu(mu_static: float, mu_kinetic: float, weakening: float, slid: float) -> float:
+    """Coefficient of friction after sliding `slid` [m] since the support broke loose.
+
+    Linear from static to kinetic over the slip distance `weakening` [m]; 0: at once (the seed's law).
+    """
+    if slid >= weakening:
+        return mu_kinetic
+    return mu_static + (mu_kinetic - mu_static) * slid / weakening
+
+
+weakened_mu = compiled(_weakened_mu)

@@ -1,0 +1,429 @@
+"""The contact of a body's base points with the floor, condensed to those points and solved implicitly.
+
+Within one step the body answers a contact force by a displacement of its base points: y = free + G f,
+with G the effective compliance (one over mass/(beta h^2) + stiffness, seen from the points). With the laws
+f = law(y) this is a small, non-smooth system, unsymmetric because of friction; it is solved by a
+semismooth Newton method (exact after finitely many steps, the laws being piecewise linear) with line
+search. Wriggers (2006) sec. 9.5; Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353.
+
+Arrays: points (n, 2) with columns x [m] and z [m], both relative to the floor, z > 0 open; forces (n, 2) on
+the container with columns tangential (along +x) and normal (> 0 in compression) [N].
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from contact.interface.laws import ELASTIC_STICK, normal_force, regularised_friction, stick_friction
+from contact.jit import compiled
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+FULL_STEPS = 1  #: Newton steps taken whole before the line search begins; a friction problem cycles soon
+NEWTON_LIMIT = 40
+WORTH_KEEPING = 5  #: active points from which an old factorisation is tried before a new one is made
+#: residual force at which the contact counts as solved, over the largest force present
+FORCE_TOLERANCE = 1e-11
+
+
+#: tangential force over its limit from which a point counts as sliding
+SLIDING = 1.0 - 1e-6
+
+
+class Contact(NamedTuple):
+    """What the floor is made of: constants of one run, shapes (n,) over the base points."""
+
+    normal_stiffness: FloatArray  #: [N/m]
+    tangential_stiffness: FloatArray  #: [N/m]
+    relaxation_time: float  #: dashpot over spring, of the normal and of the stuck tangential direction [s]
+    mu_static: float
+    mu_kinetic: float
+    weakening: float  #: slip over which static falls to kinetic friction [m]
+    friction: int  #: ELASTIC_STICK or REGULARISED
+    regularisation_velocity: float  #: [m/s]
+    force_scale: float  #: weight of the container [N], the measure of "no force"
+    resolution: float  #: rounding of a base point's position [m]: times slope, the finest force to be had
+
+
+class Workspace(NamedTuple):
+    """Arrays of one contact problem, shapes in terms of the n base points."""
+
+    free: FloatArray  #: (n, 2) where the points would go without contact force [m]
+    free_velocity: FloatArray  #: (n, 2) and how fast, relative to the floor [m/s]
+    compliance: FloatArray  #: (2 n, 2 n) G [m/N], x and z of a point in turn
+    point: FloatArray  #: (n, 2) [m]
+    velocity: FloatArray  #: (n, 2) [m/s]
+    force: FloatArray  #: (n, 2) [N]
+    law: FloatArray  #: (n, 2) force that the laws give at `point` [N]
+    slope: FloatArray  #: (n, 3) minus its derivatives: tangential by x, tangential by z, normal by z [N/m]
+    matrix: FloatArray  #: (2 n, 2 n) factors of the tangent over the active points
+    change: FloatArray  #: (2 n,)
+    solution: FloatArray  #: (2 n,)
+    pivot: IntArray  #: (2 n,) of the factors in `matrix`
+    factored_slope: FloatArray  #: (n, 3) tangents that they belong to
+    factored_step: FloatArray  #: (1,) and the step; < 0: none
+    factored_count: IntArray  #: (1,) and how many points
+    trial: FloatArray  #: (n, 2)
+    active: IntArray  #: (n,) points that have a tangent, leading `factored_count`
+
+
+def make_workspace(points: int) -> Workspace:
+    """Allocate the arrays for so many base points."""
+    n = points
+    return Workspace(
+        free=np.zeros((n, 2)),
+        free_velocity=np.zeros((n, 2)),
+        compliance=np.zeros((2 * n, 2 * n)),
+        point=np.zeros((n, 2)),
+        velocity=np.zeros((n, 2)),
+        force=np.zeros((n, 2)),
+        law=np.zeros((n, 2)),
+        slope=np.zeros((n, 3)),
+        matrix=np.zeros((2 * n, 2 * n)),
+        change=np.zeros(2 * n),
+        solution=np.zeros(2 * n),
+        pivot=np.zeros(2 * n, dtype=np.int64),
+        factored_slope=np.zeros((n, 3)),
+        factored_step=np.full(1, -1.0),
+        factored_count=np.zeros(1, dtype=np.int64),
+        trial=np.zeros((n, 2)),
+        active=np.zeros(n, dtype=np.int64),
+    )
+
+
+def _evaluate_laws(
+    contact: Contact,
+    step: float,
+    velocity_slope: float,
+    mu: float,
+    start: FloatArray,
+    stick: FloatArray,
+    work: Workspace,
+) -> None:
+    """Forces of the laws at `work.point`, and minus their derivatives by the points' positions.
+
+    Args:
+        contact: the floor.
+        step: the time step [s].
+        velocity_slope: derivative of an end velocity by an end position, gamma/(beta h) [1/s].
+        mu: coefficient of friction in force.
+        start: (n, 2) points at the beginning of the step, relative to the floor [m].
+        stick: (n,) elongation of the stuck tangential springs at the beginning of the step [m].
+        work: point and velocity are read, law and slope are written.
+    """
+    for i in range(work.point.shape[0]):
+        normal, by_gap, by_rate = normal_force(
+            -work.point[i, 1],
+            -work.velocity[i, 1],
+            contact.normal_stiffness[i],
+            contact.normal_stiffness[i] * contact.relaxation_time,
+            step,
+        )
+        work.law[i, 1] = normal
+        work.slope[i, 2] = by_gap + by_rate * velocity_slope
+        if normal <= 0.0:
+            work.law[i, 0] = 0.0
+            work.slope[i, 0] = 0.0
+            work.slope[i, 1] = 0.0
+        elif contact.friction == ELASTIC_STICK:
+            stiffness = contact.tangential_stiffness[i]
+            trial = -stiffness * contact.relaxation_time * work.velocity[i, 0]
+            trial_slope = stiffness * contact.relaxation_time * velocity_slope
+            if start[i, 1] < 0.0:  # closed at the beginning: the spring is stretched over the whole step
+                trial -= stiffness * (stick[i] + work.point[i, 0] - start[i, 0])
+                trial_slope += stiffness
+            force, by_trial, by_limit = stick_friction(trial, mu * normal)
+            work.law[i, 0] = force
+            work.slope[i, 0] = by_trial * trial_slope
+            work.slope[i, 1] = by_limit * mu * work.slope[i, 2]
+        else:
+            force, by_normal, by_velocity = regularised_friction(
+                normal,
+                work.velocity[i, 0],
+                contact.mu_static,
+                contact.mu_kinetic,
+                contact.regularisation_velocity,
+            )
+            work.law[i, 0] = force
+            work.slope[i, 0] = -by_velocity * velocity_slope
+            work.slope[i, 1] = by_normal * work.slope[i, 2]
+
+
+evaluate_laws = compiled(_evaluate_laws, inline=True)
+
+
+def _add_turned(compliance: FloatArray, cosine: float, sine: float, share: float, out: FloatArray) -> None:
+    """Add `share` R C R^T of every 2 x 2 block of a compliance (2 n, 2 n), R = [[cos, sin], [-sin, cos]]."""
+    for i in range(compliance.shape[0] // 2):
+        for j in range(compliance.shape[1] // 2):
+            xx, xz = compliance[2 * i, 2 * j], compliance[2 * i, 2 * j + 1]
+            zx, zz = compliance[2 * i + 1, 2 * j], compliance[2 * i + 1, 2 * j + 1]
+            ax, az = cosine * xx + sine * zx, cosine * xz + sine * zz
+            bx, bz = -sine * xx + cosine * zx, -sine * xz + cosine * zz
+            out[2 * i, 2 * j] += share * (ax * cosine + az * sine)
+            out[2 * i, 2 * j + 1] += share * (-ax * sine + az * cosine)
+            out[2 * i + 1, 2 * j] += share * (bx * cosine + bz * sine)
+            out[2 * i + 1, 2 * j + 1] += share * (-bx * sine + bz * cosine)
+
+
+add_turned = compiled(_add_turned, inline=True)
+
+
+def _move_points(velocity_slope: float, force: FloatArray, work: Workspace) -> None:
+    """Points and velocities that follow from contact forces, by the condensed compliance."""
+    n = force.shape[0]
+    for i in range(n):
+        for k in range(2):
+            moved = 0.0
+            for j in range(n):
+                if force[j, 1] != 0.0 or force[j, 0] != 0.0:
+                    moved += work.compliance[2 * i + k, 2 * j] * force[j, 0]
+                    moved += work.compliance[2 * i + k, 2 * j + 1] * force[j, 1]
+            work.point[i, k] = work.free[i, k] + moved
+            work.velocity[i, k] = work.free_velocity[i, k] + velocity_slope * moved
+
+
+move_points = compiled(_move_points, inline=True)
+
+
+def _factor_dense(size: int, matrix: FloatArray, pivot: IntArray) -> bool:
+    """LU decomposition with row pivoting of the leading size x size block, in place; False if singular."""
+    for k in range(size):
+        chosen, largest = k, abs(matrix[k, k])
+        for i in range(k + 1, size):
+            if abs(matrix[i, k]) > largest:
+                chosen, largest = i, abs(matrix[i, k])
+        pivot[k] = chosen
+        if not largest > 0.0:
+            return False
+        if chosen != k:
+            for j in range(size):
+                matrix[k, j], matrix[chosen, j] = matrix[chosen, j], matrix[k, j]
+        for i in range(k + 1, size):
+            factor = matrix[i, k] / matrix[k, k]
+            matrix[i, k] = factor
+            if factor != 0.0:
+                for j in range(k + 1, size):
+                    matrix[i, j] -= factor * matrix[k, j]
+    return True
+
+
+factor_dense = compiled(_factor_dense, inline=True)
+
+
+def _substitute_dense(size: int, factors: FloatArray, pivot: IntArray, vector: FloatArray) -> None:
+    """Solve with the factors of `factor_dense`, in place."""
+    for k in range(size):
+        if pivot[k] != k:
+            vector[k], vector[pivot[k]] = vector[pivot[k]], vector[k]
+    for k in range(1, size):
+        total = vector[k]
+        for j in range(k):
+            total -= factors[k, j] * vector[j]
+        vector[k] = total
+    for k in range(size - 1, -1, -1):
+        total = vector[k]
+        for j in range(k + 1, size):
+            total -= factors[k, j] * vector[j]
+        vector[k] = total / factors[k, k]
+
+
+substitute_dense = compiled(_substitute_dense, inline=True)
+
+
+def _factor_is_current(step: float, work: Workspace) -> bool:
+    """The factors at hand belong to these tangents and this step: good enough to iterate with.
+
+    The compliance has turned with the body since; a Newton step with slightly old factors gains fewer digits.
+    """
+    if work.factored_step[0] != step or work.factored_count[0] < WORTH_KEEPING:
+        return False
+    for i in range(work.slope.shape[0]):
+        for k in range(3):
+            if work.slope[i, k] != work.factored_slope[i, k]:
+                return False
+    return True
+
+
+factor_is_current = compiled(_factor_is_current, inline=True)
+
+
+def _factor_tangent(step: float, work: Workspace) -> bool:
+    """Factor 1 + D G over the points whose law has a tangent, and note what for."""
+    count = 0
+    for i in range(work.force.shape[0]):
+        if work.slope[i, 2] != 0.0:
+            work.active[count] = i
+            count += 1
+        for k in range(3):
+            work.factored_slope[i, k] = work.slope[i, k]
+    work.factored_count[0] = count
+    for a in range(count):
+        i = work.active[a]
+        tangential_x, tangential_z, normal_z = work.slope[i, 0], work.slope[i, 1], work.slope[i, 2]
+        for b in range(count):
+            j = work.active[b]
+            for k in range(2):
+                by_x = work.compliance[2 * i, 2 * j + k]
+                by_z = work.compliance[2 * i + 1, 2 * j + k]
+                work.matrix[2 * a, 2 * b + k] = tangential_x * by_x + tangential_z * by_z
+                work.matrix[2 * a + 1, 2 * b + k] = normal_z * by_z
+        work.matrix[2 * a, 2 * a] += 1.0
+        work.matrix[2 * a + 1, 2 * a + 1] += 1.0
+    work.factored_step[0] = step
+    if not factor_dense(2 * count, work.matrix, work.pivot):
+        work.factored_step[0] = -1.0
+        return False
+    return True
+
+
+factor_tangent = compiled(_factor_tangent, inline=True)
+
+
+def _newton_change(work: Workspace) -> None:
+    """Change of the contact forces (1 + D G) df = law - f, with the factors at hand.
+
+    A point without tangent carries nothing from now on; what it carried so far moves the others.
+    """
+    n = work.force.shape[0]
+    count = work.factored_count[0]
+    for i in range(2 * n):
+        work.change[i] = 0.0
+    for i in range(n):
+        if work.slope[i, 2] == 0.0:
+            work.change[2 * i] = work.law[i, 0] - work.force[i, 0]
+            work.change[2 * i + 1] = work.law[i, 1] - work.force[i, 1]
+    for a in range(count):
+        i = work.active[a]
+        tangential_x, tangential_z, normal_z = work.slope[i, 0], work.slope[i, 1], work.slope[i, 2]
+        right_x = work.law[i, 0] - work.force[i, 0]
+        right_z = work.law[i, 1] - work.force[i, 1]
+        for j in range(n):
+            if work.slope[j, 2] == 0.0:
+                for k in range(2):
+                    given = work.change[2 * j + k]
+                    if given != 0.0:
+                        by_x = work.compliance[2 * i, 2 * j + k]
+                        by_z = work.compliance[2 * i + 1, 2 * j + k]
+                        right_x -= (tangential_x * by_x + tangential_z * by_z) * given
+                        right_z -= normal_z * by_z * given
+        work.solution[2 * a], work.solution[2 * a + 1] = right_x, right_z
+    substitute_dense(2 * count, work.matrix, work.pivot, work.solution)
+    for a in range(count):
+        i = work.active[a]
+        work.change[2 * i], work.change[2 * i + 1] = work.solution[2 * a], work.solution[2 * a + 1]
+
+
+newton_change = compiled(_newton_change, inline=True)
+
+
+def _start_from_places(
+    contact: Contact, velocity_slope: float, mu: float, start: FloatArray, work: Workspace
+) -> bool:
+    """Put points that the floor held at the beginning of the step back there: the first place to linearise at.
+
+    `work.force` is a guess from before the step. Its error is magnified by compliance times stiffness in the places
+    that follow from it, an error of the place by as much in the force: beyond one, the place is the better guess.
+    A gap, or a spring that slides, has no stiffness: there the force is. `work.trial` takes how far each was put back;
+    returns whether any was.
+    """
+    placed = False
+    magnified = 1.0 + contact.relaxation_time * velocity_slope
+    for i in range(work.force.shape[0]):
+        tangential, normal = work.force[i, 0], work.force[i, 1]
+        closed = normal > 0.0 and start[i, 1] < 0.0
+        stuck = closed and contact.friction == ELASTIC_STICK and abs(tangential) < SLIDING * mu * normal
+        for k in range(2):
+            stiffness = contact.tangential_stiffness[i] if k == 0 else contact.normal_stiffness[i]
+            held = stuck if k == 0 else closed
+            work.trial[i, k] = 0.0
+            if held and magnified * stiffness * work.compliance[2 * i + k, 2 * i + k] > 1.0:
+                back = start[i, k] - work.point[i, k]
+                work.point[i, k] += back
+                work.velocity[i, k] += velocity_slope * back
+                work.trial[i, k] = back
+                placed = True
+    return placed
+
+
+start_from_places = compiled(_start_from_places, inline=True)
+
+
+def _carry_laws(work: Workspace) -> None:
+    """Carry the laws' forces along their tangents to where the points were before they were put back."""
+    for i in range(work.force.shape[0]):
+        work.law[i, 0] += work.slope[i, 0] * work.trial[i, 0] + work.slope[i, 1] * work.trial[i, 1]
+        work.law[i, 1] += work.slope[i, 2] * work.trial[i, 1]
+
+
+carry_laws = compiled(_carry_laws, inline=True)
+
+
+def _solve_contact(
+    contact: Contact,
+    step: float,
+    velocity_slope: float,
+    mu: float,
+    start: FloatArray,
+    stick: FloatArray,
+    work: Workspace,
+) -> int:
+    """Contact forces that satisfy all laws at the end of the step.
+
+    Args:
+        contact, step, velocity_slope, mu, start, stick: as in `evaluate_laws`.
+        work: free, free_velocity and compliance are read; force is the first guess and the result; point
+            and velocity are those that go with it.
+
+    Returns:
+        Number of Newton iterations, or -1 if they did not converge.
+    """
+    n = work.force.shape[0]
+    before = np.inf
+    for iteration in range(NEWTON_LIMIT):
+        move_points(velocity_slope, work.force, work)
+        placed = iteration == 0 and start_from_places(contact, velocity_slope, mu, start, work)
+        evaluate_laws(contact, step, velocity_slope, mu, start, stick, work)
+        if placed:
+            carry_laws(work)
+        residual, largest, stiffest = 0.0, contact.force_scale, 0.0
+        for i in range(n):
+            stiffest = max(stiffest, work.slope[i, 0], work.slope[i, 2])
+            for k in range(2):
+                residual = max(residual, abs(work.law[i, k] - work.force[i, k]))
+                largest = max(largest, abs(work.force[i, k]))
+        if not placed and residual <= FORCE_TOLERANCE * largest + contact.resolution * stiffest:
+            return iteration
+        # Old factors serve as long as they serve well: an unchanged contact is the rule, not the exception.
+        if not factor_is_current(step, work) or residual > 0.1 * before:
+            if not factor_tangent(step, work):
+                return -1
+            before = np.inf
+        else:
+            before = residual
+        newton_change(work)
+        for i in range(n):
+            work.trial[i, 0] = work.force[i, 0]
+            work.trial[i, 1] = work.force[i, 1]
+        share = 1.0
+        while True:
+            for i in range(n):
+                for k in range(2):
+                    work.force[i, k] = work.trial[i, k] + share * work.change[2 * i + k]
+            if iteration < FULL_STEPS or share < 1e-3:
+                break
+            move_points(velocity_slope, work.force, work)
+            evaluate_laws(contact, step, velocity_slope, mu, start, stick, work)
+            after = 0.0
+            for i in range(n):
+                for k in range(2):
+                    after = max(after, abs(work.law[i, k] - work.force[i, k]))
+            if after <= (1.0 - 0.25 * share) * residual:
+                break
+            share *= 0.5
+    return -1
+
+
+solve_contact = compiled(_solve_contact, inline=True)

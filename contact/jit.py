@@ -1,0 +1,72 @@
+"""Compilation of the stepping kernels, cached per version of their source.
+
+numba's own cache looks only at the file of the outermost function, so a change of a law in a
+neighbouring file would go unnoticed and old physics would be run. Here the cache folder carries a
+digest of every source of this package, and of those that a kernel from elsewhere names: another source, another folder.
+"""
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numba
+from numba.core import config
+
+
+@cache
+def source_digest(sources: tuple[Path, ...] = ()) -> str:
+    """Digest of this package's sources, of `sources`, and of numba's version, 16 hexadecimal digits."""
+    digest = hashlib.sha256(numba.__version__.encode())
+    root = Path(__file__).parent
+    for source in (*sorted(root.rglob("*.py")), *sources):
+        digest.update(
+            (source.relative_to(root) if root in source.parents else Path(source.name)).as_posix().encode()
+        )
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+@cache
+def cache_folder(sources: tuple[Path, ...] = ()) -> Path:
+    """Folder of the compiled kernels: NUMBA_CACHE_DIR, else the user's cache, else a temporary one."""
+    named = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
+    root = Path(named) if named else Path.home() / ".cache"
+    folder = root / "unanchored" / f"kernels-{source_digest(sources)}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if not os.access(folder, os.W_OK):
+            raise PermissionError(folder)
+    except OSError:
+        folder = Path(tempfile.mkdtemp(prefix="unanchored-kernels-"))
+    return folder
+
+
+def compiled(function: Callable[..., Any], *, inline: bool = False, sources: tuple[Path, ...] = ()) -> Any:
+    """Compile a function of numbers, arrays and named tuples on first call; keep the machine code.
+
+    `inline` asks LLVM to put the function into its caller whatever its size: the tuples of arrays that the
+    kernels live on are dear to hand over. `sources` are files outside this package whose functions it calls.
+
+    The kernels own no memory: numba's runtime, which would count references at every call, is left out, and
+    so none may allocate an array. They run without the interpreter's lock. Division by zero follows IEEE (as
+    in numpy); no fast-math, so that a run is the same bytes again.
+    """
+    options: dict[str, Any] = {"cache": True, "error_model": "numpy", "nogil": True, "_nrt": False}
+    before = getattr(config, "CACHE_DIR")  # noqa: B009 - numba sets its options at run time
+    setattr(config, "CACHE_DIR", str(cache_folder(sources)))  # noqa: B010
+    try:
+        return numba.njit(forceinline=inline, **options)(function)
+    finally:
+        setattr(config, "CACHE_DIR", before)  # noqa: B010
+
+
+def is_compiled(name: str, sources: tuple[Path, ...] = ()) -> bool:
+    """True if machine code of the function of that name lies in the cache (no compilation ahead)."""
+    return any(
+        f".{name}-" in entry.name or entry.name.startswith(f"{name}-")
+        for entry in cache_folder(sources).rglob("*.nbc")
+    )

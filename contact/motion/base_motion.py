@@ -1,0 +1,243 @@
+"""Base motion: what the floor does, as the user means it.
+
+The floor moves along x, positive toward +x; SI units. Every motion gives its `compiled` data, from which the
+one compiled `floor_motion` takes displacement, velocity and acceleration, and tells a stepper where to be
+careful: `break_times` (the acceleration jumps or its formula changes) and `time_scale`. The largest floor
+acceleration, the only one a static rule may be compared with, is `peak_acceleration`, a magnitude. Tables of
+recorded motion stand in `contact.motion.table`.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Literal
+
+import numpy as np
+
+from contact.motion.kernel import (
+    HALF_SINE,
+    HARMONIC,
+    RECTANGULAR,
+    SINE,
+    UNIFORM,
+    FloatArray,
+    FloorMotion,
+    as_floor_motion,
+    floor_history,
+    floor_motion,
+)
+from contact.motion.table import TableMotion
+
+__all__ = [
+    "BaseMotion",
+    "FloorMotion",
+    "HarmonicMotion",
+    "NoMotion",
+    "PulseMotion",
+    "TableMotion",
+    "floor_history",
+    "floor_motion",
+]
+
+PulseShape = Literal["rectangular", "half-sine", "sine"]
+PULSE_KINDS: dict[str, int] = {"rectangular": RECTANGULAR, "half-sine": HALF_SINE, "sine": SINE}
+
+# The taper's own acceleration lifts the peak above A Omega^2 by about 57/(2 pi n)^3 for n cycles of ramp, a
+# quarter of a cycle from the plateau (1.2 at n = 1); so the search may stop a few cycles into the ramp.
+SEARCHED_CYCLES = 8.0
+SAMPLES_PER_CYCLE = 512
+
+
+@dataclass(frozen=True, kw_only=True)
+class NoMotion:
+    """A floor at rest."""
+
+    def compiled(self) -> FloorMotion:
+        """Data for `floor_motion`."""
+        return as_floor_motion(UNIFORM, (0.0, 0.0, 0.0))
+
+    def evaluate(self, times: FloatArray) -> FloatArray:
+        """Displacement, velocity, acceleration at the times [s], shape (3, n_times)."""
+        return floor_history(self.compiled(), times)
+
+    @property
+    def peak_acceleration(self) -> float:
+        """Largest |acceleration| [m/s2]."""
+        return 0.0
+
+    @property
+    def break_times(self) -> FloatArray:
+        """Instants where the acceleration jumps or its formula changes: none, shape (0,) [s]."""
+        return np.empty(0)
+
+    @property
+    def time_scale(self) -> float:
+        """Infinite: nothing happens [s]."""
+        return math.inf
+
+
+@dataclass(frozen=True, kw_only=True)
+class HarmonicMotion:
+    """x = A sin(Omega t + phase), from t = 0, tapered at both ends if asked.
+
+    The taper is a quintic window (C2) on the displacement; velocity and acceleration are its exact
+    derivatives. With `cycles`, the drive ends at the first instant of zero velocity of A sin(Omega t + phase)
+    after so many cycles, and the floor stays there (tapered: at zero displacement). Without, it goes on; a
+    taper then ends at `duration`.
+
+    Raises:
+        ValueError: a number out of range, or ramps that leave no room for the full amplitude.
+    """
+
+    amplitude: float  #: A [m]
+    angular_frequency: float  #: Omega [rad/s]
+    duration: float  #: of the run [s]
+    phase: float = 0.0  #: [rad]
+    ramp_cycles: float = 0.0  #: length of each taper in cycles of the drive [-]
+    cycles: float | None = None  #: cycles driven; None: to the end [-]
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.amplitude < math.inf:
+            raise ValueError(f"harmonic amplitude must not be negative or infinite, got {self.amplitude} m")
+        if not 0.0 < self.angular_frequency < math.inf:
+            raise ValueError(
+                f"harmonic angular frequency must be positive, got {self.angular_frequency} rad/s"
+            )
+        if not 0.0 < self.duration < math.inf:
+            raise ValueError(f"harmonic motion: duration must be positive, got {self.duration} s")
+        if not math.isfinite(self.phase):
+            raise ValueError(f"harmonic phase must be finite, got {self.phase} rad")
+        if not 0.0 <= self.ramp_cycles < math.inf:
+            raise ValueError(f"harmonic ramp must not be negative, got {self.ramp_cycles} cycles")
+        if self.cycles is not None and not 0.0 < self.cycles < math.inf:
+            raise ValueError(f"harmonic motion must last for more than 0 cycles, got {self.cycles}")
+        if 2.0 * self.ramp > self.end_time * (1.0 + 1e-12):  # ramps that just meet are meant to
+            raise ValueError(
+                f"two ramps of {self.ramp_cycles} cycles ({self.ramp:.6g} s each) do not fit into a drive of "
+                f"{self.end_time:.6g} s: it would not reach its amplitude; shorten the ramps or drive longer"
+            )
+
+    @property
+    def time_scale(self) -> float:
+        """Period of the drive [s]."""
+        return 2.0 * math.pi / self.angular_frequency
+
+    @property
+    def ramp(self) -> float:
+        """Length of each taper [s]."""
+        return self.ramp_cycles * self.time_scale
+
+    @property
+    def end_time(self) -> float:
+        """When the drive ends; infinite for an untapered drive without a number of cycles [s]."""
+        if self.cycles is None:
+            return self.duration if self.ramp > 0.0 else math.inf
+        # Omega t + phase = pi/2 + k pi; the small number keeps a zero that falls on the cycle's very end.
+        k = math.ceil(2.0 * self.cycles + self.phase / math.pi - 0.5 - 1e-9)
+        return (math.pi * (k + 0.5) - self.phase) / self.angular_frequency
+
+    @property
+    def break_times(self) -> FloatArray:
+        """Instants in (0, duration] where the acceleration jumps or its formula changes, shape (n,) [s]."""
+        ends = {self.ramp, self.end_time - self.ramp, self.end_time}
+        return np.array(sorted(end for end in ends if 0.0 < end <= self.duration), dtype=float)
+
+    @property
+    def peak_acceleration(self) -> float:
+        """Largest |acceleration| within the run [m/s2]: A Omega^2 once a whole half cycle is not tapered."""
+        return self.amplitude * _peak_of_unit(replace(self, amplitude=1.0))
+
+    def compiled(self) -> FloorMotion:
+        """Data for `floor_motion`."""
+        return as_floor_motion(
+            HARMONIC, (self.amplitude, self.angular_frequency, self.phase, self.ramp, self.end_time)
+        )
+
+    def evaluate(self, times: FloatArray) -> FloatArray:
+        """Displacement, velocity, acceleration at the times [s], shape (3, n_times)."""
+        return floor_history(self.compiled(), times)
+
+
+@lru_cache(maxsize=256)  # the cells of a map differ in the amplitude first
+def _peak_of_unit(motion: HarmonicMotion) -> float:
+    """Largest |acceleration| of a motion of amplitude 1 m [m/s2]."""
+    end = min(motion.end_time, motion.duration)
+    full = motion.angular_frequency**2
+    plateau = (motion.ramp, min(motion.end_time - motion.ramp, motion.duration))
+    floor = full if plateau[1] - plateau[0] >= 0.5 * motion.time_scale else 0.0
+    if floor == full and motion.ramp == 0.0:
+        return full  # nothing lifts it above its own amplitude
+    reach = SEARCHED_CYCLES * motion.time_scale
+    spans = (
+        (plateau[0] - reach, plateau[0] + motion.time_scale),
+        (plateau[1] - motion.time_scale, plateau[1] + reach),
+    )
+    return max(floor, *(_peak_between(motion, max(0.0, low), min(end, high)) for low, high in spans))
+
+
+def _peak_between(motion: HarmonicMotion, low: float, high: float) -> float:
+    """Largest |acceleration| in [low, high) by sampling, then by closing in on the largest sample."""
+    if high <= low:
+        return 0.0
+    count = int(SAMPLES_PER_CYCLE * (high - low) / motion.time_scale) + 9
+    # Just short of the end: at `end_time` itself the floor already stands.
+    times, peak = np.linspace(low, np.nextafter(high, 0.0), count), 0.0
+    for _ in range(6):
+        sizes = np.abs(motion.evaluate(times)[2])
+        best = int(np.argmax(sizes))
+        peak = max(peak, float(sizes[best]))
+        times = np.linspace(times[max(best - 1, 0)], times[min(best + 1, times.size - 1)], 33)
+    return peak
+
+
+@dataclass(frozen=True, kw_only=True)
+class PulseMotion:
+    """One pulse of floor acceleration; afterwards the floor keeps the velocity reached.
+
+    `rectangular`: constant; `half-sine`: half a period; `sine`: one period, after which the velocity is zero.
+
+    Raises:
+        ValueError: an unknown shape, a pulse that has no length, or a number that is not finite.
+    """
+
+    shape: PulseShape
+    acceleration: float  #: constant (rectangular) or first peak, > 0 toward +x [m/s2]
+    pulse: float  #: length [s]
+    delay: float = 0.0  #: of its beginning [s]
+
+    def __post_init__(self) -> None:
+        if self.shape not in PULSE_KINDS:
+            raise ValueError(f"unknown pulse shape {self.shape!r}; known: {', '.join(PULSE_KINDS)}")
+        if not math.isfinite(self.acceleration):
+            raise ValueError(f"pulse acceleration must be finite, got {self.acceleration} m/s2")
+        if not 0.0 < self.pulse < math.inf:
+            raise ValueError(f"pulse length must be positive, got {self.pulse} s")
+        if not 0.0 <= self.delay < math.inf:
+            raise ValueError(f"pulse delay must not be negative, got {self.delay} s")
+
+    @property
+    def peak_acceleration(self) -> float:
+        """Largest |acceleration| [m/s2]."""
+        return abs(self.acceleration)
+
+    @property
+    def break_times(self) -> FloatArray:
+        """Beginning (unless t = 0) and end of the pulse, shape (1 or 2,) [s]."""
+        ends = np.array([self.delay, self.delay + self.pulse])
+        return ends[ends > 0.0]
+
+    @property
+    def time_scale(self) -> float:
+        """Length of the pulse [s]."""
+        return self.pulse
+
+    def compiled(self) -> FloorMotion:
+        """Data for `floor_motion`."""
+        return as_floor_motion(PULSE_KINDS[self.shape], (self.acceleration, self.pulse, self.delay))
+
+    def evaluate(self, times: FloatArray) -> FloatArray:
+        """Displacement, velocity, acceleration at the times [s], shape (3, n_times)."""
+        return floor_history(self.compiled(), times)
+
+
+BaseMotion = NoMotion | HarmonicMotion | PulseMotion | TableMotion

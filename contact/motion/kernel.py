@@ -1,0 +1,146 @@
+"""The floor's displacement, velocity and acceleration at one instant: the one compiled function all share.
+
+Displacement is absolute and positive toward +x [m]; velocity [m/s] and acceleration [m/s2] are its exact
+derivatives, never differences. Where the acceleration jumps, the value after the jump is given. The motion is
+data (`FloorMotion`), so that a compiled stepper takes any kind without being compiled again; the classes that
+make these data, and say what they mean, stand in `contact.motion.base_motion`.
+"""
+
+import math
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact.jit import compiled
+
+FloatArray = NDArray[np.float64]
+
+# Meaning of `FloorMotion.kind`.
+UNIFORM, HARMONIC, RECTANGULAR, HALF_SINE, SINE, PIECEWISE = 0, 1, 2, 3, 4, 5
+
+
+class FloorMotion(NamedTuple):
+    """A base motion as numbers and arrays that numba understands.
+
+    `kind` chooses the formula and the meaning of `parameters`:
+
+    - UNIFORM: time, displacement there, velocity; a floor at rest or coasting;
+    - HARMONIC: amplitude, angular frequency, phase, length of each ramp, end of the drive;
+    - RECTANGULAR, HALF_SINE, SINE: peak acceleration (signed), length, delay;
+    - PIECEWISE: none; `breaks` are the knots, shape (k,) [s], and `coefficients`, shape (k + 1, 4), hold
+      displacement, velocity, acceleration and jerk: row 0 before the first knot (referred to it), row i from
+      knot i - 1 on.
+    """
+
+    kind: int
+    parameters: FloatArray
+    breaks: FloatArray
+    coefficients: FloatArray
+
+
+@partial(compiled, inline=True)
+def _window(u: float) -> tuple[float, float, float]:
+    """Smooth step from 0 at u <= 0 to 1 at u >= 1, and its first two derivatives; C2 (quintic Hermite)."""
+    if u <= 0.0:
+        return 0.0, 0.0, 0.0
+    if u >= 1.0:
+        return 1.0, 0.0, 0.0
+    v = 1.0 - u
+    return u * u * u * (10.0 - 15.0 * u + 6.0 * u * u), 30.0 * u * u * v * v, 60.0 * u * v * (v - u)
+
+
+@partial(compiled, inline=True)
+def _harmonic(parameters: FloatArray, time: float) -> tuple[float, float, float]:
+    amplitude, omega, phase, ramp, end = parameters
+    if time >= end:
+        # A tapered drive has come back to zero; an untapered one stops where its velocity is zero.
+        return (0.0 if ramp > 0.0 else amplitude * math.sin(omega * end + phase)), 0.0, 0.0
+    sine, cosine = math.sin(omega * time + phase), math.cos(omega * time + phase)
+    if ramp <= 0.0:
+        return amplitude * sine, amplitude * omega * cosine, -amplitude * omega * omega * sine
+    rise, rise_1, rise_2 = _window(time / ramp)
+    fall, fall_1, fall_2 = _window((end - time) / ramp)
+    w = rise * fall
+    w_1 = (rise_1 * fall - rise * fall_1) / ramp
+    w_2 = (rise_2 * fall - 2.0 * rise_1 * fall_1 + rise * fall_2) / (ramp * ramp)
+    return (
+        amplitude * w * sine,
+        amplitude * (w_1 * sine + w * omega * cosine),
+        amplitude * (w_2 * sine + 2.0 * w_1 * omega * cosine - w * omega * omega * sine),
+    )
+
+
+@compiled
+def _pulse(kind: int, parameters: FloatArray, time: float) -> tuple[float, float, float]:
+    peak, length, delay = parameters
+    # The end is compared as delay + length, to the last bit the instant that `PulseMotion.break_times` gives.
+    during = time < delay + length
+    inside = min(max(time - delay, 0.0), length)
+    if kind == RECTANGULAR:
+        displacement, velocity, acceleration = 0.5 * peak * inside * inside, peak * inside, peak
+    else:
+        omega = (math.pi if kind == HALF_SINE else 2.0 * math.pi) / length
+        half = math.sin(0.5 * omega * inside)
+        velocity = 2.0 * peak / omega * half * half  # peak/omega (1 - cos), without the cancellation
+        displacement = peak / omega * (inside - math.sin(omega * inside) / omega)
+        acceleration = peak * math.sin(omega * inside)
+    if not during:
+        displacement += velocity * (time - delay - inside)
+    return displacement, velocity, acceleration if during and time >= delay else 0.0
+
+
+@compiled
+def _piecewise(breaks: FloatArray, coefficients: FloatArray, time: float) -> tuple[float, float, float]:
+    row = int(np.searchsorted(breaks, time, side="right"))
+    x, v, a, jerk = coefficients[row, 0], coefficients[row, 1], coefficients[row, 2], coefficients[row, 3]
+    s = time - breaks[max(row - 1, 0)]
+    return (
+        x + s * (v + s * (0.5 * a + s * jerk / 6.0)),
+        v + s * (a + 0.5 * s * jerk),
+        a + s * jerk,
+    )
+
+
+@partial(compiled, inline=True)
+def floor_motion(motion: FloorMotion, time: float) -> tuple[float, float, float]:
+    """Displacement [m], velocity [m/s] and acceleration [m/s2] of the floor at `time` [s]."""
+    if motion.kind == HARMONIC:
+        return _harmonic(motion.parameters, time)
+    if motion.kind == PIECEWISE:
+        return _piecewise(motion.breaks, motion.coefficients, time)
+    if motion.kind == UNIFORM:
+        start, displacement, velocity = motion.parameters
+        return displacement + velocity * (time - start), velocity, 0.0
+    return _pulse(motion.kind, motion.parameters, time)
+
+
+@compiled
+def _fill_history(motion: FloorMotion, times: FloatArray, history: FloatArray) -> None:
+    for i in range(times.size):
+        history[0, i], history[1, i], history[2, i] = floor_motion(motion, times[i])
+
+
+def floor_history(motion: FloorMotion, times: FloatArray) -> FloatArray:
+    """`floor_motion` at many times: rows displacement, velocity, acceleration, shape (3, n_times)."""
+    times = np.ascontiguousarray(times, dtype=np.float64)
+    history = np.empty((3, times.size))
+    _fill_history(motion, times, history)
+    return history
+
+
+def as_floor_motion(
+    kind: int,
+    parameters: tuple[float, ...] = (),
+    *,
+    breaks: FloatArray | None = None,
+    coefficients: FloatArray | None = None,
+) -> FloorMotion:
+    """Pack a motion with the array types the compiled functions were compiled for (contiguous float64)."""
+    return FloorMotion(
+        kind,
+        np.array(parameters, dtype=np.float64),
+        np.array(() if breaks is None else breaks, dtype=np.float64),
+        np.array(np.zeros((1, 4)) if coefficients is None else coefficients, dtype=np.float64, order="C"),
+    )

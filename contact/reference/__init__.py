@@ -1,0 +1,1 @@
+"""References to check against: event-driven blocks and closed forms. They share no code with the other packages."""

@@ -1,0 +1,194 @@
+"""Closed forms for a rigid block that rocks without sliding: periods, decay, impact, steady orbit.
+
+Exact forms hold at any rotation below the slenderness angle; `slender` ones for sin al ~ al and rotations of
+that order, their error being O(al^2). All assume plastic impacts at the corners and no sliding.
+"""
+
+import math
+from dataclasses import dataclass
+
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from contact.reference.rigid_block import RigidBlock
+
+
+def quarter_period(block: RigidBlock, rotation: float) -> float:
+    """Time from release at a rotation at rest to the impact [s].
+
+    (1/p) int_0^U du / sqrt(1 - (k cosh u)^2), k = sin((al - theta0)/2), U = arccosh(sin(al/2)/k): the energy
+    integral of Housner's (1963) equation with sin((al - theta)/2) = k cosh u, which takes the
+    square-root singularity at the turning point away. Exact for 0 < rotation < al.
+    """
+    _below_slenderness(block, rotation)
+    least = math.sin(0.5 * (block.slenderness_angle - abs(rotation)))
+    upper = math.acosh(math.sin(0.5 * block.slenderness_angle) / least)
+
+    def integrand(u: float) -> float:
+        return 1.0 / math.sqrt(1.0 - (least * math.cosh(u)) ** 2)
+
+    integral = quad(integrand, 0.0, upper, epsabs=0.0, epsrel=1e-12)
+    return float(integral[0]) / block.frequency_parameter
+
+
+def quarter_period_slender(block: RigidBlock, rotation: float) -> float:
+    """arccosh(1/(1 - theta0/al))/p [s]: Housner (1963); slender block."""
+    _below_slenderness(block, rotation)
+    return math.acosh(1.0 / (1.0 - abs(rotation) / block.slenderness_angle)) / block.frequency_parameter
+
+
+def peak_after_impacts(block: RigidBlock, rotation: float, impacts: int, restitution: float) -> float:
+    """|rotation| at the turning point after so many impacts of free rocking from rest at `rotation` [rad].
+
+    cos(al - theta_n) - cos al = e^(2n) [cos(al - theta_0) - cos al]: an impact leaves e^2 of the kinetic
+    energy. Exact for plastic impacts at the corner, 0 < |rotation| < al; the energy is written as a
+    product of sines, so that small peaks keep their digits.
+    """
+    _below_slenderness(block, rotation)
+    angle, start = block.slenderness_angle, abs(rotation)
+    # cos(al - t) - cos al = 2 sin(t/2) sin(al - t/2)
+    share = restitution ** (2 * impacts) * math.sin(0.5 * start) * math.sin(angle - 0.5 * start)
+    # sin(t/2) sin(al - t/2) = share  =>  tan(t/2) = x with (x sin al - x^2 cos al)/(1 + x^2) = share
+    sine, leading = math.sin(angle), math.cos(angle) + share
+    root = math.sqrt(sine**2 - 4.0 * leading * share)
+    return 2.0 * math.atan(2.0 * share / (sine + root))
+
+
+def peak_after_impacts_slender(block: RigidBlock, rotation: float, impacts: int, restitution: float) -> float:
+    """al (1 - sqrt(1 - e^(2n) [1 - (1 - theta0/al)^2])) [rad]: Housner (1963); slender block."""
+    _below_slenderness(block, rotation)
+    ratio = abs(rotation) / block.slenderness_angle
+    share = restitution ** (2 * impacts) * ratio * (2.0 - ratio)
+    return block.slenderness_angle * share / (1.0 + math.sqrt(1.0 - share))
+
+
+def impact_time(block: RigidBlock, rotation: float, number: int, restitution: float) -> float:
+    """Time of an impact (1: the first) of free rocking from rest at `rotation` [s].
+
+    The quarter period of the release and twice that of every peak since; exact, 0 < |rotation| < al.
+    """
+    if number < 1:
+        raise ValueError(f"impact_time: impacts are numbered from 1, got {number}")
+    peaks = (peak_after_impacts(block, rotation, n, restitution) for n in range(1, number))
+    return quarter_period(block, rotation) + 2.0 * sum(quarter_period(block, peak) for peak in peaks)
+
+
+def impact_speed(block: RigidBlock, rotation: float) -> float:
+    """|angular velocity| just before the impact that follows release at `rotation` [rad/s].
+
+    p sqrt(2 [cos(al - theta0) - cos al]): conservation of energy, exact, 0 < |rotation| < al.
+    """
+    _below_slenderness(block, rotation)
+    start = abs(rotation)
+    fall = 4.0 * math.sin(0.5 * start) * math.sin(block.slenderness_angle - 0.5 * start)
+    return block.frequency_parameter * math.sqrt(fall)
+
+
+def impact_friction_need(block: RigidBlock) -> float:
+    """Least friction coefficient with which the plastic impact of a rocking block does not slide [-].
+
+    Ratio of the horizontal to the vertical impulse, (H/B) (1 - e)/(1 + e); homogeneous:
+    3 tan al/(4 + tan^2 al). From Housner's (1963) impact and momentum in both directions. Exact for a
+    block that did not slide before the impact, with his restitution e not negative.
+    """
+    restitution = block.housner_restitution
+    if restitution < 0.0:
+        raise ValueError(
+            f"impact_friction_need: Housner's restitution is {restitution:.3f}; a block this squat "
+            "(al > 54.7 degrees if homogeneous) lies down at an impact instead of rocking on"
+        )
+    return block.centroid_height / block.half_width * (1.0 - restitution) / (1.0 + restitution)
+
+
+def holding_acceleration(block: RigidBlock, rotation: float) -> float:
+    """Constant |floor acceleration| that holds the block at a rotation: g tan(al - |rotation|) [m/s2].
+
+    Moment equilibrium about the corner, unstable. Exact for |rotation| < 90 degrees; zero at al, and
+    at rotation 0 the acceleration of uplift (West's formula, quoted by Milne 1885).
+    """
+    return block.gravity * math.tan(block.slenderness_angle - abs(rotation))
+
+
+def kick_angular_velocity(block: RigidBlock, floor_velocity: float) -> float:
+    """Angular velocity just after the floor has jumped to a velocity [rad/s].
+
+    -(M H/I_O) v: the moment of the impulse about the corner that remains; the block tilts against the
+    floor's motion. Exact if the corner does not slide.
+    """
+    return -floor_velocity * block.centroid_height / (block.inertia_ratio * block.radius**2)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SymmetricOrbit:
+    """A steady rocking motion with one impact per half period of the floor; scaled by al and al p."""
+
+    impact_phase: float  #: phase of the floor's tilting acceleration at the impact from the left [rad]
+    post_impact_speed: float  #: angular velocity after the impact over al p [-]
+    peak: float  #: largest rotation over al [-]
+
+
+def symmetric_orbit_slender(
+    *, acceleration_ratio: float, frequency_ratio: float, restitution: float
+) -> SymmetricOrbit:
+    """Steady symmetric orbit of a slender block under a sine.
+
+    Spanos and Koh, J. Engng Mech. ASCE 110 (1984): the linear equation phi'' = phi - 1 + a sin(w tau + psi)
+    over one half period, phi = 0 at both ends, velocity -v/e at the end after v at the start. That leaves
+    a quadratic for sin psi; of two orbits the one with the larger speed is given. Stability is not
+    examined here.
+
+    Args:
+        acceleration_ratio: A Omega^2/(g al) [-].
+        frequency_ratio: w = Omega/p [-].
+        restitution: e, above 0 and below 1 [-].
+
+    Raises:
+        ValueError: no such orbit exists, or e is outside 0 to 1.
+    """
+    if not 0.0 < restitution < 1.0:
+        raise ValueError(f"symmetric orbit: restitution must lie between 0 and 1, got {restitution}")
+    w = frequency_ratio
+    half = math.pi / w
+    tangent = math.tanh(0.5 * half)
+    size = acceleration_ratio / (1.0 + w * w)  # amplitude of the particular solution
+    loss = (1.0 + restitution) / (1.0 - restitution)
+    # w size cos psi = tangent - S loss/tangent, S = size sin psi, and S^2 + (size cos psi)^2 = size^2
+    a = 1.0 + (loss / (tangent * w)) ** 2
+    b = -2.0 * loss / w**2
+    c = (tangent / w) ** 2 - size**2
+    discriminant = b * b - 4.0 * a * c
+    if discriminant < 0.0:
+        raise ValueError(
+            f"symmetric orbit: none at acceleration ratio {acceleration_ratio}, frequency ratio {w}, "
+            f"restitution {restitution}"
+        )
+    in_phase = (-b + math.sqrt(discriminant)) / (2.0 * a)
+    in_quadrature = (tangent - in_phase * loss / tangent) / w
+    speed = 2.0 * in_phase * restitution / ((1.0 - restitution) * tangent)
+    even = in_phase - 1.0
+    odd = speed + w * in_quadrature
+
+    def rotation(time: float) -> float:
+        forced = in_phase * math.cos(w * time) + in_quadrature * math.sin(w * time)
+        return 1.0 - forced + even * math.cosh(time) + odd * math.sinh(time)
+
+    def velocity(time: float) -> float:
+        forced = w * (in_quadrature * math.cos(w * time) - in_phase * math.sin(w * time))
+        return -forced + even * math.sinh(time) + odd * math.cosh(time)
+
+    samples = [rotation(half * n / 200) for n in range(1, 200)]
+    if speed <= 0.0 or min(samples) <= 0.0:
+        raise ValueError("symmetric orbit: the solution of the equations passes through the floor")
+    top = 1 + max(range(199), key=samples.__getitem__)
+    turn = float(brentq(velocity, half * (top - 1) / 200, half * (top + 1) / 200, xtol=1e-14))
+    return SymmetricOrbit(
+        impact_phase=math.atan2(in_phase, in_quadrature), post_impact_speed=speed, peak=rotation(turn)
+    )
+
+
+def _below_slenderness(block: RigidBlock, rotation: float) -> None:
+    if not 0.0 < abs(rotation) < block.slenderness_angle:
+        raise ValueError(
+            f"free rocking: |rotation| must lie above 0 and below the slenderness angle "
+            f"{block.slenderness_angle:.6g} rad, got {rotation} rad"
+        )

@@ -1,0 +1,262 @@
+"""The rigid block that rocks on its corners without sliding: the reference for the rigid limit.
+
+Large rotation, any floor acceleration, impacts by restitution; between impacts the equation of motion is
+integrated to 1e-12 and impacts, uplift and overturning are located to rounding. Rotation is positive
+toward +x (about the right corner); a floor that accelerates toward +x tilts the block toward -x:
+
+    rotation'' = -p^2 [sin(s al - rotation) + (a_g/g) cos(s al - rotation)],   s = sign of the rotation.
+
+Housner, BSSA 53 (1963); Yim, Chopra, Penzien, Earthquake Engng Struct. Dyn. 8 (1980).
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from contact.reference.event_driven import (
+    EventError,
+    FloatArray,
+    Guard,
+    Piece,
+    Rate,
+    flow,
+    sample,
+    turning_point,
+)
+from contact.reference.floor_acceleration import FloorAcceleration
+from contact.reference.rigid_block import RigidBlock
+
+MAX_EVENTS = 100_000
+
+
+class RockingOutcome(Enum):
+    """How the motion of a block that cannot slide ended."""
+
+    REST, ROCK, OVERTURNED = "rest", "rock", "overturned"
+
+
+@dataclass(frozen=True, kw_only=True)
+class RockingImpact:
+    """A corner meets the floor and the block goes on about it."""
+
+    time: float  #: [s]
+    velocity_before: float  #: angular velocity, positive toward +x [rad/s]
+    velocity_after: float  #: the same sign; zero where the block comes to rest [rad/s]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RockingPeak:
+    """A turning point away from the vertical; the start of a motion is none."""
+
+    time: float  #: [s]
+    rotation: float  #: positive toward +x [rad]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RockingMotion:
+    """What a block that cannot slide did."""
+
+    block: RigidBlock
+    restitution: float  #: used at every impact [-]
+    outcome: RockingOutcome
+    impacts: tuple[RockingImpact, ...]
+    peaks: tuple[RockingPeak, ...]
+    uplifts: tuple[float, ...]  #: instants at which the block left the rest on its base [s]
+    end: float  #: duration asked for, or earlier where it overturned or was told to stop [s]
+    overturned_at: float | None  #: rotation of 90 degrees reached [s]
+    largest_rotation: float  #: largest |rotation| [rad]
+    pieces: tuple[Piece, ...]
+
+    def at(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Rotation [rad] and angular velocity [rad/s] at given times, nan after the end.
+
+        At an impact the velocity after it is given.
+        """
+        states, sides = sample(self.pieces, np.asarray(times, dtype=float), 2)
+        sign = np.where(sides < 0, 0, sides - 1)  # regimes are numbered 0, 1, 2 for s = -1, 0, +1
+        return sign * states[:, 0], sign * states[:, 1]
+
+
+def simulate_rocking(
+    block: RigidBlock,
+    floor: FloorAcceleration,
+    *,
+    duration: float,
+    rotation: float = 0.0,
+    angular_velocity: float = 0.0,
+    restitution: float | None = None,
+    rest_energy: float = 1e-10,
+    stop_at_impact: bool = False,
+) -> RockingMotion:
+    """Follow the block until it has overturned (90 degrees) or the duration is over.
+
+    Args:
+        block: the body; friction is taken to be enough, see `impact_friction_need` for an impact.
+        floor: acceleration of the floor.
+        duration: [s].
+        rotation: at the start, positive about the right corner [rad].
+        angular_velocity: at the start; at rotation 0 its sign chooses the corner [rad/s].
+        restitution: ratio of angular velocities at impact, 0 to 1; None: Housner's, and 0 where his is
+            negative (the block then comes to lie on its base).
+        rest_energy: an impact that leaves less than this share of the overturning energy ends in rest,
+            where rest is possible under the floor acceleration of the moment. The impacts of free
+            rocking would otherwise accumulate (Zeno).
+        stop_at_impact: end at the first impact, to look at a first swing alone.
+
+    Raises:
+        ValueError: restitution outside 0 to 1, a start beyond 90 degrees, a duration that is not positive.
+        EventError: more than 100 000 impacts and uplifts.
+    """
+    used = max(block.housner_restitution, 0.0) if restitution is None else restitution
+    _check(duration, rotation, used)
+    scale = np.array([block.slenderness_angle, block.slenderness_angle * block.frequency_parameter])
+    inertia = block.inertia_ratio * block.radius**2
+    least_velocity = math.sqrt(2.0 * rest_energy * block.overturning_energy / inertia)
+    pieces: list[Piece] = []
+    impacts: list[RockingImpact] = []
+    uplifts: list[float] = []
+    overturned_at = None
+
+    time, side = 0.0, int(np.sign(rotation)) or int(np.sign(angular_velocity))
+    state = side * np.array([rotation, angular_velocity])  # angle from the base, and its rate
+    for _ in range(MAX_EVENTS):
+        passage = flow(
+            rate=_rate(block, side) if side else None,
+            guards=_guards(block, side),
+            state=state,
+            start=time,
+            end=duration,
+            floor=floor,
+            scale=scale,
+            regime=side + 1,
+            first_step=_first_step(block, side, state, floor.just_after(time)),
+        )
+        pieces.extend(passage.pieces)
+        time, state = passage.time, passage.state
+        if passage.event is None:
+            break
+        if passage.event == "overturned":
+            overturned_at = time
+            break
+        acceleration = floor.just_after(time)
+        if passage.event == "uplift":
+            uplifts.append(time)
+            side, state = -int(np.sign(acceleration)), np.zeros(2)
+            continue
+        before = float(state[1])
+        after = -used * before
+        stays = after < least_velocity and abs(acceleration) <= block.uplift_acceleration
+        after = 0.0 if stays else after
+        impacts.append(RockingImpact(time=time, velocity_before=side * before, velocity_after=-side * after))
+        if stop_at_impact:
+            break
+        side = 0 if after == 0.0 else -side  # the rest looks at once whether it holds
+        state = np.array([0.0, after])
+    else:
+        raise EventError(f"t = {time:.6g} s: {MAX_EVENTS} impacts and uplifts; try a larger rest_energy")
+
+    peaks = _peaks(pieces)
+    ends = [abs(float(piece.interpolant(t)[0])) for piece in pieces for t in (piece.start, piece.end)]
+    largest = max([*ends, *(abs(peak.rotation) for peak in peaks)])
+    moved = bool(impacts or uplifts or rotation or angular_velocity)
+    if overturned_at is not None:
+        outcome = RockingOutcome.OVERTURNED
+    else:
+        outcome = RockingOutcome.ROCK if moved else RockingOutcome.REST
+    return RockingMotion(
+        block=block,
+        restitution=used,
+        outcome=outcome,
+        impacts=tuple(impacts),
+        peaks=peaks,
+        uplifts=tuple(uplifts),
+        end=time,
+        overturned_at=overturned_at,
+        largest_rotation=largest,
+        pieces=tuple(pieces),
+    )
+
+
+def first_swing_threshold(
+    block: RigidBlock,
+    floor_of_peak: Callable[[float], FloorAcceleration],
+    *,
+    low: float,
+    high: float,
+    duration: float,
+    relative_tolerance: float = 1e-9,
+) -> float:
+    """Peak floor acceleration from which the block overturns before any impact [m/s2].
+
+    Bisection on the exact motion of the first swing only, where overturning is monotone in the peak of the
+    motions considered here; with impacts there are safe islands above it and no single threshold.
+
+    Args:
+        floor_of_peak: the motion for a given peak acceleration [m/s2].
+        low, high: peaks that do not, and do, overturn in the first swing [m/s2].
+        duration: long enough to overturn or to come back [s].
+
+    Raises:
+        ValueError: `low` overturns or `high` does not.
+    """
+
+    def overturns(peak: float) -> bool:
+        motion = simulate_rocking(block, floor_of_peak(peak), duration=duration, stop_at_impact=True)
+        return motion.outcome is RockingOutcome.OVERTURNED
+
+    if overturns(low) or not overturns(high):
+        raise ValueError(f"first swing: no change from standing to overturned between {low} and {high} m/s2")
+    while high - low > relative_tolerance * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if overturns(middle) else (middle, high)
+    return 0.5 * (low + high)
+
+
+def _check(duration: float, rotation: float, restitution: float) -> None:
+    if not 0.0 < duration < math.inf:
+        raise ValueError(f"rocking: duration must be positive and finite, got {duration} s")
+    if not abs(rotation) < 0.5 * math.pi:
+        raise ValueError(f"rocking: the start must lie below 90 degrees, got {rotation} rad")
+    if not 0.0 <= restitution <= 1.0:
+        raise ValueError(f"rocking: restitution must lie between 0 and 1, got {restitution}")
+
+
+def _rate(block: RigidBlock, side: int) -> Rate:
+    squared, slenderness, gravity = block.frequency_parameter**2, block.slenderness_angle, block.gravity
+
+    def rate(state: FloatArray, acceleration: float) -> FloatArray:
+        lean = slenderness - state[0]
+        pull = math.sin(lean) + side * acceleration / gravity * math.cos(lean)
+        return np.array([state[1], -squared * pull])
+
+    return rate
+
+
+def _guards(block: RigidBlock, side: int) -> tuple[Guard, ...]:
+    if side == 0:
+        return (Guard(name="uplift", margin=lambda state, a: block.uplift_acceleration - abs(a)),)
+    return (
+        Guard(name="impact", margin=lambda state, a: float(state[0])),
+        Guard(name="overturned", margin=lambda state, a: 0.5 * math.pi - float(state[0])),
+    )
+
+
+def _first_step(block: RigidBlock, side: int, state: FloatArray, acceleration: float) -> float | None:
+    """A step well inside the hop that follows an impact [s]."""
+    if side == 0 or state[0] > 0.0:
+        return None
+    fall = abs(_rate(block, side)(state, acceleration)[1])
+    longest = 0.01 / block.frequency_parameter
+    return min(longest, 0.5 * state[1] / fall) if fall > 0.0 and state[1] > 0.0 else longest
+
+
+def _peaks(pieces: list[Piece]) -> tuple[RockingPeak, ...]:
+    turns = ((piece.regime - 1, turning_point(piece, component=1)) for piece in pieces)
+    return tuple(
+        RockingPeak(time=turn[0], rotation=side * float(turn[1][0]))
+        for side, turn in turns
+        if turn is not None
+    )

@@ -1,0 +1,162 @@
+"""The rigid slider: Coulomb friction with distinct coefficients and true sticking, event-driven.
+
+A body that does not rotate on a floor with acceleration a_g, in the frame of the floor. It sticks while
+|a_g| <= mu_s g; it slides with slip'' = -a_g - mu_k g sign(slip'); where the slip velocity vanishes it sticks
+again if it can. Slip is positive toward +x. The law is set-valued: no creep, no regularisation.
+Den Hartog, Trans. ASME APM-53-9 (1931); Westermo and Udwadia, Earthquake Engng Struct. Dyn. 11 (1983).
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from contact.reference.event_driven import EventError, FloatArray, Guard, Piece, Rate, flow, sample
+from contact.reference.floor_acceleration import FloorAcceleration
+
+MAX_EVENTS = 100_000
+
+
+@dataclass(frozen=True, kw_only=True)
+class RigidSlider:
+    """Friction between a sliding body and the floor.
+
+    Raises:
+        ValueError: a negative or infinite coefficient, mu_kinetic above mu_static, gravity not positive.
+    """
+
+    mu_static: float  #: [-]
+    mu_kinetic: float  #: [-]
+    gravity: float  #: [m/s2]
+
+    def __post_init__(self) -> None:
+        check_friction(self.mu_static, self.mu_kinetic)
+        if not 0.0 < self.gravity < math.inf:
+            raise ValueError(f"slider gravity must be positive and finite, got {self.gravity} m/s2")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SlipInterval:
+    """A stretch of time in which the body sticks, or slides one way."""
+
+    start: float  #: [s]
+    end: float  #: [s]
+    direction: int  #: +1 and -1: slides toward +x and -x; 0: sticks
+    stroke: float  #: slip at the end minus slip at the start [m]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SlidingMotion:
+    """What a slider did."""
+
+    intervals: tuple[SlipInterval, ...]
+    end: float  #: [s]
+    pieces: tuple[Piece, ...]
+
+    def at(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Slip [m] and slip velocity [m/s] at given times, nan after the end."""
+        states, _ = sample(self.pieces, np.asarray(times, dtype=float), 2)
+        return states[:, 0], states[:, 1]
+
+    @property
+    def strokes(self) -> tuple[float, ...]:
+        """Signed stroke of every sliding interval, the last one possibly unfinished [m]."""
+        return tuple(interval.stroke for interval in self.intervals if interval.direction)
+
+    @property
+    def largest_slip(self) -> float:
+        """Largest |slip| [m]."""
+        return float(np.abs(self._extremes(0.0, self.end)).max())
+
+    @property
+    def slip_travel(self) -> float:
+        """Length of the path over the floor [m]."""
+        return sum(abs(stroke) for stroke in self.strokes)
+
+    @property
+    def residual_slip(self) -> float:
+        """Signed slip at the end [m]."""
+        return float(self.at(np.array([self.end]))[0][0])
+
+    def peak_to_peak(self, start: float, end: float) -> float:
+        """Largest minus smallest slip between two times [m]; over the last period: the steady one."""
+        return float(np.ptp(self._extremes(start, end)))
+
+    def _extremes(self, start: float, end: float) -> FloatArray:
+        turns = [t for i in self.intervals for t in (i.start, i.end) if start < t < end]
+        return self.at(np.array([start, *turns, end]))[0]
+
+
+def simulate_sliding(
+    slider: RigidSlider, floor: FloorAcceleration, *, duration: float, slip_velocity: float = 0.0
+) -> SlidingMotion:
+    """Follow a slider that starts at slip 0 with the given slip velocity.
+
+    Args:
+        duration: [s].
+        slip_velocity: body minus floor at the start [m/s]; a body at rest on a floor that starts with
+            velocity v has -v.
+
+    Raises:
+        ValueError: a duration that is not positive, a velocity that is not finite.
+        EventError: more than 100 000 changes between sticking and sliding.
+    """
+    if not 0.0 < duration < math.inf:
+        raise ValueError(f"sliding: duration must be positive and finite, got {duration} s")
+    if not math.isfinite(slip_velocity):
+        raise ValueError(f"sliding: slip_velocity must be finite, got {slip_velocity} m/s")
+    pieces: list[Piece] = []
+    intervals: list[SlipInterval] = []
+    scale = np.array([1e-2, 1e-2])
+    time, state = 0.0, np.array([0.0, slip_velocity])
+    direction = int(np.sign(slip_velocity))
+    for _ in range(MAX_EVENTS):
+        passage = flow(
+            rate=_rate(slider, direction) if direction else None,
+            guards=_guards(slider, direction),
+            state=state,
+            start=time,
+            end=duration,
+            floor=floor,
+            scale=scale,
+            regime=direction + 1,
+        )
+        pieces.extend(passage.pieces)
+        if passage.time > time:
+            stroke = float(passage.state[0] - state[0])
+            intervals.append(SlipInterval(start=time, end=passage.time, direction=direction, stroke=stroke))
+        time, state = passage.time, passage.state
+        if passage.event is None:
+            break
+        if passage.event == "breaks loose":
+            direction = -int(np.sign(floor.just_after(time)))
+        else:
+            state = np.array([state[0], 0.0])
+            direction = 0  # the rest looks at once whether it holds
+    else:
+        raise EventError(f"t = {time:.6g} s: {MAX_EVENTS} changes between sticking and sliding")
+    return SlidingMotion(intervals=tuple(intervals), end=time, pieces=tuple(pieces))
+
+
+def check_friction(mu_static: float, mu_kinetic: float) -> None:
+    """Refuse coefficients that are negative or not finite, and mu_kinetic above mu_static."""
+    for name, value in (("mu_static", mu_static), ("mu_kinetic", mu_kinetic)):
+        if not 0.0 <= value < math.inf:
+            raise ValueError(f"{name} must be finite and not negative, got {value}")
+    if mu_kinetic > mu_static:
+        raise ValueError(
+            f"mu_kinetic must not exceed mu_static, got {mu_kinetic} > {mu_static}; "
+            "a body that needs more to keep sliding than to start would neither stick nor slide"
+        )
+
+
+def _rate(slider: RigidSlider, direction: int) -> Rate:
+    friction = -direction * slider.mu_kinetic * slider.gravity
+    return lambda state, acceleration: np.array([state[1], friction - acceleration])
+
+
+def _guards(slider: RigidSlider, direction: int) -> tuple[Guard, ...]:
+    if direction == 0:
+        limit = slider.mu_static * slider.gravity
+        return (Guard(name="breaks loose", margin=lambda state, a: limit - abs(a)),)
+    return (Guard(name="stops", margin=lambda state, a: direction * float(state[1])),)

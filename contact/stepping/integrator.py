@@ -1,0 +1,226 @@
+"""Adaptive time stepping of one body on a moving floor.
+
+A step is tried (`contact.stepping.step`) and redone smaller when an iteration fails, when the support breaks loose
+late in a
+large step, or when the energy ledger shows that the step lost or won more than its share; the next one is as large as
+`contact.stepping.control` says.
+
+`advance` is written once. `advance_compiled` steps a `ModalBody`, `fem.solid.nodal_body.advance_full` a
+finite-element body;
+`advance` itself, as plain Python, any object with the methods of `contact.stepping.body`. All call the same compiled
+laws, contact solver and ledger.
+"""
+
+from typing import Any
+
+import numpy as np
+from numba.extending import register_jitable
+
+from contact.interface.laws import weakened_mu
+from contact.interface.solver import Contact
+from contact.jit import compiled
+from contact.stepping.body import ROTATION, complete, prepared, shift_velocity, sizes_hold
+from contact.stepping.control import (
+    STEPS_PER_OCTAVE,
+    allowed_imbalance,
+    change_level,
+    ladder_level,
+    next_step,
+    room_of_ledger,
+)
+from contact.stepping.ledger import CONTACT_DAMPING, FRICTION, IMBALANCE, MATERIAL_DAMPING
+from contact.stepping.ledger import ROWS as LEDGER_ROWS
+from contact.stepping.observables import FALLEN, NEVER, follow
+from contact.stepping.sampling import sample
+from contact.stepping.state import Run
+from contact.stepping.step import account, attempt, copy_state, slide
+
+WEAKENING_LIMIT = 8  #: repetitions of a step for friction that falls with its slip
+WEAKENING_TOLERANCE = 1e-9  #: change of the coefficient at which they end
+HELD_STEPS = 6  #: after a rejection
+FADING = 0.8  #: of the memory for the imbalance, a step
+
+#: what `advance` returns
+REACHED, OVERTURNED, FAILED, UNPREPARED = 0, 1, 2, 3
+OVERTURNING_ROTATION = 0.5 * np.pi
+#: a container that is to lie on its side counts as overturned so much before: there its side meets the floor [rad]
+LYING_DOWN = 2e-3
+
+
+def _note_step(run: Run, step: float, slip_step: float, slip_velocity: float, every: bool) -> None:
+    """Friction's state and the record of the run, from the step about to be accepted."""
+    clock = run.clock[0]
+    clock.slid = clock.slid + abs(slip_step) if clock.sliding == 1 or every else 0.0
+    clock.sliding = 1 if every else 0
+    tangential, normal = 0.0, 0.0
+    for i in range(run.new.force.shape[0]):
+        tangential += run.new.force[i, 0]
+        normal += run.new.force[i, 1]
+    limit = run.contact.mu_static * normal
+    utilisation = abs(tangential) / limit if limit > 0.0 else 0.0
+    clock.utilisation_rate = (utilisation - clock.utilisation) / step
+    clock.utilisation = utilisation
+    clock.slip_acceleration = (slip_velocity - clock.slip_velocity) / step
+    clock.slip_velocity = slip_velocity
+    follow(
+        run.track[0],
+        run.control,
+        run.old,
+        run.new,
+        clock.time + step,
+        step,
+        every,
+        clock.slip + slip_step,
+        slip_step,
+        run.floor[1, 2],
+    )
+
+
+note_step = compiled(_note_step, inline=True)
+
+
+def _close_step(run: Run, step: float, slip_step: float, iterations: int) -> None:
+    """Make the step the state of the run, and enter it in the ledger."""
+    clock = run.clock[0]
+    for row in range(LEDGER_ROWS):
+        run.ledger[row] += run.change[row]
+    if run.track[0].overturned_at == NEVER:  # how it slams down afterwards is not the question
+        clock.least_imbalance = min(clock.least_imbalance, run.ledger[IMBALANCE])
+        clock.most_imbalance = max(clock.most_imbalance, run.ledger[IMBALANCE])
+        clock.dissipated = run.ledger[FRICTION] + run.ledger[CONTACT_DAMPING] + run.ledger[MATERIAL_DAMPING]
+    clock.slip += slip_step
+    clock.time += step
+    clock.steps += 1
+    clock.iterations += iterations
+    clock.smallest_step = min(clock.smallest_step, step)
+    copy_state(run.old, run.new)
+    for k in range(3):
+        run.floor[0, k] = run.floor[1, k]
+
+
+close_step = compiled(_close_step, inline=True)
+
+
+@register_jitable(forceinline=True)
+def _accept(
+    body: Any, run: Run, step: float, slip_step: float, slip_velocity: float, every: bool, iterations: int
+) -> None:
+    """Make the step attempted the state of the run; samples, ledger and record follow."""
+    clock = run.clock[0]
+    note_step(run, step, slip_step, slip_velocity, every)
+    clock.samples = sample(body, run, run.history, clock.samples, clock.samples_gone, step, slip_step)
+    clock.frames = sample(body, run, run.frames, clock.frames, clock.frames_gone, step, slip_step)
+    close_step(run, step, slip_step, iterations)
+
+
+@register_jitable(forceinline=True)
+def _kinetic_friction(contact: Contact, slid: float) -> float:
+    """Coefficient of friction of a support that slides, `slid` [m] since it broke loose."""
+    return weakened_mu(contact.mu_static, contact.mu_kinetic, contact.weakening, slid)
+
+
+@register_jitable(forceinline=True)
+def _is_full(run: Run) -> bool:
+    """No room for the samples of another largest step."""
+    ahead = run.control.largest_step
+    clock = run.clock[0]
+    room = run.history.mode.size - (clock.samples - clock.samples_gone)
+    room_of_frames = run.frames.mode.size - (clock.frames - clock.frames_gone)
+    return (room - 1) * run.history.interval < ahead or (room_of_frames - 1) * run.frames.interval < ahead
+
+
+@register_jitable(forceinline=True)
+def leave_alone(body: Any, run: Run, floor_velocity: float) -> None:
+    """Go over to the frame in which the floor, undriven from now on, stands still (Galilei): no kick, no journey.
+
+    Args:
+        body: what is stepped; run: at the end of its motion, whose `floor` rows are brought to rest.
+        floor_velocity: that it had [m/s].
+    """
+    shift_velocity(body, run.old, floor_velocity)
+    complete(body, run.old, run.floor[0, 0])
+    for side in range(2):
+        run.floor[side, 1], run.floor[side, 2] = 0.0, 0.0
+    run.clock[0].next_break = 0
+
+
+AFTERMATH_SLICE = 0.05  #: how often a container left alone is looked at [s]
+
+
+def advance(body: Any, run: Run, until: float) -> int:
+    """Step the body to the time `until` [s] or, as no step is cut for it, just beyond; changes `run` in place.
+
+    It also returns when the arrays of samples are full, so that no sample is lost, and at `clock.attempt_limit`, so
+    that whoever called can look up.
+
+    Returns:
+        REACHED, OVERTURNED (90 degrees, where `control.stop_when_overturned`), FAILED: no convergence at
+        the smallest step, the last good state stands in `run.old`; or UNPREPARED: the body needs something made for
+        steps of `clock.due_step`, after which the call is repeated.
+    """
+    control, clock, track = run.control, run.clock[0], run.track[0]
+    if not sizes_hold(body, run):
+        return FAILED
+    while clock.time < until and clock.steps + clock.rejected < clock.attempt_limit and not _is_full(run):
+        step = next_step(run)
+        if not prepared(body, step):
+            clock.due_step = step
+            return UNPREPARED
+        mu = run.contact.mu_static
+        if clock.sliding == 1:
+            mu = _kinetic_friction(run.contact, clock.slid)
+        iterations, every, slip_step, slip_velocity = 0, False, 0.0, 0.0
+        for _ in range(WEAKENING_LIMIT):  # friction that falls with the slip of this very step
+            iterations = attempt(body, run, step, mu)
+            if iterations < 0:
+                break
+            every, slip_step, slip_velocity = slide(run, step)
+            if clock.sliding == 0 or run.contact.weakening <= 0.0:
+                break
+            weakened = _kinetic_friction(run.contact, clock.slid + abs(slip_step))
+            if abs(weakened - mu) <= WEAKENING_TOLERANCE:
+                break
+            mu = weakened
+        if iterations < 0:
+            clock.rejected += 1
+            clock.failed += 1
+            if step <= control.smallest_step:
+                return FAILED
+            clock.level += STEPS_PER_OCTAVE
+            continue
+        dissipated = account(run)
+        allowed = allowed_imbalance(run, step, dissipated)
+        allowed = min(allowed, room_of_ledger(run, step))
+        used = abs(run.change[IMBALANCE]) / allowed
+        switches = (clock.sliding == 1) != every and run.contact.mu_static > 0.0
+        if switches and step > 1.01 * control.event_step:
+            used = max(used, 9.0 if step > 4.0 * control.event_step else 2.0)
+        if used > 1.0 and step > control.smallest_step:
+            clock.rejected += 1
+            clock.level = change_level(clock.level, used, False)
+            clock.held = HELD_STEPS
+            continue
+        if switches:  # what follows has the time scale of the contact again
+            clock.level = max(clock.level, ladder_level(control.largest_step, control.event_step))
+        late = step / control.trail_time
+        clock.trail = clock.trail / (1.0 + late * (1.0 + 0.5 * late)) + max(dissipated, 0.0)
+        _accept(body, run, step, slip_step, slip_velocity, every, iterations)
+        # One step's imbalance may vanish by chance while it changes sign: look at three.
+        recent = max(min(used, 1.0), FADING * clock.used)
+        level = change_level(clock.level, recent, clock.held == 0)
+        if level < clock.level or step > control.smallest_step:
+            clock.level = level
+        clock.used = recent
+        clock.held = max(clock.held - 1, 0)
+        fallen = OVERTURNING_ROTATION if control.stop_when_overturned else OVERTURNING_ROTATION - LYING_DOWN
+        if abs(run.old.pose[ROTATION]) >= fallen and track.overturned_at == NEVER:
+            track.overturned_at = clock.time
+            track.mode = FALLEN
+            track.modes |= 1 << FALLEN
+            if control.stop_when_overturned:
+                return OVERTURNED
+    return REACHED
+
+
+advance_compiled = compiled(advance)
+leave_alone_compiled = compiled(leave_alone)

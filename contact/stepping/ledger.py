@@ -1,0 +1,68 @@
+"""The energy ledger: where the energy of the container goes, and what the time stepping itself lost or won.
+
+    change of (kinetic + strain + gravity + contact springs)
+        = base work - friction - contact damping - material damping - imbalance
+
+Each term on the right but the last is integrated on its own, by the trapezoidal rule over forces and
+motions of both ends of a step; the imbalance is what then remains: > 0 lost, < 0 won by the scheme.
+"""
+
+from contact.interface.solver import Contact, FloatArray
+from contact.jit import compiled
+
+#: rows of the ledger [J]
+BASE_WORK, FRICTION, CONTACT_DAMPING, MATERIAL_DAMPING, IMBALANCE = 0, 1, 2, 3, 4
+ROWS = 5
+
+#: how far a ledger may be open in the end, whatever a step may lose: over the energy to overturn, what may be won ..
+GAIN_LIMIT = 1e-4
+#: .. and lost, or over what was dissipated, if that is more
+LOSS_LIMIT, LOSS_SHARE_LIMIT = 1e-3, 1e-2
+
+
+def _spring_energy(contact: Contact, point: FloatArray, stick: FloatArray) -> float:
+    """Energy stored in the contact springs [J]: points (n, 2) relative to the floor, sticks (n,)."""
+    energy = 0.0
+    for i in range(point.shape[0]):
+        if point[i, 1] < 0.0:
+            energy += 0.5 * contact.normal_stiffness[i] * point[i, 1] ** 2
+            energy += 0.5 * contact.tangential_stiffness[i] * stick[i] ** 2
+    return energy
+
+
+spring_energy = compiled(_spring_energy)
+
+
+def _contact_losses(
+    contact: Contact,
+    point: FloatArray,
+    point_new: FloatArray,
+    force: FloatArray,
+    force_new: FloatArray,
+    stick: FloatArray,
+    stick_new: FloatArray,
+    slip: FloatArray,
+) -> tuple[float, float]:
+    """Friction heat and contact damping of one step [J].
+
+    Args:
+        contact: the floor.
+        point, point_new: (n, 2) base points relative to the floor before and after [m].
+        force, force_new: (n, 2) contact forces on the container, tangential and normal [N].
+        stick, stick_new: (n,) elongations of the tangential springs [m].
+        slip: (n,) sliding of the points in this step [m].
+    """
+    friction, damping = 0.0, 0.0
+    for i in range(point.shape[0]):
+        stiffness = contact.normal_stiffness[i]
+        before, after = max(0.0, -point[i, 1]), max(0.0, -point_new[i, 1])
+        dashpot = 0.5 * (force[i, 1] - stiffness * before + force_new[i, 1] - stiffness * after)
+        damping += dashpot * (after - before)
+        stiffness = contact.tangential_stiffness[i]
+        dashpot = 0.5 * (-force[i, 0] - stiffness * stick[i] - force_new[i, 0] - stiffness * stick_new[i])
+        damping += dashpot * (stick_new[i] - stick[i])
+        friction -= 0.5 * (force[i, 0] + force_new[i, 0]) * slip[i]
+    return friction, damping
+
+
+contact_losses = compiled(_contact_losses, inline=True)

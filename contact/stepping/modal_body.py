@@ -1,0 +1,455 @@
+"""A body in a floating frame: three rigid coordinates and elastic modes; with no mode, the rigid body.
+
+Coordinates: mass centre x, z [m], rotation [rad, > 0 toward +x] and modal amplitudes q [m sqrt(kg)]. A point
+at X in the undeformed body, relative to the mass centre, is at c + R (X + Phi q), R = [[cos, sin], [-sin, cos]].
+The frame is the mean-axis (Tisserand) one: the modes are mass-normalised and orthogonal to the rigid
+motions, so the mass matrix is diag(m, m, I, 1, ..). Terms of the order (rotation rate / omega_1)^2 - centrifugal
+stretching, change of inertia with q - are dropped. Shabana, Dynamics of Multibody Systems, ch. 5;
+Canavin and Likins, J. Spacecraft 14 (1977) 724.
+
+Compiled for the stepper; see `contact.stepping.body` for what each function owes it.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba.extending import overload, register_jitable
+
+from contact.interface.equilibrium import Stance
+from contact.interface.solver import FloatArray, IntArray, Workspace, add_turned
+from contact.jit import compiled
+from contact.stepping import body as interface
+from contact.stepping.body import (
+    ANGULAR_VELOCITY,
+    CENTRE_X,
+    CENTRE_Z,
+    KINETIC,
+    POTENTIAL,
+    ROTATION,
+    STRAIN,
+    VELOCITY_X,
+    VELOCITY_Z,
+    State,
+)
+from contact.stepping.scheme import Scheme
+
+STEP_SLOTS = 16  #: step sizes whose effective compliance is kept
+
+
+class ModalBody(NamedTuple):
+    """Constants of the body; n base points, m elastic modes, k monitored points."""
+
+    mass: float  #: [kg]
+    inertia: float  #: about the mass centre [kg m2]
+    gravity: float  #: [m/s2]
+    point: FloatArray  #: (n, 2) base points relative to the mass centre, sorted by x [m]
+    shape: FloatArray  #: (n, 2, m) mode shapes there [1/sqrt(kg)]
+    rest: FloatArray  #: (2,) mass centre of the undeformed container on the floor at x = 0 [m]
+    monitor: FloatArray  #: (k, 2) monitored points relative to the mass centre [m]
+    monitor_shape: FloatArray  #: (k, 2, m)
+    stiffness: FloatArray  #: (m,) squares of the angular frequencies [1/s2]
+    damping: FloatArray  #: (m,) damping over mass, 2 zeta omega [1/s]
+    tolerance: float  #: error of a base point at which an iteration stops [m]
+    #: scratch, rewritten by the stepper: for each of so many step sizes ..
+    cached_step: FloatArray  #: (slots + 1,) the step [s]; last, the slot to use next
+    recent: IntArray  #: (1,) the slot asked for last
+    inverse: FloatArray  #: (slots, 3 + m) inverse effective masses
+    elastic_compliance: FloatArray  #: (slots, 2 n, 2 n) effective compliance of the modes, body's frame [m/N]
+    arm: FloatArray  #: (n, 2) base points relative to the mass centre, turned
+    free_change: FloatArray  #: (3 + m,)
+
+
+def make_modal_body(
+    *,
+    mass: float,
+    inertia: float,
+    gravity: float,
+    point: FloatArray,
+    rest: tuple[float, float] = (0.0, 0.0),
+    shape: FloatArray | None = None,
+    frequencies: FloatArray | None = None,
+    damping_ratios: FloatArray | None = None,
+    monitor: FloatArray | None = None,
+    monitor_shape: FloatArray | None = None,
+    tolerance: float,
+) -> ModalBody:
+    """Put a body together; without modes it is rigid.
+
+    Args:
+        mass: [kg]; inertia: about the mass centre [kg m2]; gravity: [m/s2].
+        point: (n, 2) base points relative to the mass centre [m], sorted by x.
+        rest: mass centre of the undeformed container standing on the floor [m].
+        shape: (n, 2, m) mass-normalised mode shapes at them.
+        frequencies: (m,) angular frequencies [rad/s]; damping_ratios: (m,) [-].
+        monitor: (k, 2) points whose motion is followed; monitor_shape: (k, 2, m).
+        tolerance: error of a base point at which the iterations of a step stop [m].
+    """
+    n = point.shape[0]
+    omega = np.zeros(0) if frequencies is None else np.asarray(frequencies, dtype=float)
+    zeta = np.zeros(omega.size) if damping_ratios is None else np.asarray(damping_ratios, dtype=float)
+    watched = np.zeros((0, 2)) if monitor is None else monitor
+    m = omega.size
+    return ModalBody(
+        mass=float(mass),
+        inertia=float(inertia),
+        gravity=float(gravity),
+        point=np.array(point, dtype=float, order="C"),
+        rest=np.array(rest, dtype=float),
+        shape=np.zeros((n, 2, 0)) if shape is None else np.array(shape, dtype=float, order="C"),
+        monitor=np.array(watched, dtype=float, order="C"),
+        monitor_shape=np.zeros((len(watched), 2, m))
+        if monitor_shape is None
+        else np.array(monitor_shape, dtype=float, order="C"),
+        stiffness=omega**2,
+        damping=2.0 * zeta * omega,
+        tolerance=float(tolerance),
+        cached_step=np.append(np.full(STEP_SLOTS, -1.0), 0.0),
+        recent=np.zeros(1, dtype=np.int64),
+        inverse=np.zeros((STEP_SLOTS, 3 + m)),
+        elastic_compliance=np.zeros((STEP_SLOTS, 2 * n, 2 * n)),
+        arm=np.zeros((n, 2)),
+        free_change=np.zeros(3 + m),
+    )
+
+
+class BlockOnCorners(ModalBody):
+    """A rigid body on two contact points: the same fields under a type of its own.
+
+    For it the stepper is compiled with all sizes known (`sizes_hold`): loops over two points and three coordinates
+    are unrolled, which halves the time of a step and changes no bit of it.
+    """
+
+
+def with_own_scratch(body: ModalBody) -> ModalBody:
+    """The same body with scratch arrays of its own and no monitored points: for a thread of a batch.
+
+    A rigid body on two points comes back as `BlockOnCorners`.
+    """
+    own = body._replace(
+        monitor=np.zeros((0, 2)),
+        monitor_shape=np.zeros((0, 2, body.stiffness.size)),
+        cached_step=np.append(np.full(STEP_SLOTS, -1.0), 0.0),
+        recent=np.zeros(1, dtype=np.int64),
+        inverse=np.zeros_like(body.inverse),
+        elastic_compliance=np.zeros_like(body.elastic_compliance),
+        arm=np.zeros_like(body.arm),
+        free_change=np.zeros_like(body.free_change),
+    )
+    small = body.stiffness.size == 0 and body.point.shape[0] == 2
+    return BlockOnCorners(*own) if small else own
+
+
+def _predict(body: ModalBody, scheme: Scheme, step: float, old: State, new: State) -> None:
+    for j in range(old.position.size):
+        new.position[j] = old.position[j] + step * (old.velocity[j] + 0.5 * step * old.acceleration[j])
+        new.velocity[j] = old.velocity[j] + step * old.acceleration[j]
+        new.acceleration[j] = old.acceleration[j]
+    # The rotation alone enters nonlinearly: the nearer it is guessed, the fewer iterations.
+    change = step * old.jerk[2]
+    new.position[2] += scheme.newmark_beta * step * step * change
+    new.velocity[2] += scheme.newmark_gamma * step * change
+    new.acceleration[2] += change
+
+
+def _effective_slot(body: ModalBody, scheme: Scheme, step: float) -> int:
+    """Where the inverse effective masses and the elastic compliance of this step size lie; made if missing."""
+    if body.cached_step[body.recent[0]] == step:
+        return body.recent[0]
+    slots = body.cached_step.size - 1
+    for slot in range(slots):
+        if body.cached_step[slot] == step:
+            body.recent[0] = slot
+            return slot
+    slot = int(body.cached_step[slots])  # the oldest makes room
+    body.cached_step[slots] = (slot + 1) % slots
+    body.cached_step[slot], body.recent[0] = step, slot
+    m = body.stiffness.size
+    now = 1.0 - scheme.alpha_f
+    inertial = (1.0 - scheme.alpha_m) / (scheme.newmark_beta * step * step)
+    viscous = now * scheme.newmark_gamma / (scheme.newmark_beta * step)
+    body.inverse[slot, 0] = 1.0 / (inertial * body.mass)
+    body.inverse[slot, 1] = body.inverse[slot, 0]
+    body.inverse[slot, 2] = 1.0 / (inertial * body.inertia)
+    for k in range(m):
+        body.inverse[slot, 3 + k] = 1.0 / (inertial + viscous * body.damping[k] + now * body.stiffness[k])
+    n = body.point.shape[0]
+    for a in range(2 * n):
+        for b in range(a, 2 * n):
+            total = 0.0
+            for k in range(m):
+                total += (
+                    body.shape[a // 2, a % 2, k] * body.shape[b // 2, b % 2, k] * body.inverse[slot, 3 + k]
+                )
+            body.elastic_compliance[slot, a, b] = total
+            body.elastic_compliance[slot, b, a] = total
+    return slot
+
+
+effective_slot = compiled(_effective_slot)
+
+
+def _place_points(
+    body: ModalBody,
+    state: State,
+    work: Workspace,
+    floor: float,
+    floor_velocity: float,
+    cosine: float,
+    sine: float,
+) -> None:
+    """Base points and their velocities at the iterate, relative to the floor; arms into `body.arm`."""
+    m = body.stiffness.size
+    rate = state.velocity[2]
+    for i in range(body.point.shape[0]):
+        x, z = body.point[i, 0], body.point[i, 1]
+        u, w = 0.0, 0.0
+        for k in range(m):
+            x += body.shape[i, 0, k] * state.position[3 + k]
+            z += body.shape[i, 1, k] * state.position[3 + k]
+            u += body.shape[i, 0, k] * state.velocity[3 + k]
+            w += body.shape[i, 1, k] * state.velocity[3 + k]
+        body.arm[i, 0] = cosine * x + sine * z
+        body.arm[i, 1] = -sine * x + cosine * z
+        work.free[i, 0] = state.position[0] + body.arm[i, 0] - floor
+        work.free[i, 1] = state.position[1] + body.arm[i, 1]
+        work.free_velocity[i, 0] = (
+            state.velocity[0] + body.arm[i, 1] * rate + cosine * u + sine * w - floor_velocity
+        )
+        work.free_velocity[i, 1] = state.velocity[1] - body.arm[i, 0] * rate - sine * u + cosine * w
+
+
+place_points = compiled(_place_points, inline=True)
+
+
+def _release(
+    body: ModalBody,
+    scheme: Scheme,
+    step: float,
+    old: State,
+    new: State,
+    work: Workspace,
+    floor: float,
+    floor_velocity: float,
+) -> None:
+    m = body.stiffness.size
+    n = body.point.shape[0]
+    slot = effective_slot(body, scheme, step)
+    inverse = body.inverse[slot]
+    now, before = 1.0 - scheme.alpha_f, scheme.alpha_f
+    cosine, sine = math.cos(new.position[2]), math.sin(new.position[2])
+    place_points(body, new, work, floor, floor_velocity, cosine, sine)
+    for j in range(3 + m):
+        mass, force = 1.0, before * (old.external[j] - old.internal[j])
+        if j < 2:
+            mass = body.mass
+        elif j == 2:
+            mass = body.inertia
+        else:
+            force -= now * (body.damping[j - 3] * new.velocity[j] + body.stiffness[j - 3] * new.position[j])
+        if j == 1:
+            force -= now * body.mass * body.gravity
+        force -= mass * ((1.0 - scheme.alpha_m) * new.acceleration[j] + scheme.alpha_m * old.acceleration[j])
+        body.free_change[j] = inverse[j] * force
+    slope = scheme.newmark_gamma / (scheme.newmark_beta * step)
+    change = body.free_change
+    for i in range(n):
+        u, w = 0.0, 0.0
+        for k in range(m):
+            u += body.shape[i, 0, k] * change[3 + k]
+            w += body.shape[i, 1, k] * change[3 + k]
+        moved_x = change[0] + body.arm[i, 1] * change[2] + cosine * u + sine * w
+        moved_z = change[1] - body.arm[i, 0] * change[2] - sine * u + cosine * w
+        work.free[i, 0] += moved_x
+        work.free[i, 1] += moved_z
+        work.free_velocity[i, 0] += slope * moved_x
+        work.free_velocity[i, 1] += slope * moved_z
+    drift, turn = now * inverse[0], now * inverse[2]
+    for i in range(n):
+        for j in range(n):
+            work.compliance[2 * i, 2 * j] = drift + turn * body.arm[i, 1] * body.arm[j, 1]
+            work.compliance[2 * i, 2 * j + 1] = -turn * body.arm[i, 1] * body.arm[j, 0]
+            work.compliance[2 * i + 1, 2 * j] = -turn * body.arm[i, 0] * body.arm[j, 1]
+            work.compliance[2 * i + 1, 2 * j + 1] = drift + turn * body.arm[i, 0] * body.arm[j, 0]
+    if m > 0:
+        add_turned(body.elastic_compliance[slot], cosine, sine, now, work.compliance)
+
+
+def _gather_force(
+    body: ModalBody, force: FloatArray, rotation: float, arm: FloatArray, out: FloatArray
+) -> None:
+    """Generalised contact force J^T f into `out`."""
+    m = body.stiffness.size
+    cosine, sine = 1.0, 0.0
+    if m > 0:
+        cosine, sine = math.cos(rotation), math.sin(rotation)
+    for j in range(3 + m):
+        out[j] = 0.0
+    for i in range(force.shape[0]):
+        tangential, normal = force[i, 0], force[i, 1]
+        if tangential != 0.0 or normal != 0.0:
+            out[0] += tangential
+            out[1] += normal
+            out[2] += arm[i, 1] * tangential - arm[i, 0] * normal
+            along, across = cosine * tangential - sine * normal, sine * tangential + cosine * normal
+            for k in range(m):
+                out[3 + k] += body.shape[i, 0, k] * along + body.shape[i, 1, k] * across
+
+
+gather_force = compiled(_gather_force, inline=True)
+
+
+def _respond(body: ModalBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
+    m = body.stiffness.size
+    now = 1.0 - scheme.alpha_f
+    gather_force(body, work.force, new.position[2], body.arm, new.external)
+    inverse = body.inverse[effective_slot(body, scheme, step)]
+    by_velocity = scheme.newmark_gamma / (scheme.newmark_beta * step)
+    by_acceleration = 1.0 / (scheme.newmark_beta * step * step)
+    turned = 0.0
+    for j in range(3 + m):
+        change = body.free_change[j] + now * inverse[j] * new.external[j]
+        new.position[j] += change
+        new.velocity[j] += by_velocity * change
+        new.acceleration[j] += by_acceleration * change
+        if j == 2:
+            turned = abs(change)
+    # The points were moved along the tangent of their circles: what the linearisation left out.
+    reach = abs(body.arm[0, 0]) + abs(body.arm[0, 1])
+    return turned * (0.5 * turned * reach) / body.tolerance
+
+
+def _complete(body: ModalBody, new: State, floor: float) -> None:
+    m = body.stiffness.size
+    position, velocity = new.position, new.velocity
+    cosine, sine = math.cos(position[2]), math.sin(position[2])
+    for i in range(body.point.shape[0]):
+        x, z = body.point[i, 0], body.point[i, 1]
+        for k in range(m):
+            x += body.shape[i, 0, k] * position[3 + k]
+            z += body.shape[i, 1, k] * position[3 + k]
+        body.arm[i, 0], body.arm[i, 1] = cosine * x + sine * z, -sine * x + cosine * z
+        new.point[i, 0] = position[0] + body.arm[i, 0] - floor
+        new.point[i, 1] = position[1] + body.arm[i, 1]
+    new.internal[0], new.internal[1], new.internal[2] = 0.0, body.mass * body.gravity, 0.0
+    kinetic = body.mass * (velocity[0] ** 2 + velocity[1] ** 2) + body.inertia * velocity[2] ** 2
+    strain = 0.0
+    for k in range(m):
+        q, rate = position[3 + k], velocity[3 + k]
+        new.damping[3 + k] = body.damping[k] * rate
+        new.internal[3 + k] = new.damping[3 + k] + body.stiffness[k] * q
+        kinetic += rate * rate
+        strain += body.stiffness[k] * q * q
+    new.energy[KINETIC] = 0.5 * kinetic
+    new.energy[STRAIN] = 0.5 * strain
+    new.energy[POTENTIAL] = body.mass * body.gravity * position[1]
+    new.pose[ROTATION], new.pose[ANGULAR_VELOCITY] = position[2], velocity[2]
+    new.pose[CENTRE_X], new.pose[CENTRE_Z] = position[0], position[1]
+    new.pose[VELOCITY_X], new.pose[VELOCITY_Z] = velocity[0], velocity[1]
+
+
+def _observe(body: ModalBody, new: State, floor: float) -> None:
+    m = body.stiffness.size
+    position, velocity = new.position, new.velocity
+    cosine, sine = math.cos(position[2]), math.sin(position[2])
+    rate = velocity[2]
+    for i in range(body.monitor.shape[0]):
+        x, z = body.monitor[i, 0], body.monitor[i, 1]
+        u, w = 0.0, 0.0
+        for k in range(m):
+            x += body.monitor_shape[i, 0, k] * position[3 + k]
+            z += body.monitor_shape[i, 1, k] * position[3 + k]
+            u += body.monitor_shape[i, 0, k] * velocity[3 + k]
+            w += body.monitor_shape[i, 1, k] * velocity[3 + k]
+        arm_x, arm_z = cosine * x + sine * z, -sine * x + cosine * z
+        new.monitor[i, 0] = position[0] + arm_x - floor - body.rest[0] - body.monitor[i, 0]
+        new.monitor[i, 1] = position[1] + arm_z - body.rest[1] - body.monitor[i, 1]
+        new.monitor[i, 2] = velocity[0] + arm_z * rate + cosine * u + sine * w
+        new.monitor[i, 3] = velocity[1] - arm_x * rate - sine * u + cosine * w
+
+
+def _shift_velocity(body: ModalBody, state: State, velocity: float) -> None:
+    state.velocity[0] -= velocity
+
+
+complete_modal = compiled(_complete)
+
+
+def _any_sizes(body: ModalBody, run: Any) -> bool:
+    return True
+
+
+def _prepared(body: ModalBody, step: float) -> bool:
+    return True
+
+
+@register_jitable(forceinline=True)
+def _state_of_block_on_corners(state: State) -> bool:
+    if state.position.size != 3 or state.velocity.size != 3 or state.acceleration.size != 3:
+        return False
+    if state.jerk.size != 3 or state.internal.size != 3 or state.damping.size != 3:
+        return False
+    if state.external.size != 3 or state.pose.size != 6 or state.energy.size != 3 or state.stick.size != 2:
+        return False
+    if state.point.shape[0] != 2 or state.force.shape[0] != 2 or state.descent.shape[0] != 2:
+        return False
+    if state.numbers.size != 44:
+        return False
+    return bool(state.point.shape[1] == 2 and state.force.shape[1] == 2 and state.descent.shape[1] == 2)
+
+
+def _sizes_of_block_on_corners(body: ModalBody, run: Any) -> bool:
+    """Each comparison with a constant is one that the compiler relies on from there on: it unrolls the loops."""
+    work = run.work
+    if body.point.shape[0] != 2 or body.stiffness.size != 0 or run.control.base_points != 2:
+        return False
+    if body.elastic_compliance.shape[1] != 4 or body.elastic_compliance.shape[2] != 4:
+        return False
+    if work.point.shape[0] != 2 or work.slope.shape[0] != 2:
+        return False
+    if work.force.shape[0] != 2 or work.force.shape[1] != 2:
+        return False
+    if not _state_of_block_on_corners(run.old):
+        return False
+    return bool(_state_of_block_on_corners(run.new))
+
+
+def place(body: ModalBody, state: State, stance: Stance, floor_velocity: float) -> None:
+    """Write the initial coordinates: the stance's rigid pose, strained by its contact forces."""
+    cosine, sine = math.cos(stance.rotation), math.sin(stance.rotation)
+    turn = np.array([[cosine, sine], [-sine, cosine]])
+    state.position[:2], state.position[2] = stance.centre, stance.rotation
+    state.velocity[:] = 0.0
+    state.velocity[:3] = stance.velocity[0] + floor_velocity, stance.velocity[1], stance.angular_velocity
+    state.position[3:] = np.einsum("ij,ijk->k", stance.force @ turn, body.shape) / body.stiffness
+
+
+def start(body: ModalBody, state: State, floor: float) -> None:
+    """What follows from the coordinates and contact forces in `state`, and the acceleration they give."""
+    complete_modal(body, state, floor)
+    gather_force(body, state.force, state.position[2], body.arm, state.external)
+    masses = np.concatenate([[body.mass, body.mass, body.inertia], np.ones(body.stiffness.size)])
+    state.acceleration[:] = (state.external - state.internal) / masses
+
+
+def _compile_for(
+    classes: tuple[type, ...], function: Callable[..., Any], implementation: Callable[..., Any]
+) -> None:
+    """Let compiled callers of `function` use `implementation` when the body is of one of these classes."""
+
+    def choose(body: Any, *arguments: Any) -> Callable[..., Any] | None:
+        return implementation if getattr(body, "instance_class", None) in classes else None
+
+    overload(function, strict=False, jit_options={"forceinline": True})(choose)
+
+
+_compile_for((ModalBody, BlockOnCorners), interface.predict, _predict)
+_compile_for((ModalBody, BlockOnCorners), interface.release, _release)
+_compile_for((ModalBody, BlockOnCorners), interface.respond, _respond)
+_compile_for((ModalBody, BlockOnCorners), interface.complete, _complete)
+_compile_for((ModalBody, BlockOnCorners), interface.observe, _observe)
+_compile_for((ModalBody, BlockOnCorners), interface.shift_velocity, _shift_velocity)
+_compile_for((ModalBody, BlockOnCorners), interface.prepared, _prepared)
+_compile_for((ModalBody,), interface.sizes_hold, _any_sizes)
+_compile_for((BlockOnCorners,), interface.sizes_hold, _sizes_of_block_on_corners)

@@ -1,0 +1,268 @@
+"""What a run is judged by, followed step by step: extremes, events, impacts, restitution.
+
+A side carries nothing, and the body turns about the other, when only the outer part of the base at the other
+side touches: a flat base on an elastic bed opens from one edge long before. The corners are the first and the
+last base point. An impact counts when a corner closes whose gap had exceeded a thousandth of width times
+slenderness angle while the other was the pivot.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+from numba.extending import register_jitable
+
+from contact.motion.interpolation import hermite
+from contact.stepping.body import ANGULAR_VELOCITY, POTENTIAL, ROTATION, State
+
+NEVER = math.inf  #: time of an event that has not happened
+
+#: a gap that counts as an opening of the base, over the width
+OPENING = 1e-9
+#: gap whose closing counts as an impact, over width times slenderness angle
+IMPACT_GAP = 1e-3
+#: the angular velocity after an impact is averaged over this time, over 1/p: it rings
+AVERAGED = 0.1
+#: corner forces are averaged over this time, over 1/p: under a dashpot the instantaneous one means nothing
+FORCE_WINDOW = 0.01
+#: a side is open when nothing but this outer part of the base, over its width, carries: the body turns about it
+PIVOT = 0.15
+#: rotation ratio above which an open side is called rocking
+ROCKING = 0.01
+
+#: modes of motion as stored in a history, and as bits in `modes`
+REST, SLIDE, ROCK, SLIDE_ROCK, FALLEN = 0, 1, 2, 3, 4
+
+TRACK = np.dtype(
+    [
+        ("max_rotation", "f8"),
+        ("max_rocking", "f8"),  # largest rotation while a side carries nothing
+        ("max_slip", "f8"),
+        ("slip_travel", "f8"),
+        ("max_uplift", "f8"),
+        ("max_penetration", "f8"),
+        ("max_corner_force", "f8"),  # mean over a short while
+        ("peak_corner_force", "f8"),  # the instantaneous one
+        ("left_force", "f8"),  # at the end of the last step
+        ("right_force", "f8"),
+        ("pressed", "f8"),  # how long the impulses have been gathered
+        ("left_impulse", "f8"),
+        ("right_impulse", "f8"),
+        ("max_top_displacement", "f8"),
+        ("max_acceleration", "f8"),
+        ("first_opening", "f8"),
+        ("first_uplift", "f8"),
+        ("overturned_at", "f8"),
+        ("impacts", "i8"),
+        ("first_impact", "f8"),
+        ("modes", "i8"),
+        ("mode", "i8"),
+        ("left_open", "i8"),  # 1 while the left side carries nothing
+        ("right_open", "i8"),
+        ("left_gap", "f8"),  # largest gap of that corner since it opened with the other as pivot
+        ("right_gap", "f8"),
+        ("peak_energy", "f8"),  # potential energy above rest at the last turning point
+        ("restitution_by_peaks", "f8"),
+        ("turning", "f8"),  # angular acceleration over the last step
+        ("drift", "f8"),  # what a rigid block's angular velocity has changed by since the first impact
+        ("watched", "f8"),  # how long the angular velocity has been averaged since
+        ("mean_velocity", "f8"),
+        ("velocity_before", "f8"),  # angular velocity just before the first impact
+        (
+            "pivot_waiting",
+            "i8",
+        ),  # the corner that was the pivot at the first impact: -1 left, +1 right, 0 none
+        ("restitution_by_velocity", "f8"),
+    ],
+    align=True,
+)
+
+
+def make_track() -> Any:
+    """A fresh record array (1,) of TRACK: nothing has happened yet."""
+    track = np.zeros(1, TRACK).view(np.recarray)
+    for name in ("first_opening", "first_uplift", "overturned_at", "first_impact"):
+        track[name] = NEVER
+    for name in ("restitution_by_peaks", "restitution_by_velocity", "peak_energy", "velocity_before"):
+        track[name] = np.nan
+    return track
+
+
+def begin(track: Any, control: Any, state: State) -> None:
+    """Note the initial state: a container may start tilted, with a side already open."""
+    n = control.base_points
+    gap, x = state.point[:n, 1], state.point[:n, 0]
+    closed = gap <= 0.0
+    left_open = int(not np.any(closed & (x < x[-1] - PIVOT * control.width)))
+    right_open = int(not np.any(closed & (x > x[0] + PIVOT * control.width)))
+    rotation, highest = float(abs(state.pose[ROTATION])), float(gap.max())
+    middle = 0.5 * (x[0] + x[-1])
+    left = float(state.force[:n][x < middle, 1].sum())
+    right = float(state.force[:n][x >= middle, 1].sum())
+    mode = ROCK if left_open + right_open > 0 and rotation > ROCKING * control.slenderness_angle else REST
+    begun = {
+        "left_open": left_open,
+        "right_open": right_open,
+        "max_rotation": rotation,
+        "max_uplift": max(0.0, highest),
+        "max_penetration": max(0.0, -float(gap.min())),
+        "left_force": left,
+        "right_force": right,
+        "max_corner_force": max(left, right),
+        "peak_corner_force": max(left, right),
+        "mode": mode,
+        "modes": 1 << mode,
+    }
+    if highest > OPENING * control.width:
+        begun["first_opening"] = 0.0
+    if left_open + right_open == 1:
+        begun |= {"first_uplift": 0.0, "max_rocking": rotation}
+    for name, value in begun.items():  # by item: attributes of a record are looked up ten times as slowly
+        track[name] = value
+
+
+@register_jitable(forceinline=True)
+def follow(
+    track: Any,
+    control: Any,
+    old: State,
+    new: State,
+    time: float,
+    step: float,
+    sliding: bool,
+    slip: float,
+    slip_step: float,
+    floor_acceleration: float,
+) -> None:
+    """Update the record with the accepted step from `old` to `new`.
+
+    Args:
+        track: record of TRACK.
+        control: the stepping's `Control`: sizes and constants of the container.
+        old, new: states at both ends of the step.
+        time: at its end [s]; step: its length [s].
+        sliding: every loaded point slides.
+        slip: container against floor so far, signed [m]; slip_step: of this step [m].
+        floor_acceleration: at the end of the step [m/s2].
+    """
+    n = control.base_points
+    rotation = new.pose[ROTATION]
+    track.max_rotation = max(track.max_rotation, abs(rotation))
+    before, after = old.pose[ANGULAR_VELOCITY], new.pose[ANGULAR_VELOCITY]
+    if before * after < 0.0:  # it turned round within the step, where a sample may lie
+        share = before / (before - after)
+        peak = hermite(share, step, old.pose[ROTATION], before, rotation, after)
+        track.max_rotation = max(track.max_rotation, abs(peak))
+    track.max_slip = max(track.max_slip, abs(slip))
+    track.slip_travel += abs(slip_step)
+    left_open, right_open, uplift, left_force, right_force = 1, 1, 0.0, 0.0, 0.0
+    first, last = new.point[0, 0], new.point[n - 1, 0]
+    for i in range(n):
+        gap, x = new.point[i, 1], new.point[i, 0]
+        uplift = max(uplift, gap)
+        track.max_penetration = max(track.max_penetration, -gap)
+        if gap > OPENING * control.width and time < track.first_opening:
+            track.first_opening = time
+        if x < 0.5 * (first + last):
+            left_force += new.force[i, 1]
+        else:
+            right_force += new.force[i, 1]
+        if gap <= 0.0 and x < last - PIVOT * control.width:
+            left_open = 0
+        if gap <= 0.0 and x > first + PIVOT * control.width:
+            right_open = 0
+    track.max_uplift = max(track.max_uplift, uplift)
+    track.left_impulse += 0.5 * step * (track.left_force + left_force)
+    track.right_impulse += 0.5 * step * (track.right_force + right_force)
+    track.left_force, track.right_force = left_force, right_force
+    track.peak_corner_force = max(track.peak_corner_force, max(left_force, right_force))
+    track.pressed += step
+    if track.pressed >= FORCE_WINDOW / control.frequency_parameter:
+        mean = max(track.left_impulse, track.right_impulse) / track.pressed
+        track.max_corner_force = max(track.max_corner_force, mean)
+        track.left_impulse, track.right_impulse, track.pressed = 0.0, 0.0, 0.0
+    if left_open + right_open == 1 and time < track.first_uplift:
+        track.first_uplift = time
+    open_side = left_open + right_open > 0
+    if open_side:
+        track.max_rocking = max(track.max_rocking, abs(rotation))
+    rocking = open_side and abs(rotation) > ROCKING * control.slenderness_angle
+    track.mode = (ROCK if rocking else REST) + (SLIDE if sliding else REST)
+    if track.overturned_at < time:
+        track.mode = FALLEN
+    track.modes |= 1 << track.mode
+    track.left_open, track.right_open = left_open, right_open
+    struck = _find_impact(track, control, old, new, step)
+    _follow_restitution(track, control, old, new, time, step, struck, floor_acceleration)
+    track.turning = (new.pose[ANGULAR_VELOCITY] - old.pose[ANGULAR_VELOCITY]) / step
+
+
+@register_jitable(forceinline=True)
+def _find_impact(track: Any, control: Any, old: State, new: State, step: float) -> int:
+    """The corner that a counted impact struck in this step: -1 left, +1 right, 0 none."""
+    last = control.base_points - 1
+    counts = IMPACT_GAP * control.width * control.slenderness_angle
+    left, right = new.point[0, 1], new.point[last, 1]
+    if left > 0.0 and right <= 0.0:
+        track.left_gap = max(track.left_gap, left)
+    if right > 0.0 and left <= 0.0:
+        track.right_gap = max(track.right_gap, right)
+    struck = 0
+    if left <= 0.0 and old.point[0, 1] > 0.0:
+        if track.left_gap > counts:
+            struck = -1
+        track.left_gap = 0.0
+    if right <= 0.0 and old.point[last, 1] > 0.0:
+        if track.right_gap > counts:
+            struck = 1
+        track.right_gap = 0.0
+    if struck != 0:
+        track.impacts += 1
+    return struck
+
+
+@register_jitable(forceinline=True)
+def _follow_restitution(
+    track: Any,
+    control: Any,
+    old: State,
+    new: State,
+    time: float,
+    step: float,
+    struck: int,
+    floor_acceleration: float,
+) -> None:
+    """Ratio of angular velocities over the first impact, and of the heights of the peaks around it.
+
+    The impact takes a moment and leaves ringing behind. So the velocity after it is the mean over a while of the
+    angular velocity less what a rigid block rocking about the new pivot would have gained since the impact.
+    """
+    velocity = new.pose[ANGULAR_VELOCITY]
+    if struck != 0 and track.impacts == 1:
+        corner = 0 if struck < 0 else control.base_points - 1
+        gap, depth = old.point[corner, 1], -new.point[corner, 1]
+        track.first_impact = time
+        track.velocity_before = old.pose[ANGULAR_VELOCITY] + track.turning * step * gap / (gap + depth)
+        track.pivot_waiting = -struck
+    elif track.pivot_waiting != 0:
+        corner = control.base_points - 1 if track.pivot_waiting > 0 else 0
+        lean = -track.pivot_waiting * control.slenderness_angle - new.pose[ROTATION]
+        pull = math.sin(lean) + floor_acceleration / control.gravity * math.cos(lean)
+        track.drift -= step * control.frequency_parameter**2 * pull
+        if new.point[corner, 1] > IMPACT_GAP * control.width * control.slenderness_angle:
+            track.mean_velocity += step * (velocity - track.drift)
+            track.watched += step
+        if struck != 0 or track.watched >= AVERAGED / control.frequency_parameter:
+            if track.watched >= 0.5 * AVERAGED / control.frequency_parameter:
+                ratio = track.mean_velocity / (track.watched * track.velocity_before)
+                if ratio > 0.0:  # else it did not go over to the new pivot: there is no such ratio
+                    track.restitution_by_velocity = ratio
+            track.pivot_waiting = 0
+    turned = old.pose[ANGULAR_VELOCITY] * velocity < 0.0 or old.pose[ANGULAR_VELOCITY] == 0.0
+    aside = abs(new.pose[ROTATION]) > ROCKING * control.slenderness_angle
+    if turned and aside and track.left_open + track.right_open == 1:
+        energy = max(old.energy[POTENTIAL], new.energy[POTENTIAL]) - control.resting_energy
+        if track.impacts == 1 and not track.restitution_by_peaks >= 0.0 and track.peak_energy > 0.0:
+            track.restitution_by_peaks = math.sqrt(max(energy, 0.0) / track.peak_energy)
+        if track.impacts == 0:
+            track.peak_energy = energy

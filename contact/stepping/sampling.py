@@ -1,0 +1,133 @@
+"""Samples of a run on an exact grid of times, taken within the step just accepted."""
+
+from typing import Any
+
+import numpy as np
+from numba.extending import register_jitable
+
+from contact.interface.solver import FloatArray
+from contact.jit import compiled
+from contact.motion.interpolation import hermite
+from contact.motion.kernel import floor_motion
+from contact.stepping.body import (
+    ANGULAR_VELOCITY,
+    CENTRE_X,
+    CENTRE_Z,
+    ROTATION,
+    VELOCITY_X,
+    VELOCITY_Z,
+    State,
+    observe,
+)
+from contact.stepping.ledger import ROWS as LEDGER_ROWS
+from contact.stepping.state import (
+    ROW_ANGULAR_VELOCITY,
+    ROW_BASE_WORK,
+    ROW_CENTRE_X,
+    ROW_CENTRE_Z,
+    ROW_KINETIC,
+    ROW_NORMAL,
+    ROW_ROTATION,
+    ROW_SHEAR,
+    ROW_SLIP,
+    ROW_UPLIFT,
+    Run,
+    Samples,
+)
+
+SAME_INSTANT = 1e-12  #: difference of two times, over their size, that is rounding
+
+
+def _write_columns(
+    run: Run, row: FloatArray, force: FloatArray, time: float, s: float, step: float, slip_step: float
+) -> None:
+    """One row of a history at the share `s` of the step; `force` (n, 2) is that of this instant."""
+    old, new = run.old, run.new
+    a, b = old.pose, new.pose
+    floor, _, _ = floor_motion(run.motion, time)
+    row[ROW_ROTATION] = hermite(s, step, a[ROTATION], a[ANGULAR_VELOCITY], b[ROTATION], b[ANGULAR_VELOCITY])
+    row[ROW_ANGULAR_VELOCITY] = (1.0 - s) * a[ANGULAR_VELOCITY] + s * b[ANGULAR_VELOCITY]
+    row[ROW_SLIP] = run.clock[0].slip + s * slip_step
+    row[ROW_CENTRE_X] = hermite(s, step, a[CENTRE_X], a[VELOCITY_X], b[CENTRE_X], b[VELOCITY_X]) - floor
+    row[ROW_CENTRE_Z] = hermite(s, step, a[CENTRE_Z], a[VELOCITY_Z], b[CENTRE_Z], b[VELOCITY_Z])
+    row[ROW_UPLIFT], row[ROW_NORMAL], row[ROW_SHEAR] = 0.0, 0.0, 0.0
+    for i in range(new.point.shape[0]):
+        if i < run.control.base_points:
+            row[ROW_UPLIFT] = max(row[ROW_UPLIFT], (1.0 - s) * old.point[i, 1] + s * new.point[i, 1])
+        row[ROW_SHEAR] += force[i, 0]
+        row[ROW_NORMAL] += force[i, 1]
+    for k in range(3):
+        row[ROW_KINETIC + k] = (1.0 - s) * old.energy[k] + s * new.energy[k]
+    for k in range(LEDGER_ROWS):
+        row[ROW_BASE_WORK + k] = run.ledger[k] + s * run.change[k]
+
+
+write_columns = compiled(_write_columns, inline=True)
+
+
+def _watch_contents(run: Run, s: float, interval: float) -> None:
+    """Largest mean acceleration of the monitored contents over an interval of the history.
+
+    The instantaneous one means nothing under a dashpot that acts at a point: it grows without bound as the step
+    falls. What an accelerometer of the history's band would show does not.
+    """
+    old, new, watched = run.old.monitor, run.new.monitor, run.watched
+    for i in range(watched.shape[0]):
+        x = (1.0 - s) * old[i, 2] + s * new[i, 2]
+        z = (1.0 - s) * old[i, 3] + s * new[i, 3]
+        if i < run.control.top_monitors:
+            sway = abs((1.0 - s) * old[i, 0] + s * new[i, 0])
+            run.track[0].max_top_displacement = max(run.track[0].max_top_displacement, sway)
+        else:
+            size = np.hypot(x - watched[i, 0], z - watched[i, 1]) / interval
+            run.track[0].max_acceleration = max(run.track[0].max_acceleration, size)
+        watched[i, 0], watched[i, 1] = x, z
+
+
+watch_contents = compiled(_watch_contents, inline=True)
+
+
+def _write_coordinates(samples: Samples, at: int, old: State, new: State, s: float, step: float) -> None:
+    """Coordinates of the body and their rates at the share `s` of the step, where they are kept."""
+    for j in range(samples.position.shape[1]):
+        samples.position[at, j] = hermite(
+            s, step, old.position[j], old.velocity[j], new.position[j], new.velocity[j]
+        )
+    for j in range(samples.velocity.shape[1]):
+        samples.velocity[at, j] = (1.0 - s) * old.velocity[j] + s * new.velocity[j]
+
+
+write_coordinates = compiled(_write_coordinates, inline=True)
+
+
+@register_jitable(forceinline=True)
+def sample(
+    body: Any, run: Run, samples: Samples, written: int, origin: int, step: float, slip_step: float
+) -> int:
+    """Write the samples that fall into the step just attempted, from the old time up to and with the new one.
+
+    `written` samples exist so far, the first `origin` of them are no longer in the arrays; returns how many exist now.
+    Positions by cubics through both ends' positions and velocities, everything else linear.
+    """
+    old, new, clock = run.old, run.new, run.clock[0]
+    observed, end = False, clock.time + step
+    while written - origin < samples.mode.size:
+        time = written * samples.interval if written > 0 else 0.0
+        if time - end > SAME_INSTANT * end:  # 12 x 0.1 s is more than 1.2 s by rounding
+            break
+        s = min((time - clock.time) / step, 1.0)
+        at = written - origin
+        for i in range(new.point.shape[0]):
+            for k in range(2):
+                samples.force[at, i, k] = (1.0 - s) * old.force[i, k] + s * new.force[i, k]
+        write_coordinates(samples, at, old, new, s, step)
+        samples.mode[at] = run.track[0].mode
+        if samples.columns.shape[1] > 0:
+            write_columns(run, samples.columns[at], samples.force[at], time, s, step, slip_step)
+            if not observed:
+                observe(body, old, run.floor[0, 0])
+                observe(body, new, run.floor[1, 0])
+                observed = True
+            watch_contents(run, s, samples.interval if written > 0 else np.inf)
+        written += 1
+    return written

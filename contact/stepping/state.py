@@ -1,0 +1,189 @@
+"""What a run consists of besides its body: constants of the stepping, state, record and samples, as plain arrays.
+
+Compiled code and Python read the same tuples; what changes, changes in place.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from contact.interface.solver import Contact, FloatArray, Workspace
+from contact.motion.kernel import FloorMotion, floor_motion
+from contact.stepping.body import State
+from contact.stepping.ledger import ROWS as LEDGER_ROWS
+from contact.stepping.observables import NEVER, make_track
+from contact.stepping.scheme import Scheme
+
+UNLIMITED = 2**62
+
+#: columns of `Run.rows`
+(
+    ROW_ROTATION,
+    ROW_ANGULAR_VELOCITY,
+    ROW_SLIP,
+    ROW_UPLIFT,
+    ROW_CENTRE_X,
+    ROW_CENTRE_Z,
+    ROW_NORMAL,
+    ROW_SHEAR,
+    ROW_KINETIC,
+    ROW_STRAIN,
+    ROW_POTENTIAL,
+    ROW_BASE_WORK,  # this and the following in the order of the ledger
+    ROW_FRICTION,
+    ROW_CONTACT_DAMPING,
+    ROW_MATERIAL_DAMPING,
+    ROW_IMBALANCE,
+) = range(16)
+ROW_COLUMNS = 16
+
+
+class Control(NamedTuple):
+    """Limits of the stepping: constants of one run."""
+
+    largest_step: float  #: [s]
+    smallest_step: float  #: [s]
+    event_step: float  #: largest step in which the support may break loose [s]
+    closing_step: float  #: largest step that may begin at the first touch of a point [s]
+    closing_speed: float  #: slower closings are left to the energy ledger [m/s]
+    reference_energy: float  #: what it takes to overturn the container [J]
+    energy_rate: float  #: imbalance allowed per second, over the reference energy [1/s]
+    energy_floor: float  #: imbalance allowed in any step, over the reference energy [-]
+    energy_share: float  #: imbalance allowed over what a step dissipates [-]
+    trail_share: float  #: imbalance allowed over what was dissipated shortly before [-]
+    trail_time: float  #: how long that counts [s]
+    closing_share: (
+        float  #: imbalance allowed when a gap closes, over the kinetic energy relative to the floor [-]
+    )
+    mass: float  #: [kg]
+    gravity: float  #: [m/s2]
+    frequency_parameter: float  #: of rocking [1/s]
+    resting_energy: float  #: gravity potential of the container at rest [J]
+    slenderness_angle: float  #: [rad]
+    width: float  #: [m]
+    stop_when_overturned: bool
+    top_monitors: int  #: of the monitored points, so many first ones lie at the top
+    base_points: int  #: of the contact points, so many first ones make up the base
+
+
+CLOCK = np.dtype(
+    [
+        ("time", "f8"),
+        ("level", "i8"),
+        ("sliding", "i8"),  # 1 while every loaded point slides: kinetic friction
+        ("slid", "f8"),  # since the support broke loose
+        ("slip", "f8"),  # force-weighted sliding of the container, signed
+        ("steps", "i8"),
+        ("rejected", "i8"),
+        ("failed", "i8"),  # of these: iterations that did not converge
+        ("iterations", "i8"),
+        ("contact_iterations", "i8"),
+        ("smallest_step", "f8"),
+        ("utilisation", "f8"),  # support's tangential force over mu_s times its normal force
+        ("utilisation_rate", "f8"),
+        ("slip_velocity", "f8"),  # force-weighted
+        ("slip_acceleration", "f8"),
+        ("used", "f8"),  # share of the imbalance allowed, lately
+        ("trail", "f8"),  # dissipated shortly before [J]
+        ("held", "i8"),  # accepted steps until the step may grow freely again
+        ("basis_step", "f8"),  # that the old acceleration's lag belongs to
+        ("due_step", "f8"),  # that the body was not prepared for
+        ("samples", "i8"),  # of the history, so far
+        ("samples_gone", "i8"),  # of these no longer in the arrays
+        ("frames", "i8"),
+        ("frames_gone", "i8"),
+        ("next_break", "i8"),
+        ("least_imbalance", "f8"),
+        ("most_imbalance", "f8"),
+        ("dissipated", "f8"),  # when these were taken
+        ("attempt_limit", "i8"),  # of steps, accepted and rejected, at which `advance` returns
+    ],
+    align=True,
+)
+
+
+class Samples(NamedTuple):
+    """What is kept on an exact grid of times, as much of it as the arrays hold: n_s samples."""
+
+    interval: float  #: [s]
+    columns: FloatArray  #: (n_s, 16 or 0) of a history, see ROW_...
+    mode: npt.NDArray[np.int64]  #: (n_s,)
+    position: FloatArray  #: (n_s, n_d or 0) coordinates of the body
+    velocity: FloatArray  #: (n_s, n_d or 0)
+    force: FloatArray  #: (n_s, n, 2) contact forces [N]
+
+
+def make_samples(
+    interval: float, count: int, points: int, *, columns: bool = False, position: int = 0, velocity: int = 0
+) -> Samples:
+    """Room for `count` samples; `position` and `velocity` say how many coordinates are kept."""
+    return Samples(
+        interval=float(interval),
+        columns=np.zeros((count, ROW_COLUMNS if columns else 0)),
+        mode=np.zeros(count, dtype=np.int64),
+        position=np.zeros((count, position)),
+        velocity=np.zeros((count, velocity)),
+        force=np.zeros((count, points, 2)),
+    )
+
+
+class Run(NamedTuple):
+    """Everything a run consists of besides the body: constants, and what changes in place."""
+
+    scheme: Scheme
+    contact: Contact
+    motion: FloorMotion
+    breaks: FloatArray  #: instants at which a step must end [s], rising, the last one infinite
+    control: Control
+    old: State
+    new: State
+    work: Workspace
+    floor: FloatArray  #: (2, 3) displacement, velocity, acceleration of the floor before and after the step
+    slip: FloatArray  #: (n,) sliding of the points in the step attempted [m]
+    change: FloatArray  #: (5,) what the step attempted adds to the ledger [J]
+    ledger: FloatArray  #: (5,) [J]
+    clock: Any  #: (1,) of CLOCK
+    track: Any  #: (1,) of tracking.TRACK
+    watched: FloatArray  #: (n_m, 2) velocities of the monitored points at the last sample [m/s]
+    history: Samples
+    frames: Samples
+
+
+def make_run(
+    *,
+    scheme: Scheme,
+    contact: Contact,
+    motion: FloorMotion,
+    breaks: FloatArray,
+    control: Control,
+    old: State,
+    new: State,
+    work: Workspace,
+    history: Samples,
+    frames: Samples,
+) -> Run:
+    """Put a run together at t = 0; `old` holds the initial state, completed."""
+    n = old.point.shape[0]
+    clock = np.zeros(1, CLOCK).view(np.recarray)
+    clock["smallest_step"] = NEVER
+    clock["attempt_limit"] = UNLIMITED
+    return Run(
+        scheme=scheme,
+        contact=contact,
+        motion=motion,
+        breaks=np.append(np.asarray(breaks, dtype=float), NEVER),
+        control=control,
+        old=old,
+        new=new,
+        work=work,
+        floor=np.tile(floor_motion(motion, 0.0), (2, 1)),
+        slip=np.zeros(n),
+        change=np.zeros(LEDGER_ROWS),
+        ledger=np.zeros(LEDGER_ROWS),
+        clock=clock,
+        track=make_track(),
+        watched=np.zeros((old.monitor.shape[0], 2)),
+        history=history,
+        frames=frames,
+    )

@@ -1,0 +1,182 @@
+"""One step of one body, tried: predict, then free motion -> contact forces -> response until the points stand where the
+forces were computed; how the base slid in it, and what it adds to the energy ledger.
+
+Whether it is accepted is the matter of `contact.stepping.integrator`.
+"""
+
+from typing import Any
+
+from numba.extending import register_jitable
+
+from contact.interface.laws import ELASTIC_STICK, relaxed_stick
+from contact.interface.solver import FloatArray, Workspace, solve_contact
+from contact.jit import compiled
+from contact.motion.kernel import floor_motion
+from contact.stepping.body import KINETIC, POTENTIAL, STRAIN, State, complete, predict, release, respond
+from contact.stepping.ledger import (
+    BASE_WORK,
+    CONTACT_DAMPING,
+    FRICTION,
+    IMBALANCE,
+    MATERIAL_DAMPING,
+    contact_losses,
+    spring_energy,
+)
+from contact.stepping.scheme import Scheme
+from contact.stepping.state import Run
+
+ITERATION_LIMIT = 12  #: of free motion, contact, response within one step
+
+
+def _copy_vector(target: FloatArray, source: FloatArray) -> None:
+    for i in range(target.size):
+        target[i] = source[i]
+
+
+copy_vector = compiled(_copy_vector, inline=True)
+
+
+def _copy_rows(target: FloatArray, source: FloatArray) -> None:
+    for i in range(target.shape[0]):
+        for k in range(target.shape[1]):
+            target[i, k] = source[i, k]
+
+
+copy_rows = compiled(_copy_rows, inline=True)
+
+
+def _rebase_acceleration(scheme: Scheme, old: State, shortened: float) -> None:
+    """Shift the scheme's acceleration to the lag that belongs to a step shorter by `shortened` [s].
+
+    The averaged equation puts it (alpha_f - alpha_m) steps before the end of its step. Left as it is when the
+    step changes, it would cost the scheme its second order.
+    """
+    shift = (scheme.alpha_f - scheme.alpha_m) * shortened
+    if shift != 0.0:
+        for j in range(old.acceleration.size):
+            old.acceleration[j] += shift * old.jerk[j]
+
+
+rebase_acceleration = compiled(_rebase_acceleration, inline=True)
+
+
+def _note_rates(step: float, old: State, new: State, work: Workspace) -> None:
+    """Velocities of the base points and rates of change over the step, for the step control."""
+    per_second = 1.0 / step
+    for i in range(new.descent.shape[0]):
+        new.descent[i, 0] = -work.velocity[i, 1]
+        new.descent[i, 1] = (new.descent[i, 0] - old.descent[i, 0]) * per_second
+    for j in range(new.jerk.size):
+        new.jerk[j] = (new.acceleration[j] - old.acceleration[j]) * per_second
+
+
+note_rates = compiled(_note_rates, inline=True)
+
+
+@register_jitable(forceinline=True)
+def attempt(body: Any, run: Run, step: float, mu: float) -> int:
+    """Try one step; the result stands in `run.new`. Returns the iterations taken, or -1."""
+    old, new, work, scheme = run.old, run.new, run.work, run.scheme
+    clock = run.clock[0]
+    floor, floor_velocity, floor_acceleration = floor_motion(run.motion, clock.time + step)
+    run.floor[1, 0], run.floor[1, 1], run.floor[1, 2] = floor, floor_velocity, floor_acceleration
+    slope = scheme.newmark_gamma / (scheme.newmark_beta * step)
+    rebase_acceleration(scheme, old, clock.basis_step - step)
+    clock.basis_step = step
+    predict(body, scheme, step, old, new)
+    copy_rows(work.force, old.force)
+    for iteration in range(ITERATION_LIMIT):
+        release(body, scheme, step, old, new, work, floor, floor_velocity)
+        solved = solve_contact(run.contact, step, slope, mu, old.point, old.stick, work)
+        if solved < 0:
+            return -1
+        clock.contact_iterations += solved
+        if respond(body, scheme, step, old, new, work) <= 1.0:
+            copy_rows(new.force, work.force)
+            note_rates(step, old, new, work)
+            complete(body, new, floor)
+            return iteration + 1
+    return -1
+
+
+def _slide(run: Run, step: float) -> tuple[bool, float, float]:
+    """Sliding of the base points and elongation of their springs after a converged step.
+
+    Returns whether every loaded point slides, all in one direction, the force-weighted sliding [m], and the
+    force-weighted velocity of the loaded points at the end of the step [m/s].
+    """
+    contact, old, new, work = run.contact, run.old, run.new, run.work
+    every, direction, weighted, total, velocity = True, 0.0, 0.0, 0.0, 0.0
+    for i in range(new.point.shape[0]):
+        normal, tangential = new.force[i, 1], new.force[i, 0]
+        moved = new.point[i, 0] - old.point[i, 0]
+        stick = old.stick[i]
+        if old.point[i, 1] >= 0.0:  # open at the beginning: only the closed part of the step slides
+            below = max(0.0, -new.point[i, 1])
+            moved *= below / (below + old.point[i, 1]) if below > 0.0 else 0.0
+        run.slip[i] = 0.0
+        if new.point[i, 1] >= 0.0:
+            new.stick[i] = 0.0
+            continue
+        if contact.friction != ELASTIC_STICK:
+            new.stick[i] = 0.0
+            run.slip[i] = moved
+        elif normal <= 0.0 or work.slope[i, 0] == 0.0:
+            new.stick[i] = relaxed_stick(
+                stick, -tangential, contact.tangential_stiffness[i], contact.relaxation_time, step
+            )
+            run.slip[i] = moved - (new.stick[i] - stick)
+        elif old.point[i, 1] >= 0.0:
+            new.stick[i] = 0.0
+        else:
+            new.stick[i] = stick + moved
+        if normal > 0.0:
+            weighted += normal * run.slip[i]
+            velocity += normal * work.velocity[i, 0]
+            total += normal
+            if contact.friction != ELASTIC_STICK:
+                every = every and abs(work.velocity[i, 0]) > contact.regularisation_velocity
+            elif work.slope[i, 0] != 0.0 or direction * work.law[i, 0] < 0.0:
+                every = False
+            direction = work.law[i, 0]
+    if total <= 0.0:  # in flight nothing tells sticking from sliding: as before
+        return run.clock[0].sliding == 1, 0.0, 0.0
+    return every, weighted / total, velocity / total
+
+
+slide = compiled(_slide, inline=True)
+
+
+def _account(run: Run) -> float:
+    """What the step attempted adds to the ledger, into `run.change`; returns what it dissipated [J]."""
+    old, new, change = run.old, run.new, run.change
+    shear = 0.0
+    for i in range(new.force.shape[0]):
+        shear += 0.5 * (old.force[i, 0] + new.force[i, 0])
+    friction, damping = contact_losses(
+        run.contact, old.point, new.point, old.force, new.force, old.stick, new.stick, run.slip
+    )
+    material = 0.0
+    for j in range(new.damping.size):
+        material += 0.5 * (old.damping[j] + new.damping[j]) * (new.position[j] - old.position[j])
+    stored = spring_energy(run.contact, new.point, new.stick) - spring_energy(
+        run.contact, old.point, old.stick
+    )
+    for row in (KINETIC, STRAIN, POTENTIAL):
+        stored += new.energy[row] - old.energy[row]
+    change[BASE_WORK] = shear * (run.floor[1, 0] - run.floor[0, 0])
+    change[FRICTION] = friction
+    change[CONTACT_DAMPING] = damping
+    change[MATERIAL_DAMPING] = material
+    change[IMBALANCE] = change[BASE_WORK] - friction - damping - material - stored
+    return friction + damping + material
+
+
+account = compiled(_account, inline=True)
+
+
+def _copy_state(old: State, new: State) -> None:
+    copy_vector(old.numbers, new.numbers)
+
+
+copy_state = compiled(_copy_state, inline=True)

@@ -1,0 +1,84 @@
+"""What the joints between the boxes of a stack must carry, judged as an unbolted joint would be.
+
+A joint of rigid faces carries compression at its two edges only: N/2 + M/a at the left, N/2 - M/a at the right, a
+the width. Where one of them is negative the resultant lies outside the joint (|M| > N a/2), an unbolted joint opens at
+that edge, and the bolts along it must carry at least that much, all together (more where they sit further in).
+Faces that press on one another over the whole width, with a linear pressure, open in part from |M| > N a/6. An
+unbolted joint slides where |V| > mu N, here with mu_static of the floor; bolts that are to hold it must carry the
+rest in shear. Forces are means over `output.history_s` (`fem.model.joints`).
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.model.model import Model
+from fem.results.history import JOINT_COLUMNS, History
+from mesh.cells import FloatArray
+
+
+def edge_forces(normal: FloatArray, moment: FloatArray, width: float) -> tuple[FloatArray, FloatArray]:
+    """Compression at the left and the right edge of a joint of rigid faces [N]; negative: tension."""
+    return 0.5 * normal + moment / width, 0.5 * normal - moment / width
+
+
+def joint_demands(model: Model, history: History) -> list[dict[str, Any]] | None:
+    """The `joints` of a result, from the floor up; None for a single box, or where nothing was sampled.
+
+    Of a container that overturned, until it had.
+    """
+    standing = history["time_s"] <= model.run.track[0].overturned_at
+    if history.joints == 0 or not standing.any():
+        return None
+    return [
+        _demands_of(
+            joint,
+            *(history[name.format(joint)][standing] for name in JOINT_COLUMNS),
+            time=history["time_s"][standing],
+            model=model,
+        )
+        for joint in range(1, history.joints + 1)
+    ]
+
+
+def _demands_of(
+    joint: int,
+    normal: FloatArray,
+    shear: FloatArray,
+    moment: FloatArray,
+    *,
+    time: FloatArray,
+    model: Model,
+) -> dict[str, Any]:
+    width, mu = model.container.mesh.width, model.case.contact.mu_static
+    left, right = edge_forces(normal, moment, width)
+    carried = mu * np.maximum(normal, 0.0)
+    return {
+        "joint": joint,
+        "height_m": joint * model.case.container.height_m,
+        "min_normal_N": float(normal.min()),
+        "max_normal_N": float(normal.max()),
+        "max_shear_N": float(np.abs(shear).max()),
+        "max_moment_Nm": float(np.abs(moment).max()),
+        "bolt_tension_left_N": max(0.0, -float(left.min())),
+        "bolt_tension_right_N": max(0.0, -float(right.min())),
+        "bolt_shear_N": max(0.0, float((np.abs(shear) - carried).max())),
+        "friction_needed": _friction_needed(normal, shear),
+        "partly_opens_at_s": _first(time, np.abs(moment) > normal * width / 6.0),
+        "opens_at_s": _first(time, np.minimum(left, right) < 0.0),
+        "slides_at_s": _first(time, np.abs(shear) > carried),
+    }
+
+
+def _friction_needed(normal: FloatArray, shear: FloatArray) -> float | None:
+    """Least coefficient of friction with which the joint never slides; None if it is unloaded under shear."""
+    sheared = shear != 0.0
+    if np.any(normal[sheared] <= 0.0):
+        return None
+    return float(np.max(np.abs(shear[sheared]) / normal[sheared], initial=0.0))
+
+
+def _first(time: FloatArray, happens: NDArray[np.bool_]) -> float | None:
+    """The first sample at which it happens [s]."""
+    return float(time[np.argmax(happens)]) if happens.any() else None

@@ -1,0 +1,222 @@
+"""What a run found: outcome, extremes, events, energy, numerics, as `run.json` holds them.
+
+The container slides when it slid more than 1e-4 of its width, it rocks when it turned by more than a
+hundredth of its slenderness angle with a side unloaded, below both it rested; overturned is 90 degrees.
+"""
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from contact.interface.penalty import contact_frequency
+from contact.stepping.ledger import (
+    BASE_WORK,
+    CONTACT_DAMPING,
+    FRICTION,
+    GAIN_LIMIT,
+    IMBALANCE,
+    LOSS_LIMIT,
+    LOSS_SHARE_LIMIT,
+    MATERIAL_DAMPING,
+)
+from contact.stepping.observables import FALLEN, FORCE_WINDOW, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
+from fem.model.model import Model
+from fem.results.history import History
+
+MODE_NAMES = {REST: "rest", SLIDE: "slide", ROCK: "rock", SLIDE_ROCK: "slide-rock", FALLEN: "overturned"}
+SLIDING = 1e-4  #: slip over the width that counts as sliding
+
+
+def record_of(model: Model) -> SimpleNamespace:
+    """The run's record (`observables.TRACK`) as plain numbers, which are read a hundred times faster."""
+    track = model.run.track
+    return SimpleNamespace(**dict(zip(track.dtype.names, track[0].item(), strict=True)))
+
+
+def outcome_of(model: Model, record: SimpleNamespace | None = None) -> str:
+    """One word for the whole run, of whose record there may be a copy already."""
+    track = record or record_of(model)
+    if math.isfinite(track.overturned_at):
+        return "overturned"
+    slides = track.max_slip > SLIDING * model.container.mesh.width
+    rocks = track.max_rocking > ROCKING * model.static.slenderness_angle
+    return MODE_NAMES[(ROCK if rocks else REST) + (SLIDE if slides else REST)]
+
+
+def verdict_of(model: Model, history: History, largest_von_mises: float | None) -> dict[str, Any]:
+    """The `verdict` of a result; what was not reached is None."""
+    time, slip = history["time_s"], history["slip_m"]
+    end = float(time[-1]) if time.size else None
+    return verdict_from(model, end, time, slip, largest_von_mises)
+
+
+def verdict_from(
+    model: Model,
+    end: float | None,
+    time: np.ndarray,
+    slip: np.ndarray,
+    largest_von_mises: float | None,
+) -> dict[str, Any]:
+    """The `verdict` of a model that was stepped to its end.
+
+    Args:
+        model: the run's record is all that is asked of it.
+        end: time of the last sample [s]; None if there is none.
+        time, slip: of the samples, as far back as a cycle of the drive at least [s], [m].
+        largest_von_mises: [Pa].
+    """
+    track, run = record_of(model), model.run
+    sampled = end is not None and end > 0.0
+    angle = model.static.slenderness_angle
+    outcome = outcome_of(model, track)
+    rocked = outcome in ("rock", "slide-rock")
+    at_end = abs(float(run.old.pose[0]))
+    return {
+        "outcome": outcome,
+        "modes": _modes_seen(model, track, outcome),
+        "max_rotation_rad": float(track.max_rotation),
+        "rotation_ratio": float(track.max_rotation) / angle,
+        "max_slip_m": float(track.max_slip),
+        "residual_slip_m": float(run.clock[0].slip),
+        "slip_peak_to_peak_m": _peak_to_peak(model, end, time, slip),
+        "slip_travel_m": float(track.slip_travel),
+        "max_uplift_m": float(track.max_uplift),
+        "impacts": int(track.impacts),
+        "first_opening_s": _time(track.first_opening),
+        "first_uplift_s": _time(track.first_uplift),
+        "first_impact_s": _time(track.first_impact),
+        "overturned_at_s": _time(track.overturned_at),
+        "restored": rocked and at_end < ROCKING * angle,
+        "restitution_first": _restitution(model, track),
+        "max_corner_force_N": float(track.max_corner_force),
+        "max_top_displacement_m": float(track.max_top_displacement) if sampled else None,
+        "max_acceleration_m_s2": float(track.max_acceleration) if sampled else None,
+        "max_von_mises_Pa": largest_von_mises,
+        "basis": "study",
+        "band": None,
+    }
+
+
+def in_short(model: Model) -> dict[str, Any]:
+    """What of a verdict a run is told by that takes no samples."""
+    track = model.run.track[0]
+    return {
+        "outcome": outcome_of(model),
+        "rotation_ratio": float(track.max_rotation) / model.static.slenderness_angle,
+        "max_slip_m": float(track.max_slip),
+        "residual_slip_m": float(model.run.clock[0].slip),
+        "max_uplift_m": float(track.max_uplift),
+    }
+
+
+def energy_of(model: Model) -> dict[str, float]:
+    """The `energy` of a result [J]."""
+    ledger, clock = model.run.ledger, model.run.clock[0]
+    reference = model.run.control.reference_energy
+    return {
+        "reference_J": reference,
+        "closure_error": max(-float(clock.least_imbalance), float(clock.most_imbalance)) / reference,
+        "friction_J": float(ledger[FRICTION]),
+        "contact_damping_J": float(ledger[CONTACT_DAMPING]),
+        "material_damping_J": float(ledger[MATERIAL_DAMPING]),
+        "numerical_J": float(ledger[IMBALANCE]),
+        "base_work_J": float(ledger[BASE_WORK]),
+    }
+
+
+def audit(model: Model) -> str | None:
+    """Why the energy ledger fails this run, or None if it stands; of an overturned one, up to its fall."""
+    clock = model.run.clock[0]
+    reference = model.run.control.reference_energy
+    won, lost = -float(clock.least_imbalance), float(clock.most_imbalance)
+    dissipated = float(clock.dissipated)
+    remedy = (
+        f"set solver.step_s below the {model.run.control.largest_step:.2g} s used, "
+        "or a softer contact.normal_penalty_Pa_m"
+    )
+    if not np.all(np.isfinite(model.run.ledger)):
+        return (
+            f"t = {float(clock.time):.6g} s: the energy ledger is no longer made of numbers: the motion grew beyond "
+            f"all bounds; {remedy}"
+        )
+    if won > GAIN_LIMIT * reference:
+        return (
+            f"the time stepping won {won:.3g} J, {won / reference:.1e} of the energy to overturn "
+            f"(limit {GAIN_LIMIT:.0e}); {remedy}"
+        )
+    limit = max(LOSS_SHARE_LIMIT * dissipated, LOSS_LIMIT * reference)
+    if lost > limit:
+        return f"the energy ledger is open by {lost:.3g} J (limit {limit:.3g} J); {remedy}"
+    return None
+
+
+def numerics_of(model: Model, stepping_cpu: float) -> dict[str, Any]:
+    """The `numerics` of a result."""
+    run, container = model.run, model.container
+    clock = run.clock[0]
+    mass, stiffness = container.mesh.mass, model.base_stiffness
+    # Rayleigh and Ritz: the modes of the free container come first, then what its points' own forces add.
+    elastic = model.case.solver.elastic_modes if container.basis is not None else 1
+    return {
+        "unknowns": int(run.old.position.size),
+        "contact_nodes": int(container.support.index.size),
+        "steps": int(clock.steps),
+        "rejected": int(clock.rejected),
+        "newton_iterations": int(clock.contact_iterations),
+        "iterations": int(clock.iterations),
+        "largest_step_s": run.control.largest_step,
+        "smallest_step_s": float(clock.smallest_step) if clock.steps else None,
+        "stepping_cpu_s": stepping_cpu,
+        "normal_penalty_Pa_m": model.penalty,
+        "contact_frequency_Hz": contact_frequency(mass, stiffness),
+        "static_penetration_m": mass * model.case.gravity_m_s2 / stiffness,
+        "max_penetration_m": float(run.track[0].max_penetration),
+        "elastic_frequencies_Hz": model.frequencies[:elastic].tolist(),
+        "attachment_frequencies_Hz": model.frequencies[elastic:].tolist(),
+        "corner_force_window_s": FORCE_WINDOW / run.control.frequency_parameter,
+        "acceleration_window_s": run.history.interval,
+    }
+
+
+def _time(instant: float) -> float | None:
+    return float(instant) if math.isfinite(instant) else None
+
+
+def _modes_seen(model: Model, track: SimpleNamespace, outcome: str) -> list[str]:
+    """Modes that the history passed through, and the outcome, which may have come about by creep.
+
+    Sliding that is too small to count in the outcome does not count here.
+    """
+    bits = int(track.modes)
+    seen = {name for mode, name in MODE_NAMES.items() if bits & 1 << mode}
+    if track.max_slip <= SLIDING * model.container.mesh.width:
+        seen = {{"slide": "rest", "slide-rock": "rock"}.get(name, name) for name in seen}
+    return [name for name in MODE_NAMES.values() if name in seen or name == outcome]
+
+
+def end_of_drive(model: Model) -> float:
+    """When the floor stops, or the run that it is asked for [s]."""
+    return min(model.case.solver.duration_s, getattr(model.motion, "end_time", math.inf))
+
+
+def _peak_to_peak(model: Model, last: float | None, time: np.ndarray, slip: np.ndarray) -> float | None:
+    """Largest less smallest slip over the last full cycle of a harmonic drive [m]."""
+    if model.case.motion.kind != "harmonic" or last is None:
+        return None
+    period = 2.0 * math.pi / model.case.angular_frequency
+    end = min(last, end_of_drive(model))
+    if end < period * (1.0 - 1e-9):
+        return None
+    cycle = slip[(time >= end - period - 1e-9) & (time <= end + 1e-9)]
+    if cycle.size < 2:  # sampled more coarsely than a cycle
+        return None
+    return float(cycle.max() - cycle.min())
+
+
+def _restitution(model: Model, track: SimpleNamespace) -> float | None:
+    """First impact: by the peaks around it where the floor stands still, else by the angular velocities."""
+    still = model.case.motion.kind == "none"
+    value = float(track.restitution_by_peaks if still else track.restitution_by_velocity)
+    return value if math.isfinite(value) else None

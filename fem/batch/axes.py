@@ -1,0 +1,208 @@
+"""The axes of a sweep: one key of a case each, and the values that it takes."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated, Any, Literal, get_args
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError
+from pydantic.fields import FieldInfo
+
+from fem.case.quantities import Quantity, with_unit
+from fem.case.tables import TABLES
+from fem.case.validation import TOP, did_you_mean, known_keys, quantity_of, requirement_of
+
+#: keys that say nothing about what happens, and so make no axis
+NO_AXIS = {
+    "schema": "says how a file is read",
+    "title": "is for people",
+    "output.fields_s": "a sweep keeps no fields",
+}
+MOST_VALUES = 1_000_000
+
+
+class Range(BaseModel):
+    """`{ from = .., to = .., count = .., scale = "log" }` of a sweep file."""
+
+    model_config = ConfigDict(strict=True, frozen=True, extra="forbid", allow_inf_nan=False)
+
+    lowest: float = Field(alias="from", description="first value")
+    highest: float = Field(alias="to", description="last value")
+    count: Annotated[int, Strict()] = Field(description="how many values, both ends included")
+    scale: Literal["linear", "log"] = Field(default="linear", description='spacing, "linear" | "log"')
+
+
+@dataclass(frozen=True, kw_only=True)
+class Axis:
+    """A key and its values, in the order of the file."""
+
+    key: str  #: dotted
+    values: tuple[Any, ...]
+    scale: str = "list"  #: linear | log | list
+    unit: str = ""  #: of the key
+
+    @cached_property
+    def is_numeric(self) -> bool:
+        """Whether its values are numbers that rise, so that cells have neighbours along it."""
+        numbers = [value for value in self.values if not isinstance(value, bool | str)]
+        return len(numbers) == len(self.values) > 1 and bool(np.all(np.diff(numbers) > 0.0))
+
+
+class AxisError(ValueError):
+    """An axis that cannot be; the message begins with the reason, its key is told beside it."""
+
+
+def field_of(key: str) -> FieldInfo:
+    """The field of a case that a dotted key names.
+
+    Raises:
+        AxisError: no case has such a key; with the nearest one.
+    """
+    table, dot, name = key.rpartition(".")
+    if not dot:
+        if name in TOP:
+            return TOP[name]
+        owners = [known for known, model in TABLES.items() if name in known_keys(model)]
+        if owners:
+            raise AxisError(f"is no key of its own; write {' or '.join(f'{one}.{name}' for one in owners)!r}")
+        raise AxisError(f"is no key of a case file{_hint(name, [*TOP, *all_keys()])}")
+    if table not in TABLES:
+        raise AxisError(f"names no table of a case file{_hint(table, TABLES)} (known: {', '.join(TABLES)})")
+    fields = known_keys(TABLES[table])
+    if name not in fields:
+        raise AxisError(f"is no key of a case file{_hint(name, fields)} (known: {', '.join(fields)})")
+    return fields[name]
+
+
+def all_keys() -> list[str]:
+    """Every dotted key of a case file."""
+    return [f"{table}.{name}" for table, model in TABLES.items() for name in known_keys(model)]
+
+
+def read_axis(key: str, given: Any) -> Axis:
+    """An axis as a sweep file gives it: a list of values, or a range.
+
+    Raises:
+        AxisError: an unknown key, no values, a range without an end or that does not rise, a log scale
+            through zero, values that the key cannot have.
+    """
+    field = field_of(key)
+    if key in NO_AXIS:
+        raise AxisError(f"makes no axis: {NO_AXIS[key]}")
+    quantity = quantity_of(field.annotation, field.metadata)
+    unit = quantity.unit if quantity else ""
+    if isinstance(given, list):
+        values, scale = _listed(given), "list"
+    elif isinstance(given, Mapping):
+        values, scale = _spaced(given, quantity, unit)
+    else:
+        raise AxisError(
+            f"must be a list or a range, got {with_unit(given, unit)}; "
+            "for instance [0.2, 0.3] or { from = 1.0, to = 4.0, count = 13 }"
+        )
+    if _is_whole(field):
+        values = tuple(_whole(value) for value in values)
+    for value in values:
+        _check(field, quantity, unit, value)
+    return Axis(key=key, values=values, scale=scale, unit=unit)
+
+
+def _hint(name: str, known: Any) -> str:
+    near = did_you_mean(name, known)
+    return f"; {near}" if near else ""
+
+
+def _listed(given: list[Any]) -> tuple[Any, ...]:
+    if not given:
+        raise AxisError("has no values: the list is empty; give one or more")
+    if any(isinstance(value, list | dict) for value in given):
+        raise AxisError("must be a list of single values, got lists or tables in it")
+    if len(set(map(repr, given))) < len(given):
+        twice = next(value for value in given if given.count(value) > 1)
+        raise AxisError(f"has the value {twice!r} twice; leave one out")
+    return tuple(float(v) if isinstance(v, int) and not isinstance(v, bool) else v for v in given)
+
+
+def _spaced(given: Mapping[str, Any], quantity: Quantity | None, unit: str) -> tuple[tuple[float, ...], str]:
+    try:
+        wanted = Range.model_validate({k: float(v) if _is_end(k, v) else v for k, v in given.items()})
+    except ValidationError as error:
+        raise AxisError(_reason_of_range(error)) from None
+    if quantity is None:
+        raise AxisError("holds no number, so it has no range; list its values")
+    low, high, count = wanted.lowest, wanted.highest, wanted.count
+    if count < 2:
+        raise AxisError(
+            f"has an empty range: count must be at least 2, got {count}; for one value write [{low!r}]"
+        )
+    if count > MOST_VALUES:
+        raise AxisError(f"has count = {count}; at most {MOST_VALUES} values are made of one range")
+    if not low < high:
+        raise AxisError(
+            f"has an empty range: from = {with_unit(low, unit)} must be less than to = {with_unit(high, unit)}"
+        )
+    if wanted.scale == "linear":
+        spaced = np.linspace(low, high, count)
+    elif low <= 0.0:
+        raise AxisError(
+            f"cannot go through zero on a log scale: from = {with_unit(low, unit)}; "
+            'begin above zero, or take scale = "linear"'
+        )
+    else:
+        spaced = np.geomspace(low, high, count)
+    # Fifteen digits: 0.30000000000000004 is 0.3, on every machine.
+    return tuple(float(f"{value:.15g}") for value in spaced), wanted.scale
+
+
+def _is_end(name: str, value: Any) -> bool:
+    return name in ("from", "to") and isinstance(value, int) and not isinstance(value, bool)
+
+
+def _reason_of_range(error: ValidationError) -> str:
+    known = "from, to, count, scale"
+    reasons = []
+    for detail in error.errors(include_url=False):
+        name = str(detail["loc"][0]) if detail["loc"] else ""
+        match detail["type"]:
+            case "missing":
+                reasons.append(f"has a range without {name!r}")
+            case "extra_forbidden":
+                reasons.append(f"has a range with the unknown key {name!r} (known: {known})")
+            case _:
+                reasons.append(f"has a range whose {name} {requirement_of(detail)}, got {detail['input']!r}")
+    return "; ".join(reasons) + "; a range is { from = 1.0, to = 4.0, count = 13 }"
+
+
+def _is_whole(field: FieldInfo) -> bool:
+    return field.annotation is int or int in get_args(field.annotation)
+
+
+def _whole(value: Any) -> Any:
+    if isinstance(value, float) and value == math.floor(value):
+        return int(value)
+    if isinstance(value, float):
+        raise AxisError(
+            f"takes whole numbers, got {value!r}; choose from, to and count to meet them, or list them"
+        )
+    return value
+
+
+def _check(field: FieldInfo, quantity: Quantity | None, unit: str, value: Any) -> None:
+    """Refuse what the key can never hold; what depends on other keys is judged with them."""
+    if quantity is None:
+        choices = {choice for choice in get_args(field.annotation) if isinstance(choice, str)}
+        choices |= {c for part in get_args(field.annotation) for c in get_args(part) if isinstance(c, str)}
+        if choices and value not in choices:
+            near = did_you_mean(value, choices) if isinstance(value, str) else ""
+            listed = " or ".join(f'"{choice}"' for choice in sorted(choices))
+            raise AxisError(f"must be {listed}, got {value!r}{'; ' + near if near else ''}")
+        return
+    if isinstance(value, bool) or (isinstance(value, str) and value != "auto"):
+        raise AxisError(f"must be a number{' in ' + unit if unit else ''}, got {value!r}")
+    if not isinstance(value, str):
+        try:
+            quantity.check(value)
+        except ValueError as error:
+            raise AxisError(str(error)) from None

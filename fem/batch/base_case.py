@@ -1,0 +1,102 @@
+"""What a file that varies a case begins with: its heading, its tables, the case it starts from."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+from fem.case.case import Case, load_case
+from fem.case.files import CASES, Origin, is_there
+from fem.case.problem import leaves_the_folder
+from fem.case.tables import Table
+from fem.case.validation import CaseError, did_you_mean, problem_lines, read_table
+
+TableT = TypeVar("TableT", bound=Table)
+
+
+def read_as(name: str, model: type[TableT], content: Mapping[str, Any]) -> TableT:
+    """A table of the file; `name` is empty for what stands before the first one.
+
+    Raises:
+        CaseError: with one line for each reason why it cannot be used.
+    """
+    given, _, problems = read_table(name, model, content)
+    if problems:
+        raise CaseError("\n".join(problem_lines(problems)))
+    return model.model_validate(given)
+
+
+def split_tables(
+    data: Mapping[str, Any], known: Sequence[str]
+) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+    """What stands before the first table, and the tables.
+
+    Raises:
+        CaseError: a table that nobody knows, or one of these written as a value.
+    """
+    tables = {key: value for key, value in data.items() if isinstance(value, dict)}
+    heading = {key: value for key, value in data.items() if key not in tables}
+    for name in tables:
+        if name not in known:
+            near = did_you_mean(name, known)
+            raise CaseError(
+                f"[{name}] unknown table{'; ' + near if near else ''} (known: {', '.join(known)}); "
+                'dotted keys stand in quotes, such as "contact.mu_static"'
+            )
+    for key in heading:
+        if key in known:
+            raise CaseError(f"{key} must be a table; write [{key}] above its keys")
+    return heading, tables
+
+
+def flat(name: str, content: Mapping[str, Any]) -> dict[str, Any]:
+    """Dotted keys, whether they were written in quotes or, as TOML would have it, as tables in tables.
+
+    Raises:
+        CaseError: one is given in both ways.
+    """
+    found: dict[str, Any] = {}
+    for key, value in content.items():
+        if isinstance(value, dict) and not {"from", "to", "count", "scale"} & value.keys():
+            inner = {f"{key}.{one}": what for one, what in value.items()}
+        else:
+            inner = {key: value}
+        for dotted, what in inner.items():
+            if dotted in found:
+                raise CaseError(f"[{name}] {dotted} is given twice")
+            found[dotted] = what
+    return found
+
+
+def base_case(name: str, changes: Mapping[str, Any], origin: Origin) -> Case:
+    """The case that is varied, with the keys of [set] changed.
+
+    A file is looked for beside the one that names it, and wins over a shipped case.
+
+    Raises:
+        CaseError: there is neither, it leads out of that folder, or it cannot be used.
+    """
+    problem = leaves_the_folder("case", name)
+    if problem is not None:
+        raise CaseError(f"{problem.key} {problem.reason}")
+    path = origin.folder / name
+    is_file = is_there(Path.is_file, path)
+    if is_file and not path.resolve().is_relative_to(origin.folder.resolve()):
+        raise CaseError(f"case {name!r} leads out of the folder of {origin.place}, to {path.resolve()}")
+    if not is_file and name not in CASES.names:
+        raise CaseError(
+            f"case {name!r} is no file in {origin.folder.resolve()} and no shipped case{CASES.hint(name)}"
+        )
+    base = load_case(path if is_file else name)
+    values = flat("set", changes)
+    return base.with_values(values) if values else base
+
+
+def require_once(changes: Mapping[str, Any], varied: Iterable[str]) -> None:
+    """Refuse a key of [set] that varies: one of the two would play no part.
+
+    Raises:
+        CaseError: with the key.
+    """
+    for key in varied:
+        if key in flat("set", changes):
+            raise CaseError(f"[set] {key!r} varies as well; take it out of [set], or do not vary it")

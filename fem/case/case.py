@@ -1,0 +1,284 @@
+"""The case: one container, one base motion, and how the run is to be made, read once and frozen.
+
+`load_case` reads a file or a shipped case into a `Case`; below that nobody sees a dictionary. All
+values are SI, the unit is part of every key. What the file leaves out has its default in the tables
+of `fem.case.tables`; what follows from several keys is a property here.
+"""
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Self
+
+from pydantic import Field, PrivateAttr
+
+from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
+from fem.case.overrides import parse_override, with_overrides
+from fem.case.rules import RULES_OF_A_CASE
+from fem.case.tables import (
+    TABLES,
+    Contact,
+    Container,
+    Heading,
+    Initial,
+    Motion,
+    Output,
+    Solver,
+    StaticRule,
+    Support,
+)
+from fem.case.toml import toml_document
+from fem.case.validation import CaseError, problem_lines, read_case_tables
+
+
+class Case(Heading):
+    """A whole case; the attributes are the tables of the case file.
+
+    Raises pydantic's ValidationError when built from contradicting tables; files, overrides and
+    mappings go through `load_case`, `read_case` and `with_values`, which raise `CaseError`.
+    """
+
+    container: Container
+    support: Support = Field(default_factory=Support)
+    contact: Contact
+    motion: Motion
+    initial: Initial = Field(default_factory=Initial)
+    static: StaticRule = Field(default_factory=StaticRule)
+    solver: Solver = Field(default_factory=Solver)
+    output: Output = Field(default_factory=Output)
+
+    _origin: Origin = PrivateAttr(default_factory=Origin)
+
+    rules = RULES_OF_A_CASE
+
+    @property
+    def name(self) -> str:
+        """File stem or name of the shipped case."""
+        return self._origin.name
+
+    @property
+    def folder(self) -> Path:
+        """The folder in which mesh and motion files are looked for."""
+        return self._origin.folder
+
+    @property
+    def text(self) -> str:
+        """The case file as given."""
+        return self._origin.text
+
+    @property
+    def overrides(self) -> tuple[str, ...]:
+        """What was changed on the command line or by a sweep, as `table.key=value`."""
+        return self._origin.overrides
+
+    @property
+    def box_mass(self) -> float:
+        """Mass of one box with its fill [kg]."""
+        box = self.container
+        if box.weight_N is not None:
+            return box.weight_N / self.gravity_m_s2
+        if box.density_kg_m3 is not None:
+            return box.density_kg_m3 * box.box_volume
+        raise CaseError("[container] weight_N or density_kg_m3 is missing")  # a rule has seen to it
+
+    @property
+    def mass(self) -> float:
+        """Mass of all boxes with their fill [kg]."""
+        return self.container.boxes * self.box_mass
+
+    @property
+    def weight(self) -> float:
+        """Weight of all boxes with their fill [N]."""
+        return self.mass * self.gravity_m_s2
+
+    @property
+    def mean_areal_density(self) -> float:
+        """Mass over elevation, the mean of what the cells of the mesh carry [kg/m2]."""
+        return self.box_mass / (self.container.width_m * self.container.height_m)
+
+    @property
+    def amplitude(self) -> float:
+        """A of a harmonic floor x = A sin(Omega t + phase) [m]; 0 for every other kind."""
+        return self.motion.amplitude
+
+    @property
+    def angular_frequency(self) -> float:
+        """Omega of a harmonic floor [rad/s]; 0 for every other kind."""
+        return self.motion.angular_frequency
+
+    @property
+    def nominal_peak_acceleration(self) -> float | None:
+        """A Omega^2 of a harmonic floor, the peak of a pulse, 0 of a floor at rest [m/s2].
+
+        Without ramps, and without the end of a run that stops before the peak: what the floor really
+        reaches is asked of the motion itself. None for a table, whose file is not read here.
+        """
+        match self.motion.kind:
+            case "none":
+                return 0.0
+            case "harmonic":
+                return self.amplitude * self.angular_frequency**2
+            case "pulse":
+                return abs(self.motion.peak_acceleration_m_s2 or 0.0)
+        return None
+
+    @property
+    def data_files(self) -> dict[str, Path]:
+        """The files beside the case file that it reads, by dotted key: mesh and motion table.
+
+        Raises:
+            CaseError: if one is missing, is no file, or lies outside the folder of the case file.
+        """
+        named = {"container.mesh_file": self.container.mesh_file}
+        named["motion.file"] = self.motion.file if self.motion.kind == "table" else None
+        return {key: _file_beside(self.folder, key, name) for key, name in named.items() if name is not None}
+
+    def given(self) -> dict[str, Any]:
+        """The keys that were set, by table, as a case file would hold them."""
+        keys = self.model_dump(by_alias=True, exclude_unset=True, exclude=set(TABLES))
+        tables = {name: getattr(self, name).model_dump(exclude_unset=True) for name in TABLES}
+        return keys | {name: content for name, content in tables.items() if content}
+
+    def resolved(self) -> dict[str, Any]:
+        """Every key that plays a part, with every default written out, by table."""
+        document = self.model_dump(by_alias=True, exclude=set(TABLES))
+        for name in TABLES:
+            table = getattr(self, name)
+            idle = table.idle_keys()
+            document[name] = {
+                key: value
+                for key, value in table.model_dump().items()
+                if value is not None and key not in idle
+            }
+        return document
+
+    def with_values(self, values: Mapping[str, Any]) -> "Case":
+        """This case with dotted keys set, such as `contact.mu_static`; alternatives are replaced.
+
+        Raises:
+            CaseError: as for a case file; the message names the keys that were set.
+        """
+        return _read(with_overrides(self.given(), values), self.origin_with(values), values)
+
+    def without_fields(self) -> "Case":
+        """This case without frames; not read again, for nothing depends on them."""
+        if self.output.fields_s == 0.0:
+            return self
+        output = self.output.model_copy(update={"fields_s": 0.0})
+        return self.model_copy(update={"output": output}).from_origin(
+            self.origin_with({"output.fields_s": 0.0})
+        )
+
+    def origin_with(self, values: Mapping[str, Any]) -> Origin:
+        """Where this case with dotted keys set comes from."""
+        overrides = (*self.overrides, *(f"{key}={value}" for key, value in values.items()))
+        return replace(self._origin, overrides=overrides)
+
+    def from_origin(self, origin: Origin) -> Self:
+        """This case with another place of birth."""
+        copy = self.model_copy()
+        copy._origin = origin
+        return copy
+
+
+def load_case(name_or_path: str | Path | None = None, overrides: Sequence[str] = ()) -> Case:
+    """Read a case file or a shipped case, changed by overrides of the form `table.key=value`.
+
+    A file wins over a shipped case of the same name; None is the shipped default.
+
+    Raises:
+        CaseError: with one line for each reason why the case cannot be used.
+    """
+    found = CASES.shipped(DEFAULT_CASE) if name_or_path is None else CASES.find(name_or_path)
+    origin = replace(found, overrides=tuple(overrides))
+    values = dict(parse_override(text) for text in overrides)
+    return _read(with_overrides(parse_case(origin), values), origin, values)
+
+
+def read_case(text: str, *, name: str = "case", folder: Path | None = None) -> Case:
+    """Read the text of a case file; `folder` is where its mesh and motion files are.
+
+    Raises:
+        CaseError: with one line for each reason why the case cannot be used.
+    """
+    origin = Origin(name=name, place=name, folder=folder or Path(), text=text)
+    return _read(parse_case(origin), origin, {})
+
+
+def to_toml(case: Case) -> str:
+    """The resolved case as a file that reads back to the same numbers, bit for bit."""
+    return toml_document(case.resolved())
+
+
+def case_hash(case: Case) -> str:
+    """SHA-256 of the resolved case without its title, and of the files that it reads.
+
+    Cases that differ only in a comment, in what is written out, in the keys of an option that is not
+    chosen, or in whether figures are drawn have the same hash.
+
+    Raises:
+        CaseError: if a mesh or motion file cannot be read.
+    """
+    document = {key: value for key, value in case.resolved().items() if key != "title"}
+    document["output"] = {key: value for key, value in document["output"].items() if key != "figures"}
+    digest = hashlib.sha256(toml_document(document).encode())
+    for key, path in sorted(case.data_files.items()):
+        try:
+            with path.open("rb") as stream:
+                content = hashlib.file_digest(stream, "sha256").hexdigest()
+        except OSError as error:
+            raise CaseError(_place(key) + f"cannot be read: {path}: {error.strerror}") from error
+        digest.update(f"{key} {content}\n".encode())
+    return digest.hexdigest()
+
+
+def _read(data: Mapping[str, Any], origin: Origin, overrides: Mapping[str, Any]) -> Case:
+    values, problems = read_case_tables(data)
+    if problems:
+        lines = problem_lines(problems, f"{origin.place}: ")
+        raise CaseError("\n".join(_naming_overrides(lines, overrides)))
+    return Case.model_validate(values).from_origin(origin)
+
+
+def _naming_overrides(lines: list[str], overrides: Mapping[str, Any]) -> list[str]:
+    """Say which override is to blame: behind its own key, else below the reasons."""
+    named = []
+    unnamed = dict(overrides)
+    for line in lines:
+        for dotted, value in overrides.items():
+            table, _, key = dotted.rpartition(".")
+            if (
+                f"[{table}] {key} " if table else f" {key} "
+            ) in line or f"[{table}] unknown key {key!r}" in line:
+                line += f" ({_as_override(dotted, value)})"
+                unnamed.pop(dotted, None)
+        named.append(line)
+    if unnamed and not any("(--set " in line for line in named):
+        named.append("with " + " ".join(_as_override(dotted, value) for dotted, value in unnamed.items()))
+    return named
+
+
+def _as_override(dotted: str, value: object) -> str:
+    shown = str(value)[:80]
+    return f"--set {dotted}={shown if shown.isprintable() else repr(shown)}"
+
+
+def _file_beside(folder: Path, key: str, name: str) -> Path:
+    path = folder / name
+    if not path.resolve().is_relative_to(folder.resolve()):
+        raise CaseError(
+            _place(key) + f"must lie in the folder of the case file, got {name!r}, which leads to "
+            f"{path.resolve()}; copy the file there"
+        )
+    if not path.is_file():
+        raise CaseError(
+            _place(key) + f"names no file: {name!r}, looked for in {folder.resolve()}; "
+            "its path is relative to the case file"
+        )
+    return path
+
+
+def _place(dotted: str) -> str:
+    table, _, key = dotted.partition(".")
+    return f"[{table}] {key} "

@@ -1,0 +1,136 @@
+"""Find a case, a sweep, an ensemble and read its text: a file of the user, or one that comes with the program.
+
+Such a file is data from anywhere: its size is checked before it is read, and what is no text or no TOML is
+refused with the line.
+"""
+
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from importlib import resources
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any
+
+from fem.case.validation import CaseError, did_you_mean
+
+DEFAULT_CASE = "seed_stack_plateau"
+LARGEST_FILE = 1_000_000  # bytes; a case file has a few thousand
+
+
+@dataclass(frozen=True, kw_only=True)
+class Origin:
+    """Where a case comes from; it plays no part when two cases are compared."""
+
+    name: str = field(default="case", compare=False)  #: file stem or name of the shipped case
+    place: str = field(default="case", compare=False)  #: how messages call it: path or name
+    folder: Path = field(default_factory=Path, compare=False)  #: where its mesh and motion files are
+    text: str = field(default="", compare=False)  #: the file as given, without overrides
+    overrides: tuple[str, ...] = field(default=(), compare=False)  #: as given, `table.key=value`
+
+
+@dataclass(frozen=True)
+class Collection:
+    """Files of one kind that come with the program, each commented."""
+
+    kind: str  #: as messages call it
+    package: str  #: its folder `shipped` holds them
+
+    @property
+    def _folder(self) -> Traversable:
+        return resources.files("fem") / self.package / "shipped"
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """In alphabetical order."""
+        entries = self._folder.iterdir()
+        return tuple(sorted(entry.name[:-5] for entry in entries if entry.name.endswith(".toml")))
+
+    def text(self, name: str) -> str:
+        """The file of this name.
+
+        Raises:
+            CaseError: if there is none; with the nearest one.
+        """
+        if name not in self.names:
+            raise CaseError(f"no shipped {self.kind} {name!r}{self.hint(name)}")
+        return (self._folder / f"{name}.toml").read_text(encoding="utf-8")
+
+    def description(self, name: str) -> str:
+        """What it shows: the first line of its file."""
+        return self.text(name).partition("\n")[0].lstrip("# ").strip()
+
+    def find(self, name_or_path: str | Path) -> Origin:
+        """The text of a file, or of a shipped one of that name; a file wins.
+
+        The mesh and motion files of a shipped case are looked for in the current folder.
+
+        Raises:
+            CaseError: if there is neither, or if the file cannot be read.
+        """
+        name = str(name_or_path)
+        if is_there(Path.is_file, name):
+            path = Path(name)
+            return Origin(name=path.stem, place=str(path), folder=path.parent, text=_read_text(path))
+        if name in self.names:
+            return self.shipped(name)
+        if name and is_there(Path.is_dir, name):
+            example = f", for instance {Path(name) / 'resolved.toml'}" if self is CASES else ""
+            raise CaseError(f"{name!r} is a folder; give the {self.kind} file{example}")
+        name = name if len(name) <= 200 else f"{name[:200]} ..."
+        raise CaseError(
+            f"no {self.kind} file {name!r} and no shipped {self.kind} of that name{self.hint(Path(name).stem)}"
+        )
+
+    def shipped(self, name: str) -> Origin:
+        """One that comes with the program, whatever files there are."""
+        return Origin(name=name, place=name, text=self.text(name))
+
+    def hint(self, name: str) -> str:
+        """The one that may have been meant, and all there are."""
+        near = did_you_mean(name, self.names)
+        return f"{'; ' + near if near else ''} (shipped: {', '.join(self.names)})"
+
+
+CASES = Collection("case", "case")
+SWEEPS = Collection("sweep", "sweep")
+ENSEMBLES = Collection("ensemble", "ensemble")
+
+
+def parse_case(origin: Origin) -> dict[str, Any]:
+    """The tables of a case file as TOML reads them.
+
+    Raises:
+        CaseError: if it is no TOML, with the line.
+    """
+    try:
+        return tomllib.loads(origin.text)
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError(f"{origin.place}: not a TOML file: {error}") from error
+    except RecursionError as error:
+        raise CaseError(f"{origin.place}: not a case file: lists or tables nested too deep") from error
+    except ValueError as error:  # a whole number of thousands of digits
+        raise CaseError(f"{origin.place}: not a TOML file: {error}") from error
+
+
+def _read_text(path: Path) -> str:
+    try:
+        with path.open("rb") as stream:
+            content = stream.read(LARGEST_FILE + 1)
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be read: {error.strerror}") from error
+    if len(content) > LARGEST_FILE:
+        raise CaseError(f"{path}: larger than {LARGEST_FILE} bytes; that is no case file")
+    try:
+        return content.decode("utf-8-sig")  # editors on Windows put a mark in front
+    except UnicodeDecodeError as error:
+        line = content[: error.start].count(b"\n") + 1
+        raise CaseError(f"{path}: not text in UTF-8 (line {line}); save the file as UTF-8") from error
+
+
+def is_there(kind: Callable[[Path], bool], path: str | Path) -> bool:
+    """Whether there is such a file or folder; false for names that none can have."""
+    try:
+        return kind(Path(path))
+    except (ValueError, OSError):  # a null character, a name too long, a folder that may not be entered
+        return False

@@ -1,0 +1,256 @@
+"""From what stands in a case file to its tables, or to every reason why not.
+
+One pass collects all that is wrong: keys that nobody knows, values of the wrong type or out of
+range, and rules broken among the keys that could be read. Each reason is one line: table, key, what
+is required, the value with its unit, and what to do.
+"""
+
+import datetime
+import difflib
+from collections.abc import Iterable, Mapping
+from types import SimpleNamespace
+from typing import Any, get_args
+
+from pydantic import ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails, PydanticUndefined
+
+from fem.case.problem import Problem, Rule
+from fem.case.quantities import Quantity, with_unit
+from fem.case.rules import RULES_OF_A_CASE
+from fem.case.tables import TABLES, Heading, Table
+
+
+class CaseError(ValueError):
+    """A case that cannot be used; the message has one line for each reason."""
+
+
+def known_keys(table: type[Table]) -> dict[str, FieldInfo]:
+    """Keys of a table as they are written in a file, with their fields."""
+    return {field.alias or name: field for name, field in table.model_fields.items()}
+
+
+TOP = known_keys(Heading)
+#: what values of the wrong type should have been, by pydantic's name of the fault
+KINDS = {
+    "float_type": "a number",
+    "finite_number": "a finite number",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "bool_type": "true or false",
+    "string_type": "text in quotes",
+}
+
+
+def quantity_of(annotation: Any, metadata: Iterable[Any] = ()) -> Quantity | None:
+    """The quantity that a field holds, if it holds one; optional and "auto" fields included."""
+    for item in metadata:
+        if isinstance(item, Quantity):
+            return item
+    for part in get_args(annotation):
+        found = part if isinstance(part, Quantity) else quantity_of(part)
+        if found is not None:
+            return found
+    return None
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """The nearest known name as a question, or an empty string."""
+    names = list(known)
+    lower = {candidate.lower(): candidate for candidate in names}
+    near = difflib.get_close_matches(name.lower(), lower, n=1, cutoff=0.6)
+    near = near or [candidate for candidate in lower if len(name) > 1 and candidate.startswith(name.lower())]
+    return f"did you mean {lower[near[0]]!r}?" if near else ""
+
+
+def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Problem]]:
+    """Read all tables of a case.
+
+    Returns:
+        What could be read, by name: the heading's keys and one `Table` for each table; and every
+        problem found. The first is complete only when the second is empty.
+    """
+    heading: dict[str, Any] = {}
+    problems: list[Problem] = []
+    for key, value in data.items():
+        if key in TABLES and not isinstance(value, dict):
+            reason = f"must be one table, got {_shown(value)}; write [{key}] above its keys"
+            problems.append(Problem(table=key, key="", reason=reason))
+        elif isinstance(value, dict) and key not in TABLES and key not in TOP:
+            problems.append(Problem(table=key, key="", reason=_unknown_table(key)))
+        elif key not in TABLES:
+            heading[key] = value
+    read, partial, found = read_table("", Heading, heading)
+    problems += found
+    for name, model in TABLES.items():
+        content = data.get(name, {})
+        if not isinstance(content, dict):
+            continue
+        given, part, found = read_table(name, model, content)
+        problems += found
+        partial[name] = SimpleNamespace(**part)
+        if not found:
+            read[name] = model.model_validate(given)
+    problems += _broken(RULES_OF_A_CASE, SimpleNamespace(**partial), "")
+    return read, problems
+
+
+def problem_lines(problems: Iterable[Problem], heading: str = "") -> list[str]:
+    """One line a problem, in the order of the tables; `heading` says whose they are."""
+    order = ["", *TABLES]
+    ranked = sorted(problems, key=lambda problem: order.index(problem.table) if problem.table in order else 0)
+    lines = []
+    for problem in ranked:
+        place = f"[{problem.table}] " if problem.table else ""
+        comma = "" if not problem.key or problem.reason.startswith((",", ";")) else " "
+        lines.append(f"{heading}{place}{problem.key}{comma}{problem.reason}")
+    return lines
+
+
+def read_table(
+    name: str, model: type[Table], content: Mapping[str, Any]
+) -> tuple[dict[str, Any], dict[str, Any], list[Problem]]:
+    """Values as given, values by field with defaults as far as readable, and problems."""
+    known = known_keys(model)
+    problems = [
+        Problem(table=name, key="", reason=_unknown_key(name, key, known))
+        for key in content
+        if key not in known
+    ]
+    given = {key: value for key, value in content.items() if key in known}
+    reasons: dict[str, list[ErrorDetails]] = {}
+    try:
+        model.model_validate(given)
+    except ValidationError as error:
+        for detail in error.errors(include_url=False):
+            if detail["loc"] and detail["type"] != "default_factory_not_called":
+                reasons.setdefault(str(detail["loc"][0]), []).append(detail)
+    for key, details in reasons.items():
+        problems.append(Problem(table=name, key=key, reason=_reason(known[key], details)))
+    partial = _partial(model, given, reasons.keys())
+    problems += _broken(model.rules, SimpleNamespace(**partial), name)
+    return given, partial, problems
+
+
+def _partial(model: type[Table], given: Mapping[str, Any], bad: Iterable[str]) -> dict[str, Any]:
+    """Field values with defaults, without the keys that are bad and the defaults that follow them."""
+    refused = set(bad)
+    values: dict[str, Any] = {}
+    for name, field in model.model_fields.items():
+        key = field.alias or name
+        if key in refused:
+            continue
+        if key in given:
+            values[name] = given[key]
+            continue
+        try:
+            default = field.get_default(call_default_factory=True, validated_data=values)
+        except KeyError:  # the default follows a key that is bad or missing
+            continue
+        if default is not PydanticUndefined:
+            values[name] = default
+    return values
+
+
+def _broken(rules: Iterable[Rule], subject: SimpleNamespace, table: str) -> list[Problem]:
+    """Problems of the rules that can be judged with the keys at hand."""
+    problems = []
+    for rule in rules:
+        try:
+            problem = rule(subject)
+        except AttributeError:  # a key it asks for could not be read: its own problem is already told
+            continue
+        if problem is not None:
+            owner = problem.table or table
+            problems.append(Problem(table=owner, key=problem.key, reason=problem.reason))
+    return problems
+
+
+def _reason(field: FieldInfo, details: list[ErrorDetails]) -> str:
+    """One reason for all that pydantic says of one key."""
+    out_of_range = [detail for detail in details if detail["type"] == "value_error"]
+    detail = (out_of_range or details)[0]
+    value = detail["input"]
+    quantity = quantity_of(field.annotation, field.metadata)
+    unit = quantity.unit if quantity else ""
+    kinds = {entry["type"] for entry in details}
+    if out_of_range:
+        return str(detail.get("ctx", {}).get("error", detail["msg"]))
+    if "missing" in kinds:
+        example = f", for instance {field.examples[0]!r}" if field.examples else ""
+        what = f"{field.description}{example} {unit}".strip().replace("'", '"')
+        return f"is missing: {what}"
+    if "literal_error" in kinds and len(kinds) > 1:
+        return f'must be a number or "auto", got {_shown(value)}'
+    if "literal_error" in kinds:
+        choices = [choice for choice in get_args(field.annotation) if isinstance(choice, str)]
+        choices = choices or [c for part in get_args(field.annotation) for c in get_args(part)]
+        near = did_you_mean(value, choices) if isinstance(value, str) else ""
+        listed = " or ".join(f'"{choice}"' for choice in choices)
+        return f"must be {listed}, got {_shown(value)}" + (f"; {near}" if near else "")
+    for kind, words in KINDS.items():
+        if kind in kinds:
+            hint = _number_in_text(value, unit) if isinstance(value, str) and quantity else ""
+            shown = repr(value) if isinstance(value, float) else _shown(value)
+            return f"must be {words}, got {shown}{hint}"
+    return f"{requirement_of(detail)}, got {_shown(value)}"
+
+
+def requirement_of(detail: ErrorDetails) -> str:
+    """What pydantic asks of a value, in the words of this program."""
+    limits = detail.get("ctx", {})
+    match detail["type"]:
+        case kind if kind in KINDS:
+            return f"must be {KINDS[kind]}"
+        case "greater_than":
+            return f"must be greater than {limits['gt']}"
+        case "greater_than_equal":
+            return f"must be at least {limits['ge']}"
+        case "less_than":
+            return f"must be less than {limits['lt']}"
+        case "less_than_equal":
+            return f"must be at most {limits['le']}"
+        case "string_too_long":
+            return f"must have at most {limits['max_length']} characters"
+        case "literal_error":
+            return f"must be {limits['expected']}"
+    return f"cannot be used ({detail['msg'].lower()})"
+
+
+def _number_in_text(text: str, unit: str) -> str:
+    """How to write what stands in quotes, or in a way that TOML does not read as a number."""
+    try:
+        return f"; write {float(text)!r}"
+    except ValueError:
+        return f"; give the bare number{' in ' + unit if unit else ''}"
+
+
+def _shown(value: object) -> str:
+    """A value of a TOML file in words."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return f"the text {with_unit(value, '')}"
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, list):
+        return "a list"
+    if isinstance(value, datetime.date | datetime.time):
+        return f"the date or time {value}"
+    return with_unit(value, "")
+
+
+def _unknown_key(table: str, key: str, known: Mapping[str, FieldInfo]) -> str:
+    elsewhere = [f"[{name}]" for name, model in TABLES.items() if name != table and key in known_keys(model)]
+    if elsewhere:
+        way_out = f"it belongs into {' or '.join(elsewhere)}"
+    elif table and key in TOP:
+        way_out = "it belongs before the first table"
+    else:
+        way_out = did_you_mean(key, known)
+    return f"unknown key {key[:80]!r}{'; ' + way_out if way_out else ''} (known: {', '.join(known)})"
+
+
+def _unknown_table(name: str) -> str:
+    near = did_you_mean(name, TABLES)
+    return f"unknown table{'; ' + near if near else ''} (known: {', '.join(TABLES)})"

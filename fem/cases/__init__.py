@@ -1,1 +1,0 @@
-"""The shipped cases, one commented TOML file each."""

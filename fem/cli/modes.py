@@ -1,0 +1,77 @@
+"""`modes`: elastic frequencies and shapes of the free container."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from fem.case.case import CaseError, load_case
+from fem.cli.console import AsJson, Overrides, whole
+from fem.figures.modes import modes_figure
+from fem.figures.style import house_style, svg_of
+from fem.model.geometry import build_container
+from fem.results.run_folder import naming_what_cannot_be_written, write_atomically
+from fem.solid.assembly import assemble
+from fem.solid.modes import elastic_mode_table, elastic_modes, write_modes
+
+RIGID_MODES, SHOWN = 3, 20
+
+
+def modes(
+    case: str | None = None,
+    /,
+    *,
+    count: Annotated[int | None, whole("How many; default: solver.elastic_modes, or 20.")] = None,
+    out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/NAME/modes.")] = None,
+    overrides: Overrides = (),
+    as_json: AsJson = False,
+) -> None:
+    """Elastic frequencies and shapes of the container, free of the floor; the shapes go to modes.vtu and modes.svg.
+
+    Parameters
+    ----------
+    case:
+        A case file or the name of a shipped case; default: seed_stack_plateau.
+    """
+    loaded = load_case(case, overrides)
+    elements = assemble(
+        build_container(loaded),
+        youngs_modulus=loaded.container.youngs_modulus_Pa,
+        poisson_ratio=loaded.container.poisson_ratio,
+        order=loaded.solver.order,
+    )
+    available = elements.unknowns - RIGID_MODES
+    if count is not None and not 1 <= count <= available:
+        raise CaseError(f"--count {count}: this mesh has from 1 to {available} elastic modes")
+    # A case may do without elastic modes, or take all of a coarse mesh by asking for more.
+    found = elastic_modes(elements, count or min(loaded.solver.elastic_modes or SHOWN, available))
+    with house_style():
+        drawn = modes_figure(
+            points=elements.nodes,
+            cells=elements.cells,
+            modes=found,
+            boxes=loaded.container.boxes,
+            name=loaded.name,
+        )
+    folder = out if out is not None else Path("outputs") / loaded.name / "modes"
+    with naming_what_cannot_be_written(folder, "ask again, or elsewhere with --out DIR"):
+        path = write_modes(elements, found, folder)
+        figure = path.with_suffix(".svg")
+        write_atomically(figure, svg_of(drawn))
+    rows = elastic_mode_table(found)
+    if as_json:
+        print(
+            json.dumps(
+                {"case": loaded.name, "modes": rows, "file": str(path), "figure": str(figure)}, indent=2
+            )
+        )
+        return
+    print(f"{loaded.name}: elastic modes of the free container\n")
+    print("  mode   frequency [Hz]   period [ms]   to the first")
+    for row in rows:
+        print(
+            f"  {row['mode']:4.0f}   {row['frequency_Hz']:14.3f}   {1e3 * row['period_s']:11.4f}   "
+            f"{row['ratio_to_first']:12.3f}"
+        )
+    print(f"\n{figure} shows the shapes, {path} in ParaView (Warp By Vector)")

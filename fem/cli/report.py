@@ -1,0 +1,76 @@
+"""`report`: one self-contained page from the folder of a run, a sweep or a study."""
+
+import importlib
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from fem.cli.console import Quiet, flag
+from fem.results.run_folder import FolderError, naming_what_cannot_be_written, write_atomically
+from fem.runtime.progress import ScreenReporter
+
+PAGE = "report.html"
+SUFFIXES = (".html", ".htm")
+
+
+def report(
+    folder: Path,
+    /,
+    *,
+    to: Annotated[Path | None, Parameter(help="The file; default: report.html in the folder.")] = None,
+    author: Annotated[str, Parameter(show_default=False, help="Who made it; may be filled in later.")] = "",
+    checker: Annotated[str, Parameter(show_default=False, help="Who checked it.")] = "",
+    revision: Annotated[str, Parameter(show_default=False, help="Which revision it is.")] = "",
+    all_variations: Annotated[bool, flag("Compute every variation of a run, however long it takes.")] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Make one HTML file that can be sent, read without a network, and printed.
+
+    Parameters
+    ----------
+    folder:
+        The folder of a run, a sweep or a study, such as outputs/my-stack.
+    """
+    if not folder.is_dir():
+        raise FolderError(
+            f"{folder}: no such folder; give the folder of a run, a sweep or a study, such as outputs/NAME"
+        )
+    place = _place(to if to is not None else folder / PAGE)
+    reporter = ScreenReporter(quiet=quiet)
+    interrupts = importlib.import_module("fem.runtime.interrupts")
+    pages = importlib.import_module("fem.report.run_page")
+    signature = pages.Signature(author=author, checker=checker, revision=revision)
+    if (folder / "sweep.json").is_file():
+        page = importlib.import_module("fem.report.sweep_page").sweep_report(folder, signature=signature)
+    elif (folder / "study.json").is_file():
+        page = importlib.import_module("fem.paper.study_page").study_report(folder, signature=signature)
+    else:
+        opened = importlib.import_module("fem.results.reader").open_run(folder)
+        with interrupts.interruptible(reporter) as stop:
+            page = pages.run_report(
+                opened,
+                signature=signature,
+                every_variation=all_variations,
+                told=reporter.message,
+                stop=stop,
+            )
+    with naming_what_cannot_be_written(place.parent, "ask again, or elsewhere with --to FILE"):
+        write_atomically(place, page)
+    print(place)
+
+
+def _place(path: Path) -> Path:
+    """Where the page goes, known to be possible before anything is computed: never over a file of results."""
+    if path.suffix.lower() not in SUFFIXES:
+        raise FolderError(f"--to {path}: the page is HTML; give a name that ends in {' or '.join(SUFFIXES)}")
+    if path.is_dir():
+        raise FolderError(f"--to {path}: a folder stands there; give the name of a file in it")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = error.strerror or error
+        raise FolderError(
+            f"--to {path}: no folder can be made there ({reason}); choose another place"
+        ) from None
+    return path

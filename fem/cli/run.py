@@ -1,0 +1,110 @@
+"""`run`: compute a case, from the file to the verdict."""
+
+import importlib
+import json
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from fem.case.case import Case, CaseError, load_case
+from fem.cli.check import chosen_numerics, page_of_numerics, peak_floor_acceleration
+from fem.cli.console import EXIT_CODES, Folder, Force, Overrides, Quiet, flag
+from fem.model.geometry import build_container
+from fem.results.disk import free_disk, in_units
+from fem.results.run_folder import read_result
+from fem.runtime.progress import ScreenReporter
+
+
+def run(
+    case: str | None = None,
+    /,
+    *,
+    out: Folder = None,
+    overrides: Overrides = (),
+    check_rigid: Annotated[bool, flag("Compare with the analytic rigid block.")] = False,
+    band: Annotated[
+        bool | None,
+        Parameter(
+            show_default=False,
+            help="Repeat over contact penalty and damping; default: where the outcome is not rest or slide.",
+        ),
+    ] = None,
+    resume: Annotated[bool, flag("Go on from the checkpoint, if there is one.")] = False,
+    force: Force = False,
+    dry_run: Annotated[bool, flag("Say what would be computed, and stop.")] = False,
+    as_json: Annotated[bool, flag("Print run.json.", "--json")] = False,
+    quiet: Quiet = False,
+    verbose: Annotated[bool, flag("Tell more.", "--verbose", "-v")] = False,
+) -> int:
+    """Compute a case: does the container rest, slide, rock, slide-rock or overturn?
+
+    Parameters
+    ----------
+    case:
+        A case file or the name of a shipped case; default: seed_stack_plateau.
+    """
+    if quiet and verbose:
+        raise CaseError("-q and -v contradict one another; give one of them")
+    loaded = load_case(case, overrides)
+    folder = out if out is not None else Path("outputs") / loaded.name
+    if dry_run or verbose:
+        plan = plan_of(loaded, folder)
+        text = json.dumps(plan, indent=2) if as_json else page_of_plan(loaded, plan)
+        print(text, file=sys.stdout if dry_run else sys.stderr)
+    if dry_run:
+        return 0
+    # The solver is loaded only now: bad input is answered before anything is compiled.
+    solver = importlib.import_module("fem.run.run")
+    result = solver.run_case(
+        loaded,
+        case_text=text_with_overrides(loaded),
+        folder=folder,
+        options=solver.RunOptions(check_rigid=check_rigid, band=band, resume=resume, force=force),
+        reporter=ScreenReporter(quiet=quiet),
+    )
+    if as_json:
+        print(json.dumps(read_result(folder / "run.json"), indent=2))
+    else:
+        print((folder / "summary.txt").read_text(encoding="utf-8"), end="")
+    if result.status == "interrupted":
+        print(
+            f"interrupted; the same command with --resume goes on from {folder / 'checkpoint.npz'}",
+            file=sys.stderr,
+        )
+    elif result.stopped:
+        print("interrupted amid the band; the same command goes on with it", file=sys.stderr)
+    return EXIT_CODES["interrupted" if result.stopped else result.status]
+
+
+def text_with_overrides(case: Case) -> str:
+    """The case file as given, with what the command line changed as comments at its end."""
+    if not case.overrides:
+        return case.text
+    changes = "".join(f"#   --set {override!r}\n" for override in case.overrides)
+    return f"{case.text.rstrip()}\n\n# Changed on the command line:\n{changes}"
+
+
+def plan_of(case: Case, folder: Path) -> dict[str, Any]:
+    """What would be computed, and where it would go."""
+    return {
+        "case": case.name,
+        "folder": str(folder),
+        "free_bytes": free_disk(folder),
+        "peak_floor_acceleration_m_s2": peak_floor_acceleration(case),
+        "numerics": chosen_numerics(case, build_container(case)),
+    }
+
+
+def page_of_plan(case: Case, plan: dict[str, Any]) -> str:
+    """The same for people."""
+    there = " (exists)" if Path(plan["folder"]).exists() else ""
+    if plan["free_bytes"] is not None:
+        there += f", room for {in_units(plan['free_bytes'])}"
+    lines = [
+        f"{case.name}: {case.title}" if case.title else case.name,
+        f"  folder      {plan['folder']}{there}",
+        f"  floor       {case.motion.kind}, peak {plan['peak_floor_acceleration_m_s2']:.4g} m/s2",
+    ]
+    return "\n".join(lines + page_of_numerics(plan["numerics"]))

@@ -1,0 +1,91 @@
+"""`sweep`: many cases, from the file of a sweep to its table and maps."""
+
+import importlib
+import json
+from contextlib import ExitStack
+from pathlib import Path
+from types import ModuleType
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from fem.case.case import CaseError
+from fem.cli.console import EXIT_CODES, Folder, Jobs, Quiet, flag
+from fem.results.run_folder import to_json
+from fem.runtime.progress import ScreenReporter
+from fem.sweep.file import load_sweep
+
+
+def sweep(
+    sweep: str,
+    /,
+    *,
+    out: Folder = None,
+    jobs: Jobs = None,
+    scheduler: Annotated[
+        str | None,
+        Parameter(show_default=False, help="Address of a dask scheduler, such as tcp://127.0.0.1:8786."),
+    ] = None,
+    resume: Annotated[bool, flag("Go on with the rows that are there.")] = False,
+    force: Annotated[bool, flag("Compute anew, over what is there; however many.")] = False,
+    as_json: Annotated[bool, flag("Print sweep.json.", "--json")] = False,
+    quiet: Quiet = False,
+) -> int:
+    """Compute the cases of a sweep: where does the container stand?
+
+    Parameters
+    ----------
+    sweep:
+        A sweep file or the name of a shipped sweep (see `python -m fem list`).
+    """
+    asked = load_sweep(sweep)
+    folder = out if out is not None else Path("outputs") / asked.name
+    # The solver is loaded only now: bad input is answered before anything is compiled.
+    solver = importlib.import_module("fem.sweep.run")
+    with ExitStack() as stack:
+        workers_of = None
+        if scheduler is not None:
+            workers_of = stack.enter_context(_cluster_module().cluster(scheduler))
+        info = solver.run_sweep(
+            asked,
+            folder,
+            jobs=jobs,
+            workers_of=workers_of,
+            resume=resume,
+            force=force,
+            reporter=ScreenReporter(quiet=quiet),
+        )
+    print(to_json(info).rstrip() if as_json else page_of(json.loads(to_json(info)), folder))
+    return EXIT_CODES[info["status"]]
+
+
+def _cluster_module() -> ModuleType:
+    """Loaded where it is asked for: dask is an extra, and takes a second."""
+    try:
+        return importlib.import_module("fem.batch.cluster")
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
+            raise
+        raise CaseError(
+            "--scheduler needs the extra 'cluster': python -m pip install \"unanchored[cluster]\""
+        ) from None
+
+
+def page_of(info: dict[str, Any], folder: Path) -> str:
+    """What a sweep found, for people."""
+    title = f": {info['title']}" if info["title"] else ""
+    lines = [f"{info['sweep']}{title}", f"  {info['rows']} of {info['cells']} cells, {info['status']}"]
+    for outcome, count in info["outcomes"].items():
+        lines.append(f"  {outcome:12} {count:>8}  {100.0 * count / max(info['rows'], 1):5.1f} %")
+    if info["unsure"] is not None:
+        lines.append(
+            f"  {'unsure':12} {info['unsure']:>8}  {100.0 * info['unsure'] / max(info['rows'], 1):5.1f} %  "
+            f"of {info['perturbed']} cells perturbed"
+        )
+    table = "rows.csv" if info["status"] == "interrupted" else "table.csv"
+    lines.append(f"  {folder}: {table}, sweep.json" + "".join(f", {name}" for name in info["maps"]))
+    if info["changes"] is not None:
+        lines.append(f"  {folder}: thresholds.csv, {info['changes']} changes of outcome closed in on")
+    if info["status"] == "interrupted":
+        lines.append("  --resume goes on from here")
+    return "\n".join(lines)

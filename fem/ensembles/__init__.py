@@ -1,1 +1,0 @@
-"""Shipped ensembles, a commented TOML file each."""

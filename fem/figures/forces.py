@@ -1,0 +1,87 @@
+"""The figure of the forces of the floor, and how forces of impacts are drawn beside those between them.
+
+An impact's force is far beyond the others: it is cut off, marked at the rim of the panel, and told.
+"""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from fem.figures.style import (
+    BLACK,
+    BLUE,
+    GREY,
+    LEGEND_GAP,
+    VERMILLION,
+    draw_curve,
+    draw_limits,
+    draw_states,
+    head,
+    legend_above,
+    number,
+    states_of,
+    time_panels,
+)
+from fem.results.history import FloatArray
+from fem.results.reader import OpenedRun
+
+LARGE_FORCE = 2.5  #: times weight, or its static friction: beyond are impacts, not the motion between them
+OFF_SCALE = 1.3  #: forces beyond the scale by more than this are cut off and told
+MARKS = 300  #: of forces off the scale, side by side
+
+
+def forces_figure(run: OpenedRun) -> Figure:
+    """Normal and shear force of the floor on the container."""
+    history, contact = run.history, run.case.contact
+    time, normal, shear = history["time_s"], 1e-3 * history["normal_force_N"], 1e-3 * history["shear_force_N"]
+    weight, states = 1e-3 * run.case.weight, states_of(run.history.modes)
+    limits = [
+        scale_without_impacts(normal, LARGE_FORCE * weight),
+        scale_without_impacts(shear, LARGE_FORCE * contact.mu_static * weight),
+    ]
+    cut = any(limit is not None for limit in limits)
+    figure, axes = time_panels((1.5, 1.7), states=states, gaps=(LEGEND_GAP,), header=3 if cut else 2)
+    for panel, force, label, colour in (
+        (axes[0], normal, "normal force [kN]", BLUE),
+        (axes[1], shear, "shear force [kN]", VERMILLION),
+    ):
+        draw_curve(panel, time, force, color=colour, linewidth=0.8)
+        panel.set_ylabel(label)
+    axes[0].axhline(
+        weight, color=BLACK, linestyle="--", linewidth=0.9, label=f"weight, {number(weight, 4)} kN"
+    )
+    axes[0].set_ylim(bottom=0.0)
+    friction = {"static": (contact.mu_static, "--"), "kinetic": (contact.mu_kinetic, ":")}
+    for name, (mu, style) in friction.items():
+        label = f"{name} friction of the weight, ±{number(mu * weight)} kN"
+        draw_limits(axes[1], mu * weight, label, color=BLACK, linestyle=style)
+        if contact.mu_static == contact.mu_kinetic:
+            break
+    for panel, force, limit in zip(axes, (normal, shear), limits, strict=False):
+        if limit is not None:
+            cut_off(panel, time, force, limit)
+        legend_above(panel)
+    draw_states(axes[-1], time, history.modes, states)
+    statement = (
+        f"marks at the rim: beyond the scale, up to {number(normal.max(), 4)} and "
+        f"{number(np.abs(shear).max(), 4)} kN, when the contact's damper stops an impact"
+    )
+    head(figure, "Forces of the floor on the container", statement if cut else "", status=run.status)
+    return figure
+
+
+def scale_without_impacts(force: FloatArray, large: float) -> float | None:
+    """Where the scale of a force ends if impacts go far beyond what lies between them; else None."""
+    limit = max(large, 1.2 * float(np.quantile(np.abs(force), 0.9)))
+    return limit if np.abs(force).max() > OFF_SCALE * limit else None
+
+
+def cut_off(axes: Axes, time: FloatArray, force: FloatArray, limit: float) -> None:
+    """End the scale at a limit, with a mark at the rim for each force beyond it."""
+    axes.set_ylim(0.0 if axes.get_ylim()[0] == 0.0 else -limit, limit)
+    for sign, marker in ((1.0, "^"), (-1.0, "v")):
+        beyond = time[sign * force > limit]
+        # Marks closer than that would be one another's shadow.
+        _, apart = np.unique(np.round(beyond / (time[-1] - time[0]) * MARKS), return_index=True)
+        rim = np.full(len(apart), sign * limit)
+        axes.plot(beyond[apart], rim, marker, color=GREY, markersize=3, clip_on=False)

@@ -1,0 +1,152 @@
+"""The figure of the joints between the boxes of a stack: what they carry, and what their bolts must hold.
+
+Forces are means over `output.history_s`, on the boxes above (`fem.model.joints`). Impacts are so many and so short that
+curves of several joints over time hide one another: above stand the ranges of each force over the height of the stack,
+beside what the weight above would give; below, over time, the most that bolts must hold at any joint. Where that is
+not zero, a joint without bolts opens at an edge, or slides (`fem.assessment.joint_demands`).
+"""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from fem.assessment.joint_demands import edge_forces
+from fem.figures.style import (
+    BLACK,
+    BLUE,
+    LEFT,
+    LEGEND_GAP,
+    LINE,
+    RIGHT,
+    SKY,
+    VERMILLION,
+    draw_states,
+    head,
+    keep_visible,
+    kept_samples,
+    legend_above,
+    number,
+    states_of,
+    time_panels,
+    zero_line,
+)
+from fem.results.history import JOINT_COLUMNS, FloatArray
+from fem.results.reader import OpenedRun
+
+HEADER = 3  #: lines of text above the panels of ranges: title, legend, what is largest
+RANGES, BETWEEN, BELOW = 1.4, 0.3, 0.78  #: their height, between them, from them to those over time [inch]
+USUAL = (0.05, 0.95)  #: quantiles between which a force lies nine tenths of the time
+THICK = 0.5  #: of a bar, over the height of a box
+LEAST_FORCE = 1.0  #: on the axes of what bolts hold [kN]
+
+
+def joints_figure(run: OpenedRun) -> Figure | None:
+    """Ranges of normal force, shear and moment over the height; what bolts hold over time; None for one box."""
+    history, case = run.history, run.case
+    if history.joints == 0:
+        return None
+    overturned_at = (run.result.get("verdict") or {}).get("overturned_at_s")
+    standing = history["time_s"] <= (np.inf if overturned_at is None else overturned_at)
+    time, half, mu = history["time_s"][standing], 0.5 * case.container.width_m, case.contact.mu_static
+    normal, shear, moment = (
+        1e-3 * np.array([history[name.format(joint)][standing] for joint in range(1, history.joints + 1)])
+        for name in JOINT_COLUMNS
+    )
+    states = states_of(history.modes)
+    figure, axes = time_panels(
+        (1.1, 0.7), states=states, gaps=(LEGEND_GAP,), header=HEADER, above=RANGES + BELOW
+    )
+    box, boxes = case.container.height_m, case.container.boxes
+    weight = 1e-3 * case.weight * (1.0 - np.arange(1, boxes) / boxes)
+    over_height = _side_by_side(figure)
+    _draw_ranges(over_height[0], box, normal, "normal", "kN", [weight])
+    _draw_ranges(over_height[1], box, shear, "shear", "kN", [mu * weight, -mu * weight])
+    _draw_ranges(over_height[2], box, moment, "moment", "kNm", [half * weight, -half * weight])
+    over_height[0].legend(
+        loc="lower left", bbox_to_anchor=(0.0, 1.0 + LINE / RANGES), ncols=3, borderaxespad=0.1
+    )
+    left, right = (np.maximum(0.0, -edge) for edge in edge_forces(normal, moment, 2.0 * half))
+    beyond = np.maximum(0.0, np.abs(shear) - mu * np.maximum(normal, 0.0))
+    zero_line(axes[0])
+    _draw_held(axes[0], time, left, "left edge", BLUE)
+    _draw_held(axes[0], time, right, "right edge", VERMILLION, sign=-1.0)
+    keep_visible(axes[0], LEAST_FORCE)
+    axes[0].yaxis.set_major_formatter(lambda value, position: f"{abs(value):g}")  # both are tension
+    _draw_held(axes[1], time, beyond, f"beyond μ = {number(mu)}", BLUE)
+    axes[1].set_ylim(0.0, max(1.08 * float(beyond.max()), LEAST_FORCE))
+    for panel, label in zip(axes, ("tension [kN]", "shear [kN]"), strict=False):
+        panel.set_ylabel(label)
+        legend_above(panel)
+    draw_states(axes[-1], history["time_s"], history.modes, states)
+    head(
+        figure,
+        "Joints between the boxes: forces over the height, and what bolts must hold",
+        status=run.status,
+    )
+    return figure
+
+
+def _side_by_side(figure: Figure) -> list[Axes]:
+    """Three panels over the height above the floor, below the header."""
+    wide, tall = figure.get_size_inches()
+    each = (wide - LEFT - RIGHT - 2.0 * BETWEEN) / 3.0
+    bottom = tall - 0.08 - HEADER * LINE - RANGES
+    found: list[Axes] = []
+    for place in range(3):
+        rectangle = ((LEFT + place * (each + BETWEEN)) / wide, bottom / tall, each / wide, RANGES / tall)
+        found.append(figure.add_axes(rectangle, sharey=found[0] if found else None))
+        found[-1].tick_params(labelleft=place == 0)
+    found[0].set_ylabel("above the floor [m]")
+    return found
+
+
+def _draw_ranges(
+    axes: Axes, box: float, forces: FloatArray, name: str, unit: str, marks: list[FloatArray]
+) -> None:
+    """Of forces (J, n) a bar from the least to the largest for each joint, and what the weight above would give."""
+    levels = box * np.arange(1, len(forces) + 1)
+    low, high = forces.min(axis=1), forces.max(axis=1)
+    usually = np.quantile(forces, USUAL, axis=1)
+    axes.axvline(0.0, color=BLACK, linewidth=0.7)
+    for (start, end), colour, label in (
+        ((low, high), SKY, "least to largest"),
+        (usually, BLUE, "nine tenths of the time"),
+    ):
+        axes.barh(
+            levels,
+            end - start,
+            left=start,
+            height=THICK * box,
+            color=colour,
+            edgecolor=colour,
+            linewidth=0.8,
+            label=label,
+        )
+    told: str | None = "weight above: N, ±μN, ±N × width/2"
+    for mark in marks:
+        axes.plot(mark, levels, "|", color=BLACK, markersize=11.0, markeredgewidth=1.2, label=told)
+        told = None
+    axes.set_ylim(0.0, box * (len(forces) + 1))
+    axes.grid(visible=False, axis="y")
+    axes.set_xlabel(f"{name} [{unit}]")
+    axes.margins(x=0.06)
+    joint = int(np.abs(forces).max(axis=1).argmax())
+    axes.set_title(
+        f"up to {number(np.abs(forces[joint]).max())} {unit}, at {number(levels[joint])} m",
+        fontsize=8.0,
+        pad=4.0,
+    )
+
+
+def _draw_held(
+    axes: Axes, time: FloatArray, forces: FloatArray, name: str, colour: str, sign: float = 1.0
+) -> None:
+    """Of forces (J, n), none of them negative, the largest at every instant, upwards or downwards."""
+    largest = forces.max(axis=0)
+    joint, instant = np.unravel_index(int(forces.argmax()), forces.shape)
+    where = f": {number(largest[instant])} kN at most, joint {joint + 1}, {time[instant]:.3f} s"
+    if largest[instant] == 0.0:
+        axes.plot([], [], color=colour, label=f"{name}: none")
+        return
+    kept = kept_samples(largest)
+    axes.fill_between(time[kept], sign * largest[kept], color=colour, linewidth=0.4, label=name + where)

@@ -1,0 +1,63 @@
+"""The figure of the elastic modes: each shape over the container at rest, with its frequency."""
+
+import math
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from fem.figures.style import BLUE, GREY, LINE, WIDTH, head, number
+from fem.solid.edges import IntArray, chained, outline_edges
+from fem.solid.elasticity import FloatArray
+from fem.solid.modes import ElasticModes
+
+MOST = 20  #: modes that one figure shows
+COLUMNS = 5
+AMPLITUDE = 0.12, 0.22  #: largest displacement drawn, over the longer and over the shorter side
+TALLEST = 2.6  #: panel [inch]
+
+
+def modes_figure(
+    *, points: FloatArray, cells: IntArray, modes: ElasticModes, boxes: int = 1, name: str = ""
+) -> Figure:
+    """Deformed outlines over the undeformed one, all to the same amplitude; drawn in the house style.
+
+    Args:
+        points: undeformed nodes (n, 2) [m].
+        cells: nodes of each cell in the order of VTK, shape (m, 4 or 9).
+        modes: of these nodes.
+        boxes: bolted on one another.
+        name: of the case, for the title.
+    """
+    shown = min(len(modes.frequencies_Hz), MOST)
+    columns = min(COLUMNS, shown)
+    rows = math.ceil(shown / columns)
+    size = np.ptp(points, axis=0)
+    reach = min(AMPLITUDE[0] * size.max(), AMPLITUDE[1] * size.min())
+    low, high = points.min(axis=0) - 1.1 * reach, points.max(axis=0) + 1.1 * reach
+    wide = (WIDTH - 0.2) / columns
+    tall = min(TALLEST, wide * (high - low)[1] / (high - low)[0])
+    top = 0.15 + 2 * LINE
+    height = top + rows * (tall + LINE) + 0.1
+    figure = Figure(figsize=(WIDTH, height))
+    lines = chained(outline_edges(points, cells, boxes))
+    for k in range(shown):
+        row, column = divmod(k, columns)
+        bottom = height - top - (row + 1) * (tall + LINE)
+        box = ((0.1 + column * wide) / WIDTH, bottom / height, wide / WIDTH, tall / height)
+        axes = figure.add_axes(box)
+        axes.set_axis_off()
+        shape = modes.shapes[k]
+        moved = points + shape * (reach / np.linalg.norm(shape, axis=1).max())
+        for line in lines:
+            axes.plot(*points[line].T, color=GREY, linewidth=0.6, linestyle=":")
+            axes.plot(*moved[line].T, color=BLUE, linewidth=1.1)
+        axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+        axes.set_title(f"{k + 1}: {number(modes.frequencies_Hz[k], 4)} Hz", loc="center", fontsize=8.5, pad=3)
+    more = len(modes.frequencies_Hz) - shown
+    head(
+        figure,
+        f"Elastic modes of the free container{f', {name}' if name else ''}",
+        "blue: the shape, to one amplitude; dotted: undeformed"
+        + (f"; {more} more are in the table" if more else ""),
+    )
+    return figure

@@ -1,0 +1,329 @@
+"""How figures look, and how they become SVG: one style, one palette, the same bytes for the same numbers.
+
+Drawn through matplotlib's objects alone, without its global state. Colours are those of Okabe and Ito
+(https://jfly.uni-koeln.de/color/), told apart by the colour-blind; line styles differ as well, for paper in
+grey. Units are those of people: mm, kN, degrees, s.
+"""
+
+import io
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+BLACK, GREY = "#222222", "#6E6E6E"
+BLUE, VERMILLION, GREEN, ORANGE, SKY, PURPLE = (
+    "#0072B2",
+    "#D55E00",
+    "#009E73",
+    "#E69F00",
+    "#56B4E9",
+    "#CC79A7",
+)
+#: of the states of motion; sky and orange, green and purple also differ in brightness
+STATE_COLOURS = {
+    "rest": "#BBBBBB",
+    "slide": SKY,
+    "rock": ORANGE,
+    "slide-rock": PURPLE,
+    "overturned": BLACK,
+}
+WIDTH = 7.0  #: of a figure [inch], the text width of an A4 page
+LEFT, RIGHT, FOOTER = 0.8, 0.15, 0.45  #: margins [inch]
+GAP, LEGEND_GAP = 0.1, 0.3  #: between panels, without and with a legend in between [inch]
+COORDINATE = re.compile(r"(?<=\.\d\d)\d+")  #: digits beyond a hundredth of a point
+LINE = 0.21  #: height of a line of text above the panels [inch]
+STYLE: dict[Any, Any] = {
+    "svg.fonttype": "none",  # text stays text: small, searchable
+    "svg.hashsalt": "unanchored",
+    "font.family": "sans-serif",
+    "font.size": 9.0,
+    "axes.titlesize": 10.0,
+    "axes.titlelocation": "left",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": GREY,
+    "axes.labelcolor": BLACK,
+    "axes.formatter.useoffset": False,
+    "axes.xmargin": 0.0,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#DDDDDD",
+    "grid.linewidth": 0.6,
+    "lines.linewidth": 1.1,
+    "legend.frameon": False,
+    "legend.fontsize": 8.0,
+    "legend.columnspacing": 1.4,
+    "legend.handlelength": 2.2,
+    "hatch.linewidth": 0.6,
+    "text.color": BLACK,
+    "xtick.color": BLACK,
+    "ytick.color": BLACK,
+}
+TIME = "time [s]"
+PLANE = "plane"
+NEAR_LIMIT = (
+    0.15  #: share of the slenderness angle, or of the energy to overturn, from which it is drawn to scale
+)
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+STRETCHES = 800  #: of a long curve, each drawn by its extremes: finer than print
+
+
+@contextmanager
+def house_style() -> Iterator[None]:
+    """Everything drawn within looks alike, whatever the user's own settings."""
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(STYLE)
+        yield
+
+
+def panels(
+    heights: Sequence[float],
+    *,
+    gaps: Sequence[float] = (),
+    header: int = 2,
+    width: float = WIDTH,
+    right: float = RIGHT,
+    footer: float = FOOTER,
+    above: float = 0.0,
+) -> tuple[Figure, list[Axes]]:
+    """A figure of panels one below the other, all as wide, at places known beforehand.
+
+    Args:
+        heights: of the panels [inch], downwards.
+        gaps: between them [inch].
+        header: lines of text above the first panel, title included.
+        width: of the figure [inch].
+        right: margin beside the panels [inch].
+        footer: below the last panel [inch].
+        above: room between header and first panel, for panels of another kind [inch].
+    """
+    gaps = gaps or [GAP] * (len(heights) - 1)
+    tall = 0.08 + header * LINE + above + sum(heights) + sum(gaps) + footer
+    figure = Figure(figsize=(width, tall))
+    axes, top = [], tall - 0.08 - header * LINE - above
+    for height, gap in zip(heights, [*gaps, 0.0], strict=True):
+        box = (LEFT / width, (top - height) / tall, (width - LEFT - right) / width, height / tall)
+        axes.append(figure.add_axes(box))
+        axes[-1].yaxis.set_label_coords(-0.62 / (width - LEFT - right), 0.5)
+        top -= height + gap
+    return figure, axes
+
+
+def time_panels(
+    heights: Sequence[float],
+    *,
+    states: Sequence[str] = (),
+    gaps: Sequence[float] = (),
+    header: int = 2,
+    above: float = 0.0,
+) -> tuple[Figure, list[Axes]]:
+    """Panels over a common time, with a low one for the states of motion below them if there are any.
+
+    Args:
+        heights: of the panels [inch], downwards.
+        states: names of the states that have a row in the lowest panel.
+        gaps: between the panels [inch], that to the states left out.
+        header: lines of text above the first panel.
+        above: room between them and it [inch].
+    """
+    rows = [*heights, *([0.06 + 0.14 * len(states)] if states else [])]
+    spaces = [*(gaps or [GAP] * (len(heights) - 1)), *([GAP] if states else [])]
+    figure, axes = panels(rows, gaps=spaces, header=header, above=above)
+    for upper in axes[:-1]:
+        upper.sharex(axes[-1])
+        upper.tick_params(labelbottom=False)
+    axes[-1].set_xlabel(TIME)
+    for panel in axes[: len(heights)]:
+        follow_over_time(panel)
+    return figure, axes
+
+
+def head(figure: Figure, title: str, statement: str = "", *, status: str = "completed") -> None:
+    """Title, with a word on a run that is not whole, and below it a statement in smaller letters."""
+    title = title if status in ("completed", "overturned") else f"{title} ({status})"
+    width, height = figure.get_size_inches()
+    for row, (text, size, colour) in enumerate(((title, 10.0, BLACK), (statement, 8.0, GREY))):
+        if text:
+            place = (LEFT / width, 1.0 - (0.06 + row * LINE) / height)
+            figure.text(*place, text, fontsize=size, color=colour, va="top")
+
+
+def legend_above(axes: Axes, columns: int = 4) -> None:
+    """In one row right above a panel, where it hides nothing."""
+    axes.legend(
+        loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.1, handlelength=2.4
+    )
+
+
+def draw_states(axes: Axes, time: FloatArray, modes: Sequence[str], states: Sequence[str]) -> None:
+    """A row for each state, filled while the container is in it; a state that lasts one sample still shows."""
+    names = np.asarray(modes)
+    ends = np.append(time[1:], time[-1])
+    for row, state in enumerate(states):
+        inside = np.concatenate([[False], names == state, [False]])
+        first, last = (
+            np.flatnonzero(np.diff(inside.astype(int)) == 1),
+            np.flatnonzero(~inside[1:] & inside[:-1]),
+        )
+        spans = _joined(time[first], ends[last - 1], float(time[-1] - time[0]) / STRETCHES)
+        axes.broken_barh(spans, (row - 0.4, 0.8), color=STATE_COLOURS[state], linewidth=0)
+    axes.set_yticks(range(len(states)), states, fontsize=8)
+    axes.set_ylim(len(states) - 0.45, -0.55)
+    axes.tick_params(axis="y", length=0)
+    axes.grid(visible=False, axis="y")
+
+
+def states_of(modes: Sequence[str]) -> list[str]:
+    """States that a history passes through, in their order."""
+    seen = set(modes)
+    return [state for state in STATE_COLOURS if state in seen]
+
+
+def kept_samples(*columns: FloatArray) -> NDArray[np.int64]:
+    """Samples that draw the same curves: of every stretch the ends and the extremes of each column.
+
+    No peak is lost, and what is drawn are true samples. Columns of few samples are kept whole.
+    """
+    count = len(columns[0])
+    length = -(-count // STRETCHES)
+    if length <= 2 + 2 * len(columns):
+        return np.arange(count)
+    starts = np.arange(0, count, length)
+    kept = [starts, np.minimum(starts + length, count) - 1]
+    for column in columns:
+        padded = np.full(len(starts) * length, column[-1])
+        padded[:count] = column
+        stretches = np.nan_to_num(padded).reshape(len(starts), length)
+        kept += [starts + stretches.argmin(axis=1), starts + stretches.argmax(axis=1)]
+    return np.unique(np.minimum(np.concatenate(kept), count - 1))
+
+
+def draw_curve(axes: Axes, time: FloatArray, values: FloatArray, **style: Any) -> None:
+    """A curve over time, of as many samples as print can show."""
+    kept = kept_samples(values)
+    axes.plot(time[kept], values[kept], **style)
+
+
+def draw_limits(axes: Axes, value: float, label: str, **style: Any) -> None:
+    """Lines at plus and minus a limit, with one entry in the legend."""
+    for place, name in ((value, label), (-value, None)):
+        axes.axhline(place, linewidth=0.9, label=name, **style)
+
+
+def zero_line(axes: Axes) -> None:
+    """Where nothing is."""
+    axes.axhline(0.0, color=GREY, linewidth=0.7)
+
+
+def number(value: float, digits: int = 3) -> str:
+    """A number for people: 1350 rather than 1.35e+03, 2 × 10⁻⁵ rather than 2e-05, a minus and not a hyphen."""
+    mantissa, power, exponent = f"{float(f'{value:.{digits}g}'):.{max(digits, 6)}g}".partition("e")
+    tens = f" × 10{str(int(exponent)).translate(SUPERSCRIPTS)}" if power else ""
+    return mantissa.replace("-", "−") + tens
+
+
+def keep_visible(axes: Axes, least: float) -> None:
+    """Let the vertical axis reach at least from -least to least, so that rounding does not look like motion."""
+    low, high = axes.get_ylim()
+    axes.set_ylim(min(low, -least), max(high, least))
+
+
+def title_of(figure: Figure) -> str:
+    """What `head` wrote above a figure; empty where it wrote nothing."""
+    return next((text.get_text() for text in figure.texts if text.get_text()), "")
+
+
+def svg_of(figure: Figure) -> str:
+    """A figure as an SVG document, the same bytes for the same drawing.
+
+    Args:
+        figure: drawn in the house style.
+    """
+    stream = io.StringIO()
+    with house_style():
+        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+    return re.sub(r' d="[^"]*"', lambda path: COORDINATE.sub("", path[0]), stream.getvalue())
+
+
+def follow_over_time(axes: Axes) -> None:
+    """Let a cursor show the instant on a panel over time."""
+    axes.set_label(TIME)
+
+
+def follow_in_plane(axes: Axes, across: str, up: str, factor: float) -> None:
+    """Let a cursor show where the motion is in a plane of two quantities.
+
+    Args:
+        axes: of the plane.
+        across, up: the quantities, by the names that the player of a report gives them.
+        factor: from their SI units to those of the axes.
+    """
+    axes.set_label(" ".join((PLANE, across, up, repr(factor))))
+
+
+def followed(figure: Figure) -> dict[str, Any] | None:
+    """Where a cursor moves over a figure, in shares of its width and height from the lower left.
+
+    Asked after `svg_of`, which lays the figure out. A cursor over time spans all panels over time.
+    """
+    marked = [(axes, str(axes.get_label())) for axes in figure.axes]
+    over_time = [axes for axes, mark in marked if mark == TIME]
+    plane = next(((axes, mark.split()) for axes, mark in marked if mark.startswith(PLANE)), None)
+    if over_time:
+        boxes = [axes.get_position() for axes in over_time]
+        return {
+            "kind": "time",
+            "left": boxes[0].x0,
+            "right": boxes[0].x1,
+            "top": max(box.y1 for box in boxes),
+            "bottom": min(box.y0 for box in boxes),
+            "x": list(over_time[0].get_xlim()),
+        }
+    if plane is None:
+        return None
+    axes, (_, across, up, factor) = plane
+    box = axes.get_position()
+    return {
+        "kind": "plane",
+        "left": box.x0,
+        "right": box.x1,
+        "top": box.y1,
+        "bottom": box.y0,
+        "x": list(axes.get_xlim()),
+        "y": list(axes.get_ylim()),
+        "horizontal": across,
+        "vertical": up,
+        "factors": [float(factor), float(factor)],
+    }
+
+
+def _joined(starts: FloatArray, ends: FloatArray, gap: float) -> list[tuple[float, float]]:
+    """Spans as (start, length), those nearer to one another than print can show made one."""
+    spans: list[list[float]] = []
+    for start, end in zip(starts.tolist(), ends.tolist(), strict=True):
+        if spans and start - spans[-1][1] < gap:
+            spans[-1][1] = end
+        else:
+            spans.append([start, end])
+    return [(start, max(end - start, gap)) for start, end in spans]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drawing:
+    """A figure as SVG."""
+
+    name: str
+    title: str
+    followed: dict[str, Any] | None  #: where a cursor moves over it, see `followed`
+    svg: str  #: the text of the file

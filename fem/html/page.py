@@ -1,0 +1,131 @@
+"""Pages for people: one HTML file each that needs nothing else, no network and no other file.
+
+The templates lie in `fem/html/templates`; every page extends `page.html.j2` and looks like the others. Text from
+users is escaped wherever it stands: in the page, in JSON inside a script element, in a style sheet. The page
+itself forbids the browser to load anything (its content security policy), and to run any script but those it
+was made with.
+"""
+
+import base64
+import hashlib
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup, escape
+
+TEMPLATES = "templates"
+#: the tag of an element that the drawings of matplotlib do not have; a comment begins like one
+FOREIGN = re.compile(
+    r"<(?!/|!--|(?:svg|g|defs|clipPath|path|pattern|rect|circle|line|polyline|polygon|use|text|tspan|image|style|title"
+    r"|desc|metadata|rdf:RDF|cc:Work|cc:Agent|dc:(?:type|format|date|creator|title))[\s/>])[^\s/>]*"
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Signature:
+    """Who answers for a page; may be left to be filled in."""
+
+    author: str = ""
+    checker: str = ""
+    revision: str = ""
+
+
+def render_page(
+    template: str, *, scripts: Sequence[str] = (), data: Mapping[str, Any] | None = None, **content: Any
+) -> str:
+    """A page from a template of `fem/html/templates`.
+
+    Args:
+        template: its file name.
+        scripts: file names of the scripts that run in the page, in order.
+        data: what they read, by the id of the element of type application/json that will hold it.
+        content: what the template asks for; it must be complete.
+    """
+    texts = [template_text(name) for name in scripts]
+    page = _environment().get_template(template)
+    return page.render(
+        scripts=texts,
+        script_policy=_policy(texts),
+        data={name: _json_in_page(value) for name, value in (data or {}).items()},
+        template_text=template_text,
+        **content,
+    )
+
+
+@cache
+def template_text(name: str) -> Markup:
+    """A style sheet or script of `fem/html/templates`, to stand in a page as it is."""
+    text = resources.files("fem.html").joinpath(TEMPLATES, name).read_text(encoding="utf-8")
+    return Markup(text)  # our own file, never a user's
+
+
+def svg_element(text: str, *, label: str, prefix: str) -> Markup:
+    """The `svg` element of a drawing, to stand in a page among others.
+
+    Args:
+        text: an SVG file, as matplotlib or this program writes it; its own texts are escaped.
+        label: what it shows, for those who cannot see it.
+        prefix: put before every id in it, so that two drawings of a page share none.
+
+    Raises:
+        ValueError: it is none, or something else stands in it.
+    """
+    require_drawing(text)
+    element = text[text.index("<svg") :]
+    element = re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{prefix}-", element)
+    return Markup(element.replace("<svg", f'<svg role="img" aria-label="{escape(label)}"', 1))
+
+
+def require_drawing(text: str) -> None:
+    """Refuse what a page must not show as its own.
+
+    Raises:
+        ValueError: no SVG, or elements in it that no drawing has.
+    """
+    _, start, inside = text.partition("<svg")
+    if not start:
+        raise ValueError("no drawing")
+    if foreign := FOREIGN.search(inside):
+        raise ValueError(f"{foreign[0]}> stands in a drawing")
+
+
+@cache
+def _environment() -> Environment:
+    environment = Environment(
+        loader=PackageLoader("fem", TEMPLATES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["css_string"] = _css_string
+    return environment
+
+
+def _json_in_page(value: Any) -> Markup:
+    """JSON that no element of a page can end: neither `</script>` nor a comment can stand in it."""
+    text = json.dumps(value, allow_nan=False, ensure_ascii=False, separators=(",", ":"))
+    for sign in "<>&\u2028\u2029":
+        text = text.replace(sign, f"\\u{ord(sign):04x}")
+    return Markup(text)  # escaped above
+
+
+def _css_string(text: str) -> Markup:
+    """Text as a CSS string: everything but letters, digits and spaces by its code point."""
+    return Markup(  # escaped here
+        '"' + "".join(sign if sign.isalnum() or sign == " " else f"\\{ord(sign):06x}" for sign in text) + '"'
+    )
+
+
+def _policy(scripts: Sequence[str]) -> str:
+    """Which scripts may run: those of the page, by their hashes."""
+    if not scripts:
+        return "'none'"
+    hashes = (base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in scripts)
+    return " ".join(f"'sha256-{one}'" for one in hashes)

@@ -1,0 +1,74 @@
+"""Numbers and units as people read them: kN, kNm, mm, degrees, MPa; four figures unless said otherwise.
+
+A trailing zero is kept where it is known (98.10, not 98.1), so that the figures printed are the figures there are.
+"""
+
+import math
+import re
+
+from fem.assessment.summary import LEAST_DEGREES, LEAST_LENGTH, LEAST_RATIO
+
+ABSENT = "–"
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def number(value: float | None, factor: float = 1.0, figures: int = 4) -> str:
+    """A number times a factor with so many significant figures; a dash where there is none."""
+    if value is None or not math.isfinite(value):
+        return ABSENT
+    scaled = factor * value
+    if scaled == 0.0:
+        return "0"
+    mantissa, _, exponent = f"{scaled:.{figures - 1}e}".partition("e")
+    if not -3 <= int(exponent) < 6:
+        return f"{_minus(mantissa)} × 10{str(int(exponent)).translate(SUPERSCRIPTS)}"
+    return _minus(f"{scaled:.{max(figures - 1 - int(exponent), 0)}f}")
+
+
+def short(value: float | None, factor: float = 1.0, figures: int = 4) -> str:
+    """The same without trailing zeros, for what was given and not computed."""
+    text = number(value, factor, figures)
+    return text.rstrip("0").rstrip(".") if "." in text and "×" not in text else text
+
+
+def quantity(value: float | None, unit: str, factor: float = 1.0, figures: int = 4) -> str:
+    """A number with its unit, held together by a space that does not break."""
+    text = number(value, factor, figures)
+    return text if text == ABSENT else f"{text}\u00a0{unit}"
+
+
+def millimetres(value: float | None, figures: int = 3) -> str:
+    """A length given in metres, without its unit; what is below 0.01 mm is nobody's measure."""
+    if value is not None and 0.0 < abs(value) < LEAST_LENGTH:
+        return f"< {short(LEAST_LENGTH, 1000.0)}"
+    return number(value, 1000.0, figures)
+
+
+def degrees(value: float | None, figures: int = 4) -> str:
+    """An angle given in radians."""
+    return quantity(value, "°", 180.0 / math.pi, figures).replace("\u00a0", "")
+
+
+def turned(value: float) -> str:
+    """A largest rotation given in radians."""
+    small = 0.0 < math.degrees(value) < LEAST_DEGREES
+    return f"< {LEAST_DEGREES:g}°" if small else degrees(value, 3)
+
+
+def rotation_ratio(value: float | None) -> str:
+    """A largest rotation over the slenderness angle; far below rocking, only that it is small."""
+    small = value is not None and 0.0 < value < LEAST_RATIO
+    return f"< {LEAST_RATIO:g}" if small else number(value, figures=3)
+
+
+def typeset(text: str) -> str:
+    """A line made for a terminal as it stands in a page: true minus signs, powers of ten, m/s²."""
+    text = text.replace("m/s2", "m/s²")
+    text = re.sub(r"(?<![\w.)-])-(?=\d)", "−", text)
+    return re.sub(
+        r"(?<=\d)e([+-]\d+)\b", lambda power: f" × 10{str(int(power[1])).translate(SUPERSCRIPTS)}", text
+    )
+
+
+def _minus(text: str) -> str:
+    return text.replace("-", "−")

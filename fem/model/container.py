@@ -1,0 +1,102 @@
+"""What a case's container is made of: mesh, elements, supporting nodes, elastic modes.
+
+It is the same whatever floor it stands on and however that moves, so many cases share one.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from contact.interface.support import Support
+from fem.case.case import Case
+from fem.model.geometry import build_container, node_count
+from fem.model.required_memory import require_memory
+from fem.model.support import build_support
+from fem.runtime.threads import use_one_blas_thread
+from fem.solid.assembly import FiniteElements, assemble
+from fem.solid.modes import elastic_modes
+from fem.solid.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
+from fem.solid.setup_parts import Parts
+from mesh.cells import IntArray
+from mesh.container import ContainerMesh
+from mesh.region import Region
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Container:
+    """What a case's container is made of, whatever floor it stands on and however that moves."""
+
+    mesh: ContainerMesh
+    elements: FiniteElements
+    support: Support
+    nodes: IntArray  #: (n_c,) contact nodes, those of the base first, by rising x
+    monitors: IntArray  #: (n_m,) nodes that are followed
+    response: StaticResponse
+    basis: ReducedBasis | None  #: elastic modes, of a reduced model
+    damping: float  #: a of C = a K [s]
+    first: float  #: lowest elastic angular frequency; infinite for a rigid container [rad/s]
+
+
+def discretise(case: Case, mesh: ContainerMesh | None = None, parts: Parts | None = None) -> Container:
+    """Elements, supporting nodes and elastic modes of a case's container.
+
+    Args:
+        case: what to build.
+        mesh: its mesh, built before.
+        parts: may keep what takes long.
+
+    Raises:
+        CaseError, MeshError: bad input.
+    """
+    use_one_blas_thread()
+    mesh = mesh or build_container(case)
+    support = build_support(case, mesh)
+    require_memory(case, node_count(mesh, case.solver.order), support.index.size)
+    elements = assemble(
+        mesh,
+        youngs_modulus=case.container.youngs_modulus_Pa,
+        poisson_ratio=case.container.poisson_ratio,
+        order=case.solver.order,
+    )
+    nodes = elements.base_nodes[support.index]
+    if not case.output.stop_when_overturned:  # it will come to lie on its side: the upper corners touch too
+        nodes = np.concatenate([nodes, _upper_corners(elements)])
+    response = static_response(elements, nodes, parts)
+    basis, first, damping = None, math.inf, 0.0
+    if case.solver.model == "reduced":
+        basis = reduced_basis(elements, response, case.solver.elastic_modes, parts)
+        first = float(basis.angular_frequencies[0])
+    elif case.solver.model == "full":
+        first = float(elastic_modes(elements, 1, parts).angular_frequencies[0])
+    if math.isfinite(first):
+        damping = 2.0 * case.container.damping_ratio / first
+    return Container(
+        mesh=mesh,
+        elements=elements,
+        support=support,
+        nodes=nodes,
+        monitors=_monitors(elements),
+        response=response,
+        basis=basis,
+        damping=damping,
+        first=first,
+    )
+
+
+def _upper_corners(elements: FiniteElements) -> IntArray:
+    x, z = elements.nodes.T
+    top = np.flatnonzero(z >= z.max() - 1e-9 * np.ptp(z))
+    return top[[np.argmin(x[top]), np.argmax(x[top])]]
+
+
+def _monitors(elements: FiniteElements) -> IntArray:
+    """Nodes to follow: the two upper corners, then the middle and the outermost nodes of the contents."""
+    contents = np.isin(elements.region, (Region.FILL, Region.SOLID))
+    held = np.unique(elements.cells[contents] if contents.any() else elements.cells)
+    x, z = elements.nodes[held].T
+    corners = [
+        held[np.argmax(a * x / np.ptp(x) + b * z / np.ptp(z))] for a in (-1.0, 1.0) for b in (-1.0, 1.0)
+    ]
+    middle = held[np.argmin(np.hypot(x - x.mean(), z - 0.5 * (z.min() + z.max())))]
+    return np.concatenate([_upper_corners(elements), [middle, *corners]])

@@ -1,0 +1,140 @@
+"""How a container stands on its floor before that moves: contact, body, settled stance."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from contact.interface.equilibrium import SettlingError, Stance, standing, tilted
+from contact.interface.laws import ELASTIC_STICK, REGULARISED
+from contact.interface.penalty import relaxation_time
+from contact.interface.solver import Contact
+from contact.stepping.modal_body import ModalBody, make_modal_body
+from fem.case.case import Case, CaseError
+from fem.model.container import Container
+from fem.model.crushing import require_uncrushed
+from fem.model.support import normal_penalty, require_firm_floor
+from fem.solid.nodal_body import FullBody
+from mesh.cells import FloatArray
+from mesh.container import ContainerMesh
+
+#: error of a base point at which the iterations of a step stop, over the static penetration
+POINT_TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Footing:
+    """How a container stands on its floor before that moves."""
+
+    penalty: float  #: [Pa/m]
+    contact: Contact
+    body: ModalBody | FullBody
+    stance: Stance  #: the floor being at x = 0
+
+
+def set_down(case: Case, container: Container) -> Footing:
+    """Put the container on the floor, settled; models of it share a body's scratch: step one at a time.
+
+    Raises:
+        CaseError: no equilibrium at the start, or one that crushes the container.
+    """
+    penalty = normal_penalty(case, container.mesh)
+    springs = container.support.normal_stiffness(penalty)
+    base = springs.size
+    require_firm_floor(case, container.mesh, float(springs.sum()))
+    springs = np.concatenate([springs, np.full(container.nodes.size - base, 0.5 * springs.sum())])
+    contact = _contact(case, container.mesh, springs, base)
+    try:
+        stance = _stance(case, container, contact)
+    except SettlingError as error:
+        raise CaseError(f"[initial] no equilibrium at the start: {error}") from error
+    if case.solver.model != "rigid":
+        force = stance.with_points(container.nodes.size).force
+        require_uncrushed(case, container.elements, container.response, stance.rotation, force)
+    return Footing(penalty=penalty, contact=contact, body=_body(case, container, contact), stance=stance)
+
+
+def stands_like(case: Case, other: Case) -> bool:
+    """Whether two cases of one container have the same footing."""
+    return (
+        case.contact == other.contact
+        and case.initial == other.initial
+        and case.gravity_m_s2 == other.gravity_m_s2
+        and case.solver.model == other.solver.model
+    )
+
+
+def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) -> Contact:
+    laws = {"elastic-stick": ELASTIC_STICK, "regularised": REGULARISED}
+    chosen = case.contact
+    return Contact(
+        normal_stiffness=springs,
+        tangential_stiffness=chosen.tangential_ratio * springs,
+        relaxation_time=relaxation_time(chosen.damping_ratio, mesh.mass, float(springs[:base].sum())),
+        mu_static=chosen.mu_static,
+        mu_kinetic=chosen.mu_kinetic,
+        weakening=chosen.weakening_m,
+        friction=laws[chosen.friction],
+        regularisation_velocity=chosen.regularisation_velocity_m_s,
+        force_scale=mesh.mass * case.gravity_m_s2,
+        resolution=1e-15 * (mesh.width + mesh.height),
+    )
+
+
+def _body(case: Case, container: Container, contact: Contact) -> ModalBody | FullBody:
+    elements, mesh, gravity = container.elements, container.mesh, case.gravity_m_s2
+    nodes, monitors = container.nodes, container.monitors
+    if case.solver.model == "full":
+        return FullBody(elements, nodes, monitors, gravity=gravity, damping=container.damping)
+    centroid = np.asarray(mesh.centroid)
+    basis = container.basis
+    omega = np.zeros(0) if basis is None else basis.angular_frequencies
+    shapes = np.zeros((0, *elements.nodes.shape)) if basis is None else basis.shapes
+    penetration = mesh.mass * gravity / float(contact.normal_stiffness.sum())
+    return make_modal_body(
+        mass=mesh.mass,
+        inertia=mesh.inertia,
+        gravity=gravity,
+        point=elements.nodes[nodes] - centroid,
+        rest=mesh.centroid,
+        shape=np.moveaxis(shapes[:, nodes], 0, -1),
+        frequencies=omega,
+        damping_ratios=0.5 * container.damping * omega,
+        monitor=elements.nodes[monitors] - centroid,
+        monitor_shape=np.moveaxis(shapes[:, monitors], 0, -1),
+        tolerance=POINT_TOLERANCE * penetration,
+    )
+
+
+def _stance(case: Case, container: Container, contact: Contact) -> Stance:
+    """How the container stands on its floor at t = 0, the floor being at x = 0."""
+    mesh, elements, initial = container.mesh, container.elements, case.initial
+    base = container.support.index.size
+    nodes = container.nodes[:base]
+    point = elements.nodes[nodes] - np.asarray(mesh.centroid)
+    elastic = 0.0 if case.solver.model == "rigid" else 1.0
+    compliance = elastic * container.response.compliance[: 2 * base, : 2 * base]
+    if initial.rotation_rad == 0.0:
+        stance = standing(
+            weight=mesh.mass * case.gravity_m_s2,
+            centroid=mesh.centroid,
+            point=point,
+            compliance=compliance,
+            normal_stiffness=contact.normal_stiffness[:base],
+        )
+        if initial.angular_velocity_rad_s != 0.0:
+            stance = stance.turning(initial.angular_velocity_rad_s, point)
+    else:
+        corner = nodes[-1] if initial.rotation_rad > 0.0 else nodes[0]
+        stance = tilted(
+            rotation=initial.rotation_rad,
+            angular_velocity=initial.angular_velocity_rad_s,
+            mass=mesh.mass,
+            inertia=mesh.inertia,
+            gravity=case.gravity_m_s2,
+            point=point,
+            corner_x=float(elements.nodes[corner, 0]),
+            compliance=compliance,
+            normal_stiffness=contact.normal_stiffness[:base],
+            mu_static=contact.mu_static,
+        )
+    return stance.with_points(container.nodes.size).sliding(initial.velocity_m_s)

@@ -1,0 +1,209 @@
+"""The joints between the boxes of a stack: what a container that stays in one piece must carry in them.
+
+The boxes are bolted and move as one body; the force in a joint follows from the motion of the boxes above it,
+
+    F = d/dt (sum of m_i v_i) + m g z,        M = d/dt (sum of (x_i - o) x m_i v_i) - moment of the weight about o,
+
+with the consistent mass of the elements above. Both are means over an interval of the history, from the momentum at
+its ends: the instantaneous acceleration means nothing under the dashpot of an impact, it grows without bound as
+the step falls. o is where the joint's centre is in the middle of the interval; normal and shear are taken along the
+container's axes there. Forces act on the boxes above: normal > 0 in compression, shear > 0 toward +x, moment > 0
+toward +x; their resultant lies -M/N to the right of the joint's centre. In a floating frame terms of the order of the
+strain times the inertia are dropped, as in its equations of motion.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from contact.stepping.body import ANGULAR_VELOCITY, ROTATION, State
+from fem.model.model import Model
+from fem.solid.assembly import FiniteElements
+from mesh.cells import FloatArray, IntArray, areas_and_centroids
+from mesh.container import ContainerMesh
+
+#: columns of a joint's motion: momentum [kg m/s], angular momentum about their own mass centre [kg m2/s] and mass
+#: centre of the boxes above [m], the joint's centre [m], the container's rotation [rad]
+MOMENTUM, SPIN, CENTRE, JOINT, TURN = slice(0, 2), 2, slice(3, 5), slice(5, 7), 7
+MOTION_COLUMNS = 8
+#: over the time scale of rocking: interval around t = 0 on which the initial acceleration acts
+INSTANT = 1e-4
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Joints:
+    """The joints of a container, J of them from the floor up, and how their forces are had from its coordinates."""
+
+    height: FloatArray  #: (J,) above the floor, undeformed [m]
+    mass: FloatArray  #: (J,) of what is above [kg]
+    gravity: float  #: [m/s2]
+    full: bool  #: coordinates are positions of nodes, else those of a floating frame
+    #: for positions of nodes:
+    layers: tuple[csr_array, ...]  #: J consistent masses (n, n), from each joint up to the next [kg]
+    ends: IntArray  #: (J, 2) nodes at the left and the right end of the joint
+    #: for a floating frame with m modes, relative to the mass centre of the container, in its frame:
+    centre: FloatArray  #: (J, 2) mass centre of what is above [m]
+    middle: FloatArray  #: (J, 2) of the joint [m]
+    inertia: FloatArray  #: (J,) of what is above, about its mass centre [kg m2]
+    mean_shape: FloatArray  #: (m, J, 2) mean of each mode over what is above [1/sqrt(kg)]
+    spin_shape: FloatArray  #: (m, J) angular momentum of each mode there, about its mass centre, per rate [m sqrt(kg)]
+    middle_shape: FloatArray  #: (m, J, 2) mean of each mode at both ends of the joint [1/sqrt(kg)]
+
+    def motion(self, position: FloatArray, velocity: FloatArray, rotation: FloatArray) -> FloatArray:
+        """Momenta and places at k instants, shape (k, J, 8): see the columns above.
+
+        Args:
+            position, velocity: coordinates of the body, shape (k, n_d).
+            rotation: of the container, shape (k,) [rad].
+        """
+        out = np.empty((len(rotation), self.height.size, MOTION_COLUMNS))
+        out[:, :, TURN] = rotation[:, None]
+        if self.full:
+            self._from_nodes(
+                position.reshape(len(rotation), -1, 2), velocity.reshape(len(rotation), -1, 2), out
+            )
+        else:
+            self._from_frame(position, velocity, out)
+        return out
+
+    def forces(self, motion: FloatArray, interval: float) -> FloatArray:
+        """Mean normal force [N], shear [N] and moment [Nm] between consecutive instants.
+
+        Args:
+            motion: at k + 1 instants, shape (k + 1, J, 8).
+            interval: between them [s].
+
+        Returns:
+            Shape (k, J, 3).
+        """
+        before, after = motion[:-1], motion[1:]
+        mean = 0.5 * (before + after)
+        weight = self.mass * self.gravity
+        force = (after[:, :, MOMENTUM] - before[:, :, MOMENTUM]) / interval
+        force[:, :, 1] += weight
+        place = mean[:, :, JOINT]
+        moment = (_about(place, after) - _about(place, before)) / interval
+        moment -= weight * (mean[:, :, CENTRE] - place)[:, :, 0]
+        cosine, sine = np.cos(mean[:, :, TURN]), np.sin(mean[:, :, TURN])
+        normal = sine * force[:, :, 0] + cosine * force[:, :, 1]
+        shear = cosine * force[:, :, 0] - sine * force[:, :, 1]
+        return np.stack([normal, shear, moment], axis=2)
+
+    def initial_forces(self, state: State, time_scale: float) -> FloatArray:
+        """Forces at the initial state, from its acceleration, shape (J, 3); `time_scale` of the motion [s]."""
+        half = INSTANT * time_scale
+        ahead = np.array([[-half], [half]])
+        position = state.position + ahead * state.velocity + 0.5 * half**2 * state.acceleration
+        velocity = state.velocity + ahead * state.acceleration
+        rotation = state.pose[ROTATION] + ahead[:, 0] * state.pose[ANGULAR_VELOCITY]
+        return self.forces(self.motion(position, velocity, rotation), 2.0 * half)[0]
+
+    def in_moving_frame(self, motion: FloatArray, velocity: float) -> FloatArray:
+        """The same motion, shape (.., J, 8), seen from a frame that moves with `velocity` along x [m/s]."""
+        seen = motion.copy()
+        seen[..., 0] -= self.mass * velocity
+        return seen
+
+    def _from_nodes(self, position: FloatArray, velocity: FloatArray, out: FloatArray) -> None:
+        for k, (place, rate) in enumerate(zip(position, velocity, strict=True)):
+            origin = place[self.ends].mean(axis=(0, 1))
+            arm = place - origin
+            for j, layer in enumerate(self.layers):
+                momentum, first = layer @ rate, layer @ arm
+                out[k, j, MOMENTUM], out[k, j, CENTRE] = momentum.sum(axis=0), first.sum(axis=0)
+                out[k, j, SPIN] = np.sum(arm[:, 1] * momentum[:, 0] - arm[:, 0] * momentum[:, 1])
+            out[k, :, : JOINT.start] = _summed_from_above(out[k, :, : JOINT.start])
+            out[k, :, CENTRE] /= self.mass[:, None]
+            out[k, :, SPIN] -= _moment(out[k, :, CENTRE], out[k, :, MOMENTUM])
+            out[k, :, CENTRE] += origin
+            out[k, :, JOINT] = place[self.ends].mean(axis=1)
+
+    def _from_frame(self, position: FloatArray, velocity: FloatArray, out: FloatArray) -> None:
+        cosine, sine = np.cos(position[:, 2]), np.sin(position[:, 2])
+        turn = np.moveaxis(np.array([[cosine, sine], [-sine, cosine]]), 2, 0)  # (k, 2, 2)
+        spin = velocity[:, 2][:, None]
+
+        def turned(vector: FloatArray) -> FloatArray:
+            return np.einsum("kab,kjb->kja", turn, vector)
+
+        arm = self.centre + np.tensordot(position[:, 3:], self.mean_shape, axes=1)
+        rate = np.tensordot(velocity[:, 3:], self.mean_shape, axes=1)
+        rate[:, :, 0] += spin * arm[:, :, 1]
+        rate[:, :, 1] -= spin * arm[:, :, 0]
+        out[:, :, MOMENTUM] = self.mass[:, None] * (velocity[:, None, :2] + turned(rate))
+        out[:, :, SPIN] = spin * self.inertia + velocity[:, 3:] @ self.spin_shape
+        out[:, :, CENTRE] = position[:, None, :2] + turned(arm)
+        middle = self.middle + np.tensordot(position[:, 3:], self.middle_shape, axes=1)
+        out[:, :, JOINT] = position[:, None, :2] + turned(middle)
+
+
+def joints_of(model: Model, heights: FloatArray | None = None) -> Joints | None:
+    """The joints of a model's stack; None for a single box.
+
+    Args:
+        model: what is stepped.
+        heights: (J,) of mesh lines taken for joints; those between the boxes, if not given [m].
+    """
+    container = model.container
+    mesh, elements, basis = container.mesh, container.elements, container.basis
+    box = model.case.container
+    lines = box.height_m * np.arange(1.0, box.boxes) if heights is None else np.asarray(heights, dtype=float)
+    if lines.size == 0:
+        return None
+    shapes = np.zeros((0, *elements.nodes.shape)) if basis is None else basis.shapes
+    layers = _layers(elements, mesh, np.append(lines, np.inf))
+    arm = elements.nodes - np.asarray(mesh.centroid)
+    spin = np.column_stack([arm[:, 1], -arm[:, 0]])  # velocities of a unit rotation
+    nodal = _summed_from_above(np.array([layer @ np.ones(len(arm)) for layer in layers]))
+    weighted = _summed_from_above(np.array([layer @ spin for layer in layers]))
+    total = nodal.sum(axis=1)
+    centre = nodal @ arm / total[:, None]
+    mean_shape = np.einsum("jn,mnd->mjd", nodal, shapes) / total[:, None]
+    ends = np.array([_ends(elements.nodes, height) for height in lines])
+    return Joints(
+        height=lines,
+        mass=total,
+        gravity=model.case.gravity_m_s2,
+        full=model.case.solver.model == "full",
+        layers=layers,
+        ends=ends,
+        centre=centre,
+        middle=arm[ends].mean(axis=1),
+        inertia=np.tensordot(weighted, spin, axes=2) - total * np.sum(centre**2, axis=1),
+        mean_shape=mean_shape,
+        spin_shape=np.einsum("jnd,mnd->mj", weighted, shapes) - total * _moment(centre, mean_shape),
+        middle_shape=shapes[:, ends].mean(axis=2),
+    )
+
+
+def _layers(elements: FiniteElements, mesh: ContainerMesh, height: FloatArray) -> tuple[csr_array, ...]:
+    """Consistent masses (n, n) of the cells between consecutive heights (J + 1,) [kg]."""
+    middle = areas_and_centroids(mesh.points, mesh.quads)[1][:, 1]
+    return tuple(
+        elements.mass_of(np.flatnonzero((low < middle) & (middle < high)), mesh.areal_density)
+        for low, high in pairwise(height)
+    )
+
+
+def _summed_from_above(values: FloatArray) -> FloatArray:
+    """Cumulative sums over the first axis, from the uppermost layer down."""
+    return np.cumsum(values[::-1], axis=0)[::-1]
+
+
+def _moment(arm: FloatArray, momentum: FloatArray) -> FloatArray:
+    """z p_x - x p_z over the last axis, > 0 toward +x."""
+    return arm[..., 1] * momentum[..., 0] - arm[..., 0] * momentum[..., 1]
+
+
+def _about(place: FloatArray, motion: FloatArray) -> FloatArray:
+    """Angular momentum about places (k, J, 2), > 0 toward +x [kg m2/s]."""
+    return motion[:, :, SPIN] + _moment(motion[:, :, CENTRE] - place, motion[:, :, MOMENTUM])
+
+
+def _ends(nodes: FloatArray, height: float) -> tuple[int, int]:
+    """The outermost nodes on a mesh line."""
+    line = np.flatnonzero(np.abs(nodes[:, 1] - height) <= 1e-6 * np.ptp(nodes[:, 1]))
+    x = nodes[line, 0]
+    return int(line[np.argmin(x)]), int(line[np.argmax(x)])

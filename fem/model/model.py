@@ -1,0 +1,179 @@
+"""From a case to what is stepped: a container, set down on its floor, with its motion, limits and initial state.
+
+Everything "auto" is decided here and in what this calls, once, whatever the model; `full`, `reduced` and `rigid` differ
+in the body alone.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from contact.interface.equilibrium import Stance
+from contact.interface.laws import ELASTIC_STICK
+from contact.interface.solver import Contact, make_workspace
+from contact.motion.base_motion import BaseMotion
+from contact.motion.kernel import floor_motion
+from contact.stepping import modal_body
+from contact.stepping.body import State, make_state
+from contact.stepping.modal_body import ModalBody
+from contact.stepping.observables import begin
+from contact.stepping.state import Run, make_run, make_samples
+from fem.case.case import Case
+from fem.model.container import Container, discretise
+from fem.model.equilibrium import Footing, set_down
+from fem.model.firm_start import require_firm_start
+from fem.model.motion import build_motion, peak_acceleration_within
+from fem.model.static_checks import StaticChecks, static_checks
+from fem.model.step_size import control_of, largest_step_of, scheme_of
+from fem.solid.nodal_body import FullBody
+from fem.solid.reduction import StaticResponse
+from mesh.cells import FloatArray
+from mesh.container import ContainerMesh
+
+HISTORY_CHUNK, FRAME_CHUNK = 1024, 64
+#: .. of the full model, whose coordinates are many
+FULL_HISTORY_CHUNK, FULL_FRAME_CHUNK = 16, 4
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Model:
+    """One case, ready to be stepped."""
+
+    case: Case
+    container: Container
+    footing: Footing
+    motion: BaseMotion
+    static: StaticChecks
+    run: Run
+
+    @property
+    def penalty(self) -> float:
+        """Normal stiffness of the base over width times depth [Pa/m]."""
+        return self.footing.penalty
+
+    @property
+    def body(self) -> ModalBody | FullBody:
+        """What is stepped."""
+        return self.footing.body
+
+    @property
+    def base_stiffness(self) -> float:
+        """Of all base points together [N/m]."""
+        return float(self.run.contact.normal_stiffness[: self.container.support.index.size].sum())
+
+    @property
+    def frequencies(self) -> FloatArray:
+        """Elastic frequencies of the model's modes [Hz]: all of `reduced`, the first of `full`, none of `rigid`."""
+        if self.container.basis is not None:
+            return self.container.basis.angular_frequencies / (2.0 * np.pi)
+        first = self.container.first
+        return np.array([first / (2.0 * np.pi)]) if math.isfinite(first) else np.zeros(0)
+
+
+def build_model(case: Case, container: Container | None = None, footing: Footing | None = None) -> Model:
+    """Discretise a case and put it on its floor, unless that is given, settled, at t = 0.
+
+    Args:
+        case: what to build.
+        container: its container, built before.
+        footing: how that container stands, where `stands_like` says that it is the same.
+
+    Raises:
+        CaseError, MeshError: bad input, no equilibrium at the start.
+    """
+    motion = build_motion(case)
+    if container is None:
+        container = discretise(case)
+    footing = footing or set_down(case, container)
+    mesh, nodes, contact, body = container.mesh, container.nodes, footing.contact, footing.body
+    static = checks_of(case, mesh, motion)
+    largest, breaks = largest_step_of(case, static, motion)
+    control = control_of(case, container, static, largest, contact)
+    scheme = scheme_of(case, container, footing.penalty, control, contact)
+    full = isinstance(body, FullBody)
+    coordinates = body.coordinates if isinstance(body, FullBody) else 3 + body.stiffness.size
+    old, new = (make_state(coordinates, nodes.size, container.monitors.size) for _ in range(2))
+    compiled_motion = motion.compiled()
+    floor, floor_velocity, _ = floor_motion(compiled_motion, 0.0)
+    drift = floor_velocity if case.motion.start == "moving" else 0.0
+    _place(body, old, footing.stance.moved(floor), container.response, floor, drift, contact)
+    require_firm_start(
+        case, width=mesh.width, reference_energy=control.reference_energy, contact=contact, start=old
+    )
+    interval, fields = case.output.history_s, case.output.fields_s
+    stacked = case.container.boxes > 1  # the forces in its joints follow from the motion
+    run = make_run(
+        scheme=scheme,
+        contact=contact,
+        motion=compiled_motion,
+        breaks=breaks,
+        control=control,
+        old=old,
+        new=new,
+        work=make_workspace(nodes.size),
+        history=make_samples(
+            interval,
+            _chunk(FULL_HISTORY_CHUNK if full else HISTORY_CHUNK, control.largest_step, interval),
+            nodes.size,
+            columns=True,
+            position=0 if full and not stacked else coordinates,
+            velocity=coordinates if stacked else 0,
+        ),
+        frames=make_samples(
+            fields if fields > 0.0 else math.inf,
+            _chunk(FULL_FRAME_CHUNK if full else FRAME_CHUNK, control.largest_step, fields or math.inf),
+            nodes.size,
+            position=coordinates if fields > 0.0 else 0,
+            velocity=coordinates if fields > 0.0 else 0,
+        ),
+    )
+    begin(run.track[0], control, old)
+    return Model(case=case, container=container, footing=footing, motion=motion, static=static, run=run)
+
+
+def checks_of(case: Case, mesh: ContainerMesh, motion: BaseMotion) -> StaticChecks:
+    """Static checks of the meshed container under its own motion."""
+    return static_checks(
+        mass=mesh.mass,
+        centroid=mesh.centroid[1],
+        inertia=mesh.inertia,
+        width=mesh.width,
+        gravity=case.gravity_m_s2,
+        mu_static=case.contact.mu_static,
+        mu_kinetic=case.contact.mu_kinetic,
+        peak_floor_acceleration=peak_acceleration_within(motion, case.solver.duration_s),
+        ground_acceleration=case.static.ground_acceleration_m_s2,
+        soil_factor=case.static.soil_factor,
+        corner_period=case.static.corner_period_s,
+        behaviour_factor=case.static.behaviour_factor,
+        importance_factor=case.static.importance_factor,
+        initial_rotation=case.initial.rotation_rad,
+    )
+
+
+def _chunk(wanted: int, largest_step: float, interval: float) -> int:
+    """Samples to keep at a time: never fewer than two largest steps make."""
+    return max(wanted, 2 * math.ceil(largest_step / interval) + 4)
+
+
+def _place(
+    body: Any,
+    state: State,
+    stance: Stance,
+    response: StaticResponse,
+    floor: float,
+    floor_velocity: float,
+    contact: Contact,
+) -> None:
+    """Write the initial state: the stance on the floor where it is at t = 0."""
+    state.force[:] = stance.force
+    if contact.friction == ELASTIC_STICK:  # friction regularised in velocity has no springs
+        state.stick[:] = -stance.force[:, 0] / contact.tangential_stiffness
+    if isinstance(body, FullBody):
+        body.place(state, stance, response, floor_velocity)
+        body.start(state, floor)
+    else:
+        modal_body.place(body, state, stance, floor_velocity)
+        modal_body.start(body, state, floor)

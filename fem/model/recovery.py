@@ -1,0 +1,109 @@
+"""From the coordinates of a body back to fields on the whole mesh: displacement, velocity, von Mises stress."""
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from fem.model.model import Model
+from fem.solid.assembly import FiniteElements
+from fem.solid.elasticity import von_mises
+from fem.solid.nodal_body import FullBody
+from mesh.cells import FloatArray
+
+#: largest elastic displacement used to probe the stress of a mode, over the size of the container
+PROBE = 1e-6
+#: |VON_MISES_ROOT s| is the equivalent stress of s = (sx, sz, t)
+VON_MISES_ROOT = np.array([[1.0, -0.5, 0.0], [0.0, math.sqrt(0.75), 0.0], [0.0, 0.0, math.sqrt(3.0)]])
+#: what rounding may add to a stress against its bound
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Frame:
+    """Fields at one instant, n nodes."""
+
+    displacement: FloatArray  #: (n, 2) from the undeformed place, absolute [m]
+    velocity: FloatArray  #: (n, 2) absolute [m/s]
+    von_mises: FloatArray | None  #: (n,) [Pa]; None of a container without elastic modes
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Recovery:
+    """Fields of a model from its coordinates (for `full` these are the nodes' positions)."""
+
+    elements: FiniteElements
+    centroid: FloatArray  #: (2,) of the undeformed container [m]
+    shapes: FloatArray  #: (m, n, 2) elastic modes [1/sqrt(kg)]
+    full: bool
+    angular_frequencies: FloatArray  #: (m,) of the modes [rad/s]
+    _stress: FloatArray = field(repr=False)  # (3, m, n) stress of each mode
+
+    def frame(self, position: FloatArray, velocity: FloatArray) -> Frame:
+        """Fields for one row of coordinates and their rates."""
+        nodes = self.elements.nodes
+        if self.full:
+            displacement = position.reshape(-1, 2) - nodes
+            return Frame(
+                displacement=displacement,
+                velocity=velocity.reshape(-1, 2),
+                von_mises=self.elements.nodal_von_mises(displacement),
+            )
+        cosine, sine = math.cos(position[2]), math.sin(position[2])
+        turn = np.array([[cosine, sine], [-sine, cosine]])
+        arm = (nodes - self.centroid + np.tensordot(position[3:], self.shapes, axes=1)) @ turn.T
+        elastic_rate = np.tensordot(velocity[3:], self.shapes, axes=1) @ turn.T
+        spin = velocity[2] * np.column_stack([arm[:, 1], -arm[:, 0]])
+        return Frame(
+            displacement=position[:2] + arm - nodes,
+            velocity=velocity[:2] + spin + elastic_rate,
+            von_mises=von_mises(position[3:] @ self._stress) if len(self.shapes) else None,
+        )
+
+    def largest_von_mises(self, position: FloatArray) -> float:
+        """Largest nodal von Mises stress over rows of coordinates (n_s, n_d) [Pa]; 0 without modes.
+
+        The row of the most strain energy comes first; of the others only rows and nodes are looked at whose bound,
+        root of twice the strain energy times `_bounds`, reaches what that one has.
+        """
+        if self.full or not len(self.shapes) or not len(position):
+            return 0.0
+        modal = position[:, 3:]
+        energies = np.linalg.norm(modal * self.angular_frequencies, axis=1)
+        most = int(np.argmax(energies))
+        found = float(von_mises(modal[most] @ self._stress).max())
+        least = found * (1.0 - ROUNDING)
+        nodes = np.flatnonzero(self._bounds * energies[most] >= least)
+        rows = np.flatnonzero(energies * self._bounds.max() >= least)
+        if not nodes.size or not rows.size:
+            return found
+        return max(found, float(von_mises(modal[rows] @ self._stress[:, :, nodes]).max()))
+
+    @cached_property
+    def _bounds(self) -> FloatArray:
+        """Largest von Mises stress of each node (n,), over the root of twice the strain energy [Pa/sqrt(J)]."""
+        scaled = self._stress / self.angular_frequencies[:, None]
+        rooted = np.tensordot(VON_MISES_ROOT, scaled, axes=1)
+        return np.asarray(np.linalg.norm(np.moveaxis(rooted, -1, 0), ord=2, axis=(1, 2)))
+
+
+def recovery_of(model: Model) -> Recovery:
+    """How the fields of this model are had."""
+    elements, basis = model.container.elements, model.container.basis
+    shapes = np.zeros((0, *elements.nodes.shape)) if basis is None else basis.shapes
+    stress = np.zeros((3, len(shapes), len(elements.nodes)))
+    size = float(np.ptp(elements.nodes, axis=0).max())
+    for k, shape in enumerate(shapes):
+        probe = PROBE * size / np.abs(shape).max()
+        # The difference of both signs leaves the part of the stress that is linear in the displacement.
+        both = elements.nodal_stress(probe * shape) - elements.nodal_stress(-probe * shape)
+        stress[:, k] = both.T / (2.0 * probe)
+    return Recovery(
+        elements=elements,
+        centroid=np.asarray(model.container.mesh.centroid),
+        shapes=shapes,
+        full=isinstance(model.body, FullBody),
+        angular_frequencies=np.zeros(0) if basis is None else basis.angular_frequencies,
+        _stress=stress,
+    )

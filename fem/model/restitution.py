@@ -1,0 +1,115 @@
+"""What restitution a contact damping ratio amounts to: the shipped table, and what it says of a case.
+
+Restitution is a property of the support, so it is not asked for but follows: from the contact damping ratio, the
+support and the slenderness. `data/contact_damping_restitution.csv` says how it was computed. It holds rigid
+homogeneous blocks; another distribution of mass is met through the share of Housner's loss, (1 - e)/(1 - e_H),
+which varies slowly. A container that deforms at an impact loses more.
+"""
+
+import csv
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+TABLE = "contact_damping_restitution.csv"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Calibration:
+    """Loss of rigid blocks at an impact on one kind of support, over that of Housner's impact."""
+
+    foot: FloatArray  #: (f,) length of a foot over the width, rising; one value for corners and flat [-]
+    slenderness: FloatArray  #: (s,) height over width of a homogeneous block, rising [-]
+    damping_ratio: FloatArray  #: (d,) of the contact, rising [-]
+    loss: FloatArray  #: (f, s, d) (1 - e)/(1 - e_Housner) [-]; nan where there is no value
+
+    def loss_at(self, foot: float, slenderness: float, damping_ratio: float) -> float | None:
+        """Linear between the entries, in the logarithm of the damping ratio; None outside the table."""
+        places = (
+            _place(self.foot, foot),
+            _place(self.slenderness, slenderness),
+            _place(np.log(self.damping_ratio), float(np.log(damping_ratio))) if damping_ratio > 0.0 else None,
+        )
+        values = self.loss
+        for place in places:
+            if place is None:
+                return None
+            first, share = place
+            if share in (0.0, 1.0):  # on an entry: what lies beside it may have no value
+                values = values[first + int(share)]
+            else:
+                values = (1.0 - share) * values[first] + share * values[first + 1]
+        return None if np.isnan(values) else float(values)
+
+
+def apparent_restitution(
+    *,
+    support: str,
+    foot_over_width: float | None,
+    slenderness: float,
+    damping_ratio: float,
+    housner: float,
+) -> float | None:
+    """Restitution that a rigid container shows on its support, or None where the table does not reach.
+
+    Args:
+        support: corners | feet | flat.
+        foot_over_width: length of a foot over the width, feet only [-].
+        slenderness: height of the mass centre over half the width [-].
+        damping_ratio: of the contact, c/(2 sqrt(k m)) with the whole mass on one corner [-].
+        housner: Housner's restitution of the container [-].
+    """
+    calibration = read_calibrations().get(support)
+    if calibration is None:
+        return None
+    foot = float(calibration.foot[0]) if support != "feet" else foot_over_width or 0.0
+    loss = calibration.loss_at(foot, slenderness, damping_ratio)
+    return None if loss is None else 1.0 - loss * (1.0 - housner)
+
+
+@cache
+def read_calibrations() -> dict[str, Calibration]:
+    """The shipped table, by kind of support.
+
+    Raises:
+        ValueError: a table that is not a full grid for each support.
+    """
+    text = resources.files("fem.model").joinpath("data", TABLE).read_text(encoding="utf-8")
+    lines = [line for line in text.splitlines() if not line.startswith("#")]
+    rows = list(csv.DictReader(lines))
+    kinds = dict.fromkeys(row["support"] for row in rows)
+    return {kind: _calibration(kind, [row for row in rows if row["support"] == kind]) for kind in kinds}
+
+
+def _calibration(kind: str, rows: list[dict[str, str]]) -> Calibration:
+    names = ("foot_over_width", "height_over_width", "contact_damping_ratio")
+    points = np.array([[float(row[name]) for name in names] for row in rows])
+    axes = [np.unique(points[:, k]) for k in range(3)]
+    if len(rows) != np.prod([axis.size for axis in axes]):
+        raise ValueError(f"{TABLE}: the rows of {kind} are no full grid")
+    values = [
+        (1.0 - float(row["rigid"])) / (1.0 - float(row["housner"])) if row["rigid"] else np.nan
+        for row in rows
+    ]
+    loss = np.full([axis.size for axis in axes], np.nan)
+    loss[tuple(np.searchsorted(axis, points[:, k]) for k, axis in enumerate(axes))] = values
+    foot, slenderness, damping_ratio = axes
+    return Calibration(foot=foot, slenderness=slenderness, damping_ratio=damping_ratio, loss=loss)
+
+
+def _place(axis: FloatArray, value: float) -> tuple[int, float] | None:
+    """Index of the entry at or below a value and the share of the way to the next; None outside."""
+    near = 1e-9 * float(np.ptp(axis) or 1.0)
+    if not axis[0] - near <= value <= axis[-1] + near:
+        return None
+    if axis.size == 1:
+        return 0, 0.0
+    first = min(int(np.searchsorted(axis, value, side="right")) - 1, axis.size - 2)
+    first = max(first, 0)
+    share = (value - axis[first]) / (axis[first + 1] - axis[first])
+    return first, float(np.clip(share, 0.0, 1.0))

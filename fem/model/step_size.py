@@ -1,0 +1,186 @@
+"""Limits of the time stepping of a case: its largest step, what a step may lose, its scheme."""
+
+import math
+
+import numpy as np
+
+from contact.interface.solver import Contact
+from contact.motion.base_motion import BaseMotion, PulseMotion, TableMotion
+from contact.stepping.scheme import Scheme, generalised_alpha, newmark
+from contact.stepping.state import Control
+from fem.case.case import Case, CaseError
+from fem.model.container import Container
+from fem.model.static_checks import StaticChecks
+from mesh.cells import FloatArray
+from mesh.container import ContainerMesh
+
+#: largest step over the time scale of rocking, 1/p, and over that of the base motion
+STEP_OF_ROCKING, STEP_OF_MOTION = 0.01, 0.02
+#: .. of a motion shorter than this share of the run only while it lasts, in at most so many steps
+SHORT_SHARE, MOST_PIECES = 0.5, 2000
+#: a given step may be at most this share of the shortest period of the motion
+COARSE_STEP = 0.1
+#: .. and any step so many intervals of the history: the samples of a step are held in memory
+MOST_SAMPLES_A_STEP = 64
+#: over the largest step: the step in which friction may change between sticking and sliding
+EVENT_SHARE = 0.01
+SMALLEST_SHARE = 1e-7
+#: over the time constant of a corner on its dashpot: the step that begins at a touch
+CLOSING_SHARE_OF_TIME = 0.02
+#: imbalance of the ledger that a step may have: see `contact.stepping.state.Control`
+ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE = 1e-5, 2e-7, 4e-3
+#: .. at a first touch: over the energy that a rigid block would lose there
+CLOSING_SHARE, LEAST_LOSS = 2e-3, 0.02
+TRAIL_SHARE, TRAIL_TIME = 2e-2, 0.1
+#: .. and however loose the tolerance: what is lost of what is dissipated is judged in the end. A rigid container
+#: does not ring: it loses at the impact itself, once
+MOST_SHARE, MOST_RIGID_SHARE, MOST_TRAIL = 8e-3, 4e-2, 3e-2
+#: closings with less energy than this, over the energy to overturn, are left to the ledger
+SOFT_CLOSING = 1e-6
+#: a Newmark run without averaging gains energy beyond both
+STIFF_CONTACT, LARGE_CONTACT_STEP = 3.0, 0.7
+
+
+def largest_step_of(case: Case, static: StaticChecks, motion: BaseMotion) -> tuple[float, FloatArray]:
+    """Largest step of the run [s], and the instants that a step must end on, rising [s].
+
+    A pulse or a record that is over long before the run is makes small steps while it lasts, by instants closely
+    set, and not ever after.
+
+    Raises:
+        CaseError: a step given that would step over the motion.
+    """
+    solver, output = case.solver, case.output
+    free, wanted = STEP_OF_ROCKING / static.frequency_parameter, STEP_OF_MOTION * motion.time_scale
+    ends = [time for time in motion.break_times if 0.0 < time < solver.duration_s]
+    begin, end = _span(motion)
+    pieces = (end - begin) / wanted if math.isfinite(end) else math.inf
+    short = pieces <= MOST_PIECES and end - begin < SHORT_SHARE * solver.duration_s
+    if short and wanted < (free if solver.step_s == "auto" else solver.step_s):
+        inside = np.linspace(begin, end, math.ceil(pieces) + 1)
+        ends = sorted({*ends, *inside[(inside > 0.0) & (inside < solver.duration_s)].tolist()})
+        wanted = math.inf
+    largest = min(free, wanted)
+    if solver.step_s != "auto":
+        if solver.step_s > COARSE_STEP * motion.time_scale and not short:
+            raise CaseError(
+                f"[solver] step_s = {solver.step_s:g} s would step over the motion of the floor, whose shortest period "
+                f'is {motion.time_scale:.3g} s; take at most {COARSE_STEP * motion.time_scale:.2g} s, or "auto"'
+            )
+        largest = solver.step_s
+    interval = min(output.history_s, output.fields_s or math.inf)
+    largest = min(largest, solver.duration_s, MOST_SAMPLES_A_STEP * interval)
+    return largest, _apart(ends, solver.duration_s, SMALLEST_SHARE * largest)
+
+
+def _apart(instants: list[float], end: float, least: float) -> FloatArray:
+    """The instants (rising, before `end`) and the end, without those nearer than `least` to the one before, or the end.
+
+    No step is made shorter than the smallest for the sake of a motion that changes twice within it: the inertia over
+    the square of such a step is beyond all numbers, or noise.
+    """
+    if np.diff([0.0, *instants, end]).min() >= least:
+        return np.array([*instants, end])
+    kept = [0.0]
+    for instant in instants:
+        if instant - kept[-1] >= least and end - instant >= least:
+            kept.append(instant)
+    return np.array([*kept[1:], end])
+
+
+def _span(motion: BaseMotion) -> tuple[float, float]:
+    """When a pulse or a record begins and ends; a drive is taken to go on [s]."""
+    if isinstance(motion, PulseMotion):
+        return motion.delay, motion.delay + motion.pulse
+    if isinstance(motion, TableMotion):
+        return float(motion.times[0]), float(motion.times[-1])
+    return 0.0, math.inf
+
+
+def reference_energy(mesh: ContainerMesh, static: StaticChecks, gravity: float) -> float:
+    """What it takes to overturn the container quasi-statically, M g R (1 - cos slenderness angle) [J]."""
+    return mesh.mass * gravity * static.radius * (1.0 - math.cos(static.slenderness_angle))
+
+
+def _struck_mass(case: Case, container: Container) -> float:
+    """Mass that a corner puts against the floor in the first instant of an impact [kg].
+
+    The whole, turning container's for a rigid one; for an elastic one hardly more than the corner's own.
+    """
+    mesh, corner = container.mesh, container.nodes[0]
+    if case.solver.model == "full":
+        return float((container.elements.mass @ np.ones(len(container.elements.nodes)))[corner])
+    arm = container.elements.nodes[corner, 0] - mesh.centroid[0]
+    inverse = 1.0 / mesh.mass + arm * arm / mesh.inertia
+    if container.basis is not None:
+        inverse += float(np.sum(container.basis.shapes[:, corner, 1] ** 2))
+    return 1.0 / inverse
+
+
+def control_of(
+    case: Case, container: Container, static: StaticChecks, largest: float, contact: Contact
+) -> Control:
+    """Limits of the stepping, from what the container, its floor and its motion do by themselves.
+
+    Args:
+        case: whose tolerance and model are taken.
+        container: what is stepped.
+        static: its static checks.
+        largest: step [s].
+        contact: with its floor.
+    """
+    mesh, base = container.mesh, container.support.index.size
+    reference = reference_energy(mesh, static, case.gravity_m_s2)
+    rate = static.frequency_parameter
+    loose, rigid = case.solver.energy_tolerance, case.solver.model == "rigid"
+    spring = float(contact.normal_stiffness[0])
+    struck = _struck_mass(case, container)
+    # Time constants of a mass on the dashpot and on the spring of a corner.
+    closing = CLOSING_SHARE_OF_TIME / (
+        spring * contact.relaxation_time / struck + 0.2 * math.sqrt(2.0 * spring / mesh.mass)
+    )
+    return Control(
+        largest_step=largest,
+        smallest_step=SMALLEST_SHARE * largest,
+        event_step=EVENT_SHARE * largest,
+        closing_step=min(closing, largest),
+        closing_speed=math.sqrt(SOFT_CLOSING * reference / mesh.mass),
+        reference_energy=reference,
+        energy_rate=loose * ENERGY_RATE * rate,
+        energy_floor=loose * ENERGY_FLOOR,
+        energy_share=min(loose * ENERGY_SHARE, MOST_RIGID_SHARE if rigid else MOST_SHARE),
+        trail_share=min(loose * TRAIL_SHARE, MOST_TRAIL),
+        trail_time=TRAIL_TIME / rate,
+        closing_share=loose * CLOSING_SHARE * max(1.0 - static.housner_restitution**2, LEAST_LOSS),
+        mass=mesh.mass,
+        gravity=case.gravity_m_s2,
+        frequency_parameter=rate,
+        resting_energy=mesh.mass * case.gravity_m_s2 * mesh.centroid[1],
+        slenderness_angle=static.slenderness_angle,
+        width=mesh.width,
+        stop_when_overturned=case.output.stop_when_overturned,
+        top_monitors=2,
+        base_points=base,
+    )
+
+
+def scheme_of(case: Case, container: Container, penalty: float, control: Control, contact: Contact) -> Scheme:
+    """The scheme asked for; `penalty` is the normal stiffness of the base [Pa/m].
+
+    Raises:
+        CaseError: a Newmark run without averaging that would gain energy.
+    """
+    solver, elements = case.solver, container.elements
+    if solver.scheme == "generalised-alpha":
+        return generalised_alpha(solver.spectral_radius)
+    nodal = elements.mass @ np.ones(len(elements.nodes))
+    stiff = penalty * solver.element_size_m / case.container.youngs_modulus_Pa
+    rate = math.sqrt(float(np.max(contact.normal_stiffness / nodal[container.nodes])))
+    if stiff > STIFF_CONTACT and control.largest_step * rate > LARGE_CONTACT_STEP:
+        raise CaseError(
+            "[solver] scheme = 'newmark' gains energy at impacts here: normal_penalty_Pa_m x element_size_m / "
+            f"youngs_modulus_Pa = {stiff:.3g} > {STIFF_CONTACT:g} together with step x contact frequency = "
+            f"{control.largest_step * rate:.3g} > {LARGE_CONTACT_STEP:g}; lower the penalty, set solver.step_s "
+            f"<= {LARGE_CONTACT_STEP / rate:.2g} s, or take scheme = 'generalised-alpha'"
+        )
+    return newmark(solver.newmark_beta, solver.newmark_gamma)

@@ -1,0 +1,73 @@
+"""Where the container of a case touches the floor, and how stiffly."""
+
+from contact.interface.penalty import choose_normal_penalty
+from contact.interface.support import Support, choose_support
+from fem.case.case import Case, CaseError
+from fem.model.geometry import base_positions
+from fem.model.static_checks import slenderness_angle
+from mesh.container import ContainerMesh
+
+MOST_SUNK = 0.1  #: of its width or height, that a container may sink in by its weight
+
+
+def build_support(case: Case, mesh: ContainerMesh) -> Support:
+    """The base nodes that may touch the floor, each with its share of the base.
+
+    Raises:
+        CaseError: if feet do not fit the mesh.
+        MeshError: if no mesh line ends a foot.
+    """
+    feet = (0.0, 0.0) if case.support.foot is None else mesh.foot_widths(case.support.foot)
+    try:
+        return choose_support(
+            case.support.kind,
+            base_positions(mesh, case.solver.order),
+            depth=case.container.depth_m,
+            order=case.solver.order,
+            feet=feet,
+        )
+    except ValueError as error:
+        raise CaseError(str(error)) from error
+
+
+def require_firm_floor(case: Case, mesh: ContainerMesh, stiffness: float) -> None:
+    """Refuse a floor so soft that the container would sink in by a good part of itself before anything moves.
+
+    Args:
+        case: penalty and gravity count; mesh: of its container.
+        stiffness: of the whole base [N/m].
+
+    Raises:
+        CaseError: with how far it would sink in.
+    """
+    weight, size = mesh.mass * case.gravity_m_s2, min(mesh.width, mesh.height)
+    if weight <= MOST_SUNK * size * stiffness:
+        return
+    sunk = f"{weight / stiffness:.3g} m" if stiffness > 0.0 else "without end"
+    chosen = (
+        '"auto" follows container.youngs_modulus_Pa'
+        if case.contact.normal_penalty_Pa_m == "auto"
+        else '"auto" chooses it'
+    )
+    raise CaseError(
+        f"[contact] normal_penalty_Pa_m = {normal_penalty(case, mesh):.3g} Pa/m: the container would sink in by {sunk} "
+        f"under its weight alone, at most {MOST_SUNK:g} of its smaller dimension, {size:g} m, is taken; {chosen}"
+    )
+
+
+def normal_penalty(case: Case, mesh: ContainerMesh) -> float:
+    """The penalty of the case, or the one that "auto" chooses for its mesh [Pa/m]."""
+    given = case.contact.normal_penalty_Pa_m
+    if given != "auto":
+        return given
+    return choose_normal_penalty(
+        case.support.kind,
+        weight=mesh.mass * case.gravity_m_s2,
+        width=mesh.width,
+        height=mesh.height,
+        depth=case.container.depth_m,
+        slenderness_angle=slenderness_angle(width=mesh.width, centroid=mesh.centroid[1]),
+        youngs_modulus=case.container.youngs_modulus_Pa,
+        element_size=case.solver.element_size_m,
+        foot=case.support.foot or 0.0,
+    )

@@ -1,0 +1,153 @@
+"""A container on a harmonic floor whose frequency is changed while it moves.
+
+The frequency changes at a turning point of the floor: there the velocity of either motion is zero, and the mean
+position of the new one is laid so that the displacement goes on too. The container is taken along: its state
+is the last of the old motion, carried to the next model. Where the peak acceleration is held, even the acceleration
+goes on without a jump; where the displacement is held, it jumps in the ratio of the squares of the frequencies.
+
+The mean position itself means nothing, as a level floor is everywhere the same: every motion is
+x = A cos(Omega t) from its own t = 0, and the container is moved along x by as much as the floor would have to be.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from contact.motion.kernel import HARMONIC, UNIFORM, FloorMotion, as_floor_motion, floor_motion
+from contact.stepping.body import CENTRE_X
+from contact.stepping.control import ladder_level, ladder_step
+from contact.stepping.modal_body import ModalBody
+from contact.stepping.state import Run, make_samples
+from fem.case.case import Case
+from fem.model.container import Container
+from fem.model.model import Model, build_model
+from fem.response.request import Hold
+
+SAMPLES_PER_PERIOD = 128
+#: of the step control and of friction: what goes on from one motion to the next
+CARRIED = (
+    "sliding",
+    "slid",
+    "slip",
+    "utilisation",
+    "utilisation_rate",
+    "slip_velocity",
+    "slip_acceleration",
+    "used",
+    "trail",
+    "held",
+    "basis_step",
+)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DrivenModel:
+    """A model on a floor of its own, at t = 0."""
+
+    model: Model  #: its `run` is the one below
+    body: ModalBody
+    run: Run
+    period: float  #: of the drive [s]
+
+
+def driven_case(case: Case, frequency: float, hold: Hold, value: float) -> Case:
+    """The case at another frequency [Hz], with displacement [m] or peak acceleration [m/s2] as held."""
+    key = "motion.amplitude_m" if hold == "displacement" else "motion.peak_acceleration_m_s2"
+    period = 1.0 / frequency
+    return case.with_values(
+        {
+            "motion.frequency_Hz": float(frequency),
+            key: value,
+            "solver.duration_s": (4.0 + 2.0 * math.ceil(case.motion.ramp_cycles)) * period,
+            "output.history_s": period / SAMPLES_PER_PERIOD,
+            "output.fields_s": 0.0,
+        }
+    )
+
+
+def begin_drive(case: Case, container: Container) -> tuple[DrivenModel, float]:
+    """The container as the case begins, and the time until the section [s].
+
+    The case's own start: phase, ramp at the beginning, floor at rest or moving, initial state. It lasts to the first
+    turning point of the floor at +A after the ramp.
+    """
+    model = build_model(case, container)
+    omega, phase = case.angular_frequency, case.motion.phase_rad
+    period = 2.0 * math.pi / omega
+    turn = ((0.5 * math.pi - phase) % (2.0 * math.pi)) / omega
+    until = turn + math.ceil(case.motion.ramp_cycles) * period
+    ramp = case.motion.ramp_cycles * period
+    floor = as_floor_motion(HARMONIC, (case.amplitude, omega, phase, ramp, math.inf))
+    return _on_floor(model, floor, np.array([ramp, until]), period), until
+
+
+def driven_model(case: Case, container: Container) -> DrivenModel:
+    """The container on x = A cos(Omega t), before it is given its motion."""
+    model = build_model(case, container)
+    omega = case.angular_frequency
+    floor = as_floor_motion(HARMONIC, (case.amplitude, omega, 0.5 * math.pi, 0.0, math.inf))
+    return _on_floor(model, floor, np.empty(0), 2.0 * math.pi / omega)
+
+
+def carry_drive(case: Case, container: Container, before: DrivenModel) -> DrivenModel:
+    """The container, moving as `before` left it at a turning point of its floor, on x = A cos(Omega t)."""
+    driven = driven_model(case, container)
+    carry_state(before.run, driven.run)
+    return driven
+
+
+def stop_drive(case: Case, container: Container, before: DrivenModel) -> DrivenModel:
+    """The container, moving as `before` left it at a turning point of its floor, where the floor now stays."""
+    floor = as_floor_motion(UNIFORM, (0.0, case.amplitude, 0.0))
+    driven = _on_floor(build_model(case, container), floor, np.empty(0), before.period)
+    carry_state(before.run, driven.run)
+    return driven
+
+
+def carry_state(before: Run, after: Run) -> None:
+    """Let `after` go on from where `before` stands, moved along x to where its own floor is at t = 0."""
+    for target, source in zip(after.old, before.old, strict=True):
+        target[:] = source
+    floor, _, _ = floor_motion(after.motion, 0.0)
+    shift = floor - before.floor[0, 0]
+    after.old.position[0] += shift
+    after.old.pose[CENTRE_X] += shift
+    for name in CARRIED:
+        after.clock[name] = before.clock[name]
+    step = ladder_step(before.control.largest_step, int(before.clock.level[0]))
+    after.clock.level = ladder_level(after.control.largest_step, min(step, after.control.largest_step))
+    after.track[:] = before.track
+
+
+def section_times(period: float, count: int) -> np.ndarray:
+    """Instants of the sections, one a period from the end of the first on, shape (count,) [s]."""
+    return period * np.arange(1, count + 1)
+
+
+def with_sections(driven: DrivenModel, count: int) -> DrivenModel:
+    """The same at t = 0 again, with steps that end on each of the next `count` sections.
+
+    It stands at a section, so that a whole number of periods is taken off its time: the phase of the drive is
+    as exact in the last period as in the first.
+    """
+    clock = driven.run.clock
+    clock.time, clock.samples, clock.samples_gone, clock.next_break = 0.0, 0, 0, 0
+    breaks = np.append(section_times(driven.period, count), np.inf)
+    return replace(driven, run=driven.run._replace(breaks=breaks))
+
+
+def _on_floor(model: Model, floor: FloorMotion, breaks: np.ndarray, period: float) -> DrivenModel:
+    body, run = model.body, model.run
+    if not isinstance(body, ModalBody):
+        raise TypeError("a response curve is followed with the compiled models")  # the request has seen to it
+    points = run.old.point.shape[0]
+    motion = floor_motion(floor, 0.0)
+    run.floor[:] = motion
+    run = run._replace(
+        motion=floor,
+        breaks=np.append(breaks[breaks > 0.0], np.inf),
+        history=make_samples(period / SAMPLES_PER_PERIOD, 4 * SAMPLES_PER_PERIOD, points, columns=True),
+        frames=make_samples(math.inf, 4, points),
+    )
+    return DrivenModel(model=replace(model, run=run), body=body, run=run, period=period)

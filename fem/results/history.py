@@ -1,0 +1,255 @@
+"""The history of a run: one row a sample on an exact time grid, as a table in memory and as CSV.
+
+SI units, named in the columns; x positive to the right, z up, rotation positive toward +x, forces on the
+container. Numbers are written so that reading them gives the same bits (shortest exact decimal form). The
+file grows by whole lines and is readable while the run goes on. A kill -9 amid a write may leave the first part of
+what was to be written, for the system writes page by page: then the last line has no end, and is nobody's sample.
+`read_history` leaves it out, a run that is gone on with cuts it off; any other reader has to drop what follows the
+last line end. A stack has three columns more for every joint between its boxes (`fem.model.joints`), counted from
+the floor
+up, behind these. A run that was compared with the rigid block (`fem.assessment.rigid_check`) has the block's
+rotation as its last column, nan where it is not followed.
+"""
+
+import contextlib
+import hashlib
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.results.run_folder import write_atomically
+
+FloatArray = NDArray[np.float64]
+
+#: Columns of `history.csv`, in a stack followed by those of its joints; `mode` is a word, all others are numbers.
+#: The last four are sums since the start: work of the floor on the container, and where energy went.
+HISTORY_COLUMNS = (
+    "time_s",
+    "base_displacement_m",
+    "base_velocity_m_s",
+    "base_acceleration_m_s2",
+    "rotation_rad",
+    "angular_velocity_rad_s",
+    "slip_m",
+    "uplift_m",
+    "centre_x_m",
+    "centre_z_m",
+    "normal_force_N",
+    "shear_force_N",
+    "kinetic_J",
+    "strain_J",
+    "potential_J",
+    "imbalance_J",
+    "mode",
+    "base_work_J",
+    "friction_J",
+    "contact_damping_J",
+    "material_damping_J",
+)
+MODE = HISTORY_COLUMNS.index("mode")  #: column of the word
+NUMBERS = len(HISTORY_COLUMNS) - 1
+#: Columns of one joint.
+JOINT_COLUMNS = ("joint_{}_normal_N", "joint_{}_shear_N", "joint_{}_moment_Nm")
+#: Rotation of the analytic rigid block under the same floor.
+ANALYTIC_COLUMN = "analytic_rotation_rad"
+
+
+def history_columns(joints: int = 0, *, analytic: bool = False) -> tuple[str, ...]:
+    """Columns of the history of a container with so many joints, compared with the rigid block or not."""
+    of_joints = (name.format(joint) for joint in range(1, joints + 1) for name in JOINT_COLUMNS)
+    return HISTORY_COLUMNS + tuple(of_joints) + ((ANALYTIC_COLUMN,) if analytic else ())
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class History:
+    """Samples of a run, in the order of `history_columns` without the word.
+
+    Raises:
+        ValueError: arrays whose shapes do not fit the columns or each other.
+    """
+
+    values: FloatArray  #: shape (n_samples, 20 + 3 joints (+ 1)), units as in the columns' names
+    modes: tuple[str, ...]  #: state of motion at each sample, length n_samples
+
+    def __post_init__(self) -> None:
+        _require_columns(self.values, self.modes)
+
+    @classmethod
+    def empty(cls) -> Self:
+        """No samples."""
+        return cls(values=np.zeros((0, NUMBERS)), modes=())
+
+    @property
+    def joints(self) -> int:
+        """Joints between boxes."""
+        return (self.values.shape[1] - NUMBERS) // len(JOINT_COLUMNS)
+
+    @property
+    def analytic(self) -> bool:
+        """The rotation of the rigid block stands in the last column."""
+        return (self.values.shape[1] - NUMBERS) % len(JOINT_COLUMNS) == 1
+
+    @property
+    def numbers(self) -> tuple[str, ...]:
+        """Names of the columns of numbers, in the order of `values`."""
+        return tuple(name for name in history_columns(self.joints, analytic=self.analytic) if name != "mode")
+
+    def __len__(self) -> int:
+        return len(self.modes)
+
+    def __repr__(self) -> str:
+        """One line: what a notebook shows."""
+        return f"<history: {len(self)} samples of {', '.join(self.numbers)}>"
+
+    def __getitem__(self, column: str) -> FloatArray:
+        """A column of numbers by its name, shape (n_samples,); KeyError names the columns there are."""
+        try:
+            return self.values[:, self.numbers.index(column)]
+        except ValueError:
+            raise KeyError(f"no column {column!r}; known: {', '.join(self.numbers)}") from None
+
+
+class HistoryWriter:
+    """Appends samples to a history file; a context manager.
+
+    The lines of one `append` are one write to the file, with nothing held back. When the disk is full, what went
+    through of them is cut off again before the error is passed on.
+
+    Args:
+        path: the file; made anew, unless `position` is given.
+        position: where an interrupted run had come to (`position` of its writer); what follows is cut off.
+        joints: between the boxes of the container, for the header.
+
+    Raises:
+        ValueError: a position beyond the end of the file, which then is not that run's.
+        OSError: the file cannot be made or written.
+    """
+
+    def __init__(self, path: Path, *, position: int | None = None, joints: int = 0) -> None:
+        self.path = path
+        self._digest = hashlib.sha256()
+        if position is None:
+            header = ",".join(history_columns(joints)) + "\n"
+            write_atomically(path, header)
+            position = len(header)
+        if not path.is_file() or path.stat().st_size < position:
+            raise ValueError(f"{path}: the history ends before byte {position}, where the run is to go on")
+        self._file = open(path, "r+b", buffering=0)  # noqa: SIM115
+        self._position = position
+        self._file.truncate(position)
+        while self._file.tell() < position:
+            self._digest.update(self._file.read(min(position - self._file.tell(), 1 << 20)))
+
+    @property
+    def position(self) -> int:
+        """Bytes of the whole lines written so far: what a checkpoint needs to go on from here."""
+        return self._position
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of these bytes."""
+        return self._digest.hexdigest()
+
+    def sync(self) -> None:
+        """Bring what was written to the disk."""
+        os.fsync(self._file.fileno())
+
+    def append(self, rows: FloatArray, modes: Sequence[str]) -> None:
+        """Write samples: rows of numbers, shape (n, 20 + 3 joints), and their modes, length n."""
+        _require_columns(rows, modes)
+        for row, mode in zip(rows.tolist(), modes, strict=True):
+            words = [repr(number) for number in row]
+            self._write(",".join([*words[:MODE], mode, *words[MODE:]]) + "\n")
+
+    def close(self) -> None:
+        """Close the file; closing twice does no harm."""
+        self._file.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _write(self, text: str) -> None:
+        data = text.encode()
+        try:
+            done = 0
+            while done < len(data):
+                done += self._file.write(data[done:])
+        except OSError as error:
+            with contextlib.suppress(OSError):  # the first error is the one to tell
+                os.ftruncate(self._file.fileno(), self._position)
+                self._file.seek(self._position)
+            raise OSError(error.errno, error.strerror, str(self.path)) from None
+        self._position += len(data)
+        self._digest.update(data)
+
+
+def read_history(path: Path) -> History:
+    """Read a history file, that of a running or killed run too: a last line without its end is left out.
+
+    Raises:
+        ValueError: other columns than `history_columns`, or a line that does not hold them (named).
+        OSError: the file cannot be read.
+    """
+    lines = _whole_lines(path)
+    columns = tuple(lines[0].split(",")) if lines else ()
+    joints = (len(columns) - len(HISTORY_COLUMNS)) // len(JOINT_COLUMNS)
+    if columns != history_columns(joints, analytic=columns[-1:] == (ANALYTIC_COLUMN,)):
+        raise ValueError(f"{path}: not a history; its first line must be {','.join(HISTORY_COLUMNS)} ..")
+    numbers = len(columns) - 1
+    values, modes = np.empty((len(lines) - 1, numbers)), []
+    for number, line in enumerate(lines[1:]):
+        fields = line.split(",")
+        mode = "".join(fields[MODE : MODE + 1])
+        try:
+            values[number] = [float(field) for field in fields[:MODE] + fields[MODE + 1 :]]
+        except ValueError:
+            raise ValueError(f"{path}, line {number + 2}: {numbers} numbers and a mode are needed") from None
+        modes.append(mode)
+    return History(values=values, modes=tuple(modes))
+
+
+def add_analytic_rotation(path: Path, rotation: FloatArray) -> None:
+    """Put the rigid block's rotation beside the run's, as the last column of a finished history.
+
+    Args:
+        path: the file, replaced whole; a column of that name is replaced.
+        rotation: at each sample, shape (n_samples,) [rad]; nan where the block is not followed.
+
+    Raises:
+        ValueError: not as many rotations as samples.
+        OSError: the file cannot be read or written.
+    """
+    header, *rows = _whole_lines(path)
+    if len(rows) != len(rotation):
+        raise ValueError(f"{path}: {len(rotation)} rotations for {len(rows)} samples")
+    if header.endswith("," + ANALYTIC_COLUMN):
+        header, *rows = (line.rpartition(",")[0] for line in (header, *rows))
+    lines = [f"{header},{ANALYTIC_COLUMN}"]
+    lines += [f"{row},{value!r}" for row, value in zip(rows, rotation.tolist(), strict=True)]
+    write_atomically(path, "\n".join(lines) + "\n")
+
+
+def _whole_lines(path: Path) -> list[str]:
+    text = path.read_text(encoding="utf-8")
+    return text[: text.rfind("\n") + 1].splitlines()
+
+
+def _require_columns(values: FloatArray, modes: Sequence[str]) -> None:
+    """Refuse numbers whose rows or columns are not those of a history."""
+    rows, columns = values.shape
+    if rows != len(modes) or columns < NUMBERS or (columns - NUMBERS) % len(JOINT_COLUMNS) > 1:
+        raise ValueError(
+            f"history: {values.shape} numbers for {len(modes)} modes; {NUMBERS} columns are needed, "
+            f"{len(JOINT_COLUMNS)} for each joint, and one for the rigid block"
+        )

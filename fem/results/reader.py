@@ -1,0 +1,173 @@
+"""A run opened for reading: its result, case, history and fields, for a notebook, a figure or a report.
+
+Only what is asked for is read, and kept: `run.json` at once, the case and the history on first use, a field
+frame when it is taken. A run that still goes on, or was cut off, opens too, with what it has. SI units; x to
+the right, z up, rotation > 0 toward +x.
+"""
+
+import importlib
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem.case.case import Case, load_case
+from fem.results.fields import Fields, Frame, open_fields
+from fem.results.history import History, read_history
+from fem.results.run_folder import FolderError, RunFolder, read_result
+
+if TYPE_CHECKING:
+    from pyvista import UnstructuredGrid
+
+FloatArray = NDArray[np.float64]
+
+#: what else may lie in a folder of results, by the file that marks it
+OTHERS = {
+    "sweep.json": "a sweep (its results: table.csv)",
+    "ensemble.json": "an ensemble (its results: points.csv, draws.csv)",
+    "response.json": "response curves (their results: response.csv)",
+    "study.json": "a study (its results: study.json)",
+    "verify.json": "the verification (its results: verify.json)",
+}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class OpenedRun:
+    """The folder of a run, read as it is asked.
+
+    Every property raises FolderError, naming the file and the way out, where that file is missing or damaged.
+    """
+
+    place: RunFolder
+    result: dict[str, Any]  #: as in `run.json`
+
+    def __repr__(self) -> str:
+        """One line: what a notebook shows."""
+        outcome = (self.result.get("verdict") or {}).get("outcome")
+        told = f", {outcome}" if outcome else ""
+        return f"<run {self.name!r} in {str(self.folder)!r}: {self.status}{told}>"
+
+    @property
+    def folder(self) -> Path:
+        """Where it lies."""
+        return self.place.path
+
+    @property
+    def name(self) -> str:
+        """Of the case."""
+        return str(self.result.get("case") or self.folder.name)
+
+    @property
+    def status(self) -> str:
+        """Status of the run: completed | overturned | failed | interrupted | running."""
+        return str(self.result.get("status"))
+
+    @property
+    def slenderness_angle(self) -> float:
+        """Beyond which it falls if left alone [rad]."""
+        try:
+            return float(self.result["static"]["slenderness_angle_rad"])
+        except (KeyError, TypeError):
+            raise FolderError(f"{self.place.result}: has no static block; run the case again") from None
+
+    @cached_property
+    def case(self) -> Case:
+        """With every default and "auto" replaced."""
+        if not self.place.resolved.is_file():
+            raise FolderError(f"{self.place.resolved}: missing; run the case again")
+        try:
+            return load_case(str(self.place.resolved))
+        except ValueError as error:
+            raise FolderError(f"{error}; run the case again") from None
+
+    @cached_property
+    def history(self) -> History:
+        """Samples over time; `run.history["rotation_rad"]` is a column, `run.history.modes` the states."""
+        try:
+            return read_history(self.place.history)
+        except (OSError, ValueError) as error:
+            raise FolderError(_unreadable(self.place.history, error)) from None
+
+    @cached_property
+    def rigid_check(self) -> dict[str, FloatArray] | None:
+        """The columns of `rigid_check.csv` by name, the analytic block's rotation among them; None without."""
+        path = self.place.rigid_check
+        if not path.exists():
+            return None
+        try:
+            with path.open(encoding="utf-8") as stream:
+                names = stream.readline().strip().split(",")
+                rows = np.loadtxt(stream, delimiter=",", ndmin=2)
+            return dict(zip(names, rows.T, strict=True))
+        except (OSError, ValueError) as error:
+            raise FolderError(_unreadable(path, error)) from None
+
+    @cached_property
+    def fields(self) -> Fields:
+        """Frames over time: `run.fields.times`, `run.fields.frame(0)`, `run.fields.nearest(1.5)`."""
+        path = self.place.fields
+        if not (path / "run.pvd").exists():
+            raise FolderError(
+                f"{path}: no fields were written; run the case with output.fields_s > 0, into another folder"
+            )
+        try:
+            fields = open_fields(path)
+        except (OSError, ValueError) as error:
+            raise FolderError(_unreadable(path, error)) from None
+        if not len(fields):
+            raise FolderError(f"{path}: no frame has been written yet")
+        return fields
+
+    def frame(self, time: float) -> Frame:
+        """The frame nearest to a time [s].
+
+        Raises:
+            FolderError: there are no fields, or none of that time.
+            FieldError: this frame is damaged.
+        """
+        times = self.fields.times
+        first, last = float(times[0]), float(times[-1])
+        beside = (last - first) / (2 * len(times)) + 1e-9
+        if not first - beside <= time <= last + beside:  # true for nan
+            raise FolderError(
+                f"{self.place.fields}: frames lie from {first:g} to {last:g} s, not at {time:g} s"
+            )
+        return self.fields.frame(self.fields.nearest(time))
+
+    def grid(self, time: float) -> "UnstructuredGrid":
+        """The frame nearest to a time [s] as a pyvista grid in the x-y plane, where the container stood.
+
+        `run.grid(1.5).warp_by_vector("displacement_m").plot(scalars="von_mises_Pa", cpos="xy")`
+        """
+        # pyvista takes a second to import; only who asks for a grid waits for it.
+        grid: UnstructuredGrid = importlib.import_module("fem.results.grid").grid_of(self.frame(time))
+        return grid
+
+
+def open_run(folder: str | Path) -> OpenedRun:
+    """Open the folder of a run.
+
+    Args:
+        folder: that holds `run.json`; the path of `run.json` itself will do, and `~` is one's home.
+
+    Raises:
+        FolderError: no run is there, or its `run.json` is damaged.
+    """
+    path = Path(folder).expanduser()
+    path = path.parent if path.name == "run.json" else path
+    if not path.is_dir():
+        raise FolderError(f"{path}: no such folder; give the folder of a run, such as outputs/NAME")
+    for mark, kind in OTHERS.items():
+        if (path / mark).is_file() and not (path / "run.json").is_file():
+            raise FolderError(f"{path}: the folder of {kind}; give that of a run, such as outputs/NAME")
+    place = RunFolder(path=path)
+    return OpenedRun(place=place, result=read_result(place.result))
+
+
+def _unreadable(path: Path, error: Exception) -> str:
+    reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+    reason = reason.removeprefix(f"{path}: ")
+    return f"{path}: cannot be read ({reason}); run the case again with --force"

@@ -1,0 +1,215 @@
+"""What a run leaves behind while it goes on: history rows, field frames, the largest stress.
+
+The stepper fills small arrays of samples; the recorder empties them between its calls, so that the memory of a
+run does not grow with its fields, and hands the rows on to files.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from contact.motion.kernel import floor_history, floor_motion
+from contact.stepping.body import ROTATION, State
+from contact.stepping.state import (
+    ROW_ANGULAR_VELOCITY,
+    ROW_BASE_WORK,
+    ROW_CENTRE_X,
+    ROW_CENTRE_Z,
+    ROW_CONTACT_DAMPING,
+    ROW_FRICTION,
+    ROW_IMBALANCE,
+    ROW_KINETIC,
+    ROW_MATERIAL_DAMPING,
+    ROW_NORMAL,
+    ROW_POTENTIAL,
+    ROW_ROTATION,
+    ROW_SHEAR,
+    ROW_SLIP,
+    ROW_STRAIN,
+    ROW_UPLIFT,
+    Run,
+    Samples,
+)
+from fem.assessment.verdict import MODE_NAMES
+from fem.model.joints import Joints, joints_of
+from fem.model.model import Model
+from fem.model.recovery import Frame, Recovery
+from fem.results.history import JOINT_COLUMNS, NUMBERS, History
+from mesh.cells import FloatArray
+
+#: the stepper's columns in the order of a history's, behind time and base motion
+ORDER = (
+    ROW_ROTATION,
+    ROW_ANGULAR_VELOCITY,
+    ROW_SLIP,
+    ROW_UPLIFT,
+    ROW_CENTRE_X,
+    ROW_CENTRE_Z,
+    ROW_NORMAL,
+    ROW_SHEAR,
+    ROW_KINETIC,
+    ROW_STRAIN,
+    ROW_POTENTIAL,
+    ROW_IMBALANCE,
+    ROW_BASE_WORK,
+    ROW_FRICTION,
+    ROW_CONTACT_DAMPING,
+    ROW_MATERIAL_DAMPING,
+)
+
+#: samples searched for the largest stress at each emptying, those of the largest strain energy
+STRAINED = 4
+
+#: decimals of times that people write [s], and what multiplication may make of them, relative
+DECIMALS, ROUNDING = 12, 4.0 * float(np.finfo(float).eps)
+
+HistorySink = Callable[[FloatArray, Sequence[str]], None]
+FrameSink = Callable[[float, Frame, FloatArray, float], None]
+
+
+class Recorder:
+    """Takes the samples out of a run.
+
+    Args:
+        model: what is stepped.
+        recovery: how its fields are had; None leaves fields and stresses out.
+        history_sink: called with new rows (k, 20 + 3 joints) and their modes.
+        frame_sink: called with time, fields, contact pressures (n,) at the nodes and floor displacement.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        recovery: Recovery | None = None,
+        history_sink: HistorySink | None = None,
+        frame_sink: FrameSink | None = None,
+    ) -> None:
+        self._model = model
+        self._recovery = recovery
+        self._history_sink = history_sink
+        self._frame_sink = frame_sink
+        self._rows: list[FloatArray] = []
+        self._modes: list[str] = []
+        self._area = _contact_areas(model)
+        self.largest_von_mises: float | None = None  #: over frames and the most strained samples, if any [Pa]
+        #: of the joints at the last sample (J, 8), see `fem.model.joints`: what the next one is held against
+        self.joint_motion = np.zeros((0, 0))
+        self._joint_forces = np.zeros((0, len(JOINT_COLUMNS)))
+        self.joints: Joints | None = None
+        self.take_joints(joints_of(model), model.run.old)
+
+    def take_joints(self, joints: Joints | None, initial: State) -> None:
+        """Follow the forces in these joints, from the initial state on."""
+        self.joints = joints
+        if joints is not None:
+            time_scale = 1.0 / self._model.run.control.frequency_parameter
+            self._joint_forces = joints.initial_forces(initial, time_scale)
+            rotation = initial.pose[ROTATION : ROTATION + 1]
+            self.joint_motion = joints.motion(initial.position[None], initial.velocity[None], rotation)[0]
+
+    def drain(self, run: Run) -> None:
+        """Empty the run's arrays of samples."""
+        self._drain_history(run)
+        self._drain_frames(run)
+
+    def history(self) -> History:
+        """Everything sampled so far."""
+        values = np.concatenate(self._rows) if self._rows else np.zeros((0, self._columns))
+        return History(values=values, modes=tuple(self._modes))
+
+    def memory(self) -> dict[str, FloatArray]:
+        """What the next samples depend on besides the run, by name."""
+        stress = self.largest_von_mises
+        return {
+            "largest_von_mises": np.array([] if stress is None else [stress]),
+            "joint_motion": self.joint_motion,
+            "joint_forces": self._joint_forces,
+        }
+
+    def recall(self, memory: Mapping[str, FloatArray]) -> None:
+        """Go on with the memory of another recorder of the same run."""
+        stress = memory["largest_von_mises"]
+        self.largest_von_mises = float(stress[0]) if stress.size else None
+        self.joint_motion, self._joint_forces = memory["joint_motion"], memory["joint_forces"]
+
+    def go_on(self, history: History) -> None:
+        """Take over what was sampled before the run was cut off."""
+        self._rows, self._modes = [history.values], list(history.modes)
+
+    def go_over_to_frame(self, velocity: float) -> None:
+        """From now on the run is told in a frame that moves with `velocity` along x [m/s]."""
+        if self.joints is not None:
+            self.joint_motion = self.joints.in_moving_frame(self.joint_motion, velocity)
+
+    @property
+    def _columns(self) -> int:
+        return NUMBERS + self._joint_forces.size
+
+    def _drain_history(self, run: Run) -> None:
+        clock, samples = run.clock[0], run.history
+        first, count = int(clock.samples_gone), int(clock.samples - clock.samples_gone)
+        if count == 0:
+            return
+        times: FloatArray = np.arange(first, first + count, dtype=np.float64) * samples.interval
+        rows = np.empty((count, self._columns))
+        rows[:, 0] = as_written(times)
+        rows[:, 1:4] = floor_history(run.motion, times).T
+        rows[:, 4:NUMBERS] = samples.columns[:count, ORDER]
+        rows[:, NUMBERS:] = self._forces_in_joints(samples, first, count)
+        rows += 0.0  # no minus zero
+        modes = [MODE_NAMES[int(mode)] for mode in samples.mode[:count]]
+        if self._recovery is not None:
+            strained = np.argsort(samples.columns[:count, ROW_STRAIN])[-STRAINED:]
+            if samples.position.shape[1] > 0 and not self._recovery.full:
+                self._note_stress(self._recovery.largest_von_mises(samples.position[strained]))
+        self._rows.append(rows)
+        self._modes += modes
+        if self._history_sink is not None:
+            self._history_sink(rows, modes)
+        clock.samples_gone = clock.samples
+
+    def _forces_in_joints(self, samples: Samples, first: int, count: int) -> FloatArray:
+        """Of new samples (count, 3 J): means since the sample before; the first of a run has its own acceleration."""
+        if self.joints is None:
+            return np.zeros((count, 0))
+        motion = self.joints.motion(
+            samples.position[:count], samples.velocity[:count], samples.columns[:count, ROW_ROTATION]
+        )
+        forces = self.joints.forces(np.concatenate([self.joint_motion[None], motion]), samples.interval)
+        if first == 0:
+            forces[0] = self._joint_forces
+        self.joint_motion = motion[-1]
+        return forces.reshape(count, -1)
+
+    def _note_stress(self, stress: float) -> None:
+        self.largest_von_mises = max(self.largest_von_mises or 0.0, stress)
+
+    def _drain_frames(self, run: Run) -> None:
+        clock, samples = run.clock[0], run.frames
+        first, count = int(clock.frames_gone), int(clock.frames - clock.frames_gone)
+        if self._recovery is not None and samples.position.shape[1] > 0:
+            for k in range(count):
+                time = (first + k) * samples.interval
+                frame = self._recovery.frame(samples.position[k], samples.velocity[k])
+                if frame.von_mises is not None:
+                    self._note_stress(float(np.max(frame.von_mises)))
+                if self._frame_sink is not None:
+                    pressure = np.zeros(len(frame.displacement))
+                    pressure[self._model.container.nodes] = samples.force[k, :, 1] / self._area
+                    floor, _, _ = floor_motion(run.motion, time)
+                    self._frame_sink(float(as_written(np.array(time))), frame, pressure, floor)
+        clock.frames_gone = clock.frames
+
+
+def as_written(times: FloatArray) -> FloatArray:
+    """Instants of a grid as people write them: 0.15, where three times 0.05 is 0.15000000000000002.
+
+    Moved are only times that lie as near to a short decimal as rounding may have put them.
+    """
+    short = np.round(times, DECIMALS)
+    return np.where(np.abs(short - times) <= ROUNDING * np.abs(times), short, times)
+
+
+def _contact_areas(model: Model) -> FloatArray:
+    """Area of the floor that each contact node stands for (n_c,) [m2]."""
+    return model.run.contact.normal_stiffness / model.penalty

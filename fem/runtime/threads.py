@@ -1,0 +1,49 @@
+"""One thread for the dense algebra: a run's bytes must not depend on how many cores a machine has free.
+
+A BLAS that shares a sum among threads adds in another order with another number of them; elastic modes then
+differ in their last bits, and so does everything after an impact. The matrices here are small, for which threads
+cost more than they gain; whoever has many runs uses his cores by `sweep -j`.
+"""
+
+import contextlib
+import ctypes
+import os
+from functools import cache
+from pathlib import Path
+
+VARIABLES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+#: of OpenBLAS, whose builds rename it: for numpy, for scipy, with 32 and 64 bit integers
+SETTERS = tuple(
+    f"{prefix}openblas_set_num_threads{suffix}" for prefix in ("scipy_", "") for suffix in ("64_", "")
+)
+MAPS = Path("/proc/self/maps")
+
+
+@cache
+def use_one_blas_thread() -> None:
+    """Keep BLAS to one thread from now on, in this process and in those that it starts.
+
+    Libraries not loaded yet, and those of child processes, read the environment; an OpenBLAS that is loaded is
+    told, on Linux.
+    """
+    os.environ |= dict.fromkeys(VARIABLES, "1")
+    for path in _loaded_openblas():
+        with contextlib.suppress(OSError):
+            library = ctypes.CDLL(path)
+            for setter in SETTERS:
+                if hasattr(library, setter):
+                    getattr(library, setter)(1)
+
+
+def _loaded_openblas() -> set[str]:
+    try:
+        lines = MAPS.read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        return set()
+    named = {line.split(maxsplit=5)[5] for line in lines if "openblas" in line and "/" in line}
+    return {path for path in named if Path(path).name.startswith("lib")}
+
+
+def cores() -> int:
+    """Processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)

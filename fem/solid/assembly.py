@@ -1,0 +1,363 @@
+"""Finite elements of the container: mass, stiffness and large-rotation forces, with forms in scikit-fem.
+
+The only door to scikit-fem. Total Lagrangian, plane stress, St. Venant-Kirchhoff (`fem.solid.elasticity`);
+four-node bilinear or nine-node biquadratic quadrilaterals on straight-sided cells. 3 x 3 Gauss points, exact
+for the mass of both; in bilinear parallelograms 2 x 2, exact for stiffness and mass.
+Bathe, Finite Element Procedures (2014), sections 5.3, 5.5 and 6.3.
+
+Axes x to the right, z up. Displacements have shape (n, 2); in vectors and matrices of all unknowns the order
+is u_x of node 0, u_z of node 0, u_x of node 1, ... Loads point along +x and +z; the internal force is the
+gradient of the strain energy, so equilibrium reads internal force = load.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array, csc_array, csr_array, diags_array
+from skfem import (
+    Basis,
+    BilinearForm,
+    ElementQuad1,
+    ElementQuad2,
+    ElementVector,
+    FacetBasis,
+    LinearForm,
+    MeshQuad,
+)
+from skfem.helpers import ddot, eye, mul, sym_grad, trace, transpose
+
+from fem.solid.elasticity import (
+    FloatArray,
+    LamePair,
+    cauchy_stress,
+    element_forces,
+    first_stress_tangent,
+    plane_stress_lame,
+    von_mises,
+)
+
+IntArray = NDArray[np.int64]
+#: A field over the elevation: (x, z) of any shape (...) -> the two components, shape (2, ...).
+VectorField = Callable[[FloatArray, FloatArray], Any]
+#: (x, z) of the midpoints of edges -> chosen or not.
+EdgeChoice = Callable[[FloatArray, FloatArray], NDArray[np.bool_]]
+
+_ELEMENTS = {1: ElementQuad1, 2: ElementQuad2}
+_QUADRATURE_DEGREE = 5  # in each direction: 3 x 3 Gauss points
+_ENOUGH_DEGREE = 3  # 2 x 2 points, exact for the stiffness and mass of bilinear parallelograms
+
+
+class QuadMesh(Protocol):
+    """What the assembly asks of a mesh."""
+
+    @property
+    def points(self) -> NDArray[np.floating]: ...  #: (n, 2) [m]
+
+    @property
+    def quads(self) -> NDArray[np.integer]: ...  #: (m, 4), counter-clockwise
+
+    @property
+    def region(self) -> NDArray[np.integer]: ...  #: (m,)
+
+    @property
+    def thickness(self) -> NDArray[np.floating]: ...  #: (m,), out of plane [m]
+
+    @property
+    def areal_density(self) -> NDArray[np.floating]: ...  #: (m,) [kg per m2 of elevation]
+
+
+@BilinearForm
+def _mass_form(u: Any, v: Any, w: Any) -> Any:
+    return w.areal_density * u * v
+
+
+@BilinearForm
+def _stiffness_form(u: Any, v: Any, w: Any) -> Any:
+    """Linear plane stress: sigma(u) : epsilon(v)."""
+    strain, test = sym_grad(u), sym_grad(v)
+    return w.thickness * (2.0 * w.shear * ddot(strain, test) + w.first * trace(strain) * trace(test))
+
+
+@LinearForm
+def _internal_force_form(v: Any, w: Any) -> Any:
+    """P : grad v with P = F S, S of the Green-Lagrange strain (F^T F - I)/2."""
+    F, S = _deformation_and_stress(w)
+    return w.thickness * ddot(mul(F, S), v.grad)
+
+
+@BilinearForm
+def _tangent_form(u: Any, v: Any, w: Any) -> Any:
+    """Derivative of the internal force: geometric part, then material part in the current frame."""
+    F, S = _deformation_and_stress(w)
+    strain, test = (0.5 * (mul(transpose(F), g) + mul(transpose(g), F)) for g in (u.grad, v.grad))
+    material = 2.0 * w.shear * ddot(strain, test) + w.first * trace(strain) * trace(test)
+    return w.thickness * (ddot(mul(u.grad, S), v.grad) + material)
+
+
+def _deformation_and_stress(w: Any) -> tuple[FloatArray, FloatArray]:
+    gradient = w.displacement.grad
+    identity = eye(np.ones_like(gradient[0, 0]), 2)
+    F = gradient + identity
+    strain = 0.5 * (mul(transpose(F), F) - identity)
+    return F, 2.0 * w.shear * strain + w.first * eye(trace(strain), 2)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FiniteElements:
+    """An assembled container: its nodes, its constant matrices and its large-rotation forces.
+
+    `nodes[: len(points)]` are the points of the mesh, in their order; order 2 adds edge and cell middles.
+    """
+
+    order: int  #: 1 bilinear, 2 biquadratic
+    youngs_modulus: float  #: [Pa]
+    poisson_ratio: float  #: [-]
+    nodes: FloatArray  #: reference positions of all nodes, shape (n, 2) [m]
+    cells: IntArray  #: nodes of each cell in VTK's order (quad, biquadratic quad), shape (m, 4 | 9)
+    region: NDArray[np.integer]  #: region of each cell, shape (m,)
+    base_nodes: IntArray  #: nodes at z = 0, by rising x
+    mass: csr_array  #: consistent mass, the same for x and z, shape (n, n) [kg]
+    stiffness: csc_array  #: linear plane stress, shape (2n, 2n), interleaved [N/m]
+    lame: LamePair = field(repr=False)
+    gradient: FloatArray = field(repr=False)  #: derivatives of the shape functions, (2, m, q, k) [1/m]
+    weights: FloatArray = field(repr=False)  #: volume of each quadrature point, (m, q) [m3]
+    _basis: Basis = field(repr=False)
+    _thickness: FloatArray = field(repr=False)  # at the quadrature points, (m, q)
+    _recovery: csr_array = field(repr=False)  # quadrature points -> averaged nodes, (n, m q)
+
+    @property
+    def unknowns(self) -> int:
+        """Number of displacement components."""
+        return 2 * len(self.nodes)
+
+    @property
+    def vector_mass(self) -> csc_array:
+        """Mass for interleaved unknowns, shape (2n, 2n) [kg]."""
+        mass = self.mass.tocoo()
+        rows, columns = (np.concatenate([2 * index, 2 * index + 1]) for index in (mass.row, mass.col))
+        data = np.tile(mass.data, 2)
+        return coo_array((data, (rows, columns)), shape=self.stiffness.shape).tocsc()
+
+    def mass_of(self, cells: IntArray, areal_density: NDArray[np.floating]) -> csr_array:
+        """Consistent mass of some cells alone, for the areal density (m,) of all [kg/m2]; shape (n, n) [kg]."""
+        part = self._basis.with_elements(cells)
+        density = np.repeat(np.asarray(areal_density, dtype=float)[cells, None], part.X.shape[1], axis=1)
+        return csr_array(_mass_form.assemble(part, areal_density=density))
+
+    def force_and_energy(self, displacement: FloatArray) -> tuple[FloatArray, float]:
+        """Gradient of the strain energy, shape (n, 2) [N], and the energy itself [J]."""
+        force = np.empty_like(self.nodes)
+        energy = element_forces(
+            self.cells,
+            self.gradient,
+            self.weights,
+            self.lame.first,
+            self.lame.shear,
+            np.ascontiguousarray(displacement, dtype=float),
+            np.empty((2, self.cells.shape[1], 2)),
+            force,
+        )
+        return force, energy
+
+    def internal_force(self, displacement: FloatArray) -> FloatArray:
+        """Gradient of the strain energy, shape (n, 2) [N]."""
+        return self.force_and_energy(displacement)[0]
+
+    def strain_energy(self, displacement: FloatArray) -> float:
+        """Strain energy [J]; never negative."""
+        return self.force_and_energy(displacement)[1]
+
+    def tangent(self, displacement: FloatArray) -> csc_array:
+        """Derivative of `internal_force`, shape (2n, 2n), interleaved [N/m]."""
+        moduli = first_stress_tangent(self.displacement_gradient(displacement), self.lame)
+        cells, k = self.cells.shape
+        moduli = moduli * self.weights
+        shapes = self.gradient
+        rows = shapes.transpose(1, 3, 0, 2).reshape(cells, k, -1)
+        blocks = np.empty((cells, k, 2, k, 2))
+        for i, p in np.ndindex(2, 2):
+            columns = np.einsum("jlcq,lcqb->cjqb", moduli[i, :, p], shapes).reshape(cells, -1, k)
+            blocks[:, :, i, :, p] = rows @ columns
+        unknowns = (2 * self.cells[:, :, None] + np.arange(2)).reshape(cells, -1)
+        positions = (np.repeat(unknowns, 2 * k, axis=1).ravel(), np.tile(unknowns, 2 * k).ravel())
+        return coo_array((blocks.ravel(), positions), shape=self.stiffness.shape).tocsc()
+
+    def nodal_stress(self, displacement: FloatArray) -> FloatArray:
+        """Cauchy stress at the nodes, shape (n, 3): xx, zz, xz in the axes of space [Pa].
+
+        In each cell a bilinear field is fitted to the quadrature points and read at the nodes; at a node the
+        cells are averaged by area, but only those of the greatest thickness there. So where a wall (thick out
+        of plane) meets a sheet, the node shows the wall's stress, not diluted by the sheet's.
+        """
+        stress = cauchy_stress(self.displacement_gradient(displacement), self.lame)
+        return self._recovery @ stress.reshape(3, -1).T
+
+    def nodal_von_mises(self, displacement: FloatArray) -> FloatArray:
+        """Equivalent stress of `nodal_stress`, shape (n,) [Pa]."""
+        return von_mises(self.nodal_stress(displacement).T)
+
+    def area_load(self, density: VectorField) -> FloatArray:
+        """Consistent nodal forces of a load per area of elevation [N/m2], shape (n, 2) [N]."""
+        return np.stack([_load(self._basis, density, i) for i in range(2)], axis=1)
+
+    def edge_load(self, chosen: EdgeChoice, density: VectorField) -> FloatArray:
+        """Consistent nodal forces of a load per length of boundary edge [N/m], shape (n, 2) [N].
+
+        `chosen` picks outer edges by their midpoints. A unit load gives the tributary lengths of the nodes.
+
+        Raises:
+            ValueError: no outer edge is chosen.
+        """
+        mesh = self._basis.mesh
+        facets = mesh.facets_satisfying(lambda x: chosen(x[0], x[1]), boundaries_only=True)
+        if len(facets) == 0:
+            raise ValueError("edge load: no outer edge of the mesh satisfies the choice")
+        edge = FacetBasis(mesh, self._basis.elem, facets=facets, intorder=_QUADRATURE_DEGREE)
+        return np.stack([_load(edge, density, i) for i in range(2)], axis=1)
+
+    def l2_distance(self, displacement: FloatArray, reference: VectorField) -> float:
+        """Root of the integral over the elevation of |displacement - reference|^2 [m2]."""
+        basis = Basis(self._basis.mesh, self._basis.elem, intorder=_QUADRATURE_DEGREE + 4)
+        x, z = basis.global_coordinates()
+        exact = np.broadcast_arrays(*reference(x, z), x)[:2]
+        errors = [np.array(basis.interpolate(displacement[:, i])) - exact[i] for i in range(2)]
+        return float(np.sqrt(sum(np.sum(basis.dx * error**2) for error in errors)))
+
+    def internal_force_by_form(self, displacement: FloatArray) -> FloatArray:
+        """`internal_force` through its scikit-fem form: slow, the yardstick of the sparse product."""
+        basis, parameters = self._vector_basis(displacement)
+        return _internal_force_form.assemble(basis, **parameters).reshape(-1, 2)
+
+    def tangent_by_form(self, displacement: FloatArray) -> csc_array:
+        """`tangent` through its scikit-fem form."""
+        basis, parameters = self._vector_basis(displacement)
+        return csc_array(_tangent_form.assemble(basis, **parameters))
+
+    def displacement_gradient(self, displacement: FloatArray) -> FloatArray:
+        """H_ij = d u_i / d X_j at the quadrature points, shape (2, 2, m, q)."""
+        return np.einsum("jcqb,cbi->ijcq", self.gradient, np.asarray(displacement)[self.cells], optimize=True)
+
+    def _vector_basis(self, displacement: FloatArray) -> tuple[Basis, dict[str, Any]]:
+        basis = self._basis.with_element(ElementVector(self._basis.elem))
+        return basis, {
+            "displacement": basis.interpolate(np.ravel(displacement)),
+            "thickness": self._thickness,
+            "first": self.lame.first,
+            "shear": self.lame.shear,
+        }
+
+
+def assemble(mesh: QuadMesh, *, youngs_modulus: float, poisson_ratio: float, order: int) -> FiniteElements:
+    """Assemble what does not change during a run.
+
+    Raises:
+        ValueError: order other than 1 or 2; elastic constants, thickness or areal density out of range; a
+            cell that is clockwise, inverted or without area; a point that belongs to no cell.
+    """
+    if order not in _ELEMENTS:
+        raise ValueError(f"element order must be 1 (bilinear) or 2 (biquadratic), got {order}")
+    lame = plane_stress_lame(youngs_modulus, poisson_ratio)
+    basis = _scalar_basis(mesh, order)
+    thickness = _at_points(basis, mesh.thickness, "thickness", "m")
+    if not np.all(thickness > 0.0):
+        raise ValueError(f"thickness must be positive, the smallest is {thickness.min()} m")
+    density = _at_points(basis, mesh.areal_density, "areal density", "kg/m2")
+
+    cells = np.ascontiguousarray(basis.element_dofs.T).astype(np.int64)
+    nodes = np.ascontiguousarray(basis.doflocs.T)
+    nodes[: len(mesh.points)] = mesh.points  # exactly, not through the mapping
+    vector_basis = basis.with_element(ElementVector(basis.elem))
+    elastic = {"thickness": thickness, "first": lame.first, "shear": lame.shear}
+    return FiniteElements(
+        order=order,
+        youngs_modulus=youngs_modulus,
+        poisson_ratio=poisson_ratio,
+        nodes=nodes,
+        cells=cells,
+        region=np.asarray(mesh.region),
+        base_nodes=_base_nodes(nodes),
+        mass=csr_array(_mass_form.assemble(basis, areal_density=density)),
+        stiffness=csc_array(_stiffness_form.assemble(vector_basis, **elastic)),
+        lame=lame,
+        gradient=_shape_gradients(basis),
+        weights=np.ascontiguousarray(basis.dx * thickness),
+        _basis=basis,
+        _thickness=thickness,
+        _recovery=_recovery_operator(basis, cells, np.asarray(mesh.thickness, dtype=float)),
+    )
+
+
+def _scalar_basis(mesh: QuadMesh, order: int) -> Basis:
+    points = np.ascontiguousarray(np.asarray(mesh.points, dtype=float).T)
+    quads = np.ascontiguousarray(np.asarray(mesh.quads, dtype=np.int64).T)
+    lonely = np.setdiff1d(np.arange(points.shape[1]), quads)
+    if lonely.size:
+        x, z = points[:, lonely[0]]
+        raise ValueError(f"point {lonely[0]} at x = {x:.6g} m, z = {z:.6g} m belongs to no cell; remove it")
+    a, b, c, d = (points[:, corner] for corner in quads)
+    skewed = np.abs(a - b + c - d).max() > 1e-9 * np.ptp(points, axis=1).max()
+    degree = _QUADRATURE_DEGREE if order == 2 or skewed else _ENOUGH_DEGREE
+    basis = Basis(MeshQuad(points, quads), _ELEMENTS[order](), intorder=degree)
+    least = basis.mapping.detDF(basis.X).min(axis=1)
+    # scikit-fem integrates with |det J| and would take such a cell without a word
+    if not np.all(least > 0.0):
+        worst = int(np.argmin(np.where(np.isnan(least), -np.inf, least)))
+        x, z = points[:, quads[:, worst]].mean(axis=1)
+        raise ValueError(
+            f"cell {worst} at x = {x:.6g} m, z = {z:.6g} m has the Jacobian {least[worst]:.3g} m2; "
+            "its corners must run counter-clockwise around a positive area"
+        )
+    return basis
+
+
+def _at_points(basis: Basis, values: NDArray[np.floating], name: str, unit: str) -> FloatArray:
+    """One value a cell, repeated at its quadrature points, shape (m, q)."""
+    values = np.asarray(values, dtype=float)
+    if values.shape != (basis.nelems,):
+        raise ValueError(f"{name} must have one value a cell, shape ({basis.nelems},), got {values.shape}")
+    sound = (values >= 0.0) & (values < np.inf)
+    if not sound.all():
+        cell = int(np.argmin(sound))
+        raise ValueError(f"{name} of cell {cell} must be finite and not negative, got {values[cell]} {unit}")
+    return np.repeat(values[:, None], basis.X.shape[1], axis=1)
+
+
+def _base_nodes(nodes: FloatArray) -> IntArray:
+    height = np.ptp(nodes[:, 1])
+    base = np.flatnonzero(np.abs(nodes[:, 1]) <= 1e-9 * height)
+    return base[np.argsort(nodes[base, 0], kind="stable")]
+
+
+def _shape_gradients(basis: Basis) -> FloatArray:
+    """Derivatives of the shape functions along x and z at the points of all cells, shape (2, m, q, k) [1/m]."""
+    gradients = np.stack([basis.basis[i][0].grad for i in range(basis.Nbfun)], axis=-1)
+    return np.ascontiguousarray(gradients)
+
+
+def _recovery_operator(basis: Basis, cells: IntArray, thickness: FloatArray) -> csr_array:
+    """Values at the quadrature points -> fitted in each cell, averaged at the nodes, shape (n, m q)."""
+    bilinear = [np.stack([np.ones_like(X), X, Z, X * Z], axis=1) for X, Z in (basis.X, basis.elem.doflocs.T)]
+    fit = bilinear[1] @ np.linalg.pinv(bilinear[0])  # (k, q)
+    greatest = np.zeros(basis.N)
+    np.maximum.at(greatest, cells, thickness[:, None])
+    share = np.where(thickness[:, None] >= (1.0 - 1e-9) * greatest[cells], basis.dx.sum(axis=1)[:, None], 0.0)
+    values = share[:, :, None] * fit  # (m, k, q)
+    rows = np.broadcast_to(cells[:, :, None], values.shape)
+    points = np.broadcast_to(np.arange(basis.dx.size).reshape(len(cells), 1, -1), values.shape)
+    summed = coo_array((values.ravel(), (rows.ravel(), points.ravel())), shape=(basis.N, basis.dx.size))
+    total = np.zeros(basis.N)
+    np.add.at(total, cells, share)
+    recovery = (diags_array(1.0 / total) @ summed).tocsr()
+    recovery.eliminate_zeros()
+    return recovery
+
+
+def _load(basis: Any, density: VectorField, component: int) -> FloatArray:
+    @LinearForm
+    def form(v: Any, w: Any) -> Any:
+        return density(*w.x)[component] * v
+
+    return form.assemble(basis)

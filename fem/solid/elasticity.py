@@ -1,0 +1,217 @@
+"""Plane-stress elasticity: strain, stress and energy as pure functions of the displacement gradient.
+
+St. Venant-Kirchhoff material in total Lagrangian form: small strains, any rotation. Holzapfel, Nonlinear
+Solid Mechanics (2000), sections 2.4, 3.1 and 6.5; plane stress as for a thin sheet.
+Gradients have shape (2, 2, ...) with `gradient[i, j]` = d u_i / d X_j, i and j running over x, z; symmetric
+tensors have shape (3, ...) in the order xx, zz, xz (the tensor's component, not twice it). Tension is
+positive.
+"""
+
+from pathlib import Path
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from numba.extending import register_jitable
+from numpy.typing import NDArray
+
+from contact.jit import compiled
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+SOURCES = (Path(__file__),)  #: of the machine code of this module
+Real = TypeVar("Real", float, FloatArray)
+
+
+class LamePair(NamedTuple):
+    """The two Lamé constants of plane stress [Pa]."""
+
+    first: float  #: multiplies the trace of the in-plane strain
+    shear: float  #: shear modulus
+
+
+def plane_stress_lame(youngs_modulus: float, poisson_ratio: float) -> LamePair:
+    """Lamé pair for which 2 shear E + first tr(E) I is the plane-stress law [Pa].
+
+    Timoshenko and Goodier, Theory of Elasticity (1970), section 16, solved for the stresses.
+
+    Raises:
+        ValueError: Young's modulus not positive, or Poisson's ratio outside ]-1, 0.5].
+    """
+    if not 0.0 < youngs_modulus < np.inf:
+        raise ValueError(f"Young's modulus must be positive and finite, got {youngs_modulus} Pa")
+    if not -1.0 < poisson_ratio <= 0.5:
+        raise ValueError(f"Poisson's ratio must be above -1 and at most 0.5, got {poisson_ratio}")
+    return LamePair(
+        youngs_modulus * poisson_ratio / (1.0 - poisson_ratio**2),
+        youngs_modulus / (2.0 * (1.0 + poisson_ratio)),
+    )
+
+
+@register_jitable
+def strain_components(xx: Real, xz: Real, zx: Real, zz: Real) -> tuple[Real, Real, Real]:
+    """Green-Lagrange strain (H + H^T + H^T H)/2 of a gradient's components, xx, zz, xz [-].
+
+    Written in the gradient and not in F^T F - I, so that a strain of 1e-12 survives beside a small rotation;
+    a large rotation leaves a few units in the last place of 1. For numbers and for arrays alike.
+    """
+    return (
+        xx + 0.5 * (xx * xx + zx * zx),
+        zz + 0.5 * (zz * zz + xz * xz),
+        0.5 * (xz + zx + xx * xz + zx * zz),
+    )
+
+
+@register_jitable
+def stress_components(xx: Real, zz: Real, xz: Real, first: float, shear: float) -> tuple[Real, Real, Real]:
+    """Second Piola-Kirchhoff stress of St. Venant and Kirchhoff from the strain, xx, zz, xz [Pa]."""
+    trace = first * (xx + zz)
+    return 2.0 * shear * xx + trace, 2.0 * shear * zz + trace, 2.0 * shear * xz
+
+
+@register_jitable
+def energy_of_strain(xx: Real, zz: Real, xz: Real, first: float, shear: float) -> Real:
+    """Strain energy per reference volume, shear E:E + first tr(E)^2/2 [J/m3]; never negative."""
+    return shear * (xx * xx + zz * zz + 2.0 * xz * xz) + 0.5 * first * (xx + zz) ** 2
+
+
+@register_jitable
+def stress_and_energy(
+    xx: Real, xz: Real, zx: Real, zz: Real, first: float, shear: float
+) -> tuple[Real, Real, Real, Real, Real]:
+    """First Piola-Kirchhoff stress P = F S, xx, xz, zx, zz, force axis first [Pa], and energy [J/m3], of a gradient."""
+    exx, ezz, exz = strain_components(xx, xz, zx, zz)
+    sxx, szz, sxz = stress_components(exx, ezz, exz, first, shear)
+    return (
+        (1.0 + xx) * sxx + xz * sxz,
+        (1.0 + xx) * sxz + xz * szz,
+        zx * sxx + (1.0 + zz) * sxz,
+        zx * sxz + (1.0 + zz) * szz,
+        energy_of_strain(exx, ezz, exz, first, shear),
+    )
+
+
+def green_strain(gradient: FloatArray) -> FloatArray:
+    """Green-Lagrange strain, shape (3, ...) [-]."""
+    (xx, xz), (zx, zz) = gradient
+    return np.stack(strain_components(xx, xz, zx, zz))
+
+
+def second_stress(strain: FloatArray, lame: LamePair) -> FloatArray:
+    """Second Piola-Kirchhoff stress, shape (3, ...) [Pa]."""
+    xx, zz, xz = strain
+    return np.stack(stress_components(xx, zz, xz, lame.first, lame.shear))
+
+
+def first_stress(gradient: FloatArray, lame: LamePair) -> FloatArray:
+    """First Piola-Kirchhoff stress P = F S, shape (2, 2, ...), force axis first [Pa]."""
+    (xx, xz), (zx, zz) = gradient
+    pxx, pxz, pzx, pzz, _ = stress_and_energy(xx, xz, zx, zz, lame.first, lame.shear)
+    return np.array([[pxx, pxz], [pzx, pzz]])
+
+
+def _element_forces(
+    cells: IntArray,
+    gradient: FloatArray,
+    weights: FloatArray,
+    first: float,
+    shear: float,
+    displacement: FloatArray,
+    local: FloatArray,
+    out: FloatArray,
+) -> float:
+    """Gradient of the strain energy by the displacements, and the energy [J], cell by cell.
+
+    Args:
+        cells: (m, k) nodes of each cell.
+        gradient: (2, m, q, k) derivatives of the shape functions along x and z at the points [1/m].
+        weights: (m, q) volumes [m3].
+        first, shear: the Lamé pair [Pa].
+        displacement: (n, 2) [m].
+        local: (2, k, 2) scratch.
+        out: (n, 2) forces [N], written.
+    """
+    energy = 0.0
+    for i in range(out.shape[0]):
+        out[i, 0], out[i, 1] = 0.0, 0.0
+    for c in range(cells.shape[0]):
+        for b in range(cells.shape[1]):
+            node = cells[c, b]
+            local[0, b, 0], local[0, b, 1] = displacement[node, 0], displacement[node, 1]
+            local[1, b, 0], local[1, b, 1] = 0.0, 0.0
+        for q in range(weights.shape[1]):
+            xx, xz, zx, zz = 0.0, 0.0, 0.0, 0.0
+            for b in range(cells.shape[1]):
+                by_x, by_z = gradient[0, c, q, b], gradient[1, c, q, b]
+                u, w = local[0, b, 0], local[0, b, 1]
+                xx += by_x * u
+                xz += by_z * u
+                zx += by_x * w
+                zz += by_z * w
+            pxx, pxz, pzx, pzz, density = stress_and_energy(xx, xz, zx, zz, first, shear)
+            weight = weights[c, q]
+            energy += weight * density
+            for b in range(cells.shape[1]):
+                by_x, by_z = weight * gradient[0, c, q, b], weight * gradient[1, c, q, b]
+                local[1, b, 0] += by_x * pxx + by_z * pxz
+                local[1, b, 1] += by_x * pzx + by_z * pzz
+        for b in range(cells.shape[1]):
+            node = cells[c, b]
+            out[node, 0] += local[1, b, 0]
+            out[node, 1] += local[1, b, 1]
+    return energy
+
+
+element_forces = compiled(_element_forces, sources=SOURCES)
+
+
+def first_stress_tangent(gradient: FloatArray, lame: LamePair) -> FloatArray:
+    """Derivative of `first_stress`: A[i, j, k, l] = d P_ij / d H_kl, shape (2, 2, 2, 2, ...) [Pa].
+
+    A_ijkl = delta_ik S_jl + first F_ij F_kl + shear (F_il F_kj + (F F^T)_ik delta_jl).
+    """
+    sxx, szz, sxz = second_stress(green_strain(gradient), lame)
+    stress = ((sxx, sxz), (sxz, szz))
+    deformation = gradient.copy()
+    deformation[0, 0] += 1.0
+    deformation[1, 1] += 1.0
+    tangent = lame.first * np.einsum("ij...,kl...->ijkl...", deformation, deformation)
+    tangent += lame.shear * np.einsum("il...,kj...->ijkl...", deformation, deformation)
+    left = lame.shear * np.einsum("im...,km...->ik...", deformation, deformation)
+    for j in range(2):
+        tangent[:, j, :, j] += left
+        for l in range(2):  # noqa: E741 - the fourth index of the tensor
+            for i in range(2):
+                tangent[i, j, i, l] += stress[j][l]
+    return tangent
+
+
+def energy_density(gradient: FloatArray, lame: LamePair) -> FloatArray:
+    """Strain energy per reference volume, shape (...) [J/m3]; never negative."""
+    xx, zz, xz = green_strain(gradient)
+    return energy_of_strain(xx, zz, xz, lame.first, lame.shear)
+
+
+def cauchy_stress(gradient: FloatArray, lame: LamePair) -> FloatArray:
+    """True stress F S F^T / J in the axes of space, not of the body, shape (3, ...) [Pa].
+
+    J includes the stretch of the thickness, sqrt(1 - (first/shear) tr(E)), which plane stress leaves free.
+    Where an absurd strain would make the thickness vanish (tr(E) beyond shear/first) the stress is nan.
+    """
+    strain = green_strain(gradient)
+    sxx, szz, sxz = second_stress(strain, lame)
+    xx, xz = 1.0 + gradient[0, 0], gradient[0, 1]
+    zx, zz = gradient[1, 0], 1.0 + gradient[1, 1]
+    with np.errstate(invalid="ignore"):
+        thickness_stretch = np.sqrt(1.0 - lame.first / lame.shear * (strain[0] + strain[1]))
+    volume = (xx * zz - xz * zx) * thickness_stretch
+    stress = np.empty_like(strain)
+    stress[0] = (xx * xx * sxx + 2.0 * xx * xz * sxz + xz * xz * szz) / volume
+    stress[1] = (zx * zx * sxx + 2.0 * zx * zz * sxz + zz * zz * szz) / volume
+    stress[2] = (xx * zx * sxx + (xx * zz + xz * zx) * sxz + xz * zz * szz) / volume
+    return stress
+
+
+def von_mises(stress: FloatArray) -> FloatArray:
+    """Equivalent stress of plane stress, sqrt(sx^2 - sx sz + sz^2 + 3 t^2), shape (...) [Pa]."""
+    xx, zz, xz = stress
+    return np.sqrt(xx * xx - xx * zz + zz * zz + 3.0 * xz * xz)

@@ -1,0 +1,198 @@
+"""Free-free elastic modes of the container, separated exactly from its rigid motion.
+
+The frame that floats with the modes is Tisserand's: elastic modes carry neither momentum nor, to first
+order, angular momentum, so they are M-orthogonal to the two translations and the rotation. Shabana, Dynamics
+of Multibody Systems (2013), chapter 5. Lanczos iteration with shift and inversion (Ericsson and Ruhe,
+Mathematics of Computation 35 (1980) 1251) on the complement of the rigid modes. Rotation > 0 tilts toward +x.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+from itertools import count as count_from
+from pathlib import Path
+
+import meshio
+import numpy as np
+from scipy.linalg import cholesky, eigh, qr, solve_triangular
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
+
+from fem.solid.assembly import FiniteElements
+from fem.solid.elasticity import FloatArray
+from fem.solid.setup_parts import NoParts, Parts
+
+FEW = 5  #: in the table and the figure of a run: one row of shapes
+_DENSE_UNKNOWNS = 400  # up to here a dense solution is as quick, and it gives every mode there is
+_VTK_CELLS = {4: "quad", 9: "quad9"}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ElasticModes:
+    """The lowest elastic modes of a free container, by rising frequency."""
+
+    frequencies_Hz: FloatArray  #: shape (k,) [Hz]  # noqa: N815 - the symbol of the unit
+    shapes: FloatArray  #: shape^T M shape = 1 for each, shape (k, n, 2) [kg^-1/2]
+
+    @property
+    def angular_frequencies(self) -> FloatArray:
+        """Shape (k,) [rad/s]."""
+        return 2.0 * np.pi * self.frequencies_Hz
+
+
+def rigid_modes(elements: FiniteElements) -> FloatArray:
+    """Translations along x and z and small rotation about the centroid, M-orthonormal, shape (3, n, 2).
+
+    Unit motions divided by sqrt(mass), sqrt(mass) and sqrt(polar inertia).
+    """
+    nodal_mass = elements.mass @ np.ones(len(elements.nodes))
+    arm = elements.nodes - nodal_mass @ elements.nodes / nodal_mass.sum()
+    modes = np.zeros((3, *elements.nodes.shape))
+    modes[0, :, 0] = modes[1, :, 1] = 1.0
+    modes[2] = np.stack([arm[:, 1], -arm[:, 0]], axis=1)
+    return modes / np.sqrt(_modal_masses(elements, modes))[:, None, None]
+
+
+def elastic_modes(elements: FiniteElements, count: int, parts: Parts | None = None) -> ElasticModes:
+    """The `count` lowest elastic modes; the same input gives the same shapes and signs.
+
+    The largest component of each shape is positive (the first of equals, by node). `parts` may keep solutions.
+
+    Raises:
+        ValueError: count below 1, or above the number of elastic modes that the mesh has.
+    """
+    available = elements.unknowns - 3
+    if not 1 <= count <= available:
+        raise ValueError(f"elastic modes asked for: {count}; this mesh has from 1 to {available}")
+    rigid = rigid_modes(elements).reshape(3, -1)
+    if elements.unknowns <= max(_DENSE_UNKNOWNS, 4 * count):
+        squares, vectors = _dense_modes(elements, rigid, count)
+    else:
+        squares, vectors = _lanczos_modes(elements, rigid, count, parts or NoParts())
+    shapes = vectors.T.reshape(count, -1, 2)
+    shapes /= np.sqrt(_modal_masses(elements, shapes))[:, None, None]
+    return ElasticModes(frequencies_Hz=np.sqrt(squares) / (2.0 * np.pi), shapes=shapes * _signs(shapes))
+
+
+def elastic_mode_table(modes: ElasticModes) -> list[dict[str, float]]:
+    """One row a mode for the screen: number, frequency_Hz, period_s, ratio to the first."""
+    frequencies = modes.frequencies_Hz.tolist()
+    return [
+        {"mode": i, "frequency_Hz": f, "period_s": 1.0 / f, "ratio_to_first": f / frequencies[0]}
+        for i, f in enumerate(frequencies, start=1)
+    ]
+
+
+def write_modes(elements: FiniteElements, modes: ElasticModes, folder: Path) -> Path:
+    """Write `modes.vtu` with every shape as a point vector, scaled to a largest displacement of 1 m.
+
+    Points and vectors are (x, z, 0); ParaView's Warp By Vector wants three components.
+
+    Returns:
+        The file written.
+
+    Raises:
+        OSError: the folder cannot be made or written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    names = [f"mode {i:02d} ({f:.6g} Hz)" for i, f in enumerate(modes.frequencies_Hz, start=1)]
+    largest = np.linalg.norm(modes.shapes, axis=2).max(axis=1)
+    file = meshio.Mesh(
+        _padded(elements.nodes),
+        [(_VTK_CELLS[elements.cells.shape[1]], elements.cells)],
+        point_data={n: _padded(s / a) for n, s, a in zip(names, modes.shapes, largest, strict=True)},
+        cell_data={"region": [np.asarray(elements.region, dtype=np.int32)]},
+    )
+    path = folder / "modes.vtu"
+    file.write(path)
+    return path
+
+
+def _dense_modes(elements: FiniteElements, rigid: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
+    """The same inversion on a basis of the rigid modes' complement, orthonormal in K + shift M."""
+    mass, shift = elements.vector_mass, _first_square_estimate(elements, rigid)
+    upper = cholesky((elements.stiffness + shift * mass).toarray())
+    basis = solve_triangular(upper, qr(upper @ rigid.T)[0][:, 3:])
+    compliance = basis.T @ (mass @ basis)
+    last = len(compliance) - 1
+    inverses, vectors = eigh(0.5 * (compliance + compliance.T), subset_by_index=(last + 1 - count, last))
+    return 1.0 / inverses[::-1] - shift, basis @ vectors[:, ::-1]
+
+
+def _lanczos_modes(
+    elements: FiniteElements, rigid: FloatArray, count: int, parts: Parts
+) -> tuple[FloatArray, FloatArray]:
+    mass, stiffness = elements.vector_mass, elements.stiffness
+    shift = _first_square_estimate(elements, rigid)
+
+    # K alone is singular; K + shift M is positive definite, and any shift near the first elastic mode keeps
+    # both the factor well conditioned and the wanted modes apart. Symmetric mode: a third of the fill.
+    @cache
+    def factor() -> SuperLU:
+        return splu(
+            (stiffness + shift * mass).tocsc(),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+
+    number = count_from(1)
+
+    def solve(momentum: FloatArray) -> FloatArray:
+        # The iteration asks for the same solutions in the same order every time: it can be played again.
+        solution = np.empty(momentum.shape)
+        parts.fill(
+            f"solution {next(number)}",
+            solution,
+            lambda: _without_rigid_motion(factor().solve(momentum), rigid, mass),
+        )
+        return solution
+
+    start = np.random.default_rng(0).standard_normal(elements.unknowns)  # no symmetry: it misses no mode
+    squares, vectors = eigsh(
+        stiffness,
+        k=count,
+        M=mass,
+        sigma=-shift,
+        OPinv=LinearOperator(stiffness.shape, matvec=solve, dtype=float),
+        v0=_without_rigid_motion(start, rigid, mass),
+        ncv=min(elements.unknowns, 2 * count + 20),
+    )
+    rising = np.argsort(squares, kind="stable")
+    return squares[rising], vectors[:, rising]
+
+
+def _first_square_estimate(elements: FiniteElements, rigid: FloatArray) -> float:
+    """Rayleigh-Ritz over displacements of second degree: above the first angular frequency squared [1/s2]."""
+    scale = np.ptp(elements.nodes, axis=0)
+    x, z = ((elements.nodes - elements.nodes.mean(axis=0)) / scale).T
+    trial = np.zeros((10, *elements.nodes.shape))
+    for i in range(2):
+        trial[5 * i : 5 * i + 5, :, i] = x, z, x * x, x * z, z * z
+    mass = elements.vector_mass
+    vectors = _without_rigid_motion(trial.reshape(10, -1).T, rigid, mass)
+    # The removal has made the ten fields dependent (the rotation is among them): drop what has no mass.
+    values, directions = np.linalg.eigh(vectors.T @ (mass @ vectors))
+    moving = values > 1e-8 * values[-1]
+    vectors = vectors @ (directions[:, moving] / np.sqrt(values[moving]))
+    return float(np.linalg.eigvalsh(vectors.T @ (elements.stiffness @ vectors))[0])
+
+
+def _without_rigid_motion(vectors: FloatArray, rigid: FloatArray, mass: csc_array) -> FloatArray:
+    """Remove the part of each column that has momentum or angular momentum."""
+    return vectors - rigid.T @ (rigid @ (mass @ vectors))
+
+
+def _modal_masses(elements: FiniteElements, shapes: FloatArray) -> FloatArray:
+    return np.array([np.sum(shape * (elements.mass @ shape)) for shape in shapes])
+
+
+def _signs(shapes: FloatArray) -> FloatArray:
+    """+1 or -1 for each shape, (k, 1, 1); of components that tie up to rounding the first node's counts."""
+    flat = shapes.reshape(len(shapes), -1)
+    size = np.abs(flat)
+    first = np.argmax(size >= (1.0 - 1e-6) * size.max(axis=1, keepdims=True), axis=1)
+    return np.sign(flat[np.arange(len(flat)), first])[:, None, None]
+
+
+def _padded(vectors: FloatArray) -> FloatArray:
+    return np.column_stack([vectors, np.zeros(len(vectors))])

@@ -1,0 +1,295 @@
+"""The container with every node free to move: total Lagrangian, without a tangent ever being assembled.
+
+In the frame that turns with the container the Newmark matrix M/(beta h^2) + K is constant, because M, the same
+on x and z, commutes with the rotation. It is factored once a step size (SuperLU); the residual is the exact one of
+finite rotation and St. Venant-Kirchhoff elasticity, and each iteration is one rotated back-substitution. What is left
+out of the matrix - geometric stiffness, of the order of the strain - only costs iterations. The contact is
+condensed to the base points and solved by the same compiled functions as for the reduced container.
+
+Coordinates are the absolute positions of the nodes, x and z in turn. Damping is proportional to the stiffness
+and acts in the turned frame, so that it does not brake the rocking itself. The step is compiled:
+`fem.solid.nodal_kernels`.
+"""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+import scipy.sparse
+import scipy.sparse.linalg
+from scipy.sparse import csr_array
+
+from contact.interface.equilibrium import Stance
+from contact.interface.solver import FloatArray, IntArray, Workspace
+from contact.stepping.body import State
+from contact.stepping.integrator import UNPREPARED, advance, advance_compiled, leave_alone_compiled
+from contact.stepping.modal_body import ModalBody
+from contact.stepping.scheme import Scheme
+from contact.stepping.state import Run
+from fem.solid import nodal_kernels as nodal_body
+from fem.solid.assembly import FiniteElements
+from fem.solid.nodal_kernels import NodalBody, advance_nodal, leave_nodal_alone
+from fem.solid.reduction import StaticResponse
+
+#: residual of a step at which its iteration stops, over the weight; the next iterate would have its square
+RESIDUAL_TOLERANCE = 5e-6
+UNIT_ROUNDOFF = 2.0**-53
+FACTOR_MEMORY = 600_000_000  #: for factors of different step sizes [bytes]
+FEWEST_FACTORS, MOST_FACTORS = 8, 64
+#: arrays of the last residual
+REMEMBERED = ("turn", "internal", "damping_force", "strain_energy")
+
+
+def _rotation_matrix(rotation: float) -> FloatArray:
+    """R with x = R X for a rotation > 0 toward +x."""
+    cosine, sine = math.cos(rotation), math.sin(rotation)
+    return np.array([[cosine, sine], [-sine, cosine]])
+
+
+class FullBody:
+    """What `contact.stepping.body` asks of a body, for a finite-element container.
+
+    Args:
+        elements: the container, discretised.
+        base: (n_c,) its supporting nodes, by rising x.
+        monitor: (n_m,) nodes whose motion is followed.
+        gravity: [m/s2].
+        damping: a of the stiffness-proportional damping C = a K in the turned frame [s].
+    """
+
+    compiled = True  #: stepped by machine code; a body with methods of its own is stepped by the interpreter
+
+    def __init__(
+        self,
+        elements: FiniteElements,
+        base: IntArray,
+        monitor: IntArray,
+        *,
+        gravity: float,
+        damping: float,
+    ) -> None:
+        self.elements = elements
+        self.base = np.asarray(base)
+        self.monitor = np.asarray(monitor)
+        self.gravity = gravity
+        self.damping = damping
+        self._vector_mass = elements.vector_mass
+        nodal_mass = elements.mass @ np.ones(len(elements.nodes))
+        self.mass = float(nodal_mass.sum())
+        self.centroid = nodal_mass @ elements.nodes / self.mass
+        self._arm = elements.nodes - self.centroid
+        mass_arm = elements.mass @ self._arm
+        self.inertia = float(np.sum(mass_arm * self._arm))
+        self.nodal = _without_factors(self, nodal_mass, mass_arm)
+
+    @property
+    def coordinates(self) -> int:
+        """Number of coordinates."""
+        return 2 * len(self.elements.nodes)
+
+    @property
+    def residuals(self) -> int:
+        """Evaluated so far."""
+        return int(self.nodal.known[1])
+
+    def place(self, state: State, stance: Stance, response: StaticResponse, floor_velocity: float) -> None:
+        """Write the initial coordinates: the stance's rigid pose, strained by its contact forces."""
+        turn = _rotation_matrix(stance.rotation)
+        elastic = np.tensordot((stance.force @ turn).ravel(), response.displacement, axes=1)
+        arm = (self._arm + elastic) @ turn.T
+        position = np.asarray(stance.centre) + arm
+        speed = stance.angular_velocity * np.column_stack([arm[:, 1], -arm[:, 0]])
+        velocity = np.asarray(stance.velocity) + np.array([floor_velocity, 0.0]) + speed
+        state.position[:] = position.ravel()
+        state.velocity[:] = velocity.ravel()
+        self.evaluate(state)
+
+    def evaluate(self, state: State) -> None:
+        """Forces and energy at the coordinates in `state`, with the best-fit rotation for the frame."""
+        self.nodal.turn[:] = nodal_body.fit(self.nodal, state.position)[2:]
+        nodal_body.forces(self.nodal, state.position, state.velocity)
+
+    def start(self, state: State, floor: float) -> None:
+        """What follows from the coordinates and contact forces in `state`, and the acceleration they give."""
+        self.complete(state, floor)
+        force = (state.external - state.internal).reshape(-1, 2)
+        factor = scipy.sparse.linalg.splu(self.elements.mass.tocsc())
+        state.acceleration[:] = factor.solve(force).ravel()
+
+    def prepare(self, scheme: Scheme, step: float) -> None:
+        """Factor the effective matrix of this step size, in place of the oldest one if there is no room."""
+        nodal = self.nodal
+        now = 1.0 - scheme.alpha_f
+        inertial = (1.0 - scheme.alpha_m) / (scheme.newmark_beta * step * step)
+        elastic = now * (1.0 + self.damping * scheme.newmark_gamma / (scheme.newmark_beta * step))
+        solver = scipy.sparse.linalg.splu(
+            (inertial * self._vector_mass + elastic * self.elements.stiffness).tocsc(),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+        if nodal.lower.shape[1] == 0:
+            nodal = self.nodal = _with_room(nodal, solver)
+        slots = nodal.cached_step.size - 1
+        slot = int(nodal.cached_step[slots])
+        nodal.cached_step[slots] = (slot + 1) % slots
+        lower = scipy.sparse.tril(solver.L, -1, format="csc")
+        nodal.order[:] = solver.perm_r  # the same as of the columns: pivots stay on the diagonal
+        nodal.lower_starts[slot] = lower.indptr
+        nodal.lower_rows[slot, : lower.nnz] = lower.indices
+        nodal.lower[slot, : lower.nnz] = lower.data
+        nodal.inverse_pivot[slot] = 1.0 / solver.U.diagonal()
+        dofs = (2 * self.base[:, None] + np.arange(2)).ravel()
+        loads = np.zeros((self.coordinates, dofs.size))
+        loads[dofs, np.arange(dofs.size)] = 1.0
+        answers = solver.solve(loads)
+        nodal.to_base[slot] = answers.T
+        nodal.base_compliance[slot] = 0.5 * (answers[dofs] + answers[dofs].T)
+        nodal.cached_step[slot] = step
+
+    def prepared(self, step: float) -> bool:
+        """See `contact.stepping.body.prepared`."""
+        return bool(nodal_body.prepared(self.nodal, step))
+
+    def sizes_hold(self, run: Run) -> bool:
+        """See `contact.stepping.body.sizes_hold`."""
+        return True
+
+    def predict(self, scheme: Scheme, step: float, old: State, new: State) -> None:
+        """See `contact.stepping.body.predict`."""
+        nodal_body.predict(self.nodal, scheme, step, old, new)
+
+    def release(
+        self,
+        scheme: Scheme,
+        step: float,
+        old: State,
+        new: State,
+        work: Workspace,
+        floor: float,
+        floor_velocity: float,
+    ) -> None:
+        """See `contact.stepping.body.release`."""
+        nodal_body.release(self.nodal, scheme, step, old, new, work, floor, floor_velocity)
+
+    def respond(self, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
+        """See `contact.stepping.body.respond`; the error is the residual over its tolerance."""
+        return float(nodal_body.respond(self.nodal, scheme, step, old, new, work))
+
+    def complete(self, new: State, floor: float) -> None:
+        """See `contact.stepping.body.complete`; internal forces and strain energy are those of the last residual."""
+        nodal_body.complete(self.nodal, new, floor)
+
+    def observe(self, new: State, floor: float) -> None:
+        """See `contact.stepping.body.observe`."""
+        nodal_body.observe(self.nodal, new, floor)
+
+    def shift_velocity(self, state: State, velocity: float) -> None:
+        """See `contact.stepping.body.shift_velocity`."""
+        nodal_body.shift_velocity(self.nodal, state, velocity)
+
+    def memory(self) -> dict[str, FloatArray]:
+        """What the last residual left behind for `complete`, by name; everything else follows from the state."""
+        return {name: getattr(self.nodal, name).copy() for name in REMEMBERED}
+
+    def recall(self, memory: Mapping[str, FloatArray]) -> None:
+        """Take over the memory of another body of the same container."""
+        for name in REMEMBERED:
+            getattr(self.nodal, name)[:] = memory[name]
+
+
+def advance_body(body: ModalBody | FullBody, run: Run, until: float) -> int:
+    """`contact.stepping.integrator.advance` for any body, compiled; factors of the full model are made where they
+    are missing.
+    """
+    if isinstance(body, ModalBody):
+        return int(advance_compiled(body, run, until))
+    while True:
+        code = int(advance_nodal(body.nodal, run, until) if body.compiled else advance(body, run, until))
+        if code != UNPREPARED:
+            return code
+        body.prepare(run.scheme, float(run.clock[0].due_step))
+
+
+def leave_body_alone(body: ModalBody | FullBody, run: Run, floor_velocity: float) -> None:
+    """`contact.stepping.integrator.leave_alone` for any body."""
+    if isinstance(body, ModalBody):
+        leave_alone_compiled(body, run, floor_velocity)
+    else:
+        leave_nodal_alone(body.nodal, run, floor_velocity)
+
+
+def _rounding(elements: FiniteElements) -> float:
+    """What of the internal forces at a node may be rounding of the coordinates alone [N].
+
+    More than the residual of a step may be where a wall is as thin as a hair: its stiffness across is enormous, and
+    the iterations would go on until they happen to hit.
+    """
+    stiffest = float(abs(elements.stiffness).sum(axis=1).max())
+    return UNIT_ROUNDOFF * stiffest * float(np.abs(elements.nodes).max())
+
+
+def _without_factors(body: FullBody, nodal_mass: FloatArray, mass_arm: FloatArray) -> NodalBody:
+    elements = body.elements
+    n, k = len(elements.nodes), elements.cells.shape[1]
+    mass, stiffness = csr_array(elements.mass), elements.stiffness.tocsr()
+    return NodalBody(
+        mass=body.mass,
+        inertia=body.inertia,
+        gravity=float(body.gravity),
+        damping=float(body.damping),
+        tolerance=max(RESIDUAL_TOLERANCE * body.mass * float(body.gravity), _rounding(elements)),
+        first=elements.lame.first,
+        shear=elements.lame.shear,
+        node=np.ascontiguousarray(elements.nodes),
+        nodal_mass=nodal_mass,
+        mass_arm=np.ascontiguousarray(mass_arm),
+        mass_starts=mass.indptr.astype(np.int32),
+        mass_columns=mass.indices.astype(np.int32),
+        mass_values=mass.data,
+        stiffness_starts=stiffness.indptr.astype(np.int32),
+        stiffness_columns=stiffness.indices.astype(np.int32),
+        stiffness_values=stiffness.data,
+        cells=elements.cells,
+        gradient=elements.gradient,
+        weights=elements.weights,
+        base=body.base.astype(np.int64),
+        watched=body.monitor.astype(np.int64),
+        source=np.zeros((n, 2)),
+        cached_step=np.array([-1.0, 0.0]),
+        order=np.zeros(2 * n, dtype=np.int32),
+        lower_starts=np.zeros((1, 2 * n + 1), dtype=np.int32),
+        lower_rows=np.zeros((1, 0), dtype=np.int32),
+        lower=np.zeros((1, 0)),
+        inverse_pivot=np.zeros((1, 0)),
+        to_base=np.zeros((1, 0, 0)),
+        base_compliance=np.zeros((1, 0, 0)),
+        displacement=np.zeros((n, 2)),
+        internal=np.zeros((n, 2)),
+        turned=np.zeros(2 * n),
+        damping_force=np.zeros((n, 2)),
+        residual=np.zeros(2 * n),
+        permuted=np.zeros(2 * n),
+        free_change=np.zeros(2 * n),
+        local=np.zeros((2, k, 2)),
+        turn=np.array([1.0, 0.0]),
+        strain_energy=np.zeros(1),
+        known=np.zeros(2, dtype=np.int64),
+    )
+
+
+def _with_room(body: NodalBody, solver: scipy.sparse.linalg.SuperLU) -> NodalBody:
+    """Room for as many factors as the memory set aside takes; their entries are those of the first one, or zeros."""
+    unknowns, forces = body.residual.size, 2 * body.base.size
+    entries = solver.nnz // 2  # of L and U together, with zeros that the blocks of SuperLU hold
+    size = 12 * entries + 8 * (forces + 2) * unknowns
+    slots = min(max(FEWEST_FACTORS, FACTOR_MEMORY // size), MOST_FACTORS)
+    return body._replace(
+        cached_step=np.append(np.full(slots, -1.0), 0.0),
+        lower_starts=np.zeros((slots, unknowns + 1), dtype=np.int32),
+        lower_rows=np.zeros((slots, entries), dtype=np.int32),
+        lower=np.zeros((slots, entries)),
+        inverse_pivot=np.zeros((slots, unknowns)),
+        to_base=np.zeros((slots, forces, unknowns)),
+        base_compliance=np.zeros((slots, forces, forces)),
+    )

@@ -1,0 +1,148 @@
+"""The reduced container: free elastic modes plus attachment modes, in the frame that floats with it.
+
+An attachment mode is the static answer of the free body to a unit force at a base point, its rigid acceleration
+taken out (inertia relief). With one for every contact degree of freedom the local compliance under the contact
+is exact, however few free modes are kept. All are made orthonormal: mass 1, stiffness diag(omega^2). Rubin,
+AIAA J. 13 (1975) 995; Craig, Structural Dynamics (1981), ch. 19.
+"""
+
+from dataclasses import dataclass
+from functools import cache, partial
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse.linalg
+from scipy.sparse import csc_array
+
+from contact.interface.solver import FloatArray, IntArray
+from fem.solid.assembly import FiniteElements
+from fem.solid.modes import elastic_modes, rigid_modes
+from fem.solid.setup_parts import NoParts, Parts, blocks
+
+#: an attachment mode that the others span to this relative mass adds nothing but noise
+INDEPENDENT = 1e-10
+#: loads that are answered at a time: the solver is no faster per load with more
+LOADS = 32
+#: multiplications at a time of dense rows with dense rows: a few seconds
+PRODUCT = 50_000_000_000
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StaticResponse:
+    """Inertia-relief displacements under unit forces at the base points."""
+
+    displacement: FloatArray  #: (2 n_c, n, 2), for a force along x, z of each point in turn [m/N]
+    compliance: FloatArray  #: (2 n_c, 2 n_c) seen at those points [m/N]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ReducedBasis:
+    """Orthonormal elastic shapes of the container, by rising frequency."""
+
+    angular_frequencies: FloatArray  #: (m,) [rad/s]
+    shapes: FloatArray  #: (m, n, 2) mass-normalised [1/sqrt(kg)]
+
+
+def static_response(elements: FiniteElements, base: IntArray, parts: Parts | None = None) -> StaticResponse:
+    """Answer of the free elastic container to unit forces at the nodes `base` (n_c,).
+
+    The body is held at three degrees of freedom; the loads balance themselves, so the supports carry nothing
+    and only choose the rigid motion, which is then taken out. `parts` may keep answers.
+    """
+    parts = parts or NoParts()
+    rigid = rigid_modes(elements).reshape(3, -1)
+    mass, nodes = elements.vector_mass, elements.nodes
+    rigid_momentum = mass @ rigid.T
+    first, last = int(np.argmin(nodes @ [1.0, 1.0])), int(np.argmax(nodes @ [1.0, 1.0]))
+    free = np.ones(elements.unknowns, dtype=bool)
+    free[[2 * first, 2 * first + 1, 2 * last]] = False
+    dofs = (2 * np.asarray(base)[:, None] + np.arange(2)).ravel()
+
+    @cache
+    def factor() -> scipy.sparse.linalg.SuperLU:
+        return scipy.sparse.linalg.splu(
+            elements.stiffness[:, free][free].tocsc(),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+
+    def answers_to(loaded: IntArray) -> FloatArray:
+        loads = -rigid_momentum @ rigid[:, loaded]
+        loads[loaded, np.arange(loaded.size)] += 1.0
+        answers = np.zeros_like(loads)
+        answers[free] = factor().solve(loads[free])
+        return (answers - rigid.T @ (rigid_momentum.T @ answers)).T
+
+    displacement = np.empty((dofs.size, elements.unknowns))
+    for block in blocks(dofs.size, LOADS):
+        parts.fill(f"answers {block.start}", displacement[block], partial(answers_to, dofs[block]))
+    compliance = displacement[:, dofs]
+    return StaticResponse(
+        displacement=displacement.reshape(dofs.size, -1, 2), compliance=0.5 * (compliance + compliance.T)
+    )
+
+
+def reduced_basis(
+    elements: FiniteElements, response: StaticResponse, modes: int, parts: Parts | None = None
+) -> ReducedBasis:
+    """Span of `modes` free modes and all attachment modes, diagonalised (Rayleigh-Ritz); `parts` may keep its arrays.
+
+    Twice over: what the attachment modes add to the free ones is made orthonormal by their products with the mass,
+    which cancel to rounding where an attachment mode is nearly spanned; then all of them are, as they have come out.
+    """
+    parts = parts or NoParts()
+    mass, stiffness, unknowns = elements.vector_mass, elements.stiffness, elements.unknowns
+    free = np.zeros((0, unknowns))
+    if modes > 0:
+        free = elastic_modes(elements, min(modes, unknowns - 3), parts).shapes.reshape(-1, unknowns)
+    attached = response.displacement.reshape(-1, unknowns)
+    products = _products(attached, mass, parts, "masses of the attachment modes")
+    scale = 1.0 / np.sqrt(products.diagonal())
+    shared = (free @ mass) @ attached.T * scale
+    # What the free modes leave of an attachment mode, of mass 1 before: nothing but noise, if they span it.
+    values, directions = np.linalg.eigh(scale[:, None] * products * scale - shared.T @ shared)
+    kept = values > INDEPENDENT
+    own = directions[:, kept] / np.sqrt(values[kept])
+    columns = np.vstack([free, np.empty((own.shape[1], unknowns))])
+    _combine(columns[len(free) :], (own.T * scale, attached), (-(shared @ own).T, free), parts, "columns")
+    gram = _products(columns, mass, parts, "masses of the columns")
+    projected = _products(columns, stiffness, parts, "stiffnesses of the columns")
+    squares, combination = scipy.linalg.eigh(projected, gram)
+    shapes = np.empty_like(columns)
+    _combine(shapes, (combination.T, columns), (np.zeros((squares.size, 0)), free[:0]), parts, "shapes")
+    return ReducedBasis(angular_frequencies=np.sqrt(squares), shapes=shapes.reshape(squares.size, -1, 2))
+
+
+def _products(rows: FloatArray, matrix: csc_array, parts: Parts, name: str) -> FloatArray:
+    """rows matrix rows^T, symmetric to the bit."""
+    found = np.empty((len(rows), len(rows)))
+    for block in blocks(len(rows), _affordable(rows)):
+        parts.fill(f"{name} {block.start}", found[block], partial(_product, rows[block], matrix, rows))
+    return 0.5 * (found + found.T)
+
+
+def _product(some: FloatArray, matrix: csc_array, rows: FloatArray) -> FloatArray:
+    return np.asarray((some @ matrix) @ rows.T)
+
+
+def _combine(
+    target: FloatArray,
+    one: tuple[FloatArray, FloatArray],
+    other: tuple[FloatArray, FloatArray],
+    parts: Parts,
+    name: str,
+) -> None:
+    """Sum of two products of coefficients and rows, into `target`."""
+    (factors, rows), (more_factors, more_rows) = one, other
+
+    def combined(some: slice) -> FloatArray:
+        return factors[some] @ rows + more_factors[some] @ more_rows
+
+    for block in blocks(len(target), _affordable(rows)):
+        parts.fill(f"{name} {block.start}", target[block], partial(combined, block))
+
+
+def _affordable(rows: FloatArray) -> int:
+    """How many rows to multiply with all of them at a time."""
+    return max(1, PRODUCT // rows.size)

@@ -1,0 +1,83 @@
+"""Which cells of a sweep are near a change of outcome, and how wide the band is in which it is not sure.
+
+Cells are standing or overturned; what failed is neither. A cell is near if one of its neighbours (diagonal ones
+included, along the axes whose values are rising numbers) is of another kind, or if it stands but turned by more than
+`close` of its slenderness angle. These are perturbed; then the neighbours of every cell that proved unsure, and
+so on, until the unsure ones are enclosed by sure ones. Cells farther off are not perturbed and count as sure: an
+island of the other outcome that lies between the cells of the grid, far from all others, goes unnoticed.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from fem.batch.axes import Axis
+
+BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
+FloatArray = NDArray[np.float64]
+
+#: kinds of cells
+UNKNOWN, STANDING, OVERTURNED, FAILED = 0, 1, 2, 3
+KIND_NAMES = {UNKNOWN: "unknown", STANDING: "standing", OVERTURNED: "overturned", FAILED: "failed"}
+
+
+def kind_of(status: str, outcome: str | None) -> int:
+    """Standing, overturned or failed; what failed never stands."""
+    if status not in ("completed", "overturned") or not outcome:
+        return FAILED
+    return OVERTURNED if outcome == "overturned" else STANDING
+
+
+def _reach(axes: Sequence[Axis]) -> tuple[int, ...]:
+    """Size of the neighbourhood along each axis."""
+    return tuple(3 if axis.is_numeric else 1 for axis in axes)
+
+
+def near_cells(axes: Sequence[Axis], kind: IntArray, rotation_ratio: FloatArray, close: float) -> BoolArray:
+    """Cells next to one of another kind, or standing and close to overturning.
+
+    Args:
+        axes: of the sweep.
+        kind: in the shape of the axes.
+        rotation_ratio: in the shape of the axes; nan where there is none.
+        close: rotation ratio that counts as close.
+    """
+    size = _reach(axes)
+    highest = ndimage.maximum_filter(kind, size=size, mode="nearest")
+    lowest = ndimage.minimum_filter(kind, size=size, mode="nearest")
+    with np.errstate(invalid="ignore"):
+        return (highest != lowest) | ((kind == STANDING) & (rotation_ratio >= close))
+
+
+def around(axes: Sequence[Axis], cells: BoolArray) -> BoolArray:
+    """The cells and their neighbours."""
+    grown: BoolArray = ndimage.maximum_filter(cells, size=_reach(axes), mode="constant", cval=False)
+    return grown
+
+
+def band_width(axes: Sequence[Axis], unsure: BoolArray, place: int) -> FloatArray:
+    """Length along one axis of the stretch of unsure cells that a cell lies in, in the unit of the axis; else 0.
+
+    A cell reaches half way to its neighbours (by their ratio on a log scale), the outermost ones to their own value.
+
+    Args:
+        axes: of the sweep.
+        unsure: in the shape of the axes.
+        place: which axis.
+    """
+    axis = axes[place]
+    values = np.array(axis.values, dtype=float)
+    middles = np.sqrt(values[:-1] * values[1:]) if axis.scale == "log" else 0.5 * (values[:-1] + values[1:])
+    edges = np.concatenate([values[:1], middles, values[-1:]])
+    lines = np.moveaxis(unsure, place, -1).reshape(-1, values.size)
+    widths = np.zeros(lines.shape)
+    for line, width in zip(lines, widths, strict=True):
+        labels, count = ndimage.label(line)
+        for label in range(1, count + 1):
+            inside = np.flatnonzero(labels == label)
+            width[inside] = edges[inside[-1] + 1] - edges[inside[0]]
+    moved = np.moveaxis(unsure, place, -1).shape
+    return np.moveaxis(widths.reshape(moved), -1, place)

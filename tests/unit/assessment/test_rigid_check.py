@@ -1,0 +1,265 @@
+"""The rigid-limit check of a run: what it compares, and when it says that the comparison is not fair."""
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+
+from fem.assessment.rigid_check import (
+    RigidCheck,
+    block_of,
+    check_against_rigid_block,
+    first_peaks,
+    floor_of,
+    wants_rigid_check,
+)
+from fem.assessment.verdict import verdict_of
+from fem.case.case import load_case
+from fem.model.model import Model, build_model
+from fem.results.history import read_history
+from fem.run.recorder import Recorder
+from fem.run.run import RunOptions, run_case
+from fem.run.simulation import simulate
+
+ANGLE = math.atan(1.1 / 4.0)
+
+
+def checked(name: str, *overrides: str) -> tuple[Model, RigidCheck]:
+    model = build_model(load_case(name, ["output.fields_s=0", *overrides]))
+    recorder = Recorder(model)
+    ending = simulate(model, recorder)
+    assert ending.error is None, ending.error
+    history = recorder.history()
+    return model, check_against_rigid_block(model, history, verdict_of(model, history, None))
+
+
+def reasons(name: str, *overrides: str) -> str:
+    return " | ".join(checked(name, "solver.model=rigid", *overrides)[1].summary["reasons"])
+
+
+@pytest.mark.parametrize(
+    ("name", "overrides", "asked", "expected"),
+    [
+        ("free_rocking", [], False, True),
+        ("rocking", [], False, False),
+        ("rocking", [], True, True),
+        ("free_rocking", ["initial.rotation_rad=0"], False, False),
+    ],
+)
+def test_free_rocking_is_always_checked(name, overrides, asked, expected):
+    assert wants_rigid_check(asked, load_case(name, overrides)) is expected
+
+
+def test_the_block_has_the_mass_of_the_mesh():
+    # Homogeneous: p^2 = 3g/(4R), e = 1 - 1.5 sin^2(slenderness angle) = 0.89454 (benchmark of the stack).
+    block = block_of(build_model(load_case("free_rocking")))
+    assert block.inertia_ratio == pytest.approx(4.0 / 3.0, rel=1e-9)
+    assert block.frequency_parameter == pytest.approx(1.88337, abs=1e-5)
+    assert block.housner_restitution == pytest.approx(0.89454, abs=1e-5)
+    shell = build_model(load_case("rocking"))
+    assert block_of(shell).frequency_parameter == pytest.approx(shell.static.frequency_parameter, rel=1e-12)
+    assert block_of(shell).housner_restitution == pytest.approx(shell.static.housner_restitution, rel=1e-12)
+
+
+class TestFreeRocking:
+    def test_the_rigid_model_is_the_block(self):
+        # Analytic: first impact 0.700737 s, velocity ratio 0.89454, first peak after it 0.098783 rad.
+        _, check = checked("free_rocking", "solver.model=rigid", "solver.duration_s=5")
+        found = check.summary
+        assert found["meaningful"] is True
+        assert found["reference"] == "rigid block that does not slide"
+        assert found["first_impact_s"]["block"] == pytest.approx(0.700737, abs=1e-6)
+        assert found["first_impact_s"]["run"] == pytest.approx(0.700737, rel=3e-3)
+        assert found["velocity_ratio"]["block"] == pytest.approx(0.89454, abs=1e-5)
+        assert found["velocity_ratio"]["run"] == pytest.approx(0.89454, abs=5e-3)
+        first = found["peaks"][0]
+        assert first["block_rad"] == pytest.approx(-0.098783, abs=1e-6)
+        assert first["run_rad"] == pytest.approx(-0.098783, rel=5e-3)
+        assert len(found["peaks"]) >= 4
+        assert found["largest_difference_before_impact"] < 1e-3
+
+    def test_a_run_tilted_to_the_other_side_is_its_mirror_image(self):
+        left, right = (
+            checked(
+                "free_rocking",
+                "solver.model=rigid",
+                "solver.duration_s=2",
+                f"initial.rotation_rad={0.5 * sign * ANGLE!r}",
+            )[1].summary
+            for sign in (-1.0, 1.0)
+        )
+        assert left["meaningful"] and right["meaningful"]
+        assert left["peaks"][0]["block_rad"] == pytest.approx(-right["peaks"][0]["block_rad"], rel=1e-9)
+        assert left["peaks"][0]["run_rad"] == pytest.approx(-right["peaks"][0]["run_rad"], rel=1e-6)
+
+    def test_the_table_holds_both_rotations_at_every_sample(self, tmp_path):
+        case = load_case(
+            "free_rocking",
+            ["solver.model=rigid", "output.fields_s=0", "output.figures=false", "solver.duration_s=2"],
+        )
+        run_case(case, case_text=case.text, folder=tmp_path / "r", options=RunOptions(band=False))
+        with (tmp_path / "r" / "rigid_check.csv").open() as stream:
+            rows = list(csv.DictReader(stream))
+        assert len(rows) == 401
+        columns = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+        assert columns["time_s"].tolist() == pytest.approx((0.005 * np.arange(401)).tolist())
+        apart = np.abs(columns["rotation_rad"] - columns["analytic_rotation_rad"])
+        assert apart.max() < 5e-3 * ANGLE
+        history = read_history(tmp_path / "r" / "history.csv")
+        assert np.array_equal(history["analytic_rotation_rad"], columns["analytic_rotation_rad"])
+        kept = json.loads((tmp_path / "r" / "run.json").read_text())["rigid_check"]
+        assert kept["meaningful"] is True
+        page = (tmp_path / "r" / "summary.txt").read_text()
+        assert "rigid check, first impact" in page
+        assert "(block 0.7007)" in page
+        assert "a fair comparison" in page
+
+
+class TestMovingFloor:
+    def test_a_driven_block_is_followed_from_rest(self):
+        # The stack at 4.0 m/s2, exact: rocks without slip to 0.399 of its slenderness angle.
+        model, check = checked("seed_stack_plateau", "solver.model=rigid", "solver.duration_s=8")
+        assert check.summary["reference"] == "rigid block that does not slide"
+        assert check.summary["meaningful"] is True
+        analytic = np.nanmax(np.abs(check.rows[:, 2]))
+        assert analytic / model.static.slenderness_angle == pytest.approx(0.399, abs=1e-3)
+        assert len(check.summary["peaks"]) == 6
+
+    def test_a_floor_that_jerks_away_gives_the_block_a_slip_velocity(self):
+        # 50 mm at 6.93 rad/s, floor moving off at 0.35 m/s under the stack, mu 0.4: exact 0.2505 of the angle.
+        model, check = checked(
+            "seed_stack",
+            "solver.model=rigid",
+            "motion.start=rest",
+            "contact.mu_kinetic=0.4",
+            "motion.angular_frequency_rad_s=6.93",
+            "container.section=solid",
+            "solver.duration_s=8",
+        )
+        assert check.summary["reference"] == "rigid block with friction"
+        analytic = np.nanmax(np.abs(check.rows[:, 2]))
+        assert analytic / model.static.slenderness_angle == pytest.approx(0.2505, abs=5e-4)
+
+    def test_a_run_followed_after_its_end_is_compared_on_a_coasting_floor(self):
+        _, check = checked(
+            "free_rocking",
+            "solver.model=rigid",
+            f"initial.rotation_rad={1.025 * ANGLE!r}",
+            "solver.duration_s=0.2",
+        )
+        time, found, expected = check.rows[:, 0], check.rows[:, 1], check.rows[:, 2]
+        assert time[-1] > 2.0
+        early = time < 2.0
+        assert np.abs(found - expected)[early].max() < 0.01 * ANGLE
+        assert "no impact in either" in check.summary["reasons"]
+
+    def test_a_floor_from_a_table_bends_at_every_sample(self, tmp_path):
+        times = np.linspace(0.0, 2.0, 41)
+        table = tmp_path / "floor.csv"
+        table.write_text("\n".join(f"{t:.6f},{3.5 * math.sin(7.0 * t):.9f}" for t in times))
+        (tmp_path / "case.toml").write_text(
+            "schema = 1\n[container]\nwidth_m = 1.1\nheight_m = 4.0\ndensity_kg_m3 = 2066.0\n"
+            '[contact]\nmu_static = 1.0\n[motion]\nkind = "table"\nfile = "floor.csv"\n'
+            'quantity = "acceleration"\nunit = "m/s2"\n[solver]\nmodel = "rigid"\nduration_s = 3.0\n'
+        )
+        model = build_model(load_case(tmp_path / "case.toml"))
+        floor = floor_of(model.motion, driven_until=3.0)
+        assert set(np.round(times[1:], 6)) <= set(np.round(floor.break_times, 6))
+        assert floor.function(0.025) == pytest.approx(0.5 * 3.5 * math.sin(7.0 * 0.05), rel=1e-6)
+        assert floor.just_after(2.5) == 0.0
+        _, check = checked(str(tmp_path / "case.toml"))
+        assert check.summary["meaningful"] is True
+        assert check.summary["first_impact_s"]["run"] == pytest.approx(
+            check.summary["first_impact_s"]["block"], rel=3e-3
+        )
+
+
+class TestFairness:
+    def test_the_stiff_slender_stack_on_corners_is_fair(self):
+        assert reasons("free_rocking", "solver.duration_s=2") == ""
+
+    def test_a_squat_container(self):
+        found = reasons(
+            "seed_box", "solver.duration_s=1", "motion.peak_acceleration_m_s2=14", "contact.mu_static=2"
+        )
+        assert "squat container" in found
+
+    @pytest.mark.parametrize("kind", ["flat", "feet"])
+    def test_a_base_that_is_no_two_corners(self, kind):
+        assert f"support {kind!r}" in reasons("free_rocking", "solver.duration_s=2", f"support.kind={kind}")
+
+    def test_sliding_at_the_impact(self):
+        # Housner's impact of the stack needs mu >= 3 tan al/(4 + tan^2 al) = 0.2024.
+        assert "slides at the first impact" in reasons(
+            "free_rocking", "solver.duration_s=2", "contact.mu_static=0.19"
+        )
+        assert "slides" not in reasons("free_rocking", "solver.duration_s=2", "contact.mu_static=0.25")
+
+    def test_a_container_that_deforms(self):
+        _, check = checked(
+            "free_rocking",
+            "solver.duration_s=2",
+            "container.youngs_modulus_Pa=2.1e11",
+            "solver.model=reduced",
+        )
+        assert any("it deforms" in reason for reason in check.summary["reasons"])
+        _, stiff = checked(
+            "free_rocking", "solver.duration_s=2", "container.youngs_modulus_Pa=5e12", "solver.model=reduced"
+        )
+        assert stiff.summary["meaningful"] is True
+
+    def test_the_full_model_that_deforms(self):
+        _, check = checked(
+            "free_rocking",
+            "solver.duration_s=0.05",
+            "container.youngs_modulus_Pa=2.1e11",
+            "solver.model=full",
+            "solver.element_size_m=0.55",
+        )
+        assert any("it deforms" in reason for reason in check.summary["reasons"])
+
+    def test_a_contact_that_bounces(self):
+        found = reasons("free_rocking", "solver.duration_s=2", "contact.damping_ratio=0.5")
+        assert "the contact bounces" in found
+
+    def test_a_soft_floor(self):
+        found = reasons("free_rocking", "solver.duration_s=2", "contact.normal_penalty_Pa_m=1e8")
+        assert "soft floor" in found
+
+    def test_the_summary_says_why_not(self, tmp_path):
+        case = load_case(
+            "free_rocking",
+            [
+                "solver.model=rigid",
+                "output.fields_s=0",
+                "output.figures=false",
+                "solver.duration_s=2",
+                "support.kind=flat",
+            ],
+        )
+        run_case(case, case_text=case.text, folder=tmp_path / "r", options=RunOptions(band=False))
+        page = " ".join((tmp_path / "r" / "summary.txt").read_text().split())
+        assert "no fair comparison: support 'flat'" in page
+
+
+class TestPeaks:
+    def test_the_largest_of_each_swing_is_found_between_the_samples(self):
+        time = np.arange(0.0, 3.0, 0.01)
+        peaks = first_peaks(time, 0.2 * np.cos(2.0 * np.pi * time / 1.7), 0.01)
+        assert [instant for instant, _ in peaks] == pytest.approx([0.85, 1.7, 2.55], abs=1e-5)
+        assert [rotation for _, rotation in peaks] == pytest.approx([-0.2, 0.2, -0.2], abs=1e-6)
+
+    def test_small_swings_and_ends_are_none(self):
+        time = np.linspace(0.0, 1.0, 101)
+        assert first_peaks(time, 0.005 * np.sin(9.0 * time), 0.01) == []
+        assert first_peaks(time, 0.2 * time, 0.01) == []
+        assert first_peaks(time, 0.2 * np.cos(time), 0.01) == []
+
+    def test_what_is_not_known_is_left_out(self):
+        time = np.linspace(0.0, 3.0, 301)
+        rotation = 0.2 * np.sin(2.0 * np.pi * time)
+        rotation[time > 1.1] = np.nan
+        assert len(first_peaks(time, rotation, 0.01)) == 2
+        assert first_peaks(time[:2], rotation[:2], 0.01) == []

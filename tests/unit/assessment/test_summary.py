@@ -1,0 +1,376 @@
+"""The end-of-run table and the warnings: what is compared, what is never said, what is doubted."""
+
+import copy
+import io
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from fem.assessment.summary import outcome_sentence, plain_summary, screen_summary
+from fem.assessment.warnings import warnings_for
+from fem.case.case import read_case
+
+CASE = """
+schema = 1
+title = "stack"
+[container]
+width_m = 1.1
+height_m = 1.0
+boxes = 4
+weight_N = 24525.0
+wall_m = 0.008
+[contact]
+mu_static = 0.4
+mu_kinetic = 0.2
+[motion]
+kind = "harmonic"
+peak_acceleration_m_s2 = 4.0
+angular_frequency_rad_s = 6.928
+"""
+
+# The stack of four under 4.0 m/s2: 40 kN against 39.24 kN, 80 kNm against 53.955 kNm (seed paper, g = 9.81).
+RESULT = {
+    "status": "completed",
+    "verdict": {
+        "outcome": "rock",
+        "modes": ["rest", "rock"],
+        "max_rotation_rad": 0.1071,
+        "rotation_ratio": 0.3989,
+        "max_slip_m": 2.0e-5,
+        "residual_slip_m": -1.0e-5,
+        "slip_travel_m": 3.0e-5,
+        "max_uplift_m": 0.1176,
+        "impacts": 17,
+        "first_opening_s": 0.1,
+        "first_uplift_s": 0.12,
+        "overturned_at_s": None,
+        "restored": True,
+        "restitution_first": 0.895,
+        "max_corner_force_N": 210.5e3,
+        "max_top_displacement_m": 0.43,
+        "max_acceleration_m_s2": 12.0,
+        "max_von_mises_Pa": 9.0e7,
+        "basis": "study",
+    },
+    "static": {
+        "slenderness_angle_rad": 0.26839,
+        "sliding_limit_static_N": 39240.0,
+        "restoring_moment_Nm": 53955.0,
+        "uplift_acceleration_m_s2": 2.69775,
+        "housner_restitution": 0.8945,
+        "housner_credible": True,
+        "own_motion": {
+            "base_shear_N": 40000.0,
+            "tilting_moment_Nm": 80000.0,
+            "utilisation_sliding": 1.01937,
+            "utilisation_overturning": 1.48272,
+        },
+        "code": {
+            "base_shear_N": 40000.0,
+            "tilting_moment_Nm": 80000.0,
+            "utilisation_sliding": 1.01937,
+            "utilisation_overturning": 1.48272,
+        },
+        "code_q1": {
+            "base_shear_N": 60000.0,
+            "tilting_moment_Nm": 120000.0,
+            "utilisation_sliding": 1.52905,
+            "utilisation_overturning": 2.22408,
+        },
+        "method_applicable": True,
+        "clause": "EN 1998-1:2004, 4.3.3.2.1(2)",
+    },
+    "energy": {
+        "reference_J": 7300.0,
+        "closure_error": 1.0e-5,
+        "friction_J": 1.0,
+        "contact_damping_J": 900.0,
+        "material_damping_J": 20.0,
+        "numerical_J": 0.05,
+        "base_work_J": 400.0,
+    },
+    "numerics": {
+        "unknowns": 23,
+        "steps": 12000,
+        "rejected": 100,
+        "stepping_cpu_s": 0.06,
+        "contact_frequency_Hz": 20.0,
+        "max_penetration_m": 2.0e-4,
+        "elastic_frequencies_Hz": [120.0, 300.0],
+    },
+    "wall_s": 1.9,
+}
+FOLDER = Path("outputs/stack")
+
+
+def changed(**paths) -> dict:
+    """RESULT with `block__key=value` replaced."""
+    result = copy.deepcopy(RESULT)
+    for path, value in paths.items():
+        *blocks, key = path.split("__")
+        target = result
+        for block in blocks:
+            target = target[block]
+        target[key] = value
+    return result
+
+
+def text_of(result, **options) -> str:
+    return plain_summary(result, title="Stack", folder=FOLDER, **options)
+
+
+def row(text: str, *starts: str) -> list[str]:
+    (line,) = [line for line in text.splitlines() if line.split()[: len(starts)] == list(starts)]
+    return line.split()
+
+
+def test_static_rule_stands_beside_what_the_run_found():
+    text = text_of(RESULT)
+    sliding, overturning = row(text, "sliding", "own"), row(text, "overturning", "own")
+    assert sliding[1:] == [
+        *("own", "peak,", "4", "m/s2", "40", "kN", "39.24", "kN", "1.019", "slides"),
+        *("holds,", "slip", "0.02", "mm"),
+    ]
+    assert overturning[1:] == [
+        *("own", "peak,", "4", "m/s2", "80", "kNm", "53.95", "kNm", "1.483", "overturns"),
+        *("did", "not", "(ratio", "0.399)"),
+    ]
+
+
+def test_only_the_own_motion_is_compared_with_the_run():
+    lines = [line for line in text_of(RESULT).splitlines() if " code, " in line]
+    assert len(lines) == 4 and all(line.endswith("(not compared)") for line in lines)
+
+
+def test_run_table_holds_what_the_run_found_in_units_for_people():
+    text = text_of(RESULT)
+    for words in (
+        "6.14 degrees, 0.399 of the slenderness angle",
+        "0.02, -0.01, 0.03 mm",
+        "117.6 mm",
+        "210.5 kN",
+        "0.895 (Housner 0.894)",
+        "1e-05 of the 7300 J it takes to overturn; the stepping lost 0.05 J",
+        "12000, 100 rejected, 23 unknowns",
+    ):
+        assert words in text
+
+
+@pytest.mark.parametrize(
+    ("result", "sentence"),
+    [
+        (RESULT, "Result: rocked, was restored and did not overturn under this motion."),
+        (
+            changed(verdict__outcome="rest", verdict__restored=False),
+            "Result: rested and did not overturn under this motion.",
+        ),
+        (
+            changed(verdict__outcome="slide-rock", verdict__band={"unsure": True}),
+            "Result: slid and rocked, was restored and did not overturn under this motion "
+            "(unsure, see the band).",
+        ),
+        (
+            changed(status="overturned", verdict__outcome="overturned", verdict__overturned_at_s=3.25),
+            "Result: overturned at t = 3.250 s.",
+        ),
+        (
+            changed(status="interrupted"),
+            "Not finished (interrupted); up to there: rocked, was restored and did not overturn under this "
+            "motion.",
+        ),
+        ({"status": "interrupted"}, "Not finished (interrupted); up to there: nothing to tell yet."),
+        (
+            {"status": "failed", "error": "step 3: residual 4 N"},
+            "No verdict: step 3: residual 4 N. What was computed before is kept.",
+        ),
+    ],
+)
+def test_outcome_is_told_in_one_sentence(result, sentence):
+    assert outcome_sentence(result) == sentence
+
+
+@pytest.mark.parametrize("outcome", ["rest", "slide", "rock", "slide-rock", "overturned"])
+def test_a_run_is_never_called_safe_or_verified(outcome):
+    result = changed(verdict__outcome=outcome)
+    text = text_of(result, warnings=warnings_for(result, read_case(CASE))).lower()
+    for word in ("safe", "verified", "stable"):
+        assert word not in text
+
+
+def test_a_failed_run_shows_no_verdict():
+    text = text_of(changed(status="failed", error="residual"))
+    assert "No verdict: residual" in text and "did not overturn under this motion" not in text
+
+
+def test_overturning_is_what_the_run_found_when_it_overturned():
+    text = text_of(changed(status="overturned", verdict__outcome="overturned"))
+    assert row(text, "overturning", "own")[-1] == "overturned"
+    assert "ratio is no margin" not in text
+
+
+def test_sliding_is_what_the_run_found_when_it_slid():
+    text = text_of(
+        changed(verdict__outcome="slide", verdict__modes=["rest", "slide"], verdict__max_slip_m=0.0791)
+    )
+    assert row(text, "sliding", "own")[-4:] == ["slides,", "slip", "79.1", "mm"]
+
+
+def test_unfinished_results_are_shown_as_far_as_they_go():
+    for status in ("running", "interrupted", "failed"):
+        assert "run.json" in text_of({"status": status})
+    partial = changed(verdict={}, energy={}, numerics={}, wall_s=None)
+    assert "own peak, 4 m/s2" in text_of(partial)
+
+
+def test_a_slip_of_rounding_is_nobodys_measure():
+    text = text_of(
+        changed(verdict__max_slip_m=4.5e-10, verdict__residual_slip_m=-9e-11, verdict__outcome="rest")
+    )
+    assert row(text, "sliding", "own")[-5:] == ["holds,", "slip", "<", "0.01", "mm"]
+    assert "travelled  < 0.01, < 0.01, 0.03 mm" in text
+
+
+def test_a_rotation_far_below_rocking_is_only_told_to_be_small():
+    text = text_of(changed(verdict__max_rotation_rad=1e-5, verdict__rotation_ratio=3.7e-5))
+    assert "< 0.01 degrees, < 0.001 of the slenderness angle" in text
+    assert row(text, "overturning", "own")[-4:] == ["not", "(ratio", "<", "0.001)"]
+
+
+def test_compiling_is_told_apart_from_computing():
+    assert "compiling" not in text_of(changed(compile_s=0.0))
+    first = " ".join(text_of(changed(wall_s=62.4, compile_s=57.12)).split())
+    assert "computed in 62.4 s, of which compiling 57.1 s (once after installation), stepping" in first
+
+
+def test_summary_says_what_to_open(tmp_path):
+    assert "no fields were written" in plain_summary(RESULT, title="x", folder=tmp_path)
+    (tmp_path / "fields").mkdir()
+    (tmp_path / "fields" / "run.pvd").write_text("")
+    unwrapped = plain_summary(RESULT, title="x", folder=tmp_path).replace("\n", " ")
+    assert "Warp By Vector displacement_m" in unwrapped and "run.pvd" in unwrapped
+
+
+def test_titles_and_warnings_are_never_read_as_markup():
+    text = text_of(RESULT, warnings=["[bold]w[/bold]"])
+    assert "Warning: [bold]w[/bold]" in text
+    assert plain_summary(RESULT, title="[red]x[/oops]", folder=FOLDER).startswith("[red]x[/oops]\n")
+
+
+def test_screen_and_text_say_the_same():
+    console = Console(width=110, force_terminal=True, file=io.StringIO(), record=True)
+    console.print(screen_summary(RESULT, title="Stack", folder=FOLDER))
+    lines = [line.rstrip() for line in console.export_text(styles=False).splitlines()]
+    assert "\n".join(lines) + "\n" == text_of(RESULT)
+    assert max(map(len, lines)) <= 110
+
+
+def test_a_sound_result_raises_no_warning():
+    assert warnings_for(RESULT, read_case(CASE)) == []
+
+
+@pytest.mark.parametrize(
+    ("result", "words"),
+    [
+        (
+            changed(static__housner_credible=False, static__housner_restitution=0.17873),
+            "Housner's restitution is 0.179",
+        ),
+        (changed(static__method_applicable=False), "4.3.3.2.1(2)"),
+        (changed(numerics__contact_frequency_Hz=31.0), "is 3.9 (< 4)"),
+        (changed(numerics__max_penetration_m=1.6e-3), "penetration reached 1.6 mm"),
+        (changed(energy__numerical_J=-0.4), "won 5.5e-05"),
+        (changed(energy__closure_error=6.5e-4), "open by 4.75 J (limit 9.21 J)"),
+        (
+            changed(energy__closure_error=5.5e-4, energy__contact_damping_J=0.0),
+            "(limit 7.3 J)",
+        ),
+        (changed(verdict__first_uplift_s=None), "a gap opened at the base at t = 0.1 s"),
+        (changed(numerics__rejected=700), "6 % of the steps were rejected"),
+        (changed(verdict__max_von_mises_Pa=2.4e8), "reached 240 MPa"),
+        (
+            changed(
+                verdict__band={
+                    "outcomes": ["rock", "slide-rock"],
+                    "rotation_ratio": [0.2, 0.41],
+                    "unsure": True,
+                }
+            ),
+            "the outcome is rock or slide-rock, the rotation ratio 0.2 to 0.41",
+        ),
+        (
+            changed(
+                verdict__outcome="rest",
+                static__own_motion={"utilisation_sliding": 0.61, "utilisation_overturning": 0.89},
+            ),
+            "decides nothing",
+        ),
+    ],
+)
+def test_each_doubt_raises_its_own_warning_and_no_other(result, words):
+    (warning,) = warnings_for(result, read_case(CASE))
+    assert words in warning
+
+
+@pytest.mark.parametrize(
+    "result",
+    [
+        changed(static__housner_credible=None),
+        changed(numerics__contact_frequency_Hz=30.0),
+        changed(numerics__contact_frequency_Hz=31.0, verdict__impacts=0),
+        changed(static__housner_credible=False, static__housner_restitution=0.17873, verdict__impacts=0),
+        changed(numerics__max_penetration_m=1.4e-3),  # half of 0.01 x 0.26839 x 1.1 m is 1.476 mm
+        changed(energy__numerical_J=-0.36),
+        changed(energy__closure_error=6.2e-4),
+        changed(numerics__rejected=600),
+        changed(verdict__max_von_mises_Pa=2.3e8),
+        changed(verdict__outcome="rest"),  # the static rule overturns: that is news, and no warning
+    ],
+)
+def test_no_warning_on_the_good_side_of_a_limit(result):
+    assert warnings_for(result, read_case(CASE)) == []
+
+
+def test_creep_of_regularised_friction_is_estimated():
+    # v = v_reg artanh(s): 11 mm in 20 s at 1 mm/s and half the friction limit.
+    result = changed(static__own_motion__utilisation_sliding=0.5)
+    regularised = read_case(CASE.replace("mu_kinetic = 0.2", 'friction = "regularised"'))
+    (warning,) = warnings_for(result, regularised)
+    assert "by 11 mm in 20 s" in warning
+    (beyond,) = warnings_for(RESULT, regularised)  # more than friction can carry: it slides anyway
+    assert "creeps; friction = 'elastic-stick' does not" in beyond
+
+
+def test_rigid_model_has_no_elastic_frequency_to_warn_of():
+    result = changed(numerics__contact_frequency_Hz=900.0)
+    assert warnings_for(result, read_case(CASE + '[solver]\nmodel = "rigid"\n')) == []
+
+
+def test_solid_blocks_are_not_measured_against_the_yield_strength_of_a_steel_shell():
+    result = changed(verdict__max_von_mises_Pa=2.4e8)
+    assert warnings_for(result, read_case(CASE.replace("wall_m = 0.008\n", ""))) == []
+
+
+def test_a_container_too_soft_for_the_linear_model_is_told():
+    soft = CASE.replace("wall_m = 0.008\n", 'section = "solid"\nyoungs_modulus_Pa = 1e7\n')
+    (warning,) = warnings_for(changed(verdict__max_von_mises_Pa=1.2e5), read_case(soft))
+    assert "strain reached 1.2 %" in warning and 'solver.model = "full"' in warning
+    assert warnings_for(changed(verdict__max_von_mises_Pa=0.9e5), read_case(soft)) == []
+    full = read_case(soft + '[solver]\nmodel = "full"\n')
+    assert warnings_for(changed(verdict__max_von_mises_Pa=1.2e5), full) == []
+
+
+def test_a_contact_that_creeps_under_the_weight_is_told():
+    """2 zeta sqrt(m/(k/2)) = 2 sqrt(2) zeta/(2 pi f_c), against 1/p."""
+    result = changed(numerics__contact_frequency_Hz=50.0, static__frequency_parameter_1_s=2.0)
+    assert not any("gives way" in text for text in warnings_for(result, read_case(CASE)))  # zeta = 2: 18 ms
+    creeping = read_case(CASE.replace("[contact]\n", "[contact]\ndamping_ratio = 20.0\n"))
+    (told,) = [text for text in warnings_for(result, creeping) if "gives way" in text]
+    assert "over 0.18 s" in told and "1/p = 0.5 s" in told
+
+
+@pytest.mark.parametrize(
+    "result", [{"status": "failed"}, {"status": "running", "verdict": None, "static": None}]
+)
+def test_unfinished_results_raise_no_warning_and_no_error(result):
+    assert warnings_for(result, read_case(CASE)) == []

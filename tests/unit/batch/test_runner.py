@@ -1,0 +1,116 @@
+"""A list of cases on all cores: each row is the run of its case, whatever runs beside it."""
+
+import os
+import time
+
+import pytest
+
+from fem.assessment.verdict import verdict_of
+from fem.batch.runner import SCALARS, run_cases
+from fem.batch.workers import WORTH_PROCESSES, LocalWorkers, hand_out
+from fem.case.case import load_case
+from fem.model.model import build_model
+from fem.model.recovery import recovery_of
+from fem.run.recorder import Recorder
+from fem.run.simulation import simulate
+
+SHORT = ["solver.duration_s=2", "output.fields_s=0"]
+CHANGES = (
+    {"solver.model": "rigid"},
+    {"solver.model": "rigid", "motion.peak_acceleration_m_s2": 9.0, "motion.angular_frequency_rad_s": 2.0},
+    {"solver.model": "rigid", "contact.mu_static": 0.25},
+    {"solver.model": "rigid", "container.boxes": 2},
+    {"solver.model": "reduced"},
+)
+
+
+@pytest.fixture(scope="module")
+def cases():
+    base = load_case("seed_stack_plateau", SHORT)
+    return [base.with_values(change) for change in CHANGES]
+
+
+def without_wall(rows):
+    return [{name: value for name, value in row.items() if name != "wall_s"} for row in rows]
+
+
+def test_a_row_is_the_verdict_of_its_case(cases):
+    for case, row in zip(cases, run_cases(cases, jobs=2), strict=True):
+        model = build_model(case)
+        recorder = Recorder(model, recovery_of(model))
+        ending = simulate(model, recorder)
+        stress = None if case.solver.model == "rigid" else recorder.largest_von_mises
+        verdict = verdict_of(model, recorder.history(), stress)
+        assert row["status"] == ending.status
+        assert {name: row[name] for name in SCALARS} == {name: verdict[name] for name in SCALARS}
+
+
+def test_rows_come_in_the_order_of_the_cases_whatever_the_jobs(cases):
+    one = run_cases(cases, jobs=1)
+    assert without_wall(one) == without_wall(run_cases(cases, jobs=2))
+    assert without_wall(one[::-1]) == without_wall(run_cases(cases[::-1], jobs=2))
+    assert [row["outcome"] for row in one[:2]] == ["rock", "overturned"]
+
+
+def test_processes_give_the_rows_that_threads_give(cases, monkeypatch):
+    few = [case for case in cases if case.solver.model == "rigid"]
+    assert len(few) > 1
+    threads = run_cases(few, jobs=2)
+    monkeypatch.setattr("fem.batch.workers.WORTH_PROCESSES", {"rigid": 2, "reduced": 2})
+    monkeypatch.setattr("fem.batch.runner.CASES_AT_A_TIME", {"rigid": 1, "reduced": 1})
+    assert without_wall(run_cases(few, jobs=2)) == without_wall(threads)
+
+
+def who_works(chunk):
+    time.sleep(0.05)
+    return os.getpid()
+
+
+def test_many_cases_are_shared_by_this_process_and_others():
+    with LocalWorkers(2) as workers_of:
+        pools = workers_of("rigid", WORTH_PROCESSES["rigid"])
+        found = list(hand_out(range(200), who_works, pools, at_a_time=1))
+        assert sorted(item for chunk, _ in found for item in chunk) == list(range(200))
+        workers = {worker for _, worker in found}
+        assert os.getpid() in workers
+        assert len(workers) == 2
+        assert [pool.given for pool in pools] == [0, 0]
+        later = workers_of("rigid", 2)  # processes that run already are used for few cases, too
+        assert {pool.executor for pool in later} == {pool.executor for pool in pools}
+
+
+def test_a_stop_ends_the_handing_out():
+    stopped = []
+    with LocalWorkers(1) as workers_of:
+        items = hand_out(
+            range(100), who_works, workers_of("rigid", 100), at_a_time=10, stop=lambda: bool(stopped)
+        )
+        reached = []
+        for chunk, _ in items:
+            reached += chunk
+            stopped.append(True)
+    assert reached == list(range(len(reached)))
+    assert 10 <= len(reached) <= 20
+
+
+def test_a_case_that_cannot_be_computed_has_a_reason_and_no_outcome(cases):
+    missing = cases[0].with_values(
+        {
+            "motion.kind": "table",
+            "motion.file": "gone.csv",
+            "motion.quantity": "acceleration",
+            "motion.unit": "m/s2",
+        }
+    )
+    good, bad = run_cases([cases[0], missing])
+    assert good["status"] == "completed"
+    assert (bad["status"], bad["outcome"]) == ("failed", None)
+    assert "gone.csv" in bad["reason"]
+
+
+def test_full_cases_run_in_processes_of_their_own():
+    case = load_case("seed_box", ["solver.model=full", "solver.duration_s=0.02", "output.fields_s=0"])
+    (row,) = run_cases([case], jobs=1)
+    assert row["status"] == "completed"
+    assert row["outcome"] == "rest"
+    assert row["max_von_mises_Pa"] is None or row["max_von_mises_Pa"] > 0.0

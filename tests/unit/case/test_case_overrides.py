@@ -1,0 +1,119 @@
+"""`--set table.key=value`: what it changes, what it replaces, and what it says when it cannot."""
+
+import pytest
+
+from fem.case.case import CaseError, load_case
+
+BASE = "seed_stack"  # amplitude and angular frequency, weight
+
+
+def refused(*overrides):
+    with pytest.raises(CaseError) as error:
+        load_case(BASE, overrides)
+    return str(error.value)
+
+
+def test_values_are_read_as_toml_else_as_plain_text():
+    case = load_case(
+        BASE,
+        [
+            "contact.mu_kinetic=0.25",
+            "container.boxes = 2",
+            'support.kind="flat"',
+            "solver.model=rigid",
+            "output.stop_when_overturned=false",
+            "title=a = b",
+            "gravity_m_s2=10",
+        ],
+    )
+    assert (case.contact.mu_kinetic, case.container.boxes, case.support.kind) == (0.25, 2, "flat")
+    assert (case.solver.model, case.output.stop_when_overturned) == ("rigid", False)
+    assert (case.title, case.gravity_m_s2) == ("a = b", 10.0)
+
+
+def test_the_last_of_two_settings_of_a_key_counts():
+    assert load_case(BASE, ["contact.mu_static=0.7", "contact.mu_static=0.5"]).contact.mu_static == 0.5
+
+
+def test_peak_acceleration_replaces_the_amplitude():
+    case = load_case(BASE, ["motion.peak_acceleration_m_s2=4.0"])
+    assert case.motion.amplitude_m is None
+    assert case.amplitude == pytest.approx(4.0 / 6.928**2)
+
+
+def test_amplitude_replaces_the_peak_acceleration():
+    case = load_case("seed_stack_plateau", ["motion.amplitude_m=0.05"])
+    assert case.nominal_peak_acceleration == pytest.approx(0.05 * 6.928**2)
+
+
+def test_one_frequency_replaces_the_other():
+    case = load_case(BASE, ["motion.frequency_Hz=1.0"])
+    assert case.motion.angular_frequency_rad_s is None
+    assert case.nominal_peak_acceleration == pytest.approx(0.05 * (2.0 * 3.141592653589793) ** 2)
+
+
+def test_amplitude_and_peak_acceleration_set_together_replace_the_frequency():
+    case = load_case(BASE, ["motion.amplitude_m=0.04", "motion.peak_acceleration_m_s2=1.0"])
+    assert case.angular_frequency == pytest.approx(5.0)
+
+
+def test_amplitude_keeps_a_peak_acceleration_that_stands_in_for_the_frequency():
+    first = load_case(BASE, ["motion.amplitude_m=0.04", "motion.peak_acceleration_m_s2=1.0"])
+    assert first.with_values({"motion.amplitude_m": 0.25}).angular_frequency == pytest.approx(2.0)
+
+
+def test_density_replaces_the_weight_and_back():
+    case = load_case(BASE, ["container.density_kg_m3=1000"])
+    assert case.box_mass == pytest.approx(1210.0)
+    assert case.with_values({"container.weight_N": 24525.0}).box_mass == pytest.approx(2500.0)
+
+
+def test_overrides_go_through_the_same_checks_and_are_named():
+    said = refused("container.width_m=1100")
+    assert "[container] width_m" in said
+    assert "looks like millimetres: 1.1 m?" in said
+    assert "(--set container.width_m=1100)" in said
+
+
+def test_an_override_that_breaks_a_rule_of_another_key_is_named():
+    said = refused("contact.mu_static=0.1")
+    assert "mu_kinetic must be at most mu_static = 0.1" in said
+    assert "with --set contact.mu_static=0.1" in said
+
+
+@pytest.mark.parametrize(
+    ("override", "expected"),
+    [
+        ("contact.mu_static", "not of the form table.key=value"),
+        ("contact.mu_static=", "not of the form table.key=value"),
+        ("=0.4", "not of the form table.key=value"),
+        ("a.b.c=1", "not of the form table.key=value"),
+        ("contact mu=1", "not of the form table.key=value"),
+        ("contac.mu_static=0.4", "unknown table [contac]; did you mean 'contact'?"),
+        ("contact=1", "[contact] is a table; set one of its keys"),
+        ("contact.mu=1", "unknown key 'mu'; did you mean 'mu_static'?"),
+        ("mu_static=1", "unknown key 'mu_static'; it belongs into [contact]"),
+        ("contact.mu_static=.4", "got the text '.4'; write 0.4"),
+        ("contact.mu_static=0.4\n[motion]", "must be a number, got the text"),
+        ("contact.mu_static=0.4\nmu_kinetic=0.3", "must be a number, got the text"),
+        ("contact.mu_static=[0.4]", "must be a number, got a list"),
+        ("contact.mu_static={a=1}", "must be a number, got a table"),
+        ("contact.mu_static=" + "[" * 2000, "must be a number, got the text"),
+        ("solver.duration_s=0", "duration_s must be between"),
+    ],
+)
+def test_a_setting_that_cannot_be_is_refused(override, expected):
+    assert expected in refused(override)
+
+
+def test_with_values_leaves_the_case_as_it_was_and_says_what_changed():
+    case = load_case(BASE)
+    changed = case.with_values({"contact.mu_static": 0.5, "solver.model": "rigid"})
+    assert (case.contact.mu_static, changed.contact.mu_static) == (0.4, 0.5)
+    assert changed.overrides == ("contact.mu_static=0.5", "solver.model=rigid")
+    assert changed.name == BASE
+
+
+def test_a_number_of_numpy_is_a_number():
+    numpy = pytest.importorskip("numpy")
+    assert load_case(BASE).with_values({"contact.mu_static": numpy.float64(0.5)}).contact.mu_static == 0.5

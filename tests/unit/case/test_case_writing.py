@@ -1,0 +1,249 @@
+"""The resolved case: complete, exact, and the same whatever way it was written."""
+
+import math
+import pickle
+import tomllib
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from fem.case.case import Case, CaseError, case_hash, load_case, read_case, to_toml
+from fem.case.files import CASES, DEFAULT_CASE
+from fem.case.tables import TABLES
+from fem.case.template import case_template
+from fem.case.toml import toml_document, toml_value
+from fem.case.validation import known_keys, quantity_of
+
+SHIPPED = {
+    "seed_box",
+    "seed_stack",
+    "seed_stack_plateau",
+    "free_rocking",
+    "sliding",
+    "rocking",
+    "overturning",
+}
+
+
+def test_the_shipped_cases_are_those_of_the_documentation():
+    assert set(CASES.names) == SHIPPED
+    assert load_case().name == DEFAULT_CASE == "seed_stack_plateau"
+
+
+@pytest.mark.parametrize("name", sorted(SHIPPED))
+def test_a_shipped_case_says_in_its_first_line_what_it_shows(name):
+    assert CASES.text(name).startswith("# ")
+    assert 40 < len(CASES.description(name)) < 130
+
+
+@pytest.mark.parametrize("name", sorted(SHIPPED))
+def test_a_resolved_case_reads_back_to_itself(name):
+    case = load_case(name)
+    again = read_case(to_toml(case))
+    assert again.resolved() == case.resolved()
+    assert to_toml(again) == to_toml(case)
+    assert case_hash(again) == case_hash(case)
+
+
+def test_a_resolved_case_writes_out_every_default():
+    resolved = load_case("seed_box").resolved()
+    assert set(resolved) == {"schema", "title", "gravity_m_s2", *TABLES}
+    assert resolved["container"]["wall_density_kg_m3"] == 7850.0
+    assert resolved["solver"]["spectral_radius"] == 0.5
+    assert resolved["output"] == {
+        "history_s": 0.005,
+        "fields_s": 0.05,
+        "figures": True,
+        "stop_when_overturned": True,
+    }
+
+
+def test_whether_figures_are_drawn_makes_no_other_case():
+    plain, without = load_case("seed_box"), load_case("seed_box", ["output.figures=false"])
+    assert case_hash(without) == case_hash(plain)
+    assert case_hash(load_case("seed_box", ["output.history_s=0.01"])) != case_hash(plain)
+
+
+def test_a_resolved_case_leaves_out_what_plays_no_part():
+    resolved = load_case("free_rocking").resolved()
+    assert resolved["motion"] == {"kind": "none"}
+    assert "wall_density_kg_m3" not in resolved["container"]
+    assert "foot_m" not in resolved["support"]
+    assert "newmark_beta" not in resolved["solver"]
+
+
+class TestHash:
+    """The hash is that of the computation, not of the file."""
+
+    def test_title_comments_and_written_defaults_do_not_change_it(self):
+        case = load_case("seed_stack")
+        assert case_hash(case) == case_hash(case.with_values({"title": "another"}))
+        assert case_hash(case) == case_hash(
+            read_case(case.text + "\n# a comment\n[output]\nhistory_s = 0.005\n")
+        )
+
+    def test_keys_of_an_option_not_chosen_do_not_change_it(self):
+        case = load_case("seed_stack")
+        changed = {"support.foot_m": 0.3, "motion.pulse_s": 1.0, "solver.newmark_beta": 0.3}
+        assert case_hash(case.with_values(changed)) == case_hash(case)
+
+    @pytest.mark.parametrize(
+        "change",
+        [
+            {"contact.mu_static": math.nextafter(0.4, 1.0)},
+            {"gravity_m_s2": 9.80665},
+            {"solver.model": "rigid"},
+            {"output.fields_s": 0.0},
+            {"static.soil_factor": 1.2},
+            {"motion.phase_rad": 0.1},
+        ],
+    )
+    def test_a_value_that_counts_changes_it(self, change):
+        case = load_case("seed_stack")
+        assert case_hash(case.with_values(change)) != case_hash(case)
+
+    def test_the_content_of_a_motion_file_changes_it(self, tmp_path):
+        text = CASES.text("seed_box").replace(
+            'kind = "harmonic" ', 'kind = "table"\nfile = "floor.csv"\nquantity = "acceleration"\nunit = "g" '
+        )
+        record = tmp_path / "floor.csv"
+        record.write_text("0,0\n1,0.1\n2,0\n", encoding="utf-8")
+        first = case_hash(read_case(text, folder=tmp_path))
+        assert first == case_hash(read_case(text, folder=tmp_path))
+        record.write_text("0,0\n1,0.2\n2,0\n", encoding="utf-8")
+        assert case_hash(read_case(text, folder=tmp_path)) != first
+        record.unlink()
+        with pytest.raises(CaseError, match="names no file"):
+            case_hash(read_case(text, folder=tmp_path))
+
+
+@pytest.mark.parametrize("name", sorted(SHIPPED))
+def test_the_template_has_every_key_and_reads_back_to_the_case(name):
+    case = load_case(name)
+    template = case_template(case)
+    assert read_case(template).resolved() == case.resolved()
+    for table in TABLES.values():
+        for key in known_keys(table):
+            assert f"{key} = " in template
+
+
+def test_every_key_of_the_template_may_be_uncommented():
+    # Each commented key has an example that is of the right type and in range.
+    data = tomllib.loads("\n".join(_uncommented(case_template(load_case("free_rocking")))))
+    said = []
+    for name, table in TABLES.items():
+        for key, field in known_keys(table).items():
+            quantity = quantity_of(field.annotation, field.metadata)
+            value = data[name][key]
+            if quantity is not None and not isinstance(value, str) and not quantity.allows(value):
+                said.append(f"{name}.{key} = {value}")
+    assert said == []
+
+
+def _uncommented(template):
+    for line in template.splitlines():
+        yield line[2:] if line.startswith("# ") and " = " in line else line
+
+
+def test_a_case_survives_the_way_to_another_process():
+    case = load_case("seed_box", ["contact.mu_static=0.5"])
+    there = pickle.loads(pickle.dumps(case))
+    assert there == case
+    assert (there.name, there.text, there.overrides) == (case.name, case.text, case.overrides)
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_a_float_reads_back_to_the_same_bits(value):
+    (again,) = tomllib.loads(f"v = {toml_value(value)}").values()
+    assert math.copysign(1.0, again) == math.copysign(1.0, value)
+    assert again == value
+    assert isinstance(again, float)
+
+
+@given(st.text(alphabet=st.characters(exclude_categories=["Cs"])))
+def test_a_text_reads_back_to_itself(value):
+    assert tomllib.loads(f"v = {toml_value(value)}") == {"v": value}
+
+
+def test_what_is_no_scalar_is_not_written():
+    with pytest.raises(TypeError, match="no TOML scalar: list"):
+        toml_document({"a": [1.0]})
+
+
+FLOATS = {
+    f"{table}.{key}": quantity
+    for table, model in TABLES.items()
+    for key, field in known_keys(model).items()
+    if (quantity := quantity_of(field.annotation, field.metadata)) is not None
+}
+WITHOUT_GROUPS = sorted(
+    set(FLOATS)
+    - {
+        f"motion.{key}"
+        for key in ("amplitude_m", "peak_acceleration_m_s2", "angular_frequency_rad_s", "frequency_Hz")
+    }
+    - {"container.weight_N", "container.density_kg_m3"}
+)
+
+
+@st.composite
+def changes(draw):
+    """Some keys, each with a value of its own range, or an integer where it is counted."""
+    chosen = draw(st.lists(st.sampled_from(WITHOUT_GROUPS), max_size=6, unique=True))
+    values = {}
+    for key in chosen:
+        quantity = FLOATS[key]
+        low = next(bound for bound in (quantity.least, quantity.above, 0.0) if bound is not None)
+        high = next(bound for bound in (quantity.most, quantity.below, 1e6) if bound is not None)
+        if isinstance(quantity.least, int):
+            values[key] = draw(st.integers(int(low), int(high)))
+        else:
+            values[key] = draw(st.floats(low, high).filter(quantity.allows))
+    return values
+
+
+@settings(max_examples=300)
+@given(changes(), st.sampled_from(sorted(SHIPPED)))
+def test_every_case_that_is_read_is_written_and_read_back(values, name):
+    try:
+        case = load_case(name).with_values(values)
+    except CaseError:  # rules between keys: refused in words, which is all that is asked here
+        assume(False)
+    again = read_case(to_toml(case))
+    assert again.resolved() == case.resolved()
+    assert case_hash(again) == case_hash(case)
+
+
+TOML_VALUES = st.one_of(
+    st.booleans(),
+    st.integers(),
+    st.floats(),
+    st.text(max_size=20),
+    st.lists(st.integers(), max_size=2),
+    st.dictionaries(st.text(max_size=5), st.integers(), max_size=2),
+    st.dates(),
+)
+ANY_KEY = st.one_of(
+    st.sampled_from([*sorted(FLOATS), "motion.kind", "title", "schema", "motion.file"]), st.text(max_size=12)
+)
+
+
+@settings(max_examples=500)
+@given(st.dictionaries(ANY_KEY, TOML_VALUES, max_size=5))
+def test_any_value_at_any_key_is_a_case_or_an_error_in_words(values):
+    try:
+        case = load_case("seed_box").with_values(values)
+    except CaseError as error:
+        assert str(error).strip()
+        assert "pydantic" not in str(error)
+        assert "Input should" not in str(error)
+    else:
+        assert isinstance(case, Case)
+
+
+@settings(max_examples=300)
+@given(st.text(max_size=200))
+def test_any_text_is_a_case_or_an_error_in_words(text):
+    with pytest.raises(CaseError):
+        read_case(text)

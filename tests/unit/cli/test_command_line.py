@@ -1,0 +1,356 @@
+"""The command line: exit codes, one message without a traceback, nothing written on bad input."""
+
+import errno
+import json
+import os
+import subprocess
+import sys
+import time
+from types import SimpleNamespace
+
+import pytest
+from fem.commands import doctor as doctor_command
+
+from fem import __main__ as command_line
+from fem.case.case import load_case, read_case
+from fem.case.files import CASES
+from fem.cli.run import text_with_overrides
+from fem.render import opengl as rendering
+
+BAD_INPUT = [
+    (["check", "missing.toml"], "no case file 'missing.toml'"),
+    (["check", "seed_stak"], "did you mean 'seed_stack'?"),
+    (["check", "--set", "container.width_m=1100"], "looks like millimetres: 1.1 m?"),
+    (["check", "--set", "container.heigth_m=1"], "did you mean 'height_m'?"),
+    (["check", "--set", "container.weight_N=2500"], "the walls of one box weigh"),
+    (
+        ["check", "--set", "support.kind=feet", "--set", "support.foot_m=0.6"],
+        "foot_m must be less than half of",
+    ),
+    (["check", "--set", "container.mesh_file=nothing.vtu"], "names no file: 'nothing.vtu'"),
+    (["check", "--set", "solver.element_size_m=1e-5"], "take a larger element size"),
+    (["check", "--set", "nonsense"], "not of the form table.key=value"),
+    (["check", "--set"], "--set"),
+    (["check", "--nonsense"], "--nonsense"),
+    (["check", "seed_box", "seed_stack"], "seed_stack"),
+    (["run", "missing.toml"], "no case file 'missing.toml'"),
+    (["run", "--set", "contact.mu_static=-1"], "mu_static must be between 0 and 5"),
+    (["run", "--set", "solver.duration_s=0"], "duration_s must be between"),
+    (["run", "--set", "solver.duration_s=0", "--dry-run"], "duration_s must be between"),
+    (["run", "-q", "-v"], "contradict one another"),
+    (["run", "--band", "--bandd"], "--bandd"),
+    (["modes", "--set", "solver.order=3"], "order must be between 1 and 2"),
+    (["modes", "--count", "many"], "many"),
+    (["init", "seed_stak"], "did you mean 'seed_stack'?"),
+    (["init", "--to", "no/such/folder.toml"], "no/such/folder.toml"),
+    (["chek"], "no command 'chek'; did you mean 'check'?"),
+    (["--chek"], "no command '--chek'"),
+    (["list", "all"], "all"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "expected"), BAD_INPUT, ids=[" ".join(line) for line, _ in BAD_INPUT])
+def test_bad_input_is_refused_in_words_with_exit_code_2(tmp_path, monkeypatch, capsys, arguments, expected):
+    monkeypatch.chdir(tmp_path)
+    assert command_line.main(arguments) == 2
+    printed = capsys.readouterr()
+    assert expected in printed.err
+    assert printed.out == ""
+    assert "Traceback" not in printed.err
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "arguments", [["check", "broken.toml"], ["run", "broken.toml"], ["chek"], ["run", "--resum"]]
+)
+def test_a_process_with_bad_input_ends_with_2_and_no_traceback(tmp_path, arguments):
+    (tmp_path / "broken.toml").write_text("[container]\nwidth_m = 1100\nwall_m = '8'\n", encoding="utf-8")
+    result = subprocess.run(
+        [sys.executable, "-m", "fem", *arguments], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert result.returncode == 2
+    assert result.stdout == ""
+    assert result.stderr.strip()
+    assert "Traceback" not in result.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["broken.toml"]
+
+
+def test_every_error_of_a_file_is_printed_on_a_line_of_its_own(tmp_path, capsys):
+    path = tmp_path / "broken.toml"
+    path.write_text("[container]\nwidth_m = 1100\n[motion]\nkind = 'none'\n", encoding="utf-8")
+    assert command_line.main(["check", str(path)]) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert [line for line in lines if "width_m" in line and "millimetres" in line]
+    assert [line for line in lines if "height_m is missing" in line]
+    assert [line for line in lines if "weight_N or density_kg_m3" in line]
+    assert [line for line in lines if "mu_static is missing" in line]
+    assert all(line.startswith(str(path)) for line in lines)
+
+
+def test_a_fault_of_the_program_is_not_dressed_up_as_a_fault_of_the_user(monkeypatch):
+    def broken():
+        raise ZeroDivisionError("a fault of the program")
+
+    monkeypatch.setattr(command_line, "build_app", lambda: lambda *_, **__: broken())
+    with pytest.raises(ZeroDivisionError):
+        command_line.main(["list"])
+
+
+def test_an_interrupted_command_ends_with_4(monkeypatch, capsys):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(command_line, "build_app", lambda: interrupted)
+    assert command_line.main(["list"]) == 4
+    assert capsys.readouterr().err == "interrupted\n"
+
+
+def test_an_interrupt_amid_an_import_ends_the_process_with_4():
+    """Imports run texts (`exec`), and CPython before 3.12 never forgets an interrupt that came through one."""
+    program = """
+import fem.__main__ as command_line
+def interrupted(*_, **__):
+    exec("raise KeyboardInterrupt")
+command_line.build_app = lambda: interrupted
+command_line.program()
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", program, "list"], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr.strip()) == (4, "interrupted")
+
+
+@pytest.mark.parametrize(("number", "code"), [(errno.ENOSPC, 3), (errno.ENOENT, 2)])
+def test_a_full_disk_or_missing_folder_is_told_without_a_traceback(monkeypatch, capsys, number, code):
+    def fail(*_, **__):
+        raise OSError(number, os.strerror(number), "history.csv")
+
+    monkeypatch.setattr(command_line, "build_app", lambda: fail)
+    assert command_line.main(["list"]) == code
+    assert capsys.readouterr().err == f"history.csv: {os.strerror(number)}\n"
+
+
+def test_a_reader_that_leaves_early_is_no_error():
+    command = f"{sys.executable} -m fem schema | head -n 1; exit ${{PIPESTATUS[0]}}"
+    result = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False)
+    assert (result.returncode, result.stderr) == (0, "")
+
+
+SLOW_PACKAGES = ("numba", "skfem", "scipy", "pyvista", "matplotlib", "meshio", "numpy")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "allowed"),
+    [
+        (["--help"], ()),
+        (["run", "missing.toml"], ("numpy", "meshio")),
+        (["list"], ()),
+        (["check"], ("numpy", "meshio")),
+    ],
+)
+def test_commands_that_solve_nothing_load_no_solver(arguments, allowed):
+    program = (
+        "import sys, fem.__main__ as m; m.main(sys.argv[1:]);"
+        f"print([p for p in {SLOW_PACKAGES} if p in sys.modules], file=sys.stderr)"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", program, *arguments], capture_output=True, text=True, check=True
+    )
+    loaded = set(eval(result.stderr.splitlines()[-1]))
+    assert loaded <= set(allowed)
+
+
+def test_help_names_every_command(capsys):
+    assert command_line.main(["--help"]) == 0
+    printed = capsys.readouterr().out
+    assert all(name in printed for name in command_line.COMMANDS)
+
+
+@pytest.mark.parametrize("name", command_line.COMMANDS)
+def test_every_command_has_help(name, capsys):
+    assert command_line.main([name, "--help"]) == 0
+    assert f"python -m fem {name}" in capsys.readouterr().out
+
+
+class TestList:
+    def test_names_every_shipped_case_and_what_it_shows(self, capsys):
+        assert command_line.main(["list"]) == 0
+        lines = capsys.readouterr().out.splitlines()
+        for name in CASES.names:
+            (line,) = [line for line in lines if line.split()[:1] == [name]]
+            assert len(line.split()) > 5
+
+
+class TestInit:
+    def test_writes_a_shipped_case_as_it_is(self, tmp_path, monkeypatch, capsys):
+        monkeypatch.chdir(tmp_path)
+        assert command_line.main(["init", "rocking"]) == 0
+        assert (tmp_path / "rocking.toml").read_text(encoding="utf-8") == CASES.text("rocking")
+        assert "rocking.toml" in capsys.readouterr().out
+
+    def test_without_a_name_writes_a_file_with_every_key_that_can_be_run(self, tmp_path):
+        path = tmp_path / "mine.toml"
+        assert command_line.main(["init", "--to", str(path)]) == 0
+        assert read_case(path.read_text(encoding="utf-8")).resolved() == load_case().resolved()
+
+    def test_never_overwrites(self, tmp_path, capsys):
+        path = tmp_path / "mine.toml"
+        path.write_text("mine", encoding="utf-8")
+        assert command_line.main(["init", "seed_box", "--to", str(path)]) == 2
+        assert path.read_text(encoding="utf-8") == "mine"
+        assert "--to" in capsys.readouterr().err
+
+
+class TestSchema:
+    def test_is_json_and_knows_every_key_with_its_range(self, capsys):
+        assert command_line.main(["schema"]) == 0
+        schema = json.loads(capsys.readouterr().out)
+        width = schema["$defs"]["Container"]["properties"]["width_m"]
+        assert (width["minimum"], width["maximum"], width["x-unit"]) == (1e-3, 100.0, "m")
+        assert "schema" in schema["properties"]
+        assert schema["additionalProperties"] is False
+        assert schema["$defs"]["Motion"]["required"] == ["kind"]
+
+
+class TestCheck:
+    def test_prints_the_static_rule_of_the_seed(self, capsys):
+        # Seed stack at its plateau value: 80 kNm against 53.95 kNm, 40 kN against 39.24 kN.
+        assert command_line.main(["check"]) == 0
+        printed = capsys.readouterr().out
+        assert "80.000     53.955 kNm     1.483  overturns" in printed
+        assert "40.000     39.240 kN      1.019  slides" in printed
+        assert "4.3.3.2.1 (2)" in printed
+
+    def test_json_has_the_static_block_and_the_numerics(self, capsys):
+        assert command_line.main(["check", "seed_box", "--json", "--set", "contact.mu_static=0.5"]) == 0
+        document = json.loads(capsys.readouterr().out)
+        assert document["static"]["sliding_limit_static_N"] == pytest.approx(0.5 * 24525.0)
+        assert document["numerics"]["contact_nodes"] == 2
+        assert document["numerics"]["history_samples"] == 4001
+        assert document["derived"]["peak_floor_acceleration_m_s2"] == pytest.approx(0.05 * 6.928**2)
+        assert any("not credible" in note for note in document["notes"])
+
+    def test_a_release_beyond_the_slenderness_angle_is_noted(self, capsys):
+        assert command_line.main(["check", "free_rocking", "--set", "initial.rotation_rad=-0.3"]) == 0
+        assert "beyond the slenderness angle" in capsys.readouterr().out
+
+    def test_a_start_at_rest_is_noted_with_the_jerk_of_the_floor(self, capsys):
+        # A Omega = 0.05 x 6.928 = 0.346 m/s.
+        assert command_line.main(["check", "seed_stack", "--set", "motion.start=rest"]) == 0
+        assert "jerk of 0.346 m/s" in capsys.readouterr().out
+
+    def test_writes_nothing(self, tmp_path, monkeypatch):
+        monkeypatch.chdir(tmp_path)
+        assert command_line.main(["check"]) == 0
+        assert list(tmp_path.iterdir()) == []
+
+
+class TestRun:
+    def test_a_dry_run_says_what_would_be_computed_and_writes_nothing(self, tmp_path, monkeypatch, capsys):
+        monkeypatch.chdir(tmp_path)
+        assert command_line.main(["run", "seed_stack", "--dry-run", "--out", "here"]) == 0
+        printed = capsys.readouterr().out
+        assert "here" in printed
+        assert "624 elements, 2619 nodes (5238 unknowns), 2 contact nodes" in printed
+        assert list(tmp_path.iterdir()) == []
+
+    def test_a_dry_run_in_json(self, capsys):
+        assert command_line.main(["run", "seed_box", "--dry-run", "--json"]) == 0
+        plan = json.loads(capsys.readouterr().out)
+        assert plan["folder"] == "outputs/seed_box"
+        assert plan["numerics"]["duration_s"] == 20.0
+
+    @pytest.mark.parametrize(
+        ("status", "code"), [("completed", 0), ("overturned", 0), ("failed", 3), ("interrupted", 4)]
+    )
+    def test_the_status_of_a_run_is_its_exit_code(self, tmp_path, monkeypatch, capsys, status, code):
+        asked = install_solver(monkeypatch, status)
+        arguments = ["run", "seed_box", "--out", str(tmp_path / "r"), "--resume", "--no-band", "-q"]
+        assert command_line.main(arguments) == code
+        assert capsys.readouterr().out == f"summary of {status}\n"
+        assert asked["options"] == {"check_rigid": False, "band": False, "resume": True, "force": False}
+        assert asked["folder"] == tmp_path / "r"
+        assert asked["case"].name == "seed_box"
+        assert asked["case_text"] == CASES.text("seed_box")
+
+    def test_with_json_the_result_is_printed_and_nothing_else(self, tmp_path, monkeypatch, capsys):
+        install_solver(monkeypatch, "overturned")
+        assert command_line.main(["run", "seed_box", "--out", str(tmp_path / "r"), "--json", "-v"]) == 0
+        assert json.loads(capsys.readouterr().out)["status"] == "overturned"
+
+    def test_the_case_that_is_kept_tells_what_the_command_line_changed(self):
+        case = load_case("seed_box", ["contact.mu_static=0.5", "title=two\nlines"])
+        kept = text_with_overrides(case)
+        assert kept.startswith(CASES.text("seed_box").rstrip())
+        assert "#   --set 'contact.mu_static=0.5'" in kept
+        assert read_case(kept).resolved() == load_case("seed_box").resolved()
+
+
+def install_solver(monkeypatch, status):
+    """A stand-in for `fem.run.run` that notes what it is asked and writes a result of that status."""
+    asked = {}
+
+    def run_case(case, *, case_text, folder, options, reporter):
+        asked.update(case=case, case_text=case_text, folder=folder, options=vars(options), reporter=reporter)
+        folder.mkdir()
+        (folder / "run.json").write_text(json.dumps({"status": status, "case_hash": "0"}), encoding="utf-8")
+        (folder / "summary.txt").write_text(f"summary of {status}\n", encoding="utf-8")
+        return SimpleNamespace(status=status, stopped=status == "interrupted")
+
+    solver = SimpleNamespace(run_case=run_case, RunOptions=SimpleNamespace)
+    monkeypatch.setitem(sys.modules, "fem.run.run", solver)
+    return asked
+
+
+class TestModes:
+    def test_writes_the_shapes_and_prints_the_frequencies(self, tmp_path, capsys):
+        arguments = ["modes", "seed_box", "--count", "2", "--out", str(tmp_path / "m"), "--json"]
+        assert command_line.main(arguments) == 0
+        document = json.loads(capsys.readouterr().out)
+        assert [row["mode"] for row in document["modes"]] == [1, 2]
+        assert (tmp_path / "m" / "modes.vtu").is_file()
+        figure = (tmp_path / "m" / "modes.svg").read_text(encoding="utf-8")
+        assert document["figure"] == str(tmp_path / "m" / "modes.svg")
+        for row in document["modes"]:
+            assert f">{row['mode']}: {row['frequency_Hz']:.4g} Hz<" in figure
+
+
+class TestDoctor:
+    def test_names_versions_and_the_line_that_mends_missing_pictures(self, monkeypatch, capsys):
+        monkeypatch.setattr(doctor_command, "probe_rendering", lambda: "rendering ended with signal 11")
+        assert command_line.main(["doctor", "--json"]) == 0
+        report = json.loads(capsys.readouterr().out)
+        assert report["rendering"] is False
+        assert any("apt-get install -y libegl1 libgl1-mesa-dri" in remedy for remedy in report["remedies"])
+        assert report["versions"]["numba"]
+        assert report["threads"] >= 1
+
+    def test_a_rendering_that_ends_its_process_is_told_and_does_not_end_this_one(self, monkeypatch):
+        monkeypatch.setattr(rendering, "RENDER", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
+        assert rendering.probe_rendering() == (
+            "no OpenGL library that works was found (the trial ended with signal 11)"
+        )
+        with pytest.raises(
+            rendering.RenderingError, match=r"nothing else is affected.*Debian.*apt-get install"
+        ):
+            rendering.require_rendering()
+        monkeypatch.setattr(rendering, "RENDER", "raise RuntimeError('no GL')")
+        assert rendering.probe_rendering() == "rendering failed (RuntimeError: no GL)"
+        monkeypatch.setattr(rendering, "RENDER", "pass")
+        assert rendering.probe_rendering() is None
+
+    def test_a_rendering_that_hangs_is_given_up(self, monkeypatch):
+        monkeypatch.setattr(rendering, "RENDER", "import time; time.sleep(60)")
+        monkeypatch.setattr(rendering, "RENDER_SECONDS", 0.5)
+        began = time.monotonic()
+        assert rendering.probe_rendering() == "rendering did not end within 0.5 s"
+        assert time.monotonic() - began < 30.0
+
+
+def test_an_interrupt_before_the_solver_listens_ends_with_4_and_no_traceback(monkeypatch, capsys):
+    def interrupted(*arguments, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("fem.cli.check.load_case", interrupted)
+    assert command_line.main(["check"]) == 4
+    assert capsys.readouterr().err.strip() == "interrupted"

@@ -1,0 +1,221 @@
+"""Harmonic and pulse base motion: derivatives, ends, peaks, breaks; references are the closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+
+from contact.motion.base_motion import HarmonicMotion, NoMotion, PulseMotion, floor_motion
+
+OMEGA = 6.928
+PERIOD = 2.0 * math.pi / OMEGA
+
+
+def tapered(**changes) -> HarmonicMotion:
+    return HarmonicMotion(
+        **{"amplitude": 0.05, "angular_frequency": OMEGA, "duration": 20.0, "ramp_cycles": 2.0, **changes}
+    )
+
+
+MOTIONS = {
+    "plain": tapered(ramp_cycles=0.0, phase=0.7),
+    "tapered": tapered(phase=-1.1),
+    "cycles": tapered(ramp_cycles=0.0, cycles=4.0),
+    "tapered cycles": tapered(ramp_cycles=1.5, cycles=6.0, phase=2.0),
+    "rectangular": PulseMotion(shape="rectangular", acceleration=3.0, pulse=0.7, delay=0.25),
+    "half-sine": PulseMotion(shape="half-sine", acceleration=-2.0, pulse=0.9, delay=0.1),
+    "sine": PulseMotion(shape="sine", acceleration=4.0, pulse=1.3),
+}
+
+
+def times_away_from_breaks(motion, until: float) -> np.ndarray:
+    times = np.random.default_rng(1).uniform(0.0, until, 400)
+    near = np.abs(times[:, None] - motion.break_times[None, :]) < 2e-3
+    return times[~near.any(axis=1)]
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_velocity_and_acceleration_are_derivatives_of_the_displacement(name):
+    motion = MOTIONS[name]
+    times, step = times_away_from_breaks(motion, 21.0 if "cycles" not in name else 8.0), 1e-4
+    _, v, a = motion.evaluate(times)
+    x_minus, v_minus, _ = motion.evaluate(times - step)
+    x_plus, v_plus, _ = motion.evaluate(times + step)
+    # Error of the central difference: step^2/6 times the next-but-one derivative, A Omega^4 and its like.
+    assert np.abs((x_plus - x_minus) / (2 * step) - v).max() < 1e-6
+    assert np.abs((v_plus - v_minus) / (2 * step) - a).max() < 1e-6
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+def test_displacement_and_velocity_never_jump_and_acceleration_only_at_breaks(name):
+    motion = MOTIONS[name]
+    for instant in motion.break_times:
+        before, after = motion.evaluate(np.array([instant - 1e-9, instant + 1e-9])).T
+        assert np.abs(before - after)[:2] == pytest.approx([0.0, 0.0], abs=1e-7)
+    if "tapered" in name:  # a C2 window leaves no jump at all
+        for instant in motion.break_times:
+            before, after = motion.evaluate(np.array([instant - 1e-9, instant + 1e-9]))[2]
+            assert after == pytest.approx(before, abs=1e-5)
+
+
+def test_plain_harmonic_is_the_sine_of_the_case_file():
+    times = np.linspace(0.0, 20.0, 101)
+    x, v, a = tapered(ramp_cycles=0.0, phase=0.3).evaluate(times)
+    assert x == pytest.approx(0.05 * np.sin(OMEGA * times + 0.3), abs=1e-15)
+    assert v == pytest.approx(0.05 * OMEGA * np.cos(OMEGA * times + 0.3), abs=1e-14)
+    assert a == pytest.approx(-0.05 * OMEGA**2 * np.sin(OMEGA * times + 0.3), abs=1e-13)
+
+
+def test_tapered_harmonic_starts_and_ends_at_rest_and_is_the_full_sine_between():
+    motion = tapered()
+    ends = motion.evaluate(np.array([0.0, 20.0, 25.0]))
+    assert ends == pytest.approx(np.zeros((3, 3)), abs=1e-15)
+    times = np.linspace(2 * PERIOD, 20.0 - 2 * PERIOD, 50)
+    assert motion.evaluate(times)[0] == pytest.approx(0.05 * np.sin(OMEGA * times), abs=1e-15)
+
+
+def test_half_way_up_the_ramp_the_amplitude_is_half():
+    # The quintic window is odd about its middle: one half at u = 1/2, with slope 15/8.
+    motion = tapered(phase=math.pi / 2)
+    x, v, _ = motion.evaluate(np.array([PERIOD]))[:, 0]
+    assert x == pytest.approx(0.5 * 0.05, rel=1e-12)
+    assert v == pytest.approx(15.0 / 8.0 / (2 * PERIOD) * 0.05, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("phase", "cycles", "quarters"),
+    [
+        (0.0, 10.0, 41.0),
+        (math.pi / 2, 10.0, 40.0),
+        (math.pi, 3.0, 13.0),
+        (-0.5 * math.pi, 1.0, 4.0),
+        (0.0, 0.5, 3.0),
+    ],
+)
+def test_drive_ends_at_the_first_zero_velocity_after_its_cycles_and_the_floor_stays(phase, cycles, quarters):
+    motion = tapered(ramp_cycles=0.0, phase=phase, cycles=cycles)
+    assert motion.end_time == pytest.approx(quarters * PERIOD / 4, rel=1e-12)
+    x, v, a = motion.evaluate(motion.end_time + np.array([0.0, 1e-6, 5.0]))
+    assert np.abs(x) == pytest.approx([0.05] * 3, rel=1e-12)
+    assert (v == 0.0).all() and (a == 0.0).all()
+    assert motion.evaluate(np.array([motion.end_time - 1e-9]))[1, 0] == pytest.approx(0.0, abs=1e-7)
+
+
+@pytest.mark.parametrize("phase", np.linspace(-7.0, 7.0, 29))
+def test_no_earlier_zero_velocity_lies_between_the_cycles_and_the_end(phase):
+    motion = tapered(ramp_cycles=0.0, phase=phase, cycles=2.0)
+    wait = motion.end_time - 2.0 * PERIOD
+    assert -1e-9 <= wait < PERIOD / 2
+    inner = 2.0 * PERIOD + wait * np.linspace(1e-6, 1.0 - 1e-6, 200)
+    velocities = motion.evaluate(inner)[1]
+    assert (velocities > 0).all() or (velocities < 0).all()
+
+
+def test_break_times_within_the_run():
+    assert tapered(ramp_cycles=0.0).break_times.size == 0
+    assert tapered().break_times == pytest.approx([2 * PERIOD, 20.0 - 2 * PERIOD, 20.0])
+    assert tapered(ramp_cycles=0.0, cycles=1.0).break_times == pytest.approx([1.25 * PERIOD])
+    assert tapered(cycles=100.0).break_times == pytest.approx([2 * PERIOD])  # the drive outlasts the run
+    assert MOTIONS["sine"].break_times == pytest.approx([1.3])
+    assert MOTIONS["rectangular"].break_times == pytest.approx([0.25, 0.95])
+
+
+def test_acceleration_jumps_exactly_at_the_break_times():
+    for name in ("rectangular", "half-sine"):
+        motion = MOTIONS[name]
+        end = motion.break_times[-1]
+        assert motion.evaluate(np.array([end]))[2, 0] == 0.0
+        before = motion.evaluate(np.array([np.nextafter(end, 0.0)]))[2, 0]
+        assert before == pytest.approx(3.0 if name == "rectangular" else 0.0, abs=1e-12)
+    assert MOTIONS["rectangular"].evaluate(np.array([0.25]))[2, 0] == 3.0
+
+
+def test_peak_acceleration_of_a_long_drive_is_amplitude_times_frequency_squared():
+    assert tapered(ramp_cycles=0.0).peak_acceleration == pytest.approx(0.05 * OMEGA**2, rel=1e-12)
+
+
+def test_a_long_ramp_lifts_the_peak_by_the_curvature_of_its_window():
+    # Near its top the window is 1 - 10 s^3, and w - w"/Omega^2 reaches 1 + 40 sqrt 2/(2 pi n)^3.
+    phases = np.linspace(0.0, math.pi, 30)
+    peak = max(tapered(ramp_cycles=9.0, phase=phase).peak_acceleration for phase in phases)
+    estimate = 40.0 * math.sqrt(2.0) / (18.0 * math.pi) ** 3
+    assert peak / (0.05 * OMEGA**2) - 1.0 == pytest.approx(estimate, rel=0.15)
+
+
+def test_peak_acceleration_of_a_drive_cut_short_is_what_the_floor_reached():
+    motion = tapered(ramp_cycles=0.0, duration=0.1 * PERIOD)
+    assert motion.peak_acceleration == pytest.approx(0.05 * OMEGA**2 * math.sin(0.2 * math.pi), rel=1e-9)
+
+
+@pytest.mark.parametrize("ramp_cycles", [0.3, 0.5, 1.0, 2.0, 3.0, 10.0])
+@pytest.mark.parametrize("phase", [0.0, 0.9, 2.0])
+def test_peak_acceleration_includes_what_a_steep_ramp_adds(ramp_cycles, phase):
+    motion = tapered(ramp_cycles=ramp_cycles, phase=phase)
+    dense = np.abs(motion.evaluate(np.linspace(0.0, 20.0, 2_000_001))[2]).max()
+    assert motion.peak_acceleration == pytest.approx(dense, rel=1e-8)
+    assert motion.peak_acceleration >= dense * (1.0 - 1e-13)
+
+
+def test_a_ramp_of_half_a_cycle_is_harsher_than_the_drive():
+    assert tapered(ramp_cycles=0.5).peak_acceleration > 1.5 * 0.05 * OMEGA**2
+
+
+@pytest.mark.parametrize(
+    ("shape", "velocity", "displacement"),
+    # End of the pulse, in units of a0 t0 and a0 t0^2: elementary integrals.
+    [("rectangular", 1.0, 0.5), ("half-sine", 2 / math.pi, 1 / math.pi), ("sine", 0.0, 1 / (2 * math.pi))],
+)
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_pulse_leaves_the_floor_with_the_velocity_reached(shape, velocity, displacement, sign):
+    motion = PulseMotion(shape=shape, acceleration=sign * 3.0, pulse=0.8, delay=0.5)
+    x, v, a = motion.evaluate(np.array([0.0, 0.5, 1.3, 3.3]))
+    v_end, x_end = sign * 3.0 * 0.8 * velocity, sign * 3.0 * 0.8**2 * displacement
+    assert v == pytest.approx([0.0, 0.0, v_end, v_end], abs=1e-14)
+    assert x == pytest.approx([0.0, 0.0, x_end, x_end + 2.0 * v_end], abs=1e-14)
+    assert a[2] == a[3] == 0.0
+    assert motion.peak_acceleration == 3.0 and motion.time_scale == 0.8
+
+
+def test_pulse_reaches_its_peak_where_its_shape_says():
+    for shape, fraction in (("half-sine", 0.5), ("sine", 0.25)):
+        motion = PulseMotion(shape=shape, acceleration=-3.0, pulse=0.8, delay=0.5)
+        assert motion.evaluate(np.array([0.5 + 0.8 * fraction]))[2, 0] == pytest.approx(-3.0, rel=1e-12)
+
+
+def test_no_motion_is_rest():
+    assert (NoMotion().evaluate(np.linspace(-1.0, 9.0, 7)) == 0.0).all()
+    assert NoMotion().peak_acceleration == 0.0 and NoMotion().break_times.size == 0
+
+
+def test_one_compilation_serves_every_kind():
+    for motion in (*MOTIONS.values(), NoMotion()):
+        floor_motion(motion.compiled(), 0.5)
+    assert len(floor_motion.signatures) == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "word"),
+    [
+        ({"amplitude": -0.05}, "amplitude"),
+        ({"amplitude": math.nan}, "amplitude"),
+        ({"angular_frequency": 0.0}, "frequency"),
+        ({"duration": 0.0}, "duration"),
+        ({"phase": math.inf}, "phase"),
+        ({"ramp_cycles": -1.0}, "ramp"),
+        ({"cycles": 0.0}, "cycles"),
+        ({"ramp_cycles": 12.0}, "do not fit"),
+    ],
+)
+def test_harmonic_refuses(change, word):
+    with pytest.raises(ValueError, match=word):
+        tapered(**change)
+
+
+@pytest.mark.parametrize(
+    ("change", "word"),
+    [({"shape": "square"}, "shape"), ({"acceleration": math.nan}, "acceleration"), ({"pulse": 0.0}, "length"),
+     ({"delay": -0.1}, "delay")],
+)  # fmt: skip
+def test_pulse_refuses(change, word):
+    with pytest.raises(ValueError, match=word):
+        PulseMotion(**{"shape": "sine", "acceleration": 1.0, "pulse": 0.5, **change})

@@ -1,0 +1,157 @@
+"""Laws of one contact point: what they promise, and each tangent against a central difference."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
+from contact.interface.laws import (
+    normal_force,
+    regularised_friction,
+    relaxed_stick,
+    stick_friction,
+    weakened_mu,
+)
+
+STIFFNESS, DAMPING, STEP = 2.7e9, 1.1e7, 1e-3
+DECADES = 10.0 ** np.arange(-9.0, -1.0)
+
+
+def central_difference(function, at: float) -> float:
+    """First derivative, step 1e-4 of the argument: error of second order, far above rounding."""
+    delta = 1e-4 * abs(at)
+    return (function(at + delta) - function(at - delta)) / (2.0 * delta)
+
+
+def normal(penetration: float, rate: float) -> tuple[float, float, float]:
+    return normal_force(penetration, rate, STIFFNESS, DAMPING, STEP)
+
+
+@pytest.mark.parametrize("penetration", DECADES)
+@pytest.mark.parametrize("share", [-0.2, -0.01, 0.03, 0.5, 0.97, 1.03, 2.0, 50.0])
+def test_normal_tangents_are_derivatives(penetration, share):
+    rate = share * penetration / STEP  # share 1 divides the touching point from the one long closed
+    force, by_penetration, by_rate = normal(penetration, rate)
+    assert force > 0.0
+    assert by_penetration == pytest.approx(
+        central_difference(lambda p: normal(p, rate)[0], penetration), rel=1e-8
+    )
+    assert by_rate == pytest.approx(
+        central_difference(lambda v: normal(penetration, v)[0], rate), rel=1e-8, abs=1e-6 * DAMPING
+    )
+
+
+@given(st.floats(-1e-2, 1e-2), st.floats(-10.0, 10.0), st.floats(1e-7, 1e-1))
+def test_the_floor_never_pulls(penetration, rate, step):
+    force, by_penetration, by_rate = normal_force(penetration, rate, STIFFNESS, DAMPING, step)
+    assert force >= 0.0
+    if penetration <= 0.0 or STIFFNESS * penetration + DAMPING * rate <= 0.0:
+        assert (force, by_penetration, by_rate) == (0.0, 0.0, 0.0)
+
+
+@given(st.floats(1e-9, 1e-2), st.floats(-10.0, 10.0))
+def test_a_point_long_closed_is_a_spring_and_a_dashpot(penetration, rate):
+    if rate < penetration / STEP:
+        expected = max(0.0, STIFFNESS * penetration + DAMPING * rate)
+        assert normal(penetration, rate)[0] == pytest.approx(expected, rel=1e-14)
+
+
+def test_the_force_begins_at_zero_however_fast_the_point_touches():
+    forces = np.array([normal(p, 10.0)[0] for p in DECADES])
+    assert forces == pytest.approx((STIFFNESS + DAMPING / STEP) * DECADES, rel=1e-14)
+
+
+@pytest.mark.parametrize("penetration", DECADES)
+def test_the_force_is_continuous_where_the_dashpot_takes_over(penetration):
+    rate = penetration / STEP
+    below, above = normal(penetration, rate * (1.0 - 1e-12))[0], normal(penetration, rate * (1.0 + 1e-12))[0]
+    assert below == pytest.approx(above, rel=1e-11)
+
+
+@given(st.floats(-1e6, 1e6), st.floats(0.0, 1e6))
+def test_return_mapping_stays_in_the_cone_and_moves_no_admissible_force(trial, limit):
+    force, by_trial, by_limit = stick_friction(trial, limit)
+    assert abs(force) <= limit
+    if abs(trial) <= limit:
+        assert (force, by_trial, by_limit) == (trial, 1.0, 0.0)
+    else:
+        assert (force, by_trial, by_limit) == (math.copysign(limit, trial), 0.0, math.copysign(1.0, trial))
+
+
+@pytest.mark.parametrize("limit", 10.0 ** np.arange(-3.0, 7.0))
+@pytest.mark.parametrize("share", [-30.0, -1.01, -0.99, -1e-3, 1e-3, 0.99, 1.01, 30.0])
+def test_return_mapping_tangents_are_derivatives(limit, share):
+    trial = share * limit
+    _, by_trial, by_limit = stick_friction(trial, limit)
+    assert by_trial == pytest.approx(
+        central_difference(lambda t: stick_friction(t, limit)[0], trial), abs=1e-9
+    )
+    assert by_limit == pytest.approx(
+        central_difference(lambda m: stick_friction(trial, m)[0], limit), abs=1e-9
+    )
+
+
+@pytest.mark.parametrize("steps", [1e-3, 0.1, 1.0, 5.0])
+@pytest.mark.parametrize("stick", [-3e-6, 0.0, 7e-6])
+def test_a_sliding_element_relaxes_like_its_differential_equation(steps, stick):
+    force, stiffness, relaxation = 5e3, 2e9, 6e-3
+    step = steps * relaxation
+
+    def rate(_: float, s: np.ndarray) -> np.ndarray:
+        return (force - stiffness * s) / (stiffness * relaxation)  # k s + c s' = F, c = k relaxation
+
+    exact = solve_ivp(rate, (0.0, step), [stick], method="DOP853", rtol=1e-12, atol=1e-20).y[0, -1]
+    assert relaxed_stick(stick, force, stiffness, relaxation, step) == pytest.approx(exact, rel=1e-9)
+
+
+def test_a_relaxed_element_ends_at_its_static_elongation():
+    assert relaxed_stick(1e-5, 5e3, 2e9, 6e-3, 10.0) == pytest.approx(5e3 / 2e9, rel=1e-14)
+    assert relaxed_stick(1e-5, 5e3, 2e9, 0.0, 1e-9) == 5e3 / 2e9  # no dashpot: at once
+
+
+def sliding(normal_load: float, velocity: float, mu_static: float = 0.4) -> tuple[float, float, float]:
+    return regularised_friction(normal_load, velocity, mu_static, 0.2, 1e-3)
+
+
+@pytest.mark.parametrize("mu_static", [0.2, 0.4])
+@pytest.mark.parametrize("speed", 10.0 ** np.arange(-8.0, 0.6, 0.5))
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_regularised_friction_tangents_are_derivatives(mu_static, speed, sign):
+    load, velocity = 3e4, sign * speed
+    _, by_normal, by_velocity = sliding(load, velocity, mu_static)
+    difference = central_difference(lambda v: sliding(load, v, mu_static)[0], velocity)
+    assert by_velocity == pytest.approx(difference, rel=1e-5, abs=1e-10 * load / speed)
+    difference = central_difference(lambda n: sliding(n, velocity, mu_static)[0], load)
+    assert by_normal == pytest.approx(difference, rel=1e-9)
+
+
+@given(st.floats(0.0, 1e6), st.floats(-100.0, 100.0))
+def test_regularised_friction_opposes_the_slip_within_static_friction(load, velocity):
+    force = sliding(load, velocity)[0]
+    assert force * velocity <= 0.0
+    assert abs(force) <= 0.4 * load * (1.0 + 1e-15)
+
+
+def test_regularised_friction_is_kinetic_when_fast():
+    assert sliding(3e4, 1.0)[0] == pytest.approx(-0.2 * 3e4, rel=1e-14)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
+def test_regularised_friction_creeps_at_the_stated_speed(share):
+    # A load s mu N is carried at v_reg atanh(s): no true stick.
+    force = regularised_friction(3e4, 1e-3 * math.atanh(share), 0.4, 0.4, 1e-3)[0]
+    assert force == pytest.approx(-share * 0.4 * 3e4, rel=1e-14)
+
+
+def test_friction_weakens_linearly_over_its_distance_and_stays_weak():
+    assert weakened_mu(0.4, 0.2, 1e-4, 0.0) == 0.4
+    assert weakened_mu(0.4, 0.2, 1e-4, 2.5e-5) == pytest.approx(0.35, rel=1e-14)
+    assert weakened_mu(0.4, 0.2, 1e-4, 1e-4) == 0.2
+    assert weakened_mu(0.4, 0.2, 1e-4, 1.0) == 0.2
+
+
+def test_without_a_distance_friction_weakens_at_once():
+    assert weakened_mu(0.4, 0.2, 0.0, 0.0) == 0.2

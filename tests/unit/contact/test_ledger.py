@@ -1,0 +1,75 @@
+"""Terms of the energy ledger for motions whose heat is known in closed form."""
+
+import numpy as np
+import pytest
+
+from contact.interface.laws import ELASTIC_STICK
+from contact.interface.solver import Contact
+from contact.stepping.ledger import contact_losses, spring_energy
+
+CONTACT = Contact(
+    normal_stiffness=np.array([2e9, 3e9]),
+    tangential_stiffness=np.array([1e9, 4e9]),
+    relaxation_time=5e-3,
+    mu_static=0.4,
+    mu_kinetic=0.2,
+    weakening=0.0,
+    friction=ELASTIC_STICK,
+    regularisation_velocity=1e-3,
+    force_scale=1e5,
+    resolution=1e-15,
+)
+
+
+def losses(points, forces, sticks=((0.0, 0.0), (0.0, 0.0)), slip=(0.0, 0.0)) -> tuple[float, float]:
+    arrays = [np.array(pair, dtype=float) for both in (points, forces, sticks) for pair in both]
+    return contact_losses(CONTACT, *arrays, np.array(slip))
+
+
+def test_springs_store_half_k_u_squared_where_the_point_is_closed():
+    points = np.array([[0.0, -1e-5], [0.0, 2e-5]])
+    sticks = np.array([3e-6, 4e-6])  # the second point is open: its stick is forgotten
+    assert spring_energy(CONTACT, points, sticks) == pytest.approx(
+        0.5 * 2e9 * (1e-5) ** 2 + 0.5 * 1e9 * (3e-6) ** 2, rel=1e-14
+    )
+
+
+def test_a_spring_alone_dissipates_nothing():
+    before, after = [[0.0, -1e-5], [0.0, -2e-5]], [[0.0, -3e-5], [0.0, -1e-5]]
+    forces = [[[0.0, 2e4], [0.0, 6e4]], [[0.0, 6e4], [0.0, 3e4]]]
+    assert losses([before, after], forces) == pytest.approx((0.0, 0.0), abs=1e-12)
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_a_dashpot_at_constant_speed_heats_by_c_v_squared(direction):
+    speed, step = direction * 1e-2, 1e-3  # > 0 into the floor
+    damping = 2e9 * 5e-3
+    depths = np.array([3e-5, 3e-5 + speed * step])
+    points = [[[0.0, -depth], [0.0, 1.0]] for depth in depths]
+    forces = [[[0.0, 2e9 * depth + damping * speed], [0.0, 0.0]] for depth in depths]
+    friction, heat = losses(points, forces)
+    assert friction == 0.0
+    assert heat == pytest.approx(damping * speed**2 * step, rel=1e-9)
+
+
+def test_a_stuck_point_heats_its_tangential_dashpot():
+    speed, step = 2e-3, 1e-3
+    damping = 1e9 * 5e-3
+    sticks = np.array([1e-6, 1e-6 + speed * step])
+    points = [[[0.0, -1e-5], [0.0, 1.0]]] * 2
+    forces = [[[-1e9 * stick - damping * speed, 2e4], [0.0, 0.0]] for stick in sticks]
+    friction, heat = losses(points, forces, [[stick, 0.0] for stick in sticks])
+    assert friction == 0.0
+    assert heat == pytest.approx(damping * speed**2 * step, rel=1e-9)
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+def test_sliding_heats_by_kinetic_friction_times_path(direction):
+    normal, slip = 5e4, direction * 2e-4
+    tangential = -direction * 0.2 * normal
+    points = [[[0.0, -normal / 2e9], [0.0, 1.0]]] * 2
+    forces = [[[tangential, normal], [0.0, 0.0]]] * 2
+    sticks = [[-tangential / 1e9, 0.0]] * 2
+    assert losses(points, forces, sticks, (slip, 0.0)) == pytest.approx(
+        (0.2 * normal * abs(slip), 0.0), abs=1e-9
+    )

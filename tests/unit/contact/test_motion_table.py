@@ -1,0 +1,179 @@
+"""Tables of base motion: exact integrals, baselines, splines, and what is refused."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
+
+from contact.motion.base_motion import TableMotion
+
+RNG = np.random.default_rng(7)
+TIMES = np.sort(RNG.uniform(0.4, 9.0, 40))
+VALUES = RNG.normal(size=40)
+
+
+def integrated(motion: TableMotion, until: float) -> np.ndarray:
+    """Displacement and velocity at `until` by an independent integration from rest, knot by knot."""
+    a, state = motion.accelerations, np.zeros(2)
+    for i in range(motion.times.size - 1):
+        low, high = motion.times[i], min(motion.times[i + 1], until)
+        if high <= low:
+            break
+
+        def rates(t, y):
+            return [y[1], np.interp(t, motion.times, a)]
+
+        state = solve_ivp(rates, (low, high), state, rtol=1e-12, atol=1e-14, method="DOP853").y[:, -1]
+    return state
+
+
+@pytest.mark.parametrize("baseline", ["none", "mean", "linear"])
+@pytest.mark.parametrize("until", [3.21, 8.5])
+def test_displacement_and_velocity_are_exact_integrals_of_the_acceleration(baseline, until):
+    motion = TableMotion(times=TIMES, values=VALUES, baseline=baseline)
+    x, v, a = motion.evaluate(np.array([until]))[:, 0]
+    assert [x, v] == pytest.approx(integrated(motion, until), rel=1e-10, abs=1e-12)
+    assert a == pytest.approx(np.interp(until, TIMES, motion.accelerations), rel=1e-12)
+
+
+def test_floor_is_at_rest_before_the_table_and_coasts_after_it():
+    motion = TableMotion(times=TIMES, values=VALUES)
+    assert (motion.evaluate(np.array([0.0, TIMES[0] - 1e-12])) == 0.0).all()
+    end, later = motion.evaluate(np.array([TIMES[-1], TIMES[-1] + 3.0])).T
+    assert end[2] == later[2] == 0.0
+    assert later[:2] == pytest.approx([end[0] + 3.0 * end[1], end[1]], rel=1e-14)
+
+
+def test_constant_acceleration_gives_the_parabola():
+    motion = TableMotion(times=np.array([0.0, 1.0, 4.0]), values=np.array([2.0, 2.0, 2.0]))
+    x, v, a = motion.evaluate(np.array([3.0]))[:, 0]
+    assert (x, v, a) == pytest.approx((9.0, 6.0, 2.0), rel=1e-14)
+    assert motion.break_times == pytest.approx([4.0])
+
+
+def test_samples_of_a_sine_converge_to_the_sine_with_order_two():
+    # x = A sin(Omega t) from rest at t = 0 in the frame that starts with its velocity: subtract A Omega t.
+    errors = []
+    for count in (51, 101, 201, 401):
+        times = np.linspace(0.0, 5.0, count)
+        motion = TableMotion(times=times, values=-0.05 * 49.0 * np.sin(7.0 * times))
+        x = motion.evaluate(times)[0] + 0.05 * 7.0 * times
+        errors.append(np.abs(x - 0.05 * np.sin(7.0 * times)).max())
+    assert np.diff(np.log2(errors)) == pytest.approx([-2.0] * 3, abs=0.1)
+
+
+def test_mean_baseline_brings_the_floor_to_rest():
+    x, v, _ = TableMotion(times=TIMES, values=VALUES + 0.3, baseline="mean").evaluate(TIMES[-1:])[:, 0]
+    assert v == pytest.approx(0.0, abs=1e-13)
+    assert abs(x) > 1e-3  # it does not bring it back: that is what `linear` is for
+
+
+def test_linear_baseline_brings_the_floor_to_rest_where_it_began():
+    drifting = VALUES + 0.3 - 0.2 * TIMES
+    x, v, _ = TableMotion(times=TIMES, values=drifting, baseline="linear").evaluate(TIMES[-1:])[:, 0]
+    assert [x, v] == pytest.approx([0.0, 0.0], abs=1e-12)
+
+
+def test_linear_baseline_removes_a_straight_line_and_keeps_what_is_orthogonal_to_it():
+    line = TableMotion(times=TIMES, values=1.5 - 0.7 * TIMES, baseline="linear")
+    assert line.peak_acceleration == pytest.approx(0.0, abs=1e-12)
+    twice = TableMotion(
+        times=TIMES,
+        values=TableMotion(times=TIMES, values=VALUES, baseline="linear").accelerations,
+        baseline="linear",
+    )
+    once = TableMotion(times=TIMES, values=VALUES, baseline="linear")
+    assert twice.accelerations == pytest.approx(once.accelerations, abs=1e-12)
+
+
+def test_linear_baseline_is_the_least_squares_line():
+    residual = TableMotion(times=TIMES, values=VALUES, baseline="linear").accelerations
+    fine = np.linspace(TIMES[0], TIMES[-1], 200_001)
+
+    def squares(offset: float, slope: float) -> float:
+        return float(np.sum((np.interp(fine, TIMES, residual) + offset + slope * (fine - fine.mean())) ** 2))
+
+    best = squares(0.0, 0.0)
+    for offset, slope in ((1e-3, 0.0), (-1e-3, 0.0), (0.0, 1e-3), (0.0, -1e-3)):
+        assert squares(offset, slope) > best
+
+
+def test_peak_acceleration_is_the_largest_sample_after_the_baseline():
+    assert TableMotion(times=TIMES, values=VALUES).peak_acceleration == np.abs(VALUES).max()
+    shifted = TableMotion(times=np.array([0.0, 1.0, 2.0]), values=np.array([1.0, 3.0, 1.0]), baseline="mean")
+    assert shifted.peak_acceleration == pytest.approx(1.0, rel=1e-14)  # the mean over time is 2
+
+
+def test_displacement_table_passes_through_its_samples_and_is_smooth():
+    motion = TableMotion(times=TIMES, values=0.01 * VALUES, quantity="displacement")
+    assert motion.evaluate(TIMES)[0] == pytest.approx(0.01 * VALUES, abs=1e-14)
+    left, right = motion.evaluate(TIMES - 1e-10), motion.evaluate(TIMES + 1e-10)
+    assert right == pytest.approx(left, rel=1e-6, abs=1e-6)  # no jump, in acceleration either (natural ends)
+
+
+def test_displacement_table_of_a_straight_line_moves_at_constant_velocity_everywhere():
+    # The only cubic without curvature at both ends is a straight line.
+    motion = TableMotion(times=TIMES, values=0.2 - 0.1 * TIMES, quantity="displacement")
+    times = np.array([0.0, 0.5, 4.4, 12.0])  # before, within and after
+    x, v, a = motion.evaluate(times)
+    assert x == pytest.approx(0.2 - 0.1 * times, rel=1e-12)
+    assert v == pytest.approx([-0.1] * 4, rel=1e-12)
+    assert a == pytest.approx([0.0] * 4, abs=1e-10)
+
+
+@pytest.mark.parametrize("count", [2, 3, 40])
+def test_a_displacement_table_is_the_natural_spline(count):
+    times, values = TIMES[:count], VALUES[:count]
+    motion = TableMotion(times=times, values=values, quantity="displacement")
+    spline = CubicSpline(times, values, bc_type="natural")
+    within = np.linspace(times[0], times[-1], 201)
+    for order, row in enumerate(motion.evaluate(within)):
+        largest = np.abs(spline(within, order)).max()
+        assert row == pytest.approx(spline(within, order), rel=1e-9, abs=1e-9 * largest)
+
+
+def test_displacement_samples_of_a_sine_give_its_acceleration():
+    times = np.linspace(0.0, 4.0 * math.pi / 7.0, 400)  # two periods: natural ends are exact for a sine
+    motion = TableMotion(times=times, values=0.05 * np.sin(7.0 * times), quantity="displacement")
+    inner = np.linspace(0.01, 1.7, 77)
+    assert motion.evaluate(inner)[2] == pytest.approx(-2.45 * np.sin(7.0 * inner), abs=1e-3)
+    assert motion.peak_acceleration == pytest.approx(2.45, rel=1e-3)
+
+
+def test_time_scale_is_ten_spacings():
+    assert TableMotion(times=np.arange(0.0, 1.0, 0.01), values=np.zeros(100)).time_scale == pytest.approx(0.1)
+
+
+def test_table_keeps_its_own_copy_of_the_samples():
+    times, values = TIMES.copy(), VALUES.copy()
+    motion = TableMotion(times=times, values=values)
+    values[:] = 99.0
+    assert motion.peak_acceleration == np.abs(VALUES).max()
+
+
+@pytest.mark.parametrize(
+    ("times", "values", "words"),
+    [
+        ([0.0, 2.0, 1.0], [0.0, 1.0, 2.0], r"sample 3 \(1.0 s\) is earlier than sample 2"),
+        ([0.0, 1.0, 1.0], [0.0, 1.0, 2.0], r"time 1.0 s occurs twice \(samples 2 and 3\)"),
+        ([0.0, math.nan, 1.0], [0.0, 1.0, 2.0], "time of sample 2 is not a finite number"),
+        ([0.0, 1.0, 2.0], [0.0, 1.0, math.inf], "value of sample 3 is not a finite number"),
+        ([0.0], [1.0], "two samples or more are needed, got 1"),
+        ([0.0, 1.0], [1.0], "of one length"),
+    ],
+)
+def test_bad_samples_are_refused_each_with_its_own_message(times, values, words):
+    with pytest.raises(ValueError, match=words):
+        TableMotion(times=np.array(times), values=np.array(values))
+
+
+def test_unknown_words_and_a_baseline_for_displacements_are_refused():
+    for change, word in (
+        ({"quantity": "velocity"}, "quantity"),
+        ({"baseline": "cubic"}, "baseline"),
+        ({"quantity": "displacement", "baseline": "mean"}, "corrects accelerations"),
+    ):
+        with pytest.raises(ValueError, match=word):
+            TableMotion(times=TIMES, values=VALUES, **change)

@@ -1,0 +1,91 @@
+import math
+
+import numpy as np
+import pytest
+
+from contact.reference.event_driven import Guard, first_crossing, flow, sample, turning_point
+from contact.reference.floor_acceleration import still_floor
+
+
+def crossing_of(margin, start=0.0, end=1.0):
+    guard = Guard(name="event", margin=lambda state, a: margin(float(state[0])))
+    return first_crossing([guard], lambda t: np.array([t]), lambda t: 0.0, start, end)
+
+
+def test_a_crossing_is_found_to_rounding_and_on_its_far_side():
+    time, name = crossing_of(lambda t: math.cos(3.0 * t))
+    assert name == "event"
+    assert time == pytest.approx(math.pi / 6.0, abs=1e-15)
+    assert math.cos(3.0 * time) < 0.0
+
+
+@pytest.mark.parametrize("centre", [0.01, 0.3, 0.4375, 0.99])
+def test_a_limit_exceeded_between_samples_is_seen(centre):
+    # 1e-8 below zero for 2e-4 of the step, an eighth of which lies between samples.
+    time, _ = crossing_of(lambda t: (t - centre) ** 2 - 1e-8)
+    assert time == pytest.approx(centre - 1e-4, abs=1e-12)
+
+
+def test_a_limit_only_touched_is_no_event():
+    assert crossing_of(lambda t: (t - 0.3) ** 2 + 1e-8) is None
+
+
+def test_a_margin_that_starts_from_zero_and_rises_is_no_event():
+    assert crossing_of(lambda t: t * (2.0 - t)) is None
+
+
+def test_a_hop_shorter_than_a_sample_is_not_stepped_over():
+    time, _ = crossing_of(lambda t: t * (1e-5 - t))
+    assert time == pytest.approx(1e-5, rel=1e-12)
+
+
+def test_the_earliest_of_several_guards_wins():
+    guards = [
+        Guard(name="late", margin=lambda state, a: 0.51 - float(state[0])),
+        Guard(name="early", margin=lambda state, a: 0.505 - float(state[0])),
+    ]
+    crossing = first_crossing(guards, lambda t: np.array([t]), lambda t: 0.0, 0.0, 1.0)
+    assert crossing is not None
+    assert crossing[1] == "early"
+
+
+def throw(duration):
+    return flow(
+        rate=lambda state, a: np.array([state[1], -10.0]),
+        guards=[Guard(name="lands", margin=lambda state, a: float(state[0]))],
+        state=np.array([0.0, 5.0]),
+        start=0.0,
+        end=duration,
+        floor=still_floor(),
+        scale=np.ones(2),
+        regime=3,
+    )
+
+
+def test_a_thrown_body_lands_when_the_parabola_says():
+    passage = throw(5.0)
+    assert passage.event == "lands"
+    assert passage.time == pytest.approx(1.0, abs=1e-13)
+    assert passage.state == pytest.approx([0.0, -5.0], abs=1e-12)
+
+
+def test_the_end_asked_for_is_no_event():
+    passage = throw(0.5)
+    assert passage.event is None
+    assert passage.time == 0.5
+    assert passage.state == pytest.approx([1.25, 0.0], abs=1e-13)
+
+
+def test_samples_outside_the_motion_are_not_made_up():
+    states, regimes = sample(throw(5.0).pieces, np.array([-0.1, 0.0, 0.25, 1.1]), 2)
+    assert np.isnan(states[[0, 3]]).all()
+    assert states[1] == pytest.approx([0.0, 5.0])
+    assert states[2] == pytest.approx([0.9375, 2.5], abs=1e-13)
+    assert regimes.tolist() == [-1, 3, 3, -1]
+
+
+def test_the_turning_point_of_the_parabola():
+    turns = [turning_point(piece, component=1) for piece in throw(5.0).pieces]
+    (turn,) = [turn for turn in turns if turn is not None]
+    assert turn[0] == pytest.approx(0.5, abs=1e-13)
+    assert turn[1][0] == pytest.approx(1.25, abs=1e-13)

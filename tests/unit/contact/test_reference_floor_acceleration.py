@@ -1,0 +1,69 @@
+import math
+
+import pytest
+
+from contact.reference.floor_acceleration import (
+    FloorAcceleration,
+    half_sine_pulse,
+    one_sine_pulse,
+    rectangular_pulse,
+    sampled_floor,
+    sine_floor,
+)
+
+
+def test_acceleration_of_the_sine_is_the_second_derivative_of_its_displacement():
+    floor = sine_floor(amplitude=0.05, angular_frequency=7.0, phase=0.4)
+    h = 1e-4
+
+    def displacement(t):
+        return 0.05 * math.sin(7.0 * t + 0.4)
+
+    difference = (displacement(0.3 + h) - 2 * displacement(0.3) + displacement(0.3 - h)) / h**2
+    assert floor.just_after(0.3) == pytest.approx(difference, rel=1e-6)
+
+
+def test_each_side_of_a_jump_has_its_own_limit():
+    # 0.1 + 0.2 does not fall on a round number: the end must still belong to the pulse seen from before.
+    floor = rectangular_pulse(peak=3.0, duration=0.2, delay=0.1)
+    before, during, after = floor.segments(0.0, 1.0)
+    assert [before.acceleration(t) for t in (0.0, 0.1)] == [0.0, 0.0]
+    assert [during.acceleration(t) for t in (during.start, 0.2, during.end)] == [3.0, 3.0, 3.0]
+    assert [after.acceleration(t) for t in (after.start, 1.0)] == [0.0, 0.0]
+    assert floor.just_after(0.1) == 3.0
+    assert floor.just_after(0.1 + 0.2) == 0.0
+
+
+def test_pulses_have_the_shape_of_their_name():
+    half, one = half_sine_pulse(peak=2.0, duration=0.6), one_sine_pulse(peak=2.0, duration=0.6)
+    assert half.just_after(0.3) == pytest.approx(2.0)
+    assert half.just_after(0.45) == pytest.approx(2.0 * math.sin(0.75 * math.pi))
+    assert one.just_after(0.15) == pytest.approx(2.0)
+    assert one.just_after(0.45) == pytest.approx(-2.0)
+    assert half.just_after(0.7) == one.just_after(0.7) == 0.0
+
+
+def test_samples_are_joined_by_straight_lines_and_zero_outside():
+    floor = sampled_floor([0.5, 1.0, 2.0], [1.0, 3.0, -1.0])
+    assert floor.just_after(0.2) == 0.0
+    assert floor.just_after(0.5) == pytest.approx(1.0)
+    assert floor.just_after(0.75) == pytest.approx(2.0)
+    assert floor.just_after(1.5) == pytest.approx(1.0)
+    assert floor.just_after(2.0) == 0.0
+
+
+def test_nonsense_is_refused():
+    with pytest.raises(ValueError, match="increase"):
+        FloorAcceleration(function=math.sin, break_times=(1.0, 1.0), longest_step=0.1)
+    with pytest.raises(ValueError, match="finite"):
+        FloorAcceleration(function=math.sin, break_times=(math.nan,), longest_step=0.1)
+    with pytest.raises(ValueError, match="longest_step"):
+        FloorAcceleration(function=math.sin, longest_step=0.0)
+    with pytest.raises(ValueError, match="duration"):
+        rectangular_pulse(peak=1.0, duration=0.0)
+    with pytest.raises(ValueError, match="angular_frequency"):
+        sine_floor(amplitude=1.0, angular_frequency=0.0)
+    with pytest.raises(ValueError, match="as many"):
+        sampled_floor([0.0, 1.0], [1.0])
+    with pytest.raises(ValueError, match="finite"):
+        sampled_floor([0.0, 1.0], [1.0, math.nan])

@@ -1,0 +1,202 @@
+import math
+
+import numpy as np
+import pytest
+
+from contact.reference.floor_acceleration import (
+    FloorAcceleration,
+    half_sine_pulse,
+    rectangular_pulse,
+    sine_floor,
+    still_floor,
+)
+from contact.reference.rigid_block import RigidBlock
+from contact.reference.rocking import RockingOutcome, first_swing_threshold, simulate_rocking
+
+STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
+ANGLE = STACK.slenderness_angle
+
+
+def test_a_floor_that_accelerates_toward_x_tilts_the_block_the_other_way():
+    motion = simulate_rocking(STACK, rectangular_pulse(peak=4.0, duration=0.2), duration=0.2)
+    rotation, angular_velocity = motion.at(np.array([0.2]))
+    assert rotation[0] < 0.0
+    assert angular_velocity[0] < 0.0
+
+
+@pytest.mark.parametrize("rotation", [0.3, 0.1, -0.1, -0.3])
+def test_the_equation_of_motion(rotation):
+    # rotation'' = -p^2 [sin(s al - rotation) + (a_g/g) cos(s al - rotation)], from moments about the corner.
+    floor = rectangular_pulse(peak=1.7, duration=1.0)
+    motion = simulate_rocking(STACK, floor, duration=1.0, rotation=rotation)
+    h = 1e-3
+    _, velocity = motion.at(np.array([0.1 - h, 0.1 + h]))
+    here = motion.at(np.array([0.1]))[0][0]
+    lean = math.copysign(ANGLE, rotation) - here
+    expected = -(STACK.frequency_parameter**2) * (math.sin(lean) + 1.7 / 9.81 * math.cos(lean))
+    assert (velocity[1] - velocity[0]) / (2.0 * h) == pytest.approx(expected, rel=1e-6)
+
+
+def test_energy_is_kept_between_impacts_and_lost_at_them():
+    # per I_O: w^2/2 + p^2 (cos(al - |rotation|) - cos al); an impact leaves e^2 of it.
+    motion = simulate_rocking(STACK, still_floor(), duration=3.0, rotation=0.5 * ANGLE)
+    times = np.linspace(0.0, 3.0, 301)
+    rotation, velocity = motion.at(times)
+    height = np.cos(ANGLE - np.abs(rotation)) - math.cos(ANGLE)
+    energy = 0.5 * velocity**2 + STACK.frequency_parameter**2 * height
+    impacts_before = np.searchsorted([impact.time for impact in motion.impacts], times, side="right")
+    expected = energy[0] * STACK.housner_restitution ** (2.0 * impacts_before)
+    assert len(motion.impacts) >= 3
+    assert energy == pytest.approx(expected, rel=1e-10)
+
+
+def test_without_loss_free_rocking_never_decays():
+    motion = simulate_rocking(STACK, still_floor(), duration=20.0, rotation=0.5 * ANGLE, restitution=1.0)
+    assert len(motion.peaks) > 10
+    assert [abs(peak.rotation) for peak in motion.peaks] == pytest.approx(
+        [0.5 * ANGLE] * len(motion.peaks), rel=1e-10
+    )
+
+
+def test_peaks_alternate_and_impacts_keep_the_direction_of_turning():
+    motion = simulate_rocking(STACK, still_floor(), duration=3.0, rotation=0.5 * ANGLE)
+    signs = [math.copysign(1.0, peak.rotation) for peak in motion.peaks]
+    assert signs == [(-1.0) ** (n + 1) for n in range(len(signs))]
+    for impact in motion.impacts:
+        assert impact.velocity_after == pytest.approx(STACK.housner_restitution * impact.velocity_before)
+
+
+def test_a_given_restitution_replaces_housners():
+    motion = simulate_rocking(STACK, still_floor(), duration=2.0, rotation=0.1, restitution=0.6)
+    first = motion.impacts[0]
+    assert first.velocity_after / first.velocity_before == pytest.approx(0.6, rel=1e-14)
+
+
+def test_endless_impacts_end_in_rest_at_the_sum_of_their_times():
+    # slender: quarter periods fall like e^n, so that the impacts accumulate at a finite time.
+    motion = simulate_rocking(STACK, still_floor(), duration=30.0, rotation=0.5 * ANGLE)
+    last = motion.impacts[-1]
+    assert motion.outcome is RockingOutcome.ROCK
+    assert last.velocity_after == 0.0
+    assert motion.end == 30.0
+    rotation, velocity = motion.at(np.array([last.time, 30.0]))
+    assert rotation.tolist() == velocity.tolist() == [0.0, 0.0]
+    finer = simulate_rocking(STACK, still_floor(), duration=30.0, rotation=0.5 * ANGLE, rest_energy=1e-14)
+    assert finer.impacts[-1].time == pytest.approx(last.time, abs=1e-4)
+    assert len(finer.impacts) > len(motion.impacts)
+
+
+def test_a_block_that_came_to_rest_is_lifted_again():
+    floor = half_sine_pulse(peak=4.0, duration=0.3, delay=15.0)
+    motion = simulate_rocking(STACK, floor, duration=16.0, rotation=0.5 * ANGLE)
+    quiet = motion.at(np.array([14.9]))[0][0]
+    lift = 15.0 + 0.3 / math.pi * math.asin(STACK.uplift_acceleration / 4.0)
+    assert quiet == 0.0
+    assert motion.uplifts == pytest.approx([lift], abs=1e-12)
+
+
+def test_no_rest_while_the_floor_keeps_the_block_tilted():
+    # 1.2 g tan al holds on: after every impact the block is lifted anew, toward the same side.
+    peak = 1.2 * STACK.uplift_acceleration
+    motion = simulate_rocking(
+        STACK, rectangular_pulse(peak=-peak, duration=9.0), duration=3.0, rotation=-0.1, restitution=0.0
+    )
+    assert motion.impacts[0].velocity_after == 0.0
+    assert motion.uplifts[0] == motion.impacts[0].time
+    assert motion.at(np.array([motion.uplifts[0] + 0.1]))[0][0] > 0.0
+
+
+def test_a_floor_below_uplift_leaves_it_at_rest():
+    # The stack under x = 50 mm sin(6.928 t): 2.40 < 2.698 m/s2.
+    motion = simulate_rocking(STACK, sine_floor(amplitude=0.05, angular_frequency=6.928), duration=10.0)
+    assert motion.outcome is RockingOutcome.REST
+    assert motion.largest_rotation == 0.0
+
+
+def test_uplift_that_lasts_an_instant_is_not_missed():
+    frequency = 6.928
+    amplitude = (1.0 + 1e-7) * STACK.uplift_acceleration / frequency**2
+    motion = simulate_rocking(
+        STACK, sine_floor(amplitude=amplitude, angular_frequency=frequency), duration=1.0
+    )
+    first = math.asin(1.0 / (1.0 + 1e-7)) / frequency
+    assert motion.uplifts[0] == pytest.approx(first, abs=1e-9)
+    assert motion.outcome is RockingOutcome.ROCK
+
+
+def test_mirror_image_in_mirror_image_out():
+    times = np.linspace(0.0, 8.0, 161)
+    runs = [
+        simulate_rocking(
+            STACK,
+            sine_floor(amplitude=sign * 0.1, angular_frequency=8.0),
+            duration=8.0,
+            rotation=sign * 0.02,
+            angular_velocity=sign * 0.1,
+        )
+        for sign in (1.0, -1.0)
+    ]
+    assert np.array_equal(runs[0].at(times)[0], -runs[1].at(times)[0])
+    assert np.array_equal(runs[0].at(times)[1], -runs[1].at(times)[1])
+
+
+def test_a_block_three_times_as_large_does_the_same_more_slowly():
+    # lengths x 3, times x sqrt 3, floor displacement x 3.
+    slow = math.sqrt(3.0)
+    large = RigidBlock.homogeneous(width=3.3, height=12.0)
+    small_run = simulate_rocking(STACK, sine_floor(amplitude=0.1, angular_frequency=8.0), duration=4.0)
+    large_run = simulate_rocking(
+        large, sine_floor(amplitude=0.3, angular_frequency=8.0 / slow), duration=4.0 * slow
+    )
+    times = np.linspace(0.0, 4.0, 81)
+    assert large_run.at(times * slow)[0] == pytest.approx(small_run.at(times)[0], abs=1e-10)
+
+
+def test_a_start_beyond_the_balance_point_falls_to_ninety_degrees():
+    motion = simulate_rocking(STACK, still_floor(), duration=20.0, rotation=-1.01 * ANGLE)
+    assert motion.outcome is RockingOutcome.OVERTURNED
+    assert motion.overturned_at == motion.end < 20.0
+    assert motion.largest_rotation == pytest.approx(0.5 * math.pi, abs=1e-12)
+    assert motion.at(np.array([motion.end]))[0][0] == pytest.approx(-0.5 * math.pi, abs=1e-12)
+    assert np.isnan(motion.at(np.array([motion.end + 0.1]))[0][0])
+
+
+def test_a_block_beyond_its_balance_point_can_be_brought_back():
+    # At 1.05 al the moving floor catches it: being beyond the slenderness angle is not overturning.
+    pull = rectangular_pulse(peak=1.0, duration=0.3)
+    motion = simulate_rocking(STACK, pull, duration=5.0, rotation=1.05 * ANGLE)
+    assert motion.outcome is RockingOutcome.ROCK
+    assert motion.impacts
+
+
+def test_a_break_given_away_is_paid_for_in_accuracy_only():
+    # A pulse that ends within a step: the declared break gives the impulse exactly, V = a t.
+    declared = rectangular_pulse(peak=2.0, duration=0.123)
+    hidden = FloorAcceleration(function=declared.function, longest_step=0.01)
+    ends = [
+        simulate_rocking(STACK, floor, duration=0.5, rotation=0.1).at(np.array([0.5]))[0][0]
+        for floor in (declared, hidden)
+    ]
+    assert ends[1] == pytest.approx(ends[0], abs=1e-6)
+
+
+def test_squat_block_lies_down_at_its_first_impact():
+    # 1.5 sin^2 al > 1: Housner's restitution is negative, the block cannot rock on.
+    squat = RigidBlock.homogeneous(width=2.0, height=1.0)
+    motion = simulate_rocking(squat, still_floor(), duration=2.0, rotation=0.2)
+    assert squat.housner_restitution < 0.0
+    assert motion.restitution == 0.0
+    assert len(motion.impacts) == 1
+
+
+def test_nonsense_is_refused():
+    with pytest.raises(ValueError, match="restitution"):
+        simulate_rocking(STACK, still_floor(), duration=1.0, restitution=1.1)
+    with pytest.raises(ValueError, match="90 degrees"):
+        simulate_rocking(STACK, still_floor(), duration=1.0, rotation=1.6)
+    with pytest.raises(ValueError, match="duration"):
+        simulate_rocking(STACK, still_floor(), duration=0.0)
+    with pytest.raises(ValueError, match="no change"):
+        first_swing_threshold(
+            STACK, lambda peak: rectangular_pulse(peak=peak, duration=1.0), low=3.0, high=3.1, duration=20.0
+        )

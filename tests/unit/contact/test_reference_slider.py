@@ -1,0 +1,111 @@
+import math
+
+import numpy as np
+import pytest
+
+from contact.reference.floor_acceleration import rectangular_pulse, sampled_floor, sine_floor, still_floor
+from contact.reference.sliding import RigidSlider, simulate_sliding
+
+GRAVITY = 9.81
+HALF = RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=GRAVITY)
+EVEN = RigidSlider(mu_static=0.4, mu_kinetic=0.4, gravity=GRAVITY)
+
+
+def test_the_block_is_left_behind_by_the_floor():
+    motion = simulate_sliding(HALF, rectangular_pulse(peak=8.0, duration=0.1), duration=0.1)
+    slip, velocity = motion.at(np.array([0.1]))
+    assert slip[0] == pytest.approx(-0.5 * (8.0 - 0.2 * GRAVITY) * 0.01, rel=1e-12)
+    assert velocity[0] == pytest.approx(-(8.0 - 0.2 * GRAVITY) * 0.1, rel=1e-12)
+
+
+def test_a_push_stops_after_the_distance_that_friction_allows():
+    motion = simulate_sliding(HALF, still_floor(), duration=2.0, slip_velocity=1.5)
+    assert motion.residual_slip == pytest.approx(1.5**2 / (2.0 * 0.2 * GRAVITY), rel=1e-12)
+    assert motion.intervals[0].end == pytest.approx(1.5 / (0.2 * GRAVITY), rel=1e-12)
+    assert [interval.direction for interval in motion.intervals] == [1, 0]
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_one_sided_floor_below_the_stick_limit_never_moves_it(sign):
+    # 0.2 g for 20 s with mu 0.4: true sticking, no creep at all.
+    motion = simulate_sliding(
+        EVEN, rectangular_pulse(peak=sign * 0.2 * GRAVITY, duration=20.0), duration=25.0
+    )
+    assert motion.largest_slip == 0.0
+    assert motion.strokes == ()
+
+
+def test_sticking_holds_between_kinetic_and_static_limit_but_sliding_goes_on_there():
+    # 0.3 g lies between mu_k g and mu_s g: at rest it sticks, pushed the same way it accelerates.
+    floor = rectangular_pulse(peak=-0.3 * GRAVITY, duration=5.0)
+    assert simulate_sliding(HALF, floor, duration=5.0).largest_slip == 0.0
+    pushed = simulate_sliding(HALF, floor, duration=1.0, slip_velocity=0.1)
+    assert pushed.at(np.array([1.0]))[1][0] == pytest.approx(0.1 + 0.1 * GRAVITY, rel=1e-12)
+
+
+def test_a_limit_exceeded_for_an_instant_breaks_it_loose():
+    peak = (1.0 + 1e-7) * 0.4 * GRAVITY
+    floor = sine_floor(amplitude=peak / 100.0, angular_frequency=10.0)
+    motion = simulate_sliding(HALF, floor, duration=0.5)
+    assert motion.intervals[0].end == pytest.approx(0.1 * math.asin(1.0 / (1.0 + 1e-7)), abs=1e-9)
+    assert motion.strokes
+
+
+def test_friction_heat_is_what_the_floor_puts_in():
+    # Relative frame, per mass: the work of -a_g on the slip equals mu_k g x travel plus the kinetic energy.
+    floor = sine_floor(amplitude=0.05, angular_frequency=10.0)
+    motion = simulate_sliding(EVEN, floor, duration=1.7)
+    times = np.linspace(0.0, 1.7, 20001)
+    _, velocity = motion.at(times)
+    acceleration = -0.05 * 100.0 * np.sin(10.0 * times)
+    work = np.trapezoid(-acceleration * velocity, times)
+    heat = 0.4 * GRAVITY * motion.slip_travel
+    assert work == pytest.approx(heat + 0.5 * velocity[-1] ** 2, rel=1e-5)
+    assert motion.slip_travel > 0.03
+
+
+def test_intervals_fill_the_time_and_strokes_add_up():
+    floor = sampled_floor(np.arange(0.0, 3.0, 0.02), 9.0 * np.sin(1.3 * np.arange(150) ** 1.2))
+    motion = simulate_sliding(HALF, floor, duration=4.0)
+    ends = [interval.end for interval in motion.intervals]
+    starts = [interval.start for interval in motion.intervals]
+    assert starts[0] == 0.0
+    assert ends[-1] == 4.0
+    assert starts[1:] == ends[:-1]
+    assert len(motion.strokes) > 5
+    assert sum(motion.strokes) == pytest.approx(motion.residual_slip, abs=1e-13)
+    _, velocity = motion.at(np.linspace(0.0, 4.0, 4001))
+    sticking = [i for i in motion.intervals if i.direction == 0]
+    for interval in sticking:
+        assert motion.at(np.linspace(interval.start, interval.end, 5))[1].tolist() == [0.0] * 5
+    assert np.abs(velocity).max() > 0.1
+
+
+def test_mirror_image_in_mirror_image_out():
+    times = np.linspace(0.0, 3.0, 101)
+    slips = [
+        simulate_sliding(
+            HALF,
+            sine_floor(amplitude=sign * 0.05, angular_frequency=10.0),
+            duration=3.0,
+            slip_velocity=sign * 0.2,
+        ).at(times)[0]
+        for sign in (1.0, -1.0)
+    ]
+    assert np.array_equal(slips[0], -slips[1])
+    assert np.abs(slips[0]).max() > 0.01
+
+
+def test_nonsense_is_refused():
+    with pytest.raises(ValueError, match="mu_kinetic must not exceed mu_static"):
+        RigidSlider(mu_static=0.2, mu_kinetic=0.3, gravity=GRAVITY)
+    with pytest.raises(ValueError, match="mu_static"):
+        RigidSlider(mu_static=math.nan, mu_kinetic=0.3, gravity=GRAVITY)
+    with pytest.raises(ValueError, match="mu_kinetic"):
+        RigidSlider(mu_static=0.2, mu_kinetic=-0.1, gravity=GRAVITY)
+    with pytest.raises(ValueError, match="gravity"):
+        RigidSlider(mu_static=0.2, mu_kinetic=0.1, gravity=0.0)
+    with pytest.raises(ValueError, match="duration"):
+        simulate_sliding(HALF, still_floor(), duration=-1.0)
+    with pytest.raises(ValueError, match="slip_velocity"):
+        simulate_sliding(HALF, still_floor(), duration=1.0, slip_velocity=math.inf)

@@ -1,0 +1,400 @@
+"""Figures: what is drawn are the run's numbers, whole and readable, and a run does not hang on them."""
+
+import math
+import re
+import shutil
+from xml.etree import ElementTree
+
+import matplotlib
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
+
+import fem
+import fem.run.run
+from contact.reference.floor_acceleration import still_floor
+from contact.reference.rigid_block import RigidBlock
+from contact.reference.rocking import simulate_rocking
+from fem.case.case import load_case
+from fem.figures.cache import drawings_of, write_figures
+from fem.figures.checks import band_figure
+from fem.figures.run import FIGURES, figures_of
+from fem.figures.style import (
+    STRETCHES,
+    TIME,
+    followed,
+    house_style,
+    kept_samples,
+    number,
+    svg_of,
+    time_panels,
+)
+from fem.html.page import svg_element
+from fem.model.container import discretise
+from fem.results.reader import OpenedRun
+from fem.run.run import RunOptions, run_case
+from fem.runtime.progress import SilentReporter
+
+QUICK = ("solver.model=rigid", "output.fields_s=0")
+ALWAYS = {*FIGURES, "modes"} - {"band", "rigid_check", "joints"}
+#: driven rocking with a check and a band, a fall, a slide, a container at rest on a floor that does not move
+CASES = {
+    "rocking": ("rocking", "solver.duration_s=3"),
+    "overturning": ("overturning",),
+    "sliding": ("sliding", "solver.duration_s=2"),
+    "rest": ("seed_box", "motion.kind=none", "solver.duration_s=0.5"),
+}
+
+
+class Collecting(SilentReporter):
+    """Keeps what it is told."""
+
+    def __init__(self):
+        self.messages = []
+
+    def message(self, text):
+        self.messages.append(text)
+
+
+def run_into(folder, name, *overrides, reporter=None, **options):
+    case = load_case(name, [*QUICK, *overrides])
+    options = {"band": False} | options
+    run_case(case, case_text=case.text, folder=folder, options=RunOptions(**options), reporter=reporter)
+    return fem.open_run(folder)
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """One run a name in CASES, with its figures drawn by the run itself."""
+    place = tmp_path_factory.mktemp("figures")
+    checked = {"check_rigid": True, "band": True}
+    return {
+        name: run_into(place / name, *case, **(checked if name == "rocking" else {}))
+        for name, case in CASES.items()
+    }
+
+
+@pytest.fixture(scope="module")
+def drawn(runs):
+    return {name: figures_of(run) for name, run in runs.items()}
+
+
+def changed(run, **blocks):
+    """The same run with other blocks in its result."""
+    return OpenedRun(place=run.place, result=run.result | blocks)
+
+
+def lines(axes, label):
+    return [line for line in axes.lines if str(line.get_label()).startswith(label)]
+
+
+def test_every_run_leaves_its_figures_as_svg(runs):
+    for name, run in runs.items():
+        wanted = (
+            {*FIGURES, "modes"}
+            if name == "rocking"
+            else ALWAYS | ({"joints"} if run.history.joints else set())
+        )
+        assert {path.stem for path in run.place.figures.glob("*.svg")} == wanted
+        for path in run.place.figures.glob("*.svg"):
+            root = ElementTree.parse(path).getroot()
+            assert root.tag == "{http://www.w3.org/2000/svg}svg"
+            assert path.stat().st_size < 200_000
+
+
+def test_the_same_run_gives_the_same_bytes(runs):
+    before = {path: path.read_bytes() for path in runs["rocking"].place.figures.iterdir()}
+    run = fem.open_run(runs["rocking"].folder)
+    write_figures(run, discretise(run.case))
+    assert {path: path.read_bytes() for path in runs["rocking"].place.figures.iterdir()} == before
+
+
+def test_the_figures_in_the_folder_serve_a_report_as_long_as_they_are_those_of_the_run(
+    runs, tmp_path, monkeypatch
+):
+    folder = tmp_path / "r"
+    shutil.copytree(runs["rocking"].folder, folder)
+    run = fem.open_run(folder)
+    anew = []
+    monkeypatch.setattr("fem.figures.run.figures_of", lambda run: anew.append(run) or {})
+    container = discretise(run.case)
+
+    def names():
+        return list(drawings_of(run, container))
+
+    assert names() == [*FIGURES, "modes"] and not anew
+    svg = run.place.figures / "slip.svg"
+    before = svg.read_text()
+    for path, text in (
+        (svg, before.replace("<g", "<script/><g", 1)),
+        (run.place.drawn, "{}"),
+        (run.place.history, run.place.history.read_text() + "\n"),
+        (run.place.drawn, run.place.drawn.read_text().replace("sources", "other sources")),
+        (run.place.drawn, run.place.drawn.read_text().replace('"slip"', '"../figures/slip"')),
+    ):
+        whole = path.read_text()
+        path.write_text(text)
+        assert (
+            names() == ["modes"] and len(anew) == 1
+        )  # the others would be drawn anew, which is not tried here
+        anew.clear()
+        path.write_text(whole)
+    assert len(names()) > 1
+    svg.unlink()
+    assert names() == ["modes"]
+
+
+def test_axes_carry_units_and_no_text_is_cut_off(drawn):
+    for name, figures in drawn.items():
+        for kind, figure in figures.items():
+            canvas = FigureCanvasAgg(figure)
+            with house_style():
+                canvas.draw()
+            for axes in figure.axes:
+                rows = axes.get_ylabel() == ""  # names of states or of energies stand there
+                assert rows or re.search(r"\[.+\]$", axes.get_ylabel()), (name, kind)
+                assert axes.get_xlabel() == "" or re.search(r"\[.+\]$", axes.get_xlabel()), (name, kind)
+            assert re.search(r"\[.+\]$", figure.axes[-1].get_xlabel()), (name, kind)
+            outer = figure.bbox.padded(1.0)
+            for text in figure.findobj(Text):
+                if text.get_visible() and text.get_text() and text.get_window_extent().width > 0.0:
+                    box = text.get_window_extent(canvas.get_renderer())
+                    inside = (
+                        outer.x0 <= box.x0
+                        and box.x1 <= outer.x1
+                        and outer.y0 <= box.y0
+                        and box.y1 <= outer.y1
+                    )
+                    assert inside or _is_tick_out_of_range(text, figure), (name, kind, text.get_text())
+
+
+def _is_tick_out_of_range(text, figure):
+    """Tick labels beyond the ends of an axis exist, and are not drawn."""
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            low, high = sorted(axis.get_view_interval())
+            for tick in axis.get_major_ticks():
+                if text in (tick.label1, tick.label2) and not low <= tick.get_loc() <= high:
+                    return True
+    return False
+
+
+def test_the_largest_rotation_is_on_the_curve_in_degrees(runs, drawn):
+    for name in ("rocking", "overturning"):
+        (curve,) = lines(drawn[name]["rotation"].axes[0], "rigid model")
+        largest = np.abs(runs[name].history["rotation_rad"]).max()
+        assert np.abs(curve.get_ydata()).max() == pytest.approx(math.degrees(largest), rel=1e-12)
+
+
+def test_the_slenderness_angle_is_marked_or_said_to_be_off_the_scale(runs, drawn):
+    angle = math.degrees(math.atan(1.1 / 4.0))
+    axes = drawn["rocking"]["rotation"].axes[0]
+    assert lines(axes, "slenderness")[0].get_ydata() == pytest.approx([angle, angle], rel=1e-6)
+    low, high = axes.get_ylim()
+    assert low < -angle < angle < high
+    far = drawn["rest"]["rotation"].axes[0]
+    assert "far off the scale" in lines(far, "slenderness")[0].get_label()
+    # Rounding in a container at rest is not blown up to look like motion.
+    assert far.get_ylim()[1] >= math.degrees(0.01 * runs["rest"].slenderness_angle)
+
+
+def test_the_rigid_block_stands_beside_the_run(runs, drawn):
+    (block,) = lines(drawn["rocking"]["rotation"].axes[0], "rigid block")
+    expected = np.degrees(runs["rocking"].rigid_check["analytic_rotation_rad"])
+    assert np.nanmax(block.get_ydata()) == pytest.approx(np.nanmax(expected), rel=1e-12)
+    assert lines(drawn["overturning"]["rotation"].axes[0], "rigid block") == []
+    difference = drawn["rocking"]["rigid_check"].axes[1].lines
+    assert any(np.ptp(line.get_ydata()) > 0.0 for line in difference)
+
+
+@pytest.mark.parametrize(
+    ("meaningful", "words"), [(True, "A fair comparison"), (False, "No fair comparison: it is squat")]
+)
+def test_the_rigid_check_says_whether_it_means_anything(runs, meaningful, words):
+    run = runs["rocking"]
+    check = run.result["rigid_check"] | {
+        "meaningful": meaningful,
+        "reasons": [] if meaningful else ["it is squat"],
+    }
+    with house_style():
+        figure = FIGURES["rigid_check"](changed(run, rigid_check=check))
+    assert any(text.get_text().startswith(words) for text in figure.texts)
+
+
+def test_a_free_block_returns_from_within_the_curve_of_the_phase_portrait(drawn):
+    (bound,) = lines(drawn["rocking"]["phase_portrait"].axes[0], "a free rigid block")
+    tilt, rate = np.radians(bound.get_xdata()), np.radians(bound.get_ydata())
+    block = RigidBlock.homogeneous(width=1.1, height=4.0)
+    for index in (60, 100, 140):  # of the upper half: falling back, upright, tilted away
+        for factor, falls in ((0.98, False), (1.02, True)):
+            motion = simulate_rocking(
+                block,
+                still_floor(),
+                duration=20.0,
+                rotation=abs(tilt[index]),
+                angular_velocity=factor * rate[index],
+            )
+            assert (motion.overturned_at is not None) == falls, (index, factor)
+
+
+def test_forces_of_impacts_are_cut_off_and_told(runs, drawn):
+    normal = 1e-3 * runs["rocking"].history["normal_force_N"]
+    figure = drawn["rocking"]["forces"]
+    assert normal.max() > figure.axes[0].get_ylim()[1]
+    assert any(number(normal.max(), 4) in text.get_text() for text in figure.texts)
+    marks = [line for line in figure.axes[0].lines if line.get_marker() == "^"]
+    assert len(marks[0].get_xdata()) > 0
+    assert not any("beyond the scale" in text.get_text() for text in drawn["rest"]["forces"].texts)
+
+
+def test_the_energy_balances_at_every_instant(runs, drawn):
+    panel = drawn["rocking"]["energy"].axes[1]
+    work, stored, *taken = (
+        1e3 * lines(panel, name)[0].get_ydata()
+        for name in ("work", "stored", "friction", "contact damping", "material damping")
+    )
+    history = runs["rocking"].history
+    assert work.max() > 100.0  # J: the floor does work
+    assert work - stored - sum(taken) == pytest.approx(history["imbalance_J"], abs=1e-6)
+    # Of what is stored, the contact springs hold the rest: at the start half the weight times its sinking.
+    seen = sum(history[name] - history[name][0] for name in ("kinetic_J", "strain_J", "potential_J"))
+    at_rest = 0.5 * 98100.0 * runs["rocking"].result["numerics"]["static_penetration_m"]
+    springs = stored - seen + at_rest
+    assert springs.min() > -1e-6 and np.median(springs) < 3.0 * at_rest < springs.max()
+
+
+def test_what_bolts_hold_is_drawn_from_the_instant_that_an_unbolted_joint_opens_or_slides(runs, drawn):
+    run, figure = runs["rocking"], drawn["rocking"]["joints"]
+    joints = run.result["joints"]
+    tension, shear = figure.axes[:2]
+    for fill, key, first in (
+        (tension.collections[0], "bolt_tension_left_N", None),
+        (tension.collections[1], "bolt_tension_right_N", None),
+        (shear.collections[0], "bolt_shear_N", "slides_at_s"),
+    ):
+        time, force = fill.get_paths()[0].vertices.T
+        assert 1e3 * np.abs(force).max() == pytest.approx(max(joint[key] for joint in joints))
+        if first:
+            assert time[force != 0.0].min() == min(joint[first] for joint in joints if joint[first])
+    held = [fill.get_paths()[0].vertices for fill in tension.collections]
+    opened = min(path[path[:, 1] != 0.0, 0].min() for path in held)
+    assert opened == min(joint["opens_at_s"] for joint in joints if joint["opens_at_s"])
+    assert "joints" not in drawn["sliding"]  # one box
+
+
+def test_ranges_of_joint_forces_are_those_of_the_table(runs, drawn):
+    run, figure = runs["rocking"], drawn["rocking"]["joints"]
+    normal = figure.axes[-3]
+    for bar, joint in zip(normal.containers[0], run.result["joints"], strict=True):
+        assert 1e3 * bar.get_x() == pytest.approx(joint["min_normal_N"])
+        assert 1e3 * (bar.get_x() + bar.get_width()) == pytest.approx(joint["max_normal_N"])
+
+
+def test_a_band_shows_every_member_the_fallen_above_the_slenderness_angle(runs):
+    member = {"normal_penalty_Pa_m": 1e9, "damping_ratio": 2.0, "outcome": "rock", "rotation_ratio": 0.4}
+    fallen = {"normal_penalty_Pa_m": 3e9, "outcome": "overturned", "rotation_ratio": 5.9}
+    failed = {"damping_ratio": 0.5, "outcome": None, "rotation_ratio": None}
+    members = [member, member | fallen, member | failed]
+    band = {
+        "outcomes": ["rock", "overturned"],
+        "rotation_ratio": [0.4, 5.9],
+        "unsure": True,
+        "members": members,
+    }
+    with house_style():
+        figure = band_figure(changed(runs["rocking"], verdict={"band": band}))
+    axes = figure.axes[0]
+    places = sorted(line.get_ydata()[0] for line in axes.lines if len(line.get_xdata()) == 1)
+    assert places[:2] == [0.0, 0.4] and 1.0 < places[2] < axes.get_ylim()[1]
+    assert any("unsure" in text.get_text() for text in figure.texts)
+
+
+def test_a_run_that_is_not_whole_says_so_in_every_title(runs):
+    for name, figure in figures_of(changed(runs["rocking"], status="failed")).items():
+        if name in ALWAYS - {"base_motion"}:
+            assert "(failed)" in figure.texts[0].get_text(), name
+
+
+def test_no_peak_is_lost_in_a_long_curve():
+    values = np.sin(np.linspace(0.0, 60.0, 200_000))
+    values[[1234, 150_000]] = 7.0, -8.0
+    kept = kept_samples(values)
+    assert {0, 1234, 150_000, 199_999} <= set(kept.tolist())
+    assert len(kept) <= 4 * STRETCHES
+    assert (np.diff(kept) > 0).all()
+    assert kept_samples(values[:1000]).tolist() == list(range(1000))
+    both = kept_samples(values, np.roll(values, 5))
+    assert {1234, 1239} <= set(both.tolist())
+    values[100:] = np.nan  # a block no longer followed
+    assert kept_samples(values)[-1] == 199_999
+
+
+def test_a_panel_over_time_tells_where_it_lies():
+    with house_style():
+        figure, axes = time_panels((1.0, 1.0), states=("rest",))
+        axes[0].plot([2.0, 6.0], [0.0, 1.0])
+    svg = svg_of(figure)
+    place = followed(figure)
+    assert (place["kind"], place["x"]) == ("time", [2.0, 6.0])
+    # The frame of the axes in the SVG, whose y points down.
+    size = [float(figure.get_size_inches()[i]) * 72.0 for i in (0, 1)]
+    spine = re.search(r'id="patch_2">\s*<path d="M ([\d.]+) ([\d.]+)', svg)
+    assert float(spine[1]) / size[0] == pytest.approx(place["left"], abs=1e-4)
+    upper, lower = (panel.get_position() for panel in axes[:2])
+    assert 1.0 - float(spine[2]) / size[1] == pytest.approx(upper.y0, abs=1e-4)
+    assert (place["top"], place["bottom"]) == (upper.y1, lower.y0) and upper.y0 > lower.y1
+    assert axes[-1].get_xlabel() == TIME
+
+
+def test_a_cursor_follows_every_figure_over_time_and_the_phase_portrait(runs):
+    run = runs["rocking"]
+    for drawing in drawings_of(run, discretise(run.case)).values():
+        kind = {"phase_portrait": "plane", "band": None, "modes": None}.get(drawing.name, "time")
+        assert (drawing.followed or {"kind": None})["kind"] == kind, drawing.name
+
+
+def test_figures_in_one_page_share_no_id(drawn):
+    pages = [svg_element(svg_of(drawn["rest"][name]), label=name, prefix=name) for name in ("slip", "uplift")]
+    ids = [set(re.findall(r'\bid="([^"]+)"', page)) for page in pages]
+    assert ids[0] and not ids[0] & ids[1]
+    for page, known in zip(pages, ids, strict=True):
+        assert set(re.findall(r'(?:href="#|url\(#)([^")]+)', page)) <= known
+
+
+def test_drawing_leaves_the_user_s_matplotlib_alone(runs):
+    before = dict(matplotlib.rcParams)
+    figures_of(runs["rest"])
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_figures_can_be_left_out(tmp_path):
+    run = run_into(tmp_path / "r", *CASES["rest"], "output.figures=false")
+    assert not run.place.figures.exists()
+
+
+def test_a_finished_run_without_figures_gets_them_and_is_not_computed_again(tmp_path):
+    run_into(tmp_path / "r", *CASES["rest"], "output.figures=false")
+    before = (tmp_path / "r" / "run.json").read_bytes()
+    run = run_into(tmp_path / "r", *CASES["rest"])
+    assert {path.stem for path in run.place.figures.glob("*.svg")} == ALWAYS
+    assert (tmp_path / "r" / "run.json").read_bytes() == before
+
+
+def test_a_fault_in_the_drawing_does_not_spoil_a_run(tmp_path, monkeypatch):
+    def full(run, container):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(fem.run, "write_figures", full)
+    reporter = Collecting()
+    run = run_into(tmp_path / "r", *CASES["rest"], reporter=reporter)
+    assert run.status == "completed"
+    assert "figures were not drawn (OSError: [Errno 28] No space left on device)" in reporter.messages[-1]
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(1349.6, "1350"), (-0.00184, "−0.00184"), (0.0, "0"), (5e-9, "5 × 10⁻⁹"), (15.376, "15.4")],
+)
+def test_numbers_are_for_people(value, text):
+    assert number(value) == text

@@ -1,0 +1,145 @@
+"""Static checks: each provision against its own statement in words or in closed form."""
+
+import json
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fem.model import static_checks as rules
+from fem.model.static_checks import CheckResult, static_checks
+
+STATIC_KEYS = {
+    "weight_N",
+    "centroid_m",
+    "inertia_kg_m2",
+    "slenderness_angle_rad",
+    "frequency_parameter_1_s",
+    "period_eq2_s",
+    "period_eq3_s",
+    "sliding_limit_static_N",
+    "sliding_limit_kinetic_N",
+    "restoring_moment_Nm",
+    "uplift_acceleration_m_s2",
+    "housner_restitution",
+    "housner_credible",
+    "own_motion",
+    "code",
+    "code_q1",
+    "method_applicable",
+    "clause",
+}
+ACTION_KEYS = {"base_shear_N", "tilting_moment_Nm", "utilisation_sliding", "utilisation_overturning"}
+
+
+def block(width=1.0, height=4.0, mass=1000.0, **changes):
+    arguments = {
+        "mass": mass,
+        "centroid": 0.5 * height,
+        "inertia": mass * (width**2 + height**2) / 12.0,
+        "width": width,
+        "gravity": 9.81,
+        "mu_static": 0.4,
+        "mu_kinetic": 0.2,
+        "peak_floor_acceleration": 3.0,
+        "ground_acceleration": 1.6,
+        "soil_factor": 1.5,
+        "corner_period": 0.8,
+        "behaviour_factor": 1.5,
+        "importance_factor": 1.0,
+    }
+    return static_checks(**(arguments | changes))
+
+
+def test_demand_equal_to_capacity_passes():
+    assert CheckResult(demand=5.0, capacity=5.0, unit="N", clause="").passed
+    assert not CheckResult(demand=math.nextafter(5.0, 6.0), capacity=5.0, unit="N", clause="").passed
+
+
+def test_no_capacity_is_an_infinite_utilisation_and_no_demand_none():
+    assert CheckResult(demand=1.0, capacity=0.0, unit="N", clause="").utilisation == math.inf
+    assert CheckResult(demand=0.0, capacity=0.0, unit="N", clause="").utilisation == 0.0
+
+
+def test_a_floor_without_friction_has_null_for_its_utilisation_in_json():
+    static = block(mu_static=0.0, mu_kinetic=0.0).to_dict()
+    assert static["own_motion"]["utilisation_sliding"] is None
+    json.dumps(static, allow_nan=False)
+
+
+def test_uplift_acceleration_is_where_the_own_motion_just_overturns():
+    uplift = block().uplift_acceleration
+    assert block(peak_floor_acceleration=uplift).own_motion.overturning.utilisation == pytest.approx(1.0)
+    assert uplift == pytest.approx(9.81 / 4.0)
+
+
+def test_sliding_begins_at_friction_times_gravity():
+    at_limit = block(peak_floor_acceleration=0.4 * 9.81)
+    assert at_limit.own_motion.sliding.utilisation == pytest.approx(1.0)
+    assert at_limit.sliding_limit_kinetic == pytest.approx(0.5 * at_limit.sliding_limit_static)
+
+
+def test_code_with_behaviour_factor_one_is_the_code_times_the_behaviour_factor():
+    static = block(behaviour_factor=2.5)
+    assert static.code_q1.sliding.demand == pytest.approx(2.5 * static.code.sliding.demand)
+    assert static.code_q1.overturning.demand == pytest.approx(2.5 * static.code.overturning.demand)
+
+
+def test_plateau_base_shear_of_eq_17():
+    # 2500 kg, 1.6 m/s2, S = 1.5, q = 1.5, gamma_I = 1.0: 10 kN; gamma_I 1.4: 14 kN.
+    given = {"mass": 2500.0, "ground_acceleration": 1.6, "soil_factor": 1.5, "behaviour_factor": 1.5}
+    assert rules.plateau_base_shear(**given) == pytest.approx(10e3)
+    assert rules.plateau_base_shear(**given, importance_factor=1.4) == pytest.approx(14e3)
+
+
+@given(width=st.floats(0.05, 20.0), height=st.floats(0.05, 20.0))
+def test_homogeneous_block_has_housners_closed_forms(width, height):
+    # Housner (1963): p^2 = 3 g/(4 R), e = 1 - 3/2 sin^2 al.
+    static = block(width=width, height=height)
+    arm, angle = math.hypot(width, height) / 2.0, math.atan2(width, height)
+    assert static.slenderness_angle == pytest.approx(angle, rel=1e-12)
+    assert static.frequency_parameter == pytest.approx(math.sqrt(3 * 9.81 / (4 * arm)), rel=1e-12)
+    assert static.housner_restitution == pytest.approx(1.0 - 1.5 * math.sin(angle) ** 2, rel=1e-9, abs=1e-12)
+    assert static.housner_credible == (static.housner_restitution >= 0.5)
+
+
+@given(factor=st.floats(0.01, 100.0))
+def test_utilisations_do_not_depend_on_the_mass(factor):
+    one, other = block(), block(mass=1000.0 * factor)
+    for action in ("own_motion", "code", "code_q1"):
+        for check in ("sliding", "overturning"):
+            first, second = (getattr(getattr(static, action), check) for static in (one, other))
+            assert second.utilisation == pytest.approx(first.utilisation, rel=1e-12)
+            assert second.demand == pytest.approx(factor * first.demand, rel=1e-12)
+
+
+def test_period_of_a_point_mass_takes_the_initial_rotation_or_half_the_slenderness_angle():
+    # Eq. (2): T = 8 sqrt(phi_0 r^2/(a g)); the sign of the rotation plays no part.
+    static = block()
+    half = 0.5 * static.slenderness_angle
+    assert static.period_eq2 == pytest.approx(8.0 * math.sqrt(half * (0.25 + 4.0) / (1.0 * 9.81)))
+    assert block(initial_rotation=-half).period_eq2 == static.period_eq2
+    assert block(initial_rotation=0.25 * half).period_eq2 == pytest.approx(0.5 * static.period_eq2)
+
+
+def test_lateral_force_method_is_limited_to_two_seconds_and_four_control_periods():
+    # EN 1998-1:2004, 4.3.3.2.1 (2) a): T1 <= 4 T_C and T1 <= 2.0 s.
+    assert rules.method_applicable(period=2.0, corner_period=0.8).passed
+    assert not rules.method_applicable(period=2.001, corner_period=0.8).passed
+    assert rules.method_applicable(period=1.6, corner_period=0.4).passed
+    assert not rules.method_applicable(period=1.7, corner_period=0.4).passed
+
+
+def test_dictionary_has_the_keys_of_a_result():
+    static = block().to_dict()
+    assert set(static) == STATIC_KEYS
+    assert {key for action in ("own_motion", "code", "code_q1") for key in static[action]} == ACTION_KEYS
+    assert json.loads(json.dumps(static, allow_nan=False)) == static
+
+
+@pytest.mark.parametrize("name", ["mass", "centroid", "inertia", "width", "gravity"])
+@pytest.mark.parametrize("value", [0.0, -1.0, math.nan])
+def test_a_quantity_that_is_not_positive_is_refused_by_name(name, value):
+    with pytest.raises(ValueError, match=f"{name} must be positive"):
+        block(**({"inertia": 1000.0} | {name: value}))

@@ -1,0 +1,140 @@
+"""How long a step may be, and that no run goes on without headway."""
+
+import numpy as np
+import pytest
+
+import contact.stepping.control
+import fem.model.required_memory
+from contact.stepping.batch import pack_rows, run_rows
+from contact.stepping.integrator import FAILED, REACHED
+from fem.case.case import CaseError, load_case
+from fem.model.container import discretise
+from fem.model.model import build_model
+from fem.model.required_memory import fitting_full_bodies, required_memory
+from fem.run.recorder import Recorder
+from fem.run.simulation import simulate, stepping_failure
+
+PULSE = {
+    "motion.kind": "pulse",
+    "motion.shape": "half-sine",
+    "motion.delay_s": 0.5,
+    "solver.duration_s": 4.0,
+    "output.fields_s": 0.0,
+}
+
+
+def rigid(**changes):
+    values = {"solver.model": "rigid"} | {key.replace("__", "."): value for key, value in changes.items()}
+    return load_case("rocking").with_values(values)
+
+
+def finished(case):
+    model = build_model(case)
+    ending = simulate(model, Recorder(model))
+    return model, ending
+
+
+def test_a_pulse_of_microseconds_is_met_and_does_not_set_the_step_of_the_whole_run():
+    """0.3 m/s given to the floor in 20 us: 4e5 times shorter than the run."""
+    speed, pulse = 0.3, 2e-5
+    values = {
+        "motion.peak_acceleration_m_s2": speed / (pulse * 2.0 / 3.141592653589793),
+        "motion.pulse_s": pulse,
+    }
+    case = rigid().with_values(PULSE | values | {"motion.peak_acceleration_m_s2": 100.0})
+    model, ending = finished(case)
+    assert ending.status == "completed", ending.error
+    assert model.run.clock[0].steps < 20_000
+    assert float(model.run.floor[0, 1]) == pytest.approx(100.0 * pulse * 2.0 / 3.141592653589793, rel=1e-12)
+    assert model.run.clock[0].smallest_step <= pulse / 50.0
+
+
+def test_a_short_pulse_rocks_the_container_as_small_steps_throughout_do():
+    values = PULSE | {"motion.peak_acceleration_m_s2": 50.0, "motion.pulse_s": 0.04}
+    auto, _ = finished(rigid().with_values(values))
+    fine, _ = finished(rigid().with_values(values | {"solver.step_s": 0.04 * 0.02}))
+    assert auto.run.clock[0].steps < 0.7 * fine.run.clock[0].steps
+    rotation = fine.run.track[0].max_rotation
+    assert rotation > 0.05 * fine.static.slenderness_angle
+    assert auto.run.track[0].max_rotation == pytest.approx(rotation, rel=2e-3)
+
+
+def test_a_step_that_would_step_over_the_motion_is_refused():
+    case = rigid(motion__frequency_Hz=20.0, motion__amplitude_m=0.01, solver__step_s=0.02)
+    with pytest.raises(CaseError, match=r"step_s = 0\.02 s would step over the motion.* at most 0\.005 s"):
+        build_model(case)
+
+
+def test_no_step_is_made_for_a_motion_that_changes_twice_within_the_smallest():
+    """A step of 1e-163 s was, over whose square the inertia is no number."""
+    values = PULSE | {"motion.peak_acceleration_m_s2": 6.0, "motion.pulse_s": 0.4, "solver.duration_s": 1.0}
+    at_once, _ = finished(rigid().with_values(values | {"motion.delay_s": 0.0}))
+    model, ending = finished(rigid().with_values(values | {"motion.delay_s": 1e-162}))
+    assert ending.status == "completed", ending.error
+    assert model.run.breaks.tolist() == at_once.run.breaks.tolist()
+    assert model.run.old.position == pytest.approx(at_once.run.old.position, rel=1e-9)
+
+
+def test_no_step_is_longer_than_the_samples_in_memory_reach():
+    case = rigid(output__history_s=1e-6, output__fields_s=0.0)
+    model = build_model(case)
+    assert model.run.control.largest_step == pytest.approx(64e-6)
+    assert model.run.history.mode.size < 2000
+
+
+def test_a_run_without_headway_fails_and_says_so(monkeypatch):
+    monkeypatch.setattr(contact.step_control, "ATTEMPTS_SPARE", 50.0)
+    monkeypatch.setattr(contact.step_control, "ATTEMPTS_OF_ROCKING", 1.0)
+    monkeypatch.setattr(contact.step_control, "ATTEMPTS_OF_STEP", 0.1)
+    _, ending = finished(rigid())
+    assert ending.status == "failed"
+    assert ending.error is not None and "no headway after" in ending.error
+
+
+def test_a_row_of_a_batch_without_headway_is_a_failed_one():
+    model = build_model(rigid(solver__duration_s=2.0))
+    rows = pack_rows([model.run] * 2, [2.0, 2.0], [20.0, 20.0])
+    limits = rows.attempt_limit.copy()
+    limits[1] = 30
+    outcomes = run_rows(
+        model.body, model.run.scheme, rows._replace(attempt_limit=limits), [model.run.track[0]] * 2
+    )
+    assert outcomes.status.tolist() == [REACHED, FAILED]
+    assert outcomes.clock["time"][1] < 2.0 <= outcomes.clock["time"][0]
+
+
+def test_a_row_of_a_batch_that_left_the_numbers_says_so():
+    """A step of 1e-163 s, over whose square the inertia is no number; the residual then is none either."""
+    model = build_model(rigid(solver__duration_s=1.0))
+    rows = pack_rows([model.run], [1.0], [20.0])
+    first = np.array([[1e-163, np.inf]])
+    outcomes = run_rows(model.body, model.run.scheme, rows._replace(breaks=first), [model.run.track[0]])
+    assert outcomes.status.tolist() == [FAILED]
+    assert not np.isfinite(outcomes.residual[0])
+    assert "grew beyond all numbers" in stepping_failure(model, float(outcomes.residual[0]))
+
+
+def test_a_container_too_large_for_the_memory_is_refused_before_it_is_taken(monkeypatch):
+    monkeypatch.setattr(fem.required_memory, "_machine_memory", lambda: 1e9)
+    case = rigid(solver__element_size_m=0.005, support__kind="flat")
+    with pytest.raises(
+        CaseError, match=r"would take about .* GB; this machine has 1 GB: take larger elements"
+    ):
+        discretise(case)
+
+
+def test_the_memory_told_is_about_what_is_taken():
+    """Peak memory of processes that made these (MB): see the docstring of the module."""
+    for nodes, contact_nodes, model, modes, measured in (
+        (46217, 2, "rigid", 20, 381),
+        (46217, 2, "reduced", 200, 986),
+        (21637, 77, "reduced", 20, 429),
+    ):
+        case = rigid(solver__model=model, solver__elastic_modes=modes)
+        assert 0.8 < required_memory(case, nodes, contact_nodes) / (1e6 * measured) < 1.7
+
+
+def test_as_many_full_runs_go_side_by_side_as_the_memory_holds(monkeypatch):
+    for there, nodes, fitting in ((None, 100_000, 5), (24e9, 2619, 5), (24e9, 100_000, 4), (1e9, 100_000, 1)):
+        monkeypatch.setattr(fem.required_memory, "_machine_memory", lambda there=there: there)
+        assert fitting_full_bodies(5, nodes) == fitting

@@ -1,0 +1,287 @@
+"""Pictures and films: the container where it is, at the scale it says; and a clear word where none can be made."""
+
+import dataclasses
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import fem
+import fem.render.movie
+from fem import __main__ as command_line
+from fem.case.case import load_case
+from fem.render import opengl as rendering
+from fem.render.caption import caption
+from fem.render.movie import frames_of_film, write_movie
+from fem.render.picture import Scene, time_of_largest_rotation, write_picture
+from fem.render.scene import View, survey
+from fem.results.fields import FieldError, FieldWriter
+from fem.results.run_folder import FolderError
+from fem.run.run import RunOptions, run_case
+from fem.solid.edges import chained, outline_edges
+
+SMALL = ("output.figures=false", "solver.element_size_m=0.5", "solver.elastic_modes=4")
+QUADS9 = np.array([[0, 2, 8, 6, 1, 5, 7, 3, 4]])
+GRID = np.array([[x, z] for z in (0.0, 0.5, 1.0) for x in (0.0, 0.5, 1.0)])
+
+
+@pytest.fixture(scope="session")
+def renders():
+    """Skips where nothing can be rendered."""
+    reason = rendering.probe_rendering()
+    if reason is not None:
+        pytest.skip(f"no pictures on this machine: {reason}; {rendering.MEND_PICTURES}")
+
+
+def run_into(folder, name, *overrides):
+    case = load_case(name, [*SMALL, *overrides])
+    run_case(case, case_text=case.text, folder=folder, options=RunOptions(band=False))
+    return fem.open_run(folder)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """A stack that rocks on a moving floor, with stresses."""
+    folder = tmp_path_factory.mktemp("pictures") / "r"
+    return run_into(folder, "rocking", "solver.duration_s=1", "output.fields_s=0.1")
+
+
+@pytest.fixture(scope="module")
+def scene(run, renders):
+    """Of that run."""
+    made = Scene(run)
+    yield made
+    made.close()
+
+
+def colour_of(image, place):
+    return np.array(image.convert("RGB").getpixel(place), dtype=float)
+
+
+def pixel(view, x, z):
+    """Where a place of the elevation lies in the picture."""
+    left, _, low, _ = view.edges
+    scale = view.pixels_per_metre
+    return int((x - left) * scale), int(view.size[1] - (z - low) * scale)
+
+
+class TestView:
+    def test_it_encloses_the_whole_motion_at_one_scale(self, run):
+        frames = list(run.fields)
+        view = survey(frames).view
+        left, right, low, high = view.edges
+        assert (right - left) * view.pixels_per_metre == pytest.approx(view.size[0])
+        assert (high - low) * view.pixels_per_metre == pytest.approx(view.size[1])
+        for frame in frames:
+            places = frame.points + frame.displacement
+            assert left < places[:, 0].min() and places[:, 0].max() < right
+            assert low < places[:, 1].min() and places[:, 1].max() < high
+
+    def test_the_picture_of_a_wide_motion_stays_within_bounds(self):
+        view = View(left=-40.0, right=60.0, top=4.0, depth=0.6, floor=(-40.0, 50.0))
+        assert view.size[0] <= 1500 and view.size[1] <= 1000
+        assert all(side % 2 == 0 for side in view.size)
+
+
+class TestScene:
+    def test_the_container_is_where_the_fields_say(self, run, scene):
+        for index in (0, len(run.fields) - 1):
+            frame = run.fields.frame(index)
+            image = scene.image(frame)
+            middle = (frame.points + frame.displacement).mean(axis=0)
+            assert colour_of(image, pixel(scene.view, *middle)).min() < 225.0  # not the white behind it
+            corner = (frame.points + frame.displacement)[np.argmax(frame.points @ (1.0, 1.0))]
+            assert colour_of(image, pixel(scene.view, corner[0] + 0.1, corner[1])).min() > 250.0
+            assert colour_of(image, pixel(scene.view, middle[0], -0.9 * scene.view.depth)).min() < 250.0
+
+    def test_the_mark_moves_with_the_floor_and_the_ruler_does_not(self, run, scene):
+        frame = run.fields.frame(0)
+        moved = dataclasses.replace(frame, floor_displacement=0.3)
+        first, second = scene.image(frame), scene.image(moved)
+        at = -0.15 * scene.view.depth
+        assert colour_of(first, pixel(scene.view, 0.0, at)).max() < 60.0
+        assert colour_of(second, pixel(scene.view, 0.0, at)).max() > 100.0
+        assert colour_of(second, pixel(scene.view, 0.3, at)).max() < 60.0
+        foot = (0, first.height - 25, 200, first.height)
+        assert np.array_equal(np.asarray(first.crop(foot)), np.asarray(second.crop(foot)))
+
+    def test_stress_darkens_the_container(self, run, scene):
+        frame = run.fields.frame(0)
+        shades = []
+        for stress in (0.0, 1e9):
+            loaded = dataclasses.replace(frame, von_mises=np.full(len(frame.points), stress))
+            shades.append(colour_of(scene.image(loaded), pixel(scene.view, 0.2, 2.3)).sum())
+        assert shades[0] > shades[1] + 200.0
+
+    def test_an_arrow_stands_below_a_node_that_is_pressed(self, run, scene):
+        frame = run.fields.frame(0)
+        pressed = frame.points[np.argmax(frame.contact_pressure)]
+        below = pixel(scene.view, pressed[0], -0.1 * scene.view.depth)
+        blue = colour_of(scene.image(frame), below)
+        assert blue[2] > blue[0] + 100.0
+        free = dataclasses.replace(frame, contact_pressure=np.zeros(len(frame.points)))
+        grey = colour_of(scene.image(free), below)
+        assert np.ptp(grey) < 30.0
+
+    def test_the_same_frame_gives_the_same_picture(self, run, scene):
+        first, other = run.fields.frame(3), run.fields.frame(9)
+        before = np.asarray(scene.image(first))
+        assert not np.array_equal(before, np.asarray(scene.image(other)))
+        assert np.array_equal(before, np.asarray(scene.image(first)))
+
+
+def test_the_grid_of_an_elastic_container_is_coloured_by_its_stress(run):
+    assert run.grid(0.8).point_data["von_mises_Pa"] == pytest.approx(run.frame(0.8).von_mises)
+    assert run.frame(0.8).von_mises.max() > 1e5
+
+
+@pytest.mark.parametrize("stress", [None, np.zeros(4)])  # files of rigid runs held zeros at first
+def test_without_stress_there_is_nothing_to_colour_by(run, stress):
+    frames = [dataclasses.replace(frame, von_mises=stress) for frame in run.fields]
+    assert survey(frames).usual_stress == 0.0
+
+
+def test_a_rigid_run_has_a_plain_body(tmp_path, renders):
+    plain = run_into(
+        tmp_path / "r", "seed_box", "solver.model=rigid", "solver.duration_s=0.2", "output.fields_s=0.1"
+    )
+    with Image.open(write_picture(plain)) as image:
+        assert {colour_of(image, (x, image.height // 2))[2] > 200.0 for x in (300, 320, 340)} == {True}
+
+
+def test_the_default_instant_is_that_of_the_largest_rotation(run, renders):
+    rotation = np.interp(run.fields.times, run.history["time_s"], np.abs(run.history["rotation_rad"]))
+    instant = run.fields.times[np.argmax(rotation)]
+    assert time_of_largest_rotation(run) == instant
+    path = write_picture(run)
+    assert path == run.folder / "figures" / f"picture_{instant:.3f}s.png"
+    with Image.open(path) as image:
+        assert image.format == "PNG"
+
+
+def test_the_caption_tells_time_rotation_and_ratio(run):
+    frame = run.frame(0.8)
+    sample = np.searchsorted(run.history["time_s"], 0.8 - 1e-9)
+    rotation = run.history["rotation_rad"][sample]
+    title, when, turned = caption(run, frame)
+    assert title == "Rocking stack"
+    assert when.startswith("t = 0.800 s") and run.history.modes[sample] in when
+    assert f"{abs(math.degrees(rotation)):.2f}°" in turned
+    assert turned.endswith(f"{abs(rotation) / run.slenderness_angle:.3f}")
+
+
+@pytest.mark.parametrize(
+    ("interval", "count", "stride"), [(0.05, 41, 1), (0.01, 41, 4), (0.04, 41, 1), (0.2, 5, 1), (0.03, 10, 1)]
+)
+def test_a_film_runs_in_real_time_with_at_most_some_thirty_frames_a_second(interval, count, stride):
+    chosen, step = frames_of_film(interval * np.arange(count))
+    assert chosen == range(0, count, stride)
+    assert step == pytest.approx(stride * interval)
+
+
+def test_a_gif_holds_every_frame_in_real_time(run, renders, tmp_path):
+    path = write_movie(run, path=tmp_path / "film.gif")
+    with Image.open(path) as film:
+        assert (film.format, film.n_frames, film.info["duration"]) == ("GIF", 11, 100)
+        film.seek(0)
+        first = np.asarray(film.convert("RGB"), dtype=float)
+        film.seek(10)
+        assert np.abs(np.asarray(film.convert("RGB"), dtype=float) - first).max() > 100.0
+    assert [entry.name for entry in tmp_path.iterdir()] == ["film.gif"]
+
+
+def test_an_mp4_holds_every_frame(run, renders, tmp_path):
+    encoder = pytest.importorskip("imageio_ffmpeg", reason="MP4 needs imageio-ffmpeg")
+    path = write_movie(run, path=tmp_path / "film.mp4")
+    count, seconds = encoder.count_frames_and_secs(str(path))
+    assert count == 11
+    assert seconds == pytest.approx(1.1, abs=0.15)
+
+
+def test_without_the_encoder_an_mp4_is_refused_with_the_way_out(run, tmp_path, monkeypatch):
+    monkeypatch.setattr(fem.movie, "imageio_ffmpeg", None)
+    with pytest.raises(FolderError, match=r"pip install imageio-ffmpeg; or give a \.gif"):
+        write_movie(run, path=tmp_path / "film.mp4")
+
+
+def test_a_damaged_frame_leaves_no_half_film(run, renders, tmp_path, monkeypatch):
+    place = tmp_path / "copy"
+    for file in run.folder.rglob("*"):
+        if file.is_file():
+            target = place / file.relative_to(run.folder)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(file.read_bytes())
+    (place / "fields" / "frame_00007.vtu").write_text("<VTKFile")
+    with pytest.raises(FieldError, match="frame_00007"):
+        write_movie(fem.open_run(place), path=tmp_path / "film.gif")
+    assert not list(tmp_path.glob("*film*"))
+
+
+class TestCommands:
+    """Through `main`: one message, exit code 2, no traceback, and no rendering in this process."""
+
+    def refused(self, capsys, *arguments):
+        assert command_line.main([str(word) for word in arguments]) == 2
+        message = capsys.readouterr().err
+        assert message.count("\n") == 1
+        return message
+
+    def test_without_opengl_they_name_the_packages(self, run, monkeypatch, capsys, tmp_path):
+        monkeypatch.setattr(rendering, "RENDER", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
+        for name in ("picture", "movie"):
+            message = self.refused(capsys, name, run.folder)
+            assert "signal 11" in message
+            assert "apt-get install -y libegl1 libgl1-mesa-dri" in message
+
+    def test_a_folder_that_is_no_run(self, capsys, tmp_path):
+        assert "no such folder" in self.refused(capsys, "picture", tmp_path / "nowhere")
+        assert "is this the folder of a run" in self.refused(capsys, "movie", tmp_path)
+
+    def test_a_run_without_fields(self, capsys, tmp_path):
+        run_into(tmp_path / "r", "seed_box", "solver.duration_s=0.1", "output.fields_s=0")
+        assert "no fields were written" in self.refused(capsys, "picture", tmp_path / "r")
+
+    def test_a_run_that_has_just_begun(self, capsys, tmp_path, run):
+        folder = tmp_path / "r"
+        folder.mkdir()
+        (folder / "run.json").write_text('{"status": "running", "case_hash": "0"}')
+        assert "no fields were written" in self.refused(capsys, "movie", folder)
+        FieldWriter(folder / "fields", points=GRID, cells=QUADS9, region=np.array([0]))
+        assert "no frame has been written yet" in self.refused(capsys, "movie", folder)
+
+    @pytest.mark.parametrize("time", ["99", "-1", "nan"])
+    def test_a_time_outside_the_frames(self, run, monkeypatch, capsys, time):
+        monkeypatch.setattr(rendering, "RENDER", "pass")
+        message = self.refused(capsys, "picture", run.folder, f"--time={time}")
+        assert "--time must lie within the frames, 0 to 1 s" in message
+
+    def test_a_file_that_is_no_picture_or_film(self, run, monkeypatch, capsys):
+        monkeypatch.setattr(rendering, "RENDER", "pass")
+        assert "--to must end with .png" in self.refused(capsys, "picture", run.folder, "--to", "a.jpg")
+        assert "--to must end with .gif or .mp4" in self.refused(capsys, "movie", run.folder, "--to", "a")
+
+    def test_the_file_is_named(self, run, renders, monkeypatch, capsys, tmp_path):
+        assert (
+            command_line.main(["picture", str(run.folder), "--time", "0.5", "--to", str(tmp_path / "a.png")])
+            == 0
+        )
+        assert capsys.readouterr().out.strip() == str(tmp_path / "a.png")
+        assert (tmp_path / "a.png").is_file()
+
+
+def test_the_outline_is_the_outer_edges_and_the_joints():
+    # Two boxes of one cell each, one on the other.
+    points = np.array([[x, z] for z in (0.0, 0.5, 1.0, 1.5, 2.0) for x in (0.0, 0.5, 1.0)])
+    cells = np.concatenate([QUADS9, QUADS9 + 6])
+    edges = outline_edges(points, cells, boxes=2)
+    lengths = np.linalg.norm(np.diff(points[edges], axis=1)[:, 0], axis=1)
+    assert lengths.sum() == pytest.approx(2.0 + 4.0 + 1.0)
+    assert np.linalg.norm(
+        np.diff(points[outline_edges(points, cells)], axis=1)[:, 0], axis=1
+    ).sum() == pytest.approx(6.0)
+    lines = chained(edges)
+    drawn = sorted(tuple(sorted(pair)) for line in lines for pair in pairwise(line))
+    assert drawn == sorted(tuple(sorted(pair)) for pair in edges.tolist())
+    assert len(lines) <= 2

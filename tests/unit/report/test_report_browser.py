@@ -1,0 +1,296 @@
+"""Reports in a browser: nothing is loaded, the animation plays, keys and slider work, everybody can read them.
+
+Chromium, driven over a pipe; where there is none, these tests are left out.
+"""
+
+import json
+import shutil
+import subprocess
+import time
+
+import pytest
+from browser import CHROMIUM, Browser
+
+from fem.case.case import read_case
+from fem.report.run_page import run_report
+from fem.report.sweep_page import sweep_report
+from fem.results.reader import open_run
+from fem.run.run import run_case
+from fem.runtime.progress import SilentReporter
+from fem.sweep.file import load_sweep
+from fem.sweep.run import run_sweep
+from fem.sweep.table import open_sweep
+
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium: apt-get install chromium")
+
+CASE = """
+schema = 1
+title = "Stack"
+[container]
+width_m = 1.1
+height_m = 1.0
+boxes = 4
+weight_N = 24525.0
+wall_m = 0.008
+[contact]
+mu_static = 0.4
+[motion]
+kind = "harmonic"
+peak_acceleration_m_s2 = 4.0
+angular_frequency_rad_s = 6.928
+[solver]
+duration_s = 2.0
+element_size_m = 0.5
+order = 1
+elastic_modes = 4
+"""
+SWEEP = """
+case = "box.toml"
+[axes]
+"motion.peak_acceleration_m_s2" = { from = 1.0, to = 9.0, count = 5 }
+"contact.mu_static" = [0.2, 0.4, 0.6]
+[derived]
+"contact.mu_kinetic" = "0.5 * contact.mu_static"
+[perturbation]
+cells = "none"
+"""
+#: name and colours of every text that has less contrast than WCAG 2.1, 1.4.3 asks for (4.5, large text 3)
+FAINT = """(() => {
+  const numbers = (c) => c.match(/[\\d.]+/g).map(Number);
+  const light = (c) => { const [r, g, b] = numbers(c).map((v) => { v /= 255; return v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; }); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
+  const behind = (e) => { for (; e; e = e.parentElement) { const c = getComputedStyle(e).backgroundColor, n = numbers(c); if (n.length < 4 || n[3] > 0) return c; } return 'rgb(255,255,255)'; };
+  const found = [], walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (walker.nextNode()) {
+    const e = walker.currentNode.parentElement, text = walker.currentNode.textContent.trim();
+    if (!text || !e.getClientRects().length || ['SCRIPT', 'STYLE', 'OPTION'].includes(e.tagName)) continue;
+    const style = getComputedStyle(e), colour = e instanceof SVGElement ? style.fill : style.color, size = parseFloat(style.fontSize);
+    if (colour === 'none') continue;
+    const [a, b] = [light(colour), light(behind(e))].sort((x, y) => y - x), ratio = (a + 0.05) / (b + 0.05);
+    if (ratio < (size >= 24 || (size >= 18.6 && style.fontWeight >= 700) ? 3 : 4.5)) found.push(`${text.slice(0, 40)}: ${colour} ${ratio.toFixed(2)}`);
+  }
+  return found;
+})()"""  # noqa: E501
+CLOCK = "parseFloat(document.getElementById('now-clock').textContent)"
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    """A report of a run and one of a sweep."""
+    place = tmp_path_factory.mktemp("pages")
+    run_case(read_case(CASE, name="stack"), case_text=CASE, folder=place / "stack")
+    (place / "run.html").write_text(run_report(open_run(place / "stack")), encoding="utf-8")
+    (place / "box.toml").write_text(CASE.replace("duration_s = 2.0", 'model = "rigid"\nduration_s = 0.5'))
+    (place / "boxes.toml").write_text(SWEEP)
+    asked = load_sweep(str(place / "boxes.toml"))
+    run_sweep(asked, place / "boxes", jobs=1, resume=False, force=False, reporter=SilentReporter())
+    (place / "sweep.html").write_text(sweep_report(place / "boxes"), encoding="utf-8")
+    return place
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    with Browser(tmp_path_factory.mktemp("profile")) as opened:
+        opened.window(1280, 900)
+        yield opened
+
+
+@pytest.fixture
+def run_page(browser, pages):
+    browser.open(pages / "run.html", "#t=0.5")
+    browser.wait("document.querySelectorAll('.cursor').length > 0")
+    return browser
+
+
+@pytest.fixture
+def sweep_page(browser, pages):
+    browser.open(pages / "sweep.html")
+    browser.wait("document.getElementById('command').textContent !== ''")
+    return browser
+
+
+@pytest.mark.parametrize("name", ["run.html", "sweep.html"])
+class TestEveryReport:
+    def test_loads_without_errors_and_without_any_request(self, browser, pages, name):
+        browser.open(pages / name)
+        time.sleep(0.3)
+        assert browser.errors == []
+        assert browser.requests == [(pages / name).as_uri()]
+
+    def test_every_control_has_a_name(self, browser, pages, name):
+        browser.open(pages / name)
+        nodes = browser.call("Accessibility.getFullAXTree")["nodes"]
+        controls = [
+            node
+            for node in nodes
+            if not node["ignored"]
+            and node["role"]["value"]
+            in {
+                "button",
+                "slider",
+                "combobox",
+                "checkbox",
+                "textbox",
+                "application",
+                "link",
+                "image",
+                "region",
+            }
+        ]
+        assert len(controls) > 8
+        assert [node["role"]["value"] for node in controls if not node.get("name", {}).get("value")] == []
+
+    def test_every_text_stands_out_from_what_is_behind_it(self, browser, pages, name):
+        browser.open(pages / name)
+        assert browser.evaluate(FAINT) == []
+
+    def test_a_telephone_needs_no_scrolling_sideways(self, browser, pages, name):
+        browser.window(390, 844)
+        try:
+            browser.open(pages / name)
+            assert browser.evaluate("document.documentElement.scrollWidth") <= 390
+        finally:
+            browser.window(1280, 900)
+
+
+class TestTheAnimation:
+    def test_plays_pauses_and_takes_the_cursors_along(self, run_page):
+        places = "[...document.querySelectorAll('.cursor')].map((mark) => parseFloat(mark.style.left))"
+        before, canvas = run_page.evaluate(places), run_page.evaluate("stage.toDataURL()")
+        run_page.click("#play")
+        run_page.wait(f"{CLOCK} > 0.7")
+        run_page.click("#play")
+        stopped = run_page.evaluate(CLOCK)
+        time.sleep(0.2)
+        assert run_page.evaluate(CLOCK) == stopped
+        assert run_page.evaluate("stage.toDataURL()") != canvas
+        after = run_page.evaluate(places)
+        assert len(after) == len(before) >= 5
+        assert all(b > a for a, b in zip(before, after, strict=True))
+        axes = json.loads(run_page.evaluate("document.querySelector('.cursor').parentElement.dataset.axes"))
+        share = (stopped - axes["x"][0]) / (axes["x"][1] - axes["x"][0])
+        assert after[0] == pytest.approx(
+            100.0 * (axes["left"] + share * (axes["right"] - axes["left"])), abs=0.3
+        )
+
+    def test_slider_and_keys_go_through_time(self, run_page):
+        run_page.evaluate("document.getElementById('time').focus()")
+        run_page.press("ArrowRight", 39)
+        assert run_page.evaluate(CLOCK) == pytest.approx(0.505)
+        run_page.press(",", 188, ",")
+        assert run_page.evaluate(CLOCK) == pytest.approx(0.5)
+        run_page.press("l", 76, "l")
+        assert run_page.evaluate(CLOCK) == pytest.approx(0.6)
+        run_page.press("End", 35)
+        assert run_page.evaluate(CLOCK) == pytest.approx(2.0)
+        assert "rotation" in run_page.evaluate(
+            "document.getElementById('time').getAttribute('aria-valuetext')"
+        )
+        run_page.press(" ", 32, " ")  # from the end it plays again from the start
+        run_page.wait(f"{CLOCK} < 1.9 && {CLOCK} > 0")
+        run_page.press("k", 75, "k")
+        assert run_page.evaluate("document.getElementById('play').textContent") == "Play"
+
+    def test_marks_move_over_the_drawing_and_not_beside_it(self, run_page):
+        boxes = run_page.evaluate(
+            "[...document.querySelectorAll('[data-axes]')].map((one) =>"
+            " [one, one.querySelector('svg')].map((part) => part.getBoundingClientRect().width))"
+        )
+        assert len(boxes) > 6
+        assert [outer for outer, drawing in boxes] == pytest.approx([drawing for outer, drawing in boxes])
+
+    def test_a_click_on_a_curve_goes_to_its_instant(self, run_page):
+        axes = json.loads(run_page.evaluate("document.querySelector('[data-axes]').dataset.axes"))
+        share = axes["left"] + 0.75 * (axes["right"] - axes["left"])
+        run_page.click("[data-axes]", x=share)
+        expected = axes["x"][0] + 0.75 * (axes["x"][1] - axes["x"][0])
+        assert run_page.evaluate(CLOCK) == pytest.approx(expected, abs=0.01)
+
+    def test_what_is_shown_can_be_chosen(self, run_page):
+        changes = [
+            "exaggeration.selectedIndex = 0; exaggeration.dispatchEvent(new Event('change'))",
+            "forces.checked = false; forces.dispatchEvent(new Event('change'))",
+            "stress.checked = false; stress.dispatchEvent(new Event('change'))",
+            "mesh.checked = true; mesh.dispatchEvent(new Event('change'))",
+        ]
+        shown = {run_page.evaluate("stage.toDataURL()")}
+        for change in changes:
+            run_page.evaluate(f"{{ {change} }}")
+            shown.add(run_page.evaluate("stage.toDataURL()"))
+        assert len(shown) == 1 + len(changes)
+
+    def test_who_asks_for_less_motion_gets_stills(self, run_page):
+        run_page.prefer(prefers_reduced_motion="reduce")
+        try:
+            run_page.click("#play")
+            run_page.wait(f"{CLOCK} > 0.5")
+            assert run_page.evaluate(CLOCK) in (pytest.approx(1.0), pytest.approx(1.5), pytest.approx(2.0))
+        finally:
+            run_page.prefer(prefers_reduced_motion="no-preference")
+
+    def test_on_paper_stills_take_its_place(self, run_page):
+        run_page.call("Emulation.setEmulatedMedia", media="print")
+        try:
+            assert run_page.evaluate("getComputedStyle(document.getElementById('player')).display") == "none"
+            assert run_page.evaluate("document.querySelectorAll('.stills svg').length") >= 3
+        finally:
+            run_page.call("Emulation.setEmulatedMedia", media="")
+
+
+def test_assumptions_and_exclusions_stand_on_the_first_page(run_page, tmp_path):
+    pdf = tmp_path / "run.pdf"
+    pdf.write_bytes(run_page.pdf())
+    if shutil.which("pdftotext") is None:
+        pytest.skip("no pdftotext: apt-get install poppler-utils")
+    first = subprocess.run(
+        ["pdftotext", "-l", "1", pdf, "-"], capture_output=True, text=True, check=True
+    ).stdout
+    for words in (
+        "Result:",
+        "What was asked",
+        "Assumptions and exclusions",
+        "asks for three or more",
+    ):
+        assert words in first
+
+
+def test_what_is_typed_is_kept_in_the_copy(run_page):
+    run_page.evaluate("document.querySelector('[name=checker]').value = 'C. Checker'")
+    run_page.evaluate(
+        "window.kept = null;"
+        "URL.createObjectURL = (blob) => { blob.text().then((text) => { window.kept = text; }); return '#'; }"
+    )
+    run_page.click("#save")
+    run_page.wait("window.kept !== null")
+    assert run_page.evaluate("window.kept.includes('value=\"C. Checker\"')")
+    assert not run_page.evaluate('/class="(cursor|spot)"/.test(window.kept)')
+
+
+class TestTheMap:
+    def test_keys_choose_a_cell_and_the_command_runs_it(self, sweep_page, pages):
+        sweep_page.evaluate("document.getElementById('map').focus()")
+        for _ in range(4):
+            sweep_page.press("ArrowLeft", 37)
+            sweep_page.press("ArrowDown", 40)
+        sweep_page.press("ArrowRight", 39)
+        said = sweep_page.evaluate("document.getElementById('command').textContent")
+        assert said == (
+            f"python -m fem run {pages / 'boxes' / 'base.toml'} --set motion.peak_acceleration_m_s2=3 "
+            "--set contact.mu_static=0.2 --set contact.mu_kinetic=0.1"
+        )
+        table = open_sweep(pages / "boxes")
+        assert table["outcome"][3] in sweep_page.evaluate("document.getElementById('said').textContent")
+
+    def test_a_pointer_shows_values_and_a_click_chooses(self, sweep_page):
+        before = sweep_page.evaluate("document.getElementById('command').textContent")
+        sweep_page.click("#map", x=0.9, y=0.1)
+        after = sweep_page.evaluate("document.getElementById('command').textContent")
+        assert after != before
+        assert "contact.mu_static=0.6" in after
+        assert "peak_acceleration_m_s2=9" in after
+        assert "rotation ratio" in sweep_page.evaluate("document.getElementById('cell').textContent")
+
+    def test_another_quantity_has_other_colours(self, sweep_page):
+        shown = sweep_page.evaluate("map.toDataURL()")
+        sweep_page.evaluate("quantity.value = 'max_slip_m'; quantity.dispatchEvent(new Event('change'));")
+        assert sweep_page.evaluate("map.toDataURL()") != shown
+        assert "mm" in sweep_page.evaluate("document.getElementById('legend').textContent")

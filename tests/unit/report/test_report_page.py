@@ -1,0 +1,192 @@
+"""The report of a run: whole, self-contained, honest about what is missing, and its refusals."""
+
+import re
+
+import pytest
+from markupsafe import escape
+
+from fem.__main__ import main
+from fem.case.case import read_case
+from fem.html.units import typeset
+from fem.model.model import build_model
+from fem.report import variation_table as variation_table_module
+from fem.report.animation import film_of
+from fem.report.run_page import Signature, run_report
+from fem.report.variation_table import variation_table, variations_meanwhile
+from fem.report.variations import by_importance, variations_of
+from fem.results.reader import open_run
+from fem.run.run import RunOptions, run_case
+
+HOSTILE = "</title><script>alert(1)</script> & co"
+CASE = f"""
+schema = 1
+title = "{HOSTILE}"
+[container]
+width_m = 1.1
+height_m = 1.0
+boxes = 4
+weight_N = 24525.0
+wall_m = 0.008
+[contact]
+mu_static = 0.4
+[motion]
+kind = "harmonic"
+peak_acceleration_m_s2 = 4.0
+angular_frequency_rad_s = 6.928
+[solver]
+duration_s = 1.2
+element_size_m = 0.5
+order = 1
+elastic_modes = 4
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A short run of the shell stack."""
+    place = tmp_path_factory.mktemp("report") / "stack"
+    run_case(read_case(CASE, name="stack"), case_text=CASE, folder=place)
+    return place
+
+
+@pytest.fixture(scope="module")
+def page(folder):
+    return run_report(open_run(folder), signature=Signature(author="A. Author <a@b>"), every_variation=True)
+
+
+def sections(page):
+    return re.findall(r'<h2 id="([a-z-]+)"', page)
+
+
+def test_the_page_has_every_part_in_the_order_of_reading(page):
+    assert sections(page) == [
+        "verdict-title",
+        "asked",
+        "assumptions",
+        "static",
+        "motion-title",
+        "variations",
+        "modes",
+        "block",
+        "joints",
+        "sheet",
+        "numerics",
+        "provenance",
+    ]
+    assert page.index("Result: ") < page.index("What was asked")
+
+
+def test_the_page_loads_nothing_and_fits_into_a_mail(page):
+    assert len(page.encode()) < 5_000_000
+    assert not re.search(r"""(?:src|href)=["'](?!#|data:,["'])""", page)
+    assert "@import" not in page
+    assert not re.search(r"url\((?!#)", page)
+
+
+def test_names_from_the_case_stay_text(page):
+    assert "<script>alert" not in page
+    assert "&lt;script&gt;alert(1)" in page
+    assert 'value="A. Author &lt;a@b&gt;"' in page
+
+
+def test_the_case_in_the_page_is_the_one_that_was_run(page, folder):
+    text = re.search(r"<pre class=\"case\">(.*?)</pre>", page, re.DOTALL)[1]
+    for escaped, sign in (("&lt;", "<"), ("&gt;", ">"), ("&#34;", '"'), ("&amp;", "&")):
+        text = text.replace(escaped, sign)
+    assert read_case(text).resolved() == open_run(folder).case.resolved()
+
+
+def test_the_animation_of_a_rigid_run_has_no_stress(tmp_path):
+    case = read_case(CASE.replace("elastic_modes = 4", 'model = "rigid"'), name="rigid")
+    run_case(case, case_text=case.text, folder=tmp_path / "r", options=RunOptions(band=False))
+    film = film_of(build_model(case), open_run(tmp_path / "r").fields)
+    assert film.stress_scale == film.largest_stress == 0.0
+    assert film.frames[0].von_mises is None and len(film.frames) == 25
+
+
+def test_variations_are_kept_beside_the_run(folder, page):
+    said, run = [], open_run(folder)
+    table = variation_table(run.case, run.place.variations, result=run.result, told=said.append)
+    assert said == []
+    assert table.left_out == () and all(escape(line.variation.change) in page for line in table.lines)
+
+
+def test_variations_that_take_long_are_named_and_computed_when_asked_for(folder, tmp_path, monkeypatch):
+    run = open_run(folder)
+    kept = tmp_path / "variations.json"
+    some = [one for one in variations_of(run.case) if one.subject in ("contact damping", "contact penalty")]
+    monkeypatch.setattr(variation_table_module, "variations_of", lambda case: some)
+    monkeypatch.setattr(variation_table_module, "AFFORDED_S", 0.0)
+    short = variation_table(run.case, kept, result=run.result)
+    known = {line.variation.command: line.row for line in short.lines}
+    assert len(known) == 4  # the run itself and those members of its band that differ in one thing
+    assert [one.change for one in short.left_out] == ["ratio 1", "ratio 4"]
+    again = variation_table(run.case, kept, result=run.result)
+    assert again == short  # not computed behind one's back by a second report
+    full = variation_table(run.case, kept, result=run.result, every=True)
+    assert full.left_out == ()
+    # A run that nobody has computed before comes to the same rows.
+    bare = {**run.result, "verdict": {**run.result["verdict"], "band": None}}
+    fresh = variation_table(run.case, tmp_path / "other.json", result=bare, every=True)
+    assert [line.row for line in fresh.lines] == [line.row for line in full.lines]
+
+
+def test_variations_of_a_full_run_begin_with_the_run_as_reduced(folder, tmp_path, monkeypatch):
+    run = open_run(folder)
+    some = [one for one in variations_of(run.case) if one.subject == "contact penalty"]
+    monkeypatch.setattr(variation_table_module, "variations_of", lambda case: some)
+    monkeypatch.setattr(variation_table_module, "AFFORDED_S", 0.0)
+    case = run.case.with_values({"solver.model": "full"})
+    table = variation_table(case, tmp_path / "v.json", result=run.result)
+    assert [line.variation.subject for line in table.lines] == ["as computed"]
+    assert table.lines[0].row["outcome"] == run.result["verdict"]["outcome"]
+    assert list(table.left_out) == some and table.model == "reduced"
+
+
+def test_who_leaves_a_report_does_not_wait_for_its_variations(folder, tmp_path):
+    run, kept = open_run(folder), tmp_path / "variations.json"
+    endless = run.case.with_values({"solver.duration_s": 1e4})
+    bare = {**run.result, "verdict": {**run.result["verdict"], "band": None}}
+    with (
+        pytest.raises(OSError, match="disk"),
+        variations_meanwhile(endless, kept, result=bare, every=True),
+    ):
+        raise OSError("disk")
+    assert not kept.exists()
+
+
+def test_moderate_variations_of_every_subject_come_first(folder):
+    variations = list(variations_of(open_run(folder).case))
+    first = [variations[index] for index in by_importance(variations)]
+    subjects = {one.subject for one in variations}
+    assert {one.subject for one in first[: len(subjects)]} == subjects
+    frictions = [one.change.rpartition("× ")[2] for one in first if one.subject == "friction"]
+    assert frictions == ["0.75)", "1.25)", "0.5)", "1.5)"]
+
+
+class TestRefusals:
+    def test_a_folder_that_is_not_there(self, tmp_path, capsys):
+        assert main(["report", str(tmp_path / "nothing")]) == 2
+        assert "no such folder" in capsys.readouterr().err
+
+    def test_a_folder_without_a_run(self, tmp_path, capsys):
+        assert main(["report", str(tmp_path)]) == 2
+        assert "run.json" in capsys.readouterr().err
+
+    def test_a_damaged_study(self, tmp_path, capsys):
+        (tmp_path / "study.json").write_text('{"groups": 3}')
+        assert main(["report", str(tmp_path)]) == 2
+        assert "not the result of a study" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("line", "shown"),
+    [
+        ("192.2, -184.3 mm", "192.2, −184.3 mm"),
+        ("6.5e-05 of it, 172 m/s2", "6.5 × 10⁻⁵ of it, 172 m/s²"),
+        ("2.5e+06 N (-3)", "2.5 × 10⁶ N (−3)"),
+        ("EN 1998-1:2004, 2026-11-21, slide-rock", "EN 1998-1:2004, 2026-11-21, slide-rock"),
+    ],
+)
+def test_lines_of_the_summary_are_typeset_in_the_page(line, shown):
+    assert typeset(line) == shown

@@ -1,0 +1,74 @@
+"""Stills of a report: the instants that this motion has, and no others."""
+
+import numpy as np
+import pytest
+
+from fem.report.animation import Film, Split
+from fem.report.stills import stills
+from fem.results.history import HISTORY_COLUMNS, NUMBERS, History
+
+COUNT, ANGLE = 21, 0.268
+TIMES = 0.1 * np.arange(COUNT)
+ROTATION = 0.1 * np.sin(np.pi * TIMES)  # right at 0.5 s, left at 1.5 s
+SLIP = 0.02 * TIMES * (1.8 - TIMES)  # largest at 0.9 s, 16 mm
+CORNERS = np.array([[-0.55, -2.0], [0.55, -2.0], [0.55, 2.0], [-0.55, 2.0]])
+
+
+def film():
+    return Film(
+        centroid=np.array([0.0, 2.0]),
+        points=CORNERS,
+        quads=np.array([[0, 1, 2, 3]]),
+        edges=np.array([[0, 1], [1, 2], [2, 3], [3, 0]]),
+        contact=np.array([0, 1]),
+        frames=[
+            Split(
+                time=float(time),
+                centre=np.array([0.0, 2.0]),
+                rotation=float(rotation),
+                floor=0.0,
+                elastic=np.zeros((4, 2)),
+                von_mises=None,
+                normal_force=np.ones(2),
+            )
+            for time, rotation in zip(TIMES, ROTATION, strict=True)
+        ],
+    )
+
+
+def history():
+    values = np.zeros((COUNT, NUMBERS))
+    values[:, 0], values[:, HISTORY_COLUMNS.index("slip_m")] = TIMES, SLIP
+    return History(values=values, modes=("rest",) * COUNT)
+
+
+@pytest.mark.parametrize(
+    ("verdict", "named"),
+    [
+        ({"outcome": "rest", "modes": ["rest"]}, ["start", "last frame"]),
+        ({"outcome": "slide", "modes": ["rest", "slide"]}, ["start", "largest slip", "last frame"]),
+        (
+            {"outcome": "rock", "modes": ["rest", "rock"], "first_uplift_s": 0.15},
+            [
+                "start",
+                "after the first uplift",
+                "farthest to the right",
+                "farthest to the left",
+                "last frame",
+            ],
+        ),
+        (
+            {"outcome": "overturned", "modes": ["rock", "slide", "overturned"]},
+            ["start", "farthest to the right", "largest slip", "farthest to the left", "last frame"],
+        ),
+    ],
+)
+def test_a_still_is_named_after_what_happened_and_only_that(verdict, named):
+    shown = stills(film(), history(), verdict, angle=ANGLE, width=1.1, height=4.0)
+    assert [still.caption.split(", ")[1].split(";")[0] for still in shown] == named
+
+
+def test_a_still_tells_its_instant():
+    shown = stills(film(), history(), {"outcome": "rock"}, angle=ANGLE, width=1.1, height=4.0)
+    assert shown[1].caption == f"t = 0.500 s, farthest to the right; rotation ratio {0.1 / ANGLE:.3f}"
+    assert shown[2].caption == f"t = 1.500 s, farthest to the left; rotation ratio −{0.1 / ANGLE:.3f}"

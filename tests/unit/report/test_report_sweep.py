@@ -1,0 +1,148 @@
+"""The report of a sweep: every cell with its values and the command that runs it; unfinished sweeps and refusals."""
+
+import base64
+import json
+import re
+import shlex
+
+import numpy as np
+import pytest
+
+from fem.__main__ import main
+from fem.report import sweep_data
+from fem.report.sweep_data import axis_label, map_data
+from fem.report.sweep_page import sweep_report
+from fem.results.run_folder import FolderError
+from fem.sweep.table import BAND, FOUND, WIDTH, open_sweep
+
+SPEED, MU = "motion.peak_acceleration_m_s2", "contact.mu_static"
+BASE = """
+schema = 1
+[container]
+width_m = 1.1
+height_m = 1.0
+weight_N = 24525.0
+[contact]
+mu_static = 0.4
+[motion]
+kind = "harmonic"
+peak_acceleration_m_s2 = 4.0
+angular_frequency_rad_s = 6.928
+[solver]
+model = "rigid"
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A finished sweep of 3 x 2 cells: rest, slide, overturned; a failed one; one unsure."""
+    place = tmp_path / "my <b> sweep"
+    place.mkdir()
+    axes = [
+        {"key": SPEED, "values": [1.0, 4.5, 20.0], "scale": "list", "unit": "m/s2"},
+        {"key": MU, "values": [0.2, 0.4], "scale": "list", "unit": ""},
+    ]
+    info = {
+        "status": "completed",
+        "sweep": "boxes",
+        "title": "</script><b>",
+        "case": "box",
+        "model": "rigid",
+        "axes": axes,
+        "derived": {"contact.mu_kinetic": f"0.5 * {MU}"},
+        "cells": 6,
+        "rows": 6,
+        "unsure": 1,
+        "perturbed": 2,
+        "maps": ["../outside.svg"],
+        "sweep_hash": "ab" * 32,
+        "versions": {"unanchored": "0.1.0"},
+    }
+    (place / "sweep.json").write_text(json.dumps(info))
+    (place / "base.toml").write_text(BASE)
+    (tmp_path / "outside.svg").write_text("<svg>outside</svg>")
+    columns = ["cell", SPEED, MU, "contact.mu_kinetic", *FOUND, *BAND, WIDTH + SPEED, WIDTH + MU]
+    outcomes = ["rest", "rest", "slide", "rest", "overturned", ""]
+    lines = [",".join(columns)]
+    for cell, outcome in enumerate(outcomes):
+        row = dict.fromkeys(columns, "")
+        row |= {
+            "cell": cell,
+            SPEED: axes[0]["values"][cell // 2],
+            MU: axes[1]["values"][cell % 2],
+            "contact.mu_kinetic": 0.5 * axes[1]["values"][cell % 2],
+            "status": "completed" if outcome else "failed",
+            "outcome": outcome,
+            "reason": "" if outcome else "no <b>balance",
+            "rotation_ratio": 0.01 * cell if outcome else "",
+            "max_slip_m": 0.001 * cell if outcome else "",
+            "unsure": "true" if cell == 2 else "false",
+        }
+        lines.append(",".join(str(row[name]) for name in columns))
+    (place / "table.csv").write_text("\n".join(lines) + "\n")
+    return place
+
+
+def column(data, name):
+    found = next(one for one in data["columns"] if one["name"] == name)
+    raw = base64.b64decode(found["values"])
+    return np.frombuffer(raw, "u1" if found.get("words") else "<f4")
+
+
+def test_cells_carry_their_outcomes_and_values(folder):
+    data = map_data(open_sweep(folder), folder)
+    words = [data["outcomes"][k]["name"] for k in column(data, "outcome")]
+    assert words == ["rest", "rest", "slide", "rest", "overturned", "failed"]
+    np.testing.assert_allclose(column(data, "max_slip_m")[:5], 0.001 * np.arange(5), rtol=1e-6)
+    assert np.isnan(column(data, "rotation_ratio")[5])
+    assert list(column(data, "unsure")) == [0, 0, 1, 0, 0, 0]
+    assert not [one["name"] for one in data["columns"] if one["name"] == "impacts"]  # nothing was found of it
+
+
+def test_the_command_of_a_cell_repeats_it(folder):
+    data = map_data(open_sweep(folder), folder)
+    words = shlex.split(data["command"])
+    assert words == ["python", "-m", "fem", "run", str(folder / "base.toml")]
+    assert [axis["key"] for axis in data["axes"]] == [SPEED, MU]
+    assert data["derived"] == [{"key": "contact.mu_kinetic", "values": [0.1, 0.2, 0.1, 0.2, 0.1, 0.2]}]
+
+
+def test_a_failed_cell_is_told_with_its_reason_and_counted_as_no_outcome(folder):
+    page = sweep_report(folder)
+    assert "1 no outcome: failed" in page
+    assert "cell 5: no &lt;b&gt;balance" in page
+
+
+def test_names_stay_text_and_files_outside_the_folder_stay_out(folder):
+    page = sweep_report(folder)
+    assert "</script><b>" not in page
+    assert "outside" not in re.sub(r"<style>.*?</style>", "", page, flags=re.DOTALL).replace(
+        "outside.svg", ""
+    )
+    assert page.count("<script") == page.count("</script>") == 3
+
+
+def test_more_cells_than_a_page_can_carry_are_refused_with_a_way_out(folder, monkeypatch):
+    monkeypatch.setattr(sweep_data, "MOST_BYTES", 50)
+    with pytest.raises(FolderError, match="6 cells are more than one page can carry"):
+        sweep_report(folder)
+
+
+def test_the_command_line_tells_a_sweep_from_a_run(folder, tmp_path, capsys):
+    page = tmp_path / "page.html"
+    assert main(["report", str(folder), "--to", str(page), "--author", "N. N."]) == 0
+    assert "Report of a sweep" in page.read_text(encoding="utf-8")
+    assert capsys.readouterr().out.strip() == str(page)
+
+
+@pytest.mark.parametrize(
+    ("key", "unit", "label"),
+    [
+        ("contact.mu_static", "", "mu static"),
+        ("motion.peak_acceleration_m_s2", "m/s2", "peak acceleration [m/s²]"),
+        ("container.youngs_modulus_Pa", "Pa", "youngs modulus [Pa]"),
+        ("motion.angular_frequency_rad_s", "rad/s", "angular frequency [rad/s]"),
+    ],
+)
+def test_axes_are_labelled_with_words_and_units(key, unit, label):
+    assert axis_label(key, unit) == label

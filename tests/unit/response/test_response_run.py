@@ -1,0 +1,150 @@
+"""A response curve in its folder: what stands there, going on after an interruption, what is refused."""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fem.__main__ import main
+from fem.case.case import CaseError, load_case
+from fem.response import study
+from fem.response.request import ResponseRequest
+from fem.response.run import run_response
+from fem.results.run_folder import FolderError
+
+ROOT = Path(__file__).parents[3]
+CHANGES = ("solver.model=rigid", "contact.mu_static=1", "contact.mu_kinetic=1", "solver.element_size_m=1")
+
+
+def request_of(*changes, **values):
+    case = load_case("seed_stack_plateau", [*CHANGES, *changes])
+    chosen = {"first_Hz": 0.6, "last_Hz": 1.4, "count": 3, "settle": 6, "observe": 8} | values
+    return ResponseRequest(case=case, **chosen)
+
+
+def files_of(folder):
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()
+    }
+
+
+def test_a_study_cut_off_after_any_point_goes_on_to_the_same_files(tmp_path, monkeypatch):
+    request = request_of()
+    whole = run_response(request, folder=tmp_path / "whole")
+    assert whole.status == "completed"
+    assert [record.row["direction"] for record in whole.records] == ["up"] * 3 + ["down"] * 3
+    sweep = study.sweep_points
+    for points in (1, 3):
+
+        def cut_off(*arguments, after=points, **options):
+            for k, found in enumerate(sweep(*arguments, **options), start=1):
+                yield found
+                if k == after:
+                    raise KeyboardInterrupt
+
+        folder = tmp_path / f"cut{points}"
+        with monkeypatch.context() as patch:
+            patch.setattr(study, "sweep_points", cut_off)
+            with pytest.raises(KeyboardInterrupt):
+                run_response(request, folder=folder)
+        assert json.loads((folder / "response.json").read_text())["status"] == "running"
+        assert run_response(request, folder=folder, resume=True).status == "completed"
+        assert files_of(folder) == files_of(tmp_path / "whole")
+
+
+def test_a_finished_study_is_not_computed_again_and_a_foreign_folder_is_left_alone(tmp_path):
+    request = request_of(count=2)
+    run_response(request, folder=tmp_path / "a")
+    before = files_of(tmp_path / "a")
+    assert run_response(request, folder=tmp_path / "a").records == ()
+    with pytest.raises(FolderError, match="holds another response curve"):
+        run_response(request_of(count=2, observe=9), folder=tmp_path / "a")
+    assert files_of(tmp_path / "a") == before
+    (tmp_path / "b").mkdir()
+    (tmp_path / "b" / "letter.txt").write_text("dear")
+    with pytest.raises(FolderError, match="holds no response curve"):
+        run_response(request, folder=tmp_path / "b")
+
+
+def test_a_damaged_state_is_refused_by_name(tmp_path, monkeypatch):
+    request = request_of(count=2)
+    monkeypatch.setattr(study, "sweep_points", lambda *a, **k: iter(()))
+    run_response(request, folder=tmp_path / "a")
+    result = json.loads((tmp_path / "a" / "response.json").read_text())
+    (tmp_path / "a" / "response.json").write_text(json.dumps(result | {"status": "running"}))
+    (tmp_path / "a" / "state.npz").write_bytes(b"half of it")
+    with pytest.raises(FolderError, match=r"state\.npz: damaged .*--force"):
+        run_response(request, folder=tmp_path / "a", resume=True)
+
+
+def test_what_is_held_is_what_the_case_states():
+    assert request_of("motion.peak_acceleration_m_s2=4").held == "acceleration"
+    assert request_of("motion.amplitude_m=0.05").held == "displacement"
+    assert request_of("motion.amplitude_m=0.05", hold="acceleration").held_value == pytest.approx(
+        0.05 * 6.928**2
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "values", "message"),
+    [
+        (("motion.amplitude_m=0",), {}, "needs a floor that moves"),
+        (["motion.kind=none"], {}, r'\[motion\] kind must be "harmonic"'),
+        (["motion.cycles=5"], {}, r"\[motion\] cycles = 5 ends the drive"),
+        (["solver.model=full"], {}, r"reduced"),
+        ([], {"first_Hz": 2.0}, "--from must be less than --to, got 2 Hz and 1.4 Hz"),
+        ([], {"first_Hz": 0.0}, "--from must lie between 0.01 and 100 Hz, got 0 Hz"),
+        ([], {"last_Hz": float("nan")}, "--to must lie between"),
+        ([], {"count": 1}, "--count must lie between 2 and 2000, got 1"),
+        ([], {"observe": 4}, "--observe must lie between 8"),
+        ([], {"tolerance": 0.0}, "--tolerance must lie between"),
+    ],
+)
+def test_a_request_that_cannot_be_met_is_refused(changes, values, message):
+    with pytest.raises(CaseError, match=message):
+        request_of(*changes, **values)
+
+
+def test_the_command_writes_its_tables_and_figures(tmp_path):
+    line = ["response", "seed_stack_plateau", "--from", "0.9", "--to", "1.1", "--count", "2", "--json", "-q"]
+    line += ["--settle", "4", "--observe", "8", "--out", str(tmp_path / "r")]
+    for change in CHANGES:
+        line += ["--set", change]
+    done = subprocess.run(
+        [sys.executable, "-m", "fem", *line],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    result = json.loads(done.stdout)
+    assert result == json.loads((tmp_path / "r" / "response.json").read_text())
+    with (tmp_path / "r" / "response.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [row["direction"] for row in rows] == ["up", "up", "down", "down"]
+    for row, point in zip(rows, result["points"], strict=True):
+        assert float(row["rotation_ratio"]) == point["rotation_ratio"]
+    with (tmp_path / "r" / "sections.csv").open() as file:
+        assert len(list(csv.DictReader(file))) == 4 * 8
+    names = {path.name for path in (tmp_path / "r" / "figures").iterdir()}
+    assert names == {"response_curve.svg", "sections.svg", "portraits.svg"}
+
+
+def test_bad_input_ends_with_2_and_no_folder(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["response", "--from", "2", "--to", "1"]) == 2
+    assert "--from must be less than --to" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_fraction_of_a_frequency_is_refused_and_not_rounded(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["response", "rocking", "--from", "1", "--to", "2", "--count", "2.5"]) == 2
+    assert "--count: a whole number is needed, not '2.5'" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,67 @@
+"""Long-time motion told from sections once a period: maps and sequences whose motion is known."""
+
+import numpy as np
+import pytest
+
+from fem.response.stability import amplitudes_diverge, classify
+
+
+def logistic(rate: float, count: int = 48, settled: int = 3000) -> np.ndarray:
+    """Iterates (count, 1) of x -> r x (1 - x), whose periods are known for every r."""
+    x, taken = 0.31, []
+    for k in range(settled + count):
+        x = rate * x * (1.0 - x)
+        if k >= settled:
+            taken.append([x])
+    return np.array(taken)
+
+
+@pytest.mark.parametrize(("rate", "period"), [(2.8, 1), (3.2, 2), (3.5, 4), (3.55, 8), (3.832, 3)])
+def test_the_periods_of_the_logistic_map_are_found(rate, period):
+    # Period doubling at r = 3, 3.449, 3.544; the window of period 3 begins at 1 + sqrt(8) = 3.828.
+    found = classify(logistic(rate), resting=False)
+    assert (found.kind, found.period) == ("periodic", period)
+    assert found.compared == 48 - period
+
+
+def test_its_chaos_has_no_period():
+    found = classify(logistic(4.0), resting=False)
+    assert (found.kind, found.period) == ("not periodic", None)
+    assert found.scatter > 0.1
+    assert found.settling is not None and 0.5 < found.settling < 2.0
+
+
+def test_an_irrational_rotation_has_no_period():
+    angle = 2.0 * np.pi * 0.5 * (np.sqrt(5.0) - 1.0) * np.arange(48)
+    found = classify(np.column_stack([np.cos(angle), np.sin(angle)]), resting=False)
+    assert found.kind == "not periodic"
+
+
+def test_a_spiral_towards_a_fixed_point_is_not_settled():
+    spiral = 0.95 ** np.arange(48)[:, None] * np.column_stack([np.cos(np.arange(48)), np.sin(np.arange(48))])
+    found = classify(spiral, resting=False)
+    assert found.kind == "not settled"
+    assert classify(0.95**200 * spiral, resting=False).kind == "periodic"
+
+
+def test_rest_is_what_the_limits_of_a_verdict_say():
+    assert classify(np.zeros((48, 4)), resting=True).kind == "rest"
+
+
+def test_a_period_longer_than_a_third_of_the_window_is_not_claimed():
+    sections = np.tile(np.arange(8.0), 3)[:20, None]
+    found = classify(sections, resting=False)
+    assert found.kind == "not periodic"
+    assert found.largest_period == 6
+
+
+def test_growing_amplitudes_diverge_and_bounded_ones_do_not():
+    periods = np.arange(48)
+    assert amplitudes_diverge(0.2 * 1.02**periods)
+    assert not amplitudes_diverge(0.2 + 0.01 * np.sin(periods))
+    assert not amplitudes_diverge(1e-6 * 1.1**periods)  # of nothing
+
+
+def test_too_few_sections_are_refused():
+    with pytest.raises(ValueError, match="at least 4"):
+        classify(np.zeros((3, 4)), resting=False)

@@ -1,0 +1,207 @@
+"""Field output: what is written comes back, in meshio and in pyvista, at every moment of a run."""
+
+import ast
+import os
+import shutil
+import subprocess
+from xml.etree import ElementTree
+
+import meshio
+import numpy as np
+import pytest
+import pyvista
+
+from fem.results.fields import PROMPT_FRAMES, FieldWriter, open_fields
+
+POINTS = np.array([[x, z] for z in (0.0, 0.5, 1.0) for x in (0.0, 0.5, 1.0, 1.5, 2.0)])
+QUADS = np.array([[0, 2, 12, 10], [2, 4, 14, 12]])
+QUADS9 = np.array([[0, 2, 12, 10, 1, 7, 11, 5, 6], [2, 4, 14, 12, 3, 9, 13, 7, 8]])
+RNG = np.random.default_rng(5)
+
+
+def fields(floor=0.03):
+    return {
+        "displacement": RNG.normal(size=(15, 2)),
+        "velocity": RNG.normal(size=(15, 2)),
+        "von_mises": RNG.uniform(0.0, 3e8, size=15),
+        "contact_pressure": RNG.uniform(0.0, 1e6, size=15),
+        "floor_displacement": floor,
+    }
+
+
+def writer(folder, cells=QUADS9, **options):
+    return FieldWriter(folder, points=POINTS, cells=cells, region=np.array([1, 2]), **options)
+
+
+@pytest.mark.parametrize(("cells", "kind"), [(QUADS, "quad"), (QUADS9, "quad9")])
+def test_meshio_reads_what_was_written(tmp_path, cells, kind):
+    written = fields()
+    path = writer(tmp_path, cells).write(0.25, **written)
+    mesh = meshio.read(path)
+    assert mesh.cells[0].type == kind
+    assert mesh.cells[0].data.tolist() == cells.tolist()
+    assert mesh.cell_data["region"][0].tolist() == [1, 2]
+    assert mesh.points == pytest.approx(np.column_stack([POINTS, np.zeros(15)]), abs=1e-7)
+    for name, key in (("displacement_m", "displacement"), ("velocity_m_s", "velocity")):
+        assert mesh.point_data[name].shape == (15, 3)
+        assert mesh.point_data[name].dtype == np.float32
+        assert mesh.point_data[name][:, :2] == pytest.approx(written[key], rel=1e-6)
+        assert (mesh.point_data[name][:, 2] == 0.0).all()
+    assert mesh.point_data["von_mises_Pa"] == pytest.approx(written["von_mises"], rel=1e-6)
+    assert mesh.point_data["contact_pressure_Pa"] == pytest.approx(written["contact_pressure"], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("cells", "kind"), [(QUADS, pyvista.CellType.QUAD), (QUADS9, pyvista.CellType.BIQUADRATIC_QUAD)]
+)
+def test_pyvista_reads_the_time_series(tmp_path, cells, kind):
+    out = writer(tmp_path, cells)
+    written = [fields(), fields()]
+    out.write(0.0, **written[0])
+    out.write(0.05, **written[1])
+    reader = pyvista.get_reader(tmp_path / "run.pvd")
+    assert reader.time_values == [0.0, 0.05]
+    reader.set_active_time_value(0.05)
+    grid = reader.read()[0]
+    assert set(grid.celltypes) == {kind}
+    assert grid.point_data["displacement_m"][:, :2] == pytest.approx(written[1]["displacement"], rel=1e-6)
+    assert grid.cell_data["region"].tolist() == [1, 2]
+    warped = grid.warp_by_vector("displacement_m")
+    assert warped.points[:, :2] == pytest.approx(POINTS + written[1]["displacement"], abs=1e-6)
+
+
+def test_quadratic_cells_have_their_nodes_where_vtk_expects_them(tmp_path):
+    grid = pyvista.read(writer(tmp_path).write(0.0, **fields()))
+    assert grid.compute_cell_sizes()["Area"] == pytest.approx([1.0, 1.0], rel=1e-6)
+
+
+def test_series_is_valid_after_every_frame(tmp_path):
+    out = writer(tmp_path)
+    assert len(open_fields(tmp_path)) == 0
+    for i in range(4):
+        out.write(0.1 * i, **fields())
+        series = open_fields(tmp_path)
+        assert series.times.tolist() == [0.1 * j for j in range(i + 1)]
+        assert all(file.is_file() for file in series.files)
+    assert sorted(p.name for p in tmp_path.iterdir()) == [
+        *(f"frame_0000{i}.vtu" for i in range(4)),
+        "run.pvd",
+    ]
+
+
+def test_open_fields_gives_the_arrays_back(tmp_path):
+    written = fields(floor=-0.0125)
+    writer(tmp_path).write(0.1, **written)
+    frame = open_fields(tmp_path).frame(0)
+    assert frame.time == 0.1
+    assert frame.points == pytest.approx(POINTS)
+    assert frame.displacement == pytest.approx(written["displacement"], rel=1e-6)
+    assert frame.velocity == pytest.approx(written["velocity"], rel=1e-6)
+    assert frame.floor_displacement == pytest.approx(-0.0125, rel=1e-7)
+    assert frame.cells.tolist() == QUADS9.tolist() and frame.region.tolist() == [1, 2]
+
+
+def test_a_frame_without_stress_holds_no_array_of_it(tmp_path):
+    path = writer(tmp_path).write(0.1, **{**fields(), "von_mises": None})
+    assert "von_mises_Pa" not in meshio.read(path).point_data
+    assert open_fields(tmp_path).frame(0).von_mises is None
+
+
+def test_times_are_kept_to_the_last_bit(tmp_path):
+    writer(tmp_path).write(0.1 + 0.2, **fields())
+    assert open_fields(tmp_path).times[0] == 0.1 + 0.2
+
+
+def test_a_run_that_goes_on_keeps_the_frames_up_to_there_and_no_others(tmp_path):
+    out = writer(tmp_path)
+    for i in range(4):
+        out.write(float(i), **fields())
+    again = writer(tmp_path, kept_times=out.times[:2])
+    assert again.write(2.5, **fields()).name == "frame_00002.vtu"
+    assert open_fields(tmp_path).times.tolist() == [0.0, 1.0, 2.5]
+    assert not (tmp_path / "frame_00003.vtu").exists()
+
+
+def test_a_new_run_removes_the_frames_of_an_older_one(tmp_path):
+    writer(tmp_path).write(0.0, **fields())
+    writer(tmp_path)
+    assert [p.name for p in tmp_path.iterdir()] == ["run.pvd"]
+
+
+def test_long_series_are_listed_in_time_and_completely_at_the_end(tmp_path):
+    kept = [0.01 * i for i in range(3 * PROMPT_FRAMES)]
+    out = writer(tmp_path, kept_times=kept)
+    for i in range(5):
+        out.write(100.0 + i, **fields())
+        listed = len(ElementTree.parse(tmp_path / "run.pvd").findall("./Collection/DataSet"))
+        assert 0 <= 3 * PROMPT_FRAMES + i + 1 - listed <= 3
+    out.close()
+    assert len(open_fields(tmp_path)) == 3 * PROMPT_FRAMES + 5
+
+
+def test_a_frame_that_cannot_be_written_is_neither_left_nor_listed(tmp_path, monkeypatch):
+    out = writer(tmp_path)
+    out.write(0.0, **fields())
+
+    def full(path, *_, **__):
+        path.write_text("<VTKFile")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(meshio, "write", full)
+    with pytest.raises(OSError, match="No space left"):
+        out.write(1.0, **fields())
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["frame_00000.vtu", "run.pvd"]
+    assert len(open_fields(tmp_path)) == 1
+
+
+def test_a_series_that_names_files_elsewhere_or_is_damaged_is_refused(tmp_path):
+    text = '<VTKFile><Collection><DataSet timestep="0" file="../secret.vtu"/></Collection></VTKFile>'
+    (tmp_path / "run.pvd").write_text(text)
+    with pytest.raises(ValueError, match="not in its folder"):
+        open_fields(tmp_path)
+    (tmp_path / "run.pvd").write_text(text[:-20])
+    with pytest.raises(ValueError, match="damaged"):
+        open_fields(tmp_path)
+
+
+def test_shapes_that_do_not_fit_are_refused(tmp_path):
+    with pytest.raises(ValueError, match="points must have shape"):
+        FieldWriter(tmp_path, points=np.zeros((3, 3)), cells=QUADS, region=np.zeros(2, int))
+    with pytest.raises(ValueError, match="cells"):
+        FieldWriter(tmp_path, points=POINTS, cells=QUADS, region=np.zeros(3, int))
+
+
+PARAVIEW = """
+from paraview.simple import PVDReader, WarpByVector, servermanager
+reader = PVDReader(FileName={series!r})
+reader.UpdatePipelineInformation()
+print(list(reader.TimestepValues))
+warped = WarpByVector(Input=reader)
+warped.Vectors = ["POINTS", "displacement_m"]
+warped.UpdatePipeline(0.05)
+data = servermanager.Fetch(warped)
+print([data.GetPoint(i) for i in range(data.GetNumberOfPoints())])
+print([data.GetPointData().GetArray("von_mises_Pa").GetValue(i) for i in range(data.GetNumberOfPoints())])
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("pvpython") is None, reason="needs pvpython (Debian: python3-paraview)")
+def test_paraview_opens_the_series_and_warps_it(tmp_path):
+    out = writer(tmp_path)
+    written = [fields(), fields()]
+    out.write(0.0, **written[0])
+    out.write(0.05, **written[1])
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")}
+    result = subprocess.run(
+        ["pvpython", "-c", PARAVIEW.format(series=str(tmp_path / "run.pvd"))],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=300,
+    )
+    times, points, stresses = (ast.literal_eval(line) for line in result.stdout.splitlines()[-3:])
+    assert times == [0.0, 0.05]
+    assert np.array(points)[:, :2] == pytest.approx(POINTS + written[1]["displacement"], abs=1e-5)
+    assert stresses == pytest.approx(written[1]["von_mises"], rel=1e-5)

@@ -1,0 +1,183 @@
+"""A run opened for reading: the same numbers as in its files, lazily, and a clear word where a file is missing."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import pyvista
+
+import fem
+from fem.case.case import load_case
+from fem.results.fields import FieldError
+from fem.results.history import HISTORY_COLUMNS
+from fem.results.run_folder import FolderError
+from fem.run.run import RunOptions, run_case
+
+ROOT = Path(__file__).parents[3]
+ROCKING = ("solver.model=rigid", "solver.duration_s=1", "output.fields_s=0.25", "output.figures=false")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A finished run of free rocking, with a rigid check and fields."""
+    folder = tmp_path_factory.mktemp("opening") / "r"
+    case = load_case("free_rocking", ROCKING)
+    run_case(case, case_text=case.text, folder=folder, options=RunOptions(band=False))
+    return folder
+
+
+@pytest.fixture
+def damaged(folder, tmp_path):
+    """Makes a copy of the run with one file replaced; None takes it away."""
+
+    def copy(name, text):
+        place = tmp_path / "copy"
+        for path in folder.rglob("*"):
+            if path.is_file():
+                target = place / path.relative_to(folder)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                target.write_bytes(path.read_bytes())
+        if text is None:
+            (place / name).unlink()
+        else:
+            (place / name).write_text(text)
+        return place
+
+    return copy
+
+
+def test_result_case_and_history_are_those_of_the_files(folder):
+    run = fem.open_run(folder)
+    assert run.result == json.loads((folder / "run.json").read_text())
+    assert (run.name, run.status, run.folder) == ("free_rocking", "completed", folder)
+    assert run.case.resolved() == load_case(folder / "resolved.toml").resolved()
+    written = np.loadtxt(folder / "history.csv", delimiter=",", skiprows=1, usecols=range(16))
+    for column, name in enumerate(HISTORY_COLUMNS[:16]):
+        assert (run.history[name] == written[:, column]).all()
+    assert len(run.history.modes) == len(written) == 201
+    assert run.history is run.history  # read once
+    assert fem.open_run(folder / "run.json").result == run.result
+
+
+def test_the_rigid_check_comes_by_column(folder):
+    check = fem.open_run(folder).rigid_check
+    assert set(check) >= {"time_s", "rotation_rad", "analytic_rotation_rad"}
+    assert check["rotation_rad"] == pytest.approx(fem.open_run(folder).history["rotation_rad"], abs=0.0)
+    assert np.abs(check["analytic_rotation_rad"] - check["rotation_rad"])[:100].max() < 1e-5
+
+
+def test_frames_hold_the_rigid_motion_of_the_history(folder):
+    run = fem.open_run(folder)
+    assert run.fields.times == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
+    assert [frame.time for frame in run.fields] == run.fields.times.tolist()
+    frame = run.frame(0.6)
+    assert frame.time == 0.5
+    base = frame.points[:, 1] == 0.0
+    left, right = (
+        np.argmin(np.where(base, frame.points[:, 0], 9.0)),
+        np.argmax(np.where(base, frame.points[:, 0], -9.0)),
+    )
+    across = (frame.points + frame.displacement)[right] - (frame.points + frame.displacement)[left]
+    tilt = -np.arctan2(across[1], across[0])
+    sample = np.searchsorted(run.history["time_s"], 0.5)
+    assert tilt == pytest.approx(run.history["rotation_rad"][sample], abs=1e-6)
+
+
+def test_a_grid_is_what_pyvista_reads_from_the_file(folder):
+    run = fem.open_run(folder)
+    made, read = run.grid(0.5), pyvista.read(run.fields.files[2])
+    assert made.points == pytest.approx(read.points)
+    assert made.cells.tolist() == read.cells.tolist()
+    assert made.celltypes.tolist() == read.celltypes.tolist()
+    for name in ("displacement_m", "velocity_m_s", "contact_pressure_Pa"):
+        assert made.point_data[name] == pytest.approx(read.point_data[name])
+
+
+def test_a_rigid_container_has_no_stress(folder):
+    run = fem.open_run(folder)
+    assert run.frame(0.5).von_mises is None
+    assert "von_mises_Pa" not in run.grid(0.5).point_data
+    assert "von_mises_Pa" not in pyvista.read(run.fields.files[2]).point_data
+    assert run.result["verdict"]["max_von_mises_Pa"] is None
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "ask", "words"),
+    [
+        ("history.csv", None, "history", "history.csv: cannot be read (No such file"),
+        ("history.csv", "time\n", "history", "not a history"),
+        ("resolved.toml", None, "case", "resolved.toml: missing"),
+        ("resolved.toml", "schema = ", "case", "not a TOML file"),
+        ("rigid_check.csv", "time_s,rotation_rad\n0,a\n", "rigid_check", "rigid_check.csv: cannot be read"),
+        ("fields/run.pvd", None, "fields", "no fields were written"),
+        ("fields/run.pvd", "<VTKFile>", "fields", "damaged"),
+        ("fields/run.pvd", "<VTKFile/>", "fields", "no frame has been written yet"),
+    ],
+)
+def test_a_damaged_file_is_named_when_it_is_asked_for(damaged, name, text, ask, words):
+    run = fem.open_run(damaged(name, text))  # opens all the same
+    with pytest.raises(FolderError) as raised:
+        getattr(run, ask)
+    assert words in str(raised.value)
+    assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize("text", ["", "<VTKFile", "<VTKFile type='UnstructuredGrid'/>", None])
+def test_a_damaged_frame_is_named(damaged, text):
+    run = fem.open_run(damaged("fields/frame_00001.vtu", text))
+    assert run.fields.frame(0).time == 0.0
+    with pytest.raises(FieldError, match=r"frame_00001\.vtu: this frame is (damaged|missing)"):
+        run.fields.frame(1)
+
+
+def test_what_is_no_run_is_refused(tmp_path):
+    with pytest.raises(FolderError, match="no such folder"):
+        fem.open_run(tmp_path / "nowhere")
+    with pytest.raises(FolderError, match="is this the folder of a run"):
+        fem.open_run(tmp_path)
+    (tmp_path / "sweep.json").write_text("{}")
+    with pytest.raises(
+        FolderError, match=r"the folder of a sweep \(its results: table.csv\); give that of a run"
+    ):
+        fem.open_run(tmp_path)
+
+
+def test_what_a_notebook_shows_of_it_is_one_line(folder, monkeypatch):
+    run = fem.open_run(folder)
+    assert repr(run) == f"<run 'free_rocking' in {str(folder)!r}: completed, rock>"
+    assert repr(run.fields) == "<fields: 5 frames from 0 to 1 s>"
+    assert repr(run.history).startswith("<history: 201 samples of time_s, base_displacement_m")
+    monkeypatch.setenv("HOME", str(folder.parent))
+    assert fem.open_run(f"~/{folder.name}").result == run.result
+
+
+def test_an_unfinished_run_opens_with_what_it_has(damaged, folder):
+    lines = (folder / "history.csv").read_text().splitlines(keepends=True)
+    run = fem.open_run(damaged("history.csv", "".join(lines[:50]) + "0.245,0.1"))
+    assert len(run.history) == 49
+
+
+def test_opening_loads_neither_the_solver_nor_pyvista(folder):
+    script = (
+        f"import sys, fem; assert not {{'numpy', 'fem.results.reader'}} & set(sys.modules); "
+        f"run = fem.open_run({str(folder)!r}); run.history, run.case, run.fields.frame(0); "
+        "print(*{'numba', 'pyvista', 'skfem', 'matplotlib'} & set(sys.modules))"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True, timeout=60
+    )
+    assert result.stdout.strip() == ""
+
+
+@pytest.mark.parametrize("time", [float("nan"), -1.0, 1e9])
+def test_a_time_without_a_frame_is_refused(folder, time):
+    with pytest.raises(FolderError, match="frames lie from 0 to"):
+        fem.open_run(folder).frame(time)
+
+
+def test_the_package_gives_away_no_other_names():
+    with pytest.raises(AttributeError, match="open_runs"):
+        fem.open_runs  # noqa: B018

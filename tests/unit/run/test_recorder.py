@@ -1,0 +1,38 @@
+"""What a run leaves behind reads as people write it: no rounding of the grid's multiplication, no minus zero."""
+
+import numpy as np
+import pytest
+
+from fem.case.case import load_case
+from fem.model.model import build_model
+from fem.model.recovery import recovery_of
+from fem.run.recorder import Recorder, as_written
+from fem.run.simulation import simulate
+
+
+@pytest.mark.parametrize("interval", ["0.05", "0.005", "0.03", "1e-4", "2.5"])
+def test_times_on_a_decimal_grid_have_no_tail(interval):
+    times = as_written(np.arange(4001) * float(interval))
+    decimals = max(len(interval.partition(".")[2]), 4)
+    assert times.tolist() == [float(f"{k * float(interval):.{decimals}f}") for k in range(4001)]
+    assert (np.diff(times) > 0.0).all()
+
+
+def test_times_on_another_grid_are_not_moved():
+    for times in (np.arange(1, 4001) * (2.0 * np.pi / 6.928 / 400.0), np.array([1e-7 / 3.0, 1e4 / 3.0])):
+        assert (np.abs(as_written(times) - times) <= 1e-15 * times).all()
+
+
+def test_no_sample_and_no_frame_of_a_run_has_a_tail_or_a_minus_zero():
+    case = load_case("seed_box", ["solver.model=rigid", "solver.duration_s=0.4", "output.fields_s=0.05"])
+    model = build_model(case)
+    told, rows = [], []
+    recorder = Recorder(
+        model, recovery_of(model), lambda new, _: rows.extend(new), lambda time, *_: told.append(time)
+    )
+    simulate(model, recorder)
+    values = np.array(rows)
+    assert told == [0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4]
+    assert values[:, 0].tolist() == [k / 200 for k in range(81)]
+    assert not np.signbit(values[values == 0.0]).any()
+    assert np.array_equal(recorder.history().values, values)

@@ -1,0 +1,332 @@
+"""A run at the level of its folder: statuses, exit codes, what is kept, what is reproduced, how it ends."""
+
+import json
+import math
+import os
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fem.assessment.verdict
+import fem.model.equilibrium
+import fem.model.step_size
+from contact.reference.floor_acceleration import still_floor
+from contact.reference.rigid_block import RigidBlock
+from contact.reference.rocking import simulate_rocking
+from fem.__main__ import main
+from fem.case.case import load_case
+from fem.results.history import History, read_history
+from fem.results.run_folder import FolderError, read_result
+from fem.run.run import RunOptions, RunResult, run_case
+from fem.runtime.interrupts import interruptible
+from fem.runtime.progress import SilentReporter
+
+QUICK = ("solver.model=rigid", "output.fields_s=0", "output.figures=false")
+ANGLE = math.atan(1.1 / 4.0)  #: slenderness angle of the shipped stack [rad]
+
+
+def run(folder: Path, name: str, *overrides: str, **options) -> RunResult:
+    case = load_case(name, [*QUICK, *overrides])
+    return run_case(case, case_text=case.text, folder=folder, options=RunOptions(**options))
+
+
+def command(folder: Path, name: str, *overrides: str) -> int:
+    changes = [word for override in (*QUICK, *overrides) for word in ("--set", override)]
+    return main(["run", name, "--out", str(folder), "-q", *changes])
+
+
+def history_of(folder: Path) -> History:
+    return read_history(folder / "history.csv")
+
+
+class Collecting(SilentReporter):
+    """Keeps what it is told."""
+
+    def __init__(self) -> None:
+        self.messages: list[str] = []
+
+    def message(self, text: str) -> None:
+        self.messages.append(text)
+
+
+class TestEnd:
+    def test_a_completed_run_leaves_its_files_and_exits_with_0(self, tmp_path, capsys):
+        folder = tmp_path / "r"
+        assert command(folder, "rocking", "solver.duration_s=2") == 0
+        result = read_result(folder / "run.json")
+        assert result["status"] == "completed"
+        assert result["verdict"]["outcome"] == "rock"
+        assert {"case.toml", "resolved.toml", "run.json", "summary.txt", "history.csv"} <= {
+            path.name for path in folder.iterdir()
+        }
+        assert (folder / "summary.txt").read_text() == capsys.readouterr().out
+        assert len(history_of(folder)) == 401
+        assert set(result["versions"]) >= {"python", "numpy", "numba", "unanchored"}
+
+    def test_an_overturned_container_is_a_result_with_exit_code_0(self, tmp_path):
+        folder = tmp_path / "r"
+        assert command(folder, "overturning") == 0
+        result = read_result(folder / "run.json")
+        assert result["status"] == result["verdict"]["outcome"] == "overturned"
+        assert result["verdict"]["rotation_ratio"] * ANGLE >= 0.5 * math.pi - 1e-9
+        assert history_of(folder)["time_s"][-1] <= result["verdict"]["overturned_at_s"]
+
+    def test_a_step_that_cannot_be_solved_ends_with_3_and_says_when_and_what_to_try(
+        self, tmp_path, monkeypatch, capsys
+    ):
+        # A ladder of one step, and a tolerance finer than rounding: the first step that fails is the smallest there is.
+        monkeypatch.setattr(fem.step_limits, "SMALLEST_SHARE", 1.0)
+        monkeypatch.setattr(fem.footing, "POINT_TOLERANCE", 1e-40)
+        folder = tmp_path / "r"
+        assert command(folder, "free_rocking") == 3
+        result = read_result(folder / "run.json")
+        assert result["status"] == "failed"
+        assert result["verdict"]["outcome"] is None
+        assert result["verdict"]["band"] is None
+        kept = history_of(folder)
+        assert 0.0 < kept["time_s"][-1] < 10.0
+        error = result["error"]
+        assert error.startswith("step ")
+        instant = float(error.split("t = ")[1].split(" s")[0])
+        assert kept["time_s"][-1] <= instant <= kept["time_s"][-1] + 0.1
+        assert (
+            "did not settle at the smallest step (0.005 s), though the contact forces balance within" in error
+        )
+        assert "softer contact.normal_penalty_Pa_m" in error
+        page = capsys.readouterr().out
+        assert "No verdict:" in page
+        assert "did not overturn" not in page
+
+    def test_a_ledger_beyond_its_limits_fails_the_run(self, tmp_path, monkeypatch):
+        monkeypatch.setattr(fem.verdict, "GAIN_LIMIT", -1.0)
+        found = run(tmp_path / "r", "rocking", "solver.duration_s=1")
+        assert found.status == "failed"
+        assert "of the energy to overturn" in found.result["error"]
+        assert "solver.step_s" in found.result["error"]
+        assert found.result["verdict"]["outcome"] is None
+
+    def test_bad_input_leaves_no_folder_and_exits_with_2(self, tmp_path, capsys):
+        folder = tmp_path / "r"
+        assert command(folder, "rocking", "contact.mu_static=-1") == 2
+        assert not folder.exists()
+        assert "mu_static" in capsys.readouterr().err
+
+
+class TestAftermath:
+    def test_a_container_left_beyond_its_slenderness_angle_is_followed_until_it_falls(self, tmp_path):
+        # Released at rest a little beyond the unstable balance, the run over long before it is down; the rigid
+        # block's own equation of motion says when it is.
+        start = 1.06 * ANGLE
+        folder = tmp_path / "r"
+        found = run(folder, "free_rocking", f"initial.rotation_rad={start!r}", "solver.duration_s=0.2")
+        block = RigidBlock.homogeneous(width=1.1, height=4.0)
+        falls_at = simulate_rocking(block, still_floor(), duration=20.0, rotation=start).overturned_at
+        assert falls_at > 1.5
+        assert found.status == "overturned"
+        assert found.result["verdict"]["overturned_at_s"] == pytest.approx(falls_at, rel=2e-3)
+        assert history_of(folder)["time_s"][-1] > 2.0
+
+    def test_one_that_comes_back_is_followed_until_it_has(self, tmp_path):
+        start = 1.06 * ANGLE
+        folder = tmp_path / "r"
+        found = run(
+            folder,
+            "free_rocking",
+            f"initial.rotation_rad={start!r}",
+            "initial.angular_velocity_rad_s=-0.2",
+            "solver.duration_s=0.02",
+        )
+        assert found.status == "completed"
+        assert found.result["verdict"]["outcome"] == "rock"
+        history = history_of(folder)
+        assert history["time_s"][-1] > 0.02
+        assert abs(history["rotation_rad"][-1]) < ANGLE
+
+    def test_the_floor_is_left_alone_meanwhile(self, tmp_path):
+        folder = tmp_path / "r"
+        found = run(folder, "overturning", "solver.duration_s=1.5")
+        assert found.status == "overturned"
+        history = history_of(folder)
+        after = history["time_s"] > 1.5 + 1e-9
+        assert after.sum() > 5
+        assert np.ptp(history["base_velocity_m_s"][after]) == 0.0
+        assert not history["base_acceleration_m_s2"][after].any()
+
+    def test_a_run_told_not_to_stop_goes_on_with_the_container_on_its_side(self, tmp_path):
+        folder = tmp_path / "r"
+        found = run(folder, "overturning", "output.stop_when_overturned=false", "solver.duration_s=4")
+        assert found.status == "overturned"
+        history = history_of(folder)
+        assert history["time_s"][-1] == pytest.approx(4.0)
+        assert found.result["verdict"]["overturned_at_s"] < 3.0
+        assert history.modes[-1] == "overturned"
+        # On its side the mass centre is half a width above the floor.
+        assert abs(history["rotation_rad"][-1]) == pytest.approx(0.5 * math.pi, abs=0.1)
+        assert history["centre_z_m"][-1] == pytest.approx(0.55, abs=0.1)
+
+
+class TestAgain:
+    def test_the_resolved_case_gives_the_same_bytes(self, tmp_path):
+        first, second = tmp_path / "first", tmp_path / "second"
+        run(first, "seed_stack_plateau", "solver.duration_s=4")
+        case = load_case(first / "resolved.toml")
+        run_case(case, case_text=case.text, folder=second)
+        assert (second / "history.csv").read_bytes() == (first / "history.csv").read_bytes()
+        assert (second / "resolved.toml").read_text() == (first / "resolved.toml").read_text()
+        hashes = [read_result(folder / "run.json")["case_hash"] for folder in (first, second)]
+        assert hashes[0] == hashes[1]
+        assert "auto" not in (first / "resolved.toml").read_text()
+
+    def test_the_resolved_elastic_case_gives_the_same_bytes(self, tmp_path):
+        first, second = tmp_path / "first", tmp_path / "second"
+        run(first, "rocking", "solver.model=reduced", "solver.duration_s=2", "support.kind=feet", band=False)
+        case = load_case(first / "resolved.toml")
+        run_case(case, case_text=case.text, folder=second, options=RunOptions(band=False))
+        assert (second / "history.csv").read_bytes() == (first / "history.csv").read_bytes()
+
+    def test_a_finished_run_is_not_computed_again_unless_forced(self, tmp_path):
+        folder = tmp_path / "r"
+        run(folder, "rocking", "solver.duration_s=1")
+        before = (folder / "run.json").read_bytes()
+        (folder / "history.csv").write_text("kept as it is")
+        reporter = Collecting()
+        case = load_case("rocking", [*QUICK, "solver.duration_s=1"])
+        again = run_case(case, case_text=case.text, folder=folder, reporter=reporter)
+        assert again.status == "completed"
+        assert "--force" in reporter.messages[0]
+        assert (folder / "run.json").read_bytes() == before
+        assert (folder / "history.csv").read_text() == "kept as it is"
+        run(folder, "rocking", "solver.duration_s=1", force=True)
+        assert len(history_of(folder)) == 201
+
+    def test_a_motion_file_beside_the_case_goes_along_wherever_the_case_is_called_from(
+        self, tmp_path, monkeypatch
+    ):
+        (tmp_path / "floor.csv").write_text("time_s,a\n0,0\n0.5,1\n1,0\n")
+        (tmp_path / "mine.toml").write_text(load_case("rocking").text)
+        table = [
+            f"motion.{key}" for key in ("kind=table", "file=floor.csv", "quantity=acceleration", "unit=m/s2")
+        ]
+        monkeypatch.chdir(tmp_path)  # the file is then called by its bare name
+        case = load_case("mine.toml", [*QUICK, *table, "solver.duration_s=0.1"])
+        run_case(case, case_text=case.text, folder=tmp_path / "first")
+        again = load_case(tmp_path / "first" / "resolved.toml")
+        assert run_case(again, case_text=again.text, folder=tmp_path / "second").status == "completed"
+        assert (tmp_path / "second" / "history.csv").read_bytes() == (
+            tmp_path / "first" / "history.csv"
+        ).read_bytes()
+
+    def test_a_failed_run_is_computed_again(self, tmp_path, monkeypatch):
+        folder = tmp_path / "r"
+        with monkeypatch.context() as broken:
+            broken.setattr(fem.verdict, "GAIN_LIMIT", -1.0)
+            assert run(folder, "rocking", "solver.duration_s=1").status == "failed"
+        assert run(folder, "rocking", "solver.duration_s=1").status == "completed"
+
+    def test_another_case_is_kept_out_of_the_folder(self, tmp_path):
+        folder = tmp_path / "r"
+        run(folder, "rocking", "solver.duration_s=1")
+        with pytest.raises(FolderError, match="another case"):
+            run(folder, "rocking", "solver.duration_s=1.5")
+
+
+class TestChecks:
+    def test_rocking_has_its_band_and_sliding_none(self, tmp_path):
+        rocks = run(tmp_path / "rocks", "rocking", "solver.duration_s=2")
+        assert rocks.result["verdict"]["band"]["outcomes"]
+        assert "band of the contact" in (tmp_path / "rocks" / "summary.txt").read_text()
+        slides = run(tmp_path / "slides", "sliding", "solver.duration_s=2")
+        assert slides.result["verdict"]["outcome"] == "slide"
+        assert slides.result["verdict"]["band"] is None
+
+    def test_a_band_may_be_asked_for_and_left_out(self, tmp_path):
+        asked = run(tmp_path / "asked", "sliding", "solver.duration_s=1", band=True)
+        assert asked.result["verdict"]["band"]["outcomes"] == ["slide"]
+        assert asked.result["verdict"]["band"]["unsure"] is False
+        without = run(tmp_path / "without", "rocking", "solver.duration_s=1", band=False)
+        assert without.result["verdict"]["band"] is None
+
+    def test_the_band_does_not_count_as_stepping(self, tmp_path):
+        with_band = run(tmp_path / "with", "rocking", "solver.duration_s=4")
+        without = run(tmp_path / "without", "rocking", "solver.duration_s=4", band=False)
+        assert with_band.result["numerics"]["steps"] == without.result["numerics"]["steps"]
+        assert (tmp_path / "with" / "history.csv").read_bytes() == (
+            tmp_path / "without" / "history.csv"
+        ).read_bytes()
+
+    def test_what_a_finished_run_lacks_is_added_without_computing_it_again(self, tmp_path):
+        folder = tmp_path / "r"
+        first = run(folder, "rocking", "solver.duration_s=2", band=False)
+        assert "rigid_check" not in first.result
+        written = (folder / "history.csv").read_text().splitlines()
+        again = run(folder, "rocking", "solver.duration_s=2", check_rigid=True, band=True)
+        beside = (folder / "history.csv").read_text().splitlines()
+        assert [
+            line.rpartition(",")[0] for line in beside
+        ] == written  # the block's rotation, and nothing else
+        kept = json.loads((folder / "run.json").read_text())
+        assert kept["verdict"]["band"]["outcomes"] == again.result["verdict"]["band"]["outcomes"]
+        assert kept["rigid_check"]["reference"] == "rigid block that does not slide"
+        assert kept["wall_s"] == first.result["wall_s"]
+        assert (folder / "rigid_check.csv").is_file()
+
+    def test_a_failed_run_has_no_checks(self, tmp_path, monkeypatch):
+        monkeypatch.setattr(fem.verdict, "GAIN_LIMIT", -1.0)
+        found = run(tmp_path / "r", "free_rocking", "solver.duration_s=1", check_rigid=True, band=True)
+        assert found.status == "failed"
+        assert found.result["verdict"]["band"] is None
+        assert "rigid_check" not in found.result
+
+
+def test_the_last_sample_and_frame_fall_on_the_end_though_rounding_puts_them_beyond(tmp_path):
+    assert 12 * 0.1 > 1.2
+    folder = tmp_path / "r"
+    run(
+        folder,
+        "free_rocking",
+        "solver.model=rigid",
+        "solver.duration_s=1.2",
+        "output.history_s=0.1",
+        "output.fields_s=0.1",
+    )
+    assert len(read_history(folder / "history.csv")) == 13
+    assert (folder / "fields" / "frame_00012.vtu").is_file()
+
+
+class TestSignals:
+    def test_the_first_signal_asks_and_the_second_insists(self):
+        reporter = Collecting()
+        before = signal.getsignal(signal.SIGINT)
+        with interruptible(reporter) as stop:
+            assert not stop()
+            os.kill(os.getpid(), signal.SIGINT)
+            assert stop()
+            with pytest.raises(KeyboardInterrupt):
+                os.kill(os.getpid(), signal.SIGINT)
+                signal.sigtimedwait([], 1.0)
+        assert len(reporter.messages) == 1
+        assert signal.getsignal(signal.SIGINT) is before
+
+    def test_sigterm_asks_as_well(self):
+        with interruptible(SilentReporter()) as stop:
+            os.kill(os.getpid(), signal.SIGTERM)
+            assert stop()
+
+
+def test_a_history_coarser_than_the_drive_has_no_peak_to_peak_and_the_run_stands(tmp_path):
+    overrides = (
+        "solver.model=rigid",
+        "motion.cycles=2",
+        "solver.duration_s=3.0",
+        "output.history_s=2.5",
+        "output.fields_s=0",
+    )
+    assert (
+        main(["run", "seed_box", *(f"--set={one}" for one in overrides), "-q", "--out", str(tmp_path / "r")])
+        == 0
+    )
+    result = read_result(tmp_path / "r" / "run.json")
+    assert result["status"] == "completed"
+    assert result["verdict"]["slip_peak_to_peak_m"] is None

@@ -1,0 +1,294 @@
+"""Disks that fill up, folders that go away, checkpoints that are not what they should be: a reason, never a loss."""
+
+import errno
+import json
+import os
+import resource
+import shutil
+from pathlib import Path
+
+import pytest
+
+import fem.results.archive
+import fem.results.fields
+import fem.results.history
+import fem.results.lock
+import fem.run.checkpoint
+from fem.__main__ import main
+from fem.results.fields import open_fields
+from fem.results.history import read_history
+from fem.results.lock import LOCK_NAME, held_folder
+from fem.results.run_folder import read_result
+from fem.runtime.progress import ScreenReporter
+
+COMMON = ("solver.model=rigid", "solver.duration_s=3", "output.figures=false", "output.fields_s=0.25")
+
+
+def command(folder: Path, *options: str) -> int:
+    changes = [word for override in COMMON for word in ("--set", override)]
+    return main(["run", "rocking", "--out", str(folder), "--no-band", "-q", *changes, *options])
+
+
+def at_time(monkeypatch, instant: float, action) -> None:
+    """Do something when the run has come to `instant` [s]."""
+    done = []
+
+    def update(self, time, rotation_ratio, mode):
+        if time >= instant and not done:
+            done.append(time)
+            action()
+
+    monkeypatch.setattr(ScreenReporter, "update", update)
+
+
+def interrupted(folder: Path, monkeypatch, instant: float = 1.0) -> None:
+    """A run stopped by Ctrl-C."""
+    with monkeypatch.context() as patch:
+        at_time(patch, instant, lambda: os.kill(os.getpid(), 2))
+        assert command(folder) == 4
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()
+    }
+
+
+def no_room(*_, **__):
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+@pytest.fixture
+def whole(tmp_path):
+    """What the run comes to when nothing goes wrong."""
+    folder = tmp_path / "whole"
+    assert command(folder) == 0
+    return folder
+
+
+def require_going_on(folder: Path, whole: Path) -> None:
+    """After the fault is mended, --resume comes to the bits of the undisturbed run."""
+    assert command(folder, "--resume") == 0
+    for name in ("history.csv", "fields/run.pvd", "fields/frame_00012.vtu", "resolved.toml"):
+        assert (folder / name).read_bytes() == (whole / name).read_bytes()
+    assert read_result(folder / "run.json")["verdict"] == read_result(whole / "run.json")["verdict"]
+    assert {path.name for path in folder.iterdir()} == {path.name for path in whole.iterdir()}
+
+
+def test_an_interrupted_run_names_the_way_on(tmp_path, monkeypatch, capsys, whole):
+    interrupted(tmp_path / "r", monkeypatch)
+    assert "--resume" in capsys.readouterr().err
+    assert read_result(tmp_path / "r" / "run.json")["status"] == "interrupted"
+    assert not (tmp_path / "r" / LOCK_NAME).exists()
+    require_going_on(tmp_path / "r", whole)
+
+
+def test_resume_without_a_checkpoint_begins_at_zero(tmp_path, monkeypatch, whole):
+    interrupted(tmp_path / "r", monkeypatch)
+    (tmp_path / "r" / "checkpoint.npz").unlink()
+    require_going_on(tmp_path / "r", whole)
+    assert command(tmp_path / "new", "--resume") == 0
+    assert (tmp_path / "new" / "history.csv").read_bytes() == (whole / "history.csv").read_bytes()
+
+
+def test_without_resume_a_run_is_begun_anew(tmp_path, monkeypatch, whole):
+    interrupted(tmp_path / "r", monkeypatch)
+    assert command(tmp_path / "r") == 0
+    assert (tmp_path / "r" / "history.csv").read_bytes() == (whole / "history.csv").read_bytes()
+
+
+def test_a_history_that_cannot_grow_ends_the_run_with_3(tmp_path, capsys, monkeypatch, whole):
+    limit = (whole / "history.csv").stat().st_size // 2
+    monkeypatch.setattr(fem.resumption, "CHECKPOINT_S", 0.0)
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, before[1]))
+    try:
+        code = command(tmp_path / "r")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    message = capsys.readouterr().err
+    assert code == 3
+    assert "history.csv: cannot be written (File too large)" in message and "--resume" in message
+    assert (tmp_path / "r" / "history.csv").read_bytes().endswith(b"\n")
+    assert len(read_history(tmp_path / "r" / "history.csv")) > 100
+    result = read_result(tmp_path / "r" / "run.json")
+    assert result["status"] == "failed" and "File too large" in result["error"]
+    require_going_on(tmp_path / "r", whole)
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "after"),
+    [
+        (fem.results.fields.meshio, "write", 5),
+        (fem.results.fields.os, "replace", 30),
+        (fem.results.history.os, "fsync", 7),
+        (fem.results.archive.zipfile.ZipFile, "writestr", 60),
+    ],
+    ids=["frame", "rename", "sync", "checkpoint"],
+)
+def test_a_disk_that_fills_up_ends_the_run_with_3(tmp_path, capsys, monkeypatch, whole, module, name, after):
+    monkeypatch.setattr(fem.resumption, "CHECKPOINT_S", 0.0)
+    kept, calls = getattr(module, name), []
+
+    def fills_up(*arguments, **options):
+        calls.append(name)
+        return kept(*arguments, **options) if len(calls) <= after else no_room()
+
+    with monkeypatch.context() as patch:
+        patch.setattr(module, name, fills_up)
+        assert command(tmp_path / "r") == 3
+    message = capsys.readouterr().err
+    assert "No space left on device" in message and "--resume" in message
+    assert len(calls) > after
+    read_history(tmp_path / "r" / "history.csv")
+    assert all(frame.points.size for frame in open_fields(tmp_path / "r" / "fields"))
+    assert not list((tmp_path / "r").rglob("*.part"))
+    require_going_on(tmp_path / "r", whole)
+
+
+def test_a_disk_that_is_full_at_the_end_loses_the_end_alone(tmp_path, capsys, monkeypatch, whole):
+    monkeypatch.setattr(fem.resumption, "CHECKPOINT_S", 0.0)
+    with monkeypatch.context() as patch:
+        patch.setattr(fem.run.run.RunFolder, "write_summary", no_room)
+        assert command(tmp_path / "r") == 3
+    assert "No space left" in capsys.readouterr().err
+    assert command(tmp_path / "r", "--resume") == 0
+    assert (tmp_path / "r" / "history.csv").read_bytes() == (whole / "history.csv").read_bytes()
+
+
+def test_a_folder_removed_during_the_run_ends_it_with_3(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(fem.resumption, "CHECKPOINT_S", 0.0)
+    at_time(monkeypatch, 1.0, lambda: shutil.rmtree(tmp_path / "r"))
+    assert command(tmp_path / "r") == 3
+    message = capsys.readouterr().err
+    assert str(tmp_path / "r") in message and "Traceback" not in message
+    assert not (tmp_path / "r").exists()
+
+
+def test_a_folder_taken_by_another_run_is_left_to_it(tmp_path, capsys, monkeypatch):
+    other = []
+
+    def take():
+        shutil.rmtree(tmp_path / "r")
+        other.append(held_folder(tmp_path / "r"))
+        other[0].__enter__()
+        (tmp_path / "r" / "run.json").write_text("theirs")
+
+    monkeypatch.setattr(fem.resumption, "CHECKPOINT_S", 0.0)
+    at_time(monkeypatch, 1.0, take)
+    assert command(tmp_path / "r") == 3
+    assert "taken by another process" in capsys.readouterr().err
+    assert contents(tmp_path / "r").keys() == {"run.json", LOCK_NAME}
+    assert (tmp_path / "r" / "run.json").read_text() == "theirs"
+    other[0].__exit__(None, None, None)
+
+
+def test_two_runs_do_not_write_into_one_folder(tmp_path, capsys):
+    with held_folder(tmp_path / "r"):
+        (tmp_path / "r" / "keep").write_text("")
+        assert command(tmp_path / "r", "--force") == 2
+    message = capsys.readouterr().err
+    assert "another run writes there, process" in message and "--out" in message
+    assert contents(tmp_path / "r").keys() == {"keep"}
+
+
+def test_a_folder_that_cannot_be_written_ends_with_3(tmp_path, capsys, monkeypatch):
+    def refuse(*_, **__):
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
+
+    monkeypatch.setattr(fem.results.lock.os, "open", refuse)
+    assert command(tmp_path / "r") == 3
+    message = capsys.readouterr().err
+    assert "Read-only file system" in message and "--out" in message
+    assert not (tmp_path / "r").exists()
+
+
+def test_a_finished_run_is_told_from_a_folder_that_cannot_be_written(whole, monkeypatch):
+    monkeypatch.setattr(fem.results.lock.os, "open", no_room)
+    assert command(whole) == 0
+
+
+def damage(folder: Path) -> None:
+    content = bytearray((folder / "checkpoint.npz").read_bytes())
+    content[len(content) // 2] ^= 1
+    (folder / "checkpoint.npz").write_bytes(content)
+
+
+def cut_short(folder: Path) -> None:
+    os.truncate(folder / "checkpoint.npz", 1000)
+
+
+def rewrite(folder: Path, **changes) -> None:
+    """The checkpoint with other notes and a checksum that is right."""
+    path = folder / "checkpoint.npz"
+    page, arrays = fem.results.archive._read(path.read_bytes())
+    for name, value in changes.items():
+        (arrays if name in arrays else page)[name] = value
+    fem.results.archive.write_checkpoint(path, page, arrays)
+
+
+def edit_history(folder: Path) -> None:
+    text = (folder / "history.csv").read_text()
+    (folder / "history.csv").write_text(text.replace("0.005", "0.006", 1))
+
+
+FAULTS = {
+    "damaged": (damage, "damaged"),
+    "cut short": (cut_short, "damaged"),
+    "foreign": (lambda folder: rewrite(folder, case_hash="0123"), "belongs to another case"),
+    "other program": (lambda folder: rewrite(folder, program={"numpy": "1.0"}), "another version"),
+    "other sizes": (lambda folder: rewrite(folder, ledger=fem.run.run.np.zeros(3)), "its ledger is not that"),
+    "no notes": (lambda folder: rewrite(folder, progress=None), "notes cannot be read"),
+    "history edited": (edit_history, "history.csv was changed since"),
+    "history cut": (lambda folder: os.truncate(folder / "history.csv", 500), "history.csv was changed"),
+    "history gone": (lambda folder: (folder / "history.csv").unlink(), "or is missing"),
+    "frame gone": (
+        lambda folder: (folder / "fields" / "frame_00002.vtu").unlink(),
+        "frame_00002.vtu is miss",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", FAULTS)
+def test_a_checkpoint_that_cannot_be_trusted_is_refused_and_nothing_touched(
+    tmp_path, capsys, monkeypatch, kind
+):
+    folder = tmp_path / "r"
+    interrupted(folder, monkeypatch)
+    fault, reason = FAULTS[kind]
+    fault(folder)
+    before = contents(folder)
+    capsys.readouterr()
+    assert command(folder, "--resume") == 2
+    message = capsys.readouterr().err
+    assert "checkpoint.npz" in message and reason in message and "--force" in message
+    assert contents(folder) == before
+    assert command(folder, "--resume", "--force") == 0
+
+
+def test_what_was_written_behind_the_checkpoint_is_cut_off(tmp_path, monkeypatch, whole):
+    folder = tmp_path / "r"
+    interrupted(folder, monkeypatch)
+    with open(folder / "history.csv", "a") as file:
+        file.write("1.5,half a li")
+    shutil.copy(folder / "fields" / "frame_00001.vtu", folder / "fields" / "frame_00099.vtu")
+    (folder / ".checkpoint.npz.part").write_text("half")
+    (folder / "run.json").write_text(
+        json.dumps(json.loads((folder / "run.json").read_text()) | {"status": "running"})
+    )
+    require_going_on(folder, whole)
+
+
+def test_a_motion_file_may_not_lie_where_results_are_written(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("history.csv").write_text("time_s,acceleration_m_s2\n0,0\n0.5,1\n1,0\n")
+    changes = (
+        "motion.kind=table",
+        "motion.file=history.csv",
+        "motion.quantity=acceleration",
+        "motion.unit=m/s2",
+    )
+    assert main(["init", "seed_box", "--to", "mine.toml"]) == 0
+    assert main(["run", "mine.toml", "-q", *(word for c in changes for word in ("--set", c))]) == 2
+    assert "[motion] file is named 'history.csv'" in capsys.readouterr().err
+    assert not Path("outputs").exists()

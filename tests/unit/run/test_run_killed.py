@@ -1,0 +1,103 @@
+"""A run that is killed, at any moment and as often as one likes, comes to the bits of the run left alone."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from test_run_resumed import same
+
+from fem.results.fields import open_fields
+from fem.results.history import read_history
+from fem.results.run_folder import read_result
+
+#: the command line, with a checkpoint after every slice
+PROMPT = """
+import sys
+import fem.run.checkpoint, fem.run.simulation
+fem.run.checkpoint.CHECKPOINT_S = 0.0
+fem.run.simulation.SLICE_REDUCED = fem.run.simulation.SLICE_FULL = 0.01
+from fem.__main__ import main
+sys.exit(main(sys.argv[1:]))
+"""
+RIGID = ("solver.model=rigid", "solver.duration_s=1.5")
+REDUCED = ("solver.duration_s=0.6", "output.fields_s=0.005")
+FLAT = (*REDUCED, "support.kind=flat", "container.wall_m=0.02", "solver.elastic_modes=4")
+FULL = ("solver.model=full", "solver.duration_s=0.3", "solver.element_size_m=0.5", "output.fields_s=0.005")
+COMMON = ("output.figures=false", "output.fields_s=0.01")
+
+
+def start(folder: Path, *overrides: str) -> subprocess.Popen:
+    changes = [word for override in (*COMMON, *overrides) for word in ("--set", override)]
+    arguments = ["run", "seed_stack_plateau", "--out", str(folder), "--resume", "--no-band", "-q", *changes]
+    return subprocess.Popen(
+        [sys.executable, "-c", PROMPT, *arguments],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"OMP_NUM_THREADS": "1"},
+    )
+
+
+def frames_in(folder: Path) -> int:
+    return len(list(folder.glob("fields/frame_*.vtu")))
+
+
+def end_when(process: subprocess.Popen, folder: Path, frames: int, delay: float, number: int) -> int:
+    """Send a signal when so many frames are there, a little later; returns the exit code."""
+    end = time.monotonic() + 300.0
+    while frames_in(folder) < frames and process.poll() is None and time.monotonic() < end:
+        time.sleep(0.002)
+    time.sleep(delay)
+    process.send_signal(number)
+    process.wait(timeout=120)
+    return process.returncode
+
+
+def everything_reads(folder: Path) -> None:
+    """Whatever the moment: no file is half written, but for a last line of the history without its end."""
+    read_result(folder / "run.json")
+    if (folder / "history.csv").exists():
+        whole_lines = (folder / "history.csv").read_bytes().count(b"\n")
+        assert len(read_history(folder / "history.csv")) == whole_lines - 1
+    if (folder / "fields" / "run.pvd").exists():
+        for frame in open_fields(folder / "fields"):
+            assert frame.points.size > 0
+
+
+def torture(tmp_path: Path, overrides: tuple[str, ...], cuts: int, seed: int, step: int) -> None:
+    whole, cut = tmp_path / "whole", tmp_path / "cut"
+    process = start(whole, *overrides)
+    assert process.wait(timeout=300) == 0, process.stderr.read()
+    chance, reached, frames = random.Random(seed), 0, frames_in(whole)
+    for _ in range(cuts):
+        reached = min(reached + chance.randrange(1, step), frames - 1)
+        number = chance.choice([signal.SIGKILL, signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+        process = start(cut, *overrides)
+        code = end_when(process, cut, reached, chance.uniform(0.0, 0.03), number)
+        told = process.stderr.read()
+        # A signal may come while Python itself is starting, before a line of ours: then it ends so, with 1.
+        starting = code == 1 and told.startswith("Fatal Python error: init_")
+        assert starting or code in (-signal.SIGKILL, 4, 0, -signal.SIGTERM, -signal.SIGINT), told
+        everything_reads(cut)
+    process = start(cut, *overrides)
+    assert process.wait(timeout=300) == 0, process.stderr.read()
+    same(cut, whole)
+    assert not (cut / "checkpoint.npz").exists()
+
+
+def test_a_rigid_run_killed_three_times_comes_to_the_same_bits(tmp_path):
+    torture(tmp_path, RIGID, cuts=3, seed=1, step=60)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "overrides", [RIGID, REDUCED, FLAT, FULL], ids=["rigid", "reduced", "reduced, flat base", "full"]
+)
+@pytest.mark.parametrize("seed", [2, 3])
+def test_a_run_killed_ten_times_comes_to_the_same_bits(tmp_path, overrides, seed):
+    torture(tmp_path, overrides, cuts=10, seed=seed, step=20)

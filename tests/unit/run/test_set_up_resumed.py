@@ -1,0 +1,140 @@
+"""A set-up that is cut off goes on with the parts that it has, to the bits of the one left alone."""
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from test_run_resumed import same
+
+from fem.__main__ import main
+from fem.results.run_folder import read_result
+from fem.run import setup_cache as part_keeping
+from fem.solid import reduction
+
+#: a case of many unknowns in contact
+FLAT = (
+    "support.kind=flat",
+    "solver.element_size_m=0.25",
+    "solver.elastic_modes=4",
+    "solver.duration_s=0.1",
+    "output.fields_s=0.05",
+    "output.figures=false",
+)
+FULL = (*FLAT, "solver.model=full", "solver.element_size_m=0.5", "solver.duration_s=0.02")
+
+
+def command(folder: Path, *overrides: str) -> list[str]:
+    changes = [word for override in overrides for word in ("--set", override)]
+    return ["run", "seed_stack_plateau", "--out", str(folder), "--no-band", "-q", *changes]
+
+
+@pytest.fixture
+def in_many_parts(monkeypatch):
+    monkeypatch.setattr(reduction, "LOADS", 6)
+    monkeypatch.setattr(reduction, "PRODUCT", 200_000)
+
+
+@pytest.mark.parametrize("overrides", [FLAT, FULL], ids=["reduced", "full"])
+def test_a_set_up_cut_off_after_every_file_is_the_set_up_left_alone(
+    tmp_path, monkeypatch, in_many_parts, overrides
+):
+    assert main(command(tmp_path / "whole", *overrides)) == 0
+    folder, names, cuts = tmp_path / "cut", [], 0
+    write = part_keeping.write_checkpoint
+    monkeypatch.setattr(part_keeping, "CHECKPOINT_S", 0.0)
+
+    def write_and_stop(path, about, arrays):
+        write(path, about, arrays)
+        names.extend(arrays)
+        if len(names) % 3 == 0:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(part_keeping, "write_checkpoint", write_and_stop)
+    while main(command(folder, *overrides)) == 4:
+        cuts += 1
+        assert [entry.name for entry in folder.iterdir()] == [".setup"]
+    assert cuts >= 3
+    assert len(names) == len(set(names))  # no part was made twice
+    same(folder, tmp_path / "whole")
+
+
+def test_what_the_disk_has_no_room_for_is_not_kept_and_that_is_said(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(part_keeping, "CHECKPOINT_S", 0.0)
+    monkeypatch.setattr(part_keeping, "free_disk", lambda folder, data: 1e4)
+    quiet = command(tmp_path / "r", *FULL)
+    assert main([word for word in quiet if word != "-q"]) == 0
+    message = capsys.readouterr().err
+    assert (
+        ".setup: " in message and "GB of the set-up are not kept, for the disk has 1e-05 GB free" in message
+    )
+
+
+def test_a_damaged_part_is_named_and_the_set_up_goes_on_before_it(
+    tmp_path, monkeypatch, in_many_parts, capsys
+):
+    assert main(command(tmp_path / "whole", *FLAT)) == 0
+    write = part_keeping.write_checkpoint
+    monkeypatch.setattr(part_keeping, "CHECKPOINT_S", 0.0)
+
+    def write_ten(path, about, arrays):
+        if path.name == "part_11.npz":
+            raise KeyboardInterrupt
+        write(path, about, arrays)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(part_keeping, "write_checkpoint", write_ten)
+        assert main(command(tmp_path / "cut", *FLAT)) == 4
+    damaged = tmp_path / "cut" / ".setup" / "part_4.npz"
+    damaged.write_bytes(damaged.read_bytes()[:-100])
+    capsys.readouterr()
+    assert main([word for word in command(tmp_path / "cut", *FLAT) if word != "-q"]) == 0
+    assert str(damaged) in "".join(capsys.readouterr().err.split("\n"))
+    same(tmp_path / "cut", tmp_path / "whole")
+
+
+def test_a_short_set_up_keeps_nothing_and_a_refused_one_leaves_nothing(tmp_path, monkeypatch, in_many_parts):
+    monkeypatch.setattr(part_keeping, "write_checkpoint", lambda *_: pytest.fail("kept"))
+    assert main(command(tmp_path / "short", *FLAT)) == 0
+    monkeypatch.undo()
+    monkeypatch.setattr(part_keeping, "CHECKPOINT_S", 0.0)
+    soft = (
+        *FLAT,
+        "container.youngs_modulus_Pa=1e6",
+    )  # crushed by its own weight, which only the answers tell
+    assert main(command(tmp_path / "new" / "refused", *soft)) == 2
+    assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_amid_the_set_up_ends_it_at_once(tmp_path, number):
+    slow = """
+import sys, time
+import fem.run.run
+def slowly(*_):
+    print(flush=True)
+    time.sleep(600.0)
+fem.run.run.discretise = slowly
+from fem.__main__ import program
+program()
+"""
+    process = subprocess.Popen(
+        [sys.executable, "-c", slow, *command(tmp_path / "r")],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout.readline() == "\n"
+    process.send_signal(number)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 4
+    assert err == "interrupted\n"
+    assert not (tmp_path / "r").exists()
+
+
+def test_a_finished_run_is_told_without_a_set_up(tmp_path, monkeypatch):
+    assert main(command(tmp_path / "r", *FLAT)) == 0
+    monkeypatch.setattr("fem.run.run.discretise", lambda *_: pytest.fail("set up again"))
+    assert main(command(tmp_path / "r", *FLAT)) == 0
+    assert read_result(tmp_path / "r" / "run.json")["status"] == "completed"

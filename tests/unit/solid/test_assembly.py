@@ -1,0 +1,314 @@
+"""Assembled matrices and forces: against closed forms, scikit-fem's own assembly, and differences."""
+
+from dataclasses import FrozenInstanceError
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import scipy.sparse.linalg
+
+from fem.solid.assembly import assemble
+from fem.solid.elasticity import cauchy_stress, plane_stress_lame
+
+STEEL = {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}
+ORDERS = pytest.mark.parametrize("order", [1, 2])
+
+
+def quad_mesh(x, z, *, thickness=0.5, areal_density=120.0):
+    """Lines at x and z; points by rows, cells counter-clockwise."""
+    X, Z = np.meshgrid(x, z)
+    columns, rows = np.meshgrid(np.arange(len(x) - 1), np.arange(len(z) - 1))
+    corner = (rows * len(x) + columns).ravel()
+    quads = np.stack([corner, corner + 1, corner + len(x) + 1, corner + len(x)], axis=1)
+    full = np.ones(len(quads))
+    return SimpleNamespace(
+        points=np.stack([X.ravel(), Z.ravel()], axis=1),
+        quads=quads,
+        region=np.arange(len(quads)) % 4,
+        thickness=thickness * full,
+        areal_density=areal_density * full,
+    )
+
+
+def distorted_mesh(columns=4, rows=5, width=1.1, height=4.0):
+    mesh = quad_mesh(np.linspace(-width / 2, width / 2, columns + 1), np.linspace(0.0, height, rows + 1))
+    x, z = mesh.points.T
+    inner = (np.abs(x) < 0.49 * width) & (z > 0.01 * height) & (z < 0.99 * height)
+    cell = np.array([width / columns, height / rows])
+    draw = np.random.default_rng(3)
+    mesh.points[inner] += 0.25 * cell * draw.uniform(-1.0, 1.0, (inner.sum(), 2))
+    mesh.thickness = draw.uniform(0.01, 1.0, len(mesh.quads))
+    mesh.areal_density = draw.uniform(50.0, 500.0, len(mesh.quads))
+    return mesh
+
+
+def rigid_displacement(nodes, angle, shift=(0.0, 0.0)):
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    return nodes @ turn.T - nodes + np.asarray(shift)
+
+
+def strained_and_turned(elements, strain=1e-3, angle=0.7, seed=5):
+    draw = np.random.default_rng(seed)
+    spacing = np.ptp(elements.nodes) / len(elements.nodes) ** 0.5
+    noise = strain * spacing * draw.uniform(-1.0, 1.0, elements.nodes.shape)
+    return rigid_displacement(elements.nodes, angle) + noise
+
+
+@ORDERS
+def test_nodes_begin_with_the_points_and_cells_follow_vtk(order):
+    mesh = distorted_mesh()
+    elements = assemble(mesh, order=order, **STEEL)
+    assert np.array_equal(elements.nodes[: len(mesh.points)], mesh.points)
+    assert np.array_equal(elements.cells[:, :4], mesh.quads)
+    if order == 2:  # VTK biquadratic quad: middles of edges 01, 12, 23, 30, then the centre
+        corners = elements.nodes[elements.cells[:, :4]]
+        edges = elements.nodes[elements.cells[:, 4:8]]
+        assert edges == pytest.approx(0.5 * (corners + np.roll(corners, -1, axis=1)), abs=1e-14)
+        assert elements.nodes[elements.cells[:, 8]] == pytest.approx(corners.mean(axis=1), abs=1e-14)
+
+
+@ORDERS
+def test_base_nodes_are_those_on_the_floor_by_rising_x(order):
+    elements = assemble(distorted_mesh(columns=4), order=order, **STEEL)
+    base = elements.nodes[elements.base_nodes]
+    assert base[:, 0] == pytest.approx(np.linspace(-0.55, 0.55, 4 * order + 1), abs=1e-15)
+    assert not base[:, 1].any()
+
+
+def test_base_nodes_leave_out_the_upper_face_of_a_thin_floor():
+    elements = assemble(quad_mesh(np.array([-0.55, 0.55]), np.array([0.0, 1e-4, 4.0])), order=2, **STEEL)
+    assert elements.nodes[elements.base_nodes].tolist() == [[-0.55, 0.0], [0.0, 0.0], [0.55, 0.0]]
+
+
+@ORDERS
+def test_mass_centroid_and_inertia_of_a_block_are_exact(order):
+    elements = assemble(
+        quad_mesh(np.array([-0.55, -0.1, 0.55]), np.array([0.0, 1.0, 4.0])), order=order, **STEEL
+    )
+    mass, (x, z) = 120.0 * 1.1 * 4.0, elements.nodes.T
+    ones = np.ones(len(x))
+    assert ones @ elements.mass @ ones == pytest.approx(mass, rel=1e-14)
+    assert ones @ elements.mass @ z == pytest.approx(mass * 2.0, rel=1e-14)
+    polar = x @ elements.mass @ x + (z - 2.0) @ elements.mass @ (z - 2.0)
+    assert polar == pytest.approx(mass * (1.1**2 + 4.0**2) / 12.0, rel=1e-13)
+
+
+@ORDERS
+def test_mass_uses_the_density_of_each_cell(order):
+    mesh = quad_mesh(np.array([0.0, 1.0, 3.0]), np.array([0.0, 1.0]))
+    mesh.areal_density = np.array([10.0, 7.0])
+    elements = assemble(mesh, order=order, **STEEL)
+    x = elements.nodes[:, 0]
+    assert elements.mass.sum() == pytest.approx(10.0 + 14.0, rel=1e-14)
+    assert (elements.mass @ x).sum() == pytest.approx(10.0 * 0.5 + 14.0 * 2.0, rel=1e-14)
+
+
+@ORDERS
+def test_vector_mass_is_the_scalar_mass_on_x_and_on_z(order):
+    elements = assemble(distorted_mesh(), order=order, **STEEL)
+    vectors = np.random.default_rng(0).standard_normal((len(elements.nodes), 2))
+    expected = (elements.mass @ vectors).ravel()
+    assert elements.vector_mass @ vectors.ravel() == pytest.approx(expected, rel=1e-12, abs=1e-12)
+
+
+@ORDERS
+def test_stiffness_is_the_tangent_at_rest_and_leaves_three_rigid_motions_free(order):
+    elements = assemble(distorted_mesh(2, 3), order=order, **STEEL)
+    stiffness = elements.stiffness.toarray()
+    scale = np.abs(stiffness).max()
+    assert np.abs(stiffness - stiffness.T).max() < 1e-14 * scale
+    assert np.abs(elements.tangent(np.zeros_like(elements.nodes)) - elements.stiffness).max() < 1e-14 * scale
+    values = np.linalg.eigvalsh(stiffness)
+    assert np.abs(values[:3]).max() < 1e-12 * values[-1]
+    assert values[3] > 1e-7 * values[-1]  # no hourglass
+
+
+@ORDERS
+def test_fast_force_and_tangent_agree_with_the_scikit_fem_forms(order):
+    elements = assemble(distorted_mesh(), order=order, **STEEL)
+    displacement = strained_and_turned(elements, strain=0.05)
+    fast, form = elements.internal_force(displacement), elements.internal_force_by_form(displacement)
+    assert np.abs(fast - form).max() < 1e-12 * np.abs(form).max()
+    tangent, tangent_form = elements.tangent(displacement), elements.tangent_by_form(displacement)
+    assert np.abs(tangent - tangent_form).max() < 1e-12 * np.abs(tangent_form).max()
+
+
+@ORDERS
+@pytest.mark.parametrize("strain", [1e-4, 1e-3, 1e-2, 1e-1])
+def test_internal_force_is_the_derivative_of_the_strain_energy(order, strain):
+    elements = assemble(distorted_mesh(2, 3), order=order, **STEEL)
+    displacement = strained_and_turned(elements, strain)
+    direction = np.random.default_rng(1).standard_normal(displacement.shape)
+    force = elements.internal_force(displacement)
+    step = 1e-3 * strain
+    ahead, behind = (elements.strain_energy(displacement + s * step * direction) for s in (1, -1))
+    scale = np.linalg.norm(force) * np.linalg.norm(direction)
+    assert abs((ahead - behind) / (2 * step) - np.sum(force * direction)) < 1e-5 * scale
+
+
+@ORDERS
+@pytest.mark.parametrize("strain", [1e-6, 1e-4, 1e-2, 1e-1])
+def test_tangent_is_the_derivative_of_the_internal_force(order, strain):
+    elements = assemble(distorted_mesh(2, 3), order=order, **STEEL)
+    displacement = strained_and_turned(elements, strain)
+    direction = np.random.default_rng(1).standard_normal(displacement.shape)
+    step = 1e-6
+    ahead, behind = (elements.internal_force(displacement + s * step * direction) for s in (1, -1))
+    product = elements.tangent(displacement) @ direction.ravel()
+    error = (ahead - behind).ravel() / (2 * step) - product
+    assert np.abs(error).max() < 1e-8 * np.abs(product).max()
+
+
+@ORDERS
+def test_rigid_rotation_and_a_far_floor_cause_no_internal_force(order):
+    elements = assemble(distorted_mesh(), order=order, **STEEL)
+    displacement = rigid_displacement(elements.nodes, 1.3, shift=(10.0, -3.0))
+    linear = np.abs(elements.stiffness @ displacement.ravel()).max()
+    assert np.abs(elements.internal_force(displacement)).max() < 1e-12 * linear
+    assert elements.nodal_von_mises(displacement).max() < 1e-12 * STEEL["youngs_modulus"]
+
+
+@ORDERS
+def test_internal_force_of_a_free_body_has_no_resultant_and_no_moment(order):
+    elements = assemble(distorted_mesh(), order=order, **STEEL)
+    displacement = strained_and_turned(elements, strain=0.02)
+    force, place = elements.internal_force(displacement), elements.nodes + displacement
+    assert np.abs(force.sum(axis=0)).max() < 1e-12 * np.abs(force).sum()
+    moments = place[:, 1] * force[:, 0] - place[:, 0] * force[:, 1]
+    assert abs(moments.sum()) < 1e-12 * np.abs(moments).sum()
+
+
+@ORDERS
+def test_thickness_belongs_to_each_cell(order):
+    # A bar of two thicknesses in series, nu = 0: end displacement F (L1/(E t1 h) + L2/(E t2 h)).
+    mesh = quad_mesh(np.array([0.0, 1.0, 3.0]), np.array([0.0, 0.5]))
+    mesh.thickness = np.array([0.1, 0.02])
+    elements = assemble(mesh, order=order, youngs_modulus=1e9, poisson_ratio=0.0)
+    load = elements.edge_load(lambda x, z: x > 2.999, lambda x, z: (1e3, 0.0))
+    held = np.zeros_like(elements.nodes, dtype=bool)
+    held[elements.nodes[:, 0] < 1e-9, 0] = True
+    held[elements.base_nodes[0], 1] = True
+    free = np.flatnonzero(~held.ravel())
+    displacement = np.zeros(elements.unknowns)
+    reduced = elements.stiffness[free][:, free].tocsc()
+    displacement[free] = scipy.sparse.linalg.spsolve(reduced, load.ravel()[free])
+    end = displacement.reshape(-1, 2)[elements.nodes[:, 0] > 2.999, 0]
+    assert end == pytest.approx(1e3 * (1.0 / (1e9 * 0.1) + 2.0 / (1e9 * 0.02)), rel=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("order", "weights"), [(1, [0.5, 1.0, 0.5]), (2, [1 / 6, 2 / 3, 1 / 3, 2 / 3, 1 / 6])]
+)
+def test_unit_edge_load_gives_tributary_lengths(order, weights):
+    elements = assemble(quad_mesh(np.array([-1.0, 0.0, 1.0]), np.array([0.0, 1.0])), order=order, **STEEL)
+    load = elements.edge_load(lambda x, z: z < 1e-9, lambda x, z: (0.0, 1.0))
+    assert load[elements.base_nodes, 1] == pytest.approx(weights, rel=1e-13)
+    assert load.sum() == pytest.approx(2.0, rel=1e-14)
+    with pytest.raises(ValueError, match="no outer edge"):
+        elements.edge_load(lambda x, z: z > 2.0, lambda x, z: (0.0, 1.0))
+
+
+@ORDERS
+def test_area_load_has_the_resultant_and_moment_of_the_field(order):
+    elements = assemble(
+        quad_mesh(np.array([-1.0, 0.2, 1.0]), np.array([0.0, 0.7, 2.0])), order=order, **STEEL
+    )
+    load = elements.area_load(lambda x, z: (3.0 * z, -x * x))
+    assert load.sum(axis=0) == pytest.approx([3.0 * 2.0 * 2.0, -2.0 * 2.0 / 3.0], rel=1e-13)
+    assert load[:, 0] @ elements.nodes[:, 1] == pytest.approx(3.0 * 2.0 * 8.0 / 3.0, rel=1e-13)
+
+
+@ORDERS
+def test_l2_distance_of_a_linear_field_is_exact(order):
+    elements = assemble(distorted_mesh(width=2.0, height=1.0), order=order, **STEEL)
+    distance = elements.l2_distance(elements.nodes @ np.diag([1.0, 0.0]), lambda x, z: (0.0 * x, 2.0))
+    # integral of x^2 + 4 over [-1, 1] x [0, 1]
+    assert distance == pytest.approx(np.sqrt(2.0 / 3.0 + 8.0), rel=1e-13)
+
+
+def test_nodal_stress_of_pure_bending_is_exact_for_quadratic_cells():
+    # u = (k x z, -k (x^2 + nu z^2)/2) has sigma_xx = E k z and nothing else, to first order in k.
+    elements = assemble(quad_mesh(np.linspace(0, 2, 5), np.linspace(-0.5, 0.5, 3)), order=2, **STEEL)
+    (x, z), k, (E, nu) = elements.nodes.T, 1e-9, STEEL.values()
+    stress = elements.nodal_stress(np.stack([k * x * z, -0.5 * k * (x * x + nu * z * z)], axis=1))
+    assert stress[:, 0] == pytest.approx(E * k * z, abs=1e-7 * E * k)
+    assert np.abs(stress[:, 1:]).max() < 1e-7 * E * k
+
+
+@ORDERS
+def test_homogeneous_deformation_shows_the_same_true_stress_at_every_node(order):
+    elements = assemble(distorted_mesh(), order=order, **STEEL)
+    gradient = np.array([[-0.4, 0.55], [-0.6, -0.35]])
+    expected = cauchy_stress(gradient, plane_stress_lame(*STEEL.values()))
+    stress = elements.nodal_stress(elements.nodes @ gradient.T)
+    assert np.abs(stress - expected).max() < 1e-12 * np.abs(expected).max()
+
+
+@ORDERS
+def test_stress_of_a_thick_wall_is_not_smeared_into_the_sheet(order):
+    # A wall between two sheets, pulled twice as hard in the sheets: its nodes show the wall's stress alone.
+    mesh = quad_mesh(np.array([-1.0, -0.1, 0.1, 1.0]), np.array([0.0, 1.0]))
+    mesh.thickness = np.array([0.016, 1.1, 0.016])
+    elements = assemble(mesh, order=order, youngs_modulus=1e11, poisson_ratio=0.0)
+    x = elements.nodes[:, 0]
+    pull = 1e-8 * np.where(np.abs(x) <= 0.1, x, 2.0 * x - 0.1 * np.sign(x))
+    stress = elements.nodal_von_mises(np.stack([pull, 0.0 * pull], axis=1))
+    assert stress == pytest.approx(np.where(np.abs(x) < 0.1 + 1e-9, 1e3, 2e3), rel=1e-6)
+
+
+@ORDERS
+def test_equal_neighbours_share_the_stress_of_their_nodes_by_area(order):
+    mesh = quad_mesh(np.array([0.0, 1.0, 4.0]), np.array([0.0, 1.0]))
+    elements = assemble(mesh, order=order, youngs_modulus=1e11, poisson_ratio=0.0)
+    x = elements.nodes[:, 0]
+    stress = elements.nodal_stress(np.stack([1e-8 * np.where(x <= 1.0, x, 5.0 * x - 4.0), 0.0 * x], axis=1))
+    between = np.abs(x - 1.0) < 1e-9
+    assert stress[between, 0] == pytest.approx((1e3 * 1.0 + 5e3 * 3.0) / 4.0, rel=1e-6)
+
+
+def test_unknown_order_is_refused():
+    with pytest.raises(ValueError, match=r"order must be 1 .* got 3"):
+        assemble(distorted_mesh(), order=3, **STEEL)
+
+
+def test_clockwise_cell_is_refused_by_number_and_place():
+    mesh = quad_mesh(np.linspace(0, 2, 3), np.linspace(0, 1, 2))
+    mesh.quads[1] = mesh.quads[1, ::-1]
+    with pytest.raises(ValueError, match=r"cell 1 at x = 1.5 m, z = 0.5 m .* counter-clockwise"):
+        assemble(mesh, order=1, **STEEL)
+
+
+def test_cell_of_nan_is_refused():
+    mesh = quad_mesh(np.linspace(0, 2, 3), np.linspace(0, 1, 2))
+    mesh.points[5, 0] = np.nan
+    with pytest.raises(ValueError, match=r"cell 1 .* Jacobian nan"):
+        assemble(mesh, order=2, **STEEL)
+
+
+def test_point_without_cell_is_refused():
+    mesh = quad_mesh(np.linspace(0, 2, 3), np.linspace(0, 1, 2))
+    mesh.points = np.vstack([mesh.points, [7.0, 8.0]])
+    with pytest.raises(ValueError, match="point 6 at x = 7 m, z = 8 m belongs to no cell"):
+        assemble(mesh, order=1, **STEEL)
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "message"),
+    [
+        ("thickness", [1.0, 0.0], "thickness must be positive, the smallest is 0.0 m"),
+        ("thickness", [1.0, -1.0], "thickness of cell 1 must be finite and not negative, got -1.0 m"),
+        ("areal_density", [np.nan, 1.0], "areal density of cell 0 .* got nan kg/m2"),
+        ("areal_density", [1.0], "one value a cell, shape \\(2,\\), got \\(1,\\)"),
+    ],
+)
+def test_impossible_cell_data_are_refused(name, values, message):
+    mesh = quad_mesh(np.linspace(0, 2, 3), np.linspace(0, 1, 2))
+    setattr(mesh, name, np.array(values))
+    with pytest.raises(ValueError, match=message):
+        assemble(mesh, order=1, **STEEL)
+
+
+def test_assembled_elements_are_frozen():
+    elements = assemble(distorted_mesh(2, 2), order=1, **STEEL)
+    with pytest.raises(FrozenInstanceError):
+        elements.order = 2

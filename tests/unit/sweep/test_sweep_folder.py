@@ -1,0 +1,289 @@
+"""A sweep from its file to its table: the same whatever the jobs, cut off or not."""
+
+import errno
+import json
+import os
+import random
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from small_sweep import SMALL, rows_without_wall
+
+from fem.__main__ import main
+from fem.case.validation import CaseError
+from fem.results.run_folder import FolderError, OutputError
+from fem.sweep.file import load_sweep
+from fem.sweep.neighbours import around
+from fem.sweep.run import run_sweep
+from fem.sweep.size import check_size
+from fem.sweep.table import RowLog, open_sweep
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.fixture(autouse=True)
+def undrawn(monkeypatch):
+    """Maps take four fifths of the time of so small a sweep, and are tested by themselves."""
+    monkeypatch.setattr("fem.sweep.run.draw_maps", lambda table, folder, **asked: [])
+
+
+@pytest.fixture
+def small(tmp_path):
+    path = tmp_path / "small.toml"
+    path.write_text(SMALL, encoding="utf-8")
+    return load_sweep(path)
+
+
+def test_the_table_does_not_depend_on_the_jobs(small, tmp_path):
+    one = run_sweep(small, tmp_path / "one", jobs=1)
+    two = run_sweep(small, tmp_path / "two", jobs=2)
+    assert one["status"] == two["status"] == "completed"
+    assert rows_without_wall(tmp_path / "one") == rows_without_wall(tmp_path / "two")
+    assert one["outcomes"] == two["outcomes"]
+    assert {"overturned", "rest"} <= set(one["outcomes"])
+    assert not (tmp_path / "one" / "rows.csv").exists()
+
+
+def test_the_folder_opens_as_arrays(small, tmp_path):
+    info = run_sweep(small, tmp_path / "out")
+    table = open_sweep(tmp_path / "out")
+    assert table.shape == small.shape
+    assert table.info["sweep_hash"] == info["sweep_hash"]
+    grid = table.grid("motion.peak_acceleration_m_s2")
+    assert np.array_equal(grid[2], small.axes[1].values)
+    assert np.array_equal(table["contact.mu_kinetic"], np.full(20, 0.2))
+    fallen = table.outcome == "overturned"
+    assert fallen.sum() == info["outcomes"]["overturned"]
+    assert np.all(np.isfinite(table["overturned_at_s"]) == fallen)
+    assert table["unsure"].sum() == info["unsure"]
+
+
+def test_a_finished_sweep_is_left_alone_and_another_is_refused(small, tmp_path):
+    folder = tmp_path / "out"
+    run_sweep(small, folder)
+    before = (folder / "table.csv").stat().st_mtime_ns
+    assert run_sweep(small, folder)["status"] == "completed"
+    assert (folder / "table.csv").stat().st_mtime_ns == before
+    path = tmp_path / "other.toml"
+    path.write_text(SMALL.replace("count = 5", "count = 3"), encoding="utf-8")
+    with pytest.raises(FolderError, match=r"another sweep; .*--out DIR.*--force"):
+        run_sweep(load_sweep(path), folder)
+    assert run_sweep(load_sweep(path), folder, force=True)["cells"] == 12
+    (tmp_path / "letters").mkdir()
+    (tmp_path / "letters" / "mine.txt").write_text("dear")
+    with pytest.raises(FolderError, match="holds no sweep"):
+        run_sweep(small, tmp_path / "letters")
+
+
+def test_another_band_keeps_the_rows(small, tmp_path):
+    folder = tmp_path / "out"
+    run_sweep(small, folder)
+    rows, walls = rows_without_wall(folder), open_sweep(folder)["wall_s"]
+    path = tmp_path / "small.toml"
+    path.write_text(SMALL + '[perturbation]\ncells = "none"\n', encoding="utf-8")
+    again = run_sweep(load_sweep(path), folder)
+    assert (again["unsure"], again["perturbed"]) == (None, 0)
+    kept = rows_without_wall(folder)
+    last = kept[0].index("perturbed")
+    assert [row[:last] for row in kept] == [row[:last] for row in rows]
+    # the wall times are the first computation's: nothing was computed again
+    assert np.array_equal(open_sweep(folder)["wall_s"], walls)
+
+
+def kill_in_the_middle(arguments, folder, pause):
+    """Start a sweep, and kill it with -9 some time after its first row."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "fem", "sweep", *arguments],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        cwd=folder,
+        stderr=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+    )
+    deadline = time.monotonic() + 60.0
+    log = folder / "outputs" / "small" / "rows.csv"
+    size = log.stat().st_size if log.exists() else 0
+    while process.poll() is None and time.monotonic() < deadline:
+        if log.exists() and log.stat().st_size > size:
+            break
+        time.sleep(0.005)
+    time.sleep(pause)
+    process.kill()
+    process.wait()
+
+
+@pytest.mark.parametrize("kills", [2, pytest.param(20, marks=pytest.mark.slow)])
+def test_a_sweep_killed_and_resumed_gives_the_same_table(tmp_path, monkeypatch, capsys, kills):
+    monkeypatch.chdir(tmp_path)
+    counts = (
+        ("count = 4", "count = 12"),
+        ("count = 5", "count = 15") if kills > 2 else ("count = 5", "count = 6"),
+    )
+    text = SMALL
+    for before, after in counts:
+        text = text.replace(before, after)
+    (tmp_path / "small.toml").write_text(text, encoding="utf-8")
+    choice = random.Random(0)
+    for k in range(kills):
+        kill_in_the_middle(["small.toml", *(["--resume"] if k else [])], tmp_path, choice.uniform(0.0, 0.3))
+    log = tmp_path / "outputs" / "small" / "rows.csv"
+    if log.exists():  # half a row, as a full disk would leave it
+        with log.open("ab") as stream:
+            stream.write(b"7,2.0,")
+    assert main(["sweep", "small.toml", "--resume", "-q"]) == 0
+    assert main(["sweep", "small.toml", "-q", "--out", "alone"]) == 0
+    assert rows_without_wall(tmp_path / "outputs" / "small") == rows_without_wall(tmp_path / "alone")
+    capsys.readouterr()
+
+
+def test_an_unfinished_sweep_is_not_begun_anew_silently(small, tmp_path):
+    folder = tmp_path / "out"
+    run_sweep(small, folder)
+    table = (folder / "table.csv").read_text().splitlines()
+    header = (folder / "table.csv").read_text().splitlines()[0].partition(",perturbed")[0]
+    kept = [",".join(line.split(",")[: header.count(",") + 1]) for line in table[1:8]]
+    (folder / "rows.csv").write_text("\n".join([header, *kept]) + "\n")
+    (folder / "table.csv").unlink()
+    info = json.loads((folder / "sweep.json").read_text()) | {"status": "running"}
+    (folder / "sweep.json").write_text(json.dumps(info))
+    with pytest.raises(FolderError, match="unfinished, with 7 of 20 rows; --resume"):
+        run_sweep(small, folder)
+    assert np.isfinite(open_sweep(folder)["wall_s"]).sum() == 7
+    assert run_sweep(small, folder, resume=True)["rows"] == 20
+    assert (folder / "table.csv").read_text().splitlines()[1:8] == table[1:8]  # wall times included
+
+
+def test_a_failed_cell_has_a_reason_and_never_stands(tmp_path):
+    # In the middle of the range the derived friction would be above the static one; its ends are fine.
+    path = tmp_path / "bad.toml"
+    path.write_text(
+        SMALL.replace(
+            '"0.5 * contact.mu_static"', '"0.5 - 0.2 * abs(motion.angular_frequency_rad_s - 4)"'
+        ).replace("count = 4", "count = 5"),
+        encoding="utf-8",
+    )
+    run_sweep(load_sweep(path), tmp_path / "out")
+    table = open_sweep(tmp_path / "out")
+    middle = table["motion.angular_frequency_rad_s"] == 4.0
+    assert np.array_equal(table.outcome == "failed", middle)
+    assert np.all(table["outcome"][middle] == "") and np.all(table["unsure"][middle] == 1.0)
+    assert all("mu_kinetic must be at most mu_static" in reason for reason in table["reason"][middle])
+
+
+def test_a_million_cells_need_force(tmp_path):
+    path = tmp_path / "huge.toml"
+    path.write_text(SMALL.replace("count = 4", "count = 2000").replace("count = 5", "count = 2000"))
+    with pytest.raises(CaseError) as refused:
+        check_size(load_sweep(path), 2, False)
+    assert all(words in str(refused.value) for words in ("4000000 cells", " on 2 cores", "GB", "--force"))
+    check_size(load_sweep(path), 2, True)
+
+
+def test_the_time_of_a_huge_sweep_counts_the_models_and_durations_of_its_axes(tmp_path):
+    axes = """"solver.duration_s" = { from = 2.0, to = 6.0, count = 1100 }
+"solver.model" = ["rigid", "full"]
+"""
+    text = "\n".join(line for line in SMALL.splitlines() if not line.startswith('"solver.'))
+    text = text.replace("count = 4", "count = 30").replace("count = 5", "count = 20")
+    path = tmp_path / "huge.toml"
+    path.write_text(text.replace("[derived]", axes + "[derived]"))
+    with pytest.raises(CaseError, match="1320000 cells") as refused:
+        check_size(load_sweep(path), 1, False)
+    # half of the cells are of the full model, which takes 6 s a second simulated: 660000 x 4 s x 6
+    assert "4400 h" in str(refused.value)
+
+
+def test_a_kill_while_the_band_is_changed_leaves_no_copies_of_the_other(small, tmp_path, monkeypatch):
+    folder = tmp_path / "out"
+    run_sweep(small, folder)
+    path = tmp_path / "small.toml"
+    path.write_text(SMALL + "[perturbation]\namplitude_share = 0.1\n", encoding="utf-8")
+    other = load_sweep(path)
+
+    def killed(*arguments):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr("fem.sweep.run.write_plan", killed)
+        with pytest.raises(KeyboardInterrupt):
+            run_sweep(other, folder)
+    run_sweep(other, folder, resume=True)
+    run_sweep(other, tmp_path / "alone")
+    for name in ("table.csv", "members.csv"):
+        mine, alone = ((one / name).read_text().splitlines() for one in (folder, tmp_path / "alone"))
+        assert [line.split(",")[1:3] for line in mine] == [line.split(",")[1:3] for line in alone]
+    assert rows_without_wall(folder) == rows_without_wall(tmp_path / "alone")
+
+
+def test_a_disk_that_fills_up_is_told_with_the_way_on(small, tmp_path, monkeypatch):
+    folder = tmp_path / "out"
+    append, written = RowLog.append, []
+
+    def filling(self, lines):
+        if written:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        written.extend(lines)
+        append(self, lines)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(RowLog, "append", filling)
+        with pytest.raises(
+            OutputError, match=r"out: cannot be written \(No space left.*--resume goes on"
+        ) as told:
+            run_sweep(small, folder, jobs=1)
+    assert told.value.exit_code == 3
+    assert run_sweep(small, folder, resume=True)["status"] == "completed"
+    run_sweep(small, tmp_path / "alone")
+    assert rows_without_wall(folder) == rows_without_wall(tmp_path / "alone")
+
+
+def test_a_folder_that_another_took_is_left_alone(small, tmp_path, monkeypatch):
+    folder = tmp_path / "out"
+    draw = around
+
+    def taken(axes, cells):
+        shutil.rmtree(folder)
+        folder.mkdir()
+        (folder / "sweep.json").write_text("another's")
+        return draw(axes, cells)
+
+    monkeypatch.setattr("fem.sweep.perturbed.around", taken)
+    with pytest.raises(OutputError, match="emptied or taken by another"):
+        run_sweep(small, folder)
+    assert (folder / "sweep.json").read_text() == "another's"
+
+
+def test_rows_of_another_library_are_not_gone_on_with(small, tmp_path):
+    folder = tmp_path / "out"
+    info = run_sweep(small, folder)
+    versions = info["versions"] | {"numpy": "1.0"}
+    (folder / "sweep.json").write_text(
+        json.dumps(info | {"status": "running", "versions": versions}, default=list)
+    )
+    with pytest.raises(FolderError, match=r"another version of numpy \(1.0, here .*--force"):
+        run_sweep(small, folder, resume=True)
+
+
+def test_shipped_sweeps_are_listed_and_written_out(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["list"]) == 0
+    listed = capsys.readouterr().out
+    assert all(name in listed for name in ("outcome_map", "friction_slenderness", "rigid_to_soft"))
+    assert main(["init", "outcome_map", "--to", "mine.toml"]) == 0
+    assert "python -m fem sweep mine.toml" in capsys.readouterr().out
+    assert load_sweep("mine.toml").count == load_sweep("outcome_map").count
+
+
+def test_the_command_answers_bad_input_with_2(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["sweep", "nowhere.toml"]) == 2
+    assert "no sweep file" in capsys.readouterr().err
+    (tmp_path / "a.toml").write_text(SMALL.replace("mu_kinetic", "mu"))
+    assert main(["sweep", "a.toml"]) == 2
+    assert "a.toml: [derived]" in capsys.readouterr().err
+    assert main(["sweep", "outcome_map", "-j", "0"]) == 2
+    assert not (tmp_path / "outputs").exists()

@@ -1,0 +1,158 @@
+"""The verification table: a row that is off fails, whatever the way it is off; the command says so."""
+
+import errno
+import json
+import math
+import os
+
+import pytest
+
+import fem.results.run_folder
+from fem.__main__ import main
+from fem.verification import ladder
+from fem.verification.page import convergence_plot, page, table_lines
+from fem.verification.rows import Check, Convergence, Row, count_row, order_row
+
+
+def row(value, *, tolerance=0.01, relative=False, reference=2.0, convergence=None):
+    return Row(
+        case="a case",
+        compared="a quantity <b> [m]",
+        value=value,
+        reference=reference,
+        kind="analytic",
+        source="somebody",
+        tolerance=tolerance,
+        relative=relative,
+        convergence=convergence,
+        note="a note",
+    )
+
+
+def falling(errors, *, expected=2.0, at_least=False):
+    sizes = tuple(0.1 / 2**k for k in range(len(errors)))
+    return Convergence(
+        against="h [m]",
+        sizes=sizes,
+        errors=tuple(errors),
+        expected=expected,
+        tolerance=0.1,
+        at_least=at_least,
+    )
+
+
+def test_a_row_passes_within_its_tolerance_and_not_beyond():
+    assert row(2.01 - 1e-12).passed
+    assert not row(2.011).passed
+    assert not row(1.989).passed
+    assert row(2.019, relative=True).passed
+    assert not row(2.021, relative=True).passed
+    assert row(-2.019, relative=True, reference=-2.0).passed
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_a_number_that_is_none_fails(value):
+    assert not row(value).passed
+    assert not row(value, relative=True).passed
+    assert row(value).to_dict()["value"] is None
+
+
+def test_the_observed_order_is_the_slope_and_must_be_the_expected_one():
+    second = falling([1e-2 / 4**k for k in range(4)])
+    assert second.observed == pytest.approx(2.0, abs=1e-12)
+    assert second.passed
+    assert not falling([1e-2 / 2**k for k in range(4)]).passed
+    assert not falling([1e-2 / 8**k for k in range(4)]).passed
+    assert falling([1e-2 / 8**k for k in range(4)], at_least=True).passed
+    assert not falling([1e-2, 3e-3, 0.0, 1e-4]).passed
+
+
+def test_a_row_with_an_order_needs_both():
+    good, bad = falling([1e-2 / 4**k for k in range(3)]), falling([1e-2, 1e-2, 1e-2])
+    assert row(2.0, convergence=good).passed
+    assert not row(2.0, convergence=bad).passed
+    assert not row(3.0, convergence=good).passed
+    assert order_row(case="", compared="", convergence=good, kind="analytic", source="").passed
+    assert order_row(case="", compared="", convergence=good, kind="analytic", source="").value == 1e-2 / 16
+
+
+def test_one_wrong_answer_of_many_fails():
+    rows = [count_row(case="", compared="", wrong=wrong, kind="analytic", source="") for wrong in (0, 1)]
+    assert [one.passed for one in rows] == [True, False]
+
+
+def broken():
+    raise ArithmeticError("no equilibrium")
+
+
+@pytest.fixture
+def small_ladder(monkeypatch):
+    """Two rooms: one that holds, one that does not and cannot be computed."""
+    good = Check(name="good", rows=lambda: [row(2.0, convergence=falling([1e-2 / 4**k for k in range(3)]))])
+    off = Check(name="off", rows=lambda: [row(2.5), row(2.0)], quick=False)
+    monkeypatch.setattr(
+        ladder, "ROOMS", {"cellar": (good,), "attic": (off, Check(name="broken", rows=broken, quick=False))}
+    )
+    monkeypatch.setattr(ladder, "run", lambda *arguments: None)
+
+
+def test_a_check_that_cannot_be_computed_is_a_row_that_fails(small_ladder):
+    found = ladder.climb(quick=False)
+    assert (found.count, found.failures) == (4, 2)
+    last = list(found.rows)[-1][1]
+    assert not last.passed
+    assert "no equilibrium" in last.note
+
+
+def test_the_terminal_names_what_fails(small_ladder):
+    lines = table_lines(ladder.climb(quick=False))
+    assert sum("FAIL" in line for line in lines) == 3
+    assert lines[-1].endswith("2 FAIL")
+    assert any("no equilibrium" in line for line in lines)
+    assert table_lines(ladder.climb(quick=True))[-1].endswith("all pass")
+
+
+def test_the_page_needs_nothing_from_elsewhere(small_ladder):
+    text = page(ladder.climb(quick=False))
+    assert text.count("<svg") == 1
+    assert "a quantity &lt;b&gt; [m]" in text
+    assert "src=" not in text
+    assert text.count("<link") == text.count('<link rel="icon" href="data:,">') == 1
+    assert "default-src 'none'" in text
+    assert "<script" not in text
+
+
+def test_a_plot_is_the_same_bytes_again():
+    convergence = falling([1e-2, 3e-3, 6e-4])
+    assert convergence_plot(convergence) == convergence_plot(convergence)
+
+
+@pytest.mark.parametrize(("options", "code"), [(["--quick"], 0), ([], 3), (["--room", "cellar"], 0)])
+def test_the_command_ends_with_3_if_a_row_fails(small_ladder, tmp_path, capsys, options, code):
+    assert main(["verify", *options, "--out", str(tmp_path), "--json"]) == code
+    document = json.loads(capsys.readouterr().out)
+    assert document == json.loads((tmp_path / "verify.json").read_text())
+    assert document["passed"] is (code == 0)
+    assert (tmp_path / "verify.html").stat().st_size > 1000
+
+
+def test_an_unknown_room_is_bad_input(small_ladder, tmp_path, capsys):
+    assert main(["verify", "--room", "celar", "--out", str(tmp_path)]) == 2
+    assert "did you mean 'cellar'" in capsys.readouterr().err
+
+
+def test_a_place_that_cannot_be_written_is_told_and_no_half_table_is_left(
+    small_ladder, tmp_path, capsys, monkeypatch
+):
+    (tmp_path / "file").write_text("")
+    assert main(["verify", "--out", str(tmp_path / "file"), "-q"]) == 2
+    assert "file is a file, not a folder; choose another place" in capsys.readouterr().err
+
+    def no_room(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(fem.results.run_folder.os, "fsync", no_room)
+    assert main(["verify", "--out", str(tmp_path / "v"), "-q"]) == 3
+    message = capsys.readouterr().err
+    assert "verify.json: cannot be written (No space left on device)" in message and "--out DIR" in message
+    assert list((tmp_path / "v").iterdir()) == []
