@@ -14,7 +14,8 @@ SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob
 
 #: from the foundation up: a package imports its own modules and those of lower layers, none beside or above it
 LAYERS = (
-    ("mesh", "contact.jit", "contact.reference"),
+    ("mesh", "contact.arrays"),
+    ("contact.jit", "contact.reference"),
     ("contact.motion",),
     ("contact.interface",),
     ("contact.stepping",),
@@ -36,9 +37,10 @@ LAYERS = (
 )
 #: package -> the only packages of a lower layer that it may import, where these are not all
 NARROW = {
-    "contact.motion": {"contact.jit"},
-    "contact.interface": {"contact.jit", "contact.motion"},
-    "contact.stepping": {"contact.jit", "contact.motion", "contact.interface"},
+    "contact.reference": {"contact.arrays"},
+    "contact.motion": {"contact.arrays", "contact.jit"},
+    "contact.interface": {"contact.arrays", "contact.jit", "contact.motion"},
+    "contact.stepping": {"contact.arrays", "contact.jit", "contact.motion", "contact.interface"},
     "fem": {"fem.runtime", "fem.results"},  # what the package offers by name
     "fem.__main__": {"fem.runtime", "fem.cli"},
 }

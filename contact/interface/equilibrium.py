@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from contact.interface.solver import FloatArray
+from contact.arrays import FloatArray
 
 #: force, over the weight, below which a point of the settled base may as well be open
 ROUNDING = 1e-12

@@ -13,13 +13,10 @@ the container with columns tangential (along +x) and normal (> 0 in compression)
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from contact.arrays import FloatArray, IntArray
 from contact.interface.laws import ELASTIC_STICK, normal_force, regularised_friction, stick_friction
 from contact.jit import compiled
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 FULL_STEPS = 1  #: Newton steps taken whole before the line search begins; a friction problem cycles soon
 NEWTON_LIMIT = 40

@@ -9,10 +9,8 @@ corner carries half of it over the whole base.
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from contact.arrays import FloatArray, IntArray
 
 KINDS = ("corners", "feet", "flat")
 

@@ -14,13 +14,13 @@ from typing import Literal
 
 import numpy as np
 
+from contact.arrays import FloatArray
 from contact.motion.kernel import (
     HALF_SINE,
     HARMONIC,
     RECTANGULAR,
     SINE,
     UNIFORM,
-    FloatArray,
     FloorMotion,
     as_floor_motion,
     floor_history,

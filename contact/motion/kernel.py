@@ -11,11 +11,9 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contact.arrays import FloatArray
 from contact.jit import compiled
-
-FloatArray = NDArray[np.float64]
 
 # Meaning of `FloorMotion.kind`.
 UNIFORM, HARMONIC, RECTANGULAR, HALF_SINE, SINE, PIECEWISE = 0, 1, 2, 3, 4, 5

@@ -14,7 +14,8 @@ from typing import Literal
 import numpy as np
 from scipy.linalg import solve_banded
 
-from contact.motion.kernel import PIECEWISE, FloatArray, FloorMotion, as_floor_motion, floor_history
+from contact.arrays import FloatArray
+from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion, floor_history
 
 # A period is drawn well by about ten samples: what the table can tell of the motion is not faster than that.
 SPACINGS_PER_PERIOD = 10.0

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from scipy.integrate import DOP853
 from scipy.optimize import brentq, minimize_scalar
 
+from contact.arrays import FloatArray
 from contact.reference.floor_acceleration import FloorAcceleration, FloorSegment
 
-FloatArray = NDArray[np.float64]
 Rate = Callable[[FloatArray, float], FloatArray]  #: state, floor acceleration -> time derivative
 Margin = Callable[[FloatArray, float], float]  #: state, floor acceleration -> positive while it holds
 Interpolant = Callable[[float | FloatArray], FloatArray]  #: time -> state, times in the last axis

@@ -13,16 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact.reference.event_driven import (
-    EventError,
-    FloatArray,
-    Guard,
-    Passage,
-    Piece,
-    Rate,
-    flow,
-    turning_point,
-)
+from contact.arrays import FloatArray
+from contact.reference.event_driven import EventError, Guard, Passage, Piece, Rate, flow, turning_point
 from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.planar_equations import CornerContact, corner_impact, rock, slide_rock
 from contact.reference.planar_motion import (

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact.reference.event_driven import FloatArray
+from contact.arrays import FloatArray
 from contact.reference.rigid_block import RigidBlock
 
 

@@ -9,7 +9,8 @@ from enum import Enum
 
 import numpy as np
 
-from contact.reference.event_driven import FloatArray, Piece, sample
+from contact.arrays import FloatArray
+from contact.reference.event_driven import Piece, sample
 
 
 class PlanarMode(Enum):

@@ -16,16 +16,8 @@ from enum import Enum
 
 import numpy as np
 
-from contact.reference.event_driven import (
-    EventError,
-    FloatArray,
-    Guard,
-    Piece,
-    Rate,
-    flow,
-    sample,
-    turning_point,
-)
+from contact.arrays import FloatArray
+from contact.reference.event_driven import EventError, Guard, Piece, Rate, flow, sample, turning_point
 from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.rigid_block import RigidBlock
 

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact.reference.event_driven import EventError, FloatArray, Guard, Piece, Rate, flow, sample
+from contact.arrays import FloatArray
+from contact.reference.event_driven import EventError, Guard, Piece, Rate, flow, sample
 from contact.reference.floor_acceleration import FloorAcceleration
 
 MAX_EVENTS = 100_000

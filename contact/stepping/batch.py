@@ -16,7 +16,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contact.interface.solver import Contact, FloatArray, IntArray, Workspace, make_workspace
+from contact.arrays import FloatArray, IntArray
+from contact.interface.solver import Contact, Workspace, make_workspace
 from contact.jit import compiled
 from contact.motion.kernel import UNIFORM, FloorMotion, floor_motion
 from contact.stepping.body import ROTATION, State, make_state

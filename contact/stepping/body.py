@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contact.interface.solver import FloatArray, Workspace
+from contact.arrays import FloatArray
+from contact.interface.solver import Workspace
 from contact.stepping.scheme import Scheme
 
 #: rows of `State.pose`

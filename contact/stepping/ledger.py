@@ -7,7 +7,8 @@ Each term on the right but the last is integrated on its own, by the trapezoidal
 motions of both ends of a step; the imbalance is what then remains: > 0 lost, < 0 won by the scheme.
 """
 
-from contact.interface.solver import Contact, FloatArray
+from contact.arrays import FloatArray
+from contact.interface.solver import Contact
 from contact.jit import compiled
 
 #: rows of the ledger [J]

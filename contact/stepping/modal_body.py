@@ -17,8 +17,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba.extending import overload, register_jitable
 
+from contact.arrays import FloatArray, IntArray
 from contact.interface.equilibrium import Stance
-from contact.interface.solver import FloatArray, IntArray, Workspace, add_turned
+from contact.interface.solver import Workspace, add_turned
 from contact.jit import compiled
 from contact.stepping import body as interface
 from contact.stepping.body import (

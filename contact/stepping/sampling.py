@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numba.extending import register_jitable
 
-from contact.interface.solver import FloatArray
+from contact.arrays import FloatArray
 from contact.jit import compiled
 from contact.motion.interpolation import hermite
 from contact.motion.kernel import floor_motion

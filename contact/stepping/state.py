@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from contact.interface.solver import Contact, FloatArray, Workspace
+from contact.arrays import FloatArray
+from contact.interface.solver import Contact, Workspace
 from contact.motion.kernel import FloorMotion, floor_motion
 from contact.stepping.body import State
 from contact.stepping.ledger import ROWS as LEDGER_ROWS

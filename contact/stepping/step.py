@@ -8,8 +8,9 @@ from typing import Any
 
 from numba.extending import register_jitable
 
+from contact.arrays import FloatArray
 from contact.interface.laws import ELASTIC_STICK, relaxed_stick
-from contact.interface.solver import FloatArray, Workspace, solve_contact
+from contact.interface.solver import Workspace, solve_contact
 from contact.jit import compiled
 from contact.motion.kernel import floor_motion
 from contact.stepping.body import KINETIC, POTENTIAL, STRAIN, State, complete, predict, release, respond

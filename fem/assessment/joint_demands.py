@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from fem.model.model import Model
 from fem.results.history import JOINT_COLUMNS, History
-from mesh.cells import FloatArray
+from fem.runtime.arrays import FloatArray
 
 
 def edge_forces(normal: FloatArray, moment: FloatArray, width: float) -> tuple[FloatArray, FloatArray]:

@@ -27,7 +27,8 @@ from contact.stepping.observables import IMPACT_GAP, ROCKING
 from fem.assessment.verdict import SLIDING
 from fem.case.case import Case
 from fem.model.model import Model
-from fem.results.history import ANALYTIC_COLUMN, FloatArray, History
+from fem.results.history import ANALYTIC_COLUMN, History
+from fem.runtime.arrays import FloatArray
 from fem.solid.modes import elastic_modes
 
 STIFF_CONTAINER = 7.0  #: first elastic over contact frequency, from which an impact is a rigid block's

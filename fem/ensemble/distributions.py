@@ -16,7 +16,7 @@ from scipy.stats import qmc
 
 from fem.case.case import CaseError
 from fem.case.validation import requirement_of
-from mesh.cells import FloatArray
+from fem.runtime.arrays import FloatArray
 
 Sampling = Literal["independent", "latin-hypercube", "sobol"]
 #: which keys each distribution needs

@@ -27,7 +27,7 @@ from fem.figures.style import (
     panels,
     svg_of,
 )
-from mesh.cells import FloatArray
+from fem.runtime.arrays import FloatArray
 
 #: of the regions; lightness differs as well
 COLOURS = {"below": SKY, "undecided": "#DDDDDD", "above": VERMILLION}

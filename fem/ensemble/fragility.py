@@ -12,7 +12,7 @@ import numpy as np
 from scipy.special import ndtr
 from scipy.stats import binom
 
-from mesh.cells import FloatArray
+from fem.runtime.arrays import FloatArray
 
 BOOTSTRAPS = 1000
 SCORINGS = 60  #: of Fisher's method

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import betaincinv, stdtrit
 
-from mesh.cells import FloatArray
+from fem.runtime.arrays import FloatArray
 
 #: events, and non-events, in all replicates from which their spread is trusted alone
 FEW = 10

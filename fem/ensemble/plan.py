@@ -12,8 +12,8 @@ from fem.batch.case_maker import CaseMaker
 from fem.batch.expressions import ExpressionError
 from fem.case.case import Case, CaseError
 from fem.ensemble.distributions import RandomQuantity, Sampling, draw_shares
+from fem.runtime.arrays import FloatArray
 from fem.sweep.plan import Derived, value_in
-from mesh.cells import FloatArray
 
 FREE = "free."  #: keys of no case: variables that derived keys refer to
 

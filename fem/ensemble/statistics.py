@@ -15,7 +15,7 @@ from fem.ensemble.fragility import (
 )
 from fem.ensemble.intervals import Estimate, estimate
 from fem.ensemble.plan import Ensemble
-from mesh.cells import FloatArray
+from fem.runtime.arrays import FloatArray
 
 #: codes of a draw's outcome
 MISSING, STOOD, OVERTURNED, FAILED = -1, 0, 1, 2

@@ -22,8 +22,8 @@ from fem.figures.style import (
     states_of,
     time_panels,
 )
-from fem.results.history import FloatArray
 from fem.results.reader import OpenedRun
+from fem.runtime.arrays import FloatArray
 
 LARGE_FORCE = 2.5  #: times weight, or its static friction: beyond are impacts, not the motion between them
 OFF_SCALE = 1.3  #: forces beyond the scale by more than this are cut off and told

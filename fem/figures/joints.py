@@ -30,8 +30,9 @@ from fem.figures.style import (
     time_panels,
     zero_line,
 )
-from fem.results.history import JOINT_COLUMNS, FloatArray
+from fem.results.history import JOINT_COLUMNS
 from fem.results.reader import OpenedRun
+from fem.runtime.arrays import FloatArray
 
 HEADER = 3  #: lines of text above the panels of ranges: title, legend, what is largest
 RANGES, BETWEEN, BELOW = 1.4, 0.3, 0.78  #: their height, between them, from them to those over time [inch]

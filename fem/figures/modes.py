@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fem.figures.style import BLUE, GREY, LINE, WIDTH, head, number
-from fem.solid.edges import IntArray, chained, outline_edges
-from fem.solid.elasticity import FloatArray
+from fem.runtime.arrays import FloatArray, IntArray
+from fem.solid.edges import chained, outline_edges
 from fem.solid.modes import ElasticModes
 
 MOST = 20  #: modes that one figure shows

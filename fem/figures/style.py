@@ -18,7 +18,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from fem.runtime.arrays import FloatArray
 
 BLACK, GREY = "#222222", "#6E6E6E"
 BLUE, VERMILLION, GREEN, ORANGE, SKY, PURPLE = (

@@ -13,12 +13,12 @@ from fem.case.case import Case
 from fem.model.geometry import build_container, node_count
 from fem.model.required_memory import require_memory
 from fem.model.support import build_support
+from fem.runtime.arrays import IntArray
 from fem.runtime.threads import use_one_blas_thread
 from fem.solid.assembly import FiniteElements, assemble
 from fem.solid.modes import elastic_modes
 from fem.solid.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
 from fem.solid.setup_parts import Parts
-from mesh.cells import IntArray
 from mesh.container import ContainerMesh
 from mesh.region import Region
 

@@ -10,9 +10,9 @@ import math
 import numpy as np
 
 from fem.case.case import Case, CaseError
+from fem.runtime.arrays import FloatArray
 from fem.solid.assembly import FiniteElements
 from fem.solid.reduction import StaticResponse
-from mesh.cells import FloatArray
 
 #: stretch at which the nominal stress (s^3 - s) E/2 of St. Venant and Kirchhoff has its least value
 LEAST_STRETCH = 1.0 / math.sqrt(3.0)

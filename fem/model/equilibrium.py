@@ -13,8 +13,8 @@ from fem.case.case import Case, CaseError
 from fem.model.container import Container
 from fem.model.crushing import require_uncrushed
 from fem.model.support import normal_penalty, require_firm_floor
+from fem.runtime.arrays import FloatArray
 from fem.solid.nodal_body import FullBody
-from mesh.cells import FloatArray
 from mesh.container import ContainerMesh
 
 #: error of a base point at which the iterations of a step stop, over the static penetration

@@ -3,7 +3,7 @@
 import numpy as np
 
 from fem.case.case import Case
-from mesh.cells import FloatArray
+from fem.runtime.arrays import FloatArray
 from mesh.container import ContainerMesh, build_container_mesh
 from mesh.files import read_container_mesh
 from mesh.fill import MassFill

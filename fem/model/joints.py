@@ -20,8 +20,9 @@ from scipy.sparse import csr_array
 
 from contact.stepping.body import ANGULAR_VELOCITY, ROTATION, State
 from fem.model.model import Model
+from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements
-from mesh.cells import FloatArray, IntArray, areas_and_centroids
+from mesh.cells import areas_and_centroids
 from mesh.container import ContainerMesh
 
 #: columns of a joint's motion: momentum [kg m/s], angular momentum about their own mass centre [kg m2/s] and mass

@@ -27,9 +27,9 @@ from fem.model.firm_start import require_firm_start
 from fem.model.motion import build_motion, peak_acceleration_within
 from fem.model.static_checks import StaticChecks, static_checks
 from fem.model.step_size import control_of, largest_step_of, scheme_of
+from fem.runtime.arrays import FloatArray
 from fem.solid.nodal_body import FullBody
 from fem.solid.reduction import StaticResponse
-from mesh.cells import FloatArray
 from mesh.container import ContainerMesh
 
 HISTORY_CHUNK, FRAME_CHUNK = 1024, 64

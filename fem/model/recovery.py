@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from fem.model.model import Model
+from fem.runtime.arrays import FloatArray
 from fem.solid.assembly import FiniteElements
 from fem.solid.elasticity import von_mises
 from fem.solid.nodal_body import FullBody
-from mesh.cells import FloatArray
 
 #: largest elastic displacement used to probe the stress of a mode, over the size of the container
 PROBE = 1e-6

@@ -12,9 +12,8 @@ from functools import cache
 from importlib import resources
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from fem.runtime.arrays import FloatArray
 
 TABLE = "contact_damping_restitution.csv"
 

@@ -11,7 +11,7 @@ from contact.stepping.state import Control
 from fem.case.case import Case, CaseError
 from fem.model.container import Container
 from fem.model.static_checks import StaticChecks
-from mesh.cells import FloatArray
+from fem.runtime.arrays import FloatArray
 from mesh.container import ContainerMesh
 
 #: largest step over the time scale of rocking, 1/p, and over that of the base motion

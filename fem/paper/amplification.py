@@ -9,7 +9,8 @@ from fem.paper.cases import FOR_MAPS, GRAVITY, HEIGHT, PLATEAU, PLATEAU_PEAK, ST
 from fem.paper.claims import Band, Comparison, Finding, Member, Setup, Statement, Table
 from fem.paper.experiments import Laboratory, Record
 from fem.paper.figures import Line, drawing
-from fem.results.history import FloatArray, History
+from fem.results.history import History
+from fem.runtime.arrays import FloatArray
 
 #: of the stack with g = 9.81 [rad/s]
 OMEGA_EQ_3 = 2.0 * math.pi / period_eq3(radius=0.5 * math.hypot(WIDTH, HEIGHT), gravity=GRAVITY)

@@ -15,7 +15,7 @@ from matplotlib.patheffects import AbstractPathEffect, withStroke
 
 from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.paper.claims import Drawing
-from fem.results.history import FloatArray
+from fem.runtime.arrays import FloatArray
 
 #: distinguishable without colour vision (Okabe and Ito) and dark enough on white
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#7a4d9f", "#333333", "#b8860b")

@@ -9,15 +9,13 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from fem.figures.style import number
 from fem.results.fields import Frame
 from fem.results.reader import OpenedRun
 from fem.results.run_folder import FolderError
-
-FloatArray = NDArray[np.float64]
+from fem.runtime.arrays import FloatArray
 
 STRESS_MAP = "YlOrRd"  #: light where little is stressed, told apart by the colour-blind, grey in print
 INK, FAINT = "#222222", "#666666"

@@ -13,7 +13,6 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 import pyvista
-from numpy.typing import NDArray
 from PIL import Image
 
 from fem.render.caption import (
@@ -41,8 +40,6 @@ from fem.render.scene import (
 from fem.results.fields import Frame
 from fem.results.reader import OpenedRun
 from fem.results.run_folder import FolderError
-
-FloatArray = NDArray[np.float64]
 
 BODY, EDGE, SLAB, HATCH, ARROW, MARK = "#A9C1D6", "#333333", "#E4E1DC", "#A39E96", "#0072B2", "#222222"
 SMOOTH = 8  #: samples a pixel, against stairs in slanted lines

@@ -9,14 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import pyvista
-from numpy.typing import NDArray
 
 from fem.results.fields import Frame
 from fem.results.grid import spatial
+from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.edges import chained, outline_edges
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 #: the bilinear quads that a cell is drawn as, by its number of nodes
 PARTS = {4: ((0, 1, 2, 3),), 9: ((0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3))}

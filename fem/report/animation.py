@@ -20,10 +20,8 @@ from scipy.sparse import csr_array
 from fem.model.model import Model
 from fem.results.fields import Fields, Frame
 from fem.results.history import History
+from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 FIELD_BYTES = 2_400_000  #: of all frames, before base64 makes four thirds of it
 LEAST_FRAMES = 40  #: rather than fewer frames, the outline alone is sent

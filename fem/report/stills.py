@@ -10,12 +10,10 @@ from typing import Any
 
 import numpy as np
 from markupsafe import Markup
-from numpy.typing import NDArray
 
 from fem.report.animation import Film, Split, exaggeration
 from fem.results.history import History
-
-FloatArray = NDArray[np.float64]
+from fem.runtime.arrays import FloatArray
 
 MOST = 6
 BINS = 14  #: colours of a still

@@ -18,7 +18,7 @@ from fem.response.model import DrivenModel, begin_drive, carry_drive, driven_cas
 from fem.response.orbit import Orbit, follow_periods, step_until
 from fem.response.request import ResponseRequest
 from fem.response.stability import LongTime, amplitude_growth, amplitudes_diverge, classify
-from mesh.cells import FloatArray
+from fem.runtime.arrays import FloatArray
 
 PORTRAYED = 16  #: last periods whose phase portrait is kept; of a periodic motion one of its periods
 WINDOWS = 4  #: a motion that is not settled is observed again, so many windows in all

@@ -18,7 +18,7 @@ from contact.stepping.observables import NEVER
 from contact.stepping.state import ROW_ANGULAR_VELOCITY, ROW_ROTATION, ROW_SLIP
 from fem.assessment.verdict import audit
 from fem.response.model import DrivenModel, section_times, with_sections
-from mesh.cells import FloatArray
+from fem.runtime.arrays import FloatArray
 
 #: a motion of hundreds of periods is audited in stretches of so many, each as a run is
 AUDITED = 10

@@ -10,7 +10,7 @@ import numpy as np
 from fem.response.curve import PORTRAYED, Point
 from fem.response.model import SAMPLES_PER_PERIOD
 from fem.response.orbit import EXTREME_COLUMNS, SECTION_COLUMNS
-from mesh.cells import FloatArray
+from fem.runtime.arrays import FloatArray
 
 PORTRAIT_COLUMNS = ("rotation_rad", "angular_velocity_rad_s")
 ARRAYS = {"sections": SECTION_COLUMNS, "extremes": EXTREME_COLUMNS, "portrait": PORTRAIT_COLUMNS}

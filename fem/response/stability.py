@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesh.cells import FloatArray
+from fem.runtime.arrays import FloatArray
 
 LARGEST_PERIOD = 16  #: looked for, in periods of the drive; and at most a third of the window
 REPEATS = 3  #: of a period within the window, at least

@@ -18,8 +18,7 @@ import meshio
 import numpy as np
 from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from fem.runtime.arrays import FloatArray, IntArray
 
 #: Names of meshio for cells by their number of nodes, corners first, then mid-sides, then the centre.
 CELL_TYPES = {4: "quad", 9: "quad9"}

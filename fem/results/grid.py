@@ -2,11 +2,9 @@
 
 import numpy as np
 import pyvista
-from numpy.typing import NDArray
 
 from fem.results.fields import Frame
-
-FloatArray = NDArray[np.float64]
+from fem.runtime.arrays import FloatArray
 
 #: VTK's cells by their number of nodes
 CELL_TYPES = {4: pyvista.CellType.QUAD, 9: pyvista.CellType.BIQUADRATIC_QUAD}

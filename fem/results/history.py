@@ -21,11 +21,9 @@ from types import TracebackType
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.results.run_folder import write_atomically
-
-FloatArray = NDArray[np.float64]
+from fem.runtime.arrays import FloatArray
 
 #: Columns of `history.csv`, in a stack followed by those of its joints; `mode` is a word, all others are numbers.
 #: The last four are sums since the start: work of the floor on the container, and where energy went.

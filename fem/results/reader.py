@@ -12,17 +12,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem.case.case import Case, load_case
 from fem.results.fields import Fields, Frame, open_fields
 from fem.results.history import History, read_history
 from fem.results.run_folder import FolderError, RunFolder, read_result
+from fem.runtime.arrays import FloatArray
 
 if TYPE_CHECKING:
     from pyvista import UnstructuredGrid
 
-FloatArray = NDArray[np.float64]
 
 #: what else may lie in a folder of results, by the file that marks it
 OTHERS = {

@@ -35,7 +35,7 @@ from fem.model.joints import Joints, joints_of
 from fem.model.model import Model
 from fem.model.recovery import Frame, Recovery
 from fem.results.history import JOINT_COLUMNS, NUMBERS, History
-from mesh.cells import FloatArray
+from fem.runtime.arrays import FloatArray
 
 #: the stepper's columns in the order of a history's, behind time and base motion
 ORDER = (

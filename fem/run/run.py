@@ -46,12 +46,12 @@ from fem.run.recorder import Recorder
 from fem.run.run_resumption import RunBeginning, Spent, beginning_in, clock_readings, settling, spent_since
 from fem.run.setup_cache import PartFolder
 from fem.run.simulation import Ending, simulate
+from fem.runtime.arrays import FloatArray
 from fem.runtime.compilation import compilation_announced
 from fem.runtime.identity import versions
 from fem.runtime.interrupts import ending_at_once, interruptible
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.solid.nodal_body import advance_body
-from mesh.cells import FloatArray
 from mesh.container import ContainerMesh
 
 

@@ -14,9 +14,9 @@ from fem.results.disk import free_disk
 from fem.results.lock import FolderLock
 from fem.results.run_folder import RunFolder, naming_what_cannot_be_written
 from fem.run.checkpoint import CHECKPOINT_S
+from fem.runtime.arrays import FloatArray
 from fem.runtime.identity import program_identity
 from fem.runtime.progress import Reporter
-from fem.solid.elasticity import FloatArray
 
 #: over the size of the parts: room that their file must leave on the disk, for the run itself
 ROOM = 4

@@ -29,8 +29,8 @@ from skfem import (
 )
 from skfem.helpers import ddot, eye, mul, sym_grad, trace, transpose
 
+from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.elasticity import (
-    FloatArray,
     LamePair,
     cauchy_stress,
     element_forces,
@@ -39,7 +39,6 @@ from fem.solid.elasticity import (
     von_mises,
 )
 
-IntArray = NDArray[np.int64]
 #: A field over the elevation: (x, z) of any shape (...) -> the two components, shape (2, ...).
 VectorField = Callable[[FloatArray, FloatArray], Any]
 #: (x, z) of the midpoints of edges -> chosen or not.

@@ -1,10 +1,8 @@
 """The outline of a container as pairs of nodes: its outer edges, and the joints between its boxes."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
+from fem.runtime.arrays import FloatArray, IntArray
 
 #: nodes along the sides of a cell, by its number of nodes in the order of VTK
 SIDES = {4: ((0, 1), (1, 2), (2, 3), (3, 0)), 9: ((0, 4, 1), (1, 5, 2), (2, 6, 3), (3, 7, 0))}

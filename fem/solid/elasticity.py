@@ -12,12 +12,10 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numba.extending import register_jitable
-from numpy.typing import NDArray
 
 from contact.jit import compiled
+from fem.runtime.arrays import FloatArray, IntArray
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 SOURCES = (Path(__file__),)  #: of the machine code of this module
 Real = TypeVar("Real", float, FloatArray)
 

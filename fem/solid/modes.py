@@ -17,8 +17,8 @@ from scipy.linalg import cholesky, eigh, qr, solve_triangular
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
 
+from fem.runtime.arrays import FloatArray
 from fem.solid.assembly import FiniteElements
-from fem.solid.elasticity import FloatArray
 from fem.solid.setup_parts import NoParts, Parts
 
 FEW = 5  #: in the table and the figure of a run: one row of shapes

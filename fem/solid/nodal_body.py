@@ -20,12 +20,13 @@ import scipy.sparse.linalg
 from scipy.sparse import csr_array
 
 from contact.interface.equilibrium import Stance
-from contact.interface.solver import FloatArray, IntArray, Workspace
+from contact.interface.solver import Workspace
 from contact.stepping.body import State
 from contact.stepping.integrator import UNPREPARED, advance, advance_compiled, leave_alone_compiled
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.scheme import Scheme
 from contact.stepping.state import Run
+from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid import nodal_kernels as nodal_body
 from fem.solid.assembly import FiniteElements
 from fem.solid.nodal_kernels import NodalBody, advance_nodal, leave_nodal_alone

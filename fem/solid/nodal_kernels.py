@@ -32,8 +32,8 @@ from contact.stepping.body import (
 )
 from contact.stepping.integrator import advance, leave_alone
 from contact.stepping.scheme import Scheme
-from fem.solid.elasticity import FloatArray, element_forces
-from mesh.cells import IntArray
+from fem.runtime.arrays import FloatArray, IntArray
+from fem.solid.elasticity import element_forces
 
 #: what the machine code depends on besides the sources of `contact`
 SOURCES = (Path(__file__), Path(fem.solid.elasticity.__file__))

@@ -14,7 +14,7 @@ import scipy.linalg
 import scipy.sparse.linalg
 from scipy.sparse import csc_array
 
-from contact.interface.solver import FloatArray, IntArray
+from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements
 from fem.solid.modes import elastic_modes, rigid_modes
 from fem.solid.setup_parts import NoParts, Parts, blocks

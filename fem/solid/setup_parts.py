@@ -6,7 +6,7 @@ A part is computed the same whether the others were kept or not, so that a set-u
 from collections.abc import Callable, Iterator
 from typing import Protocol
 
-from fem.solid.elasticity import FloatArray
+from fem.runtime.arrays import FloatArray
 
 
 class Parts(Protocol):

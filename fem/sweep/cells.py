@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fem.sweep.neighbours import OVERTURNED, STANDING, FloatArray, IntArray, kind_of
+from fem.runtime.arrays import FloatArray, IntArray
+from fem.sweep.neighbours import OVERTURNED, STANDING, kind_of
 from fem.sweep.table import fields_of
 
 

@@ -23,7 +23,7 @@ from matplotlib.transforms import Affine2D
 from fem.batch.axes import Axis
 from fem.figures.style import BLACK, GREY, STATE_COLOURS, VERMILLION, WIDTH, house_style, number, svg_of
 from fem.results.run_folder import write_atomically
-from fem.sweep.neighbours import BoolArray, FloatArray
+from fem.runtime.arrays import BoolArray, FloatArray
 from fem.sweep.table import SweepTable
 
 OUTCOME_COLOURS = {**STATE_COLOURS, "failed": VERMILLION, "": "#FFFFFF"}

@@ -10,14 +10,10 @@ island of the other outcome that lies between the cells of the grid, far from al
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
 from fem.batch.axes import Axis
-
-BoolArray = NDArray[np.bool_]
-IntArray = NDArray[np.int64]
-FloatArray = NDArray[np.float64]
+from fem.runtime.arrays import BoolArray, FloatArray, IntArray
 
 #: kinds of cells
 UNKNOWN, STANDING, OVERTURNED, FAILED = 0, 1, 2, 3

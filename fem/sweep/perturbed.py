@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from fem.runtime.arrays import BoolArray, FloatArray
 from fem.sweep.cells import Band, Found
 from fem.sweep.executor import Computing
-from fem.sweep.neighbours import OVERTURNED, STANDING, BoolArray, FloatArray, around, band_width, near_cells
+from fem.sweep.neighbours import OVERTURNED, STANDING, around, band_width, near_cells
 from fem.sweep.plan import Sweep
 from fem.sweep.table import RowLog, band_columns, line_of, read_lines
 

@@ -20,6 +20,7 @@ from fem.case.case import case_hash
 from fem.case.validation import CaseError
 from fem.results.result_folder import held
 from fem.results.run_folder import copy_data_files, naming_what_cannot_be_written
+from fem.runtime.arrays import BoolArray
 from fem.runtime.identity import program_identity, versions
 from fem.runtime.interrupts import interruptible
 from fem.runtime.progress import Reporter, SilentReporter
@@ -29,7 +30,7 @@ from fem.sweep.cells import Band, Found
 from fem.sweep.executor import Computing
 from fem.sweep.folder import SweepFolder, band_hash, open_sweep_folder, sweep_hash, write_info, write_plan
 from fem.sweep.maps import draw_maps
-from fem.sweep.neighbours import UNKNOWN, BoolArray
+from fem.sweep.neighbours import UNKNOWN
 from fem.sweep.perturbed import ToldOfCopies, copy_cells
 from fem.sweep.plan import Sweep
 from fem.sweep.refine import refine, write_changes

@@ -21,11 +21,11 @@ from contact.stepping.modal_body import ModalBody
 from contact.stepping.scheme import Scheme, generalised_alpha, newmark
 from contact.stepping.state import Run, make_run, make_samples
 from fem.model.model import build_model
+from fem.runtime.arrays import FloatArray
 from fem.solid.assembly import FiniteElements
 from fem.solid.nodal_body import FullBody, advance_body
 from fem.solid.reduction import StaticResponse
 from fem.verification.runs import STACK, with_steps_of
-from mesh.cells import FloatArray
 
 
 class SteppingError(ArithmeticError):

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.linalg import eigsh, spsolve
 
+from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements, assemble
 from fem.solid.modes import elastic_modes
 from fem.verification.manufactured import NewtonError
 from fem.verification.meshes import mapped_mesh
-from mesh.cells import FloatArray, IntArray
 
 Held = NDArray[np.bool_]
 

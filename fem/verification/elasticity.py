@@ -8,6 +8,7 @@ import math
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
+from fem.runtime.arrays import FloatArray
 from fem.solid.assembly import assemble
 from fem.solid.elasticity import cauchy_stress, plane_stress_lame
 from fem.verification.elastic_problems import (
@@ -22,7 +23,6 @@ from fem.verification.elastic_problems import (
 from fem.verification.manufactured import dynamic_error, static_error
 from fem.verification.meshes import PlainMesh, mapped_mesh
 from fem.verification.rows import Check, Convergence, Row, as_floats, order_row
-from mesh.cells import FloatArray
 
 E, NU = 2.1e11, 0.3
 MANUFACTURED = "manufactured solution"

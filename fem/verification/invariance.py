@@ -10,13 +10,13 @@ import numpy as np
 from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion
 from contact.stepping.scheme import generalised_alpha
 from fem.model.model import build_model
+from fem.runtime.arrays import FloatArray
 from fem.solid.assembly import assemble
 from fem.solid.nodal_body import FullBody
 from fem.verification.bodies import Flight, body_of, free_run
 from fem.verification.contact_laws import graded_block
 from fem.verification.rows import Check, Convergence, Row, as_floats, order_row
 from fem.verification.runs import SOLID, STACK, Finished, finish, run, with_motion, with_steps_of
-from mesh.cells import FloatArray
 
 SPIN = 20.0  #: of a block thrown into the air [rad/s]
 #: rocks, slides and strikes for 5 s

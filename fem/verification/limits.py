@@ -12,9 +12,9 @@ import numpy as np
 from contact.reference.floor_acceleration import still_floor
 from contact.reference.rocking import simulate_rocking
 from fem.model.model import build_model
+from fem.runtime.arrays import FloatArray
 from fem.verification.rows import Check, Convergence, Row, as_floats
 from fem.verification.runs import SOLID, STACK, Finished, run
-from mesh.cells import FloatArray
 
 SLENDERNESS = math.atan2(1.1, 4.0)
 RELEASED = {"initial.rotation_rad": 0.5 * SLENDERNESS, "solver.duration_s": 0.65, "output.history_s": 0.01}

@@ -15,12 +15,12 @@ from scipy.sparse.linalg import spsolve
 
 from contact.stepping.body import State
 from contact.stepping.scheme import Scheme, generalised_alpha
+from fem.runtime.arrays import FloatArray
 from fem.solid import nodal_kernels as nodal_body
 from fem.solid.assembly import assemble
 from fem.solid.nodal_body import FullBody
 from fem.verification.bodies import Flight, free_run
 from fem.verification.meshes import PlainMesh, mapped_mesh
-from mesh.cells import FloatArray
 
 E, NU, THICKNESS, DENSITY = 5.0, 0.3, 0.4, 2.0
 HEIGHT = 10.0  #: of the moving bodies above the floor [m]

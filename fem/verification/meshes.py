@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesh.cells import FloatArray, IntArray
+from fem.runtime.arrays import FloatArray, IntArray
 
 Mapping = Callable[[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]
 

@@ -13,10 +13,10 @@ from matplotlib.figure import Figure
 
 from fem.html.page import render_page, svg_element
 from fem.html.units import ABSENT, short, typeset
+from fem.runtime.arrays import FloatArray
 from fem.runtime.identity import versions
 from fem.verification.rows import Convergence, Row
 from fem.verification.suite import Ladder, Rung
-from mesh.cells import FloatArray
 
 LEAST_SIX = 1e-3  #: smaller values are errors, and printed with three figures
 HEADING = f"{'value':>13} {'reference':>12}  {'kind':<9} {'error':>9} {'tolerance':>9}  order"

@@ -12,11 +12,11 @@ import numpy as np
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from contact.stepping.scheme import Scheme, generalised_alpha, newmark
 from fem.model.model import build_model
+from fem.runtime.arrays import FloatArray
 from fem.verification.bodies import Flight, free_run
 from fem.verification.manufactured import moving_body_error
 from fem.verification.rows import Check, Convergence, Row, as_floats, order_row
 from fem.verification.runs import SOLID, STACK, finish, with_steps_of
-from mesh.cells import FloatArray
 
 SCHEMES = {
     "generalised-alpha 0": generalised_alpha(0.0),
