@@ -98,7 +98,7 @@ def require_drawing(text: str) -> None:
 @cache
 def _environment() -> Environment:
     environment = Environment(
-        loader=PackageLoader("fem", TEMPLATES),
+        loader=PackageLoader("fem.html", TEMPLATES),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from fem.study import numbers, quasi_static, rocking, shape
 
+from fem.paper import numbers, quasi_static, rocking, shape
 from fem.paper.claims import Verdict
 from fem.paper.experiments import Laboratory
 

@@ -146,7 +146,7 @@ def test_the_joints_do_not_feel_the_change_of_frame_after_the_end():
 
 def test_joints_do_not_depend_on_when_the_samples_are_taken_out(monkeypatch):
     whole = run(solver__model="reduced", solver__duration_s=0.9).history
-    monkeypatch.setattr(fem.model, "HISTORY_CHUNK", 8)
+    monkeypatch.setattr(fem.model.model, "HISTORY_CHUNK", 8)
     assert (
         run(solver__model="reduced", solver__duration_s=0.9).history.values.tobytes()
         == whole.values.tobytes()

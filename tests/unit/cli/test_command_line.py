@@ -9,11 +9,11 @@ import time
 from types import SimpleNamespace
 
 import pytest
-from fem.commands import doctor as doctor_command
 
 from fem import __main__ as command_line
 from fem.case.case import load_case, read_case
 from fem.case.files import CASES
+from fem.cli import doctor as doctor_command
 from fem.cli.run import text_with_overrides
 from fem.render import opengl as rendering
 

@@ -11,7 +11,7 @@ import pytest
 from fem.__main__ import main
 from fem.case.files import ENSEMBLES
 from fem.case.validation import CaseError
-from fem.ensemble import study
+from fem.ensemble import run as study
 from fem.ensemble.distributions import draw_shares, read_random
 from fem.ensemble.figures import COLOURS
 from fem.ensemble.file import load_ensemble

@@ -385,7 +385,7 @@ def test_a_fault_in_the_drawing_does_not_spoil_a_run(tmp_path, monkeypatch):
     def full(run, container):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(fem.run, "write_figures", full)
+    monkeypatch.setattr(fem.run.run, "write_figures", full)
     reporter = Collecting()
     run = run_into(tmp_path / "r", *CASES["rest"], reporter=reporter)
     assert run.status == "completed"

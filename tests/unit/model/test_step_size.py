@@ -83,9 +83,9 @@ def test_no_step_is_longer_than_the_samples_in_memory_reach():
 
 
 def test_a_run_without_headway_fails_and_says_so(monkeypatch):
-    monkeypatch.setattr(contact.step_control, "ATTEMPTS_SPARE", 50.0)
-    monkeypatch.setattr(contact.step_control, "ATTEMPTS_OF_ROCKING", 1.0)
-    monkeypatch.setattr(contact.step_control, "ATTEMPTS_OF_STEP", 0.1)
+    monkeypatch.setattr(contact.stepping.control, "ATTEMPTS_SPARE", 50.0)
+    monkeypatch.setattr(contact.stepping.control, "ATTEMPTS_OF_ROCKING", 1.0)
+    monkeypatch.setattr(contact.stepping.control, "ATTEMPTS_OF_STEP", 0.1)
     _, ending = finished(rigid())
     assert ending.status == "failed"
     assert ending.error is not None and "no headway after" in ending.error
@@ -115,7 +115,7 @@ def test_a_row_of_a_batch_that_left_the_numbers_says_so():
 
 
 def test_a_container_too_large_for_the_memory_is_refused_before_it_is_taken(monkeypatch):
-    monkeypatch.setattr(fem.required_memory, "_machine_memory", lambda: 1e9)
+    monkeypatch.setattr(fem.model.required_memory, "_machine_memory", lambda: 1e9)
     case = rigid(solver__element_size_m=0.005, support__kind="flat")
     with pytest.raises(
         CaseError, match=r"would take about .* GB; this machine has 1 GB: take larger elements"
@@ -136,5 +136,5 @@ def test_the_memory_told_is_about_what_is_taken():
 
 def test_as_many_full_runs_go_side_by_side_as_the_memory_holds(monkeypatch):
     for there, nodes, fitting in ((None, 100_000, 5), (24e9, 2619, 5), (24e9, 100_000, 4), (1e9, 100_000, 1)):
-        monkeypatch.setattr(fem.required_memory, "_machine_memory", lambda there=there: there)
+        monkeypatch.setattr(fem.model.required_memory, "_machine_memory", lambda there=there: there)
         assert fitting_full_bodies(5, nodes) == fitting

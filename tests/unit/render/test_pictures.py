@@ -201,7 +201,7 @@ def test_an_mp4_holds_every_frame(run, renders, tmp_path):
 
 
 def test_without_the_encoder_an_mp4_is_refused_with_the_way_out(run, tmp_path, monkeypatch):
-    monkeypatch.setattr(fem.movie, "imageio_ffmpeg", None)
+    monkeypatch.setattr(fem.render.movie, "imageio_ffmpeg", None)
     with pytest.raises(FolderError, match=r"pip install imageio-ffmpeg; or give a \.gif"):
         write_movie(run, path=tmp_path / "film.mp4")
 

@@ -11,7 +11,7 @@ import pytest
 
 from fem.__main__ import main
 from fem.case.case import CaseError, load_case
-from fem.response import study
+from fem.response import run as study
 from fem.response.request import ResponseRequest
 from fem.response.run import run_response
 from fem.results.run_folder import FolderError

@@ -58,7 +58,7 @@ def remount_read_only(place: Path) -> None:
 def unforeseen() -> Iterator[None]:
     """As when others fill the disk while the run is under way."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(fem.required_disk, "free_disk", lambda *_: None)
+        patch.setattr(fem.results.disk, "free_disk", lambda *_: None)
         yield
 
 
@@ -161,7 +161,7 @@ def test_a_folder_removed_during_a_sweep_ends_it_with_3(tmp_path, capsys, monkey
         shutil.rmtree(place.path)
         return draw(place, sweep)
 
-    monkeypatch.setattr(fem.sweep.sweeping, "_draw", removed)
+    monkeypatch.setattr(fem.sweep.run, "_draw", removed)
     assert main(["sweep", str(tmp_path / "small.toml"), "--out", str(tmp_path / "s"), "-q", "-j", "1"]) in (
         2,
         3,
@@ -257,7 +257,7 @@ def test_a_folder_of_a_study_that_is_taken_or_removed_is_told(tmp_path, capsys, 
         shutil.rmtree(folder)
         return tried(*arguments)
 
-    monkeypatch.setattr(fem.study.conducting, "_tried", removed)
+    monkeypatch.setattr(fem.paper.run, "_tried", removed)
     assert main(command) == 3
     message = capsys.readouterr().err
     assert str(folder) in message and "Traceback" not in message

@@ -8,7 +8,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from test_run_resumed import COARSE, one_slice, same
+from interrupted_runs import COARSE, one_slice, same
 
 import fem.run.simulation
 from fem.__main__ import main
@@ -56,9 +56,9 @@ def command(folder: Path, *overrides: str) -> list[str]:
 
 @pytest.fixture
 def short_slices(monkeypatch):
-    monkeypatch.setattr(fem.simulation, "SLICE_FULL", 0.02)
-    monkeypatch.setattr(fem.simulation, "SLICE_REDUCED", 0.2)
-    monkeypatch.setattr(fem.simulation, "FIRST_PAUSE", 400)
+    monkeypatch.setattr(fem.run.simulation, "SLICE_FULL", 0.02)
+    monkeypatch.setattr(fem.run.simulation, "SLICE_REDUCED", 0.2)
+    monkeypatch.setattr(fem.run.simulation, "FIRST_PAUSE", 400)
 
 
 @pytest.mark.parametrize("model", MODELS)

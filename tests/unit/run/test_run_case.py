@@ -77,8 +77,8 @@ class TestEnd:
         self, tmp_path, monkeypatch, capsys
     ):
         # A ladder of one step, and a tolerance finer than rounding: the first step that fails is the smallest there is.
-        monkeypatch.setattr(fem.step_limits, "SMALLEST_SHARE", 1.0)
-        monkeypatch.setattr(fem.footing, "POINT_TOLERANCE", 1e-40)
+        monkeypatch.setattr(fem.model.step_size, "SMALLEST_SHARE", 1.0)
+        monkeypatch.setattr(fem.model.equilibrium, "POINT_TOLERANCE", 1e-40)
         folder = tmp_path / "r"
         assert command(folder, "free_rocking") == 3
         result = read_result(folder / "run.json")
@@ -100,7 +100,7 @@ class TestEnd:
         assert "did not overturn" not in page
 
     def test_a_ledger_beyond_its_limits_fails_the_run(self, tmp_path, monkeypatch):
-        monkeypatch.setattr(fem.verdict, "GAIN_LIMIT", -1.0)
+        monkeypatch.setattr(fem.assessment.verdict, "GAIN_LIMIT", -1.0)
         found = run(tmp_path / "r", "rocking", "solver.duration_s=1")
         assert found.status == "failed"
         assert "of the energy to overturn" in found.result["error"]
@@ -221,7 +221,7 @@ class TestAgain:
     def test_a_failed_run_is_computed_again(self, tmp_path, monkeypatch):
         folder = tmp_path / "r"
         with monkeypatch.context() as broken:
-            broken.setattr(fem.verdict, "GAIN_LIMIT", -1.0)
+            broken.setattr(fem.assessment.verdict, "GAIN_LIMIT", -1.0)
             assert run(folder, "rocking", "solver.duration_s=1").status == "failed"
         assert run(folder, "rocking", "solver.duration_s=1").status == "completed"
 
@@ -273,7 +273,7 @@ class TestChecks:
         assert (folder / "rigid_check.csv").is_file()
 
     def test_a_failed_run_has_no_checks(self, tmp_path, monkeypatch):
-        monkeypatch.setattr(fem.verdict, "GAIN_LIMIT", -1.0)
+        monkeypatch.setattr(fem.assessment.verdict, "GAIN_LIMIT", -1.0)
         found = run(tmp_path / "r", "free_rocking", "solver.duration_s=1", check_rigid=True, band=True)
         assert found.status == "failed"
         assert found.result["verdict"]["band"] is None

@@ -99,7 +99,7 @@ def test_without_resume_a_run_is_begun_anew(tmp_path, monkeypatch, whole):
 
 def test_a_history_that_cannot_grow_ends_the_run_with_3(tmp_path, capsys, monkeypatch, whole):
     limit = (whole / "history.csv").stat().st_size // 2
-    monkeypatch.setattr(fem.resumption, "CHECKPOINT_S", 0.0)
+    monkeypatch.setattr(fem.run.checkpoint, "CHECKPOINT_S", 0.0)
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (limit, before[1]))
     try:
@@ -127,7 +127,7 @@ def test_a_history_that_cannot_grow_ends_the_run_with_3(tmp_path, capsys, monkey
     ids=["frame", "rename", "sync", "checkpoint"],
 )
 def test_a_disk_that_fills_up_ends_the_run_with_3(tmp_path, capsys, monkeypatch, whole, module, name, after):
-    monkeypatch.setattr(fem.resumption, "CHECKPOINT_S", 0.0)
+    monkeypatch.setattr(fem.run.checkpoint, "CHECKPOINT_S", 0.0)
     kept, calls = getattr(module, name), []
 
     def fills_up(*arguments, **options):
@@ -147,7 +147,7 @@ def test_a_disk_that_fills_up_ends_the_run_with_3(tmp_path, capsys, monkeypatch,
 
 
 def test_a_disk_that_is_full_at_the_end_loses_the_end_alone(tmp_path, capsys, monkeypatch, whole):
-    monkeypatch.setattr(fem.resumption, "CHECKPOINT_S", 0.0)
+    monkeypatch.setattr(fem.run.checkpoint, "CHECKPOINT_S", 0.0)
     with monkeypatch.context() as patch:
         patch.setattr(fem.run.run.RunFolder, "write_summary", no_room)
         assert command(tmp_path / "r") == 3
@@ -157,7 +157,7 @@ def test_a_disk_that_is_full_at_the_end_loses_the_end_alone(tmp_path, capsys, mo
 
 
 def test_a_folder_removed_during_the_run_ends_it_with_3(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(fem.resumption, "CHECKPOINT_S", 0.0)
+    monkeypatch.setattr(fem.run.checkpoint, "CHECKPOINT_S", 0.0)
     at_time(monkeypatch, 1.0, lambda: shutil.rmtree(tmp_path / "r"))
     assert command(tmp_path / "r") == 3
     message = capsys.readouterr().err
@@ -174,7 +174,7 @@ def test_a_folder_taken_by_another_run_is_left_to_it(tmp_path, capsys, monkeypat
         other[0].__enter__()
         (tmp_path / "r" / "run.json").write_text("theirs")
 
-    monkeypatch.setattr(fem.resumption, "CHECKPOINT_S", 0.0)
+    monkeypatch.setattr(fem.run.checkpoint, "CHECKPOINT_S", 0.0)
     at_time(monkeypatch, 1.0, take)
     assert command(tmp_path / "r") == 3
     assert "taken by another process" in capsys.readouterr().err

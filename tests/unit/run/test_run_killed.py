@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
-from test_run_resumed import same
+from interrupted_runs import same
 
 from fem.results.fields import open_fields
 from fem.results.history import read_history

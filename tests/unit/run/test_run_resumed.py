@@ -4,18 +4,17 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from interrupted_runs import COARSE, one_slice, same
 
 import fem.run.run
 import fem.run.simulation
 from fem.case.case import load_case
-from fem.results.run_folder import read_result
 from fem.run.run import RunOptions, RunResult, run_case
 
 RIGID = ("solver.model=rigid", "solver.duration_s=1.2", "output.fields_s=0.1")
 REDUCED = ("solver.duration_s=0.7", "output.fields_s=0.1")
 FLAT = (*REDUCED, "support.kind=flat", "container.wall_m=0.02", "solver.elastic_modes=4")
 FULL = ("solver.model=full", "solver.duration_s=0.12", "solver.element_size_m=0.5", "output.fields_s=0.02")
-COARSE = ("solver.model=full", "solver.element_size_m=0.5")
 #: still beyond its slenderness angle when time is up, then falling
 FALLING = ("solver.model=rigid", "initial.rotation_rad=0.8", "solver.duration_s=0.3", "output.fields_s=0.2")
 
@@ -29,49 +28,23 @@ CASES = {
 }
 
 
-def one_slice(stepping, *arguments, **options):
-    """Step as asked, but stop after the first slice."""
-    answers = iter([False])
-    return stepping(*arguments, **options | {"stop": lambda: next(answers, True)})
-
-
 def run(folder: Path, name: str, overrides: tuple[str, ...], **options) -> RunResult:
     case = load_case(name, [*overrides, "output.figures=false"])
     return run_case(case, case_text=case.text, folder=folder, options=RunOptions(band=False, **options))
 
 
-def files_of(folder: Path) -> dict[str, bytes]:
-    return {
-        path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()
-    }
-
-
-def without_times(result: dict) -> dict:
-    kept = {key: value for key, value in result.items() if key not in ("wall_s", "cpu_s", "compile_s")}
-    kept["numerics"] = {k: v for k, v in kept["numerics"].items() if k != "stepping_cpu_s"}
-    return kept
-
-
-def same(one: Path, other: Path) -> None:
-    found, wanted = files_of(one), files_of(other)
-    assert set(found) == set(wanted)
-    for name in set(wanted) - {"run.json", "summary.txt"}:
-        assert found[name] == wanted[name], name
-    assert without_times(read_result(one / "run.json")) == without_times(read_result(other / "run.json"))
-
-
 @pytest.mark.parametrize("kind", CASES)
 def test_a_run_cut_off_after_every_slice_is_the_run_left_alone(tmp_path, monkeypatch, kind):
     name, overrides = CASES[kind]
-    monkeypatch.setattr(fem.simulation, "SLICE_FULL", 0.03)
-    monkeypatch.setattr(fem.simulation, "FIRST_PAUSE", 400)
-    monkeypatch.setattr(fem.simulation, "AFTERMATH_SLICE", 0.15)
+    monkeypatch.setattr(fem.run.simulation, "SLICE_FULL", 0.03)
+    monkeypatch.setattr(fem.run.simulation, "FIRST_PAUSE", 400)
+    monkeypatch.setattr(fem.run.simulation, "AFTERMATH_SLICE", 0.15)
     run(tmp_path / "whole", name, overrides)
     stepping = fem.run.run.simulate
     cuts = 0
     while True:
         # every beginning steps one slice, so every state between slices has been through a checkpoint
-        monkeypatch.setattr(fem.run, "simulate", partial(one_slice, stepping))
+        monkeypatch.setattr(fem.run.run, "simulate", partial(one_slice, stepping))
         if run(tmp_path / "cut", name, overrides, resume=True).status != "interrupted":
             break
         cuts += 1
@@ -85,8 +58,8 @@ def test_a_run_paused_after_every_step_is_the_run_that_never_pauses(tmp_path, mo
     # Where the pauses fall depends on the clock on the wall; nothing else may.
     name, overrides = CASES[kind]
     for folder, first, longer in (("paused", 1, 1), ("whole", 10**9, 8)):
-        monkeypatch.setattr(fem.simulation, "FIRST_PAUSE", first)
-        monkeypatch.setattr(fem.simulation, "LONGER", longer)
+        monkeypatch.setattr(fem.run.simulation, "FIRST_PAUSE", first)
+        monkeypatch.setattr(fem.run.simulation, "LONGER", longer)
         run(tmp_path / folder, name, (*overrides, "solver.duration_s=0.1"))
     same(tmp_path / "paused", tmp_path / "whole")
 

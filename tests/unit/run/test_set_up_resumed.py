@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from test_run_resumed import same
+from interrupted_runs import same
 
 from fem.__main__ import main
 from fem.results.run_folder import read_result

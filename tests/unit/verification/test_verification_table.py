@@ -9,7 +9,7 @@ import pytest
 
 import fem.results.run_folder
 from fem.__main__ import main
-from fem.verification import ladder
+from fem.verification import suite as ladder
 from fem.verification.page import convergence_plot, page, table_lines
 from fem.verification.rows import Check, Convergence, Row, count_row, order_row
 
