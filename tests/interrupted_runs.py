@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from fem.results.run_folder import read_result
+
 COARSE = ("solver.model=full", "solver.element_size_m=0.5")
 
 
