@@ -255,6 +255,6 @@ MUTATIONS = (
         file="fem/assessment/verdict.py",
         old="if won > GAIN_LIMIT * reference:",
         new="if won > 1e9 * GAIN_LIMIT * reference:",
-        tests=("validation/test_verify_ladder.py", "-k", "ledger"),
+        tests=("validation/test_verification_checks.py", "-k", "audit"),
     ),
 )
