@@ -65,7 +65,6 @@ def initiation() -> Iterator[Row]:
         f"rigid blocks on a grid of {seen.total()} points ({counts})",
         "number of first motions that differ from the prediction",
         len(wrong) + max(0, LEAST_POINTS - seen.total()),
-        0.0,
         source="Shenton 1996, extended to mu_k below mu_s",
         absolute=0.0,
         note="; ".join([note, *wrong[:4]]),

@@ -77,7 +77,6 @@ def equation_of_motion() -> Iterator[Row]:
             f"rigid stack under {factor} g tan al at {omega} rad/s, whose rotation {name}",
             "rotation up to the first impact, largest difference over al",
             difference_of_rotation(done, floor),
-            0.0,
             source="event-driven block: theta'' = -p^2 [sin(s al - theta) + (a_g/g) cos(s al - theta)]",
             absolute=1e-3,
         )

@@ -105,8 +105,8 @@ def row(
     kind: Kind,
     case: str,
     compared: str,
-    value: SupportsFloat,
-    reference: SupportsFloat,
+    value: SupportsFloat | None = None,
+    reference: SupportsFloat = 0.0,
     *,
     source: str,
     absolute: float | None = None,
@@ -114,7 +114,12 @@ def row(
     convergence: Convergence | None = None,
     note: str = "",
 ) -> Row:
-    """A row with an `absolute` or a `relative` tolerance, an order of convergence, or both."""
+    """A row with an `absolute` or a `relative` tolerance, an order of convergence, or both.
+
+    The reference of a difference is zero; the value of a convergence, if not given, is its finest error.
+    """
+    if value is None:
+        value = math.nan if convergence is None else convergence.finest
     return Row(
         case=case,
         compared=compared,
@@ -152,7 +157,7 @@ def check(topic: str, title: str, *, quick: bool = True) -> Callable[[Callable[[
 def failed_row(check: Check, error: Exception) -> Row:
     """The row of a check that could not be computed."""
     reason = f"{type(error).__name__}: {error}"
-    return analytic(check.title, "computed at all", math.nan, 0.0, source="", absolute=0.0, note=reason)
+    return analytic(check.title, "computed at all", math.nan, source="", absolute=0.0, note=reason)
 
 
 def _plain(value: Any) -> Any:

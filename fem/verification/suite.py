@@ -13,8 +13,6 @@ from fem.runtime.identity import versions
 from fem.verification import (
     contact_laws,
     elasticity,
-    friction,
-    invariance,
     limits,
     overturning,
     restitution,
@@ -30,9 +28,7 @@ MODULES = (
     statics,
     elasticity,
     time_stepping,
-    invariance,
     contact_laws,
-    friction,
     sliding,
     rocking,
     restitution,
