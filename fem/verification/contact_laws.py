@@ -153,7 +153,7 @@ def opening_edges() -> Iterator[Row]:
         case = STACK.with_values({"support.kind": support, "solver.duration_s": 8.0} | mesh)
         done = finish(with_motion(build_model(case), floor))
         yield analytic(
-            f"rigid stack on {support}, floor acceleration growing by {jerk} m/s3",
+            f"rigid stack, support {support}, floor acceleration growing by {jerk} m/s3",
             f"acceleration when {compared} [m/s2]",
             jerk * float(done.track[event]),
             GRAVITY * 1.1 / (share * 4.0),

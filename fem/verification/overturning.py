@@ -58,8 +58,8 @@ def initiation() -> Iterator[Row]:
             wrong.append(f"c/a {lam}, {ratio} g, mu {mu_static}/{mu_kinetic}: {found}, not {expected}")
     counts = ", ".join(f"{count} {mode}" for mode, count in sorted(seen.items()))
     note = (
-        "below the acceleration of uplift it grows over 50 ms, above it comes at once: a jump makes the shear on "
-        "springs overshoot by a quarter, and a block that rests by statics may then slide"
+        "the floor's acceleration grows over 50 ms if it is below that of uplift, else it is sudden: a jump makes the "
+        "shear on the springs overshoot by a quarter, and a block that rests by statics may slide"
     )
     yield analytic(
         f"rigid blocks on a grid of {seen.total()} points ({counts})",

@@ -10,7 +10,7 @@ from fem.model.static_checks import StaticChecks, static_checks
 from fem.verification.rows import Row, analytic, check, printed
 
 WIDTH, BOX_HEIGHT, BOX_MASS = 1.1, 1.0, 2500.0
-PAPER, CLOSED_FORM = "Knoedel and Hrabowski, section 7", "closed form"
+PAPER, CLOSED_FORM = "the paper, section 7", "closed form"
 
 
 def paper_checks(*, boxes: int, gravity: float, peak: float = 2.4) -> StaticChecks:

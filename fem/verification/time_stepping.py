@@ -103,18 +103,18 @@ def period_errors() -> Iterator[Row]:
 @check("time", "energy closure")
 def energy_closure() -> Iterator[Row]:
     """The energy balance closes with the square of the step if nothing opens, slides or strikes."""
-    trembling = {"initial.velocity_m_s": 1e-3, "contact.damping_ratio": 0.0, "solver.duration_s": 0.1}
+    vibrating = {"initial.velocity_m_s": 1e-3, "contact.damping_ratio": 0.0, "solver.duration_s": 0.1}
     kinetic = 0.5 * 1e4 * 1e-6
     models: dict[str, Keys] = {"rigid stack": {}, "solid stack, 20 modes": SOLID}
     for name, values in models.items():
         errors: dict[float, float] = {}
         for step in (2e-4, 1e-4, 5e-5, 2.5e-5):
-            model = build_model(STACK.with_values(values | trembling))
+            model = build_model(STACK.with_values(values | vibrating))
             clock = finish(with_steps_of(model, step)).model.run.clock[0]
             errors[step] = max(-float(clock.least_imbalance), float(clock.most_imbalance)) / kinetic
         orders = convergence("step [s]", errors, order=2.0, within=0.15, at_least=True)
         yield analytic(
-            f"{name} trembling on closed springs, generalised-alpha 0.5",
+            f"{name} vibrating on closed springs, generalised-alpha 0.5",
             "largest energy balance error over the first kinetic energy",
             source="energy balance; the scheme's own dissipation is of order 3",
             convergence=orders,
@@ -130,7 +130,7 @@ def spin() -> Iterator[Row]:
     yield analytic(
         "block of E = 1e8 Pa thrown at 20 rad/s, full model, generalised-alpha 1",
         "angular momentum, largest relative change in one revolution",
-        source="it is free",
+        source="no external moment",
         absolute=1e-4,
         convergence=orders,
     )
@@ -148,7 +148,7 @@ def spin() -> Iterator[Row]:
 def mirror() -> Iterator[Row]:
     """The floor's motion mirrored: the container's motion mirrored."""
     models: dict[str, Keys] = {"rigid stack": {}, "solid stack, 20 modes": SOLID}
-    note = "sin(Omega t + pi) is -sin(Omega t) but for rounding"
+    note = "sin(Omega t + pi) is -sin(Omega t) except for rounding"
     for name, values in models.items():
         one, other = (run(STACK, VIOLENT | values | {"motion.phase_rad": phase}) for phase in (0.0, math.pi))
         case = f"{name}, slide-rocking for 5 s, floor mirrored"
@@ -294,6 +294,6 @@ def same_rotation(case: str, done: Finished, other: FloatArray, *, source: str, 
     """The row of a rotation that must equal that of a run at every sample."""
     rotation, angle = done.history["rotation_rad"], done.block.slenderness_angle
     count = min(rotation.size, other.size)
-    compared = f"rotation, largest difference over al (it reaches {np.abs(rotation).max() / angle:.2f})"
+    compared = f"rotation, largest difference over al (largest rotation {np.abs(rotation).max() / angle:.2f})"
     found = np.abs(rotation[:count] - other[:count]).max() / angle
     return analytic(case, compared, found, source=source, absolute=1e-6, note=note)
