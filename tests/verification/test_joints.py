@@ -72,12 +72,12 @@ def means(values: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("model", RUNS)
 def test_a_stack_at_rest_carries_the_weight_above(model):
     # A step of the full model ends with up to 5e-6 of the weight unbalanced at each of its 45 nodes.
-    room = (45 * 5e-6 if model == "full" else 1e-8) * WEIGHT
+    tolerance = (45 * 5e-6 if model == "full" else 1e-8) * WEIGHT
     at_rest = run(solver__model=model, solver__duration_s=0.1, initial__rotation_rad=0.0)
     for joint in (1, 2, 3):
         expected = np.array([(BOXES - joint) * 24525.0, 0.0, 0.0])
         assert forces(at_rest.history, joint) == pytest.approx(
-            np.broadcast_to(expected, (len(at_rest.history), 3)), abs=room
+            np.broadcast_to(expected, (len(at_rest.history), 3)), abs=tolerance
         )
 
 
