@@ -11,8 +11,8 @@ import numpy as np
 from contact.interface.support import Support
 from fem.case.case import Case
 from fem.model.geometry import build_container, node_count
-from fem.model.required_memory import require_memory
 from fem.model.support import build_support
+from fem.model.validity import require_memory
 from fem.runtime.arrays import IntArray
 from fem.runtime.threads import use_one_blas_thread
 from fem.solid.assembly import FiniteElements, assemble

@@ -37,6 +37,7 @@ RESIDUAL_TOLERANCE = 5e-6
 UNIT_ROUNDOFF = 2.0**-53
 FACTOR_MEMORY = 600_000_000  #: for factors of different step sizes [bytes]
 FEWEST_FACTORS, MOST_FACTORS = 8, 64
+BYTES_OF_A_NODE = 35e3  #: while the matrix is factored, measured on stacks of 2000 to 10,000 cells
 #: arrays of the last residual
 REMEMBERED = ("turn", "internal", "damping_force", "strain_energy")
 
@@ -197,6 +198,11 @@ class FullBody:
         """Take over the memory of another body of the same container."""
         for name in REMEMBERED:
             getattr(self.nodal, name)[:] = memory[name]
+
+
+def full_model_memory(nodes: int) -> float:
+    """Memory of one run of the full model with so many nodes [bytes]."""
+    return FACTOR_MEMORY + BYTES_OF_A_NODE * nodes
 
 
 def advance_body(body: ModalBody | FullBody, run: Run, until: float) -> int:
