@@ -282,8 +282,8 @@ def _set_up(
         place.remove_setup()
     try:
         with ending_at_once():
-            parts = PartFolder(place, lock, case_hash=case_hash, reporter=reporter)
-            model = build_model(case, discretise(case, mesh, parts))
+            cache = PartFolder(place, lock, case_hash=case_hash, reporter=reporter).fill
+            model = build_model(case, discretise(case, mesh, cache))
             advance_body(model.body, model.run, 0.0)  # no step: compiled, where that has not been done
     except ValueError:
         place.remove_setup()
