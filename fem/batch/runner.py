@@ -22,7 +22,7 @@ from fem.assessment.verdict import audit, end_of_drive, verdict_from, verdict_of
 from fem.batch.workers import LocalWorkers, Pool, hand_out
 from fem.case.case import Case
 from fem.model.container import Container, discretise
-from fem.model.equilibrium import stands_like
+from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
 from fem.model.recovery import Recovery, recovery_of
 from fem.results.run_result import Verdict
@@ -174,8 +174,8 @@ def _prepare(make: Callable[[ItemT], Case], item: ItemT, before: Model | None) -
         if case.solver.model == "full":
             return _run_full(case)
         container = _SHELF.container_of(case)
-        same = before is not None and before.container is container and stands_like(case, before.case)
-        return build_model(case, container, before.footing if before is not None and same else None)
+        same = before is not None and before.container is container and same_equilibrium(case, before.case)
+        return build_model(case, container, before.equilibrium if before is not None and same else None)
     except (ValueError, ArithmeticError, RuntimeError) as error:  # bad input, no stance, a singular matrix
         return _row_without_outcome("failed", str(error))
 

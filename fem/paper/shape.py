@@ -309,7 +309,7 @@ def _runs(laboratory: Laboratory, ratio: float) -> tuple[float, float, Setup]:
             square = block_of(model).radius ** 2
             inertia = model.container.mesh.mass * square * (wanted - 1.0)
             body = model.body._replace(inertia=inertia)  # type: ignore[union-attr]
-            model = replace(model, footing=replace(model.footing, body=body))
+            model = replace(model, equilibrium=replace(model.equilibrium, body=body))
         recorder = Recorder(model)
         simulate(model, recorder)
         history = recorder.history()

@@ -30,5 +30,5 @@ def _curve(one: Drawing) -> Curve:
         name=one.name,
         title=one.title,
         svg=svg_element(one.svg, label=one.title, prefix=one.name),
-        axes="" if one.followed is None else json.dumps(one.followed),
+        axes="" if one.cursor is None else json.dumps(one.cursor),
     )

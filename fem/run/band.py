@@ -18,11 +18,12 @@ from fem.assessment.verdict import MODE_NAMES, short_verdict
 from fem.case.case import Case
 from fem.model.container import Container
 from fem.model.model import Model, build_model
-from fem.model.required_memory import fitting_full_bodies
+from fem.model.validity import runs_in_memory
 from fem.results.run_result import Band, BandMember, Verdict
 from fem.run.recorder import Recorder
 from fem.run.simulation import Keeper, NoKeeper, Progress, simulate
 from fem.runtime.threads import cores
+from fem.solid.nodal_body import full_model_memory
 
 PENALTY_FACTORS = (1.0 / 3.0, 1.0, 3.0)
 DAMPING_RATIOS = (0.5, 2.0)
@@ -131,7 +132,7 @@ def band_of(
 
     workers = min(cores(), len(floors))
     if case.solver.model == "full":
-        workers = fitting_full_bodies(workers, len(container.elements.nodes))
+        workers = runs_in_memory(workers, full_model_memory(len(container.elements.nodes)))
     with ThreadPoolExecutor(max_workers=workers) as pool:
         members = list(pool.map(member_of, count(1), floors))
     if any(member.status == "interrupted" for member in members):

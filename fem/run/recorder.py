@@ -33,7 +33,7 @@ from contact.stepping.state import (
 from fem.assessment.verdict import MODE_NAMES
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model
-from fem.model.recovery import Frame, Recovery
+from fem.model.recovery import NodalFields, Recovery
 from fem.results.history import JOINT_COLUMNS, NUMBERS, History
 from fem.runtime.arrays import FloatArray
 
@@ -64,7 +64,7 @@ STRAINED = 4
 DECIMALS, ROUNDING = 12, 4.0 * float(np.finfo(float).eps)
 
 HistorySink = Callable[[FloatArray, Sequence[str]], None]
-FrameSink = Callable[[float, Frame, FloatArray, float], None]
+FrameSink = Callable[[float, NodalFields, FloatArray, float], None]
 
 
 class Recorder:

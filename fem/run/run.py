@@ -21,9 +21,10 @@ from fem.case.case import Case, CaseError, case_hash, to_toml
 from fem.figures.cache import write_figures
 from fem.model.container import discretise
 from fem.model.geometry import build_container, node_count
-from fem.model.model import Model, build_model, checks_of
-from fem.model.motion import build_motion, motion_notes
-from fem.model.recovery import Frame, recovery_of
+from fem.model.model import Model, build_model
+from fem.model.motion import build_motion, motion_notes, peak_acceleration_within
+from fem.model.recovery import NodalFields, recovery_of
+from fem.model.static_checks import static_checks_of
 from fem.model.step_size import largest_step_of
 from fem.model.support import normal_penalty
 from fem.results.disk import require_room
@@ -279,7 +280,8 @@ def resolve(case: Case, mesh: ContainerMesh) -> Case:
         chosen["contact.normal_penalty_Pa_m"] = normal_penalty(case, mesh)
     if case.solver.step_s == "auto":
         motion = build_motion(case)
-        chosen["solver.step_s"], _ = largest_step_of(case, checks_of(case, mesh, motion), motion)
+        static = static_checks_of(case, mesh, peak_acceleration_within(motion, case.solver.duration_s))
+        chosen["solver.step_s"], _ = largest_step_of(case, static, motion)
     return case.with_values(chosen) if chosen else case
 
 
@@ -302,8 +304,8 @@ def _set_up(
         place.remove_setup()
     try:
         with ending_at_once():
-            parts = PartFolder(place, lock, case_hash=case_hash, reporter=reporter)
-            model = build_model(case, discretise(case, mesh, parts))
+            cache = PartFolder(place, lock, case_hash=case_hash, reporter=reporter).fill
+            model = build_model(case, discretise(case, mesh, cache))
             advance_body(model.body, model.run, 0.0)  # no step: compiled, where that has not been done
     except ValueError:
         place.remove_setup()
@@ -375,8 +377,8 @@ def _step_into(
         return ending, recorder
 
 
-def _frame_writer(fields: FieldWriter) -> Callable[[float, Frame, FloatArray, float], None]:
-    def write(instant: float, frame: Frame, pressure: FloatArray, floor: float) -> None:
+def _frame_writer(fields: FieldWriter) -> Callable[[float, NodalFields, FloatArray, float], None]:
+    def write(instant: float, frame: NodalFields, pressure: FloatArray, floor: float) -> None:
         fields.write(
             instant,
             displacement=frame.displacement,

@@ -41,7 +41,7 @@ class PartFolder:
         self._last = time.monotonic()
 
     def fill(self, name: str, target: FloatArray, make: Callable[[], FloatArray]) -> None:
-        """See `fem.solid.setup_parts.Parts`.
+        """See `fem.solid.array_cache.ArrayCache`.
 
         Raises:
             OutputError: the folder is no longer ours, or cannot be written.

@@ -22,10 +22,10 @@ from contact.stepping.control import most_attempts
 from contact.stepping.integrator import AFTERMATH_SLICE, FAILED, OVERTURNED, REACHED
 from contact.stepping.state import Run
 from fem.assessment.verdict import MODE_NAMES, audit, rotation_ratio
-from fem.model.crushing import least_volume_ratio
 from fem.model.model import Model
 from fem.run.recorder import Recorder
 from fem.runtime.progress import Reporter, SilentReporter
+from fem.solid.elasticity import least_volume_ratio
 from fem.solid.nodal_body import FullBody, advance_body, leave_body_alone
 
 #: how far the stepping goes before it looks up, in simulated seconds

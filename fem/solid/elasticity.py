@@ -183,10 +183,16 @@ def first_stress_tangent(gradient: FloatArray, lame: LamePair) -> FloatArray:
     return tangent
 
 
-def energy_density(gradient: FloatArray, lame: LamePair) -> FloatArray:
-    """Strain energy per reference volume, shape (...) [J/m3]; never negative."""
-    xx, zz, xz = green_strain(gradient)
-    return energy_of_strain(xx, zz, xz, lame.first, lame.shear)
+def least_principal_strain(gradient: FloatArray) -> float:
+    """Smallest principal value of the linear strain over gradients of shape (2, 2, ...) [-]; < 0 in compression."""
+    (xx, xz), (zx, zz) = gradient
+    return float(np.min(0.5 * (xx + zz) - np.hypot(0.5 * (xx - zz), 0.5 * (xz + zx))))
+
+
+def least_volume_ratio(gradient: FloatArray) -> float:
+    """Smallest det(1 + H) over gradients of shape (2, 2, ...) [-]; an element with a value <= 0 is inverted."""
+    (xx, xz), (zx, zz) = gradient
+    return float(np.min((1.0 + xx) * (1.0 + zz) - xz * zx))
 
 
 def cauchy_stress(gradient: FloatArray, lame: LamePair) -> FloatArray:

@@ -19,7 +19,7 @@ from measuring import Figure, report
 from fem.batch.axes import read_axis
 from fem.batch.runner import run_cases
 from fem.model.container import discretise
-from fem.model.equilibrium import set_down
+from fem.model.equilibrium import find_equilibrium
 from fem.model.model import build_model
 from fem.sweep.file import load_sweep
 from fem.sweep.plan import Sweep
@@ -88,11 +88,11 @@ def cost_of_a_cell() -> Figure:
     """From a cell's number to what is stepped."""
     sweep = map_of("rigid", RIGID_CELLS, band=False)
     container = discretise(sweep.case(0))
-    footing = set_down(sweep.case(0), container)  # shared, as the engine does, where only the motion differs
+    equilibrium = find_equilibrium(sweep.case(0), container)  # shared: only the motion differs
     times = []
     for cell in range(BUILDS):
         began = time.process_time()
-        build_model(sweep.case(cell), container, footing)
+        build_model(sweep.case(cell), container, equilibrium)
         times.append(time.process_time() - began)
     typical = 1e3 * float(np.median(times))
     return Figure("from a cell's number to its model", f"{typical:.2f} ms", "< 1 ms", typical < 1.0)

@@ -14,14 +14,14 @@ from container_runs import SHELL, SOLID, run, stack
 
 from fem.model.container import Container
 from fem.model.model import Model, build_model
-from fem.model.recovery import Frame, recovery_of
+from fem.model.recovery import NodalFields, recovery_of
 from fem.solid.elasticity import von_mises
 
 SECTIONS = {"solid": SOLID, "shell": SHELL}
 STANDING: dict[str, Any] = {"initial.rotation_rad": 0.0, "solver.duration_s": 0.05}
 
 
-def frame_of(model: Model) -> Frame:
+def frame_of(model: Model) -> NodalFields:
     """Fields of the state a model has come to."""
     return recovery_of(model).frame(model.run.old.position, model.run.old.velocity)
 

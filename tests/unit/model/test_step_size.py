@@ -4,13 +4,10 @@ import numpy as np
 import pytest
 
 import contact.stepping.control
-import fem.model.required_memory
 from contact.stepping.batch import pack_rows, run_rows
 from contact.stepping.integrator import FAILED, REACHED
 from fem.case.case import CaseError, load_case
-from fem.model.container import discretise
 from fem.model.model import build_model
-from fem.model.required_memory import fitting_full_bodies, required_memory
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate, stepping_failure
 
@@ -112,29 +109,3 @@ def test_a_row_of_a_batch_that_left_the_numbers_says_so():
     assert outcomes.status.tolist() == [FAILED]
     assert not np.isfinite(outcomes.residual[0])
     assert "grew beyond all numbers" in stepping_failure(model, float(outcomes.residual[0]))
-
-
-def test_a_container_too_large_for_the_memory_is_refused_before_it_is_taken(monkeypatch):
-    monkeypatch.setattr(fem.model.required_memory, "_machine_memory", lambda: 1e9)
-    case = rigid(solver__element_size_m=0.005, support__kind="flat")
-    with pytest.raises(
-        CaseError, match=r"would take about .* GB; this machine has 1 GB: take larger elements"
-    ):
-        discretise(case)
-
-
-def test_the_memory_told_is_about_what_is_taken():
-    """Peak memory of processes that made these (MB): see the docstring of the module."""
-    for nodes, contact_nodes, model, modes, measured in (
-        (46217, 2, "rigid", 20, 381),
-        (46217, 2, "reduced", 200, 986),
-        (21637, 77, "reduced", 20, 429),
-    ):
-        case = rigid(solver__model=model, solver__elastic_modes=modes)
-        assert 0.8 < required_memory(case, nodes, contact_nodes) / (1e6 * measured) < 1.7
-
-
-def test_as_many_full_runs_go_side_by_side_as_the_memory_holds(monkeypatch):
-    for there, nodes, fitting in ((None, 100_000, 5), (24e9, 2619, 5), (24e9, 100_000, 4), (1e9, 100_000, 1)):
-        monkeypatch.setattr(fem.model.required_memory, "_machine_memory", lambda there=there: there)
-        assert fitting_full_bodies(5, nodes) == fitting
