@@ -78,6 +78,13 @@ PAPER = ResultKind(
     results="study.json",
     own=("study.html", "figures/*.svg"),
 )
-KINDS = (RUN, SWEEP, ENSEMBLE, RESPONSE, PAPER)
-#: statuses that `run.json` may have
-RUN_STATUSES = RUN.finished | {"failed", "interrupted", "running"}
+VERIFICATION = ResultKind(
+    name="verification",
+    article="the",
+    asked="verification",
+    mark="verify.json",
+    request="status",
+    results="verify.json",
+    own=(),
+)
+KINDS = (RUN, SWEEP, ENSEMBLE, RESPONSE, PAPER, VERIFICATION)

@@ -1,4 +1,4 @@
-"""What a finished run is held against, where that is wanted and missing: the rigid block, the band over the contact.
+"""Checks of a finished run, where they are wanted and missing: the rigid block, the band of the contact.
 
 Both can be added to a run that was finished without them.
 """
@@ -10,12 +10,14 @@ from contact.reference.event_driven import EventError
 from fem.assessment.rigid_check import check_against_rigid_block, wants_rigid_check
 from fem.case.case import Case
 from fem.model.model import Model
+from fem.results.errors import FolderError
+from fem.results.folder import ResultFolder
 from fem.results.history import add_analytic_rotation, read_history
-from fem.results.lock import FolderLock
-from fem.results.run_folder import FINISHED, FolderError, RunFolder, write_atomically
+from fem.results.kinds import RUN
+from fem.results.run_files import RunFiles
 from fem.results.run_result import RigidCheckResult, RunResult, Verdict
 from fem.run.band import band_of, wants_band
-from fem.run.band_checkpoint import BandFolder
+from fem.run.band_checkpoint import BandCheckpoint
 from fem.runtime.progress import Reporter
 
 
@@ -30,8 +32,7 @@ class WantedChecks:
 def add_checks(
     result: RunResult,
     model: Model,
-    place: RunFolder,
-    lock: FolderLock,
+    folder: ResultFolder,
     wanted: WantedChecks,
     *,
     reporter: Reporter,
@@ -45,20 +46,20 @@ def add_checks(
     Raises:
         FolderError: the history in the folder cannot be read.
     """
-    case, verdict = model.case, result.verdict
-    if result.status not in FINISHED or verdict is None:
+    verdict = result.verdict
+    if result.status not in RUN.finished or verdict is None:
         return result
-    if _lacks_rigid_check(result, case, wanted):
-        result = replace(result, rigid_check=_rigid_check(model, place, verdict))
-    if lacks_band(result, case, wanted) and not stop():
-        reporter.message("band: the same run over contact penalty and damping")
+    if _lacks_rigid_check(result, model.case, wanted):
+        result = replace(result, rigid_check=_rigid_check(model, folder, verdict))
+    if lacks_band(result, model.case, wanted) and not stop():
+        reporter.message("band: repeating the run over contact stiffness and damping")
         band = band_of(
-            case,
+            model.case,
             model.container,
             penalty=model.penalty,
             verdict=verdict,
             stop=stop,
-            keeping=BandFolder(place, lock, case_hash=str(result.case_hash), reporter=reporter),
+            checkpoint=BandCheckpoint(folder, case_hash=str(result.case_hash), reporter=reporter),
         )
         if band is not None:
             result = replace(result, verdict=replace(verdict, band=band))
@@ -80,18 +81,19 @@ def _lacks_rigid_check(result: RunResult, case: Case, wanted: WantedChecks) -> b
     return wants_rigid_check(wanted.check_rigid, case) and result.rigid_check is None
 
 
-def _rigid_check(model: Model, place: RunFolder, verdict: Verdict) -> RigidCheckResult:
-    """The comparison with the rigid block, its rotation beside the run's in a table of its own."""
+def _rigid_check(model: Model, folder: ResultFolder, verdict: Verdict) -> RigidCheckResult:
+    """The comparison with the rigid block; its rotation beside the run's goes into a table."""
+    files = RunFiles(folder.path)
     try:
-        history = read_history(place.history)
+        history = read_history(files.history)
     except (OSError, ValueError) as error:
         raise FolderError(
-            f"{place.history}: cannot be compared with the rigid block ({error}); --force runs it again"
+            f"{files.history}: cannot be compared with the rigid block ({error}); --force repeats the run"
         ) from None
     try:
         check = check_against_rigid_block(model, history, verdict)
     except (ValueError, EventError) as error:  # a run too short, a block that bounces without end
         return RigidCheckResult(reasons=(str(error),))
-    write_atomically(place.rigid_check, check.table())
-    add_analytic_rotation(place.history, check.analytic_rotation)
+    folder.write_text(files.rigid_check.name, check.table())
+    add_analytic_rotation(files.history, check.analytic_rotation)
     return check.result

@@ -20,9 +20,9 @@ from fem.__main__ import main
 from fem.case.case import load_case
 from fem.model.geometry import build_container, node_count
 from fem.results.fields import open_fields
+from fem.results.folder import read_result
 from fem.results.history import read_history
 from fem.results.lock import locked_folder
-from fem.results.run_folder import read_result
 from fem.run.size import required_disk
 from fem.sweep.table import open_sweep
 

@@ -17,8 +17,9 @@ from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.__main__ import main
 from fem.case.case import load_case
+from fem.results.errors import FolderError
+from fem.results.folder import read_result
 from fem.results.history import History, read_history
-from fem.results.run_folder import FolderError, read_result
 from fem.run.run import Run, RunOptions, run_case
 from fem.runtime.progress import SilentReporter
 from fem.runtime.signals import interruptible
@@ -92,7 +93,8 @@ class TestEnd:
         instant = float(error.split("t = ")[1].split(" s")[0])
         assert kept["time_s"][-1] <= instant <= kept["time_s"][-1] + 0.1
         assert (
-            "did not settle at the smallest step (0.005 s), though the contact forces balance within" in error
+            "did not converge at the smallest step (0.005 s), although the contact forces balance within"
+            in error
         )
         assert "softer contact.normal_penalty_Pa_m" in error
         page = capsys.readouterr().out

@@ -16,9 +16,9 @@ import fem.results.lock
 import fem.run.checkpoint
 from fem.__main__ import main
 from fem.results.fields import open_fields
+from fem.results.folder import read_result
 from fem.results.history import read_history
 from fem.results.lock import LOCK_NAME, locked_folder
-from fem.results.run_folder import read_result
 from fem.runtime.progress import ScreenReporter
 
 COMMON = ("solver.model=rigid", "solver.duration_s=3", "output.figures=false", "output.fields_s=0.25")
