@@ -216,12 +216,9 @@ def store(result: RunResult, case: Case, place: RunFolder) -> RunResult:
 
     What was kept to go on with goes when nothing is left to go on with, and not before that is written.
     """
-    result = replace(result, warnings=tuple(warnings_for(result.to_json(), case)))
-    page = result.to_json()
-    place.write_summary(
-        plain_summary(page, title=case.title or case.name, folder=place.path, warnings=page["warnings"])
-    )
-    place.write_result(page)
+    result = replace(result, warnings=tuple(warnings_for(result, case)))
+    place.write_summary(plain_summary(result, folder=place.path))
+    place.write_result(result.to_json())
     if result.status in FINISHED:
         place.remove_checkpoint()
         place.remove_setup()

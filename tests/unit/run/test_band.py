@@ -160,11 +160,11 @@ def test_a_member_that_fails_is_named_in_a_warning_and_in_the_summary(monkeypatc
     assert [one.status for one in failed] == ["failed", "failed"]
     assert failed[0].error == "made to fail"
     assert failed[0].rotation_ratio is None
-    result = RunResult(status="completed", verdict=replace(verdict, band=found)).to_json()
+    result = RunResult(status="completed", verdict=replace(verdict, band=found))
     first = warnings_for(result, case)[0]
     assert first.startswith("unsure:")
     assert f"{stiffest:.3g} Pa/m with damping ratio 0.5" in first
-    page = plain_summary(result, title="t", folder=tmp_path, warnings=[first])
+    page = plain_summary(result, folder=tmp_path)
     assert "2 of 6 failed; unsure" in " ".join(page.split())
     assert "(unsure, see the band)" in page
 
