@@ -229,11 +229,9 @@ def store(result: RunResult, case: Case, place: ResultFolder) -> RunResult:
     Checkpoints are removed after that, when there is nothing left to resume.
     """
     place.check()
-    result = replace(result, warnings=tuple(warnings_for(result.to_json(), case)))
-    page, files = result.to_json(), RunFiles(place.path)
-    summary = plain_summary(page, title=case.title or case.name, folder=place.path, warnings=page["warnings"])
-    place.write_text(files.summary.name, summary)
-    place.write_result(page)
+    result = replace(result, warnings=tuple(warnings_for(result, case)))
+    place.write_text(RunFiles(place.path).summary.name, plain_summary(result, folder=place.path))
+    place.write_result(result.to_json())
     if result.status in RUN.finished:
         place.remove("checkpoint.npz", SETUP_PARTS)
         if result.verdict is not None and result.verdict.band is not None:
