@@ -11,7 +11,8 @@ from typing import Any
 
 from contact.jit import is_compiled
 from fem.batch.case_maker import CaseMaker
-from fem.batch.runner import Shelf, run_cases
+from fem.batch.container_cache import ContainerCache
+from fem.batch.runner import run_cases
 from fem.case.case import Case
 from fem.model.model import Model, build_model
 from fem.model.support import normal_penalty
@@ -72,7 +73,7 @@ class Laboratory:
         self._jobs = jobs
         self._progress = progress
         self._stop = stop
-        self._shelf = Shelf()
+        self._containers = ContainerCache()
         self._makers: dict[str, CaseMaker] = {}
         self._rows: dict[Any, Row] = {}
         self._records: dict[Any, Record] = {}
@@ -164,12 +165,12 @@ class Laboratory:
     def model(self, setup: Setup) -> Model:
         """What is stepped, at t = 0."""
         case = self.case(setup)
-        return build_model(case, self._shelf.container_of(case))
+        return build_model(case, self._containers.container_of(case))
 
     def penalty(self, setup: Setup) -> float:
         """Normal penalty of a setup, chosen or given [Pa/m]."""
         case = self.case(setup)
-        return normal_penalty(case, self._shelf.container_of(case).mesh)
+        return normal_penalty(case, self._containers.container_of(case).mesh)
 
     def variants(self, setup: Setup) -> list[Setup]:
         """The rigid container and the shell: on corners of three penalties and two dampings, on feet, flat."""
