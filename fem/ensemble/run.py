@@ -31,8 +31,8 @@ from fem.ensemble.statistics import (
 )
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
 from fem.results.kinds import ENSEMBLE
-from fem.runtime.signals import interruptible
 from fem.runtime.progress import Reporter, SilentReporter
+from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
 
 DRAWS = "draws.csv"

@@ -20,8 +20,8 @@ from fem.case.validation import CaseError
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
 from fem.results.kinds import SWEEP
 from fem.results.run_folder import copy_data_files
-from fem.runtime.signals import interruptible
 from fem.runtime.progress import Reporter, SilentReporter, clock_time
+from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
 from fem.sweep import perturbed
 from fem.sweep.cells import CellRows
