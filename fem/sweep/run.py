@@ -19,7 +19,7 @@ from fem.case.toml import toml_document
 from fem.case.validation import CaseError
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
 from fem.results.kinds import SWEEP
-from fem.results.run_folder import copy_data_files
+from fem.results.run_files import copy_data_files
 from fem.runtime.progress import Reporter, SilentReporter, clock_time
 from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
