@@ -6,7 +6,7 @@ status "failed" and the reason; it never has an outcome.
 
 import math
 import time
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from operator import itemgetter
@@ -14,10 +14,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from contact.stepping.batch import Outcomes, Sampling, pack_rows, run_rows
-from contact.stepping.body import ROTATION
 from contact.stepping.integrator import FAILED as STEPPING_FAILED
 from contact.stepping.modal_body import ModalBody
+from contact.stepping.outcome import KeptSamples, run_to_end
 from fem.assessment.verdict import audit, end_of_drive, verdict_from, verdict_of
 from fem.batch.container_cache import ContainerCache, container_key
 from fem.batch.workers import LocalWorkers, WorkersOf, hand_out, never
@@ -27,7 +26,7 @@ from fem.model.model import Model, build_model
 from fem.model.recovery import recovery_of
 from fem.results.run_result import Verdict
 from fem.run.recorder import Recorder
-from fem.run.simulation import AFTERMATH, SLICE_REDUCED, simulate, stepping_failure
+from fem.run.simulation import AFTERMATH, simulate, stepping_failure
 from fem.runtime.progress import Reporter, SilentReporter, clock_time
 from fem.runtime.threads import cores
 
@@ -167,99 +166,71 @@ def run_cases(
 
 
 def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row]:
-    """Run the cases of some items: one after the other, or those of one compiled container in one call."""
-    began = time.perf_counter()
-    prepared: list[Model | Row] = []
+    """Run the cases of some items, one after the other."""
+    rows = []
+    before: Model | None = None
     for item in items:
-        before = prepared[-1] if prepared and isinstance(prepared[-1], Model) else None
-        prepared.append(_prepare(make, item, before))
-    rows: list[Row | None] = [one if isinstance(one, dict) else None for one in prepared]
-    models = {k: one for k, one in enumerate(prepared) if isinstance(one, Model)}
-    for group in _of_one_body(models):
+        began = time.perf_counter()
         try:
-            found = run_models([models[k] for k in group])
-        except (ValueError, ArithmeticError, RuntimeError) as error:  # one that spoils the others goes alone
-            found = [_row_without_outcome("failed", str(error))]
-            if len(group) > 1:
-                found = [run_chunk(make, [items[k]])[0] for k in group]
-        for k, row in zip(group, found, strict=True):
-            rows[k] = row
-    return _with_wall([row for row in rows if row is not None], models, time.perf_counter() - began)
+            case = make(item).without_fields()
+            if case.solver.model == "full":
+                row = _run_full(case)
+            else:
+                before = _model_of(case, before)
+                row = run_model(before)
+        except (
+            ValueError,
+            ArithmeticError,
+            RuntimeError,
+        ) as error:  # bad input, no equilibrium, a singular matrix
+            row = _row_without_outcome("failed", str(error))
+        rows.append(row | {"wall_s": time.perf_counter() - began})
+    return rows
 
 
-def _prepare(make: Callable[[ItemT], Case], item: ItemT, before: Model | None) -> Model | Row:
-    """The model of an item; or its row, where there is nothing to be computed in common.
-
-    It stands as the one before does, if nothing but the motion of the floor is another.
-    """
-    try:
-        case = make(item).without_fields()
-        if case.solver.model == "full":
-            return _run_full(case)
-        container = _CONTAINERS.container_of(case)
-        same = before is not None and before.container is container and same_equilibrium(case, before.case)
-        return build_model(case, container, before.equilibrium if before is not None and same else None)
-    except (ValueError, ArithmeticError, RuntimeError) as error:  # bad input, no stance, a singular matrix
-        return _row_without_outcome("failed", str(error))
+def _model_of(case: Case, before: Model | None) -> Model:
+    """The model of a case; one that differs in its motion alone takes over the equilibrium of the one before."""
+    container = _CONTAINERS.container_of(case)
+    same = before is not None and before.container is container and same_equilibrium(case, before.case)
+    return build_model(case, container, before.equilibrium if before is not None and same else None)
 
 
-def _of_one_body(models: Mapping[int, Model]) -> Iterable[list[int]]:
-    """Groups of models that differ in floor, motion and start alone."""
-    groups: dict[Hashable, list[int]] = {}
-    for k, model in models.items():
-        assert isinstance(model.body, ModalBody)
-        key = (id(model.container), model.body.tolerance, model.run.scheme)
-        groups.setdefault(key, []).append(k)
-    return groups.values()
-
-
-def run_models(models: Sequence[Model]) -> list[Row]:
-    """Step compiled models of one body to their ends in one call."""
-    body = models[0].body
-    assert isinstance(body, ModalBody)
-    elastic = models[0].case.solver.model == "reduced"
-    ends = [end_of_drive(model) for model in models]
-    rows = pack_rows(
-        [model.run for model in models],
-        [model.case.solver.duration_s for model in models],
-        [AFTERMATH / model.run.control.frequency_parameter for model in models],
-        slip_until=ends,
+def run_model(model: Model) -> Row:
+    """Step a rigid or reduced model to its end, in place; its row."""
+    assert isinstance(model.body, ModalBody)
+    run, duration, until = model.run, model.case.solver.duration_s, end_of_drive(model)
+    status, kept = run_to_end(
+        model.body,
+        run,
+        duration,
+        aftermath=AFTERMATH / run.control.frequency_parameter,
+        slip_until=until,
+        cycle=min(model.case.motion.period, duration),
+        strained=model.case.solver.model == "reduced",
     )
-    periods = [min(model.case.motion.period, model.case.solver.duration_s) for model in models]
-    outcomes = run_rows(
-        body,
-        models[0].run.scheme,
-        rows,
-        np.concatenate([model.run.track for model in models]),
-        sampling=Sampling(cycle=max(periods), strained=elastic, slice=SLICE_REDUCED),
-    )
-    return [_row_of(model, outcomes, k, ends[k]) for k, model in enumerate(models)]
+    return _row_of(model, status, kept, until)
 
 
-def _row_of(model: Model, outcomes: Outcomes, k: int, until: float) -> Row:
-    """The row of a model, from what the batch found of it."""
-    run = model.run
-    run.track[0], run.clock[0] = outcomes.track[k], outcomes.clock[k]
-    run.ledger[:], run.old.pose[ROTATION] = outcomes.ledger[k], outcomes.rotation[k]
-    count, interval = int(run.clock[0].samples), run.history.interval
-    kept = outcomes.slip[k]
+def _row_of(model: Model, status: int, kept: KeptSamples, until: float) -> Row:
+    """The row of a model that was stepped to its end."""
+    run, interval = model.run, model.run.history.interval
+    count = int(run.clock[0].samples)
     last = min(count - 1, int((until + 1e-9) / interval))
-    numbers = np.arange(max(0, last + 1 - kept.size), last + 1)
+    numbers = np.arange(max(0, last + 1 - kept.slip.size), last + 1)
     stress = None
-    if outcomes.strain.shape[1]:
-        positions = outcomes.strained[k, outcomes.strain[k] >= 0.0]
+    if kept.strain.size:
+        positions = kept.position[kept.strain >= 0.0]
         stress = _CONTAINERS.recovery_of(model).largest_von_mises(positions)
     end = (count - 1) * interval if count else None
-    verdict = verdict_from(model, end, numbers * interval, kept[numbers % kept.size], stress)
-    if outcomes.status[k] == STEPPING_FAILED:
-        return _row_without_outcome(
-            "failed", stepping_failure(model, float(outcomes.residual[k]))
-        ) | _figures(verdict)
-    error = audit(model)
+    verdict = verdict_from(model, end, numbers * interval, kept.slip[numbers % kept.slip.size], stress)
+    if status == STEPPING_FAILED:
+        error: str | None = stepping_failure(model, float(np.abs(run.work.law - run.work.force).max()))
+    else:
+        error = audit(model)
     if error is not None:
         return _row_without_outcome("failed", error) | _figures(verdict)
-    status = "overturned" if verdict.outcome == "overturned" else "completed"
-    return _row_without_outcome(status, None) | _figures(verdict) | {"outcome": verdict.outcome}
+    ended = "overturned" if verdict.outcome == "overturned" else "completed"
+    return _row_without_outcome(ended, None) | _figures(verdict) | {"outcome": verdict.outcome}
 
 
 def _figures(verdict: Verdict) -> Row:
@@ -274,15 +245,6 @@ def _run_full(case: Case) -> Row:
     verdict = verdict_of(model, recorder.history(), recorder.largest_von_mises)
     row = _row_without_outcome(ending.status, ending.error) | _figures(verdict)
     return row if ending.status == "failed" else row | {"outcome": verdict.outcome}
-
-
-def _with_wall(rows: list[Row], models: Mapping[int, Model], wall: float) -> list[Row]:
-    """Give each row its share of the time that all took, by the steps it took."""
-    steps = [float(models[k].run.clock[0].steps) if k in models else 0.0 for k in range(len(rows))]
-    total = sum(steps) or 1.0
-    for row, own in zip(rows, steps, strict=True):
-        row["wall_s"] = wall * own / total if models else wall / len(rows)
-    return rows
 
 
 def _row_without_outcome(status: str, reason: str | None) -> Row:
