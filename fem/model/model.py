@@ -19,7 +19,7 @@ from contact.stepping import modal_body
 from contact.stepping.body import State, make_state
 from contact.stepping.ledger import spring_energy
 from contact.stepping.modal_body import ModalBody
-from contact.stepping.observables import begin
+from contact.stepping.observables import record_start
 from contact.stepping.state import Run, make_run, make_samples
 from fem.case.case import Case
 from fem.model.container import Container, discretise
@@ -134,7 +134,7 @@ def build_model(
             velocity=coordinates if fields > 0.0 else 0,
         ),
     )
-    begin(run.track[0], control, old)
+    record_start(run.track[0], control, old)
     return Model(
         case=case, container=container, equilibrium=equilibrium, motion=motion, static=static, run=run
     )

@@ -69,7 +69,7 @@ class Finished:
 
     @property
     def track(self) -> Any:
-        """What the run is judged by, see `contact.stepping.observables.TRACK`."""
+        """What the run is judged by, see `contact.stepping.observables.OBSERVABLES`."""
         return self.model.run.track[0]
 
     @property
