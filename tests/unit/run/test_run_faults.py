@@ -68,35 +68,27 @@ def whole(tmp_path):
     return folder
 
 
-def require_resumed(folder: Path, whole: Path) -> None:
+def require_resumed(folder: Path, whole: Path, *options: str) -> None:
     """When the fault is gone, --resume reaches the bits of the undisturbed run."""
-    assert command(folder, "--resume") == 0
+    assert command(folder, *options) == 0
     for name in ("history.csv", "fields/run.pvd", "fields/frame_00012.vtu", "resolved.toml"):
         assert (folder / name).read_bytes() == (whole / name).read_bytes()
     assert read_result(folder / "run.json")["verdict"] == read_result(whole / "run.json")["verdict"]
     assert {path.name for path in folder.iterdir()} == {path.name for path in whole.iterdir()}
 
 
-def test_an_interrupted_run_names_the_way_on(tmp_path, monkeypatch, capsys, whole):
-    interrupted(tmp_path / "r", monkeypatch)
+@pytest.mark.parametrize("way", ["--resume", "--resume without a checkpoint", "again"])
+def test_an_interrupted_run_names_the_way_on_and_reaches_the_same_bits(
+    tmp_path, monkeypatch, capsys, whole, way
+):
+    folder = tmp_path / "r"
+    interrupted(folder, monkeypatch)
     assert "--resume" in capsys.readouterr().err
-    assert read_result(tmp_path / "r" / "run.json")["status"] == "interrupted"
-    assert not (tmp_path / "r" / LOCK_NAME).exists()
-    require_resumed(tmp_path / "r", whole)
-
-
-def test_resume_without_a_checkpoint_begins_at_zero(tmp_path, monkeypatch, whole):
-    interrupted(tmp_path / "r", monkeypatch)
-    (tmp_path / "r" / "checkpoint.npz").unlink()
-    require_resumed(tmp_path / "r", whole)
-    assert command(tmp_path / "new", "--resume") == 0
-    assert (tmp_path / "new" / "history.csv").read_bytes() == (whole / "history.csv").read_bytes()
-
-
-def test_without_resume_a_run_is_begun_anew(tmp_path, monkeypatch, whole):
-    interrupted(tmp_path / "r", monkeypatch)
-    assert command(tmp_path / "r") == 0
-    assert (tmp_path / "r" / "history.csv").read_bytes() == (whole / "history.csv").read_bytes()
+    assert read_result(folder / "run.json")["status"] == "interrupted"
+    assert not (folder / LOCK_NAME).exists() and not (folder / OWNER_NAME).exists()
+    if way == "--resume without a checkpoint":
+        (folder / "checkpoint.npz").unlink()
+    require_resumed(folder, whole, *way.split()[:1] * (way != "again"))
 
 
 def test_a_history_that_cannot_grow_ends_the_run_with_3(tmp_path, capsys, monkeypatch, whole):
@@ -115,7 +107,7 @@ def test_a_history_that_cannot_grow_ends_the_run_with_3(tmp_path, capsys, monkey
     assert len(read_history(tmp_path / "r" / "history.csv")) > 100
     result = read_result(tmp_path / "r" / "run.json")
     assert result["status"] == "failed" and "File too large" in result["error"]
-    require_resumed(tmp_path / "r", whole)
+    require_resumed(tmp_path / "r", whole, "--resume")
 
 
 @pytest.mark.parametrize(
@@ -144,7 +136,7 @@ def test_a_disk_that_fills_up_ends_the_run_with_3(tmp_path, capsys, monkeypatch,
     read_history(tmp_path / "r" / "history.csv")
     assert all(frame.points.size for frame in open_fields(tmp_path / "r" / "fields"))
     assert not list((tmp_path / "r").rglob("*.part"))
-    require_resumed(tmp_path / "r", whole)
+    require_resumed(tmp_path / "r", whole, "--resume")
 
 
 def test_a_folder_removed_during_the_run_ends_it_with_3(tmp_path, capsys, monkeypatch):
@@ -259,7 +251,7 @@ def test_what_was_written_behind_the_checkpoint_is_cut_off(tmp_path, monkeypatch
     (folder / "run.json").write_text(
         json.dumps(json.loads((folder / "run.json").read_text()) | {"status": "running"})
     )
-    require_resumed(folder, whole)
+    require_resumed(folder, whole, "--resume")
 
 
 def test_a_motion_file_may_not_lie_where_results_are_written(tmp_path, capsys, monkeypatch):
