@@ -2,20 +2,24 @@
 
 A body has coordinates (their number and meaning are its own affair), base points that may touch the floor, and
 some operations, each a function here that hands over to the body: `predict`, `release`, `respond`, `complete`,
-`observe`, `shift_velocity`, and the two questions `prepared` and `sizes_hold`. `contact.stepping.modal_body`
+`observe`, `shift_velocity`, and the two questions `prepared` and `sizes_match`. `contact.stepping.modal_body`
 compiles them for a
 floating frame with elastic modes, `fem.solid.nodal_kernels` for the nodes of a mesh; called by the interpreter they
 are methods of the body. The stepper is written once, against these functions.
 """
 
 import math
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
+from numba.extending import overload
 
 from contact.arrays import FloatArray
 from contact.interface.solver import Workspace
 from contact.stepping.scheme import Scheme
+
+Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
 #: rows of `State.pose`
 ROTATION, ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, VELOCITY_X, VELOCITY_Z = 0, 1, 2, 3, 4, 5
@@ -69,6 +73,24 @@ def make_state(coordinates: int, points: int, monitors: int) -> State:
     return State(**fields, monitor=np.zeros((monitors, 4)), numbers=numbers)
 
 
+def implements(
+    operation: Callable[..., Any], *bodies: type, inline: bool = False
+) -> Callable[[Kernel], Kernel]:
+    """Decorator: compiled callers of `operation` use this function when the body is of one of these classes.
+
+    `inline` asks LLVM to put it into its callers, as in `contact.jit.compiled`.
+    """
+
+    def register(implementation: Kernel) -> Kernel:
+        def choose(body: Any, *arguments: Any) -> Kernel | None:
+            return implementation if getattr(body, "instance_class", None) in bodies else None
+
+        overload(operation, strict=False, jit_options={"forceinline": inline})(choose)
+        return implementation
+
+    return register
+
+
 def predict(body: Any, scheme: Scheme, step: float, old: State, new: State) -> None:
     """Write into `new` the coordinates that the old acceleration leads to after `step` [s]."""
     body.predict(scheme, step, old, new)
@@ -116,6 +138,6 @@ def prepared(body: Any, step: float) -> bool:
     return bool(body.prepared(step))
 
 
-def sizes_hold(body: Any, run: Any) -> bool:
+def sizes_match(body: Any, run: Any) -> bool:
     """The arrays of the run have the sizes that the body was compiled for; true where it takes any."""
     return True

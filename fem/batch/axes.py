@@ -1,7 +1,7 @@
 """The axes of a sweep: one key of a case each, and the values that it takes."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Any, Literal, get_args
@@ -14,11 +14,11 @@ from fem.case.quantities import Quantity, with_unit
 from fem.case.tables import TABLES
 from fem.case.validation import TOP, did_you_mean, known_keys, quantity_of, requirement_of
 
-#: keys that say nothing about what happens, and so make no axis
+#: keys that do not change a result, and why
 NO_AXIS = {
-    "schema": "says how a file is read",
-    "title": "is for people",
-    "output.fields_s": "a sweep keeps no fields",
+    "schema": "it says how a file is read",
+    "title": "it is for people",
+    "output.fields_s": "no fields are kept",
 }
 MOST_VALUES = 1_000_000
 
@@ -45,20 +45,61 @@ class Axis:
 
     @cached_property
     def is_numeric(self) -> bool:
-        """Whether its values are numbers that rise, so that cells have neighbours along it."""
+        """Whether its values are rising numbers, so that points have neighbours along it."""
         numbers = [value for value in self.values if not isinstance(value, bool | str)]
         return len(numbers) == len(self.values) > 1 and bool(np.all(np.diff(numbers) > 0.0))
 
 
+def shape_of(axes: Sequence[Axis]) -> tuple[int, ...]:
+    """Number of values of each axis; points on the axes are numbered with the last one the fastest."""
+    return tuple(len(axis.values) for axis in axes)
+
+
+def indices_of(axes: Sequence[Axis], number: int) -> tuple[int, ...]:
+    """Place of a point on each axis."""
+    places = []
+    for axis in reversed(axes):
+        number, place = divmod(number, len(axis.values))
+        places.append(place)
+    return tuple(reversed(places))
+
+
+def point_of(axes: Sequence[Axis], number: int) -> dict[str, Any]:
+    """Values of the axes at a point, by key."""
+    return {axis.key: axis.values[k] for axis, k in zip(axes, indices_of(axes, number), strict=True)}
+
+
+def axis_label(axis: Axis) -> str:
+    """A key for people: `motion.peak_acceleration_m_s2` is "peak acceleration [m/s²]"."""
+    name = axis.key.rpartition(".")[2]
+    if axis.unit:
+        name = name.removesuffix("_" + axis.unit.replace("/", "_").replace(" ", "_"))
+    shown = axis.unit.replace("s2", "s²").replace("m3", "m³") or "-"
+    words = all(isinstance(value, bool | str) for value in axis.values)
+    return name.replace("_", " ") + ("" if words else f" [{shown}]")
+
+
 class AxisError(ValueError):
-    """An axis that cannot be; the message begins with the reason, its key is told beside it."""
+    """A key or an axis that cannot be used; the message is the reason, without the key."""
+
+
+def check_varied(key: str) -> FieldInfo:
+    """The field of a case that a dotted key names, which may vary.
+
+    Raises:
+        AxisError: an unknown key, or one that does not change a result.
+    """
+    field = field_of(key)
+    if key in NO_AXIS:
+        raise AxisError(f"cannot vary: {NO_AXIS[key]}")
+    return field
 
 
 def field_of(key: str) -> FieldInfo:
     """The field of a case that a dotted key names.
 
     Raises:
-        AxisError: no case has such a key; with the nearest one.
+        AxisError: no case has such a key; names the nearest one.
     """
     table, dot, name = key.rpartition(".")
     if not dot:
@@ -66,7 +107,8 @@ def field_of(key: str) -> FieldInfo:
             return TOP[name]
         owners = [known for known, model in TABLES.items() if name in known_keys(model)]
         if owners:
-            raise AxisError(f"is no key of its own; write {' or '.join(f'{one}.{name}' for one in owners)!r}")
+            wanted = " or ".join(f"{one}.{name}" for one in owners)
+            raise AxisError(f"is no key before the first table; write {wanted!r}")
         raise AxisError(f"is no key of a case file{_hint(name, [*TOP, *all_keys()])}")
     if table not in TABLES:
         raise AxisError(f"names no table of a case file{_hint(table, TABLES)} (known: {', '.join(TABLES)})")
@@ -88,9 +130,7 @@ def read_axis(key: str, given: Any) -> Axis:
         AxisError: an unknown key, no values, a range without an end or that does not rise, a log scale
             through zero, values that the key cannot have.
     """
-    field = field_of(key)
-    if key in NO_AXIS:
-        raise AxisError(f"makes no axis: {NO_AXIS[key]}")
+    field = check_varied(key)
     quantity = quantity_of(field.annotation, field.metadata)
     unit = quantity.unit if quantity else ""
     if isinstance(given, list):

@@ -1,25 +1,19 @@
 """Arithmetic of derived keys: numbers, dotted keys, + - * / ^, parentheses and a few functions, and nothing else.
 
-    expression = term {("+" | "-") term}          term   = factor {("*" | "/") factor}
-    factor     = ("+" | "-") factor | power        power  = atom ["^" factor]
-    atom       = number | key | function "(" expression {"," expression} ")" | "(" expression ")"
-
-A key is `table.key`, or a key before the first table, such as `gravity_m_s2`; `pi` is the number. The text is parsed
-into a tree of tuples; nothing of it is ever executed as code.
+A key is `table.key`, or a key before the first table, such as `gravity_m_s2`; `pi` is the number; `**` is `^`. Python's
+own parser reads the text; only a white list of its nodes becomes a tree of tuples, and nothing is executed as code.
 """
 
+import ast
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from keyword import iskeyword
 from typing import Any
 
 Tree = tuple[Any, ...]
 
-TOKEN = re.compile(
-    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
-    r"|(?P<name>[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z_][A-Za-z0-9_]*)?)|(?P<sign>\*\*|[-+*/^(),]))"
-)
 FUNCTIONS: dict[str, tuple[Callable[..., float], int]] = {
     "abs": (abs, 1),
     "atan": (math.atan, 1),
@@ -32,8 +26,22 @@ FUNCTIONS: dict[str, tuple[Callable[..., float], int]] = {
     "sqrt": (math.sqrt, 1),
     "tan": (math.tan, 1),
 }
+OPERATORS: dict[type[ast.AST], str] = {
+    ast.Add: "+",
+    ast.Sub: "-",
+    ast.Mult: "*",
+    ast.Div: "/",
+    ast.Pow: "^",
+    ast.UAdd: "+",
+    ast.USub: "-",
+}
+NUMBER = re.compile(r"(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+KEY = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)?", re.ASCII)
+WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+FOREIGN = re.compile(
+    r"[^\w\s.+\-*/^(),]|,(?=\s*\))", re.ASCII
+)  #: what Python may read, and an expression may not hold
 LONGEST = 400  #: characters
-DEEPEST = 50  #: parentheses, signs and powers within one another
 
 
 class ExpressionError(ValueError):
@@ -63,7 +71,7 @@ class Expression:
         except ZeroDivisionError:
             reason = "it divides by zero"
         except OverflowError:
-            reason = "it grows beyond all numbers"
+            reason = "it is too large for a number"
         except (ArithmeticError, ValueError, TypeError) as error:
             reason = str(error)
         else:
@@ -79,118 +87,81 @@ def parse_expression(text: str) -> Expression:
     """Parse a text.
 
     Raises:
-        ExpressionError: if it is no expression; says where and what was expected.
+        ExpressionError: it is no expression; says why and where.
     """
     if len(text) > LONGEST:
         raise ExpressionError(f"is {len(text)} characters long; at most {LONGEST} are read")
-    parser = _Parser(text)
-    tree = parser.expression()
-    if parser.kind != "end":
-        raise parser.expected("an operator or the end")
-    return Expression(text, tree)
+    return Expression(text, _Reader(text).tree())
 
 
-class _Parser:
-    """Recursive descent over the tokens of one text."""
+class _Reader:
+    """Turns a text into a tree."""
 
     def __init__(self, text: str) -> None:
         self._text = text
-        self._end = self._start = self._depth = 0
-        self.kind = self._token = ""
-        self._next()
 
-    def expression(self) -> Tree:
-        tree = self._term()
-        while self._token in ("+", "-"):
-            sign = self._take()
-            tree = (sign, tree, self._term())
-        return tree
+    def tree(self) -> Tree:
+        text = self._text
+        if foreign := FOREIGN.search(text):
+            raise self._refused(f"unexpected {foreign[0]!r}", foreign.start())
+        # A key may be one of Python's words, such as free.lambda: in other letters it is none to Python.
+        other = WORD.sub(lambda word: word[0].swapcase() if iskeyword(word[0]) else word[0], text)
+        begin = len(text) - len(text.lstrip())
+        pieces = ["**" if sign == "^" else " " if sign.isspace() else sign for sign in other[begin:]]
+        #: place in the text of each character that Python reads
+        self._places = [begin + k for k, piece in enumerate(pieces) for _ in piece] + [len(text)]
+        try:
+            return self._tree(ast.parse("".join(pieces), mode="eval").body)
+        except SyntaxError as error:
+            place = min(error.offset or len(self._places), len(self._places)) - 1  # 0: the end
+            raise self._refused(re.split("[.;]", error.msg)[0], self._places[place]) from None
+        except (RecursionError, MemoryError):
+            raise ExpressionError("is nested too deeply") from None
 
-    def expected(self, what: str) -> ExpressionError:
-        found = "the end" if self.kind == "end" else repr(self._token)
-        return ExpressionError(
-            f"= {self._text!r}: {what} expected at character {self._start + 1}, found {found}"
-        )
+    def _tree(self, node: ast.expr) -> Tree:
+        source = self._source(node)
+        match node:
+            case ast.Constant() if NUMBER.fullmatch(source):
+                return ("number", float(source))
+            case ast.Name() | ast.Attribute() if KEY.fullmatch(source):
+                return ("number", math.pi) if source == "pi" else ("key", source)
+            case ast.UnaryOp(op=op, operand=part) if type(op) in OPERATORS:
+                return ("sign", OPERATORS[type(op)], self._tree(part))
+            case ast.BinOp(left=left, op=op, right=right) if type(op) in OPERATORS:
+                return (OPERATORS[type(op)], self._tree(left), self._tree(right))
+            case ast.Call(func=function, args=arguments, keywords=[]):
+                return self._call(self._source(function), arguments)
+        raise self._refused(f"{source!r} is no number, key, sum, product or power", self._begin(node))
 
-    def _term(self) -> Tree:
-        tree = self._factor()
-        while self._token in ("*", "/"):
-            sign = self._take()
-            tree = (sign, tree, self._factor())
-        return tree
-
-    def _factor(self) -> Tree:
-        self._depth += 1
-        if self._depth > DEEPEST:
-            raise ExpressionError(f"is nested deeper than {DEEPEST} levels")
-        if self._token in ("+", "-"):
-            tree: Tree = ("sign", self._take(), self._factor())
-        else:
-            tree = self._atom()
-            if self._token in ("^", "**"):
-                self._take()
-                tree = ("^", tree, self._factor())
-        self._depth -= 1
-        return tree
-
-    def _atom(self) -> Tree:
-        if self.kind == "number":
-            return ("number", float(self._take()))
-        if self.kind == "name":
-            name = self._take()
-            if self._token == "(":
-                return self._call(name)
-            return ("number", math.pi) if name == "pi" else ("key", name)
-        if self._token == "(":
-            self._take()
-            tree = self.expression()
-            self._close()
-            return tree
-        raise self.expected("a number, a key or '('")
-
-    def _call(self, name: str) -> Tree:
+    def _call(self, name: str, arguments: list[ast.expr]) -> Tree:
         if name not in FUNCTIONS:
             raise ExpressionError(f"= {self._text!r}: no function {name!r} (known: {', '.join(FUNCTIONS)})")
-        self._take()
-        arguments = [self.expression()]
-        while self._token == ",":
-            self._take()
-            arguments.append(self.expression())
-        self._close()
         wanted = FUNCTIONS[name][1]
         if len(arguments) != wanted:
             raise ExpressionError(
                 f"= {self._text!r}: {name} takes {wanted} argument{'s' * (wanted > 1)}, got {len(arguments)}"
             )
-        return ("call", name, *arguments)
+        return ("call", name, *map(self._tree, arguments))
 
-    def _close(self) -> None:
-        if self._token != ")":
-            raise self.expected("')'")
-        self._take()
+    def _begin(self, node: ast.expr) -> int:
+        return self._places[node.col_offset]
 
-    def _take(self) -> str:
-        token = self._token
-        self._next()
-        return token
+    def _source(self, node: ast.expr) -> str:
+        return self._text[self._begin(node) : self._places[node.end_col_offset or 0]]
 
-    def _next(self) -> None:
-        match = TOKEN.match(self._text, self._end)
-        if match is None:
-            self._start = len(self._text) - len(self._text[self._end :].lstrip())
-            self.kind, self._token = "end", ""
-            if self._start < len(self._text):
-                self.kind, self._token = "unknown", self._text[self._start]
-                raise self.expected("a number, a key or an operator")
-            return
-        self.kind, self._token = str(match.lastgroup), match[str(match.lastgroup)]
-        self._start, self._end = match.start(str(match.lastgroup)), match.end()
+    def _refused(self, reason: str, place: int) -> ExpressionError:
+        return ExpressionError(
+            f"= {self._text!r}: {reason} at character {place + 1}; it may hold numbers, keys such as "
+            "contact.mu_static, + - * / ^ ( ) and functions"
+        )
 
 
-def _keys(tree: Tree) -> list[str]:
+def _keys(tree: Tree) -> Iterator[str]:
     if tree[0] == "key":
-        return [tree[1]]
-    return [key for part in tree[1:] if isinstance(part, tuple) for key in _keys(part)]
+        yield tree[1]
+    for part in tree[1:]:
+        if isinstance(part, tuple):
+            yield from _keys(part)
 
 
 def _value(tree: Tree, values: Mapping[str, float]) -> float:

@@ -1,32 +1,33 @@
-"""A list of cases, run on all cores: one row of figures each, in the order of the list.
+"""The engine of every study: many cases, run on all cores, one row of results each.
 
 Cases that have the same container share its mesh and modes. A case that cannot be computed is a row with
 status "failed" and the reason; it never has an outcome.
 """
 
-import threading
+import math
 import time
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Future
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from operator import itemgetter
 from typing import Any, TypeVar
 
 import numpy as np
 
-from contact.stepping.batch import Outcomes, Sampling, pack_rows, run_rows
-from contact.stepping.body import ROTATION
 from contact.stepping.integrator import FAILED as STEPPING_FAILED
 from contact.stepping.modal_body import ModalBody
+from contact.stepping.outcome import KeptSamples, run_to_end
 from fem.assessment.verdict import audit, end_of_drive, verdict_from, verdict_of
-from fem.batch.workers import LocalWorkers, Pool, hand_out
+from fem.batch.container_cache import ContainerCache, container_key
+from fem.batch.workers import LocalWorkers, WorkersOf, hand_out, never
 from fem.case.case import Case
-from fem.model.container import Container, discretise
-from fem.model.equilibrium import stands_like
+from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
-from fem.model.recovery import Recovery, recovery_of
+from fem.model.recovery import recovery_of
+from fem.results.run_result import Verdict
 from fem.run.recorder import Recorder
-from fem.run.simulation import AFTERMATH, SLICE_REDUCED, simulate, stepping_failure
+from fem.run.simulation import AFTERMATH, simulate, stepping_failure
+from fem.runtime.progress import Reporter, SilentReporter, clock_time
 from fem.runtime.threads import cores
 
 #: scalars of a verdict, as columns; None where a case does not have them
@@ -55,10 +56,66 @@ SCALARS = (
 #: cases handed to a core at a time
 CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}
 
+_CONTAINERS = ContainerCache()
+
 Row = dict[str, Any]
-
-
 ItemT = TypeVar("ItemT")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Runner:
+    """Runs the cases of a study, of any models, and reports the progress in one line.
+
+    Args of `rows` name cases by items; what an item is (a cell, a draw, a case itself) is the study's business.
+    """
+
+    workers_of: WorkersOf  #: `LocalWorkers` or a cluster
+    reporter: Reporter = field(default_factory=SilentReporter)
+    stop: Callable[[], bool] = never  #: asked repeatedly; true ends the work
+
+    def rows(
+        self,
+        what: str,
+        items: Iterable[ItemT],
+        make: Callable[[ItemT], Case],
+        model_of: Callable[[ItemT], str],
+        *,
+        at_a_time: int | None = None,
+    ) -> Iterator[tuple[list[ItemT], list[Row]]]:
+        """Run one case for each item; yields items and their rows as they are ready, in any order.
+
+        Args:
+            what: the items, for the line of progress.
+            items: in an order in which those of one container are neighbours.
+            make: the case of an item; for processes it must be picklable.
+            model_of: the model of its case.
+            at_a_time: cases handed to a core at a time; None: as suits the model.
+        """
+        by_model: dict[str, list[ItemT]] = {}
+        for item in items:
+            by_model.setdefault(model_of(item), []).append(item)
+        total, done, failed = sum(map(len, by_model.values())), 0, 0
+        self.reporter.start(0.0)
+        began = time.perf_counter()
+
+        def progress() -> str:
+            return _progress(what, done, total, failed, time.perf_counter() - began)
+
+        for model, some in sorted(by_model.items(), key=lambda pair: list(CASES_AT_A_TIME).index(pair[0])):
+            chunks = hand_out(
+                some,
+                partial(run_chunk, make),
+                self.workers_of(model, len(some)),
+                at_a_time=at_a_time or CASES_AT_A_TIME[model],
+                stop=self.stop,
+                finish=model != "full",  # one of these may take an hour
+            )
+            for chunk, rows in chunks:
+                yield chunk, rows
+                done += len(chunk)
+                failed += sum(row["status"] == "failed" for row in rows)
+                self.reporter.tell(progress)
+        self.reporter.finish()
 
 
 def run_cases(
@@ -66,9 +123,10 @@ def run_cases(
     *,
     jobs: int | None = None,
     done: Callable[[int], None] = lambda count: None,
-    stop: Callable[[], bool] = lambda: False,
+    stop: Callable[[], bool] = never,
+    time_limit_s: float | None = None,
 ) -> list[Row]:
-    """Run cases and return a row each, in their order, the same whatever `jobs`.
+    """Run cases and return a row each, in their order; the rows do not depend on `jobs`.
 
     No files are written, no fields are kept. Many cases are run by processes (`LocalWorkers`), so a script that calls
     this needs the usual `if __name__ == "__main__":`.
@@ -76,13 +134,15 @@ def run_cases(
     Args:
         cases: what to run, of any models and containers.
         jobs: cores to use; all by default.
-        done: told now and then how many rows there are.
-        stop: asked now and then; true ends the work.
+        done: called with the number of rows that are ready.
+        stop: asked repeatedly; true ends the work.
+        time_limit_s: wall time after which no further case is started, the first of a container first [s].
 
     Returns:
         For each case `status` (completed | overturned | failed), `reason` (why it failed, else None), `wall_s`, and
-        every scalar of a verdict (`SCALARS`). Cases not reached when stopped have status "interrupted".
+        every scalar of a verdict (`SCALARS`). Cases not reached have status "interrupted".
     """
+    until = math.inf if time_limit_s is None else time.monotonic() + time_limit_s
     rows: list[Row] = [_row_without_outcome("interrupted", "stopped before its turn") for _ in cases]
     first: dict[Hashable, int] = {}
     for k, case in enumerate(cases):
@@ -90,224 +150,109 @@ def run_cases(
     order = sorted(range(len(cases)), key=lambda k: first[container_key(cases[k])])
     finished = 0
     with LocalWorkers(jobs or cores()) as workers_of:
-        for model in ("rigid", "reduced", "full"):
-            items = [(k, cases[k]) for k in order if cases[k].solver.model == model]
-            if not items:
-                continue
-            for chunk, found in run_items(
-                items, itemgetter(1), model, workers_of(model, len(items)), stop=stop
-            ):
-                for (k, _), row in zip(chunk, found, strict=True):
-                    rows[k] = row
-                finished += len(chunk)
-                done(finished)
+        runner = Runner(workers_of=workers_of, stop=lambda: stop() or time.monotonic() > until)
+        for chunk, found in runner.rows(
+            "cases",
+            [(k, cases[k]) for k in order],
+            itemgetter(1),
+            lambda item: item[1].solver.model,
+            at_a_time=1 if time_limit_s is not None else None,
+        ):
+            for (k, _), row in zip(chunk, found, strict=True):
+                rows[k] = row
+            finished += len(chunk)
+            done(finished)
     return rows
 
 
-def container_key(case: Case) -> Hashable:
-    """Equal for cases whose containers are the same, whatever floor they stand on."""
-    solver = case.solver
-    return (
-        case.container,
-        case.support,
-        case.gravity_m_s2,
-        case.folder,
-        solver.model,
-        solver.elastic_modes if solver.model == "reduced" else None,
-        solver.element_size_m,
-        solver.order,
-        case.output.stop_when_overturned,
-    )
-
-
-def run_items(
-    items: Sequence[ItemT],
-    make: Callable[[ItemT], Case],
-    model: str,
-    pools: Sequence[Pool],
-    *,
-    stop: Callable[[], bool] = lambda: False,
-) -> Iterator[tuple[list[ItemT], list[Row]]]:
-    """Run one case for each item; yields items and their rows as they come, in any order.
-
-    Args:
-        items: in an order in which those of one container stand together.
-        make: the case of an item; goes to the workers, so for processes it must be a module's function or a
-            method of something that can be pickled.
-        model: of all these cases.
-        pools: who computes, from `LocalWorkers` or a cluster.
-        stop: asked now and then; true ends the work when what has begun is done, and at once for `full`.
-    """
-    work = partial(run_chunk, make)
-    return hand_out(items, work, pools, at_a_time=CASES_AT_A_TIME[model], stop=stop, finish=model != "full")
-
-
 def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row]:
-    """Run the cases of some items: one after the other, or those of one compiled container in one call."""
-    began = time.perf_counter()
-    prepared: list[Model | Row] = []
+    """Run the cases of some items, one after the other."""
+    rows = []
+    before: Model | None = None
     for item in items:
-        before = prepared[-1] if prepared and isinstance(prepared[-1], Model) else None
-        prepared.append(_prepare(make, item, before))
-    rows: list[Row | None] = [one if isinstance(one, dict) else None for one in prepared]
-    models = {k: one for k, one in enumerate(prepared) if isinstance(one, Model)}
-    for group in _of_one_body(models):
+        began = time.perf_counter()
         try:
-            found = run_models([models[k] for k in group])
-        except (ValueError, ArithmeticError, RuntimeError) as error:  # one that spoils the others goes alone
-            found = [_row_without_outcome("failed", str(error))]
-            if len(group) > 1:
-                found = [run_chunk(make, [items[k]])[0] for k in group]
-        for k, row in zip(group, found, strict=True):
-            rows[k] = row
-    return _with_wall([row for row in rows if row is not None], models, time.perf_counter() - began)
+            case = make(item).without_fields()
+            if case.solver.model == "full":
+                row = _run_full(case)
+            else:
+                before = _model_of(case, before)
+                row = run_model(before)
+        except (
+            ValueError,
+            ArithmeticError,
+            RuntimeError,
+        ) as error:  # bad input, no equilibrium, a singular matrix
+            row = _row_without_outcome("failed", str(error))
+        rows.append(row | {"wall_s": time.perf_counter() - began})
+    return rows
 
 
-def _prepare(make: Callable[[ItemT], Case], item: ItemT, before: Model | None) -> Model | Row:
-    """The model of an item; or its row, where there is nothing to be computed in common.
-
-    It stands as the one before does, if nothing but the motion of the floor is another.
-    """
-    try:
-        case = make(item).without_fields()
-        if case.solver.model == "full":
-            return _run_full(case)
-        container = _SHELF.container_of(case)
-        same = before is not None and before.container is container and stands_like(case, before.case)
-        return build_model(case, container, before.footing if before is not None and same else None)
-    except (ValueError, ArithmeticError, RuntimeError) as error:  # bad input, no stance, a singular matrix
-        return _row_without_outcome("failed", str(error))
+def _model_of(case: Case, before: Model | None) -> Model:
+    """The model of a case; one that differs in its motion alone takes over the equilibrium of the one before."""
+    container = _CONTAINERS.container_of(case)
+    same = before is not None and before.container is container and same_equilibrium(case, before.case)
+    return build_model(case, container, before.equilibrium if before is not None and same else None)
 
 
-def _of_one_body(models: Mapping[int, Model]) -> Iterable[list[int]]:
-    """Groups of models that differ in floor, motion and start alone."""
-    groups: dict[Hashable, list[int]] = {}
-    for k, model in models.items():
-        assert isinstance(model.body, ModalBody)
-        key = (id(model.container), model.body.tolerance, model.run.scheme)
-        groups.setdefault(key, []).append(k)
-    return groups.values()
-
-
-def run_models(models: Sequence[Model]) -> list[Row]:
-    """Step compiled models of one body to their ends in one call."""
-    body = models[0].body
-    assert isinstance(body, ModalBody)
-    elastic = models[0].case.solver.model == "reduced"
-    ends = [end_of_drive(model) for model in models]
-    rows = pack_rows(
-        [model.run for model in models],
-        [model.case.solver.duration_s for model in models],
-        [AFTERMATH / model.run.control.frequency_parameter for model in models],
-        slip_until=ends,
+def run_model(model: Model) -> Row:
+    """Step a rigid or reduced model to its end, in place; its row."""
+    assert isinstance(model.body, ModalBody)
+    run, duration, until = model.run, model.case.solver.duration_s, end_of_drive(model)
+    status, kept = run_to_end(
+        model.body,
+        run,
+        duration,
+        aftermath=AFTERMATH / run.control.frequency_parameter,
+        slip_until=until,
+        cycle=min(model.case.motion.period, duration),
+        strained=model.case.solver.model == "reduced",
     )
-    periods = [min(model.case.motion.period, model.case.solver.duration_s) for model in models]
-    outcomes = run_rows(
-        body,
-        models[0].run.scheme,
-        rows,
-        np.concatenate([model.run.track for model in models]),
-        sampling=Sampling(cycle=max(periods), strained=elastic, slice=SLICE_REDUCED),
-    )
-    return [_row_of(model, outcomes, k, ends[k]) for k, model in enumerate(models)]
+    return _row_of(model, status, kept, until)
 
 
-def _row_of(model: Model, outcomes: Outcomes, k: int, until: float) -> Row:
-    """The row of a model, from what the batch found of it."""
-    run = model.run
-    run.track[0], run.clock[0] = outcomes.track[k], outcomes.clock[k]
-    run.ledger[:], run.old.pose[ROTATION] = outcomes.ledger[k], outcomes.rotation[k]
-    count, interval = int(run.clock[0].samples), run.history.interval
-    kept = outcomes.slip[k]
+def _row_of(model: Model, status: int, kept: KeptSamples, until: float) -> Row:
+    """The row of a model that was stepped to its end."""
+    run, interval = model.run, model.run.history.interval
+    count = int(run.clock[0].samples)
     last = min(count - 1, int((until + 1e-9) / interval))
-    numbers = np.arange(max(0, last + 1 - kept.size), last + 1)
+    numbers = np.arange(max(0, last + 1 - kept.slip.size), last + 1)
     stress = None
-    if outcomes.strain.shape[1]:
-        positions = outcomes.strained[k, outcomes.strain[k] >= 0.0]
-        stress = _SHELF.recovery_of(model).largest_von_mises(positions)
+    if kept.strain.size:
+        positions = kept.position[kept.strain >= 0.0]
+        stress = _CONTAINERS.recovery_of(model).largest_von_mises(positions)
     end = (count - 1) * interval if count else None
-    verdict = verdict_from(model, end, numbers * interval, kept[numbers % kept.size], stress)
-    if outcomes.status[k] == STEPPING_FAILED:
-        return _row_without_outcome(
-            "failed", stepping_failure(model, float(outcomes.residual[k]))
-        ) | _figures(verdict)
-    error = audit(model)
+    verdict = verdict_from(model, end, numbers * interval, kept.slip[numbers % kept.slip.size], stress)
+    if status == STEPPING_FAILED:
+        error: str | None = stepping_failure(model, float(np.abs(run.work.law - run.work.force).max()))
+    else:
+        error = audit(model)
     if error is not None:
         return _row_without_outcome("failed", error) | _figures(verdict)
-    status = "overturned" if verdict["outcome"] == "overturned" else "completed"
-    return _row_without_outcome(status, None) | _figures(verdict) | {"outcome": verdict["outcome"]}
+    ended = "overturned" if verdict.outcome == "overturned" else "completed"
+    return _row_without_outcome(ended, None) | _figures(verdict) | {"outcome": verdict.outcome}
 
 
-def _figures(verdict: Mapping[str, Any]) -> Row:
+def _figures(verdict: Verdict) -> Row:
     """The figures of a verdict, without its outcome."""
-    return {name: verdict[name] for name in SCALARS if name != "outcome"}
+    return {name: getattr(verdict, name) for name in SCALARS if name != "outcome"}
 
 
 def _run_full(case: Case) -> Row:
-    model = build_model(case, _SHELF.container_of(case))
+    model = build_model(case, _CONTAINERS.container_of(case))
     recorder = Recorder(model, recovery_of(model))
     ending = simulate(model, recorder)
     verdict = verdict_of(model, recorder.history(), recorder.largest_von_mises)
     row = _row_without_outcome(ending.status, ending.error) | _figures(verdict)
-    return row if ending.status == "failed" else row | {"outcome": verdict["outcome"]}
-
-
-def _with_wall(rows: list[Row], models: Mapping[int, Model], wall: float) -> list[Row]:
-    """Give each row its share of the time that all took, by the steps it took."""
-    steps = [float(models[k].run.clock[0].steps) if k in models else 0.0 for k in range(len(rows))]
-    total = sum(steps) or 1.0
-    for row, own in zip(rows, steps, strict=True):
-        row["wall_s"] = wall * own / total if models else wall / len(rows)
-    return rows
-
-
-class Shelf:
-    """The containers used last; safe for threads, and no container is built twice at once."""
-
-    def __init__(self, room: int = 8) -> None:
-        self._room = room
-        self._lock = threading.Lock()
-        self._held: dict[Hashable, Future[Container]] = {}
-        self._recoveries: dict[int, tuple[Container, Recovery]] = {}
-
-    def container_of(self, case: Case) -> Container:
-        """The case's container, built if it is not there.
-
-        Raises:
-            CaseError, MeshError: bad input.
-        """
-        key = container_key(case)
-        with self._lock:
-            found = self._held.pop(key, None)
-            mine = found is None
-            promise = Future[Container]() if found is None else found
-            self._held[key] = promise  # the one used last stands last
-            while len(self._held) > self._room:
-                del self._held[next(iter(self._held))]
-        if mine:
-            try:
-                promise.set_result(discretise(case))
-            except BaseException as error:
-                promise.set_exception(error)
-        return promise.result()
-
-    def recovery_of(self, model: Model) -> Recovery:
-        """How the stresses of a model's container are had; made once a container."""
-        key = id(model.container)
-        with self._lock:
-            found = self._recoveries.get(key)
-        if found is not None and found[0] is model.container:
-            return found[1]
-        made = recovery_of(model)
-        with self._lock:
-            self._recoveries[key] = (model.container, made)
-            while len(self._recoveries) > self._room:
-                del self._recoveries[next(iter(self._recoveries))]
-        return made
-
-
-_SHELF = Shelf()
+    return row if ending.status == "failed" else row | {"outcome": verdict.outcome}
 
 
 def _row_without_outcome(status: str, reason: str | None) -> Row:
     return {"status": status, "reason": reason, "wall_s": 0.0} | dict.fromkeys(SCALARS)
+
+
+def _progress(what: str, done: int, total: int, failed: int, elapsed: float) -> str:
+    """The line of progress."""
+    rate = done / elapsed if elapsed > 0.0 else 0.0
+    left = f"{clock_time((total - done) / rate)} left" if rate > 0.0 else "time left unknown"
+    return f"{done} of {total} {what}, {rate:.3g} per s, {left}" + (f", {failed} failed" if failed else "")

@@ -30,6 +30,11 @@ ItemT = TypeVar("ItemT")
 FoundT = TypeVar("FoundT")
 
 
+def never() -> bool:
+    """A `stop` that never asks to stop."""
+    return False
+
+
 class WorkersLostError(RuntimeError):
     """The workers died; what they had computed before is kept."""
 
@@ -106,7 +111,7 @@ def hand_out(
     pools: Sequence[Pool],
     *,
     at_a_time: int,
-    stop: Callable[[], bool] = lambda: False,
+    stop: Callable[[], bool] = never,
     finish: bool = True,
 ) -> Iterator[tuple[list[ItemT], FoundT]]:
     """Let pools work on chunks of items; yields chunks and what was found of them as they come, in any order.

@@ -11,9 +11,11 @@ from fem.case.case import Case, case_hash, load_case
 from fem.cli.console import AsJson, Overrides
 from fem.model.geometry import build_container, node_count
 from fem.model.restitution import apparent_restitution
-from fem.model.static_checks import StaticChecks, static_checks
-from fem.model.support import build_support, normal_penalty, require_firm_floor
-from fem.results.disk import frames_of, in_units, required_disk, samples_of
+from fem.model.static_checks import StaticChecks, static_checks_of
+from fem.model.support import build_support, normal_penalty
+from fem.model.validity import require_stiff_contact
+from fem.results.disk import in_units
+from fem.run.size import frames_of, required_disk, samples_of
 from mesh.container import ContainerMesh
 
 
@@ -34,12 +36,12 @@ def check(
     loaded = load_case(case, overrides)
     mesh = build_container(loaded)
     peak = peak_floor_acceleration(loaded)
-    static = checks_of(loaded, mesh, peak)
+    static = static_checks_of(loaded, mesh, peak)
     document = {
         "case": loaded.name,
         "asked_hash": case_hash(loaded),
         "derived": derived_numbers(loaded, mesh, peak),
-        "static": static.to_dict(),
+        "static": static.to_result().to_json(),
         "contact_restitution": contact_restitution(loaded, mesh, static),
         "numerics": chosen_numerics(loaded, mesh),
         "notes": notes(loaded, static, peak),
@@ -67,26 +69,6 @@ def peak_floor_acceleration(case: Case) -> float:
     return float(room.peak_acceleration_within(room.build_motion(case), case.solver.duration_s))
 
 
-def checks_of(case: Case, mesh: ContainerMesh, peak: float) -> StaticChecks:
-    """Static checks of the meshed container under its own motion, peak floor acceleration in m/s2."""
-    return static_checks(
-        mass=mesh.mass,
-        centroid=mesh.centroid[1],
-        inertia=mesh.inertia,
-        width=mesh.width,
-        gravity=case.gravity_m_s2,
-        mu_static=case.contact.mu_static,
-        mu_kinetic=case.contact.mu_kinetic,
-        peak_floor_acceleration=peak,
-        ground_acceleration=case.static.ground_acceleration_m_s2,
-        soil_factor=case.static.soil_factor,
-        corner_period=case.static.corner_period_s,
-        behaviour_factor=case.static.behaviour_factor,
-        importance_factor=case.static.importance_factor,
-        initial_rotation=case.initial.rotation_rad,
-    )
-
-
 def derived_numbers(case: Case, mesh: ContainerMesh, peak: float) -> dict[str, float | None]:
     """What follows from the case before anything moves; SI units stand in the keys."""
     harmonic = case.motion.kind == "harmonic"
@@ -110,7 +92,7 @@ def chosen_numerics(case: Case, mesh: ContainerMesh) -> dict[str, Any]:
     penalty = normal_penalty(case, mesh)
     springs = build_support(case, mesh).normal_stiffness(penalty)
     stiffness = float(springs.sum())
-    require_firm_floor(case, mesh, stiffness)
+    require_stiff_contact(case, mesh, stiffness)
     return {
         "model": solver.model,
         "scheme": solver.scheme,

@@ -38,7 +38,7 @@ def report(
         )
     place = _place(to if to is not None else folder / PAGE)
     reporter = ScreenReporter(quiet=quiet)
-    interrupts = importlib.import_module("fem.runtime.interrupts")
+    interrupts = importlib.import_module("fem.runtime.signals")
     pages = importlib.import_module("fem.report.run_page")
     signature = pages.Signature(author=author, checker=checker, revision=revision)
     if (folder / "sweep.json").is_file():
@@ -52,7 +52,7 @@ def report(
                 opened,
                 signature=signature,
                 every_variation=all_variations,
-                told=reporter.message,
+                message=reporter.message,
                 stop=stop,
             )
     with naming_what_cannot_be_written(place.parent, "ask again, or elsewhere with --to FILE"):

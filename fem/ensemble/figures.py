@@ -1,26 +1,23 @@
-"""Figures of an ensemble: the fragility curve, or the boundary between points, with how sure they are."""
+"""Figures of an ensemble: the fragility curve, or the boundary between points, with their intervals."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
-from fem.batch.axes import Axis
+from fem.batch.axes import axis_label
 from fem.ensemble.fragility import Lognormal
-from fem.ensemble.plan import FREE, Ensemble
+from fem.ensemble.plan import Ensemble
 from fem.ensemble.statistics import PointResult
+from fem.figures.heat_map import Panel, draw_heat_map
 from fem.figures.style import (
     BLACK,
     BLUE,
     GREY,
-    LEFT,
     SKY,
     VERMILLION,
-    WIDTH,
     head,
     house_style,
     legend_above,
@@ -28,12 +25,12 @@ from fem.figures.style import (
     svg_of,
 )
 from fem.runtime.arrays import FloatArray
+from fem.sweep.maps import map_axis
 
 #: of the regions; lightness differs as well
 COLOURS = {"below": SKY, "undecided": "#DDDDDD", "above": VERMILLION}
 FINE = 240  #: points of a drawn curve
 MOST_NUMBERS = 320  #: cells of a panel up to which each holds its number
-COLUMNS = 2
 
 
 def ensemble_figures(
@@ -82,45 +79,42 @@ def draw_fragility(ensemble: Ensemble, points: Sequence[PointResult], fragility:
     axes.set_ylim(-0.02, 1.02)
     axes.margins(x=0.02)
     axes.set_ylabel("probability of overturning [-]")
-    axes.set_xlabel(label_of(axis))
+    axes.set_xlabel(axis_label(axis))
     legend_above(axes)
     return figure
 
 
 def draw_boundary(ensemble: Ensemble, points: Sequence[PointResult]) -> Figure:
-    """Which points overturn with at most the probability asked for, which with more, which is open."""
+    """Which points overturn with at most the probability asked for, which with more, which is undecided."""
     *outer, down, across = ensemble.axes
     outside = outer[0].values if outer else (None,)
-    columns = min(COLUMNS, len(outside))
-    rows = -(-len(outside) // columns)
-    tall_panel, gap, header = (2.6 if outer else 3.6), 0.75, 0.85
-    tall = header + rows * tall_panel + (rows - 1) * gap + 0.5
-    figure = Figure(figsize=(WIDTH, tall))
-    head(figure, ensemble.title or ensemble.name, _statement(ensemble))
-    wide = (WIDTH - LEFT - 0.15 - (columns - 1) * 0.7) / columns
     shape = (len(outside), len(down.values), len(across.values))
-    regions = np.array([point.region for point in points]).reshape(shape)
-    values = np.array([point.estimate.value for point in points], dtype=float).reshape(shape)
-    for k, held in enumerate(outside):
-        left = LEFT + (k % columns) * (wide + 0.7)
-        bottom = tall - header - tall_panel - (k // columns) * (tall_panel + gap)
-        axes = figure.add_axes((left / WIDTH, bottom / tall, wide / WIDTH, tall_panel / tall))
-        _draw_panel(axes, across, down, regions[k], values[k])
-        if held is not None:
-            axes.set_title(f"{label_of(outer[0])} = {held:g}", fontsize=8)
+    limit = f"{ensemble.probability:g}"
     words = {
-        "below": f"at most {ensemble.probability:g}",
+        "below": f"at most {limit}",
         "undecided": "not decided by the draws",
-        "above": f"more than {ensemble.probability:g}",
+        "above": f"more than {limit}",
     }
-    figure.legend(
-        handles=[Patch(facecolor=COLOURS[name], label=words[name]) for name in COLOURS],
-        loc="upper left",
-        bbox_to_anchor=((LEFT - 0.1) / WIDTH, 1.0 - 0.42 / tall),
-        ncols=3,
-        title=None,
+    codes = np.array([list(COLOURS).index(point.region) for point in points]).reshape(shape)
+    shares = [point.estimate.value for point in points]
+    texts = np.array(["?" if share is None else f"{100.0 * share:.0f}" for share in shares]).reshape(shape)
+    panels = [
+        Panel(
+            values=codes[k],
+            title="" if held is None else f"{axis_label(outer[0])} = {held:g}",
+            overturned=codes[k] == list(COLOURS).index("above"),
+            texts=texts[k].tolist() if texts[k].size <= MOST_NUMBERS else None,
+        )
+        for k, held in enumerate(outside)
+    ]
+    x = replace(map_axis(across), label=f"{axis_label(across)}   (numbers: % that overturned)")
+    return draw_heat_map(
+        x,
+        map_axis(down),
+        panels,
+        title=f"{ensemble.title or ensemble.name}\n{_statement(ensemble)}",
+        colours={words[region]: colour for region, colour in COLOURS.items()},
     )
-    return figure
 
 
 def band_of(
@@ -138,54 +132,8 @@ def band_of(
     return low, high
 
 
-def label_of(axis: Axis) -> str:
-    """An axis for people: `peak acceleration [m/s²]`."""
-    name = axis.key.rpartition(".")[2]
-    if axis.key.startswith(FREE) or not axis.unit:
-        return f"{name.replace('_', ' ')} [-]"
-    suffix = "_" + axis.unit.replace("/", "_").replace(" ", "_")
-    return (
-        f"{name.removesuffix(suffix).replace('_', ' ')} [{axis.unit.replace('s2', 's²').replace('m3', 'm³')}]"
-    )
-
-
 def _statement(ensemble: Ensemble) -> str:
     names = ", ".join(
         one.key.rpartition(".")[2].removesuffix("_rad").replace("_", " ") for one in ensemble.random
     )
     return f"{ensemble.draws} draws a point ({ensemble.sampling}); random: {names}; not the floor's motion"
-
-
-def _draw_panel(axes: Axes, across: Axis, down: Axis, regions: np.ndarray, values: FloatArray) -> None:
-    """Cells in the colour of their region, each with its probability in per cent."""
-    xs, ys = _edges(across), _edges(down)
-    codes = np.vectorize(list(COLOURS).index, otypes=[float])(regions)
-    colours = ListedColormap(list(COLOURS.values()))
-    axes.pcolormesh(
-        xs, ys, codes, cmap=colours, vmin=-0.5, vmax=len(COLOURS) - 0.5, edgecolor="white", linewidth=0.4
-    )
-    if values.size <= MOST_NUMBERS:
-        for row, y in enumerate(down.values):
-            for column, x in enumerate(across.values):
-                text = "?" if np.isnan(values[row, column]) else f"{100.0 * values[row, column]:.0f}"
-                dark = regions[row, column] == "above"
-                axes.text(
-                    x, y, text, ha="center", va="center", fontsize=6.5, color="white" if dark else BLACK
-                )
-    for scale, setter in ((across.scale, axes.set_xscale), (down.scale, axes.set_yscale)):
-        if scale == "log":
-            setter("log")
-    axes.set_xlabel(f"{label_of(across)}   (numbers: % that overturned)")
-    axes.set_ylabel(label_of(down))
-    axes.grid(visible=False)
-
-
-def _edges(axis: Axis) -> FloatArray:
-    """Edges of the cells of an axis, halfway between its values (n + 1,)."""
-    values = np.array(axis.values, dtype=float)
-    if values.size == 1:
-        return values[0] + np.array([-0.5, 0.5]) * max(abs(values[0]) * 0.1, 0.1)
-    scaled = np.log(values) if axis.scale == "log" else values
-    inner = 0.5 * (scaled[1:] + scaled[:-1])
-    edges = np.concatenate([[2.0 * scaled[0] - inner[0]], inner, [2.0 * scaled[-1] - inner[-1]]])
-    return np.exp(edges) if axis.scale == "log" else edges

@@ -1,4 +1,4 @@
-"""Read an ensemble file: base case, axes, what is random, how it is drawn; every reason why it cannot be used.
+"""Read an ensemble file: base case, axes, random quantities, sampling; the reasons why it cannot be used.
 
     case = "seed_stack"                    # a shipped case, or a file in the folder of the ensemble file
     draws = 128                            # at each point
@@ -10,7 +10,7 @@
 Beside the keys of a case, axes and draws may be variables `free.NAME`, to which derived keys refer.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from itertools import islice, product
 from pathlib import Path
@@ -18,25 +18,24 @@ from typing import Annotated, Any
 
 from pydantic import Field, Strict
 
-from fem.batch.axes import NO_AXIS, Axis, AxisError, field_of, read_axis
-from fem.batch.base_case import base_case, read_as, require_once, split_tables
-from fem.batch.expressions import Expression, ExpressionError, parse_expression
-from fem.case.files import DEFAULT_CASE, ENSEMBLES, Origin, parse_case
-from fem.case.tables import Table
+from fem.batch.axes import Axis, AxisError, check_varied, read_axis
+from fem.batch.derived import FREE, Derived, read_derived
+from fem.batch.study_file import base_case, read_as, read_axes, read_study, require_once, split_tables
+from fem.case.files import DEFAULT_CASE, ENSEMBLES, Origin
+from fem.case.tables import CaseTable
 from fem.case.validation import CaseError
 from fem.ensemble.distributions import RandomQuantity, Sampling, read_random
 from fem.ensemble.intervals import least_draws
-from fem.ensemble.plan import FREE, Ensemble
-from fem.sweep.plan import Derived, in_order
+from fem.ensemble.plan import Ensemble
 
 TABLES = ("set", "axes", "random", "derived")
 MOST_AXES, MOST_RANDOM = 3, 8
 MOST_RUNS = 1_000_000
-TRIED = 64  #: cases that are built to see whether axes and draws make cases at all
+TRIED = 64  #: cases that are built to find bad values before anything is computed
 REPLICATES = 16
 
 
-class EnsembleHeading(Table):
+class EnsembleHeading(CaseTable):
     """The keys of an ensemble file that stand before its first table."""
 
     case: str = Field(default=DEFAULT_CASE, description="a shipped case, or a file beside the ensemble file")
@@ -49,7 +48,7 @@ class EnsembleHeading(Table):
     )
     confidence: float = Field(default=0.95, ge=0.5, le=0.9999, description="of the intervals, two-sided")
     probability: float = Field(
-        default=0.05, gt=0.0, lt=1.0, description="of overturning by which points are told apart"
+        default=0.05, gt=0.0, lt=1.0, description="of overturning, to which the points are compared"
     )
 
 
@@ -59,12 +58,7 @@ def load_ensemble(name_or_path: str | Path) -> Ensemble:
     Raises:
         CaseError: with one line for each reason why it cannot be used.
     """
-    origin = ENSEMBLES.find(name_or_path)
-    data = parse_case(origin)
-    try:
-        return _read(data, origin)
-    except CaseError as error:
-        raise CaseError("\n".join(f"{origin.place}: {line}" for line in str(error).splitlines())) from None
+    return read_study(ENSEMBLES.find(name_or_path), _read)
 
 
 def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
@@ -79,7 +73,8 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
         raise CaseError(
             '[set] "solver.model" must be "rigid" or "reduced": an ensemble of the full model would take weeks'
         )
-    axes = _axes(tables.get("axes", {}))
+    example = '"motion.peak_acceleration_m_s2" = { from = 2.0, to = 10.0, count = 17 }'
+    axes = read_axes(tables.get("axes", {}), MOST_AXES, example, _axis)
     random = _random(tables.get("random", {}), axes)
     drawn = [one.key for one in random if not one.spread.relative]
     require_once(tables.get("set", {}), [*(axis.key for axis in axes), *drawn, *tables.get("derived", {})])
@@ -90,7 +85,9 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
         base=base,
         axes=axes,
         random=random,
-        derived=_derived(tables.get("derived", {}), [axis.key for axis in axes], [one.key for one in random]),
+        derived=_derived(
+            tables.get("derived", {}), [axis.key for axis in axes] + [one.key for one in random]
+        ),
         draws=heading.draws,
         seed=heading.seed,
         sampling=heading.sampling,
@@ -103,25 +100,14 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
     return ensemble
 
 
-def _axes(content: Mapping[str, Any]) -> tuple[Axis, ...]:
-    if not 1 <= len(content) <= MOST_AXES:
-        example = '"motion.peak_acceleration_m_s2" = { from = 2.0, to = 10.0, count = 17 }'
-        raise CaseError(
-            f"[axes] must hold one to {MOST_AXES} keys, got {len(content)}; for instance {example}"
-        )
-    axes = []
-    for key, value in content.items():
-        try:
-            # A free variable takes any number, as the scale of a table of motion does.
-            axis = replace(read_axis("motion.scale" if _is_free(key) else key, value), key=key)
-        except AxisError as error:
-            raise CaseError(f"[axes] {key!r} {error}") from None
-        if not all(isinstance(one, float | int) and not isinstance(one, bool) for one in axis.values):
-            raise CaseError(f"[axes] {key!r} must hold numbers; make a file for each of its words")
-        if list(axis.values) != sorted(axis.values):
-            raise CaseError(f"[axes] {key!r} must rise; sort its values")
-        axes.append(axis)
-    return tuple(axes)
+def _axis(key: str, value: Any) -> Axis:
+    # A free variable takes any number, as the scale of a table of motion does.
+    axis = replace(read_axis("motion.scale" if key.startswith(FREE) else key, value), key=key)
+    if not all(isinstance(one, float | int) and not isinstance(one, bool) for one in axis.values):
+        raise AxisError("must hold numbers; make a file for each of its words")
+    if list(axis.values) != sorted(axis.values):
+        raise AxisError("must rise; sort its values")
+    return axis
 
 
 def _random(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> tuple[RandomQuantity, ...]:
@@ -132,8 +118,10 @@ def _random(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> tuple[RandomQ
         )
     found = []
     for key, value in content.items():
-        if not _is_free(key):
-            _known_number(f"[random] {key!r}", key)
+        try:
+            _check_key(key)
+        except AxisError as error:
+            raise CaseError(f"[random] {key!r} {error}") from None
         one = read_random(key, value)
         if any(axis.key == key for axis in axes) and not one.spread.relative:
             raise CaseError(
@@ -143,38 +131,19 @@ def _random(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> tuple[RandomQ
     return tuple(found)
 
 
-def _derived(content: Mapping[str, Any], axes: list[str], random: list[str]) -> tuple[Derived, ...]:
-    expressions: dict[str, Expression] = {}
-    for key, text in content.items():
-        place = f"[derived] {key!r}"
-        if key in axes or key in random:
-            raise CaseError(f"{place} is an axis or drawn already; it cannot follow another as well")
-        if not _is_free(key):
-            _known_number(place, key)
-        if not isinstance(text, str):
-            raise CaseError(
-                f"{place} must be an expression in quotes, got {text!r}; a fixed value goes under [set]"
-            )
-        try:
-            expressions[key] = parse_expression(text)
-        except ExpressionError as error:
-            raise CaseError(f"{place} {error}") from None
-    for key, expression in expressions.items():
-        for name in sorted(expression.keys):
-            if not _is_free(name):
-                _known_number(f"[derived] {key!r} refers to {name!r}, which", name)
-            elif name not in (*axes, *random, *expressions):
-                raise CaseError(f"[derived] {key!r} refers to {name!r}, which is neither an axis nor drawn")
-    return tuple(Derived(key=key, expression=expressions[key]) for key in in_order(expressions))
+def _derived(content: Mapping[str, Any], varied: Collection[str]) -> tuple[Derived, ...]:
+    def check_reference(name: str) -> None:
+        if not name.startswith(FREE):
+            check_varied(name)
+        elif name not in varied:
+            raise AxisError("is neither an axis nor drawn")
+
+    return read_derived(content, varied, _check_key, check_reference)
 
 
-def _known_number(place: str, key: str) -> None:
-    try:
-        field_of(key)
-    except AxisError as error:
-        raise CaseError(f"{place} {error}") from None
-    if key in NO_AXIS:
-        raise CaseError(f"{place} cannot vary: {NO_AXIS[key]}")
+def _check_key(key: str) -> None:
+    if not key.startswith(FREE):
+        check_varied(key)
 
 
 def _check_draws(ensemble: Ensemble) -> None:
@@ -204,18 +173,14 @@ def _check_draws(ensemble: Ensemble) -> None:
 
 
 def _try_cases(ensemble: Ensemble) -> None:
-    """Make the cases at the ends of axes and distributions, and refuse what they refuse."""
+    """Make the cases at the ends of axes and distributions; raises a CaseError for one that cannot be used."""
     ends = [(axis.values[0], axis.values[-1]) for axis in ensemble.axes]
     drawn = [one.ends for one in ensemble.random]
     for corner in islice(product(*ends, *drawn), TRIED):
         point = {axis.key: value for axis, value in zip(ensemble.axes, corner, strict=False)}
         try:
-            ensemble.case_of(point, list(corner[len(ends) :]))  # type: ignore[arg-type]
+            ensemble.case_of(point, corner[len(ends) :])
         except CaseError as error:
             keys = [*(axis.key for axis in ensemble.axes), *(one.key for one in ensemble.random)]
             where = ", ".join(f"{key} = {value:g}" for key, value in zip(keys, corner, strict=True))
             raise CaseError(f"{error}\n[axes] and [random] make this case: {where}") from None
-
-
-def _is_free(key: str) -> bool:
-    return key.startswith(FREE)

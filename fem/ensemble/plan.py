@@ -1,21 +1,26 @@
 """An ensemble: points on one to three axes, and at each the draws of what is random."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from fem.batch.axes import Axis
+from fem.batch.axes import Axis, point_of, shape_of
 from fem.batch.case_maker import CaseMaker
-from fem.batch.expressions import ExpressionError
-from fem.case.case import Case, CaseError
+from fem.batch.derived import FREE, Derived, number_of, with_derived
+from fem.case.case import Case
 from fem.ensemble.distributions import RandomQuantity, Sampling, draw_shares
-from fem.runtime.arrays import FloatArray
-from fem.sweep.plan import Derived, value_in
 
-FREE = "free."  #: keys of no case: variables that derived keys refer to
+
+class Draw(NamedTuple):
+    """One draw at a point."""
+
+    cell: int  #: number of the point, the last axis the fastest
+    number: int  #: at this point, replicate after replicate
+    values: tuple[float, ...]  #: of the random quantities, relative ones as factors
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -34,25 +39,19 @@ class Ensemble:
     sampling: Sampling
     replicates: int  #: 1 for independent draws
     confidence: float
-    probability: float  #: of overturning by which the points are told apart
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Values of each axis."""
-        return tuple(len(axis.values) for axis in self.axes)
+    probability: float  #: of overturning, to which the points are compared
 
     @property
     def count(self) -> int:
         """Points."""
-        return int(np.prod(self.shape))
+        return math.prod(shape_of(self.axes))
 
     def point(self, cell: int) -> dict[str, Any]:
-        """Values of the axes at a point, by key; the last axis is the fastest."""
-        places = np.unravel_index(cell, self.shape)
-        return {axis.key: axis.values[int(k)] for axis, k in zip(self.axes, places, strict=True)}
+        """Values of the axes at a point, by key."""
+        return point_of(self.axes, cell)
 
-    def draw(self, cell: int) -> FloatArray:
-        """What is drawn at a point, relative ones as factors, shape (draws, random quantities)."""
+    def draws_at(self, cell: int) -> list[Draw]:
+        """The draws of a point."""
         shares = draw_shares(
             self.sampling,
             seed=self.seed,
@@ -61,50 +60,30 @@ class Ensemble:
             draws=self.draws,
             replicates=self.replicates,
         )
-        return np.column_stack([one.values(shares[:, k]) for k, one in enumerate(self.random)])
+        values = np.column_stack([one.values(shares[:, k]) for k, one in enumerate(self.random)])
+        return [Draw(cell, number, tuple(drawn)) for number, drawn in enumerate(values.tolist())]
 
-    def cases(self, cell: int) -> list[Case]:
-        """The cases of a point, in the order of its draws.
+    def case(self, draw: Draw) -> Case:
+        """The case of a draw.
 
         Raises:
-            CaseError: one of them cannot be.
+            CaseError: it cannot be used.
         """
-        point = self.point(cell)
-        return [self.case_of(point, drawn) for drawn in self.draw(cell)]
+        return self.case_of(self.point(draw.cell), draw.values)
 
-    def case_of(self, point: Mapping[str, Any], drawn: FloatArray) -> Case:
-        """The case at a point with given draws.
-
-        Raises:
-            CaseError: it cannot be.
-        """
-        return self._make(self.values(point, drawn))
-
-    def values(self, point: Mapping[str, Any], drawn: FloatArray) -> dict[str, Any]:
-        """All keys of the case that a point and its draws set.
+    def case_of(self, point: Mapping[str, Any], drawn: Sequence[float]) -> Case:
+        """The case at a point, of values drawn.
 
         Raises:
-            CaseError: an expression has no value, or a relative quantity nothing to refer to.
+            CaseError: an expression has no value, a relative quantity has no value to scale, a bad case.
         """
         values = dict(point)
         for one, value in zip(self.random, drawn, strict=True):
-            values[one.key] = float(value) * (self._value_of(one.key, values) if one.spread.relative else 1.0)
-        for derived in self.derived:
-            known = {key: self._value_of(key, values) for key in derived.expression.keys}
-            try:
-                values[derived.key] = derived.expression.value(known)
-            except ExpressionError as error:
-                raise CaseError(f"[derived] {derived.key} {error}") from None
-        return {key: value for key, value in values.items() if not key.startswith(FREE)}
+            scale = number_of(one.key, values, self.base) if one.spread.relative else 1.0
+            values[one.key] = value * scale
+        values = with_derived(values, self.derived, self.base)
+        return self._make({key: value for key, value in values.items() if not key.startswith(FREE)})
 
     @cached_property
     def _make(self) -> CaseMaker:
         return CaseMaker(self.base)
-
-    def _value_of(self, key: str, values: Mapping[str, Any]) -> float:
-        if key in values:
-            return float(values[key])
-        found = None if key.startswith(FREE) else value_in(self.base, key, values)
-        if found is None:
-            raise CaseError(f"{key!r} has no number here; make it an axis, set it under [set], or draw it")
-        return found

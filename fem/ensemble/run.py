@@ -1,23 +1,24 @@
 """An ensemble from its file to its folder: draws, points, curve or boundary, figures.
 
-The runs go through the engine of the sweeps. After every batch the folder holds the outcomes there are, so that an
-ensemble that was cut off goes on where it was; its result does not depend on that, nor on the number of cores.
+The draws are logged as they are ready, so an interrupted ensemble continues where it was; its result depends neither on
+that nor on the number of cores.
 """
 
 import hashlib
 import json
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fem.batch.runner import Row, run_cases
+from fem.batch.log import LoggedRuns, fields_of, table_of_lines, table_text
+from fem.batch.runner import Row, Runner
+from fem.batch.workers import LocalWorkers
 from fem.case.case import case_hash, to_toml
 from fem.ensemble.figures import ensemble_figures
-from fem.ensemble.plan import Ensemble
+from fem.ensemble.plan import Draw, Ensemble
 from fem.ensemble.statistics import (
     FAILED,
     MISSING,
@@ -28,33 +29,67 @@ from fem.ensemble.statistics import (
     count_point,
     fragility_of,
 )
-from fem.results.result_folder import COMPLETED, ResultFolder, opened_result_folder, program_of_results
-from fem.results.run_folder import FolderError
-from fem.runtime.interrupts import interruptible
-from fem.runtime.progress import Reporter, SilentReporter, clock_time
+from fem.results.folder import ResultFolder, open_result_folder, program_of_results
+from fem.results.kinds import ENSEMBLE
+from fem.runtime.progress import Reporter, SilentReporter
+from fem.runtime.signals import interruptible
+from fem.runtime.threads import cores
 
-MARK, STATE = "ensemble.json", "state.npz"
-OWN = ("points.csv", "draws.csv", "base.toml", "ensemble.toml", STATE, "figures/*.svg")
-#: room on the disk: a row of draws.csv without its numbers, a number, what is kept of a draw, a row of points.csv, and
-#: figures and pages [bytes]
-BYTES_OF_A_DRAW, BYTES_OF_A_NUMBER, BYTES_OF_A_CODE, BYTES_OF_A_POINT, BYTES_BESIDE = (
-    45,
-    20,
-    10,
-    1000,
-    500_000,
-)
-BATCH = 512  #: runs between two looks and saves
+DRAWS = "draws.csv"
+#: room on the disk [bytes]: a row of draws.csv without its numbers, a number, a row of points.csv, all else
+BYTES_OF_A_DRAW, BYTES_OF_A_NUMBER, BYTES_OF_A_POINT, BYTES_BESIDE = 45, 20, 1000, 500_000
 WORDS = {STOOD: "stood", OVERTURNED: "overturned", FAILED: "failed"}
+CODES = {word: code for code, word in WORDS.items()}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EnsembleResult:
-    """What an ensemble came to."""
+    """Result of an ensemble."""
 
     status: str  #: completed | interrupted | failed: no draw has an outcome
     result: dict[str, Any]  #: as in ensemble.json
     points: tuple[PointResult, ...]
+
+
+class DrawRows:
+    """The rows of the draws so far."""
+
+    def __init__(self, ensemble: Ensemble) -> None:
+        self._ensemble = ensemble
+        keys = [f"{one.key}{' factor' if one.spread.relative else ''}" for one in ensemble.random]
+        self.columns = ("point", "draw", "replicate", *keys, "outcome", "rotation_ratio")
+        self.codes = np.full((ensemble.count, ensemble.draws), MISSING, dtype=np.int8)
+        self._lines: dict[tuple[int, int], str] = {}
+
+    def values(self, draw: Draw, row: Row) -> tuple[Any, ...]:
+        """The row of a draw: what was drawn, and its result."""
+        replicate = draw.number // (self._ensemble.draws // self._ensemble.replicates)
+        ratio = row["rotation_ratio"]
+        known = ratio is not None and np.isfinite(ratio)
+        return (
+            draw.cell,
+            draw.number,
+            replicate,
+            *draw.values,
+            WORDS[code_of(row)],
+            ratio if known else None,
+        )
+
+    def note(self, line: str) -> None:
+        """Add a line of the log."""
+        cell, number, *_, outcome, _ = fields_of(line)
+        self.codes[int(cell), int(number)] = CODES[outcome]
+        self._lines[int(cell), int(number)] = line
+
+    def table(self) -> str:
+        """`draws.csv`: a row a draw, in their order."""
+        return table_of_lines(self.columns, (line for _, line in sorted(self._lines.items())))
+
+    def missing(self) -> list[Draw]:
+        """The draws that have no row."""
+        cells = np.flatnonzero((self.codes == MISSING).any(axis=1)).tolist()
+        draws = (draw for cell in cells for draw in self._ensemble.draws_at(cell))
+        return [draw for draw in draws if self.codes[draw.cell, draw.number] == MISSING]
 
 
 def run_ensemble(
@@ -70,54 +105,60 @@ def run_ensemble(
 
     Raises:
         CaseError, FolderError: bad input.
+        WorkersLostError: a worker died; what was computed is kept.
+        OutputError: the disk is full, the folder was removed; what was written is kept.
     """
     reporter = reporter or SilentReporter()
     asked = ensemble_hash(ensemble)
     with (
-        opened_result_folder(
-            folder,
-            mark=MARK,
-            kind="ensemble",
-            asked=asked,
-            own=OWN,
-            wanted=required_disk(ensemble),
-            force=force,
-            resume=resume,
-        ) as place,
+        open_result_folder(folder, ENSEMBLE, asked, force=force, resume=resume) as place,
         interruptible(reporter) as stop,
     ):
-        if place.finished is not None:
+        if place.finished and place.found:
             reporter.message(f"{folder} holds this ensemble already; --force computes it again")
-            return EnsembleResult(status=COMPLETED, result=place.finished, points=())
-        place.write_text("ensemble.toml", ensemble.text)
-        place.write_text("base.toml", to_toml(ensemble.base))
-        codes, ratios = read_state(place, ensemble)
-        whole = _run(ensemble, place, codes, ratios, jobs=jobs, stop=stop, reporter=reporter)
-        points = [
-            count_point(ensemble, cell, codes[cell])
-            for cell in range(ensemble.count)
-            if (codes[cell] != MISSING).all()
-        ]
-        status = COMPLETED if whole else "interrupted"
-        if whole and all(point.failed == ensemble.draws for point in points):
-            status = "failed"
-        fragility = fragility_of(ensemble, codes, points) if whole else None
-        result = result_of(ensemble, points, fragility, status)
-        place.write_text("points.csv", csv_of_points(ensemble, points))
-        place.write_text("draws.csv", csv_of_draws(ensemble, codes, ratios))
-        if whole:
-            for name, svg in ensemble_figures(ensemble, points, fragility).items():
-                place.write_text(f"figures/{name}.svg", svg)
-        place.write_result(result)
-        if status == COMPLETED:
-            (place.path / STATE).unlink(missing_ok=True)
+            return EnsembleResult(status="completed", result=place.found, points=())
+        if place.resuming:
+            place.require_same_program()
+        place.require_room(required_disk(ensemble), "the ensemble", "take fewer draws")
+        texts = {"ensemble.toml": ensemble.text, "base.toml": to_toml(ensemble.base)}
+        place.begin({"status": "running", "asked": asked} | program_of_results(), texts)
+        draws = DrawRows(ensemble)
+        with LocalWorkers(jobs or cores()) as workers_of:
+            LoggedRuns(
+                what="draws",
+                path=folder / DRAWS,
+                columns=draws.columns,
+                make=ensemble.case,
+                model_of=lambda draw: ensemble.base.solver.model,
+                values=draws.values,
+                note=draws.note,
+            ).run(Runner(workers_of=workers_of, reporter=reporter, stop=stop), iter(draws.missing, []))
+        return _finish(ensemble, place, draws)
+
+
+def _finish(ensemble: Ensemble, place: ResultFolder, draws: DrawRows) -> EnsembleResult:
+    """Count what there is, and write it."""
+    complete = (draws.codes != MISSING).all(axis=1)
+    points = [count_point(ensemble, int(k), draws.codes[k]) for k in np.flatnonzero(complete)]
+    status, fragility = "interrupted", None
+    if complete.all():
+        status = "failed" if all(point.failed == ensemble.draws for point in points) else "completed"
+        fragility = fragility_of(ensemble, draws.codes, points)
+    place.check()
+    place.write_text("points.csv", csv_of_points(ensemble, points))
+    place.write_text(DRAWS, draws.table())
+    if complete.all():
+        for name, svg in ensemble_figures(ensemble, points, fragility).items():
+            place.write_text(f"figures/{name}.svg", svg)
+    result = result_of(ensemble, points, fragility, status)
+    place.write_result(result)
     return EnsembleResult(status=status, result=result, points=tuple(points))
 
 
 def required_disk(ensemble: Ensemble) -> float:
-    """What the folder of an ensemble comes to hold [bytes]: a row a draw, the state twice, a row a point, figures."""
+    """Size of the folder of an ensemble [bytes]: the rows of the draws twice, a row a point, figures."""
     row = BYTES_OF_A_DRAW + BYTES_OF_A_NUMBER * len(ensemble.random)
-    return ensemble.count * (ensemble.draws * (row + 2 * BYTES_OF_A_CODE) + BYTES_OF_A_POINT) + BYTES_BESIDE
+    return ensemble.count * (2 * ensemble.draws * row + BYTES_OF_A_POINT) + BYTES_BESIDE
 
 
 def ensemble_hash(ensemble: Ensemble) -> str:
@@ -132,7 +173,7 @@ def ensemble_hash(ensemble: Ensemble) -> str:
 
 
 def asked_of(ensemble: Ensemble) -> dict[str, Any]:
-    """How it is drawn and counted."""
+    """How the draws are made and counted."""
     names = ("draws", "seed", "sampling", "replicates", "confidence", "probability")
     return {name: getattr(ensemble, name) for name in names}
 
@@ -164,12 +205,12 @@ def result_of(
 
 
 def page_of(result: dict[str, Any], folder: Path) -> str:
-    """What an ensemble found, for people."""
+    """The result of an ensemble as text."""
     lines = [
         f"{result['ensemble']}: {result['title']}" if result["title"] else str(result["ensemble"]),
         f"  {len(result['points'])} points x {result['draws']} draws ({result['sampling']}, seed {result['seed']}), "
         f"model {result['model']}, {result['duration_s']:g} s each, {result['status']}",
-        f"  random: {', '.join(result['random'])}; not random: the floor's motion itself",
+        f"  random: {', '.join(result['random'])}; the floor's motion is not random",
     ]
     for name, count in result["regions"].items():
         lines.append(
@@ -181,11 +222,13 @@ def page_of(result: dict[str, Any], folder: Path) -> str:
             }[name]
         )
     if result["failed"]:
-        lines.append(f"  failed     {result['failed']:>6} draws, counted against either end of the intervals")
+        lines.append(
+            f"  failed     {result['failed']:>6} draws; the intervals allow for either outcome of these"
+        )
     lines += _fragility_lines(result["fragility"], result["confidence"])
     lines.append(f"  files      {folder}")
     if result["status"] == "interrupted":
-        lines.append("  --resume goes on from here")
+        lines.append("  --resume continues")
     return "\n".join(lines)
 
 
@@ -193,82 +236,14 @@ def csv_of_points(ensemble: Ensemble, points: Sequence[PointResult]) -> str:
     """`points.csv`: a row a point of the axes."""
     names = [*(axis.key for axis in ensemble.axes), *POINT_COLUMNS]
     rows = [point.row() for point in points]
-    return (
-        "\n".join([",".join(names), *(",".join(_written(row[name]) for name in names) for row in rows)])
-        + "\n"
-    )
-
-
-def csv_of_draws(ensemble: Ensemble, codes: np.ndarray, ratios: np.ndarray) -> str:
-    """`draws.csv`: a row a draw, with what was drawn (a relative quantity as its factor) and what came of it."""
-    keys = [f"{one.key}{' factor' if one.spread.relative else ''}" for one in ensemble.random]
-    lines = [",".join(["point", "draw", "replicate", *keys, "outcome", "rotation_ratio"])]
-    size = ensemble.draws // ensemble.replicates
-    for cell in range(ensemble.count):
-        drawn = ensemble.draw(cell)
-        for k in np.flatnonzero(codes[cell] != MISSING):
-            values = [_written(float(value)) for value in drawn[k]]
-            ratio = _written(float(ratios[cell, k])) if np.isfinite(ratios[cell, k]) else ""
-            lines.append(
-                ",".join([str(cell), str(k), str(k // size), *values, WORDS[int(codes[cell, k])], ratio])
-            )
-    return "\n".join(lines) + "\n"
-
-
-def read_state(place: ResultFolder, ensemble: Ensemble) -> tuple[np.ndarray, np.ndarray]:
-    """Codes and rotation ratios (points, draws) of the draws so far.
-
-    Raises:
-        FolderError: the state is damaged.
-    """
-    shape = (ensemble.count, ensemble.draws)
-    saved = place.read_arrays(STATE)
-    if saved is None:
-        return np.full(shape, MISSING, dtype=np.int8), np.full(shape, np.nan)
-    codes, ratios = saved.get("codes"), saved.get("ratios")
-    if codes is None or ratios is None or codes.shape != shape or ratios.shape != shape:
-        raise FolderError(f"{place.path / STATE}: damaged; --force computes everything anew")
-    return codes, ratios
+    return table_text(names, ([row[name] for name in names] for row in rows))
 
 
 def code_of(row: Row) -> int:
     """Code of one run; what failed is never one that stood."""
     if row["outcome"] is None:
-        return MISSING if row["status"] == "interrupted" else FAILED
+        return FAILED
     return OVERTURNED if row["outcome"] == "overturned" else STOOD
-
-
-def _run(
-    ensemble: Ensemble,
-    place: ResultFolder,
-    codes: np.ndarray,
-    ratios: np.ndarray,
-    *,
-    jobs: int | None,
-    stop: Callable[[], bool],
-    reporter: Reporter,
-) -> bool:
-    """Run the draws that are missing, into `codes` and `ratios`; whether all are there then."""
-    began, missing = time.monotonic(), np.flatnonzero((codes == MISSING).any(axis=1))
-    total, per_batch = missing.size, max(1, BATCH // ensemble.draws)
-    reporter.start(0.0)
-    for first in range(0, total, per_batch):
-        cells = missing[first : first + per_batch]
-        cases = [case for cell in cells for case in ensemble.cases(int(cell))]
-        rows = run_cases(cases, jobs=jobs, stop=stop)
-        found = np.array([code_of(row) for row in rows], dtype=np.int8).reshape(len(cells), -1)
-        codes[cells] = found
-        ratios[cells] = np.array(
-            [np.nan if row["rotation_ratio"] is None else row["rotation_ratio"] for row in rows]
-        ).reshape(len(cells), -1)
-        place.write_arrays(STATE, {"codes": codes, "ratios": ratios})
-        if stop():
-            break
-        done = first + len(cells)
-        left = (time.monotonic() - began) * (total / done - 1.0)
-        reporter.tell(lambda: f"{done} of {total} points, {clock_time(left)} left")  # noqa: B023
-    reporter.finish()
-    return bool((codes != MISSING).all())
 
 
 def _fragility_lines(fragility: dict[str, Any] | None, confidence: float) -> list[str]:
@@ -293,9 +268,3 @@ def _fragility_lines(fragility: dict[str, Any] | None, confidence: float) -> lis
         f"{100.0 * confidence:g} % ({fitted['missed_by_chance']} by chance){fit}"
     )
     return lines
-
-
-def _written(value: Any) -> str:
-    if value is None:
-        return ""
-    return repr(value) if isinstance(value, float) else str(value)

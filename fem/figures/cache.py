@@ -1,8 +1,7 @@
-"""The figures of a run in its folder: SVG files, and a page that says of which results they are.
+"""Figure cache: the figures of a run in its folder, SVG files and `drawn.json` with their metadata.
 
-A report takes the drawings that lie there as they are: to draw them again would cost more than everything else in
-it. It does so only where the page vouches for them - the same program drew them of the same results, and nobody has
-changed them since - and draws them anew otherwise.
+Drawing the figures takes longer than all the rest of a report, so a report reuses them. It does so only if the
+metadata match: drawn by the same program from the same results, and not changed since. Otherwise it draws them again.
 """
 
 import hashlib
@@ -21,7 +20,7 @@ from fem.runtime.identity import program_identity
 
 
 def write_figures(run: OpenedRun, container: Container) -> list[Path]:
-    """Draw every figure of a run into its folder `figures`, as SVG.
+    """Draw all figures of a run into its folder `figures`, as SVG.
 
     Args:
         run: finished or not.
@@ -34,17 +33,18 @@ def write_figures(run: OpenedRun, container: Container) -> list[Path]:
         FolderError: the history is missing or damaged.
         OSError: the folder or a file cannot be written.
     """
-    place, drawings = run.place, _drawn(run, container)
+    place, drawings = run.place, _draw(run, container)
     place.figures.mkdir(parents=True, exist_ok=True)
     place.drawn.unlink(missing_ok=True)
-    for one in drawings:
-        write_atomically(_file(place, one.name), one.svg)
-    write_atomically(place.drawn, to_json(_identity(place) | {"figures": [_told(one) for one in drawings]}))
-    return [_file(place, one.name) for one in drawings]
+    for drawing in drawings:
+        write_atomically(_svg(place, drawing.name), drawing.svg)
+    metadata = _identity(place) | {"figures": [_metadata(drawing) for drawing in drawings]}
+    write_atomically(place.drawn, to_json(metadata))
+    return [_svg(place, drawing.name) for drawing in drawings]
 
 
 def drawings_of(run: OpenedRun, container: Container) -> dict[str, Drawing]:
-    """The figures of a run by name, in the order of reading: those in its folder, or else drawn now.
+    """Figures of a run by name, in the order of reading: from the cache, or else drawn.
 
     Args:
         run: finished or not.
@@ -53,53 +53,53 @@ def drawings_of(run: OpenedRun, container: Container) -> dict[str, Drawing]:
     Raises:
         FolderError: the history is missing or damaged.
     """
-    drawings = _kept(run.place)
-    return {one.name: one for one in (_drawn(run, container) if drawings is None else drawings)}
+    drawings = _cached(run.place)
+    if drawings is None:
+        drawings = _draw(run, container)
+    return {drawing.name: drawing for drawing in drawings}
 
 
-def _drawn(run: OpenedRun, container: Container) -> list[Drawing]:
-    # matplotlib takes most of a second to import; who finds the figures drawn does without it.
-    drawn: list[Drawing] = importlib.import_module("fem.figures.run").draw_all(run, container)
-    return drawn
+def _draw(run: OpenedRun, container: Container) -> list[Drawing]:
+    # Importing matplotlib takes most of a second, which a cached figure does not need.
+    drawings: list[Drawing] = importlib.import_module("fem.figures.run").draw_all(run, container)
+    return drawings
 
 
-def _kept(place: RunFolder) -> list[Drawing] | None:
-    """The drawings in a folder; None unless they are all there, and of the results beside them."""
+def _cached(place: RunFolder) -> list[Drawing] | None:
+    """The drawings in a folder; None if one is missing, changed or out of date."""
     try:
-        page = json.loads(place.drawn.read_text(encoding="utf-8"))
-        told = page.pop("figures")
-        if page != _identity(place):
+        metadata = json.loads(place.drawn.read_text(encoding="utf-8"))
+        figures = metadata.pop("figures")
+        # A name becomes a path, and ids in a page.
+        if metadata != _identity(place) or not all(figure["name"].isidentifier() for figure in figures):
             return None
         drawings = []
-        for one in told:
-            if not one["name"].isidentifier():  # it becomes a path, and ids in a page
-                return None
-            svg = _file(place, one["name"]).read_text(encoding="utf-8")
+        for figure in figures:
+            svg = _svg(place, figure["name"]).read_text(encoding="utf-8")
             require_drawing(svg)
-            drawings.append(Drawing(name=one["name"], title=one["title"], followed=one["followed"], svg=svg))
-        return drawings if [_told(one) for one in drawings] == told else None
+            drawings.append(Drawing(**(figure | {"svg": svg})))
+        return drawings if [_metadata(drawing) for drawing in drawings] == figures else None
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
 
 
 def _identity(place: RunFolder) -> dict[str, Any]:
-    """Of the program and of the files that figures are drawn from."""
+    """Identity of the program and digests of the files from which the figures are drawn."""
     files = (place.result, place.resolved, place.history, place.rigid_check)
     return {"program": program_identity(), "drawn_from": {path.name: _digest(path) for path in files}}
 
 
-def _told(drawing: Drawing) -> dict[str, Any]:
-    """What the page says of a drawing."""
-    told = asdict(drawing)
-    return told | {"svg": hashlib.sha256(told["svg"].encode()).hexdigest()}
+def _metadata(drawing: Drawing) -> dict[str, Any]:
+    """Metadata of a drawing: the digest of its SVG in place of the text."""
+    return asdict(drawing) | {"svg": hashlib.sha256(drawing.svg.encode()).hexdigest()}
 
 
-def _file(place: RunFolder, name: str) -> Path:
+def _svg(place: RunFolder, name: str) -> Path:
     return place.figures / f"{name}.svg"
 
 
 def _digest(path: Path) -> str | None:
-    """SHA-256 of a file; None where there is none."""
+    """SHA-256 of a file; None if it is missing."""
     if not path.is_file():
         return None
     with path.open("rb") as file:

@@ -1,4 +1,4 @@
-"""Figures of what was held beside a run: the analytic rigid block, and the band over the contact."""
+"""Figures of the two checks of a run: the analytic rigid block, and the sensitivity to the contact (the band)."""
 
 import math
 import textwrap
@@ -8,40 +8,44 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from fem.assessment.summary import ratio_in_words
 from fem.figures.style import (
     BLACK,
     BLUE,
     STATE_COLOURS,
     VERMILLION,
-    draw_curve,
+    curve_panel,
     head,
     legend_above,
     panels,
     time_panels,
-    zero_line,
 )
 from fem.results.reader import OpenedRun
 
-FALLEN_ROW = 1.18  #: where overturned members stand, above the slenderness angle
+FALLEN_ROW = 1.18  #: rotation ratio at which overturned members are drawn
 LINE_LENGTH = 105  #: characters of a line of text in a figure
 MARKERS = "osD^vP"
 
 
 def rigid_check_figure(run: OpenedRun) -> Figure | None:
-    """Rotation of the run and of the analytic block, peaks, first impacts, difference; None without a check."""
+    """Rotation of run and analytic block with peaks, first impacts and difference; None without a check."""
     check, table = run.result.get("rigid_check") or {}, run.rigid_check
     if table is None or not check:
         return None
-    time, found = table["time_s"], np.degrees(table["rotation_rad"])
-    block = np.degrees(table["analytic_rotation_rad"])
+    time = table["time_s"]
+    found, block = np.degrees(table["rotation_rad"]), np.degrees(table["analytic_rotation_rad"])
     reasons = "; ".join(check.get("reasons") or ())
     fair = "A fair comparison" if check.get("meaningful") else f"No fair comparison: {reasons}"
-    statement = f"{fair}.{_ratios(check)}"
-    lines = textwrap.wrap(statement, LINE_LENGTH)
+    lines = textwrap.wrap(f"{fair}.{_ratios(check)}", LINE_LENGTH)
     figure, (above, below) = time_panels((2.4, 1.35), header=3 + len(lines))
-    draw_curve(above, time, found, color=BLUE, label=f"container, {run.case.solver.model} model")
-    name = check.get("reference") or "rigid block"
-    draw_curve(above, time, block, color=VERMILLION, linestyle="--", label=f"analytic {name}")
+    curve_panel(
+        above,
+        "rotation [degrees]",
+        time,
+        (found, BLUE, "-", f"container, {run.case.solver.model} model"),
+        (block, VERMILLION, "--", f"analytic {check.get('reference') or 'rigid block'}"),
+        zero=False,
+    )
     peaks = check.get("peaks") or ()
     for key, colour, marker in (("run", BLUE, "o"), ("block", VERMILLION, "x")):
         above.plot(
@@ -59,28 +63,24 @@ def rigid_check_figure(run: OpenedRun) -> Figure | None:
             for axes in (above, below):
                 axes.axvline(impact, color=colour, linestyle=style, linewidth=1.0, label=label)
                 label = ""
-    difference = found - block
-    draw_curve(below, time, difference, color=BLACK)
-    zero_line(below)
-    above.set_ylabel("rotation [degrees]")
-    below.set_ylabel("difference [degrees]")
+    curve_panel(below, "difference [degrees]", time, (found - block, BLACK, "-", None))
     legend_above(above, columns=2)
-    head(figure, "Held against the analytic rigid block", "\n".join(lines))
+    head(figure, "Comparison with the analytic rigid block", "\n".join(lines))
     return figure
 
 
 def band_figure(run: OpenedRun) -> Figure | None:
-    """Largest rotation of every member over its contact penalty; None without a band."""
+    """Largest rotation of each run of the band over its contact penalty; None without a band."""
     band = (run.result.get("verdict") or {}).get("band") or {}
     members = band.get("members") or ()
     if not members:
         return None
-    own = float(members[0]["normal_penalty_Pa_m"])  # the run itself comes first
+    own = float(members[0]["normal_penalty_Pa_m"])  # the first member is the run itself
     dampings = sorted({float(member["damping_ratio"]) for member in members})
     figure, (axes,) = panels((2.7,), right=2.0, header=2)
     for member in members:
         column = dampings.index(float(member["damping_ratio"]))
-        # Beside one another, so that equal results do not hide each other.
+        # Side by side, so that equal results do not hide each other.
         place = float(member["normal_penalty_Pa_m"]) / own * 1.08 ** (column - 0.5 * (len(dampings) - 1))
         axes.plot(
             place,
@@ -110,13 +110,11 @@ def band_figure(run: OpenedRun) -> Figure | None:
     axes.set_ylabel("rotation ratio [-]")
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
     low, high = band["rotation_ratio"]
-    found = " or ".join(band.get("outcomes") or ())
+    outcomes = " or ".join(band.get("outcomes") or ())
     sure = "unsure" if band.get("unsure") else "the same outcome throughout"
-    head(
-        figure,
-        f"Band over the contact, {sure}: {found}",
-        f"rotation ratio {low:.3g} to {high:.3g}; the large mark is the run itself",
-    )
+    ratios = " to ".join(map(ratio_in_words, (low, high)))
+    statement = f"rotation ratio {ratios}; the large mark is the run itself"
+    head(figure, f"Band over the contact, {sure}: {outcomes}", statement)
     return figure
 
 

@@ -1,6 +1,7 @@
-"""The figure of the forces of the floor, and how forces of impacts are drawn beside those between them.
+"""Figure of the contact forces of the floor on the container.
 
-An impact's force is far beyond the others: it is cut off, marked at the rim of the panel, and told.
+The force of an impact is far larger than those between impacts. It is cut off, marked at the edge of the panel and
+given in words.
 """
 
 import numpy as np
@@ -13,43 +14,39 @@ from fem.figures.style import (
     GREY,
     LEGEND_GAP,
     VERMILLION,
-    draw_curve,
+    curve_panel,
     draw_limits,
-    draw_states,
     head,
     legend_above,
     number,
-    states_of,
     time_panels,
 )
 from fem.results.reader import OpenedRun
 from fem.runtime.arrays import FloatArray
 
-LARGE_FORCE = 2.5  #: times weight, or its static friction: beyond are impacts, not the motion between them
-OFF_SCALE = 1.3  #: forces beyond the scale by more than this are cut off and told
-MARKS = 300  #: of forces off the scale, side by side
+LARGE_FORCE = 2.5  #: times weight, or its static friction: larger forces are those of impacts
+OFF_SCALE = 1.3  #: over the limit of the scale: larger forces are cut off
+MARKS = 300  #: of cut-off forces, that fit side by side
 
 
 def forces_figure(run: OpenedRun) -> Figure:
     """Normal and shear force of the floor on the container."""
     history, contact = run.history, run.case.contact
     time, normal, shear = history["time_s"], 1e-3 * history["normal_force_N"], 1e-3 * history["shear_force_N"]
-    weight, states = 1e-3 * run.case.weight, states_of(run.history.modes)
+    weight = 1e-3 * run.case.weight
     limits = [
         scale_without_impacts(normal, LARGE_FORCE * weight),
         scale_without_impacts(shear, LARGE_FORCE * contact.mu_static * weight),
     ]
     cut = any(limit is not None for limit in limits)
-    figure, axes = time_panels((1.5, 1.7), states=states, gaps=(LEGEND_GAP,), header=3 if cut else 2)
+    figure, axes = time_panels((1.5, 1.7), history=history, gaps=(LEGEND_GAP,), header=3 if cut else 2)
     for panel, force, label, colour in (
         (axes[0], normal, "normal force [kN]", BLUE),
         (axes[1], shear, "shear force [kN]", VERMILLION),
     ):
-        draw_curve(panel, time, force, color=colour, linewidth=0.8)
-        panel.set_ylabel(label)
-    axes[0].axhline(
-        weight, color=BLACK, linestyle="--", linewidth=0.9, label=f"weight, {number(weight, 4)} kN"
-    )
+        curve_panel(panel, label, time, (force, colour, "-", None), zero=False, linewidth=0.8)
+    name = f"weight, {number(weight, 4)} kN"
+    axes[0].axhline(weight, color=BLACK, linestyle="--", linewidth=0.9, label=name)
     axes[0].set_ylim(bottom=0.0)
     friction = {"static": (contact.mu_static, "--"), "kinetic": (contact.mu_kinetic, ":")}
     for name, (mu, style) in friction.items():
@@ -57,11 +54,10 @@ def forces_figure(run: OpenedRun) -> Figure:
         draw_limits(axes[1], mu * weight, label, color=BLACK, linestyle=style)
         if contact.mu_static == contact.mu_kinetic:
             break
-    for panel, force, limit in zip(axes, (normal, shear), limits, strict=False):
+    for panel, force, limit in zip(axes, (normal, shear), limits, strict=True):
         if limit is not None:
             cut_off(panel, time, force, limit)
         legend_above(panel)
-    draw_states(axes[-1], time, history.modes, states)
     statement = (
         f"marks at the rim: beyond the scale, up to {number(normal.max(), 4)} and "
         f"{number(np.abs(shear).max(), 4)} kN, when the contact's damper stops an impact"
@@ -71,17 +67,17 @@ def forces_figure(run: OpenedRun) -> Figure:
 
 
 def scale_without_impacts(force: FloatArray, large: float) -> float | None:
-    """Where the scale of a force ends if impacts go far beyond what lies between them; else None."""
+    """Limit of the scale of a force if impacts far exceed the forces between them; else None."""
     limit = max(large, 1.2 * float(np.quantile(np.abs(force), 0.9)))
     return limit if np.abs(force).max() > OFF_SCALE * limit else None
 
 
 def cut_off(axes: Axes, time: FloatArray, force: FloatArray, limit: float) -> None:
-    """End the scale at a limit, with a mark at the rim for each force beyond it."""
+    """End the scale at a limit, with a mark at the edge for each force beyond it."""
     axes.set_ylim(0.0 if axes.get_ylim()[0] == 0.0 else -limit, limit)
     for sign, marker in ((1.0, "^"), (-1.0, "v")):
         beyond = time[sign * force > limit]
-        # Marks closer than that would be one another's shadow.
+        # Marks closer than that would overlap.
         _, apart = np.unique(np.round(beyond / (time[-1] - time[0]) * MARKS), return_index=True)
         rim = np.full(len(apart), sign * limit)
         axes.plot(beyond[apart], rim, marker, color=GREY, markersize=3, clip_on=False)

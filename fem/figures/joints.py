@@ -1,9 +1,9 @@
-"""The figure of the joints between the boxes of a stack: what they carry, and what their bolts must hold.
+"""Figure of the joints between the boxes of a stack: the forces in them, and what their bolts must carry.
 
-Forces are means over `output.history_s`, on the boxes above (`fem.model.joints`). Impacts are so many and so short that
-curves of several joints over time hide one another: above stand the ranges of each force over the height of the stack,
-beside what the weight above would give; below, over time, the most that bolts must hold at any joint. Where that is
-not zero, a joint without bolts opens at an edge, or slides (`fem.assessment.joint_demands`).
+Forces are means over `output.history_s`, on the boxes above (`fem.model.joints`). Impacts are so short and so many that
+curves of several joints over time would hide one another. Above: the range of each force over the height of the stack,
+with the force from the weight above. Below: the largest bolt force at any joint over time. Where it is not zero, a
+joint without bolts opens at an edge or slides (`fem.assessment.joint_demands`).
 """
 
 import numpy as np
@@ -20,13 +20,11 @@ from fem.figures.style import (
     RIGHT,
     SKY,
     VERMILLION,
-    draw_states,
     head,
     keep_visible,
     kept_samples,
     legend_above,
     number,
-    states_of,
     time_panels,
     zero_line,
 )
@@ -34,15 +32,15 @@ from fem.results.history import JOINT_COLUMNS
 from fem.results.reader import OpenedRun
 from fem.runtime.arrays import FloatArray
 
-HEADER = 3  #: lines of text above the panels of ranges: title, legend, what is largest
-RANGES, BETWEEN, BELOW = 1.4, 0.3, 0.78  #: their height, between them, from them to those over time [inch]
-USUAL = (0.05, 0.95)  #: quantiles between which a force lies nine tenths of the time
+HEADER = 3  #: lines of text above the panels of ranges: title, legend, largest force
+RANGES, BETWEEN, BELOW = 1.4, 0.3, 0.78  #: height of these panels, gaps beside and below them [inch]
+USUAL = (0.05, 0.95)  #: quantiles that enclose a force nine tenths of the time
 THICK = 0.5  #: of a bar, over the height of a box
-LEAST_FORCE = 1.0  #: on the axes of what bolts hold [kN]
+LEAST_FORCE = 1.0  #: on the axes of bolt forces [kN]
 
 
 def joints_figure(run: OpenedRun) -> Figure | None:
-    """Ranges of normal force, shear and moment over the height; what bolts hold over time; None for one box."""
+    """Ranges of normal force, shear and moment over the height; bolt forces over time; None for one box."""
     history, case = run.history, run.case
     if history.joints == 0:
         return None
@@ -53,9 +51,8 @@ def joints_figure(run: OpenedRun) -> Figure | None:
         1e-3 * np.array([history[name.format(joint)][standing] for joint in range(1, history.joints + 1)])
         for name in JOINT_COLUMNS
     )
-    states = states_of(history.modes)
     figure, axes = time_panels(
-        (1.1, 0.7), states=states, gaps=(LEGEND_GAP,), header=HEADER, above=RANGES + BELOW
+        (1.1, 0.7), history=history, gaps=(LEGEND_GAP,), header=HEADER, above=RANGES + BELOW
     )
     box, boxes = case.container.height_m, case.container.boxes
     weight = 1e-3 * case.weight * (1.0 - np.arange(1, boxes) / boxes)
@@ -69,26 +66,22 @@ def joints_figure(run: OpenedRun) -> Figure | None:
     left, right = (np.maximum(0.0, -edge) for edge in edge_forces(normal, moment, 2.0 * half))
     beyond = np.maximum(0.0, np.abs(shear) - mu * np.maximum(normal, 0.0))
     zero_line(axes[0])
-    _draw_held(axes[0], time, left, "left edge", BLUE)
-    _draw_held(axes[0], time, right, "right edge", VERMILLION, sign=-1.0)
+    _draw_bolt_force(axes[0], time, left, "left edge", BLUE)
+    _draw_bolt_force(axes[0], time, right, "right edge", VERMILLION, sign=-1.0)
     keep_visible(axes[0], LEAST_FORCE)
     axes[0].yaxis.set_major_formatter(lambda value, position: f"{abs(value):g}")  # both are tension
-    _draw_held(axes[1], time, beyond, f"beyond μ = {number(mu)}", BLUE)
+    _draw_bolt_force(axes[1], time, beyond, f"beyond μ = {number(mu)}", BLUE)
     axes[1].set_ylim(0.0, max(1.08 * float(beyond.max()), LEAST_FORCE))
-    for panel, label in zip(axes, ("tension [kN]", "shear [kN]"), strict=False):
+    for panel, label in zip(axes, ("tension [kN]", "shear [kN]"), strict=True):
         panel.set_ylabel(label)
         legend_above(panel)
-    draw_states(axes[-1], history["time_s"], history.modes, states)
-    head(
-        figure,
-        "Joints between the boxes: forces over the height, and what bolts must hold",
-        status=run.status,
-    )
+    title = "Joints between the boxes: forces over the height, and what bolts must carry"
+    head(figure, title, status=run.status)
     return figure
 
 
 def _side_by_side(figure: Figure) -> list[Axes]:
-    """Three panels over the height above the floor, below the header."""
+    """Three panels side by side below the header, over the height above the floor."""
     wide, tall = figure.get_size_inches()
     each = (wide - LEFT - RIGHT - 2.0 * BETWEEN) / 3.0
     bottom = tall - 0.08 - HEADER * LINE - RANGES
@@ -104,7 +97,7 @@ def _side_by_side(figure: Figure) -> list[Axes]:
 def _draw_ranges(
     axes: Axes, box: float, forces: FloatArray, name: str, unit: str, marks: list[FloatArray]
 ) -> None:
-    """Of forces (J, n) a bar from the least to the largest for each joint, and what the weight above would give."""
+    """Bars from the least to the largest of forces (J, n), and marks of the forces from the weight above."""
     levels = box * np.arange(1, len(forces) + 1)
     low, high = forces.min(axis=1), forces.max(axis=1)
     usually = np.quantile(forces, USUAL, axis=1)
@@ -113,36 +106,26 @@ def _draw_ranges(
         ((low, high), SKY, "least to largest"),
         (usually, BLUE, "nine tenths of the time"),
     ):
-        axes.barh(
-            levels,
-            end - start,
-            left=start,
-            height=THICK * box,
-            color=colour,
-            edgecolor=colour,
-            linewidth=0.8,
-            label=label,
-        )
-    told: str | None = "weight above: N, ±μN, ±N × width/2"
+        bars = axes.barh(levels, end - start, left=start, height=THICK * box, label=label)
+        for bar in bars:
+            bar.set(color=colour, linewidth=0.8)
+    name_of_marks: str | None = "weight above: N, ±μN, ±N × width/2"
     for mark in marks:
-        axes.plot(mark, levels, "|", color=BLACK, markersize=11.0, markeredgewidth=1.2, label=told)
-        told = None
+        axes.plot(mark, levels, "|", color=BLACK, markersize=11.0, markeredgewidth=1.2, label=name_of_marks)
+        name_of_marks = None
     axes.set_ylim(0.0, box * (len(forces) + 1))
     axes.grid(visible=False, axis="y")
     axes.set_xlabel(f"{name} [{unit}]")
     axes.margins(x=0.06)
     joint = int(np.abs(forces).max(axis=1).argmax())
-    axes.set_title(
-        f"up to {number(np.abs(forces[joint]).max())} {unit}, at {number(levels[joint])} m",
-        fontsize=8.0,
-        pad=4.0,
-    )
+    largest = f"up to {number(np.abs(forces[joint]).max())} {unit}, at {number(levels[joint])} m"
+    axes.set_title(largest, fontsize=8.0, pad=4.0)
 
 
-def _draw_held(
+def _draw_bolt_force(
     axes: Axes, time: FloatArray, forces: FloatArray, name: str, colour: str, sign: float = 1.0
 ) -> None:
-    """Of forces (J, n), none of them negative, the largest at every instant, upwards or downwards."""
+    """The largest of forces (J, n) >= 0 at every instant, drawn upwards or, with `sign` -1, downwards."""
     largest = forces.max(axis=0)
     joint, instant = np.unravel_index(int(forces.argmax()), forces.shape)
     where = f": {number(largest[instant])} kN at most, joint {joint + 1}, {time[instant]:.3f} s"

@@ -1,4 +1,4 @@
-"""The figure of the elastic modes: each shape over the container at rest, with its frequency."""
+"""Figure of the elastic modes: each shape over the undeformed container, with its frequency."""
 
 import math
 
@@ -10,7 +10,7 @@ from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.edges import chained, outline_edges
 from fem.solid.modes import ElasticModes
 
-MOST = 20  #: modes that one figure shows
+MOST = 20  #: modes in one figure
 COLUMNS = 5
 AMPLITUDE = 0.12, 0.22  #: largest displacement drawn, over the longer and over the shorter side
 TALLEST = 2.6  #: panel [inch]
@@ -25,7 +25,7 @@ def modes_figure(
         points: undeformed nodes (n, 2) [m].
         cells: nodes of each cell in the order of VTK, shape (m, 4 or 9).
         modes: of these nodes.
-        boxes: bolted on one another.
+        boxes: of the stack.
         name: of the case, for the title.
     """
     shown = min(len(modes.frequencies_Hz), MOST)
@@ -54,10 +54,10 @@ def modes_figure(
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
         axes.set_title(f"{k + 1}: {number(modes.frequencies_Hz[k], 4)} Hz", loc="center", fontsize=8.5, pad=3)
     more = len(modes.frequencies_Hz) - shown
+    rest = f"; {more} more are in the table" if more else ""
     head(
         figure,
         f"Elastic modes of the free container{f', {name}' if name else ''}",
-        "blue: the shape, to one amplitude; dotted: undeformed"
-        + (f"; {more} more are in the table" if more else ""),
+        f"blue: the shape, to one amplitude; dotted: undeformed{rest}",
     )
     return figure

@@ -1,6 +1,6 @@
-"""The figures of a run: what the floor did, what the container did, and where the energy went.
+"""Figures of a run: floor motion, rotation, slip, uplift and phase portrait; the list of all figures.
 
-One function a figure; each takes an opened run and returns a matplotlib Figure. Titles say what one sees. Rotation in
+Each function takes an opened run and returns a matplotlib Figure, or None where the run has no such data. Rotation in
 degrees, lengths in mm, forces in kN; x to the right, rotation > 0 toward +x, forces on the container.
 """
 
@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from contact.stepping.observables import ROCKING
-from fem.assessment.summary import LEAST_DEGREES, LEAST_RATIO
+from fem.assessment.summary import LEAST_DEGREES, ratio_in_words
 from fem.assessment.verdict import SLIDING
 from fem.figures.checks import band_figure, rigid_check_figure
 from fem.figures.energy import energy_figure
@@ -28,14 +28,13 @@ from fem.figures.style import (
     GREY,
     LEGEND_GAP,
     NEAR_LIMIT,
+    PLANE,
     VERMILLION,
     WIDTH,
     Drawing,
-    draw_curve,
+    cursor_axes,
+    curve_panel,
     draw_limits,
-    draw_states,
-    follow_in_plane,
-    followed,
     head,
     house_style,
     keep_visible,
@@ -43,21 +42,20 @@ from fem.figures.style import (
     legend_above,
     number,
     panels,
-    states_of,
     svg_of,
     time_panels,
     title_of,
-    zero_line,
 )
 from fem.model.container import Container
 from fem.results.reader import OpenedRun
+from fem.runtime.arrays import FloatArray
 from fem.solid.modes import FEW, elastic_modes
 
 LEAST_MOTION = 1e-3  #: of the floor, on its axes [mm, m/s, m/s2]
 
 
 def figures_of(run: OpenedRun) -> dict[str, Figure]:
-    """Every figure that this run has, by name, in the order of reading.
+    """All figures of this run by name, in the order of reading.
 
     Raises:
         FolderError: the history is missing or damaged.
@@ -70,7 +68,7 @@ def figures_of(run: OpenedRun) -> dict[str, Figure]:
 
 
 def draw_all(run: OpenedRun, container: Container) -> list[Drawing]:
-    """The figures of a run and the elastic modes of its container, whether or not they took part, as SVG.
+    """The figures of a run as SVG, with the elastic modes of its container whatever the model.
 
     Raises:
         FolderError: the history is missing or damaged.
@@ -88,10 +86,9 @@ def draw_all(run: OpenedRun, container: Container) -> list[Drawing]:
 
 
 def _drawing(name: str, figure: Figure) -> Drawing:
-    svg = svg_of(figure)  # which lays the figure out
-    return Drawing(
-        name=name, title=title_of(figure) or name.replace("_", " "), followed=followed(figure), svg=svg
-    )
+    svg = svg_of(figure)  # lays the figure out
+    title = title_of(figure) or name.replace("_", " ")
+    return Drawing(name=name, title=title, cursor=cursor_axes(figure), svg=svg)
 
 
 def base_motion_figure(run: OpenedRun) -> Figure:
@@ -104,9 +101,7 @@ def base_motion_figure(run: OpenedRun) -> Figure:
         (axes[1], history["base_velocity_m_s"], "velocity [m/s]", GREEN),
         (axes[2], acceleration, "acceleration [m/s²]", VERMILLION),
     ):
-        zero_line(panel)
-        draw_curve(panel, history["time_s"], values, color=colour)
-        panel.set_ylabel(label)
+        curve_panel(panel, label, history["time_s"], (values, colour, "-", None))
         keep_visible(panel, LEAST_MOTION)
     peak, moved = float(np.abs(acceleration).max()), float(np.abs(displacement).max())
     for limit, style, name in (
@@ -117,25 +112,21 @@ def base_motion_figure(run: OpenedRun) -> Figure:
             draw_limits(axes[2], limit, f"{name} from {number(limit)} m/s²", color=BLACK, linestyle=style)
     if axes[2].get_legend_handles_labels()[0]:
         legend_above(axes[2])
-    still = peak == 0.0 and moved == 0.0
-    head(
-        figure,
-        "The floor stands still"
-        if still
-        else f"Motion of the floor: {number(moved)} mm and {number(peak)} m/s² at most",
-    )
+    title = f"Motion of the floor: {number(moved)} mm and {number(peak)} m/s² at most"
+    head(figure, title if peak or moved else "The floor stands still")
     return figure
 
 
 def rotation_figure(run: OpenedRun) -> Figure:
     """Rotation with the slenderness angle marked, the rigid block's beside it where there is one."""
-    history, verdict, angle = run.history, _verdict(run), math.degrees(run.slenderness_angle)
-    rotation, check = np.degrees(history["rotation_rad"]), run.rigid_check
-    figure, axes = _panel_with_states(run, "rotation [degrees]", legend=True)
-    draw_curve(axes, history["time_s"], rotation, color=BLUE, label=f"{run.case.solver.model} model")
+    verdict, angle = _verdict(run), math.degrees(run.slenderness_angle)
+    rotation, check = np.degrees(run.history["rotation_rad"]), run.rigid_check
+    figure, axes = _panel(run, rotation, "rotation [degrees]", f"{run.case.solver.model} model", legend=True)
     if check is not None:
         block = np.degrees(check["analytic_rotation_rad"])
-        draw_curve(axes, check["time_s"], block, color=VERMILLION, linestyle="--", label="rigid block")
+        curve_panel(
+            axes, "rotation [degrees]", check["time_s"], (block, VERMILLION, "--", "rigid block"), zero=False
+        )
     largest, rocking = float(np.abs(rotation).max()), ROCKING * angle
     if largest >= NEAR_LIMIT * angle:
         keep_visible(axes, 1.12 * angle)
@@ -143,17 +134,15 @@ def rotation_figure(run: OpenedRun) -> Figure:
     else:
         keep_visible(axes, 1.2 * rocking)
         if largest < 10.0 * rocking:
-            draw_limits(
-                axes, rocking, f"counts as rocking, ±{number(rocking, 2)}°", color=GREY, linestyle=":"
-            )
+            name = f"counts as rocking, ±{number(rocking, 2)}°"
+            draw_limits(axes, rocking, name, color=GREY, linestyle=":")
         axes.plot([], [], " ", label=f"slenderness angle ±{number(angle, 4)}°: far off the scale")
     _mark_impact(axes, verdict)
     legend_above(axes)
     found = math.degrees(verdict.get("max_rotation_rad") or math.radians(largest))
-    told = f"{number(found)}° at most, {number(found / angle)} of the slenderness angle"
-    if 0.0 < found < LEAST_DEGREES and found / angle < LEAST_RATIO:
-        told = f"< {LEAST_DEGREES:g}° at most, < {LEAST_RATIO:g} of the slenderness angle"
-    head(figure, f"Rotation: {told}", status=run.status)
+    largest_shown = f"< {LEAST_DEGREES:g}" if 0.0 < found < LEAST_DEGREES else number(found)
+    ratio = ratio_in_words(found / angle)
+    head(figure, f"Rotation: {largest_shown}° at most, {ratio} of the slenderness angle", status=run.status)
     return figure
 
 
@@ -162,9 +151,7 @@ def slip_figure(run: OpenedRun) -> Figure:
     verdict, slip = _verdict(run), 1e3 * run.history["slip_m"]
     limit = 1e3 * SLIDING * run.case.container.width_m
     small = bool(np.abs(slip).max() < 10.0 * limit)
-    figure, axes = _panel_with_states(run, "slip [mm]", legend=small)
-    zero_line(axes)
-    draw_curve(axes, run.history["time_s"], slip, color=BLUE)
+    figure, axes = _panel(run, slip, "slip [mm]", zero=True, legend=small)
     keep_visible(axes, 1.5 * limit)
     if small:
         draw_limits(axes, limit, f"counts as sliding, ±{number(limit, 2)} mm", color=GREY, linestyle=":")
@@ -173,41 +160,33 @@ def slip_figure(run: OpenedRun) -> Figure:
     travel = 1e3 * (verdict.get("slip_travel_m") or 0.0)
     left = verdict.get("residual_slip_m")  # the end may lie between two samples
     end = slip[-1] if left is None else 1e3 * left
-    head(
-        figure,
-        f"Slip: {_millimetres(largest)} at most, {_millimetres(end)} at the end, {_millimetres(travel)} travelled",
-        status=run.status,
-    )
+    title = f"Slip: {_millimetres(largest)} at most, {_millimetres(end)} at the end, {_millimetres(travel)} travelled"
+    head(figure, title, status=run.status)
     return figure
 
 
 def uplift_figure(run: OpenedRun) -> Figure:
-    """How high the lifted side of the base stands."""
+    """Uplift of the higher side of the base."""
     verdict, uplift = _verdict(run), 1e3 * run.history["uplift_m"]
     struck = verdict.get("first_impact_s") is not None
-    figure, axes = _panel_with_states(run, "uplift [mm]", legend=struck)
-    draw_curve(axes, run.history["time_s"], uplift, color=BLUE)
+    figure, axes = _panel(run, uplift, "uplift [mm]", legend=struck)
     axes.set_ylim(0.0, max(1.08 * float(uplift.max()), run.case.container.width_m))
     if struck:
         _mark_impact(axes, verdict)
         legend_above(axes)
     impacts, largest = verdict.get("impacts"), 1e3 * (verdict.get("max_uplift_m") or 0.0)
     count = "" if impacts is None else f", {impacts} impact{'' if impacts == 1 else 's'}"
-    title = (
-        f"Uplift of the base: {number(largest)} mm at most{count}"
-        if largest > 0.0
-        else "The base never opens"
-    )
-    head(figure, title, status=run.status)
+    title = f"Uplift of the base: {number(largest)} mm at most{count}"
+    head(figure, title if largest > 0.0 else "The base never opens", status=run.status)
     return figure
 
 
 def phase_portrait_figure(run: OpenedRun) -> Figure:
-    """Angular velocity over rotation, within the curve that a free rigid block returns from."""
+    """Angular velocity over rotation, with the curve within which a free rigid block returns."""
     angle, parameter = run.slenderness_angle, (run.result.get("static") or {}).get("frequency_parameter_1_s")
     rotation, rate = run.history["rotation_rad"], run.history["angular_velocity_rad_s"]
     figure, (axes,) = panels((4.0,), width=0.8 * WIDTH, header=2)
-    follow_in_plane(axes, "rotation", "rate", math.degrees(1.0))
+    axes.set_label(PLANE)  # for `cursor_axes`
     kept = kept_samples(rotation, rate)
     axes.plot(np.degrees(rotation[kept]), np.degrees(rate[kept]), color=BLUE, linewidth=0.7)
     axes.plot(*np.degrees([rotation[0], rate[0]]), "o", color=GREEN, label="start")
@@ -242,12 +221,18 @@ FIGURES: dict[str, Callable[[OpenedRun], Figure | None]] = {
 }
 
 
-def _panel_with_states(run: OpenedRun, label: str, *, legend: bool) -> tuple[Figure, Axes]:
-    """One panel over time, with room for a legend above and the states of motion below."""
-    states = states_of(run.history.modes)
-    figure, (axes, below) = time_panels((2.3,), states=states, header=2 if legend else 1)
-    axes.set_ylabel(label)
-    draw_states(below, run.history["time_s"], run.history.modes, states)
+def _panel(
+    run: OpenedRun,
+    values: FloatArray,
+    label: str,
+    name: str | None = None,
+    *,
+    legend: bool,
+    zero: bool = False,
+) -> tuple[Figure, Axes]:
+    """One curve over time with the states of motion below it, and room for a legend above."""
+    figure, (axes,) = time_panels((2.3,), history=run.history, header=2 if legend else 1)
+    curve_panel(axes, label, run.history["time_s"], (values, BLUE, "-", name), zero=zero)
     return figure, axes
 
 
@@ -256,12 +241,12 @@ def _verdict(run: OpenedRun) -> Mapping[str, Any]:
 
 
 def _millimetres(value: float) -> str:
-    """A slip as told in a title; what is below 0.01 mm is nobody's measure."""
+    """A slip in a title; below 0.01 mm it has no practical meaning."""
     return "< 0.01 mm" if 0.0 < abs(value) < 0.01 else f"{number(value)} mm"
 
 
 def _mark_impact(axes: Axes, verdict: Mapping[str, Any]) -> None:
-    """A line at the first impact, if there is one."""
+    """A line at the first impact, if any."""
     impact = verdict.get("first_impact_s")
     if impact is not None:
         label = f"first impact, {impact:.3f} s"

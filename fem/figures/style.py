@@ -1,11 +1,12 @@
-"""How figures look, and how they become SVG: one style, one palette, the same bytes for the same numbers.
+"""The style of all figures and their export as SVG: one palette, and the same bytes for the same numbers.
 
-Drawn through matplotlib's objects alone, without its global state. Colours are those of Okabe and Ito
-(https://jfly.uni-koeln.de/color/), told apart by the colour-blind; line styles differ as well, for paper in
-grey. Units are those of people: mm, kN, degrees, s.
+Drawn through matplotlib's objects, without its global state. Colours are those of Okabe and Ito
+(https://jfly.uni-koeln.de/color/), distinguishable by the colour-blind; line styles differ as well, for print in
+grey. Units are mm, kN, degrees and s.
 """
 
 import io
+import math
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -18,17 +19,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from fem.results.history import History
 from fem.runtime.arrays import FloatArray
 
 BLACK, GREY = "#222222", "#6E6E6E"
-BLUE, VERMILLION, GREEN, ORANGE, SKY, PURPLE = (
-    "#0072B2",
-    "#D55E00",
-    "#009E73",
-    "#E69F00",
-    "#56B4E9",
-    "#CC79A7",
-)
+BLUE, VERMILLION, GREEN = "#0072B2", "#D55E00", "#009E73"
+ORANGE, SKY, PURPLE = "#E69F00", "#56B4E9", "#CC79A7"
 #: of the states of motion; sky and orange, green and purple also differ in brightness
 STATE_COLOURS = {
     "rest": "#BBBBBB",
@@ -39,7 +35,7 @@ STATE_COLOURS = {
 }
 WIDTH = 7.0  #: of a figure [inch], the text width of an A4 page
 LEFT, RIGHT, FOOTER = 0.8, 0.15, 0.45  #: margins [inch]
-GAP, LEGEND_GAP = 0.1, 0.3  #: between panels, without and with a legend in between [inch]
+GAP, LEGEND_GAP = 0.1, 0.3  #: between panels, without and with a legend [inch]
 COORDINATE = re.compile(r"(?<=\.\d\d)\d+")  #: digits beyond a hundredth of a point
 LINE = 0.21  #: height of a line of text above the panels [inch]
 STYLE: dict[Any, Any] = {
@@ -71,16 +67,25 @@ STYLE: dict[Any, Any] = {
 }
 TIME = "time [s]"
 PLANE = "plane"
-NEAR_LIMIT = (
-    0.15  #: share of the slenderness angle, or of the energy to overturn, from which it is drawn to scale
-)
+#: share of the slenderness angle, or of the energy to overturn, from which that limit is drawn to scale
+NEAR_LIMIT = 0.15
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 STRETCHES = 800  #: of a long curve, each drawn by its extremes: finer than print
 
 
+@dataclass(frozen=True, kw_only=True)
+class Drawing:
+    """A figure as SVG."""
+
+    name: str
+    title: str
+    cursor: dict[str, Any] | None  #: where a cursor moves over it, see `cursor_axes`
+    svg: str  #: the text of the file
+
+
 @contextmanager
 def house_style() -> Iterator[None]:
-    """Everything drawn within looks alike, whatever the user's own settings."""
+    """Draw in this style, whatever the user's settings of matplotlib."""
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(STYLE)
@@ -97,7 +102,7 @@ def panels(
     footer: float = FOOTER,
     above: float = 0.0,
 ) -> tuple[Figure, list[Axes]]:
-    """A figure of panels one below the other, all as wide, at places known beforehand.
+    """A figure of panels of equal width, one below the other, at fixed positions.
 
     Args:
         heights: of the panels [inch], downwards.
@@ -106,7 +111,7 @@ def panels(
         width: of the figure [inch].
         right: margin beside the panels [inch].
         footer: below the last panel [inch].
-        above: room between header and first panel, for panels of another kind [inch].
+        above: space between header and first panel, for other panels [inch].
     """
     gaps = gaps or [GAP] * (len(heights) - 1)
     tall = 0.08 + header * LINE + above + sum(heights) + sum(gaps) + footer
@@ -123,20 +128,24 @@ def panels(
 def time_panels(
     heights: Sequence[float],
     *,
-    states: Sequence[str] = (),
+    history: History | None = None,
     gaps: Sequence[float] = (),
     header: int = 2,
     above: float = 0.0,
 ) -> tuple[Figure, list[Axes]]:
-    """Panels over a common time, with a low one for the states of motion below them if there are any.
+    """Panels over a common time axis.
 
     Args:
         heights: of the panels [inch], downwards.
-        states: names of the states that have a row in the lowest panel.
-        gaps: between the panels [inch], that to the states left out.
+        history: its states of motion are drawn in a low panel below the others; None draws none.
+        gaps: between the panels [inch].
         header: lines of text above the first panel.
-        above: room between them and it [inch].
+        above: space between header and first panel [inch].
+
+    Returns:
+        The figure and its panels, without that of the states.
     """
+    states = [] if history is None else [state for state in STATE_COLOURS if state in set(history.modes)]
     rows = [*heights, *([0.06 + 0.14 * len(states)] if states else [])]
     spaces = [*(gaps or [GAP] * (len(heights) - 1)), *([GAP] if states else [])]
     figure, axes = panels(rows, gaps=spaces, header=header, above=above)
@@ -145,12 +154,39 @@ def time_panels(
         upper.tick_params(labelbottom=False)
     axes[-1].set_xlabel(TIME)
     for panel in axes[: len(heights)]:
-        follow_over_time(panel)
-    return figure, axes
+        panel.set_label(TIME)  # for `cursor_axes`
+    if history is not None and states:
+        _draw_states(axes[-1], history["time_s"], history.modes, states)
+    return figure, axes[: len(heights)]
+
+
+def curve_panel(
+    axes: Axes,
+    label: str,
+    time: FloatArray,
+    *curves: tuple[FloatArray, str, str, str | None],
+    zero: bool = True,
+    **style: Any,
+) -> None:
+    """Draw curves over time into a panel.
+
+    Args:
+        axes: the panel; label: of its vertical axis, with the unit.
+        time: of the samples, shape (n,) [s].
+        curves: values (n,), colour, line style, and name in the legend.
+        zero: draw a line at zero.
+        style: of all curves.
+    """
+    axes.set_ylabel(label)
+    if zero:
+        zero_line(axes)
+    for values, colour, line, name in curves:
+        kept = kept_samples(values)
+        axes.plot(time[kept], values[kept], color=colour, linestyle=line, label=name, **style)
 
 
 def head(figure: Figure, title: str, statement: str = "", *, status: str = "completed") -> None:
-    """Title, with a word on a run that is not whole, and below it a statement in smaller letters."""
+    """Title, with the status of an unfinished run, and below it a statement in smaller letters."""
     title = title if status in ("completed", "overturned") else f"{title} ({status})"
     width, height = figure.get_size_inches()
     for row, (text, size, colour) in enumerate(((title, 10.0, BLACK), (statement, 8.0, GREY))):
@@ -160,14 +196,14 @@ def head(figure: Figure, title: str, statement: str = "", *, status: str = "comp
 
 
 def legend_above(axes: Axes, columns: int = 4) -> None:
-    """In one row right above a panel, where it hides nothing."""
+    """Legend above a panel, where it hides nothing."""
     axes.legend(
         loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.1, handlelength=2.4
     )
 
 
-def draw_states(axes: Axes, time: FloatArray, modes: Sequence[str], states: Sequence[str]) -> None:
-    """A row for each state, filled while the container is in it; a state that lasts one sample still shows."""
+def _draw_states(axes: Axes, time: FloatArray, modes: Sequence[str], states: Sequence[str]) -> None:
+    """One row for each state, filled while the container is in it; a state of one sample is visible."""
     names = np.asarray(modes)
     ends = np.append(time[1:], time[-1])
     for row, state in enumerate(states):
@@ -184,16 +220,10 @@ def draw_states(axes: Axes, time: FloatArray, modes: Sequence[str], states: Sequ
     axes.grid(visible=False, axis="y")
 
 
-def states_of(modes: Sequence[str]) -> list[str]:
-    """States that a history passes through, in their order."""
-    seen = set(modes)
-    return [state for state in STATE_COLOURS if state in seen]
-
-
 def kept_samples(*columns: FloatArray) -> NDArray[np.int64]:
-    """Samples that draw the same curves: of every stretch the ends and the extremes of each column.
+    """Indices of samples that draw the same curves: the ends and the extremes of each column in every stretch.
 
-    No peak is lost, and what is drawn are true samples. Columns of few samples are kept whole.
+    No peak is lost, and only true samples are drawn. Short columns are kept whole.
     """
     count = len(columns[0])
     length = -(-count // STRETCHES)
@@ -209,12 +239,6 @@ def kept_samples(*columns: FloatArray) -> NDArray[np.int64]:
     return np.unique(np.minimum(np.concatenate(kept), count - 1))
 
 
-def draw_curve(axes: Axes, time: FloatArray, values: FloatArray, **style: Any) -> None:
-    """A curve over time, of as many samples as print can show."""
-    kept = kept_samples(values)
-    axes.plot(time[kept], values[kept], **style)
-
-
 def draw_limits(axes: Axes, value: float, label: str, **style: Any) -> None:
     """Lines at plus and minus a limit, with one entry in the legend."""
     for place, name in ((value, label), (-value, None)):
@@ -222,94 +246,67 @@ def draw_limits(axes: Axes, value: float, label: str, **style: Any) -> None:
 
 
 def zero_line(axes: Axes) -> None:
-    """Where nothing is."""
+    """A thin line at zero."""
     axes.axhline(0.0, color=GREY, linewidth=0.7)
 
 
 def number(value: float, digits: int = 3) -> str:
-    """A number for people: 1350 rather than 1.35e+03, 2 × 10⁻⁵ rather than 2e-05, a minus and not a hyphen."""
+    """A number for text: 1350 for 1.35e+03, 2 × 10⁻⁵ for 2e-05, with a minus sign for a hyphen."""
     mantissa, power, exponent = f"{float(f'{value:.{digits}g}'):.{max(digits, 6)}g}".partition("e")
     tens = f" × 10{str(int(exponent)).translate(SUPERSCRIPTS)}" if power else ""
     return mantissa.replace("-", "−") + tens
 
 
 def keep_visible(axes: Axes, least: float) -> None:
-    """Let the vertical axis reach at least from -least to least, so that rounding does not look like motion."""
+    """Extend the vertical axis to at least ± least, so that rounding does not look like motion."""
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, -least), max(high, least))
 
 
 def title_of(figure: Figure) -> str:
-    """What `head` wrote above a figure; empty where it wrote nothing."""
+    """Title that `head` wrote above a figure; empty without one."""
     return next((text.get_text() for text in figure.texts if text.get_text()), "")
 
 
 def svg_of(figure: Figure) -> str:
-    """A figure as an SVG document, the same bytes for the same drawing.
-
-    Args:
-        figure: drawn in the house style.
-    """
+    """A figure, drawn in the house style, as an SVG document; the same bytes for the same drawing."""
     stream = io.StringIO()
     with house_style():
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     return re.sub(r' d="[^"]*"', lambda path: COORDINATE.sub("", path[0]), stream.getvalue())
 
 
-def follow_over_time(axes: Axes) -> None:
-    """Let a cursor show the instant on a panel over time."""
-    axes.set_label(TIME)
+def cursor_axes(figure: Figure) -> dict[str, Any] | None:
+    """Axes over which a cursor moves, as shares of the figure's width and height from the lower left; None without.
 
-
-def follow_in_plane(axes: Axes, across: str, up: str, factor: float) -> None:
-    """Let a cursor show where the motion is in a plane of two quantities.
-
-    Args:
-        axes: of the plane.
-        across, up: the quantities, by the names that the player of a report gives them.
-        factor: from their SI units to those of the axes.
+    Reads the labels of the axes: `TIME`, or `PLANE` for the phase portrait. Call it after `svg_of`, which lays the
+    figure out. A cursor over time spans all panels over time.
     """
-    axes.set_label(" ".join((PLANE, across, up, repr(factor))))
-
-
-def followed(figure: Figure) -> dict[str, Any] | None:
-    """Where a cursor moves over a figure, in shares of its width and height from the lower left.
-
-    Asked after `svg_of`, which lays the figure out. A cursor over time spans all panels over time.
-    """
-    marked = [(axes, str(axes.get_label())) for axes in figure.axes]
-    over_time = [axes for axes, mark in marked if mark == TIME]
-    plane = next(((axes, mark.split()) for axes, mark in marked if mark.startswith(PLANE)), None)
-    if over_time:
-        boxes = [axes.get_position() for axes in over_time]
-        return {
-            "kind": "time",
-            "left": boxes[0].x0,
-            "right": boxes[0].x1,
-            "top": max(box.y1 for box in boxes),
-            "bottom": min(box.y0 for box in boxes),
-            "x": list(over_time[0].get_xlim()),
-        }
-    if plane is None:
+    over_time = [axes for axes in figure.axes if axes.get_label() == TIME]
+    found = over_time or [axes for axes in figure.axes if axes.get_label() == PLANE]
+    if not found:
         return None
-    axes, (_, across, up, factor) = plane
-    box = axes.get_position()
-    return {
-        "kind": "plane",
-        "left": box.x0,
-        "right": box.x1,
-        "top": box.y1,
-        "bottom": box.y0,
-        "x": list(axes.get_xlim()),
-        "y": list(axes.get_ylim()),
-        "horizontal": across,
-        "vertical": up,
-        "factors": [float(factor), float(factor)],
+    boxes = [axes.get_position() for axes in found]
+    place = {
+        "kind": "time" if over_time else "plane",
+        "left": boxes[0].x0,
+        "right": boxes[0].x1,
+        "top": max(box.y1 for box in boxes),
+        "bottom": min(box.y0 for box in boxes),
+        "x": list(found[0].get_xlim()),
+    }
+    if over_time:
+        return place
+    return place | {
+        "y": list(found[0].get_ylim()),
+        "horizontal": "rotation",  # by the names that the player of a report gives them
+        "vertical": "rate",
+        "factors": [math.degrees(1.0)] * 2,  # from SI units to those of the axes
     }
 
 
 def _joined(starts: FloatArray, ends: FloatArray, gap: float) -> list[tuple[float, float]]:
-    """Spans as (start, length), those nearer to one another than print can show made one."""
+    """Spans as (start, length); spans closer than `gap` are joined."""
     spans: list[list[float]] = []
     for start, end in zip(starts.tolist(), ends.tolist(), strict=True):
         if spans and start - spans[-1][1] < gap:
@@ -317,13 +314,3 @@ def _joined(starts: FloatArray, ends: FloatArray, gap: float) -> list[tuple[floa
         else:
             spans.append([start, end])
     return [(start, max(end - start, gap)) for start, end in spans]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Drawing:
-    """A figure as SVG."""
-
-    name: str
-    title: str
-    followed: dict[str, Any] | None  #: where a cursor moves over it, see `followed`
-    svg: str  #: the text of the file

@@ -1,6 +1,6 @@
-"""What a case's container is made of: mesh, elements, supporting nodes, elastic modes.
+"""The container of a case, discretised: mesh, elements, contact nodes, elastic modes.
 
-It is the same whatever floor it stands on and however that moves, so many cases share one.
+It does not depend on the floor or its motion, so many cases share one.
 """
 
 import math
@@ -11,40 +11,40 @@ import numpy as np
 from contact.interface.support import Support
 from fem.case.case import Case
 from fem.model.geometry import build_container, node_count
-from fem.model.required_memory import require_memory
 from fem.model.support import build_support
+from fem.model.validity import require_memory
 from fem.runtime.arrays import IntArray
 from fem.runtime.threads import use_one_blas_thread
+from fem.solid.array_cache import ArrayCache, no_cache
 from fem.solid.assembly import FiniteElements, assemble
 from fem.solid.modes import elastic_modes
 from fem.solid.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
-from fem.solid.setup_parts import Parts
 from mesh.container import ContainerMesh
 from mesh.region import Region
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Container:
-    """What a case's container is made of, whatever floor it stands on and however that moves."""
+    """A discretised container; it does not depend on the floor or its motion."""
 
     mesh: ContainerMesh
     elements: FiniteElements
     support: Support
     nodes: IntArray  #: (n_c,) contact nodes, those of the base first, by rising x
-    monitors: IntArray  #: (n_m,) nodes that are followed
+    monitors: IntArray  #: (n_m,) nodes whose motion is observed
     response: StaticResponse
     basis: ReducedBasis | None  #: elastic modes, of a reduced model
     damping: float  #: a of C = a K [s]
     first: float  #: lowest elastic angular frequency; infinite for a rigid container [rad/s]
 
 
-def discretise(case: Case, mesh: ContainerMesh | None = None, parts: Parts | None = None) -> Container:
-    """Elements, supporting nodes and elastic modes of a case's container.
+def discretise(case: Case, mesh: ContainerMesh | None = None, cache: ArrayCache = no_cache) -> Container:
+    """Build elements, contact nodes and elastic modes of a case's container.
 
     Args:
         case: what to build.
-        mesh: its mesh, built before.
-        parts: may keep what takes long.
+        mesh: of the container, where it is built already.
+        cache: of the arrays that take long to compute.
 
     Raises:
         CaseError, MeshError: bad input.
@@ -60,15 +60,15 @@ def discretise(case: Case, mesh: ContainerMesh | None = None, parts: Parts | Non
         order=case.solver.order,
     )
     nodes = elements.base_nodes[support.index]
-    if not case.output.stop_when_overturned:  # it will come to lie on its side: the upper corners touch too
+    if not case.output.stop_when_overturned:  # lying on its side it touches with the upper corners, too
         nodes = np.concatenate([nodes, _upper_corners(elements)])
-    response = static_response(elements, nodes, parts)
+    response = static_response(elements, nodes, cache)
     basis, first, damping = None, math.inf, 0.0
     if case.solver.model == "reduced":
-        basis = reduced_basis(elements, response, case.solver.elastic_modes, parts)
+        basis = reduced_basis(elements, response, case.solver.elastic_modes, cache)
         first = float(basis.angular_frequencies[0])
     elif case.solver.model == "full":
-        first = float(elastic_modes(elements, 1, parts).angular_frequencies[0])
+        first = float(elastic_modes(elements, 1, cache).angular_frequencies[0])
     if math.isfinite(first):
         damping = 2.0 * case.container.damping_ratio / first
     return Container(
@@ -91,7 +91,7 @@ def _upper_corners(elements: FiniteElements) -> IntArray:
 
 
 def _monitors(elements: FiniteElements) -> IntArray:
-    """Nodes to follow: the two upper corners, then the middle and the outermost nodes of the contents."""
+    """Nodes to observe: the two upper corners, then the middle and the outermost nodes of the contents."""
     contents = np.isin(elements.region, (Region.FILL, Region.SOLID))
     held = np.unique(elements.cells[contents] if contents.any() else elements.cells)
     x, z = elements.nodes[held].T

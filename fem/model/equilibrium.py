@@ -1,5 +1,6 @@
-"""How a container stands on its floor before that moves: contact, body, settled stance."""
+"""Static equilibrium of a container on its floor before the floor moves: contact, body, settled stance."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,9 +12,10 @@ from contact.interface.solver import Contact
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from fem.case.case import Case, CaseError
 from fem.model.container import Container
-from fem.model.crushing import require_uncrushed
-from fem.model.support import normal_penalty, require_firm_floor
+from fem.model.support import normal_penalty
+from fem.model.validity import require_stiff_contact, require_stiff_container
 from fem.runtime.arrays import FloatArray
+from fem.solid.elasticity import least_principal_strain
 from fem.solid.nodal_body import FullBody
 from mesh.container import ContainerMesh
 
@@ -22,25 +24,27 @@ POINT_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Footing:
-    """How a container stands on its floor before that moves."""
+class Equilibrium:
+    """A container at rest on its floor, at t = 0 with the floor at x = 0."""
 
-    penalty: float  #: [Pa/m]
+    penalty: float  #: normal stiffness over width times depth [Pa/m]
     contact: Contact
     body: ModalBody | FullBody
-    stance: Stance  #: the floor being at x = 0
+    stance: Stance
 
 
-def set_down(case: Case, container: Container) -> Footing:
-    """Put the container on the floor, settled; models of it share a body's scratch: step one at a time.
+def find_equilibrium(case: Case, container: Container) -> Equilibrium:
+    """Settle the container on the floor under its weight.
+
+    Models of one equilibrium share the scratch arrays of its body: step one at a time.
 
     Raises:
-        CaseError: no equilibrium at the start, or one that crushes the container.
+        CaseError: no equilibrium at the start, or one that sinks or crushes the container.
     """
     penalty = normal_penalty(case, container.mesh)
     springs = container.support.normal_stiffness(penalty)
     base = springs.size
-    require_firm_floor(case, container.mesh, float(springs.sum()))
+    require_stiff_contact(case, container.mesh, float(springs.sum()))
     springs = np.concatenate([springs, np.full(container.nodes.size - base, 0.5 * springs.sum())])
     contact = _contact(case, container.mesh, springs, base)
     try:
@@ -48,19 +52,26 @@ def set_down(case: Case, container: Container) -> Footing:
     except SettlingError as error:
         raise CaseError(f"[initial] no equilibrium at the start: {error}") from error
     if case.solver.model != "rigid":
-        force = stance.with_points(container.nodes.size).force
-        require_uncrushed(case, container.elements, container.response, stance.rotation, force)
-    return Footing(penalty=penalty, contact=contact, body=_body(case, container, contact), stance=stance)
+        require_stiff_container(case, _compression(container, stance))
+    return Equilibrium(penalty=penalty, contact=contact, body=_body(case, container, contact), stance=stance)
 
 
-def stands_like(case: Case, other: Case) -> bool:
-    """Whether two cases of one container have the same footing."""
+def same_equilibrium(case: Case, other: Case) -> bool:
+    """Whether two cases of one container share an equilibrium."""
     return (
         case.contact == other.contact
         and case.initial == other.initial
         and case.gravity_m_s2 == other.gravity_m_s2
         and case.solver.model == other.solver.model
     )
+
+
+def _compression(container: Container, stance: Stance) -> float:
+    """Largest compressive strain of the container under its contact forces [-]."""
+    cosine, sine = math.cos(stance.rotation), math.sin(stance.rotation)
+    force = stance.with_points(container.nodes.size).force @ np.array([[cosine, sine], [-sine, cosine]])
+    displacement = np.tensordot(force.ravel(), container.response.displacement, axes=1)
+    return -least_principal_strain(container.elements.displacement_gradient(displacement))
 
 
 def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) -> Contact:

@@ -1,7 +1,7 @@
-"""From a case to what is stepped: a container, set down on its floor, with its motion, limits and initial state.
+"""From a case to the model that is stepped: container, equilibrium on the floor, base motion, limits, initial state.
 
-Everything "auto" is decided here and in what this calls, once, whatever the model; `full`, `reduced` and `rigid` differ
-in the body alone.
+Every "auto" is decided here and in the functions called here, once and for every kind of model; `full`, `reduced` and
+`rigid` differ in the body alone.
 """
 
 import math
@@ -17,20 +17,20 @@ from contact.motion.base_motion import BaseMotion
 from contact.motion.kernel import floor_motion
 from contact.stepping import modal_body
 from contact.stepping.body import State, make_state
+from contact.stepping.ledger import spring_energy
 from contact.stepping.modal_body import ModalBody
-from contact.stepping.observables import begin
+from contact.stepping.observables import record_start
 from contact.stepping.state import Run, make_run, make_samples
 from fem.case.case import Case
 from fem.model.container import Container, discretise
-from fem.model.equilibrium import Footing, set_down
-from fem.model.firm_start import require_firm_start
+from fem.model.equilibrium import Equilibrium, find_equilibrium
 from fem.model.motion import build_motion, peak_acceleration_within
-from fem.model.static_checks import StaticChecks, static_checks
+from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.step_size import control_of, largest_step_of, scheme_of
+from fem.model.validity import require_stiff_corner
 from fem.runtime.arrays import FloatArray
 from fem.solid.nodal_body import FullBody
 from fem.solid.reduction import StaticResponse
-from mesh.container import ContainerMesh
 
 HISTORY_CHUNK, FRAME_CHUNK = 1024, 64
 #: .. of the full model, whose coordinates are many
@@ -43,7 +43,7 @@ class Model:
 
     case: Case
     container: Container
-    footing: Footing
+    equilibrium: Equilibrium
     motion: BaseMotion
     static: StaticChecks
     run: Run
@@ -51,12 +51,12 @@ class Model:
     @property
     def penalty(self) -> float:
         """Normal stiffness of the base over width times depth [Pa/m]."""
-        return self.footing.penalty
+        return self.equilibrium.penalty
 
     @property
     def body(self) -> ModalBody | FullBody:
         """What is stepped."""
-        return self.footing.body
+        return self.equilibrium.body
 
     @property
     def base_stiffness(self) -> float:
@@ -72,35 +72,40 @@ class Model:
         return np.array([first / (2.0 * np.pi)]) if math.isfinite(first) else np.zeros(0)
 
 
-def build_model(case: Case, container: Container | None = None, footing: Footing | None = None) -> Model:
-    """Discretise a case and put it on its floor, unless that is given, settled, at t = 0.
+def build_model(
+    case: Case, container: Container | None = None, equilibrium: Equilibrium | None = None
+) -> Model:
+    """Discretise a case, settle it on its floor and write its initial state.
 
     Args:
         case: what to build.
-        container: its container, built before.
-        footing: how that container stands, where `stands_like` says that it is the same.
+        container: of the case, where it is built already.
+        equilibrium: of that container, where `same_equilibrium` allows its reuse.
 
     Raises:
         CaseError, MeshError: bad input, no equilibrium at the start.
     """
     motion = build_motion(case)
-    if container is None:
-        container = discretise(case)
-    footing = footing or set_down(case, container)
-    mesh, nodes, contact, body = container.mesh, container.nodes, footing.contact, footing.body
-    static = checks_of(case, mesh, motion)
+    container = container or discretise(case)
+    equilibrium = equilibrium or find_equilibrium(case, container)
+    mesh, nodes = container.mesh, container.nodes
+    contact, body = equilibrium.contact, equilibrium.body
+    static = static_checks_of(case, mesh, peak_acceleration_within(motion, case.solver.duration_s))
     largest, breaks = largest_step_of(case, static, motion)
     control = control_of(case, container, static, largest, contact)
-    scheme = scheme_of(case, container, footing.penalty, control, contact)
+    scheme = scheme_of(case, container, equilibrium.penalty, control, contact)
     full = isinstance(body, FullBody)
     coordinates = body.coordinates if isinstance(body, FullBody) else 3 + body.stiffness.size
     old, new = (make_state(coordinates, nodes.size, container.monitors.size) for _ in range(2))
     compiled_motion = motion.compiled()
     floor, floor_velocity, _ = floor_motion(compiled_motion, 0.0)
     drift = floor_velocity if case.motion.start == "moving" else 0.0
-    _place(body, old, footing.stance.moved(floor), container.response, floor, drift, contact)
-    require_firm_start(
-        case, width=mesh.width, reference_energy=control.reference_energy, contact=contact, start=old
+    _place(body, old, equilibrium.stance.moved(floor), container.response, floor, drift, contact)
+    require_stiff_corner(
+        case,
+        width=mesh.width,
+        depth=float(-old.point[:, 1].min()),
+        stored=float(spring_energy(contact, old.point, old.stick)) / control.reference_energy,
     )
     interval, fields = case.output.history_s, case.output.fields_s
     stacked = case.container.boxes > 1  # the forces in its joints follow from the motion
@@ -129,27 +134,9 @@ def build_model(case: Case, container: Container | None = None, footing: Footing
             velocity=coordinates if fields > 0.0 else 0,
         ),
     )
-    begin(run.track[0], control, old)
-    return Model(case=case, container=container, footing=footing, motion=motion, static=static, run=run)
-
-
-def checks_of(case: Case, mesh: ContainerMesh, motion: BaseMotion) -> StaticChecks:
-    """Static checks of the meshed container under its own motion."""
-    return static_checks(
-        mass=mesh.mass,
-        centroid=mesh.centroid[1],
-        inertia=mesh.inertia,
-        width=mesh.width,
-        gravity=case.gravity_m_s2,
-        mu_static=case.contact.mu_static,
-        mu_kinetic=case.contact.mu_kinetic,
-        peak_floor_acceleration=peak_acceleration_within(motion, case.solver.duration_s),
-        ground_acceleration=case.static.ground_acceleration_m_s2,
-        soil_factor=case.static.soil_factor,
-        corner_period=case.static.corner_period_s,
-        behaviour_factor=case.static.behaviour_factor,
-        importance_factor=case.static.importance_factor,
-        initial_rotation=case.initial.rotation_rad,
+    record_start(run.track[0], control, old)
+    return Model(
+        case=case, container=container, equilibrium=equilibrium, motion=motion, static=static, run=run
     )
 
 

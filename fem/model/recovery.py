@@ -21,7 +21,7 @@ ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Frame:
+class NodalFields:
     """Fields at one instant, n nodes."""
 
     displacement: FloatArray  #: (n, 2) from the undeformed place, absolute [m]
@@ -40,12 +40,12 @@ class Recovery:
     angular_frequencies: FloatArray  #: (m,) of the modes [rad/s]
     _stress: FloatArray = field(repr=False)  # (3, m, n) stress of each mode
 
-    def frame(self, position: FloatArray, velocity: FloatArray) -> Frame:
+    def frame(self, position: FloatArray, velocity: FloatArray) -> NodalFields:
         """Fields for one row of coordinates and their rates."""
         nodes = self.elements.nodes
         if self.full:
             displacement = position.reshape(-1, 2) - nodes
-            return Frame(
+            return NodalFields(
                 displacement=displacement,
                 velocity=velocity.reshape(-1, 2),
                 von_mises=self.elements.nodal_von_mises(displacement),
@@ -55,7 +55,7 @@ class Recovery:
         arm = (nodes - self.centroid + np.tensordot(position[3:], self.shapes, axes=1)) @ turn.T
         elastic_rate = np.tensordot(velocity[3:], self.shapes, axes=1) @ turn.T
         spin = velocity[2] * np.column_stack([arm[:, 1], -arm[:, 0]])
-        return Frame(
+        return NodalFields(
             displacement=position[:2] + arm - nodes,
             velocity=velocity[:2] + spin + elastic_rate,
             von_mises=von_mises(position[3:] @ self._stress) if len(self.shapes) else None,

@@ -7,8 +7,6 @@ from fem.model.geometry import base_positions
 from fem.model.static_checks import slenderness_angle
 from mesh.container import ContainerMesh
 
-MOST_SUNK = 0.1  #: of its width or height, that a container may sink in by its weight
-
 
 def build_support(case: Case, mesh: ContainerMesh) -> Support:
     """The base nodes that may touch the floor, each with its share of the base.
@@ -28,31 +26,6 @@ def build_support(case: Case, mesh: ContainerMesh) -> Support:
         )
     except ValueError as error:
         raise CaseError(str(error)) from error
-
-
-def require_firm_floor(case: Case, mesh: ContainerMesh, stiffness: float) -> None:
-    """Refuse a floor so soft that the container would sink in by a good part of itself before anything moves.
-
-    Args:
-        case: penalty and gravity count; mesh: of its container.
-        stiffness: of the whole base [N/m].
-
-    Raises:
-        CaseError: with how far it would sink in.
-    """
-    weight, size = mesh.mass * case.gravity_m_s2, min(mesh.width, mesh.height)
-    if weight <= MOST_SUNK * size * stiffness:
-        return
-    sunk = f"{weight / stiffness:.3g} m" if stiffness > 0.0 else "without end"
-    chosen = (
-        '"auto" follows container.youngs_modulus_Pa'
-        if case.contact.normal_penalty_Pa_m == "auto"
-        else '"auto" chooses it'
-    )
-    raise CaseError(
-        f"[contact] normal_penalty_Pa_m = {normal_penalty(case, mesh):.3g} Pa/m: the container would sink in by {sunk} "
-        f"under its weight alone, at most {MOST_SUNK:g} of its smaller dimension, {size:g} m, is taken; {chosen}"
-    )
 
 
 def normal_penalty(case: Case, mesh: ContainerMesh) -> float:

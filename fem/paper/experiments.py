@@ -11,7 +11,8 @@ from typing import Any
 
 from contact.jit import is_compiled
 from fem.batch.case_maker import CaseMaker
-from fem.batch.runner import Shelf, run_cases
+from fem.batch.container_cache import ContainerCache
+from fem.batch.runner import run_cases
 from fem.case.case import Case
 from fem.model.model import Model, build_model
 from fem.model.support import normal_penalty
@@ -49,7 +50,7 @@ class Record:
 
     @property
     def track(self) -> Any:
-        """Extremes and events, see `contact.stepping.observables.TRACK`."""
+        """Extremes and events, see `contact.stepping.observables.OBSERVABLES`."""
         return self.model.run.track[0]
 
 
@@ -72,7 +73,7 @@ class Laboratory:
         self._jobs = jobs
         self._progress = progress
         self._stop = stop
-        self._shelf = Shelf()
+        self._containers = ContainerCache()
         self._makers: dict[str, CaseMaker] = {}
         self._rows: dict[Any, Row] = {}
         self._records: dict[Any, Record] = {}
@@ -80,7 +81,7 @@ class Laboratory:
 
     def warm_up(self, tell: Callable[[str], None]) -> None:
         """Have the kernels of rigid container and shell compiled and loaded before a statement's clock starts."""
-        if not is_compiled("_advance_rows"):
+        if not is_compiled("advance_in_slices"):
             tell("compiling the stepping kernels, once after installation: some minutes")
         for model in ("rigid", "reduced"):
             values = {"solver.model": model, "solver.duration_s": 0.01, "output.history_s": 0.01}
@@ -164,12 +165,12 @@ class Laboratory:
     def model(self, setup: Setup) -> Model:
         """What is stepped, at t = 0."""
         case = self.case(setup)
-        return build_model(case, self._shelf.container_of(case))
+        return build_model(case, self._containers.container_of(case))
 
     def penalty(self, setup: Setup) -> float:
         """Normal penalty of a setup, chosen or given [Pa/m]."""
         case = self.case(setup)
-        return normal_penalty(case, self._shelf.container_of(case).mesh)
+        return normal_penalty(case, self._containers.container_of(case).mesh)
 
     def variants(self, setup: Setup) -> list[Setup]:
         """The rigid container and the shell: on corners of three penalties and two dampings, on feet, flat."""

@@ -18,8 +18,8 @@ from fem.paper.index import GROUPS, UNTRIED, all_statements
 from fem.paper.page import study_page
 from fem.results.disk import require_room
 from fem.results.lock import LOCK_NAME, FolderLock
+from fem.results.lock import locked_folder as held
 from fem.results.run_folder import FolderError, to_json, write_atomically
-from fem.run.run import held
 from fem.runtime.identity import PACKAGES, versions
 
 #: keeps the first guess of the pace from jumping [s]

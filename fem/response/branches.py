@@ -1,7 +1,7 @@
 """What two sweeps over the same frequencies show: coexisting motions, jumps, drop-outs.
 
-Two motions at one frequency count as different where one overturned and the other did not, where they are of another
-kind, or where their largest rotations or slip strokes lie further apart than they vary within their own windows.
+Two motions at one frequency differ if one overturned and the other did not, if one is at rest and the other not, or if
+their largest rotations or slip strokes are further apart than they vary within their own windows.
 """
 
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from fem.response.records import Record
+from fem.response.records import PointRecord
 
 APART = 0.02  #: difference of rotation ratios that counts at least
 APART_STROKE = 0.05  #: of slip strokes, over the floor's amplitude
@@ -53,7 +53,7 @@ class DropOut:
     carried: bool  #: the first of them overturned a motion that had been carried there
 
 
-def branches_of(records: Sequence[Record]) -> dict[str, Any]:
+def branches_of(records: Sequence[PointRecord]) -> dict[str, Any]:
     """Coexisting motions, jumps and drop-outs, as `response.json` holds them."""
     return {
         "coexisting": [asdict(found) for found in coexistences(records)],
@@ -62,10 +62,10 @@ def branches_of(records: Sequence[Record]) -> dict[str, Any]:
     }
 
 
-def coexistences(records: Sequence[Record]) -> list[Coexistence]:
+def coexistences(records: Sequence[PointRecord]) -> list[Coexistence]:
     """Ranges of frequencies at which up and down differ."""
-    up = {record.row["number"]: record for record in records if record.row["direction"] == "up"}
-    down = {record.row["number"]: record for record in records if record.row["direction"] == "down"}
+    up = {record.row.number: record for record in records if record.row.direction == "up"}
+    down = {record.row.number: record for record in records if record.row.direction == "down"}
     runs: list[list[int]] = []
     for number in sorted(up.keys() & down.keys()):
         if not differ(up[number], down[number]):
@@ -77,101 +77,90 @@ def coexistences(records: Sequence[Record]) -> list[Coexistence]:
     return [_coexistence([(up[k], down[k]) for k in run]) for run in runs]
 
 
-def differ(one: Record, other: Record) -> bool:
+def differ(one: PointRecord, other: PointRecord) -> bool:
     """Whether two points at one frequency are different motions; a failed one says nothing."""
-    if "failed" in (one.row["status"], other.row["status"]):
+    if "failed" in (one.row.status, other.row.status):
         return False
     if not (one.stands and other.stands):
         return one.stands != other.stands
-    a, b = one.row, other.row
-    if (a["long_time"] == "rest") != (b["long_time"] == "rest"):
+    if (one.row.long_time == "rest") != (other.row.long_time == "rest"):
         return True
-    spread = max(row["rotation_ratio"] - row["median_rotation_ratio"] for row in (a, b))
-    if abs(a["rotation_ratio"] - b["rotation_ratio"]) > max(APART, spread):
+    spread = max(
+        record.number("rotation_ratio") - record.number("median_rotation_ratio") for record in (one, other)
+    )
+    if _apart(one, other, "rotation_ratio") > max(APART, spread):
         return True
     strokes = [record.extremes[:, 4] for record in (one, other)]
     spread = max(float(stroke.max() - np.median(stroke)) for stroke in strokes)
-    return bool(abs(a["slip_stroke_m"] - b["slip_stroke_m"]) > max(APART_STROKE * a["amplitude_m"], spread))
+    return _apart(one, other, "slip_stroke_m") > max(APART_STROKE * one.row.amplitude_m, spread)
 
 
-def jumps(records: Sequence[Record]) -> list[Jump]:
+def jumps(records: Sequence[PointRecord]) -> list[Jump]:
     """Changes of kind or of size between neighbouring frequencies through which a motion was carried."""
     found = []
     for direction in ("up", "down"):
-        swept = [record for record in records if record.row["direction"] == direction]
+        swept = [record for record in records if record.row.direction == direction]
         carried = [
-            (before.row, after.row)
+            (before, after)
             for before, after in pairwise(swept)
-            if before.stands and after.stands and after.row["began"] == "carried"
+            if before.stands and after.stands and after.row.began == "carried"
         ]
-        changes = [abs(after["rotation_ratio"] - before["rotation_ratio"]) for before, after in carried]
+        changes = [_apart(before, after, "rotation_ratio") for before, after in carried]
         for k, ((before, after), change) in enumerate(zip(carried, changes, strict=True)):
-            kinds = in_words(before), in_words(after)
+            kinds = before.row.words, after.row.words
             beside = max([*changes[max(k - 1, 0) : k], *changes[k + 1 : k + 2]], default=0.0)
-            large = change > max(JUMP, JUMP_SHARE * beside)
-            if kinds[0] == kinds[1] and not large:
+            if kinds[0] == kinds[1] and change <= max(JUMP, JUMP_SHARE * beside):
                 continue
             found.append(
                 Jump(
                     direction=direction,
-                    from_Hz=before["frequency_Hz"],
-                    to_Hz=after["frequency_Hz"],
+                    from_Hz=before.row.frequency_Hz,
+                    to_Hz=after.row.frequency_Hz,
                     what=f"{kinds[0]} to {kinds[1]}" if kinds[0] != kinds[1] else "in size",
-                    rotation_ratio=(before["rotation_ratio"], after["rotation_ratio"]),
+                    rotation_ratio=(before.number("rotation_ratio"), after.number("rotation_ratio")),
                 )
             )
     return found
 
 
-def drop_outs(records: Sequence[Record]) -> list[DropOut]:
+def drop_outs(records: Sequence[PointRecord]) -> list[DropOut]:
     """Ranges of neighbouring frequencies, along each sweep, at which the container overturned."""
     found: list[DropOut] = []
     last: tuple[str, int] | None = None
     for record in records:
         row = record.row
-        here = (row["direction"], row["number"])
-        if row["status"] != "overturned":
+        here = (row.direction, row.number)
+        if row.status != "overturned":
             continue
         if found and last is not None and last[0] == here[0] and abs(last[1] - here[1]) == 1:
             found[-1] = DropOut(
-                **asdict(found[-1]) | {"to_Hz": row["frequency_Hz"], "frequencies": found[-1].frequencies + 1}
+                **asdict(found[-1]) | {"to_Hz": row.frequency_Hz, "frequencies": found[-1].frequencies + 1}
             )
         else:
             found.append(
                 DropOut(
-                    direction=row["direction"],
-                    from_Hz=row["frequency_Hz"],
-                    to_Hz=row["frequency_Hz"],
+                    direction=row.direction,
+                    from_Hz=row.frequency_Hz,
+                    to_Hz=row.frequency_Hz,
                     frequencies=1,
-                    carried=row["began"] == "carried",
+                    carried=row.began == "carried",
                 )
             )
         last = here
     return found
 
 
-def in_words(row: Any) -> str:
-    """A long-time motion: `rest`, `rock of period 1`, `slide-rock, not periodic`, `overturned`."""
-    if row["long_time"] is None:
-        return str(row["status"])
-    if row["long_time"] == "rest":
-        return "rest"
-    if row["long_time"] == "periodic":
-        return f"{row['motion']} of period {row['period_n']}"
-    return f"{row['motion']}, {row['long_time']}"
-
-
-def _coexistence(pairs: Sequence[tuple[Record, Record]]) -> Coexistence:
-    apart = [
-        abs(one.row["rotation_ratio"] - other.row["rotation_ratio"])
-        for one, other in pairs
-        if one.stands and other.stands
-    ]
+def _coexistence(pairs: Sequence[tuple[PointRecord, PointRecord]]) -> Coexistence:
+    apart = [_apart(one, other, "rotation_ratio") for one, other in pairs if one.stands and other.stands]
     return Coexistence(
-        from_Hz=pairs[0][0].row["frequency_Hz"],
-        to_Hz=pairs[-1][0].row["frequency_Hz"],
+        from_Hz=pairs[0][0].row.frequency_Hz,
+        to_Hz=pairs[-1][0].row.frequency_Hz,
         frequencies=len(pairs),
-        up=tuple(dict.fromkeys(in_words(one.row) for one, _ in pairs)),
-        down=tuple(dict.fromkeys(in_words(other.row) for _, other in pairs)),
+        up=tuple(dict.fromkeys(one.row.words for one, _ in pairs)),
+        down=tuple(dict.fromkeys(other.row.words for _, other in pairs)),
         largest_difference=max(apart) if apart else None,
     )
+
+
+def _apart(one: PointRecord, other: PointRecord, column: str) -> float:
+    return abs(one.number(column) - other.number(column))

@@ -1,7 +1,7 @@
 """Response curves: one frequency after the other, up and down, the motion carried on from one to the next.
 
-Where the container overturns, the curve has dropped out; as a fallen container has no response, the next frequency
-begins anew as the case does. Each frequency ends with the drive stopped, on a copy of the motion.
+A container that overturned has no response; the next frequency then begins as the case does. Each frequency ends with
+the drive stopped, on a copy of the motion.
 """
 
 from collections.abc import Callable, Iterator
@@ -10,24 +10,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.stepping.observables import ROCK, ROCKING, SLIDE
-from fem.assessment.verdict import MODE_NAMES, SLIDING
+from fem.assessment.verdict import MODE_NAMES, SLIDING, rotation_ratio
 from fem.case.case import Case
 from fem.model.container import Container, discretise
 from fem.response.decay import Decay, follow_decay
 from fem.response.model import DrivenModel, begin_drive, carry_drive, driven_case
-from fem.response.orbit import Orbit, follow_periods, step_until
+from fem.response.orbit import Orbit, Progress, follow_periods, no_progress, step_until
 from fem.response.request import ResponseRequest
 from fem.response.stability import LongTime, amplitude_growth, amplitudes_diverge, classify
 from fem.runtime.arrays import FloatArray
 
-PORTRAYED = 16  #: last periods whose phase portrait is kept; of a periodic motion one of its periods
-WINDOWS = 4  #: a motion that is not settled is observed again, so many windows in all
-
-Told = Callable[[float, float, int], None]
+PORTRAYED = 16  #: last periods whose phase portrait is kept; of a periodic motion, one of its periods
+WINDOWS = 4  #: a motion that is not settled is observed again, at most so many windows in all
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Point:
+class CurvePoint:
     """One frequency of a curve."""
 
     direction: str  #: up | down
@@ -42,17 +40,11 @@ class Point:
     orbit: Orbit  #: of the window observed; where it overturned or failed, what there is of it
     decay: Decay | None  #: with the drive stopped
     slenderness_angle: float  #: [rad]
-    velocity_scale: float  #: slenderness angle times frequency parameter [rad/s]
-
-    @property
-    def scaled_sections(self) -> FloatArray:
-        """Sections (n, 4) in the units in which they are compared."""
-        return self.orbit.sections / _scales(self.case, self.slenderness_angle, self.velocity_scale)
 
     @property
     def amplitudes(self) -> FloatArray:
         """Largest |rotation| of each period observed over the slenderness angle, shape (n,)."""
-        return self.orbit.extremes[:, 0] / self.slenderness_angle
+        return rotation_ratio(self.orbit.extremes[:, 0], self.slenderness_angle)
 
     @property
     def rotation_ratio(self) -> float | None:
@@ -79,28 +71,21 @@ class Point:
         return self.bounded and self.decay is not None and self.decay.fate == "dies out"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Standing:
-    """Where a curve stands between two frequencies: the motion, or nothing where it is to begin anew."""
-
-    driven: DrivenModel | None
-
-
 def sweep_points(
     request: ResponseRequest,
     *,
     skip: int = 0,
-    standing: Callable[[Case, Container], DrivenModel] | None = None,
-    told: Told = lambda time, rotation, mode: None,
-) -> Iterator[tuple[Point, Standing]]:
-    """The points of a curve in the order in which they are swept.
+    restore: Callable[[Case, Container], DrivenModel] | None = None,
+    progress: Progress = no_progress,
+) -> Iterator[tuple[CurvePoint, DrivenModel | None]]:
+    """The points of a curve in the order in which they are swept, each with the motion that is carried on.
 
     Args:
         request: what is asked.
-        skip: points already there.
-        standing: how the motion after the last of these is had again, from the case and container of that point; None:
-            the next point begins anew.
-        told: of the progress within a point: time since its begin [s], rotation [rad], mode.
+        skip: points that are there already.
+        restore: the motion after the last of these, from its case and container; None: the next point begins as
+            the case does.
+        progress: called within a point with the time since its beginning [s], the rotation [rad] and the mode.
 
     Raises:
         CaseError, MeshError: bad input.
@@ -108,13 +93,13 @@ def sweep_points(
     container = discretise(request.case)
     plan = plan_of(request)
     before: DrivenModel | None = None
-    if skip and standing is not None:
-        before = standing(case_at(request, plan[skip - 1][1]), container)
+    if skip and restore is not None:
+        before = restore(case_at(request, plan[skip - 1][1]), container)
     for direction, number in plan[skip:]:
         point, before = follow_point(
-            request, container, before, direction=direction, number=number, told=told
+            request, container, before, direction=direction, number=number, progress=progress
         )
-        yield point, Standing(driven=before)
+        yield point, before
 
 
 def plan_of(request: ResponseRequest) -> list[tuple[str, int]]:
@@ -136,9 +121,9 @@ def follow_point(
     *,
     direction: str,
     number: int,
-    told: Told = lambda time, rotation, mode: None,
-) -> tuple[Point, DrivenModel | None]:
-    """One frequency, from the motion before; returns the point and the motion to go on with, None after a fall."""
+    progress: Progress = no_progress,
+) -> tuple[CurvePoint, DrivenModel | None]:
+    """One frequency, from the motion before; returns the point and the motion to carry on, None after a fall."""
     case = case_at(request, number)
     began = "case" if before is None else "carried"
     if before is None:
@@ -156,13 +141,13 @@ def follow_point(
             return _point(case, lead, direction, number, began, empty, None, 0), None
         before = lead
     driven = carry_drive(case, container, before)
-    driven, orbit = follow_periods(driven, request.settle, told=told)
+    driven, orbit = follow_periods(driven, request.settle, progress=progress)
     periods = len(orbit.sections)
     long_time = None
     for _ in range(WINDOWS):
         if orbit.status != "completed":
             break
-        driven, orbit = follow_periods(driven, request.observe, portrayed=PORTRAYED, told=told)
+        driven, orbit = follow_periods(driven, request.observe, portrayed=PORTRAYED, progress=progress)
         periods += len(orbit.sections)
         if orbit.status != "completed":
             break
@@ -178,8 +163,8 @@ def follow_point(
 def judge(request: ResponseRequest, case: Case, driven: DrivenModel, orbit: Orbit) -> LongTime:
     """The long-time motion of a window of periods."""
     control = driven.run.control
-    angle = control.slenderness_angle
-    scales = _scales(case, angle, angle * control.frequency_parameter)
+    angle, amplitude = control.slenderness_angle, case.amplitude
+    scales = [angle, angle * control.frequency_parameter, amplitude * case.angular_frequency, amplitude]
     return classify(
         orbit.sections / scales,
         resting=motion_of(driven, orbit) == "rest",
@@ -195,11 +180,6 @@ def motion_of(driven: DrivenModel, orbit: Orbit) -> str:
     return MODE_NAMES[(ROCK if rocks else 0) + (SLIDE if slides else 0)]
 
 
-def _scales(case: Case, angle: float, velocity: float) -> FloatArray:
-    amplitude = case.amplitude
-    return np.array([angle, velocity, amplitude * case.angular_frequency, amplitude])
-
-
 def _point(
     case: Case,
     driven: DrivenModel,
@@ -210,14 +190,14 @@ def _point(
     long_time: LongTime | None,
     periods: int,
     decay: Decay | None = None,
-) -> Point:
+) -> CurvePoint:
     control = driven.run.control
     motion = None
     if orbit.status == "completed":
         motion = motion_of(driven, orbit)
     elif orbit.status == "overturned":
         motion = "overturned"
-    return Point(
+    return CurvePoint(
         direction=direction,
         number=number,
         case=case,
@@ -230,5 +210,4 @@ def _point(
         orbit=orbit,
         decay=decay,
         slenderness_angle=control.slenderness_angle,
-        velocity_scale=control.slenderness_angle * control.frequency_parameter,
     )

@@ -13,7 +13,6 @@ from fem.figures.style import (
     BLACK,
     BLUE,
     GREY,
-    LEFT,
     VERMILLION,
     WIDTH,
     head,
@@ -22,8 +21,8 @@ from fem.figures.style import (
     panels,
     svg_of,
 )
-from fem.response.branches import coexistences, in_words
-from fem.response.records import Record
+from fem.response.branches import coexistences
+from fem.response.records import PointRecord
 from fem.response.request import ResponseRequest
 
 LOOKS = {
@@ -35,7 +34,7 @@ COLUMNS = 3
 FREQUENCY = "frequency of the drive [Hz]"
 
 
-def response_figures(request: ResponseRequest, records: Sequence[Record]) -> dict[str, str]:
+def response_figures(request: ResponseRequest, records: Sequence[PointRecord]) -> dict[str, str]:
     """Figures as SVG documents, by name."""
     with house_style():
         drawn = {"response_curve": draw_curves(request, records)}
@@ -44,7 +43,7 @@ def response_figures(request: ResponseRequest, records: Sequence[Record]) -> dic
         return {name: svg_of(figure) for name, figure in drawn.items()}
 
 
-def draw_curves(request: ResponseRequest, records: Sequence[Record]) -> Figure:
+def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Figure:
     """Largest rotation and slip stroke over frequency, up and down."""
     figure, (rotation, slip, life) = panels((2.4, 1.2, 1.2), gaps=(0.12, 0.12), header=3)
     head(
@@ -54,13 +53,13 @@ def draw_curves(request: ResponseRequest, records: Sequence[Record]) -> Figure:
     )
     for direction in LOOKS:
         swept = sorted(
-            (record for record in records if record.row["direction"] == direction),
-            key=lambda record: record.row["number"],
+            (record for record in records if record.row.direction == direction),
+            key=lambda record: record.row.number,
         )
         _draw_branch(rotation, swept, direction, "max_rotation_rad", 180.0 / np.pi)
         _draw_branch(slip, swept, direction, "slip_stroke_m", 1e3)
         _draw_branch(life, swept, direction, "undriven_s", 1.0)
-        fallen = [record.row["frequency_Hz"] for record in swept if record.row["status"] == "overturned"]
+        fallen = [record.row.frequency_Hz for record in swept if record.row.status == "overturned"]
         height = 0.97 if direction == "up" else 0.92
         rotation.plot(
             fallen,
@@ -90,7 +89,7 @@ def draw_curves(request: ResponseRequest, records: Sequence[Record]) -> Figure:
     return figure
 
 
-def draw_sections(request: ResponseRequest, records: Sequence[Record]) -> Figure:
+def draw_sections(request: ResponseRequest, records: Sequence[PointRecord]) -> Figure:
     """Rotation at the sections over frequency: n dots for a motion of period n, a smear for one without."""
     figure, (up, down) = panels((2.0, 2.0), gaps=(0.12,), header=2)
     head(
@@ -99,11 +98,11 @@ def draw_sections(request: ResponseRequest, records: Sequence[Record]) -> Figure
         "n dots belong to a motion that repeats after n periods of the drive, a smear to one that does not repeat",
     )
     for axes, direction in ((up, "up"), (down, "down")):
-        standing = [record for record in records if record.row["direction"] == direction and record.stands]
+        standing = [record for record in records if record.row.direction == direction and record.stands]
         for record in standing:
             turned = np.degrees(record.sections[:, 0])
             axes.plot(
-                np.full(turned.size, record.row["frequency_Hz"]),
+                np.full(turned.size, record.row.frequency_Hz),
                 turned,
                 linestyle="none",
                 marker="o",
@@ -120,76 +119,69 @@ def draw_sections(request: ResponseRequest, records: Sequence[Record]) -> Figure
     return figure
 
 
-def draw_portraits(records: Sequence[Record]) -> Figure:
+def draw_portraits(records: Sequence[PointRecord]) -> Figure:
     """Phase portraits of motions that differ the most, with their sections."""
     chosen = choose_portraits(records)
     rows = -(-len(chosen) // COLUMNS)
-    side, gap, header = 1.75, 0.62, 0.55
-    tall = header + rows * side + (rows - 1) * gap + 0.5
-    figure = Figure(figsize=(WIDTH, tall))
-    head(
-        figure,
-        "Phase portraits of the long-time motion",
+    figure = Figure(figsize=(WIDTH, 0.6 + 2.3 * rows), layout="constrained")
+    figure.suptitle(
+        "Phase portraits of the long-time motion\n"
         "dots: Poincaré sections, one a period; an impact is a jump of the angular velocity",
+        x=0.01,
+        ha="left",
+        fontsize=10.0,
     )
-    wide = (WIDTH - LEFT - 0.1 - (COLUMNS - 1) * 0.6) / COLUMNS
-    for k, record in enumerate(chosen):
-        column, row = k % COLUMNS, k // COLUMNS
-        bottom = tall - header - side - row * (side + gap)
-        axes = figure.add_axes(
-            ((LEFT + column * (wide + 0.6)) / WIDTH, bottom / tall, wide / WIDTH, (side - 0.25) / tall)
-        )
+    places = list(figure.subplots(rows, COLUMNS, squeeze=False).flat)
+    for axes in places[len(chosen) :]:
+        axes.set_visible(False)
+    for k, (axes, record) in enumerate(zip(places, chosen, strict=False)):
         _draw_portrait(axes, record)
-        if column == 0:
+        if k % COLUMNS == 0:
             axes.set_ylabel("angular velocity [deg/s]")
         if k + COLUMNS >= len(chosen):
             axes.set_xlabel("rotation [deg]")
     return figure
 
 
-def choose_portraits(records: Sequence[Record]) -> list[Record]:
+def choose_portraits(records: Sequence[PointRecord]) -> list[PointRecord]:
     """A few motions: one of each kind there is, the largest first, then those in between."""
-    standing = [record for record in records if record.stands and record.row["long_time"] != "rest"]
+    standing = [record for record in records if record.stands and record.row.long_time != "rest"]
     standing = standing or [record for record in records if record.stands]
-    by_size = sorted(standing, key=lambda record: -record.row["rotation_ratio"])
-    kinds: dict[str, Record] = {}
+    by_size = sorted(standing, key=lambda record: -record.number("rotation_ratio"))
+    kinds: dict[str, PointRecord] = {}
     for record in by_size:
-        kinds.setdefault(in_words(record.row), record)
+        kinds.setdefault(record.row.words, record)
     chosen = list(kinds.values())[:PORTRAITS]
     for share in np.linspace(0.0, 1.0, PORTRAITS):
         candidate = by_size[round(share * (len(by_size) - 1))]
         if len(chosen) < PORTRAITS and all(candidate is not one for one in chosen):
             chosen.append(candidate)
-    return sorted(chosen, key=lambda record: (record.row["frequency_Hz"], record.row["direction"]))
+    return sorted(chosen, key=lambda record: (record.row.frequency_Hz, record.row.direction))
 
 
-def statement_of(request: ResponseRequest, records: Sequence[Record]) -> str:
-    """What is held and how it is judged, for the head of a figure."""
-    held = (
-        f"amplitude {1e3 * request.held_value:.4g} mm held"
-        if request.held == "displacement"
-        else f"peak acceleration {request.held_value:.4g} m/s² held"
-    )
+def statement_of(request: ResponseRequest, records: Sequence[PointRecord]) -> str:
+    """What is held and how the motion is judged, for the head of a figure."""
     grey = "; grey: up and down differ" if coexistences(records) else ""
-    return f"{held}; {request.observe} periods judged, after {request.settle} left out{grey}"
+    return f"{request.held_in_words}; {request.observe} periods judged, after {request.settle} left out{grey}"
 
 
-def _draw_branch(axes: Axes, swept: Sequence[Record], direction: str, column: str, factor: float) -> None:
+def _draw_branch(
+    axes: Axes, swept: Sequence[PointRecord], direction: str, column: str, factor: float
+) -> None:
     """A line with marks, broken where there is no value."""
-    values = [record.row[column] for record in swept]
-    numbers = np.array([np.nan if value is None else factor * value for value in values], dtype=float)
-    frequencies = [record.row["frequency_Hz"] for record in swept]
+    numbers = [factor * record.number(column) for record in swept]
+    frequencies = [record.row.frequency_Hz for record in swept]
     axes.plot(frequencies, numbers, label=direction, markersize=3.5, markeredgewidth=0.0, **LOOKS[direction])  # type: ignore[arg-type]
 
 
-def _draw_portrait(axes: Axes, record: Record) -> None:
-    row, look = record.row, LOOKS[record.row["direction"]]
+def _draw_portrait(axes: Axes, record: PointRecord) -> None:
+    row, look = record.row, LOOKS[record.row.direction]
     rotation, rate = np.degrees(record.portrait).T
-    repeats = row["long_time"] in ("periodic", "rest")
+    repeats = row.long_time in ("periodic", "rest")
     axes.plot(rotation, rate, color=look["color"] if repeats else GREY, linewidth=0.9 if repeats else 0.6)
     turned, turning = np.degrees(record.sections[:, :2]).T
     axes.plot(turned, turning, linestyle="none", marker="o", markersize=2.6, markeredgewidth=0.0, color=BLACK)
-    axes.set_title(f"{row['frequency_Hz']:.3g} Hz, {row['direction']}: {in_words(row)}", fontsize=7.5)
+    axes.set_title(f"{row.frequency_Hz:.3g} Hz, {row.direction}: {row.words}", fontsize=7.5)
     axes.margins(0.08)
 
 

@@ -1,8 +1,8 @@
-"""The motion followed period by period: a section at the end of each, and the extremes within it.
+"""The motion, period by period: a section at the end of each, and the extremes within it.
 
 A section is taken at the floor's turning point at +A, at the exact instant: the stepping ends a step there. Its
 coordinates are the rotation, the angular velocity, the velocity of the mass centre against the floor and what the
-container slid in the period. How far it has walked in all is no coordinate: the floor is everywhere the same.
+container slid in the period. The distance walked is no coordinate: the floor is the same everywhere.
 """
 
 import math
@@ -20,7 +20,10 @@ from fem.assessment.verdict import audit
 from fem.response.model import DrivenModel, section_times, with_sections
 from fem.runtime.arrays import FloatArray
 
-#: a motion of hundreds of periods is audited in stretches of so many, each as a run is
+#: called with the time [s], the rotation [rad] and the mode
+Progress = Callable[[float, float, int], None]
+
+#: periods after which the energy balance is checked as that of a run
 AUDITED = 10
 STATUSES = {REACHED: "completed", OVERTURNED: "overturned", FAILED: "failed"}
 #: columns of `Orbit.sections`
@@ -48,23 +51,27 @@ class Orbit:
     reason: str | None = None  #: why it failed
 
 
+def no_progress(time: float, rotation: float, mode: int) -> None:
+    """A `Progress` that ignores it."""
+
+
 def follow_periods(
     driven: DrivenModel,
     count: int,
     *,
     portrayed: int = 0,
-    told: Callable[[float, float, int], None] = lambda time, rotation, mode: None,
+    progress: Progress = no_progress,
 ) -> tuple[DrivenModel, Orbit]:
-    """Step through `count` periods from a section on.
+    """Step through `count` periods from a section.
 
     Args:
         driven: at a section, which is its t = 0.
         count: periods.
         portrayed: of how many last periods the phase portrait is kept.
-        told: of the time [s], the rotation [rad] and the mode after each period.
+        progress: called after each period.
 
     Returns:
-        The model where it stands then, and what it did; fewer periods where it overturned or failed.
+        The model at the end, and its motion; fewer periods where it overturned or failed.
     """
     driven = with_sections(driven, count)
     run, track, clock = driven.run, driven.run.track[0], driven.run.clock[0]
@@ -97,7 +104,7 @@ def follow_periods(
         slipped = slip
         if k >= count - portrayed:
             portraits.append(samples[:, [ROW_ROTATION, ROW_ANGULAR_VELOCITY]])
-        told(float(clock.time), float(pose[ROTATION]), int(track.mode))
+        progress(float(clock.time), float(pose[ROTATION]), int(track.mode))
         if k % AUDITED == AUDITED - 1:
             reason = audit(driven.model)
             if reason is not None:
@@ -106,7 +113,7 @@ def follow_periods(
     status = STATUSES[code]
     if code == FAILED:
         reason = (
-            f"{clock.time / driven.period:.6g} periods on: the contact forces come into no balance at the smallest "
+            f"after {clock.time / driven.period:.6g} periods: the contact forces do not converge at the smallest "
             f"step ({run.control.smallest_step:.1g} s); try a softer contact.normal_penalty_Pa_m, "
             "contact.weakening_m > 0, or a smaller solver.step_s"
         )
@@ -131,7 +138,7 @@ def step_until(driven: DrivenModel, end: float) -> str:
 
 
 def _open_ledger(driven: DrivenModel) -> None:
-    """Begin the energy ledger anew."""
+    """Reset the energy balance."""
     driven.run.ledger[:] = 0.0
     for name in ("least_imbalance", "most_imbalance", "dissipated"):
         driven.run.clock[name] = 0.0
@@ -143,8 +150,8 @@ def _step_to(driven: DrivenModel, end: float) -> tuple[int, FloatArray]:
     taken = []
     while True:
         code = advance_compiled(driven.body, run, end)
-        count = int(clock.samples - clock.samples_gone)
+        count = int(clock.samples - clock.samples_drained)
         taken.append(run.history.columns[:count].copy())
-        clock.samples_gone = clock.samples
+        clock.samples_drained = clock.samples
         if code != REACHED or clock.time >= end or math.isinf(end):
             return code, np.concatenate(taken)

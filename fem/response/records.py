@@ -1,57 +1,72 @@
-"""The points of a response curve as they are kept: a row of figures each, its sections and its phase portrait."""
+"""The points of a response curve as they are kept: a row of results each, its sections and its phase portrait."""
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import astuple, dataclass, fields
 from typing import Any
 
 import numpy as np
 
-from fem.response.curve import PORTRAYED, Point
+from fem.batch.log import table_text
+from fem.response.curve import PORTRAYED, CurvePoint
 from fem.response.model import SAMPLES_PER_PERIOD
 from fem.response.orbit import EXTREME_COLUMNS, SECTION_COLUMNS
 from fem.runtime.arrays import FloatArray
 
 PORTRAIT_COLUMNS = ("rotation_rad", "angular_velocity_rad_s")
 ARRAYS = {"sections": SECTION_COLUMNS, "extremes": EXTREME_COLUMNS, "portrait": PORTRAIT_COLUMNS}
-#: columns of `response.csv`
-ROW_COLUMNS = (
-    "direction",
-    "number",
-    "frequency_Hz",
-    "amplitude_m",
-    "peak_acceleration_m_s2",
-    "began",
-    "status",
-    "motion",
-    "long_time",
-    "period_n",
-    "scatter",
-    "settling",
-    "pairs_compared",
-    "periods",
-    "rotation_ratio",
-    "median_rotation_ratio",
-    "max_rotation_rad",
-    "least_rotation_rad",
-    "most_rotation_rad",
-    "slip_stroke_m",
-    "slip_walk_m",
-    "impacts_per_period",
-    "growth",
-    "bounded",
-    "undriven",
-    "undriven_s",
-    "stable",
-    "reason",
-)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PointRow:
+    """A row of `response.csv`; None where a column does not apply."""
+
+    direction: str  #: up | down
+    number: int  #: of the frequency, from 0 for the lowest
+    frequency_Hz: float  # noqa: N815 - the unit, as in a case file
+    amplitude_m: float
+    peak_acceleration_m_s2: float
+    began: str  #: carried | case
+    status: str  #: completed | overturned | failed
+    motion: str | None
+    long_time: str | None = (
+        None  #: rest | periodic | not settled | not periodic; None without a long-time motion
+    )
+    period_n: int | None = None
+    scatter: float | None = None
+    settling: float | None = None
+    pairs_compared: int | None = None
+    periods: int
+    rotation_ratio: float | None = None
+    median_rotation_ratio: float | None = None
+    max_rotation_rad: float | None = None
+    least_rotation_rad: float | None = None
+    most_rotation_rad: float | None = None
+    slip_stroke_m: float | None = None
+    slip_walk_m: float | None = None
+    impacts_per_period: float | None = None
+    growth: float | None = None
+    bounded: bool | None
+    undriven: str | None = None
+    undriven_s: float | None = None
+    stable: bool | None
+    reason: str | None
+
+    @property
+    def words(self) -> str:
+        """The long-time motion: `rest`, `rock of period 1`, `slide-rock, not periodic`, `overturned`."""
+        if self.long_time == "periodic":
+            return f"{self.motion} of period {self.period_n}"
+        if self.long_time in (None, "rest"):
+            return self.long_time or self.status
+        return f"{self.motion}, {self.long_time}"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Record:
-    """One point: its row, by `ROW_COLUMNS`, None where it does not apply, and its arrays, by `ARRAYS`."""
+class PointRecord:
+    """One point: its row and its arrays, by `ARRAYS`."""
 
-    row: Mapping[str, Any]
+    row: PointRow
     sections: FloatArray  #: (n, 4)
     extremes: FloatArray  #: (n, 6)
     portrait: FloatArray  #: (n_samples, 2), of whole periods
@@ -59,30 +74,21 @@ class Record:
     @property
     def stands(self) -> bool:
         """It has a long-time motion."""
-        return self.row["long_time"] is not None
+        return self.row.long_time is not None
+
+    def number(self, column: str) -> float:
+        """A number of the row; nan where it does not apply."""
+        value = getattr(self.row, column)
+        return math.nan if value is None else float(value)
 
 
-def record_of(point: Point) -> Record:
+def record_of(point: CurvePoint) -> PointRecord:
     """What is kept of a point."""
-    case, orbit, long_time = point.case, point.orbit, point.long_time
+    case, orbit, long_time, decay = point.case, point.orbit, point.long_time, point.decay
     extremes = orbit.extremes
-    row: dict[str, Any] = dict.fromkeys(ROW_COLUMNS)
-    row |= {
-        "direction": point.direction,
-        "number": point.number,
-        "frequency_Hz": case.angular_frequency / (2.0 * math.pi),
-        "amplitude_m": case.amplitude,
-        "peak_acceleration_m_s2": case.amplitude * case.angular_frequency**2,
-        "began": point.began,
-        "status": point.status,
-        "motion": point.motion,
-        "periods": point.periods,
-        "bounded": point.bounded,
-        "stable": point.stable,
-        "reason": point.reason,
-    }
+    found: dict[str, Any] = {}
     if long_time is not None:
-        row |= {
+        found = {
             "long_time": long_time.kind,
             "period_n": long_time.period,
             "scatter": long_time.scatter,
@@ -98,56 +104,52 @@ def record_of(point: Point) -> Record:
             "impacts_per_period": float(extremes[:, 5].mean()),
             "growth": point.growth,
         }
-    if point.decay is not None:
-        row |= {"undriven": point.decay.fate, "undriven_s": point.decay.time}
-    kept = PORTRAYED if long_time is None else {"rest": 1}.get(long_time.kind, long_time.period or PORTRAYED)
-    return Record(
-        row=row,
-        sections=orbit.sections,
-        extremes=extremes,
-        portrait=orbit.portrait[-kept * SAMPLES_PER_PERIOD :],
+    if decay is not None:
+        found |= {"undriven": decay.fate, "undriven_s": decay.time}
+    row = PointRow(
+        direction=point.direction,
+        number=point.number,
+        frequency_Hz=case.angular_frequency / (2.0 * math.pi),
+        amplitude_m=case.amplitude,
+        peak_acceleration_m_s2=case.amplitude * case.angular_frequency**2,
+        began=point.began,
+        status=point.status,
+        motion=point.motion,
+        periods=point.periods,
+        bounded=point.bounded,
+        stable=point.stable,
+        reason=point.reason,
+        **found,
     )
+    kept = PORTRAYED if long_time is None else {"rest": 1}.get(long_time.kind, long_time.period or PORTRAYED)
+    portrait = orbit.portrait[-kept * SAMPLES_PER_PERIOD :]
+    return PointRecord(row=row, sections=orbit.sections, extremes=extremes, portrait=portrait)
 
 
-def csv_of_rows(records: Sequence[Record]) -> str:
+def csv_of_rows(records: Sequence[PointRecord]) -> str:
     """`response.csv`: a row a point, in the order in which they were swept."""
-    lines = [",".join(ROW_COLUMNS)]
-    lines += [",".join(_written(record.row[name]) for name in ROW_COLUMNS) for record in records]
-    return "\n".join(lines) + "\n"
+    return table_text([field.name for field in fields(PointRow)], (astuple(record.row) for record in records))
 
 
-def csv_of_sections(records: Sequence[Record]) -> str:
+def csv_of_sections(records: Sequence[PointRecord]) -> str:
     """`sections.csv`: a row a period of the window observed, sections and extremes."""
-    names = ("direction", "frequency_Hz", "period", *SECTION_COLUMNS, *EXTREME_COLUMNS)
-    lines = [",".join(names)]
-    for record in records:
-        head = f"{record.row['direction']},{_written(record.row['frequency_Hz'])}"
-        for period, (section, extreme) in enumerate(
-            zip(record.sections, record.extremes, strict=True), start=1
-        ):
-            numbers = [_written(float(value)) for value in (*section, *extreme)]
-            lines.append(",".join([head, str(period), *numbers]))
-    return "\n".join(lines) + "\n"
+    columns = ("direction", "frequency_Hz", "period", *SECTION_COLUMNS, *EXTREME_COLUMNS)
+    rows = (
+        (record.row.direction, record.row.frequency_Hz, k, *section, *extreme)
+        for record in records
+        for k, (section, extreme) in enumerate(zip(record.sections, record.extremes, strict=True), start=1)
+    )
+    return table_text(columns, rows)
 
 
-def csv_of_portraits(records: Sequence[Record]) -> str:
+def csv_of_portraits(records: Sequence[PointRecord]) -> str:
     """`portraits.csv`: rotation and angular velocity over the last periods, evenly in time."""
-    lines = [",".join(("direction", "frequency_Hz", "periods", *PORTRAIT_COLUMNS))]
-    for record in records:
-        head = f"{record.row['direction']},{_written(record.row['frequency_Hz'])}"
-        for k, (rotation, rate) in enumerate(record.portrait):
-            # to a millionth of a degree: pictures are made of these
-            lines.append(f"{head},{k / SAMPLES_PER_PERIOD:.6g},{rotation:.8g},{rate:.8g}")
-    return "\n".join(lines) + "\n"
-
-
-def _written(value: Any) -> str:
-    """One cell: words as they are (quoted where they hold a comma), numbers to the last bit, nothing for None."""
-    if value is None:
-        return ""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, float):
-        return repr(value)
-    text = str(value)
-    return '"' + text.replace('"', '""') + '"' if any(sign in text for sign in ',"\n') else text
+    columns = ("direction", "frequency_Hz", "periods", *PORTRAIT_COLUMNS)
+    # to a millionth of a degree: pictures are made of these
+    rows = (
+        (*head, f"{k / SAMPLES_PER_PERIOD:.6g}", f"{rotation:.8g}", f"{rate:.8g}")
+        for record in records
+        for head in [(record.row.direction, record.row.frequency_Hz)]
+        for k, (rotation, rate) in enumerate(record.portrait)
+    )
+    return table_text(columns, rows)

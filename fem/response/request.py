@@ -1,4 +1,4 @@
-"""What a response curve is asked for: the case, the frequencies, what of the drive is held, how long one waits."""
+"""The request of a response curve: case, frequencies, what of the drive is held, periods waited for."""
 
 import hashlib
 import json
@@ -23,7 +23,7 @@ DEFAULT_SETTLED, DEFAULT_OBSERVED = 60, 48
 
 @dataclass(frozen=True, kw_only=True)
 class ResponseRequest:
-    """Frequencies swept to and fro, and how long each is waited for.
+    """Frequencies swept up and down, and the periods waited for at each.
 
     Raises:
         CaseError: a number out of range, a case without a harmonic drive that goes on, or of the full model.
@@ -48,7 +48,7 @@ class ResponseRequest:
             raise CaseError(f'[motion] kind must be "harmonic" for a response curve, got "{motion.kind}"')
         if motion.cycles is not None:
             raise CaseError(
-                f"[motion] cycles = {motion.cycles:g} ends the drive, a response curve needs one that goes on; "
+                f"[motion] cycles = {motion.cycles:g} ends the drive, a response curve needs one without an end; "
                 "leave the key out"
             )
         if solver.model == "full":
@@ -103,6 +103,13 @@ class ResponseRequest:
         """Amplitude of the floor's displacement [m] or acceleration [m/s2], whichever is held."""
         amplitude, omega = self.case.amplitude, self.case.angular_frequency
         return amplitude if self.held == "displacement" else amplitude * omega**2
+
+    @property
+    def held_in_words(self) -> str:
+        """What of the drive stays the same, with its value."""
+        if self.held == "displacement":
+            return f"amplitude {1e3 * self.held_value:.4g} mm held"
+        return f"peak acceleration {self.held_value:.4g} m/s² held"
 
     def to_dict(self) -> dict[str, object]:
         """As the result states it, without the case."""

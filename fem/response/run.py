@@ -1,12 +1,12 @@
-"""A response curve from a request to its folder: points, their tables, what they show, figures.
+"""A response curve from a request to its folder: points, their tables, branches, figures.
 
-After every point the folder holds what there is, and the state of the motion to go on with: a study that was cut off
-goes on where it was, to the same bytes.
+After every point the folder holds all points and the motion that is carried on, so an interrupted response curve
+continues where it was, to the same bytes.
 """
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,38 +15,39 @@ import numpy as np
 from fem.assessment.verdict import MODE_NAMES
 from fem.case.case import Case, to_toml
 from fem.model.container import Container
-from fem.response.branches import branches_of, in_words
-from fem.response.curve import PORTRAYED, Standing, plan_of, sweep_points
+from fem.response.branches import branches_of
+from fem.response.curve import PORTRAYED, plan_of, sweep_points
 from fem.response.figures import response_figures
 from fem.response.model import SAMPLES_PER_PERIOD, DrivenModel, driven_model
 from fem.response.records import (
     ARRAYS,
-    Record,
+    PointRecord,
+    PointRow,
     csv_of_portraits,
     csv_of_rows,
     csv_of_sections,
     record_of,
 )
 from fem.response.request import ResponseRequest
-from fem.results.result_folder import COMPLETED, ResultFolder, opened_result_folder, program_of_results
-from fem.results.run_folder import FolderError
-from fem.runtime.interrupts import interruptible
+from fem.results.errors import FolderError
+from fem.results.folder import ResultFolder, open_result_folder, program_of_results
+from fem.results.kinds import RESPONSE
 from fem.runtime.progress import Reporter, SilentReporter
+from fem.runtime.signals import interruptible
 
-MARK, STATE = "response.json", "state.npz"
-OWN = ("response.csv", "sections.csv", "portraits.csv", "case.toml", STATE, "figures/*.svg")
-#: room on the disk: a period in sections.csv and twice in the state, a sample in portraits.csv and twice in the state,
-#: a point in response.csv and response.json, figures [bytes]
+STATE = "state.npz"
+#: room on the disk [bytes]: a period in sections.csv and twice in the state, a sample in portraits.csv and twice in
+#: the state, a point in response.csv and response.json, all else
 BYTES_OF_A_PERIOD, BYTES_OF_A_SAMPLE, BYTES_OF_A_POINT, BYTES_BESIDE = 220 + 160, 50 + 32, 2000, 1_000_000
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ResponseResult:
-    """What a study came to."""
+    """Result of a response curve."""
 
     status: str  #: completed | failed | interrupted
     result: dict[str, Any]  #: as in response.json
-    records: tuple[Record, ...]
+    records: tuple[PointRecord, ...]
 
 
 def run_response(
@@ -61,25 +62,21 @@ def run_response(
 
     Raises:
         CaseError, MeshError, FolderError: bad input.
+        OutputError: the disk is full, the folder was removed; what was written is kept.
     """
     reporter = reporter or SilentReporter()
     with (
-        opened_result_folder(
-            folder,
-            mark=MARK,
-            kind="response curve",
-            asked=request.hash,
-            own=OWN,
-            wanted=required_disk(request),
-            force=force,
-            resume=resume,
-        ) as place,
+        open_result_folder(folder, RESPONSE, request.hash, force=force, resume=resume) as place,
         interruptible(reporter) as stop,
     ):
-        if place.finished is not None:
+        if place.finished and place.found:
             reporter.message(f"{folder} holds this response curve already; --force computes it again")
-            return ResponseResult(status=COMPLETED, result=place.finished, records=())
-        place.write_text("case.toml", to_toml(request.case))
+            return ResponseResult(status="completed", result=place.found, records=())
+        if place.resuming:
+            place.require_same_program()
+        place.require_room(required_disk(request), "the response curve", "take fewer frequencies")
+        mark = {"status": "running", "asked": request.hash} | program_of_results()
+        place.begin(mark, {"case.toml": to_toml(request.case)})
         records, saved = read_state(place)
         status = _sweep(request, place, records, saved, reporter=reporter, stop=stop)
         result = result_of(request, records, status)
@@ -89,19 +86,19 @@ def run_response(
         for name, svg in response_figures(request, records).items():
             place.write_text(f"figures/{name}.svg", svg)
         place.write_result(result)
-        if status == COMPLETED:
-            (place.path / STATE).unlink(missing_ok=True)
+        if status == "completed":
+            place.remove(STATE)
     return ResponseResult(status=status, result=result, records=tuple(records))
 
 
 def required_disk(request: ResponseRequest) -> float:
-    """What the folder of a response curve comes to hold [bytes]: sections, portraits, the state twice, figures."""
+    """Size of the folder of a response curve [bytes]: sections, portraits, the state twice, figures."""
     periods = request.observe * BYTES_OF_A_PERIOD
     portrait = min(request.observe, PORTRAYED) * SAMPLES_PER_PERIOD * BYTES_OF_A_SAMPLE
     return 2 * request.count * (periods + portrait + BYTES_OF_A_POINT) + BYTES_BESIDE
 
 
-def result_of(request: ResponseRequest, records: Sequence[Record], status: str) -> dict[str, Any]:
+def result_of(request: ResponseRequest, records: Sequence[PointRecord], status: str) -> dict[str, Any]:
     """The content of `response.json`."""
     return {
         "status": status,
@@ -109,18 +106,18 @@ def result_of(request: ResponseRequest, records: Sequence[Record], status: str) 
         "case": request.case.name,
         "title": request.case.title,
         "request": request.to_dict(),
-        "points": [dict(record.row) for record in records],
+        "points": [asdict(record.row) for record in records],
         **branches_of(records),
-        "stable_everywhere": all(record.row["stable"] for record in records) if records else None,
+        "stable_everywhere": all(record.row.stable for record in records) if records else None,
     } | program_of_results()
 
 
 def page_of(request: ResponseRequest, result: Mapping[str, Any], folder: Path) -> str:
-    """The end of a study, for people."""
+    """The result of a response curve as text."""
     points = result["points"]
     lines = [
         f"{result['case']}: {result['title']}" if result["title"] else str(result["case"]),
-        f"  drive       {held_in_words(request)}, {request.count} frequencies from {request.first_Hz:g} to "
+        f"  drive       {request.held_in_words}, {request.count} frequencies from {request.first_Hz:g} to "
         f"{request.last_Hz:g} Hz, {request.order}",
         f"  judged by   {request.observe} periods each, after {request.settle}",
     ]
@@ -128,7 +125,8 @@ def page_of(request: ResponseRequest, result: Mapping[str, Any], folder: Path) -
         swept = [point for point in points if point["direction"] == direction]
         counted: dict[str, int] = {}
         for point in swept:
-            counted[in_words(point)] = counted.get(in_words(point), 0) + 1
+            word = PointRow(**point).words
+            counted[word] = counted.get(word, 0) + 1
         words = ", ".join(f"{count} x {word}" for word, count in counted.items())
         lines.append(f"  {direction:<11} {words or 'not reached'}")
     for found in result["coexisting"]:
@@ -161,14 +159,7 @@ def page_of(request: ResponseRequest, result: Mapping[str, Any], folder: Path) -
     return "\n".join([*lines, f"  files       {folder}"])
 
 
-def held_in_words(request: ResponseRequest) -> str:
-    """What of the drive stays the same."""
-    if request.held == "displacement":
-        return f"amplitude {1e3 * request.held_value:.4g} mm held"
-    return f"peak acceleration {request.held_value:.4g} m/s2 held"
-
-
-def read_state(place: ResultFolder) -> tuple[list[Record], dict[str, np.ndarray]]:
+def read_state(place: ResultFolder) -> tuple[list[PointRecord], dict[str, np.ndarray]]:
     """Points already there and the state after the last of them; nothing where there is none.
 
     Raises:
@@ -179,25 +170,26 @@ def read_state(place: ResultFolder) -> tuple[list[Record], dict[str, np.ndarray]
         return [], {}
     rows = json.loads(str(arrays.pop("rows")))
     records = [
-        Record(row=row, **{name: arrays.pop(f"{name}_{k}") for name in ARRAYS}) for k, row in enumerate(rows)
+        PointRecord(row=PointRow(**row), **{name: arrays.pop(f"{name}_{k}") for name in ARRAYS})
+        for k, row in enumerate(rows)
     ]
     return records, arrays
 
 
-def state_of(records: Sequence[Record], standing: Standing) -> dict[str, np.ndarray]:
-    """All that is needed to go on: the points there are, and the motion."""
-    arrays = {"rows": np.array(json.dumps([dict(record.row) for record in records]))}
+def state_of(records: Sequence[PointRecord], driven: DrivenModel | None) -> dict[str, np.ndarray]:
+    """All that is needed to continue: the points, and the motion that is carried on; None after a fall."""
+    arrays = {"rows": np.array(json.dumps([asdict(record.row) for record in records]))}
     for k, record in enumerate(records):
         arrays |= {f"{name}_{k}": getattr(record, name) for name in ARRAYS}
-    if standing.driven is not None:
-        run = standing.driven.run
+    if driven is not None:
+        run = driven.run
         arrays |= {f"state_{name}": array for name, array in run.old._asdict().items()}
         arrays |= {"clock": np.asarray(run.clock), "track": np.asarray(run.track), "floor": run.floor}
     return arrays
 
 
 def driven_from(case: Case, container: Container, arrays: Mapping[str, np.ndarray]) -> DrivenModel:
-    """The motion that `state_of` wrote down.
+    """The motion that `state_of` kept.
 
     Raises:
         FolderError: it does not fit the model.
@@ -208,7 +200,7 @@ def driven_from(case: Case, container: Container, arrays: Mapping[str, np.ndarra
     places |= {"clock": run.clock, "track": run.track, "floor": run.floor}
     for name, array in places.items():
         if name not in arrays or (arrays[name].shape, arrays[name].dtype) != (array.shape, array.dtype):
-            raise FolderError(f"{STATE} was written by another version; --force computes everything anew")
+            raise FolderError(f"{STATE} was written by another version; --force starts over")
         array[...] = arrays[name]
     return driven
 
@@ -216,27 +208,27 @@ def driven_from(case: Case, container: Container, arrays: Mapping[str, np.ndarra
 def _sweep(
     request: ResponseRequest,
     place: ResultFolder,
-    records: list[Record],
+    records: list[PointRecord],
     saved: Mapping[str, np.ndarray],
     *,
     reporter: Reporter,
     stop: Callable[[], bool],
 ) -> str:
-    """Add the points that are missing; the status of the study."""
+    """Add the points that are missing; returns the status of the curve."""
     plan = plan_of(request)
     length = request.settle + request.observe
     spans = [length / float(request.frequencies[number]) for _, number in plan]
     done, angle = sum(spans[: len(records)]), 1.0
     reporter.start(sum(spans))
 
-    def told(time: float, rotation: float, mode: int) -> None:
+    def progress(time: float, rotation: float, mode: int) -> None:
         reporter.update(done + time, abs(rotation) / angle, MODE_NAMES[mode])
 
-    def standing(case: Case, container: Container) -> DrivenModel:
+    def restore(case: Case, container: Container) -> DrivenModel:
         return driven_from(case, container, saved)
 
     points = sweep_points(
-        request, skip=len(records), standing=standing if "clock" in saved else None, told=told
+        request, skip=len(records), restore=restore if "clock" in saved else None, progress=progress
     )
     if stop():
         return "interrupted"
@@ -248,7 +240,7 @@ def _sweep(
             reporter.finish()
             return "interrupted"
     reporter.finish()
-    return "failed" if any(record.row["status"] == "failed" for record in records) else COMPLETED
+    return "failed" if any(record.row.status == "failed" for record in records) else "completed"
 
 
 def _range(found: Mapping[str, Any]) -> str:

@@ -14,23 +14,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem.case.case import Case, load_case
+from fem.results.errors import FolderError
 from fem.results.fields import Fields, Frame, open_fields
+from fem.results.folder import read_result
 from fem.results.history import History, read_history
-from fem.results.run_folder import FolderError, RunFolder, read_result
+from fem.results.kinds import KINDS, RUN
+from fem.results.run_files import RunFiles
+from fem.results.run_result import RunResult
 from fem.runtime.arrays import FloatArray
 
 if TYPE_CHECKING:
     from pyvista import UnstructuredGrid
-
-
-#: what else may lie in a folder of results, by the file that marks it
-OTHERS = {
-    "sweep.json": "a sweep (its results: table.csv)",
-    "ensemble.json": "an ensemble (its results: points.csv, draws.csv)",
-    "response.json": "response curves (their results: response.csv)",
-    "study.json": "a study (its results: study.json)",
-    "verify.json": "the verification (its results: verify.json)",
-}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,7 +34,7 @@ class OpenedRun:
     Every property raises FolderError, naming the file and the way out, where that file is missing or damaged.
     """
 
-    place: RunFolder
+    place: RunFiles
     result: dict[str, Any]  #: as in `run.json`
 
     def __repr__(self) -> str:
@@ -63,6 +57,14 @@ class OpenedRun:
     def status(self) -> str:
         """Status of the run: completed | overturned | failed | interrupted | running."""
         return str(self.result.get("status"))
+
+    @cached_property
+    def typed_result(self) -> RunResult:
+        """The result as typed data; what the run has not reached is None."""
+        try:
+            return RunResult.from_json(self.result)
+        except ValueError as error:
+            raise FolderError(f"{self.place.result}: {error}; run the case again") from None
 
     @property
     def slenderness_angle(self) -> float:
@@ -159,10 +161,13 @@ def open_run(folder: str | Path) -> OpenedRun:
     path = path.parent if path.name == "run.json" else path
     if not path.is_dir():
         raise FolderError(f"{path}: no such folder; give the folder of a run, such as outputs/NAME")
-    for mark, kind in OTHERS.items():
-        if (path / mark).is_file() and not (path / "run.json").is_file():
-            raise FolderError(f"{path}: the folder of {kind}; give that of a run, such as outputs/NAME")
-    place = RunFolder(path=path)
+    for kind in KINDS:
+        if (path / kind.mark).is_file() and not (path / RUN.mark).is_file():
+            raise FolderError(
+                f"{path}: the folder of {kind.article} {kind.name} (its results: {kind.results}); give that of a run, "
+                "such as outputs/NAME"
+            )
+    place = RunFiles(path)
     return OpenedRun(place=place, result=read_result(place.result))
 
 

@@ -1,89 +1,48 @@
-"""How sure an outcome is: the same run again over the stiffness and the damping of the contact.
+"""The band: sensitivity of the outcome to contact stiffness and damping.
 
-Restitution at an impact is a property of the support, and where the container's first elastic mode is not far
-above the bounce on the contact, an impact feeds vibration as well: how much then depends on stiffness and
-damping, and with friction even the regime of motion may. Nobody knows either of a floor within a factor of
-three. So the run is repeated with the penalty divided and multiplied by three and with damping ratios 0.5
-(the contact bounces a little) and 2 (it does not); where the outcomes differ, the verdict is unsure. A member
-that fails is no outcome and makes it unsure as well.
+Restitution at an impact is a property of the support, and where the container's first elastic mode is not far above
+the bounce on the contact, an impact excites vibration as well: how much depends on stiffness and damping, and with
+friction even the regime of motion may. Neither is known of a floor within a factor of three. So the run is repeated
+with the penalty divided and multiplied by three and with damping ratios 0.5 (the contact bounces a little) and 2 (it
+does not). Where the outcomes differ, the verdict is unsure. A member that fails has no outcome and makes the verdict
+unsure as well.
 """
 
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
 from itertools import count, product
-from typing import Any, Protocol
 
-from fem.assessment.verdict import MODE_NAMES, in_short
+from fem.assessment.verdict import MODE_NAMES, short_verdict
 from fem.case.case import Case
 from fem.model.container import Container
-from fem.model.model import Model, build_model
-from fem.model.required_memory import fitting_full_bodies
+from fem.model.model import build_model
+from fem.model.validity import runs_in_memory
+from fem.results.run_result import Band, BandMember, Verdict
+from fem.run.band_checkpoint import BandCheckpoint
 from fem.run.recorder import Recorder
-from fem.run.simulation import Keeper, NoKeeper, Progress, simulate
+from fem.run.simulation import simulate
 from fem.runtime.threads import cores
+from fem.solid.nodal_body import full_model_memory
 
 PENALTY_FACTORS = (1.0 / 3.0, 1.0, 3.0)
 DAMPING_RATIOS = (0.5, 2.0)
 #: outcomes that depend on impacts, or may
 DEPENDENT = frozenset({"rock", "slide-rock", "overturned"})
-#: of a verdict, kept of every member
-IN_SHORT = ("outcome", "rotation_ratio", "max_slip_m", "residual_slip_m", "max_uplift_m")
-NO_SAMPLES_S = 1e4  #: interval of a history of which nobody will read more than its first row
+NO_SAMPLES_S = 1e4  #: interval of a history of which only the first row is taken
+
+#: normal penalty [Pa/m] and damping ratio of a contact
+Contact = tuple[float, float]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Member:
-    """One run of a band."""
-
-    normal_penalty_Pa_m: float  # noqa: N815 - the unit, as in a case file
-    damping_ratio: float  #: of the contact [-]
-    status: str  #: completed | overturned | failed | interrupted
-    outcome: str | None  #: None where it failed or was stopped
-    rotation_ratio: float | None  #: largest |rotation| over the slenderness angle; None where it failed
-    error: str | None = None
-    max_slip_m: float | None = None
-    residual_slip_m: float | None = None  #: signed, at the end
-    max_uplift_m: float | None = None
-
-
-class Keeping(Protocol):
-    """Somebody who may keep what a band has come to; called by several threads."""
-
-    def members(self) -> Sequence[Member]:
-        """Computed before: they are not computed again."""
-
-    def begin(self, number: int, model: Model, recorder: Recorder) -> tuple[Keeper, Progress]:
-        """A member begins: it is put where it was cut off; returns who keeps it from there, and how far it has come."""
-
-    def finish(self, number: int, members: Sequence[Member]) -> None:
-        """A member has ended; `members` are all that there are. Only one thread calls at a time."""
-
-
-class NoKeeping:
-    """Keeps nothing."""
-
-    def members(self) -> Sequence[Member]:
-        """None."""
-        return ()
-
-    def begin(self, number: int, model: Model, recorder: Recorder) -> tuple[Keeper, Progress]:
-        """At t = 0."""
-        return NoKeeper(), Progress()
-
-    def finish(self, number: int, members: Sequence[Member]) -> None:
-        """Nothing."""
-
-
-def wants_band(asked: bool | None, case: Case, verdict: Mapping[str, Any]) -> bool:
+def wants_band(asked: bool | None, case: Case, verdict: Verdict) -> bool:
     """Whether a finished run is to have a band: as asked, else where its outcome depends on impacts.
 
     A run of the `full` model has one only when asked: it would take six times as long.
     """
     if asked is not None:
         return asked
-    return case.solver.model != "full" and verdict.get("outcome") in DEPENDENT
+    return case.solver.model != "full" and verdict.outcome in DEPENDENT
 
 
 def band_of(
@@ -91,87 +50,92 @@ def band_of(
     container: Container,
     *,
     penalty: float,
-    verdict: Mapping[str, Any],
+    verdict: Verdict,
     stop: Callable[[], bool] = lambda: False,
-    keeping: Keeping | None = None,
-) -> dict[str, Any] | None:
-    """Run the members of a band side by side and sum them up.
+    checkpoint: BandCheckpoint | None = None,
+) -> Band | None:
+    """Compute the members of a band side by side and sum them up.
 
     Args:
         case: of the run.
         container: of the run; its mesh and modes serve every member.
         penalty: of the run [Pa/m].
         verdict: of the run, which is itself a member.
-        stop: asked now and then; true ends the band.
-        keeping: may keep what there is of it, to go on with.
+        stop: called in pauses; true ends the band.
+        checkpoint: of the band, to resume from.
 
     Returns:
-        The `band` of a verdict, or None if it was stopped.
+        The band, or None if it was stopped.
 
     Raises:
-        OSError: something could not be kept; the other members have stopped then.
+        OSError: a checkpoint could not be written; the other members have stopped then.
     """
-    keeping = keeping or NoKeeping()
-    given = Member(
-        normal_penalty_Pa_m=penalty,
-        damping_ratio=case.contact.damping_ratio,
-        status="overturned" if verdict["outcome"] == "overturned" else "completed",
-        **{name: verdict[name] for name in IN_SHORT},
-    )
-    floors = _other_floors(penalty, case.contact.damping_ratio)
-    found = {(member.normal_penalty_Pa_m, member.damping_ratio): member for member in keeping.members()}
+    own = (penalty, case.contact.damping_ratio)
+    others = _other_contacts(*own)
+    stored = checkpoint.read_members() if checkpoint is not None else []
+    found = {(member.normal_penalty_Pa_m, member.damping_ratio): member for member in stored}
     one_at_a_time, broken = threading.Lock(), threading.Event()
 
     def halted() -> bool:
         return stop() or broken.is_set()
 
-    def member_of(number: int, floor: tuple[float, float]) -> Member:
-        if floor in found:
-            return found[floor]
+    def member_of(number: int, contact: Contact) -> BandMember:
+        if contact in found:
+            return found[contact]
         if halted():
-            return _without_outcome(floor, "interrupted")
+            return _without_outcome(contact, "interrupted")
         try:
-            member = _run_member(
-                case,
-                container,
-                floor,
-                stop=halted,
-                begin=lambda model, recorder: keeping.begin(number, model, recorder),
-            )
+            member = _run_member(case, container, number, contact, halted, checkpoint)
             with one_at_a_time:
                 if member.status != "interrupted":
-                    found[floor] = member
-                    keeping.finish(number, list(found.values()))
+                    found[contact] = member
+                    if checkpoint is not None:
+                        checkpoint.write_members(number, list(found.values()))
         except BaseException:
-            broken.set()  # else the others would be waited for
+            broken.set()  # stops the other members
             raise
         return member
 
-    workers = min(cores(), len(floors))
+    workers = min(cores(), len(others))
     if case.solver.model == "full":
-        workers = fitting_full_bodies(workers, len(container.elements.nodes))
+        workers = runs_in_memory(workers, full_model_memory(len(container.elements.nodes)))
     with ThreadPoolExecutor(max_workers=workers) as pool:
-        members = list(pool.map(member_of, count(1), floors))
+        members = list(pool.map(member_of, count(1), others))
     if any(member.status == "interrupted" for member in members):
         return None
-    return summed_up([given, *members])
+    status = "overturned" if verdict.outcome == "overturned" else "completed"
+    return summed_up([member_from(own, status, verdict), *members])
 
 
-def summed_up(members: Sequence[Member]) -> dict[str, Any]:
-    """The `band` of a verdict: outcomes in the order of the motion's states, range of rotation, doubt."""
+def summed_up(members: Sequence[BandMember]) -> Band:
+    """The band of these members: outcomes from rest to overturned, range of rotation, doubt."""
     standing = [member for member in members if member.outcome is not None]
     found = {member.outcome for member in standing}
     ratios = [member.rotation_ratio for member in standing if member.rotation_ratio is not None]
-    return {
-        "outcomes": [name for name in MODE_NAMES.values() if name in found],
-        "rotation_ratio": [min(ratios), max(ratios)],
-        "unsure": len(found) > 1 or len(standing) < len(members),
-        "members": [asdict(member) for member in members],
-    }
+    return Band(
+        outcomes=tuple(name for name in MODE_NAMES.values() if name in found),
+        rotation_ratio=(min(ratios), max(ratios)),
+        unsure=len(found) > 1 or len(standing) < len(members),
+        members=tuple(members),
+    )
 
 
-def _other_floors(penalty: float, damping_ratio: float) -> list[tuple[float, float]]:
-    """Penalty [Pa/m] and damping ratio of all members but the run itself."""
+def member_from(contact: Contact, status: str, verdict: Verdict) -> BandMember:
+    """The member with this contact."""
+    return BandMember(
+        normal_penalty_Pa_m=contact[0],
+        damping_ratio=contact[1],
+        status=status,
+        outcome=verdict.outcome,
+        rotation_ratio=verdict.rotation_ratio,
+        max_slip_m=verdict.max_slip_m,
+        residual_slip_m=verdict.residual_slip_m,
+        max_uplift_m=verdict.max_uplift_m,
+    )
+
+
+def _other_contacts(penalty: float, damping_ratio: float) -> list[Contact]:
+    """The contacts of all members but the run itself."""
     ratios = sorted({*DAMPING_RATIOS, damping_ratio})
     return [
         (factor * penalty, ratio)
@@ -183,41 +147,38 @@ def _other_floors(penalty: float, damping_ratio: float) -> list[tuple[float, flo
 def _run_member(
     case: Case,
     container: Container,
-    floor: tuple[float, float],
-    *,
+    number: int,
+    contact: Contact,
     stop: Callable[[], bool],
-    begin: Callable[[Model, Recorder], tuple[Keeper, Progress]],
-) -> Member:
-    """One member; whatever keeps it from an outcome is its error, never an outcome."""
-    penalty, damping_ratio = floor
+    checkpoint: BandCheckpoint | None,
+) -> BandMember:
+    """One member; a problem of any kind is its error, never an outcome."""
     try:
         changed = case.with_values(
             {
-                "contact.normal_penalty_Pa_m": penalty,
-                "contact.damping_ratio": damping_ratio,
+                "contact.normal_penalty_Pa_m": contact[0],
+                "contact.damping_ratio": contact[1],
                 "output.history_s": NO_SAMPLES_S,
                 "output.fields_s": 0.0,
             }
         )
         model = build_model(changed, container)
         recorder = Recorder(model)
-        keeper, progress = begin(model, recorder)
-        ending = simulate(model, recorder, stop=stop, keeper=keeper, progress=progress)
-    except (ValueError, ArithmeticError, RuntimeError) as problem:  # bad input, no stance, a singular matrix
-        return _without_outcome(floor, "failed", str(problem))
+        save, progress = None, None
+        if checkpoint is not None:
+            save, state = checkpoint.open_member(number, model, recorder)
+            progress = state.progress
+        ending = simulate(model, recorder, stop=stop, save=save, progress=progress)
+    except (
+        ValueError,
+        ArithmeticError,
+        RuntimeError,
+    ) as problem:  # bad input, no equilibrium, a singular matrix
+        return _without_outcome(contact, "failed", str(problem))
     if ending.status not in ("completed", "overturned"):
-        return _without_outcome(floor, ending.status, ending.error)
-    return Member(
-        normal_penalty_Pa_m=penalty, damping_ratio=damping_ratio, status=ending.status, **in_short(model)
-    )
+        return _without_outcome(contact, ending.status, ending.error)
+    return member_from(contact, ending.status, short_verdict(model))
 
 
-def _without_outcome(floor: tuple[float, float], status: str, error: str | None = None) -> Member:
-    penalty, damping_ratio = floor
-    return Member(
-        normal_penalty_Pa_m=penalty,
-        damping_ratio=damping_ratio,
-        status=status,
-        error=error,
-        **dict.fromkeys(IN_SHORT),
-    )
+def _without_outcome(contact: Contact, status: str, error: str | None = None) -> BandMember:
+    return BandMember(normal_penalty_Pa_m=contact[0], damping_ratio=contact[1], status=status, error=error)

@@ -1,104 +1,90 @@
-"""A band in the folder of its run: one that was cut off goes on with the members that it has, where each had come to.
+"""A band in the folder of its run, so that an interrupted one continues.
 
-The file `band.json` holds the finished members and is replaced whole whenever there is one more; in the folder
-`members` each member under way has a checkpoint as the run's own, less history and frames, of which it writes none.
-Both go when the band is in `run.json`. They hold for the case and the program that wrote them. What is damaged or
-foreign is begun anew, which costs a member and no more: the run itself is finished by then, and to refuse it, as a
-run does whose own checkpoint is damaged, would throw that away.
+The file `band.json` holds the finished members and is replaced whole with each further one; in the folder `members`
+every other member has a checkpoint like the run's, without history and frames. Both are removed when the band is in
+`run.json`. They hold for the case and the program that wrote them. What is damaged or foreign is reported and computed
+again: the run itself is finished by then, and refusing it would lose more than a member.
 """
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 from fem.case.case import case_hash as hash_of
 from fem.model.model import Model
 from fem.results.archive import CheckpointError
-from fem.results.lock import FolderLock
-from fem.results.run_folder import RunFolder, to_json, write_atomically
-from fem.run.band import Member
-from fem.run.checkpoint import CheckpointKeeper, put_back, read_beginning
+from fem.results.files import to_json
+from fem.results.folder import ResultFolder
+from fem.results.run_files import RunFiles
+from fem.results.run_result import BandMember
+from fem.run.checkpoint import CheckpointWriter, SavedState, read_state
 from fem.run.recorder import Recorder
-from fem.run.simulation import Keeper, Progress
 from fem.runtime.identity import program_identity
 from fem.runtime.progress import Reporter
 
 
-class BandFolder:
-    """Keeps a band in the folder of its run.
+class BandCheckpoint:
+    """The checkpoint of a band; its methods may be called by several threads.
 
     Args:
-        place: the folder; lock: by which it is held.
+        folder: of the run.
         case_hash: of the run.
-        reporter: told of a checkpoint that is refused.
+        reporter: for checkpoints that are refused.
     """
 
-    def __init__(self, place: RunFolder, lock: FolderLock, *, case_hash: str, reporter: Reporter) -> None:
-        self._place, self._lock = place, lock
-        self._case_hash, self._reporter = case_hash, reporter
+    def __init__(self, folder: ResultFolder, *, case_hash: str, reporter: Reporter) -> None:
+        self._folder, self._files = folder, RunFiles(folder.path)
+        self._owner = {"case_hash": case_hash, "program": program_identity()}
+        self._reporter = reporter
 
-    def members(self) -> Sequence[Member]:
-        """The finished ones."""
-        return read_members(self._place.band, self._case_hash)
+    def read_members(self) -> list[BandMember]:
+        """The finished members."""
+        path = self._files.band
+        if not path.exists():
+            return []
+        try:
+            found = json.loads(path.read_text(encoding="utf-8"))
+            if any(found[key] != value for key, value in self._owner.items()):
+                raise ValueError("of another case or another version of the program")
+            return [BandMember.from_json(member) for member in found["members"]]
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            self._reporter.warning(f"{path} is refused ({error}): its members are computed again")
+            return []
 
-    def begin(self, number: int, model: Model, recorder: Recorder) -> tuple[Keeper, Progress]:
-        """Put a member where its checkpoint says; returns who keeps it from there, and how far it has come.
+    def write_members(self, number: int, members: Sequence[BandMember]) -> None:
+        """Store the finished members, of which one is new.
+
+        Args:
+            number: of the new one; members: all finished ones.
+
+        Raises:
+            OSError: the file cannot be written, or the folder was lost.
+        """
+        self._folder.check()
+        page = self._owner | {"members": [one.to_json() for one in members]}
+        self._folder.write_text(self._files.band.name, to_json(page))
+        self._files.member_checkpoint(number).unlink(missing_ok=True)
+
+    def open_member(
+        self, number: int, model: Model, recorder: Recorder
+    ) -> tuple[CheckpointWriter, SavedState]:
+        """Put a member where its checkpoint says; returns what writes the next one, and the state.
 
         Raises:
             OSError: the folder of checkpoints cannot be made.
         """
-        path, mark, progress = self._place.member_checkpoint(number), hash_of(model.case), Progress()
+        path, request, state = self._files.member_checkpoint(number), hash_of(model.case), SavedState()
         if path.exists():
             try:
-                beginning = read_beginning(path, model, mark)
+                state = read_state(path, model, request)
             except CheckpointError as error:
-                self._reporter.message(f"{error.path} is refused ({error.reason}): the member is begun anew")
-            else:
-                progress = beginning.progress
-                put_back(model, recorder, beginning.arrays or {})
+                self._reporter.warning(
+                    f"{path} is refused ({error.reason}): this member of the band starts over at t = 0"
+                )
+        state.restore(model, recorder)
         path.parent.mkdir(exist_ok=True)
-        return (
-            CheckpointKeeper(path, case_hash=mark, model=model, recorder=recorder, settle=self._settle),
-            progress,
-        )
+        return CheckpointWriter(path, model, recorder, case_hash=request, notes=self._notes), state
 
-    def finish(self, number: int, members: Sequence[Member]) -> None:
-        """Keep the finished members, of which one has come to its end.
-
-        Raises:
-            OSError: the file cannot be written, or the folder is no longer ours.
-        """
-        self._lock.check()
-        write_members(self._place.band, self._case_hash, members)
-        self._place.member_checkpoint(number).unlink(missing_ok=True)
-
-    def _settle(self) -> dict[str, Any]:
-        self._lock.check()
+    def _notes(self) -> dict[str, Any]:
+        self._folder.check()
         return {}
-
-
-def read_members(path: Path, case_hash: str) -> list[Member]:
-    """The finished members in a file; none where it is missing, damaged, or of another case or program."""
-    try:
-        found = json.loads(path.read_text(encoding="utf-8"))
-        if (found["case_hash"], found["program"]) != (case_hash, program_identity()):
-            return []
-        return [Member(**member) for member in found["members"]]
-    except (OSError, ValueError, KeyError, TypeError):
-        return []
-
-
-def write_members(path: Path, case_hash: str, members: Sequence[Member]) -> None:
-    """Replace the file.
-
-    Raises:
-        OSError: it cannot be written; the old one is still there.
-    """
-    page = {
-        "case_hash": case_hash,
-        "program": program_identity(),
-        "members": [asdict(one) for one in members],
-    }
-    write_atomically(path, to_json(page))

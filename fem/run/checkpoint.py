@@ -1,9 +1,9 @@
-"""Going on with a simulation where it was cut off: what a checkpoint takes of it, and how that is put back.
+"""The checkpoint of a simulation: what is stored of it, and how it is restored.
 
-A checkpoint is made in a pause of the stepping. It takes everything of the run that changes - coordinates,
-velocities, friction springs, kept factors of the contact, ledger, step control, record, samples not yet written -
-bit for bit, and the recorder's memory. What only follows from the case (mesh, modes, floor) is built anew; factors of
-the bodies follow from the step size alone. What has been written to files is the matter of `fem.run.run_resumption`; a
+A checkpoint is written in a pause of the stepping. It holds everything of the run that changes - coordinates,
+velocities, friction springs, stored factors of the contact, energy ledger, step control, record, samples not yet
+written, the recorder's memory - bit for bit. What follows from the case alone (mesh, modes, floor) is built again, and
+factors of the bodies follow from the step size. `fem.run.output` adds what the files of a run held at that time; a
 member of a band writes none.
 """
 
@@ -20,16 +20,15 @@ from contact.interface.solver import Workspace
 from contact.stepping.body import State
 from contact.stepping.state import Run
 from fem.model.model import Model
-from fem.results.archive import Checkpoint, CheckpointError, read_checkpoint, write_checkpoint
+from fem.results.archive import CheckpointError, read_checkpoint, write_archive
 from fem.run.recorder import Recorder
 from fem.run.simulation import Progress
 from fem.runtime.identity import program_identity
 from fem.solid.nodal_body import FullBody
 
-#: wall time between checkpoints; what passes between two pauses of the stepping may come on top of it, some five
-#: seconds, and the writing of a few frames
+#: wall time between checkpoints [s]; the stepping pauses every five seconds or so, and writing frames takes time, too
 CHECKPOINT_S = 15.0
-#: parts of `contact.stepping.state.Run` that do not change, and those of which a part is kept
+#: parts of `contact.stepping.state.Run` that do not change, and those of which a part is stored
 CONSTANT = frozenset({"scheme", "contact", "motion", "breaks", "control"})
 SAMPLES = frozenset({"history", "frames"})
 RECORDED, BODY = "recorder.", "body."
@@ -37,66 +36,78 @@ RECORDED, BODY = "recorder.", "body."
 Arrays = dict[str, NDArray[Any]]
 
 
-class CheckpointKeeper:
-    """Keeps the checkpoint of a simulation: every quarter of a minute, and when it is interrupted.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SavedState:
+    """A simulation as a checkpoint holds it."""
+
+    progress: Progress = field(default_factory=Progress)
+    arrays: Arrays = field(default_factory=dict)  #: as `state_of` names them; empty: t = 0
+    notes: Mapping[str, Any] = field(default_factory=dict)  #: stored with them
+
+    def restore(self, model: Model, recorder: Recorder) -> None:
+        """Give run, body and recorder this state; they stay as they are at t = 0."""
+        if not self.arrays:
+            return
+        for name, array in _changing(model).items():
+            np.copyto(array, self.arrays[name])
+        for name, array in _waiting(model.run, model.run.clock).items():  # the clock is restored by now
+            np.copyto(array, self.arrays[name])
+        if isinstance(model.body, FullBody):
+            model.body.recall(_named(self.arrays, BODY))
+        recorder.recall(_named(self.arrays, RECORDED))
+
+
+class CheckpointWriter:
+    """Writes the checkpoint of a simulation: every 15 s, and when it is interrupted.
 
     Args:
         path: of the checkpoint.
         case_hash: of the case that is simulated.
-        model, recorder: of the simulation.
-        settle: called before a checkpoint is written, to make sure that it may be and that what it speaks of has
-            reached the disk; returns notes to be kept beside the state.
+        notes: called before a checkpoint is written; makes sure that it may be, and that the files it refers to have
+            reached the disk; returns what is stored with the state.
     """
 
     def __init__(
         self,
         path: Path,
-        *,
-        case_hash: str,
         model: Model,
         recorder: Recorder,
-        settle: Callable[[], Mapping[str, Any]],
+        *,
+        case_hash: str,
+        notes: Callable[[], Mapping[str, Any]],
     ) -> None:
-        self._path, self._case_hash, self._program = path, case_hash, program_identity()
-        self._model, self._recorder, self._settle = model, recorder, settle
+        self._path, self._model, self._recorder = path, model, recorder
+        self._case_hash, self._notes, self._program = case_hash, notes, program_identity()
         self._last = time.monotonic()
 
-    def keep(self, progress: Progress, *, at_once: bool = False) -> None:
-        """Write the checkpoint if the last one is old enough, or at once.
+    def __call__(self, progress: Progress, now: bool) -> None:
+        """Write the checkpoint if the last one is old enough, or `now`.
 
         Raises:
-            OSError: it cannot be written, or the folder is no longer ours.
+            OSError: it cannot be written, or the folder was lost.
         """
-        if not at_once and time.monotonic() - self._last < CHECKPOINT_S:
+        if not now and time.monotonic() - self._last < CHECKPOINT_S:
             return
         about = {
             "case_hash": self._case_hash,
             "program": self._program,
             "time_s": float(self._model.run.clock[0].time),
             "progress": asdict(progress),
-            **self._settle(),
+            **self._notes(),
         }
-        write_checkpoint(self._path, about, state_of(self._model, self._recorder))
+        write_archive(self._path, about, state_of(self._model, self._recorder))
         self._last = time.monotonic()
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Beginning:
-    """From where a simulation is stepped: a checkpoint, or t = 0."""
-
-    progress: Progress = field(default_factory=Progress)
-    arrays: Mapping[str, NDArray[Any]] | None = None  #: as `state_of` took them; None: t = 0
-    notes: Mapping[str, Any] = field(default_factory=dict)  #: that were kept beside them
-
-
-def read_beginning(path: Path, model: Model, case_hash: str) -> Beginning:
-    """The beginning that a checkpoint asks for, after holding it against the model.
+def read_state(path: Path, model: Model, case_hash: str) -> SavedState:
+    """The state in a checkpoint; nothing is restored yet.
 
     Raises:
-        CheckpointError: it is damaged, of another case or another version, or not of this model's run.
+        CheckpointError: damaged, of another case or another version, or not of this model's run.
     """
     found = read_checkpoint(path, case_hash=case_hash, program=program_identity())
-    _require_fit(path, found, model)
+    _require_same(path, found.arrays, _changing(model))
+    _require_same(path, found.arrays, _waiting(model.run, found.arrays["clock"]))
     try:
         about = found.about["progress"]
         undriven, under_way = about["undriven"], about["slice"]
@@ -107,26 +118,20 @@ def read_beginning(path: Path, model: Model, case_hash: str) -> Beginning:
         )
     except (KeyError, TypeError, ValueError, IndexError) as error:
         raise misfit(path, f"its notes cannot be read ({error!r})") from None
-    return Beginning(progress=progress, arrays=found.arrays, notes=found.about)
+    return SavedState(progress=progress, arrays=found.arrays, notes=found.about)
+
+
+def misfit(path: Path, reason: str) -> CheckpointError:
+    """The error of a checkpoint that does not fit the run it is found with."""
+    return CheckpointError(path, f"does not fit this run: {reason}")
 
 
 def state_of(model: Model, recorder: Recorder) -> Arrays:
-    """Everything that changes in a run, by name; the arrays themselves, not copies, where they are kept."""
+    """Everything that changes in a run, by name; the arrays themselves, not copies."""
     found = _changing(model) | _waiting(model.run, model.run.clock)
     if isinstance(model.body, FullBody):
         found |= {BODY + name: array for name, array in model.body.memory().items()}
     return found | {RECORDED + name: array for name, array in recorder.memory().items()}
-
-
-def put_back(model: Model, recorder: Recorder, arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Give run, body and recorder the state that `state_of` took."""
-    for name, array in _changing(model).items():
-        np.copyto(array, arrays[name])
-    for name, array in _waiting(model.run, model.run.clock).items():  # the clock is put back by now
-        np.copyto(array, arrays[name])
-    if isinstance(model.body, FullBody):
-        model.body.recall(_named(arrays, BODY))
-    recorder.recall(_named(arrays, RECORDED))
 
 
 def _changing(model: Model) -> Arrays:
@@ -142,11 +147,11 @@ def _changing(model: Model) -> Arrays:
 
 
 def _waiting(run: Run, clock: NDArray[Any]) -> Arrays:
-    """The samples of a run that no file has yet, as many as this clock says."""
+    """The samples of a run that are in no file yet, as many as this clock says."""
     found: Arrays = {}
     for name, samples, so_far, gone in (
-        ("history", run.history, "samples", "samples_gone"),
-        ("frames", run.frames, "frames", "frames_gone"),
+        ("history", run.history, "samples", "samples_drained"),
+        ("frames", run.frames, "frames", "frames_drained"),
     ):
         count = int(clock[so_far][0] - clock[gone][0])
         parts = samples._asdict().items()
@@ -154,23 +159,13 @@ def _waiting(run: Run, clock: NDArray[Any]) -> Arrays:
     return found
 
 
-def _named(arrays: Mapping[str, NDArray[Any]], prefix: str) -> Arrays:
+def _named(arrays: Arrays, prefix: str) -> Arrays:
     return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}
 
 
-def _require_fit(path: Path, found: Checkpoint, model: Model) -> None:
+def _require_same(path: Path, found: Arrays, wanted: Arrays) -> None:
     """Refuse arrays that are not those of this model's run."""
-    _require_same(path, found, _changing(model))
-    _require_same(path, found, _waiting(model.run, found.arrays["clock"]))
-
-
-def _require_same(path: Path, found: Checkpoint, arrays: Arrays) -> None:
-    for name, mine in arrays.items():
-        theirs = found.arrays.get(name)
+    for name, mine in wanted.items():
+        theirs = found.get(name)
         if theirs is None or theirs.shape != mine.shape or theirs.dtype.descr != mine.dtype.descr:
             raise misfit(path, f"its {name} is not that of this run")
-
-
-def misfit(path: Path, reason: str) -> CheckpointError:
-    """The error of a checkpoint that does not fit what it is found with."""
-    return CheckpointError(path, f"cannot be gone on from: {reason}")

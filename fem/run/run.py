@@ -1,58 +1,50 @@
 """A run, from a case to a verdict and its files.
 
-case -> model (mesh, body, floor, settled) -> step until done -> history -> verdict -> outputs; then, where
-they are wanted, the comparison with the rigid block and the band over the contact.
+case -> model (mesh, body, floor, equilibrium) -> step until done -> verdict -> files; then, where they are wanted, the
+comparison with the rigid block and the band of the contact.
 """
 
-import contextlib
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from fem.assessment.joint_demands import joint_demands
 from fem.assessment.summary import plain_summary
 from fem.assessment.verdict import energy_of, numerics_of, verdict_of
 from fem.assessment.warnings import warnings_for
-from fem.case.case import Case, CaseError, case_hash, to_toml
+from fem.case.case import Case, case_hash, to_toml
 from fem.figures.cache import write_figures
 from fem.model.container import discretise
 from fem.model.geometry import build_container, node_count
-from fem.model.model import Model, build_model, checks_of
-from fem.model.motion import build_motion, motion_notes
-from fem.model.recovery import Frame, recovery_of
+from fem.model.model import Model, build_model
+from fem.model.motion import build_motion, motion_notes, peak_acceleration_within
+from fem.model.static_checks import static_checks_of
 from fem.model.step_size import largest_step_of
 from fem.model.support import normal_penalty
-from fem.results.disk import require_disk
-from fem.results.fields import FieldWriter
-from fem.results.history import History, HistoryWriter, read_history
-from fem.results.lock import FolderLock, FolderLostError
+from fem.results.errors import FolderError, FolderLostError, unwritable
+from fem.results.folder import ResultFolder, find_result, open_result_folder
+from fem.results.history import History
+from fem.results.kinds import RUN
 from fem.results.reader import open_run
-from fem.results.result_folder import held
-from fem.results.run_folder import (
-    FINISHED,
-    OutputError,
-    RunFolder,
-    copy_data_files,
-    finished_run,
-    open_run_folder,
-)
-from fem.run.checkpoint import CheckpointKeeper, put_back
+from fem.results.run_files import RunFiles, copy_data_files
+from fem.results.run_result import MotionResult, RunResult
+from fem.run.checkpoint import CheckpointWriter
 from fem.run.checks import WantedChecks, add_checks, lacks_band, lacks_checks
-from fem.run.recorder import Recorder
-from fem.run.run_resumption import RunBeginning, Spent, beginning_in, clock_readings, settling, spent_since
-from fem.run.setup_cache import PartFolder
-from fem.run.simulation import Ending, simulate
-from fem.runtime.arrays import FloatArray
+from fem.run.output import Start, Stopwatch, open_output, read_start
+from fem.run.setup_cache import SetupCache
+from fem.run.simulation import simulate
+from fem.run.size import required_disk, size_in_words
 from fem.runtime.compilation import compilation_announced
 from fem.runtime.identity import versions
-from fem.runtime.interrupts import ending_at_once, interruptible
 from fem.runtime.progress import Reporter, SilentReporter
+from fem.runtime.signals import ending_at_once, interruptible
 from fem.solid.nodal_body import advance_body
 from mesh.container import ContainerMesh
+
+WAY_ON = "--resume continues from the last checkpoint"
+SETUP_PARTS = ".setup/part_*.npz"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,13 +56,22 @@ class RunOptions(WantedChecks):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class RunResult:
-    """What a run came to."""
+class Run:
+    """A run that has ended, or was interrupted."""
 
-    status: str  #: completed | overturned | failed | interrupted
-    result: dict[str, Any]  #: as in run.json
+    typed_result: RunResult
     history: History
-    stopped: bool = False  #: the stepping was interrupted, or the band behind it
+    stopped: bool = False  #: the stepping was interrupted, or the band after it
+
+    @property
+    def status(self) -> str:
+        """Status of the run: completed | overturned | failed | interrupted."""
+        return self.typed_result.status
+
+    @property
+    def result(self) -> dict[str, Any]:
+        """As in `run.json`."""
+        return self.typed_result.to_json()
 
 
 def run_case(
@@ -80,288 +81,212 @@ def run_case(
     folder: Path,
     options: RunOptions | None = None,
     reporter: Reporter | None = None,
-) -> RunResult:
+) -> Run:
     """Compute a case into a folder.
 
     A finished run of the same case is not computed again; a band or a rigid check that it lacks is added.
 
     Raises:
-        CaseError, MeshError, FolderError, FolderLockedError, CheckpointError: bad input, or no room for the
-            results; nothing is left behind.
+        CaseError, MeshError, FolderError: bad input, or no room for the results; nothing is left behind.
         OutputError: the disk is full, the folder was removed; what was written can be read.
     """
-    options, reporter = options or RunOptions(), reporter or SilentReporter()
-    began = clock_readings()
-    mesh = build_container(case)
+    options, reporter, watch = options or RunOptions(), reporter or SilentReporter(), Stopwatch()
+    files, mesh = RunFiles(folder), build_container(case)
+    files.require_free_names(case)
     resolved = resolve(case, mesh)
-    mark, place = case_hash(resolved), RunFolder(path=folder)
-    require_names_of_their_own(case, place)
-    found = finished_run(folder, case_hash=mark, force=options.force)
-    if found is not None:
-        reporter.message(f"{folder} holds this run already; --force computes it again")
-    if found is not None and _is_whole(found, place, case, options):
-        return RunResult(status=str(found["status"]), result=found, history=History.empty())
-    if found is None:
-        require_disk(case, node_count(mesh, case.solver.order), folder)
-    beginning = RunBeginning()
+    request, history = case_hash(resolved), History.empty()
+    known = finished_result(folder, request, options, reporter)
+    if known is not None and not lacks_checks(known, case, options) and not _lacks_figures(files, case):
+        return Run(typed_result=known, history=history)
 
-    with ExitStack() as stack:
-        lock = stack.enter_context(held(folder))
-        stack.enter_context(compilation_announced(reporter.message))
-        model = _set_up(case, mesh, place, lock, mark, force=options.force, reporter=reporter)
-        stop = stack.enter_context(interruptible(reporter))
-
-        def inspect(place: RunFolder) -> None:
-            nonlocal beginning
-            beginning = beginning_in(place, model, mark)
-
-        place = open_run_folder(
-            folder,
-            case_text=case_text,
-            resolved_text=to_toml(resolved),
-            case_hash=mark,
-            force=options.force,
-            resume=options.resume,
-            inspect=inspect,
-        )
-        result: dict[str, Any] = {}
-        with naming_what_failed(place, result):
-            if place.finished is not None:
-                result |= place.finished
-                added = add_checks(result, model, place, lock, options, reporter=reporter, stop=stop)
-                if added:
-                    store(result, case, place)
-                if added or not place.drawn.is_file():
-                    draw(model, place, reporter)
-                return RunResult(
-                    status=str(result["status"]),
-                    result=result,
-                    history=History.empty(),
-                    stopped=_was_stopped(result, case, options),
+    with open_result_folder(
+        folder, RUN, request, force=options.force, resume=options.resume, way_on=WAY_ON
+    ) as place:
+        if known is None:
+            require_room_for(case, mesh, place)
+        model = set_up(case, mesh, place, request, force=options.force, reporter=reporter)
+        with interruptible(reporter) as stop:
+            result = known
+            if result is None:
+                texts = {files.case.name: case_text, files.resolved.name: to_toml(resolved)}
+                result, history = compute(
+                    model, place, request, texts=texts, watch=watch, reporter=reporter, stop=stop
                 )
-            copy_data_files(case, place.path)
-            result |= {
-                "status": "running",
-                "case": case.name,
-                "title": case.title,
-                "case_hash": mark,
-                "static": model.static.to_dict(),
-                "motion": {"notes": motion_notes(model.motion)},
-                "versions": versions(),
-            }
-            place.write_result(result)
-            ending, recorder = _step_into(place, lock, model, reporter, stop, beginning, mark, began)
-            result |= result_of(model, recorder, ending)
-            for once_more in (True, False):  # the run is safe before its checks begin, and whole after them
-                spent = spent_since(began, beginning.spent)
-                result |= asdict(spent)
-                lock.check()
-                store(result, case, place)
-                if not (
-                    once_more
-                    and add_checks(result, model, place, lock, options, reporter=reporter, stop=stop)
-                ):
-                    break
-            draw(model, place, reporter)
-    return RunResult(
-        status=ending.status,
-        result=result,
-        history=recorder.history(),
-        stopped=_was_stopped(result, case, options),
+                result = store(replace(result, **asdict(watch.spent())), case, place)
+            # The run is safe before its checks begin, and complete after them.
+            checked = add_checks(result, model, place, options, reporter=reporter, stop=stop)
+            if checked is not result:
+                spent = asdict(watch.spent()) if known is None else {}
+                result = store(replace(checked, **spent), case, place)
+            if result is not known or _lacks_figures(files, case):
+                draw(model, place.path, reporter)
+    finished = result.status in RUN.finished
+    stopped = lacks_band(result, case, options) if finished else result.status == "interrupted"
+    return Run(typed_result=result, history=history, stopped=stopped)
+
+
+def compute(
+    model: Model,
+    place: ResultFolder,
+    request: str,
+    *,
+    texts: Mapping[str, str],
+    watch: Stopwatch,
+    reporter: Reporter,
+    stop: Callable[[], bool],
+) -> tuple[RunResult, History]:
+    """Step a model from t = 0, or from its checkpoint, to a verdict; its files grow on the way.
+
+    Args:
+        model: at t = 0.
+        place: its folder.
+        request: hash of the case.
+        texts: files that describe the case.
+        watch: counts from the checkpoint on.
+        stop: called in pauses; true ends the stepping.
+
+    Raises:
+        CheckpointError: the checkpoint to resume from does not fit; nothing has been changed then.
+    """
+    case, files = model.case, RunFiles(place.path)
+    start = read_start(files, model, request) if place.resuming else Start()
+    watch.before = start.spent
+    result = RunResult(
+        status="running",
+        case=case.name,
+        title=case.title,
+        case_hash=request,
+        static=model.static.to_result(),
+        motion=MotionResult(notes=tuple(motion_notes(model.motion))),
+        versions=versions(),
     )
+    place.begin(result.to_json(), texts, keep=start.is_resumed)
+    with failure_noted(place, result):
+        copy_data_files(case, place.path)
+        with open_output(files, model, start) as output:
+            recorder = output.recorder
+            if start.is_resumed:
+                reporter.message(f"resuming at t = {float(model.run.clock[0].time):.6g} s")
+
+            def notes() -> dict[str, Any]:
+                place.check()
+                return output.sync() | {"spent": asdict(watch.spent())}
+
+            save = CheckpointWriter(files.checkpoint, model, recorder, case_hash=request, notes=notes)
+            ending = simulate(
+                model, recorder, reporter=reporter, stop=stop, save=save, progress=start.state.progress
+            )
+    history = recorder.history()
+    stress = recorder.largest_von_mises if case.solver.model != "rigid" else None
+    verdict = verdict_of(model, history, stress)
+    result = replace(
+        result,
+        status=ending.status,
+        verdict=verdict if ending.error is None else replace(verdict, outcome=None),
+        joints=joint_demands(model, history),
+        energy=energy_of(model),
+        numerics=numerics_of(model, ending.stepping_cpu_s),
+        error=ending.error,
+    )
+    return result, history
+
+
+def finished_result(folder: Path, request: str, options: RunOptions, reporter: Reporter) -> RunResult | None:
+    """The result of a finished run of this case in a folder, unless it is to be overwritten."""
+    found = find_result(folder, RUN, request, force=options.force)
+    if found is None or found.get("status") not in RUN.finished:
+        return None
+    reporter.message(f"{folder} holds this run already; --force computes it again")
+    try:
+        return RunResult.from_json(found)
+    except ValueError as error:
+        raise FolderError(f"{folder / RUN.mark}: damaged, {error}; compute it again with --force") from None
+
+
+def require_room_for(case: Case, mesh: ContainerMesh, place: ResultFolder) -> None:
+    """Refuse a run that the disk cannot hold; raises FolderError."""
+    nodes = node_count(mesh, case.solver.order)
+    way_out = "set a larger output.fields_s (0: no frames) or output.history_s"
+    place.require_room(required_disk(case, nodes), size_in_words(case, nodes), way_out)
 
 
 @contextmanager
-def naming_what_failed(place: RunFolder, result: dict[str, Any]) -> Iterator[None]:
-    """Turn a disk that is full, or a folder that is gone, into a message and a failed run.
-
-    Raises:
-        OutputError: in the place of an OSError.
-    """
+def failure_noted(place: ResultFolder, begun: RunResult) -> Iterator[None]:
+    """Let `run.json` say that the run failed where its files cannot be written."""
     try:
         yield
     except OSError as error:
-        reason = (
-            f"{error.filename or place.path}: cannot be written ({error.strerror or error}); what was written "
-            "before can be read; when there is room again, --resume goes on from the last checkpoint"
-        )
-        if result.get("status") == "running" and not isinstance(error, FolderLostError):
-            with contextlib.suppress(OSError):
-                place.write_result(result | {"status": "failed", "error": reason})
-        raise OutputError(reason) from None
+        if not isinstance(error, FolderLostError):
+            reason = unwritable(place.path, error, WAY_ON)
+            with suppress(OSError):
+                place.write_result(replace(begun, status="failed", error=reason).to_json())
+        raise
 
 
-def store(result: dict[str, Any], case: Case, place: RunFolder) -> None:
-    """Write the summary, then `run.json` with its warnings: a run that says it is finished has both.
+def store(result: RunResult, case: Case, place: ResultFolder) -> RunResult:
+    """Write the summary, then `run.json` with its warnings: a run that is marked as finished has both.
 
-    What was kept to go on with goes when nothing is left to go on with, and not before that is written.
+    Checkpoints are removed after that, when there is nothing left to resume.
     """
-    result["warnings"] = warnings_for(result, case)
-    place.write_summary(
-        plain_summary(result, title=case.title or case.name, folder=place.path, warnings=result["warnings"])
-    )
-    place.write_result(result)
-    if result["status"] in FINISHED:
-        place.remove_checkpoint()
-        place.remove_setup()
-        if result["verdict"].get("band") is not None:
-            place.remove_band()
-
-
-def draw(model: Model, place: RunFolder, reporter: Reporter) -> None:
-    """Draw the figures of what the folder holds, where they are wanted; a run stands without them."""
-    if not model.case.output.figures:
-        return
-    try:
-        write_figures(open_run(place.path), model.container)
-    except Exception as error:  # a full disk, a history cut short, a fault of the drawing: never the run's
-        reporter.message(f"figures were not drawn ({type(error).__name__}: {error}); the results are whole")
-
-
-def _was_stopped(result: dict[str, Any], case: Case, options: RunOptions) -> bool:
-    """Whether the stepping, or the band behind it, was interrupted."""
-    if result["status"] in FINISHED:
-        return lacks_band(result, case, options)
-    return bool(result["status"] == "interrupted")
-
-
-def _is_whole(result: dict[str, Any], place: RunFolder, case: Case, options: RunOptions) -> bool:
-    """Whether a finished run has the checks that are wanted, and its figures."""
-    return not lacks_checks(result, case, options) and (place.drawn.is_file() or not case.output.figures)
-
-
-def result_of(model: Model, recorder: Recorder, ending: Ending) -> dict[str, Any]:
-    """The blocks of `run.json` that the stepping fills."""
-    rigid, history = model.case.solver.model == "rigid", recorder.history()
-    result: dict[str, Any] = {
-        "status": ending.status,
-        "verdict": verdict_of(model, history, None if rigid else recorder.largest_von_mises),
-        "joints": joint_demands(model, history),
-        "energy": energy_of(model),
-        "numerics": numerics_of(model, ending.stepping_cpu_s),
-    }
-    if ending.error is not None:
-        result["error"] = ending.error
-        result["verdict"]["outcome"] = None
+    place.check()
+    result = replace(result, warnings=tuple(warnings_for(result, case)))
+    place.write_text(RunFiles(place.path).summary.name, plain_summary(result, folder=place.path))
+    place.write_result(result.to_json())
+    if result.status in RUN.finished:
+        place.remove("checkpoint.npz", SETUP_PARTS)
+        if result.verdict is not None and result.verdict.band is not None:
+            place.remove("band.json", "members/member_*.npz")
     return result
 
 
+def draw(model: Model, folder: Path, reporter: Reporter) -> None:
+    """Draw the figures of the run in a folder, where they are wanted; they are no part of the result."""
+    if not model.case.output.figures:
+        return
+    try:
+        write_figures(open_run(folder), model.container)
+    except Exception as error:  # a full disk, a history cut short, a fault of the drawing: never the run's
+        reporter.message(
+            f"figures were not drawn ({type(error).__name__}: {error}); the results are complete"
+        )
+
+
 def resolve(case: Case, mesh: ContainerMesh) -> Case:
-    """The case with every "auto" replaced by what is chosen; running it again gives the same result.
+    """The case with every "auto" replaced by the value chosen; running it again gives the same result.
 
     Raises:
-        CaseError: a motion that cannot be built, or that the step given would step over.
+        CaseError: a motion that cannot be built, or that the given step would step over.
     """
     chosen: dict[str, Any] = {}
     if case.contact.normal_penalty_Pa_m == "auto":
         chosen["contact.normal_penalty_Pa_m"] = normal_penalty(case, mesh)
     if case.solver.step_s == "auto":
         motion = build_motion(case)
-        chosen["solver.step_s"], _ = largest_step_of(case, checks_of(case, mesh, motion), motion)
+        static = static_checks_of(case, mesh, peak_acceleration_within(motion, case.solver.duration_s))
+        chosen["solver.step_s"], _ = largest_step_of(case, static, motion)
     return case.with_values(chosen) if chosen else case
 
 
-def _set_up(
-    case: Case,
-    mesh: ContainerMesh,
-    place: RunFolder,
-    lock: FolderLock,
-    case_hash: str,
-    *,
-    force: bool,
-    reporter: Reporter,
+def set_up(
+    case: Case, mesh: ContainerMesh, place: ResultFolder, request: str, *, force: bool, reporter: Reporter
 ) -> Model:
-    """The model of a case, and the kernels that step it; what of it takes long is kept in the folder.
+    """Build the model of a case and compile the kernels that step it; arrays that take long are cached in the folder.
 
     Raises:
-        CaseError, MeshError: it cannot be built; nothing is kept of it then.
+        CaseError, MeshError: it cannot be built; the cache is removed then.
     """
     if force:
-        place.remove_setup()
+        place.remove(SETUP_PARTS)
     try:
-        with ending_at_once():
-            parts = PartFolder(place, lock, case_hash=case_hash, reporter=reporter)
-            model = build_model(case, discretise(case, mesh, parts))
-            advance_body(model.body, model.run, 0.0)  # no step: compiled, where that has not been done
+        with ending_at_once(), compilation_announced(reporter.message):
+            cache = SetupCache(place, case_hash=request, reporter=reporter)
+            model = build_model(case, discretise(case, mesh, cache))
+            advance_body(model.body, model.run, 0.0)  # no step: compiles
     except ValueError:
-        place.remove_setup()
+        place.remove(SETUP_PARTS)
         raise
     return model
 
 
-def require_names_of_their_own(case: Case, place: RunFolder) -> None:
-    """Refuse a mesh or motion file whose copy would lie where results are written.
-
-    Raises:
-        CaseError: with the key and the name.
-    """
-    for key, path in case.data_files.items():
-        name = path.relative_to(case.folder)
-        if place.path / name.parts[0] in place.own:
-            table, _, word = key.partition(".")
-            raise CaseError(
-                f"[{table}] {word} is named {str(name)!r}, as a result of the run is, which would take its place "
-                "in the folder of results; give the file another name"
-            )
-
-
-def _step_into(
-    place: RunFolder,
-    lock: FolderLock,
-    model: Model,
-    reporter: Reporter,
-    stop: Callable[[], bool],
-    beginning: RunBeginning,
-    case_hash: str,
-    began: Spent,
-) -> tuple[Ending, Recorder]:
-    """Step the model; history, fields and checkpoints go into the folder as they come."""
-    with ExitStack() as stack:
-        history = stack.enter_context(
-            HistoryWriter(
-                place.history, position=beginning.history_bytes, joints=model.case.container.boxes - 1
-            )
-        )
-        fields, frame_sink = None, None
-        if model.case.output.fields_s > 0.0:
-            elements = model.container.elements
-            fields = FieldWriter(
-                place.fields,
-                points=elements.nodes,
-                cells=elements.cells,
-                region=elements.region.astype(np.int64),
-                kept_times=beginning.frames_s,
-            )
-            stack.callback(fields.close)
-            frame_sink = _frame_writer(fields)
-        recorder = Recorder(model, recovery_of(model), history.append, frame_sink)
-        simulation = beginning.simulation
-        if simulation.arrays is not None:
-            put_back(model, recorder, simulation.arrays)
-            recorder.go_on(read_history(place.history))
-            reporter.message(f"going on at t = {float(model.run.clock[0].time):.6g} s")
-        keeper = CheckpointKeeper(
-            place.checkpoint,
-            case_hash=case_hash,
-            model=model,
-            recorder=recorder,
-            settle=settling(lock, history, fields, before=beginning.spent, began=began),
-        )
-        ending = simulate(
-            model, recorder, reporter=reporter, stop=stop, keeper=keeper, progress=simulation.progress
-        )
-        return ending, recorder
-
-
-def _frame_writer(fields: FieldWriter) -> Callable[[float, Frame, FloatArray, float], None]:
-    def write(instant: float, frame: Frame, pressure: FloatArray, floor: float) -> None:
-        fields.write(
-            instant,
-            displacement=frame.displacement,
-            velocity=frame.velocity,
-            von_mises=frame.von_mises,
-            contact_pressure=pressure,
-            floor_displacement=floor,
-        )
-
-    return write
+def _lacks_figures(files: RunFiles, case: Case) -> bool:
+    return case.output.figures and not files.drawn.is_file()

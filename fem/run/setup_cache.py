@@ -1,90 +1,88 @@
-"""Parts of a long set-up in the folder of its run: one that was cut off goes on after those that it has.
+"""Arrays of a long set-up in the folder of its run: an interrupted set-up continues with those it has.
 
-A quarter of a minute after the last time, what has been made since is written into a file of its own in the hidden
-folder `.setup`: part after part, in the order in which a set-up asks for them, each file a checkpoint with its sum.
-A set-up that goes on reads them in that order, up to the first that is missing, damaged or of another case or program,
-and makes the rest. They go when the run is finished. A set-up of less than that never writes one.
+15 s after the last time, the arrays computed since are written into a file in the hidden folder `.setup`, in the order
+in which a set-up asks for them. A set-up that continues reads the files in that order, up to the first that is missing,
+damaged or of another case or program, and computes the rest. They are removed when the run is finished. A set-up of
+less than 15 s writes none.
 """
 
 import time
 from collections.abc import Callable
 
-from fem.results.archive import CheckpointError, read_checkpoint, write_checkpoint
-from fem.results.disk import free_disk
-from fem.results.lock import FolderLock
-from fem.results.run_folder import RunFolder, naming_what_cannot_be_written
+from fem.results.archive import CheckpointError, read_checkpoint, write_archive
+from fem.results.disk import free_disk, in_units
+from fem.results.folder import ResultFolder
+from fem.results.run_files import RunFiles
 from fem.run.checkpoint import CHECKPOINT_S
 from fem.runtime.arrays import FloatArray
 from fem.runtime.identity import program_identity
 from fem.runtime.progress import Reporter
 
-#: over the size of the parts: room that their file must leave on the disk, for the run itself
+#: over the size of the arrays: room that their file must leave on the disk, for the run itself
 ROOM = 4
 
 
-class PartFolder:
-    """Keeps the parts of a set-up in the folder of its run.
+class SetupCache:
+    """Stores the arrays of a set-up; an `ArrayCache` of `fem.solid.array_cache`.
 
     Args:
-        place: the folder; lock: by which it is held.
+        folder: of the run.
         case_hash: of the run.
-        reporter: told of parts that are gone on with, and of those refused.
+        reporter: for files that are refused, and for arrays that the disk has no room for.
     """
 
-    def __init__(self, place: RunFolder, lock: FolderLock, *, case_hash: str, reporter: Reporter) -> None:
-        self._place, self._lock, self._reporter = place, lock, reporter
+    def __init__(self, folder: ResultFolder, *, case_hash: str, reporter: Reporter) -> None:
+        self._folder, self._files, self._reporter = folder, RunFiles(folder.path), reporter
         self._case_hash, self._program = case_hash, program_identity()
         self._number = 1  #: of the file that is read or written next
-        self._going_on = place.part(1).exists()
-        self._ahead: dict[str, FloatArray] = {}  #: read, and not asked for yet
-        self._made: dict[str, FloatArray] = {}  #: not written yet
+        self._reading = self._files.setup_part(1).exists()
+        self._read: dict[str, FloatArray] = {}  #: and not asked for yet
+        self._computed: dict[str, FloatArray] = {}  #: and not written yet
         self._last = time.monotonic()
 
-    def fill(self, name: str, target: FloatArray, make: Callable[[], FloatArray]) -> None:
-        """See `fem.solid.setup_parts.Parts`.
+    def __call__(self, name: str, target: FloatArray, compute: Callable[[], FloatArray]) -> None:
+        """Fill an array with what is stored under its name, or with the computed values.
 
         Raises:
-            OutputError: the folder is no longer ours, or cannot be written.
+            OSError: the folder was lost, or cannot be written.
         """
-        found = self._kept(name)
-        if found is not None and found.shape == target.shape:
-            target[...] = found
+        stored = self._stored(name) if self._reading else None
+        if stored is not None and stored.shape == target.shape:
+            target[...] = stored
             return
-        self._going_on = False
-        self._ahead.clear()
-        target[...] = make()
-        self._made[name] = target
+        self._reading = False
+        self._read.clear()
+        target[...] = compute()
+        self._computed[name] = target
         if time.monotonic() - self._last >= CHECKPOINT_S:
             self._write()
 
-    def _kept(self, name: str) -> FloatArray | None:
-        if self._going_on and not self._ahead:
-            path = self._place.part(self._number)
+    def _stored(self, name: str) -> FloatArray | None:
+        path = self._files.setup_part(self._number)
+        if not self._read and path.exists():
             try:
-                self._ahead = read_checkpoint(path, case_hash=self._case_hash, program=self._program).arrays
+                self._read = read_checkpoint(path, case_hash=self._case_hash, program=self._program).arrays
                 self._number += 1
             except CheckpointError as error:
-                if path.exists():
-                    self._reporter.message(
-                        f"{path} is refused ({error.reason}): the set-up goes on before it"
-                    )
-        return self._ahead.pop(name, None) if self._going_on else None
+                self._reporter.warning(
+                    f"{path} is refused ({error.reason}): the set-up continues with the parts before it"
+                )
+        return self._read.pop(name, None)
 
     def _write(self) -> None:
-        with naming_what_cannot_be_written(self._place.path, "the same command begins anew"):
-            self._lock.check()
-        path = self._place.part(self._number)
-        size = sum(array.nbytes for array in self._made.values())
-        room = free_disk(self._place.path, ())
+        self._folder.check()
+        path = self._files.setup_part(self._number)
+        size = sum(array.nbytes for array in self._computed.values())
+        room = free_disk(self._folder.path)
         if room is None or room > ROOM * size:
-            with naming_what_cannot_be_written(self._place.path, "the same command goes on with the set-up"):
-                path.parent.mkdir(exist_ok=True)
-                write_checkpoint(path, {"case_hash": self._case_hash, "program": self._program}, self._made)
+            path.parent.mkdir(exist_ok=True)
+            about = {"case_hash": self._case_hash, "program": self._program}
+            write_archive(path, about, self._computed)
             self._number += 1
         else:
             self._reporter.message(
-                f"{path.parent}: {size / 1e9:.2g} GB of the set-up are not kept, for the disk has {room / 1e9:.2g} GB "
-                "free; a set-up that is cut off loses them"
+                f"{path.parent}: {in_units(size)} of the set-up are not stored, since the disk has only "
+                f"{in_units(room)} free; an interrupted set-up loses them"
             )
-        self._made.clear()
+        self._computed.clear()
         self._last = time.monotonic()

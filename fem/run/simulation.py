@@ -1,18 +1,18 @@
-"""Stepping a model to its end: in slices, so that samples are taken, progress is told and a stop is heard.
+"""Stepping a model to its end, in slices: samples are taken, progress is reported and a request to stop is heard.
 
-A slice is so much simulated time, or so many steps tried: what is done between slices (samples, the decision to go on)
-falls on the same instants however fast the machine is. A slice of a large mesh may take minutes; so it is interrupted
-by pauses, in which nothing is decided and the clock on the wall is looked at: a stop is heard, the state is kept.
+A slice is a fixed simulated time or a fixed number of attempted steps, so what is done between slices (samples, the
+decision to continue) falls on the same instants on any machine. A slice of a large mesh may take minutes; it is
+interrupted by pauses, which depend on the wall clock and in which nothing is decided: the state may be saved, and a
+request to stop is heard.
 
-A container that the end of a run finds beyond its slenderness angle has neither fallen nor come back: it is
-followed in the frame of its floor, undriven and so at rest there, until it has done one or the other.
+A container that is beyond its slenderness angle at the end of a run has neither fallen nor come back: it is followed
+in the frame of its floor, which stands still from then on, until it has done one or the other.
 """
 
 import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
@@ -21,61 +21,47 @@ from contact.stepping.body import ROTATION
 from contact.stepping.control import most_attempts
 from contact.stepping.integrator import AFTERMATH_SLICE, FAILED, OVERTURNED, REACHED
 from contact.stepping.state import Run
-from fem.assessment.verdict import MODE_NAMES, audit
-from fem.model.crushing import least_volume_ratio
+from fem.assessment.verdict import MODE_NAMES, audit, rotation_ratio
 from fem.model.model import Model
 from fem.run.recorder import Recorder
 from fem.runtime.progress import Reporter, SilentReporter
+from fem.solid.elasticity import least_volume_ratio
 from fem.solid.nodal_body import FullBody, advance_body, leave_body_alone
 
-#: how far the stepping goes before it looks up, in simulated seconds
+#: length of a slice in simulated seconds
 SLICE_REDUCED, SLICE_FULL = 0.25, 0.01
-#: .. and in steps tried
+#: .. and in attempted steps
 LOOK_REDUCED, LOOK_FULL = 100_000, 2000
-#: wall time between pauses [s]; steps tried until the first one; how many times more until the next, at most
+#: wall time between pauses [s]; attempted steps until the first one; how many times more until the next, at most
 PAUSE_S, FIRST_PAUSE, LONGER = 5.0, 16, 8
-#: imbalance of the contact forces, over the weight, that is not what keeps a step from being solved
+#: imbalance of the contact forces, over the weight, that is not the reason why a step fails
 BALANCED = 1e-6
-#: a container left beyond its slenderness angle at the end falls or comes back within so many times 1/p
+#: time in which a container left beyond its slenderness angle falls or comes back [1/p]
 AFTERMATH = 50.0
 
 
 @dataclass(frozen=True, kw_only=True)
 class Progress:
-    """How far a simulation has come, besides what its model and recorder hold."""
+    """State of a simulation, besides what its model and recorder hold."""
 
     stepping_cpu_s: float = 0.0
-    #: since when the floor is left at rest [s], and where it stands [m]; None while it is driven
+    #: time since which the floor stands still [s], and its place [m]; None while it is driven
     undriven: tuple[float, float] | None = None
-    #: of a slice that is under way: the time it goes to [s], and the steps tried at which it ends before
+    #: of an unfinished slice: the time at its end [s], and the attempted steps at which it ends before that
     slice: tuple[float, int] | None = None
 
 
 class Pace:
-    """How many steps are tried until the next pause, by the wall time that the last ones took."""
+    """How many steps are attempted until the next pause, from the wall time that the last ones took."""
 
     def __init__(self) -> None:
         self.attempts = FIRST_PAUSE
 
     def note(self, attempts: int, wall_s: float) -> None:
-        """Take in what so many steps tried took."""
+        """Note the wall time that so many attempted steps took."""
         if attempts > 0:
             affordable = int(PAUSE_S * attempts / max(wall_s, 1e-9))
             self.attempts = max(1, min(affordable, LONGER * self.attempts, LOOK_REDUCED))
-
-
-class Keeper(Protocol):
-    """Somebody who may want to keep the state of a simulation."""
-
-    def keep(self, progress: Progress, *, at_once: bool = False) -> None:
-        """Called in pauses and between slices; `at_once`: the simulation ends here, unfinished."""
-
-
-class NoKeeper:
-    """Keeps nothing."""
-
-    def keep(self, progress: Progress, *, at_once: bool = False) -> None:
-        """Nothing."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,22 +79,20 @@ def simulate(
     *,
     reporter: Reporter | None = None,
     stop: Callable[[], bool] = lambda: False,
-    keeper: Keeper | None = None,
+    save: Callable[[Progress, bool], None] | None = None,
     progress: Progress | None = None,
 ) -> Ending:
     """Step a model to its end; the recorder takes the samples.
 
-    A container that the end finds beyond its slenderness angle is followed in the frame of its floor, which
-    stands still there, until it falls or has come back.
-
     Args:
         model: from its present state on; recorder: of its samples.
-        reporter: told how far it is.
-        stop: asked between slices; true ends the simulation there.
-        keeper: may keep the state there, to go on from.
-        progress: of the simulation to go on with; its first slice is the one that came next then.
+        reporter: of the progress.
+        stop: called in pauses and between slices; true ends the simulation there.
+        save: called there, too, and may save the state; its second argument is true where the simulation ends
+            unfinished.
+        progress: of the simulation that is resumed.
     """
-    reporter, keeper, progress = reporter or SilentReporter(), keeper or NoKeeper(), progress or Progress()
+    reporter, progress = reporter or SilentReporter(), progress or Progress()
     full = isinstance(model.body, FullBody)
     advance_body(model.body, model.run, 0.0)
     duration, control, run = model.case.solver.duration_s, model.run.control, model.run
@@ -119,7 +103,8 @@ def simulate(
     pace = Pace()
     while progress.slice is not None or _goes_on(model):
         stopped = stop()
-        keeper.keep(progress, at_once=stopped)
+        if save is not None:
+            save(progress, stopped)
         if stopped:
             reporter.finish()
             return Ending(status="interrupted", stepping_cpu_s=progress.stepping_cpu_s)
@@ -135,7 +120,7 @@ def simulate(
         code, progress = _advance(model, run, progress, pace)
         if progress.slice is None:
             recorder.drain(run)
-        ratio = abs(float(run.old.pose[ROTATION])) / control.slenderness_angle
+        ratio = rotation_ratio(float(run.old.pose[ROTATION]), control.slenderness_angle)
         reporter.update(float(clock.time), ratio, MODE_NAMES[int(track.mode)])
         if progress.slice is not None:
             continue
@@ -158,7 +143,7 @@ def simulate(
 
 
 def _advance(model: Model, run: Run, progress: Progress, pace: Pace) -> tuple[int, Progress]:
-    """Step to the end of the slice or to the next pause; returns the code of `advance`, and how far it has come."""
+    """Step to the end of the slice or to the next pause; returns the code of `advance` and the progress."""
     assert progress.slice is not None  # for the type checker
     until, most = progress.slice
     clock, before = run.clock[0], _attempts(run)
@@ -177,12 +162,12 @@ def _advance(model: Model, run: Run, progress: Progress, pace: Pace) -> tuple[in
 
 
 def _attempts(run: Run) -> int:
-    """Steps tried so far, accepted and rejected."""
+    """Attempted steps so far, accepted and rejected."""
     return int(run.clock[0].steps + run.clock[0].rejected)
 
 
 def _goes_on(model: Model) -> bool:
-    """Whether there is time left, or the end of it finds the container neither fallen nor come back."""
+    """Whether there is time left, or the container has neither fallen nor come back at the end."""
     clock, run = model.run.clock[0], model.run
     if clock.time < model.case.solver.duration_s:
         return True
@@ -192,12 +177,12 @@ def _goes_on(model: Model) -> bool:
 
 
 def _end_of_aftermath(model: Model) -> float:
-    """When a container left alone is given up [s]."""
+    """Time at which a container that neither falls nor comes back is given up [s]."""
     return model.case.solver.duration_s + AFTERMATH / model.run.control.frequency_parameter
 
 
 def _leave_alone(model: Model, run: Run, recorder: Recorder) -> tuple[float, float]:
-    """Go over to the frame of the floor, which is driven no more; returns since when [s] and where it stands [m]."""
+    """Change to the frame of the floor, which stands still from now on; returns time [s] and place of the floor [m]."""
     since = float(run.clock[0].time)
     displacement, velocity, _ = floor_motion(run.motion, since)
     leave_body_alone(model.body, run, velocity)
@@ -206,13 +191,13 @@ def _leave_alone(model: Model, run: Run, recorder: Recorder) -> tuple[float, flo
 
 
 def _on_resting_floor(run: Run, undriven: tuple[float, float]) -> Run:
-    """The run on a floor that stands still since then and there."""
+    """The run on a floor that stands still, from this time on and at this place."""
     still = as_floor_motion(UNIFORM, (*undriven, 0.0))
     return run._replace(motion=still, breaks=np.full(1, np.inf))
 
 
 def crushing_failure(model: Model) -> str | None:
-    """Where a cell of a full model lies inside out, or None: what comes after that is no motion of a container."""
+    """The message of a full model with an inverted element, or None; what follows is no motion of a container."""
     if not isinstance(model.body, FullBody):
         return None
     elements, clock = model.container.elements, model.run.clock[0]
@@ -221,33 +206,33 @@ def crushing_failure(model: Model) -> str | None:
     if ratio > 0.0:  # false for nan
         return None
     return (
-        f"step {int(clock.steps)}, t = {float(clock.time):.6g} s: the container is crushed, a cell of its mesh lies "
-        f"inside out ({ratio:.2g} of its volume is left); take a larger container.youngs_modulus_Pa, thicker walls, "
+        f"step {int(clock.steps)}, t = {float(clock.time):.6g} s: the container is crushed, an element is "
+        f"inverted (det F = {ratio:.2g}); take a larger container.youngs_modulus_Pa, thicker walls, "
         'a softer contact.normal_penalty_Pa_m, or solver.model = "rigid"'
     )
 
 
 def stepping_failure(model: Model, residual: float) -> str:
-    """Where and why the stepping gave up, and what to try; `residual` is that of the contact forces [N]."""
+    """Where and why the stepping failed, and what to try; `residual` is that of the contact forces [N]."""
     control, clock = model.run.control, model.run.clock[0]
     if clock.steps + clock.rejected >= most_attempts(control, float(clock.time)):
         smallest = min(float(clock.smallest_step), control.largest_step)
         return (
-            f"t = {float(clock.time):.6g} s: no headway after {int(clock.steps)} steps and {int(clock.rejected)} "
-            f"rejected ones, the smallest of {smallest:.1g} s; try a softer "
+            f"t = {float(clock.time):.6g} s: no progress: {int(clock.steps)} steps accepted, "
+            f"{int(clock.rejected)} rejected, the smallest of {smallest:.1g} s; try a softer "
             "contact.normal_penalty_Pa_m, contact.weakening_m > 0, or a larger solver.energy_tolerance"
         )
     place = f"step {int(clock.steps) + 1}, t = {float(clock.time):.6g} s: "
     smallest_tried = f"at the smallest step ({control.smallest_step:.1g} s)"
     if not math.isfinite(residual):
         return (
-            f"{place}the motion tried grew beyond all numbers, even {smallest_tried}; try a smaller solver.step_s, "
+            f"{place}the trial solution is not finite, even {smallest_tried}; try a smaller solver.step_s, "
             "a larger container.youngs_modulus_Pa, or a weaker motion"
         )
     if residual <= BALANCED * control.mass * control.gravity:
         return (
-            f"{place}the iteration between container and floor did not settle {smallest_tried}, though the contact "
-            f"forces balance within {residual:.2g} N; try a smaller solver.step_s, a larger "
+            f"{place}the iteration between container and floor did not converge {smallest_tried}, although "
+            f"the contact forces balance within {residual:.2g} N; try a smaller solver.step_s, a larger "
             "container.youngs_modulus_Pa, or a softer contact.normal_penalty_Pa_m"
         )
     return (

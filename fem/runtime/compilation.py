@@ -12,7 +12,7 @@ from numba.core import event
 
 COMPILING = "numba:compile"
 #: kernels that hold the whole stepping; all others take seconds at most
-LONG = frozenset({"advance", "advance_rows"})
+LONG = frozenset({"advance", "advance_in_slices"})
 
 
 class CompilationClock(event.Listener):
@@ -59,7 +59,7 @@ class Announcer(event.Listener):
 
 def kernel_name(compilation: event.Event) -> str:
     """Of the function that is compiled."""
-    return str(compilation.data["dispatcher"].py_func.__name__).lstrip("_")
+    return str(compilation.data["dispatcher"].py_func.__name__)
 
 
 @contextmanager

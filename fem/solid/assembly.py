@@ -27,7 +27,7 @@ from skfem import (
     LinearForm,
     MeshQuad,
 )
-from skfem.helpers import ddot, eye, mul, sym_grad, trace, transpose
+from skfem.helpers import ddot, sym_grad, trace
 
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.elasticity import (
@@ -41,7 +41,7 @@ from fem.solid.elasticity import (
 
 #: A field over the elevation: (x, z) of any shape (...) -> the two components, shape (2, ...).
 VectorField = Callable[[FloatArray, FloatArray], Any]
-#: (x, z) of the midpoints of edges -> chosen or not.
+#: (x, z) of the midpoints of edges -> whether each edge is chosen.
 EdgeChoice = Callable[[FloatArray, FloatArray], NDArray[np.bool_]]
 
 _ELEMENTS = {1: ElementQuad1, 2: ElementQuad2}
@@ -50,7 +50,7 @@ _ENOUGH_DEGREE = 3  # 2 x 2 points, exact for the stiffness and mass of bilinear
 
 
 class QuadMesh(Protocol):
-    """What the assembly asks of a mesh."""
+    """The part of a mesh that the assembly uses."""
 
     @property
     def points(self) -> NDArray[np.floating]: ...  #: (n, 2) [m]
@@ -80,30 +80,6 @@ def _stiffness_form(u: Any, v: Any, w: Any) -> Any:
     return w.thickness * (2.0 * w.shear * ddot(strain, test) + w.first * trace(strain) * trace(test))
 
 
-@LinearForm
-def _internal_force_form(v: Any, w: Any) -> Any:
-    """P : grad v with P = F S, S of the Green-Lagrange strain (F^T F - I)/2."""
-    F, S = _deformation_and_stress(w)
-    return w.thickness * ddot(mul(F, S), v.grad)
-
-
-@BilinearForm
-def _tangent_form(u: Any, v: Any, w: Any) -> Any:
-    """Derivative of the internal force: geometric part, then material part in the current frame."""
-    F, S = _deformation_and_stress(w)
-    strain, test = (0.5 * (mul(transpose(F), g) + mul(transpose(g), F)) for g in (u.grad, v.grad))
-    material = 2.0 * w.shear * ddot(strain, test) + w.first * trace(strain) * trace(test)
-    return w.thickness * (ddot(mul(u.grad, S), v.grad) + material)
-
-
-def _deformation_and_stress(w: Any) -> tuple[FloatArray, FloatArray]:
-    gradient = w.displacement.grad
-    identity = eye(np.ones_like(gradient[0, 0]), 2)
-    F = gradient + identity
-    strain = 0.5 * (mul(transpose(F), F) - identity)
-    return F, 2.0 * w.shear * strain + w.first * eye(trace(strain), 2)
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FiniteElements:
     """An assembled container: its nodes, its constant matrices and its large-rotation forces.
@@ -124,7 +100,6 @@ class FiniteElements:
     gradient: FloatArray = field(repr=False)  #: derivatives of the shape functions, (2, m, q, k) [1/m]
     weights: FloatArray = field(repr=False)  #: volume of each quadrature point, (m, q) [m3]
     _basis: Basis = field(repr=False)
-    _thickness: FloatArray = field(repr=False)  # at the quadrature points, (m, q)
     _recovery: csr_array = field(repr=False)  # quadrature points -> averaged nodes, (n, m q)
 
     @property
@@ -225,32 +200,13 @@ class FiniteElements:
         errors = [np.array(basis.interpolate(displacement[:, i])) - exact[i] for i in range(2)]
         return float(np.sqrt(sum(np.sum(basis.dx * error**2) for error in errors)))
 
-    def internal_force_by_form(self, displacement: FloatArray) -> FloatArray:
-        """`internal_force` through its scikit-fem form: slow, the yardstick of the sparse product."""
-        basis, parameters = self._vector_basis(displacement)
-        return _internal_force_form.assemble(basis, **parameters).reshape(-1, 2)
-
-    def tangent_by_form(self, displacement: FloatArray) -> csc_array:
-        """`tangent` through its scikit-fem form."""
-        basis, parameters = self._vector_basis(displacement)
-        return csc_array(_tangent_form.assemble(basis, **parameters))
-
     def displacement_gradient(self, displacement: FloatArray) -> FloatArray:
         """H_ij = d u_i / d X_j at the quadrature points, shape (2, 2, m, q)."""
         return np.einsum("jcqb,cbi->ijcq", self.gradient, np.asarray(displacement)[self.cells], optimize=True)
 
-    def _vector_basis(self, displacement: FloatArray) -> tuple[Basis, dict[str, Any]]:
-        basis = self._basis.with_element(ElementVector(self._basis.elem))
-        return basis, {
-            "displacement": basis.interpolate(np.ravel(displacement)),
-            "thickness": self._thickness,
-            "first": self.lame.first,
-            "shear": self.lame.shear,
-        }
-
 
 def assemble(mesh: QuadMesh, *, youngs_modulus: float, poisson_ratio: float, order: int) -> FiniteElements:
-    """Assemble what does not change during a run.
+    """Assemble the matrices and arrays that stay constant during a run.
 
     Raises:
         ValueError: order other than 1 or 2; elastic constants, thickness or areal density out of range; a
@@ -284,7 +240,6 @@ def assemble(mesh: QuadMesh, *, youngs_modulus: float, poisson_ratio: float, ord
         gradient=_shape_gradients(basis),
         weights=np.ascontiguousarray(basis.dx * thickness),
         _basis=basis,
-        _thickness=thickness,
         _recovery=_recovery_operator(basis, cells, np.asarray(mesh.thickness, dtype=float)),
     )
 
@@ -301,7 +256,7 @@ def _scalar_basis(mesh: QuadMesh, order: int) -> Basis:
     degree = _QUADRATURE_DEGREE if order == 2 or skewed else _ENOUGH_DEGREE
     basis = Basis(MeshQuad(points, quads), _ELEMENTS[order](), intorder=degree)
     least = basis.mapping.detDF(basis.X).min(axis=1)
-    # scikit-fem integrates with |det J| and would take such a cell without a word
+    # scikit-fem integrates with |det J| and would accept such a cell silently
     if not np.all(least > 0.0):
         worst = int(np.argmin(np.where(np.isnan(least), -np.inf, least)))
         x, z = points[:, quads[:, worst]].mean(axis=1)

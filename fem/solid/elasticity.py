@@ -107,7 +107,8 @@ def first_stress(gradient: FloatArray, lame: LamePair) -> FloatArray:
     return np.array([[pxx, pxz], [pzx, pzz]])
 
 
-def _element_forces(
+@compiled(sources=SOURCES)
+def element_forces(
     cells: IntArray,
     gradient: FloatArray,
     weights: FloatArray,
@@ -159,9 +160,6 @@ def _element_forces(
     return energy
 
 
-element_forces = compiled(_element_forces, sources=SOURCES)
-
-
 def first_stress_tangent(gradient: FloatArray, lame: LamePair) -> FloatArray:
     """Derivative of `first_stress`: A[i, j, k, l] = d P_ij / d H_kl, shape (2, 2, 2, 2, ...) [Pa].
 
@@ -183,10 +181,16 @@ def first_stress_tangent(gradient: FloatArray, lame: LamePair) -> FloatArray:
     return tangent
 
 
-def energy_density(gradient: FloatArray, lame: LamePair) -> FloatArray:
-    """Strain energy per reference volume, shape (...) [J/m3]; never negative."""
-    xx, zz, xz = green_strain(gradient)
-    return energy_of_strain(xx, zz, xz, lame.first, lame.shear)
+def least_principal_strain(gradient: FloatArray) -> float:
+    """Smallest principal value of the linear strain over gradients of shape (2, 2, ...) [-]; < 0 in compression."""
+    (xx, xz), (zx, zz) = gradient
+    return float(np.min(0.5 * (xx + zz) - np.hypot(0.5 * (xx - zz), 0.5 * (xz + zx))))
+
+
+def least_volume_ratio(gradient: FloatArray) -> float:
+    """Smallest det(1 + H) over gradients of shape (2, 2, ...) [-]; an element with a value <= 0 is inverted."""
+    (xx, xz), (zx, zz) = gradient
+    return float(np.min((1.0 + xx) * (1.0 + zz) - xz * zx))
 
 
 def cauchy_stress(gradient: FloatArray, lame: LamePair) -> FloatArray:

@@ -6,8 +6,8 @@ of Multibody Systems (2013), chapter 5. Lanczos iteration with shift and inversi
 Mathematics of Computation 35 (1980) 1251) on the complement of the rigid modes. Rotation > 0 tilts toward +x.
 """
 
+import functools
 from dataclasses import dataclass
-from functools import cache
 from itertools import count as count_from
 from pathlib import Path
 
@@ -18,11 +18,11 @@ from scipy.sparse import csc_array
 from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
 
 from fem.runtime.arrays import FloatArray
+from fem.solid.array_cache import ArrayCache, no_cache
 from fem.solid.assembly import FiniteElements
-from fem.solid.setup_parts import NoParts, Parts
 
-FEW = 5  #: in the table and the figure of a run: one row of shapes
-_DENSE_UNKNOWNS = 400  # up to here a dense solution is as quick, and it gives every mode there is
+FEW = 5  #: modes in the table and the figure of a run: one row of shapes
+_DENSE_UNKNOWNS = 400  # up to here a dense solution is as fast, and gives all modes
 _VTK_CELLS = {4: "quad", 9: "quad9"}
 
 
@@ -52,10 +52,10 @@ def rigid_modes(elements: FiniteElements) -> FloatArray:
     return modes / np.sqrt(_modal_masses(elements, modes))[:, None, None]
 
 
-def elastic_modes(elements: FiniteElements, count: int, parts: Parts | None = None) -> ElasticModes:
+def elastic_modes(elements: FiniteElements, count: int, cache: ArrayCache = no_cache) -> ElasticModes:
     """The `count` lowest elastic modes; the same input gives the same shapes and signs.
 
-    The largest component of each shape is positive (the first of equals, by node). `parts` may keep solutions.
+    The largest component of each shape is positive (the first of equals, by node).
 
     Raises:
         ValueError: count below 1, or above the number of elastic modes that the mesh has.
@@ -67,7 +67,7 @@ def elastic_modes(elements: FiniteElements, count: int, parts: Parts | None = No
     if elements.unknowns <= max(_DENSE_UNKNOWNS, 4 * count):
         squares, vectors = _dense_modes(elements, rigid, count)
     else:
-        squares, vectors = _lanczos_modes(elements, rigid, count, parts or NoParts())
+        squares, vectors = _lanczos_modes(elements, rigid, count, cache)
     shapes = vectors.T.reshape(count, -1, 2)
     shapes /= np.sqrt(_modal_masses(elements, shapes))[:, None, None]
     return ElasticModes(frequencies_Hz=np.sqrt(squares) / (2.0 * np.pi), shapes=shapes * _signs(shapes))
@@ -119,14 +119,14 @@ def _dense_modes(elements: FiniteElements, rigid: FloatArray, count: int) -> tup
 
 
 def _lanczos_modes(
-    elements: FiniteElements, rigid: FloatArray, count: int, parts: Parts
+    elements: FiniteElements, rigid: FloatArray, count: int, cache: ArrayCache
 ) -> tuple[FloatArray, FloatArray]:
     mass, stiffness = elements.vector_mass, elements.stiffness
     shift = _first_square_estimate(elements, rigid)
 
     # K alone is singular; K + shift M is positive definite, and any shift near the first elastic mode keeps
     # both the factor well conditioned and the wanted modes apart. Symmetric mode: a third of the fill.
-    @cache
+    @functools.cache
     def factor() -> SuperLU:
         return splu(
             (stiffness + shift * mass).tocsc(),
@@ -138,16 +138,18 @@ def _lanczos_modes(
     number = count_from(1)
 
     def solve(momentum: FloatArray) -> FloatArray:
-        # The iteration asks for the same solutions in the same order every time: it can be played again.
+        # The iteration asks for the same solutions in the same order every time, so that they can be restored.
         solution = np.empty(momentum.shape)
-        parts.fill(
+        cache(
             f"solution {next(number)}",
             solution,
             lambda: _without_rigid_motion(factor().solve(momentum), rigid, mass),
         )
         return solution
 
-    start = np.random.default_rng(0).standard_normal(elements.unknowns)  # no symmetry: it misses no mode
+    start = np.random.default_rng(0).standard_normal(
+        elements.unknowns
+    )  # without symmetry, so that no mode is missed
     squares, vectors = eigsh(
         stiffness,
         k=count,
@@ -170,7 +172,7 @@ def _first_square_estimate(elements: FiniteElements, rigid: FloatArray) -> float
         trial[5 * i : 5 * i + 5, :, i] = x, z, x * x, x * z, z * z
     mass = elements.vector_mass
     vectors = _without_rigid_motion(trial.reshape(10, -1).T, rigid, mass)
-    # The removal has made the ten fields dependent (the rotation is among them): drop what has no mass.
+    # The ten fields are now linearly dependent (the rotation is among them): drop those without mass.
     values, directions = np.linalg.eigh(vectors.T @ (mass @ vectors))
     moving = values > 1e-8 * values[-1]
     vectors = vectors @ (directions[:, moving] / np.sqrt(values[moving]))

@@ -22,14 +22,14 @@ from scipy.sparse import csr_array
 from contact.interface.equilibrium import Stance
 from contact.interface.solver import Workspace
 from contact.stepping.body import State
-from contact.stepping.integrator import UNPREPARED, advance, advance_compiled, leave_alone_compiled
+from contact.stepping.integrator import UNPREPARED, advance, advance_compiled, enter_floor_frame_compiled
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.scheme import Scheme
 from contact.stepping.state import Run
 from fem.runtime.arrays import FloatArray, IntArray
-from fem.solid import nodal_kernels as nodal_body
+from fem.solid import nodal_kernels
 from fem.solid.assembly import FiniteElements
-from fem.solid.nodal_kernels import NodalBody, advance_nodal, leave_nodal_alone
+from fem.solid.nodal_kernels import NodalBody, advance_nodal, enter_floor_frame_nodal
 from fem.solid.reduction import StaticResponse
 
 #: residual of a step at which its iteration stops, over the weight; the next iterate would have its square
@@ -37,6 +37,7 @@ RESIDUAL_TOLERANCE = 5e-6
 UNIT_ROUNDOFF = 2.0**-53
 FACTOR_MEMORY = 600_000_000  #: for factors of different step sizes [bytes]
 FEWEST_FACTORS, MOST_FACTORS = 8, 64
+BYTES_OF_A_NODE = 35e3  #: while the matrix is factored, measured on stacks of 2000 to 10,000 cells
 #: arrays of the last residual
 REMEMBERED = ("turn", "internal", "damping_force", "strain_energy")
 
@@ -88,11 +89,6 @@ class FullBody:
         """Number of coordinates."""
         return 2 * len(self.elements.nodes)
 
-    @property
-    def residuals(self) -> int:
-        """Evaluated so far."""
-        return int(self.nodal.known[1])
-
     def place(self, state: State, stance: Stance, response: StaticResponse, floor_velocity: float) -> None:
         """Write the initial coordinates: the stance's rigid pose, strained by its contact forces."""
         turn = _rotation_matrix(stance.rotation)
@@ -107,8 +103,8 @@ class FullBody:
 
     def evaluate(self, state: State) -> None:
         """Forces and energy at the coordinates in `state`, with the best-fit rotation for the frame."""
-        self.nodal.turn[:] = nodal_body.fit(self.nodal, state.position)[2:]
-        nodal_body.forces(self.nodal, state.position, state.velocity)
+        self.nodal.turn[:] = nodal_kernels.fit(self.nodal, state.position)[2:]
+        nodal_kernels.forces(self.nodal, state.position, state.velocity)
 
     def start(self, state: State, floor: float) -> None:
         """What follows from the coordinates and contact forces in `state`, and the acceleration they give."""
@@ -150,15 +146,15 @@ class FullBody:
 
     def prepared(self, step: float) -> bool:
         """See `contact.stepping.body.prepared`."""
-        return bool(nodal_body.prepared(self.nodal, step))
+        return bool(nodal_kernels.prepared(self.nodal, step))
 
-    def sizes_hold(self, run: Run) -> bool:
-        """See `contact.stepping.body.sizes_hold`."""
+    def sizes_match(self, run: Run) -> bool:
+        """See `contact.stepping.body.sizes_match`."""
         return True
 
     def predict(self, scheme: Scheme, step: float, old: State, new: State) -> None:
         """See `contact.stepping.body.predict`."""
-        nodal_body.predict(self.nodal, scheme, step, old, new)
+        nodal_kernels.predict(self.nodal, scheme, step, old, new)
 
     def release(
         self,
@@ -171,23 +167,23 @@ class FullBody:
         floor_velocity: float,
     ) -> None:
         """See `contact.stepping.body.release`."""
-        nodal_body.release(self.nodal, scheme, step, old, new, work, floor, floor_velocity)
+        nodal_kernels.release(self.nodal, scheme, step, old, new, work, floor, floor_velocity)
 
     def respond(self, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
         """See `contact.stepping.body.respond`; the error is the residual over its tolerance."""
-        return float(nodal_body.respond(self.nodal, scheme, step, old, new, work))
+        return float(nodal_kernels.respond(self.nodal, scheme, step, old, new, work))
 
     def complete(self, new: State, floor: float) -> None:
         """See `contact.stepping.body.complete`; internal forces and strain energy are those of the last residual."""
-        nodal_body.complete(self.nodal, new, floor)
+        nodal_kernels.complete(self.nodal, new, floor)
 
     def observe(self, new: State, floor: float) -> None:
         """See `contact.stepping.body.observe`."""
-        nodal_body.observe(self.nodal, new, floor)
+        nodal_kernels.observe(self.nodal, new, floor)
 
     def shift_velocity(self, state: State, velocity: float) -> None:
         """See `contact.stepping.body.shift_velocity`."""
-        nodal_body.shift_velocity(self.nodal, state, velocity)
+        nodal_kernels.shift_velocity(self.nodal, state, velocity)
 
     def memory(self) -> dict[str, FloatArray]:
         """What the last residual left behind for `complete`, by name; everything else follows from the state."""
@@ -197,6 +193,11 @@ class FullBody:
         """Take over the memory of another body of the same container."""
         for name in REMEMBERED:
             getattr(self.nodal, name)[:] = memory[name]
+
+
+def full_model_memory(nodes: int) -> float:
+    """Memory of one run of the full model with so many nodes [bytes]."""
+    return FACTOR_MEMORY + BYTES_OF_A_NODE * nodes
 
 
 def advance_body(body: ModalBody | FullBody, run: Run, until: float) -> int:
@@ -209,15 +210,15 @@ def advance_body(body: ModalBody | FullBody, run: Run, until: float) -> int:
         code = int(advance_nodal(body.nodal, run, until) if body.compiled else advance(body, run, until))
         if code != UNPREPARED:
             return code
-        body.prepare(run.scheme, float(run.clock[0].due_step))
+        body.prepare(run.scheme, float(run.clock[0].unprepared_step))
 
 
 def leave_body_alone(body: ModalBody | FullBody, run: Run, floor_velocity: float) -> None:
-    """`contact.stepping.integrator.leave_alone` for any body."""
+    """`contact.stepping.integrator.enter_floor_frame` for any body."""
     if isinstance(body, ModalBody):
-        leave_alone_compiled(body, run, floor_velocity)
+        enter_floor_frame_compiled(body, run, floor_velocity)
     else:
-        leave_nodal_alone(body.nodal, run, floor_velocity)
+        enter_floor_frame_nodal(body.nodal, run, floor_velocity)
 
 
 def _rounding(elements: FiniteElements) -> float:

@@ -1,13 +1,14 @@
 """The reduced container: free elastic modes plus attachment modes, in the frame that floats with it.
 
-An attachment mode is the static answer of the free body to a unit force at a base point, its rigid acceleration
+An attachment mode is the static response of the free body to a unit force at a base point, its rigid acceleration
 taken out (inertia relief). With one for every contact degree of freedom the local compliance under the contact
 is exact, however few free modes are kept. All are made orthonormal: mass 1, stiffness diag(omega^2). Rubin,
 AIAA J. 13 (1975) 995; Craig, Structural Dynamics (1981), ch. 19.
 """
 
+import functools
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 
 import numpy as np
 import scipy.linalg
@@ -15,15 +16,15 @@ import scipy.sparse.linalg
 from scipy.sparse import csc_array
 
 from fem.runtime.arrays import FloatArray, IntArray
+from fem.solid.array_cache import ArrayCache, blocks, no_cache
 from fem.solid.assembly import FiniteElements
 from fem.solid.modes import elastic_modes, rigid_modes
-from fem.solid.setup_parts import NoParts, Parts, blocks
 
-#: an attachment mode that the others span to this relative mass adds nothing but noise
+#: relative mass below which an attachment mode, less its projection on the others, is rounding noise
 INDEPENDENT = 1e-10
-#: loads that are answered at a time: the solver is no faster per load with more
+#: loads solved at a time: the solver is no faster per load with more
 LOADS = 32
-#: multiplications at a time of dense rows with dense rows: a few seconds
+#: multiplications in one product of dense rows: a few seconds
 PRODUCT = 50_000_000_000
 
 
@@ -43,13 +44,12 @@ class ReducedBasis:
     shapes: FloatArray  #: (m, n, 2) mass-normalised [1/sqrt(kg)]
 
 
-def static_response(elements: FiniteElements, base: IntArray, parts: Parts | None = None) -> StaticResponse:
-    """Answer of the free elastic container to unit forces at the nodes `base` (n_c,).
+def static_response(elements: FiniteElements, base: IntArray, cache: ArrayCache = no_cache) -> StaticResponse:
+    """Response of the free elastic container to unit forces at the nodes `base` (n_c,).
 
-    The body is held at three degrees of freedom; the loads balance themselves, so the supports carry nothing
-    and only choose the rigid motion, which is then taken out. `parts` may keep answers.
+    The body is held at three degrees of freedom. The loads are self-balanced, so the supports carry nothing; they
+    only choose the rigid motion, which is then removed.
     """
-    parts = parts or NoParts()
     rigid = rigid_modes(elements).reshape(3, -1)
     mass, nodes = elements.vector_mass, elements.nodes
     rigid_momentum = mass @ rigid.T
@@ -58,7 +58,7 @@ def static_response(elements: FiniteElements, base: IntArray, parts: Parts | Non
     free[[2 * first, 2 * first + 1, 2 * last]] = False
     dofs = (2 * np.asarray(base)[:, None] + np.arange(2)).ravel()
 
-    @cache
+    @functools.cache
     def factor() -> scipy.sparse.linalg.SuperLU:
         return scipy.sparse.linalg.splu(
             elements.stiffness[:, free][free].tocsc(),
@@ -67,16 +67,16 @@ def static_response(elements: FiniteElements, base: IntArray, parts: Parts | Non
             options={"SymmetricMode": True},
         )
 
-    def answers_to(loaded: IntArray) -> FloatArray:
+    def responses_to(loaded: IntArray) -> FloatArray:
         loads = -rigid_momentum @ rigid[:, loaded]
         loads[loaded, np.arange(loaded.size)] += 1.0
-        answers = np.zeros_like(loads)
-        answers[free] = factor().solve(loads[free])
-        return (answers - rigid.T @ (rigid_momentum.T @ answers)).T
+        responses = np.zeros_like(loads)
+        responses[free] = factor().solve(loads[free])
+        return (responses - rigid.T @ (rigid_momentum.T @ responses)).T
 
     displacement = np.empty((dofs.size, elements.unknowns))
     for block in blocks(dofs.size, LOADS):
-        parts.fill(f"answers {block.start}", displacement[block], partial(answers_to, dofs[block]))
+        cache(f"answers {block.start}", displacement[block], partial(responses_to, dofs[block]))
     compliance = displacement[:, dofs]
     return StaticResponse(
         displacement=displacement.reshape(dofs.size, -1, 2), compliance=0.5 * (compliance + compliance.T)
@@ -84,41 +84,40 @@ def static_response(elements: FiniteElements, base: IntArray, parts: Parts | Non
 
 
 def reduced_basis(
-    elements: FiniteElements, response: StaticResponse, modes: int, parts: Parts | None = None
+    elements: FiniteElements, response: StaticResponse, modes: int, cache: ArrayCache = no_cache
 ) -> ReducedBasis:
-    """Span of `modes` free modes and all attachment modes, diagonalised (Rayleigh-Ritz); `parts` may keep its arrays.
+    """Span of `modes` free modes and all attachment modes, diagonalised (Rayleigh-Ritz).
 
-    Twice over: what the attachment modes add to the free ones is made orthonormal by their products with the mass,
-    which cancel to rounding where an attachment mode is nearly spanned; then all of them are, as they have come out.
+    Orthonormalised twice. First the attachment modes against the free ones, by their products with the mass; these
+    products cancel to rounding where an attachment mode is nearly spanned. Then all columns as they are after that.
     """
-    parts = parts or NoParts()
     mass, stiffness, unknowns = elements.vector_mass, elements.stiffness, elements.unknowns
     free = np.zeros((0, unknowns))
     if modes > 0:
-        free = elastic_modes(elements, min(modes, unknowns - 3), parts).shapes.reshape(-1, unknowns)
+        free = elastic_modes(elements, min(modes, unknowns - 3), cache).shapes.reshape(-1, unknowns)
     attached = response.displacement.reshape(-1, unknowns)
-    products = _products(attached, mass, parts, "masses of the attachment modes")
+    products = _products(attached, mass, cache, "masses of the attachment modes")
     scale = 1.0 / np.sqrt(products.diagonal())
     shared = (free @ mass) @ attached.T * scale
-    # What the free modes leave of an attachment mode, of mass 1 before: nothing but noise, if they span it.
+    # The part of an attachment mode (of mass 1) outside the free modes; rounding noise if they span it.
     values, directions = np.linalg.eigh(scale[:, None] * products * scale - shared.T @ shared)
     kept = values > INDEPENDENT
     own = directions[:, kept] / np.sqrt(values[kept])
     columns = np.vstack([free, np.empty((own.shape[1], unknowns))])
-    _combine(columns[len(free) :], (own.T * scale, attached), (-(shared @ own).T, free), parts, "columns")
-    gram = _products(columns, mass, parts, "masses of the columns")
-    projected = _products(columns, stiffness, parts, "stiffnesses of the columns")
+    _combine(columns[len(free) :], (own.T * scale, attached), (-(shared @ own).T, free), cache, "columns")
+    gram = _products(columns, mass, cache, "masses of the columns")
+    projected = _products(columns, stiffness, cache, "stiffnesses of the columns")
     squares, combination = scipy.linalg.eigh(projected, gram)
     shapes = np.empty_like(columns)
-    _combine(shapes, (combination.T, columns), (np.zeros((squares.size, 0)), free[:0]), parts, "shapes")
+    _combine(shapes, (combination.T, columns), (np.zeros((squares.size, 0)), free[:0]), cache, "shapes")
     return ReducedBasis(angular_frequencies=np.sqrt(squares), shapes=shapes.reshape(squares.size, -1, 2))
 
 
-def _products(rows: FloatArray, matrix: csc_array, parts: Parts, name: str) -> FloatArray:
+def _products(rows: FloatArray, matrix: csc_array, cache: ArrayCache, name: str) -> FloatArray:
     """rows matrix rows^T, symmetric to the bit."""
     found = np.empty((len(rows), len(rows)))
     for block in blocks(len(rows), _affordable(rows)):
-        parts.fill(f"{name} {block.start}", found[block], partial(_product, rows[block], matrix, rows))
+        cache(f"{name} {block.start}", found[block], partial(_product, rows[block], matrix, rows))
     return 0.5 * (found + found.T)
 
 
@@ -130,7 +129,7 @@ def _combine(
     target: FloatArray,
     one: tuple[FloatArray, FloatArray],
     other: tuple[FloatArray, FloatArray],
-    parts: Parts,
+    cache: ArrayCache,
     name: str,
 ) -> None:
     """Sum of two products of coefficients and rows, into `target`."""
@@ -140,7 +139,7 @@ def _combine(
         return factors[some] @ rows + more_factors[some] @ more_rows
 
     for block in blocks(len(target), _affordable(rows)):
-        parts.fill(f"{name} {block.start}", target[block], partial(combined, block))
+        cache(f"{name} {block.start}", target[block], partial(combined, block))
 
 
 def _affordable(rows: FloatArray) -> int:

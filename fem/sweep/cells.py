@@ -1,60 +1,40 @@
-"""What a sweep knows of its cells so far: their rows, and what their perturbed copies say."""
-
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+"""The rows of a sweep's cells so far."""
 
 import numpy as np
 
-from fem.runtime.arrays import FloatArray, IntArray
-from fem.sweep.neighbours import OVERTURNED, STANDING, kind_of
-from fem.sweep.table import fields_of
+from fem.batch.log import fields_of, number_in
+from fem.runtime.arrays import BoolArray, FloatArray, IntArray
+from fem.sweep.neighbours import OVERTURNED, STANDING, UNKNOWN, kind_of
+from fem.sweep.plan import Sweep
+from fem.sweep.table import row_columns
 
 
-@dataclass(kw_only=True)
-class Found:
-    """What is known of the cells so far."""
+class CellRows:
+    """The rows of the cells, and what follows from them, cell by cell."""
 
-    lines: dict[int, str] = field(default_factory=dict)  #: row of each cell, as it stands in the log
-    kind: IntArray  #: (n_cells,) see `band`
-    rotation_ratio: FloatArray  #: (n_cells,)
-    outcomes: dict[str, int] = field(default_factory=dict)  #: how often each was found; "failed" too
+    def __init__(self, sweep: Sweep) -> None:
+        self.columns = row_columns(sweep.axes, (one.key for one in sweep.derived))
+        self.shape = sweep.shape
+        self.lines: dict[int, str] = {}  #: row of each cell, as in the log
+        self.kind: IntArray = np.full(sweep.count, UNKNOWN)  #: (n_cells,) see `neighbours`
+        self.rotation_ratio: FloatArray = np.full(sweep.count, np.nan)  #: (n_cells,)
+        self.outcomes: dict[str, int] = {}  #: how often there is each; "failed" too
+        self._places = [self.columns.index(name) for name in ("status", "outcome", "rotation_ratio")]
 
-    def note(self, cell: int, line: str, status: str, outcome: str | None, ratio: float | None) -> None:
-        """Enter a cell's row."""
+    def note(self, line: str) -> None:
+        """Add a line of the log."""
+        fields = fields_of(line)
+        status, outcome, ratio = (fields[place] for place in self._places)
+        cell, found = int(fields[0]), number_in(ratio)
+        if cell in self.lines:
+            return
         self.lines[cell] = line
         self.kind[cell] = kind_of(status, outcome)
-        self.rotation_ratio[cell] = np.nan if ratio is None else ratio
+        self.rotation_ratio[cell] = np.nan if found is None else found
         word = outcome if outcome and status != "failed" else "failed"
         self.outcomes[word] = self.outcomes.get(word, 0) + 1
 
-
-@dataclass(frozen=True, kw_only=True)
-class Member:
-    """A perturbed copy of a cell."""
-
-    line: str  #: as it stands in the log
-    kind: int  #: see `band`
-    ratio: float | None  #: rotation ratio
-
-
-@dataclass(kw_only=True)
-class Band:
-    """What the perturbed copies say."""
-
-    members: dict[int, dict[int, Member]] = field(default_factory=dict)  #: by cell and number
-
-    def note(self, line: str) -> None:
-        """Enter a line of the log."""
-        cell, member, _, status, outcome, ratio, _ = fields_of(line)
-        found = Member(line=line, kind=kind_of(status, outcome), ratio=float(ratio) if ratio else None)
-        self.members.setdefault(int(cell), {})[int(member)] = found
-
-    def is_unsure(self, cell: int, kind: int) -> bool:
-        """Whether a copy is of another kind than the cell; of a cell that failed nothing is sure."""
-        kinds = {member.kind for member in self.members.get(cell, {}).values()}
-        return kind not in (STANDING, OVERTURNED) or bool(kinds - {kind})
-
-    def lines(self) -> Iterator[str]:
-        """The log, in the order of cells and members."""
-        for cell in sorted(self.members):
-            yield from (self.members[cell][member].line for member in sorted(self.members[cell]))
+    @property
+    def decided(self) -> BoolArray:
+        """Whether a cell stands or overturns, shape (n_cells,); what failed does neither."""
+        return (self.kind == STANDING) | (self.kind == OVERTURNED)

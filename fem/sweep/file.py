@@ -1,4 +1,4 @@
-"""Read a sweep file: base case, axes, derived keys; every reason why it cannot be used, a line each.
+"""Read a sweep file: base case, axes, derived keys; one line for each reason why it cannot be used.
 
 The file is TOML:
 
@@ -6,7 +6,7 @@ The file is TOML:
     [set]                                  # keys changed in the base case
     [axes]                                 # one to four dotted keys: a list, or { from, to, count, scale }
     [derived]                              # keys that follow, as expressions of others
-    [perturbation]                         # how sure is a cell: see `perturbation`
+    [perturbation]                         # sensitivity of a cell: see `perturbation`
     [threshold]                            # where the outcome changes along one axis: see `threshold`
     [maps]                                 # x, y: the axes that span them; fixed: values of others
 """
@@ -18,23 +18,23 @@ from typing import Any
 
 from pydantic import Field
 
-from fem.batch.axes import NO_AXIS, Axis, AxisError, field_of, read_axis
-from fem.batch.base_case import base_case, flat, read_as, require_once, split_tables
-from fem.batch.expressions import Expression, ExpressionError, parse_expression
+from fem.batch.axes import Axis, AxisError, check_varied, field_of, read_axis
+from fem.batch.derived import Derived, read_derived, value_in
+from fem.batch.study_file import base_case, flat, read_as, read_axes, read_study, require_once, split_tables
 from fem.case.case import Case
-from fem.case.files import DEFAULT_CASE, SWEEPS, Origin, parse_case
-from fem.case.tables import Table
+from fem.case.files import DEFAULT_CASE, SWEEPS, Origin
+from fem.case.tables import CaseTable
 from fem.case.validation import CaseError, did_you_mean
 from fem.sweep.perturbation import Perturbation
-from fem.sweep.plan import Derived, MapChoice, Sweep, in_order, value_in
+from fem.sweep.plan import MapChoice, Sweep
 from fem.sweep.threshold import Threshold
 
 MOST_AXES = 4
-#: cells that are built to see whether the axes make cases at all
+#: cells that are built to find bad values before anything is computed
 TRIED = 64
 
 
-class SweepHeading(Table):
+class SweepHeading(CaseTable):
     """The keys of a sweep file that stand before its first table."""
 
     case: str = Field(default=DEFAULT_CASE, description="a shipped case, or a file beside the sweep file")
@@ -50,19 +50,16 @@ def load_sweep(name_or_path: str | Path) -> Sweep:
     Raises:
         CaseError: with one line for each reason why it cannot be used.
     """
-    origin = SWEEPS.find(name_or_path)
-    data = parse_case(origin)
-    try:
-        return _read(data, origin)
-    except CaseError as error:
-        raise CaseError("\n".join(f"{origin.place}: {line}" for line in str(error).splitlines())) from None
+    return read_study(SWEEPS.find(name_or_path), _read)
 
 
 def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
     given, tables = split_tables(data, TABLES)
     heading = read_as("", SweepHeading, given)
     base = base_case(heading.case, tables.get("set", {}), origin)
-    axes = _axes(tables.get("axes", {}))
+    axes = read_axes(
+        flat("axes", tables.get("axes", {})), MOST_AXES, '"contact.mu_static" = [0.2, 0.3, 0.4]', read_axis
+    )
     derived = _derived(tables.get("derived", {}), base, axes)
     varied = [axis.key for axis in axes] + [one.key for one in derived]
     require_once(tables.get("set", {}), varied)
@@ -81,65 +78,21 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
     return sweep
 
 
-def _axes(content: Mapping[str, Any]) -> tuple[Axis, ...]:
-    given = flat("axes", content)
-    if not 1 <= len(given) <= MOST_AXES:
-        example = '"contact.mu_static" = [0.2, 0.3, 0.4]'
-        raise CaseError(f"[axes] must hold one to {MOST_AXES} keys, got {len(given)}; for instance {example}")
-    axes, problems = [], []
-    for key, value in given.items():
-        try:
-            axes.append(read_axis(key, value))
-        except AxisError as error:
-            problems.append(f"[axes] {key!r} {error}")
-    if problems:
-        raise CaseError("\n".join(problems))
-    return tuple(axes)
-
-
 def _derived(content: Mapping[str, Any], base: Case, axes: tuple[Axis, ...]) -> tuple[Derived, ...]:
-    given = flat("derived", content)
-    axis_keys = {axis.key: axis for axis in axes}
-    expressions: dict[str, Expression] = {}
-    for key, text in given.items():
-        place = f"[derived] {key!r}"
-        try:
-            field_of(key)
-            if key in axis_keys:
-                raise AxisError("is an axis already; it cannot follow another as well")
-            if key in NO_AXIS:
-                raise AxisError(f"cannot follow anything: {NO_AXIS[key]}")
-            if not isinstance(text, str):
-                raise AxisError(
-                    f"must be an expression in quotes, got {text!r}; a fixed value goes under [set]"
-                )
-            expressions[key] = parse_expression(text)
-        except (AxisError, ExpressionError) as error:
-            raise CaseError(f"{place} {error}") from None
-    for key, expression in expressions.items():
-        for name in sorted(expression.keys):
-            _must_have_a_value(f"[derived] {key!r}", name, base, axis_keys, expressions)
-    return tuple(Derived(key=key, expression=expressions[key]) for key in in_order(expressions))
+    values = {axis.key: axis.values for axis in axes}
 
-
-def _must_have_a_value(
-    place: str, name: str, base: Case, axes: Mapping[str, Axis], derived: Mapping[str, Expression]
-) -> None:
-    try:
+    def check_reference(name: str) -> None:
         field_of(name)
-    except AxisError as error:
-        raise CaseError(f"{place} refers to {name!r}, which {error}") from None
-    if name in derived:
-        return
-    if name in axes:
-        if any(isinstance(value, str | bool) for value in axes[name].values):
-            raise CaseError(f"{place} refers to {name!r}, whose values are no numbers")
-        return
-    if value_in(base, name, {axis.key: axis.values[0] for axis in axes.values()}) is None:
-        raise CaseError(
-            f"{place} refers to {name!r}, which has no number in the base case {base.name!r}; "
-            "set it under [set], or refer to a key that is given there"
-        )
+        if any(isinstance(value, str | bool) for value in values.get(name, ())):
+            raise AxisError("has values that are no numbers")
+        first = {key: some[0] for key, some in values.items()}
+        if name not in values and value_in(base, name, first) is None:
+            raise AxisError(
+                f"has no number in the base case {base.name!r}; set it under [set], or refer to a key that is "
+                "given there"
+            )
+
+    return read_derived(flat("derived", content), values, check_varied, check_reference)
 
 
 def _threshold(tables: Mapping[str, Any], axes: tuple[Axis, ...]) -> Threshold | None:
@@ -157,7 +110,7 @@ def _threshold(tables: Mapping[str, Any], axes: tuple[Axis, ...]) -> Threshold |
         raise CaseError(f"[threshold] axis {threshold.axis!r} needs two or more numbers that rise")
     if any(isinstance(value, int) for value in known[threshold.axis].values):
         raise CaseError(
-            f"[threshold] axis {threshold.axis!r} takes whole numbers: nothing lies between its cells"
+            f"[threshold] axis {threshold.axis!r} takes whole numbers: there is nothing between its cells"
         )
     return threshold
 
@@ -185,10 +138,10 @@ def _maps(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> MapChoice:
 
 
 def _try_cells(sweep: Sweep) -> None:
-    """Make the cases at the corners of the grid, and those of every listed value, and refuse what they refuse.
+    """Make the cases at the corners of the grid, and those of every listed value.
 
     Raises:
-        CaseError: one of them cannot be used, or an axis plays no part in any.
+        CaseError: one of them cannot be used, or an axis has no effect in any.
     """
     ends = [axis.values if axis.scale == "list" else (axis.values[0], axis.values[-1]) for axis in sweep.axes]
     idle = [True] * len(sweep.axes)
@@ -204,7 +157,7 @@ def _try_cells(sweep: Sweep) -> None:
     for axis, unused in zip(sweep.axes, idle, strict=True):
         if unused:
             raise CaseError(
-                f"[axes] {axis.key!r} plays no part in this case, whose options are others; "
+                f"[axes] {axis.key!r} has no effect in this case, which has other options; "
                 "choose the option it belongs to under [set], or leave the axis out"
             )
 

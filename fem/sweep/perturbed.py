@@ -1,120 +1,139 @@
-"""The perturbed copies of a sweep's cells: which cells have them, what they say, and what the table tells of it.
+"""The perturbed copies of a sweep's cells: which cells have them, and what they show.
 
-Copied are cells near a change of outcome, or with a neighbour near one (see `fem.sweep.neighbours`); around each
-that proves unsure its neighbours as well, until no unsure cell has a neighbour without copies.
+Cells near a change of outcome are copied (see `neighbours`), then the neighbours of every unsure cell, until no
+unsure cell has a neighbour without copies.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from fem.batch.log import LoggedRuns, fields_of, number_in
+from fem.batch.runner import Row, Runner
 from fem.runtime.arrays import BoolArray, FloatArray
-from fem.sweep.cells import Band, Found
-from fem.sweep.executor import Computing
-from fem.sweep.neighbours import OVERTURNED, STANDING, around, band_width, near_cells
+from fem.sweep.cells import CellRows
+from fem.sweep.neighbours import around, band_width, kind_of, near_cells
 from fem.sweep.plan import Sweep
-from fem.sweep.table import RowLog, band_columns, line_of, read_lines
 
 COLUMNS = ("cell", "member", "change", "status", "outcome", "rotation_ratio", "reason")
 
 
-def copy_cells(computing: Computing, found: Found, log_path: Path, stop: Callable[[], bool]) -> Band | None:
-    """Perturb the cells near a change of outcome, and go on from those that prove unsure.
+@dataclass(frozen=True, kw_only=True)
+class PerturbedRow:
+    """A perturbed copy of a cell."""
 
-    Args:
-        computing: runs the copies.
-        found: of the cells.
-        log_path: keeps the copies; what an earlier attempt left there is not computed again.
-        stop: asked now and then; true ends the work.
-
-    Returns:
-        What the copies say; None where none are wanted.
-    """
-    sweep = computing.sweep
-    chosen, shape = sweep.perturbation.cells, sweep.shape
-    if chosen == "none" or (chosen == "auto" and sweep.base.solver.model == "full"):
-        return None
-    band = Band()
-    for line in read_lines(log_path, line_of(COLUMNS)):
-        band.note(line)
-    kind = found.kind.reshape(shape)
-    decided = (kind == STANDING) | (kind == OVERTURNED)
-    wanted = near_cells(sweep.axes, kind, found.rotation_ratio.reshape(shape), sweep.perturbation.close)
-    if chosen == "all":
-        wanted = np.ones(shape, dtype=bool)
-    wanted &= decided
-    seen = np.zeros(shape, dtype=bool)
-    with RowLog(log_path, line_of(COLUMNS)) as log:
-        while wanted.any() and not stop():
-            _run_copies(computing, np.flatnonzero(wanted), band, log, stop)
-            seen |= wanted
-            wanted = around(sweep.axes, _unsure(found, band, seen)) & ~seen & decided
-        log.sync()
-    return band
+    line: str  #: as in the log
+    kind: int  #: see `neighbours`
+    ratio: float | None  #: rotation ratio
 
 
-class ToldOfCopies:
-    """The columns that the copies add to a table."""
+class PerturbedRows:
+    """The perturbed copies of cells so far."""
 
-    def __init__(self, sweep: Sweep, found: Found, band: Band | None) -> None:
-        self._found, self._band = found, band
-        self.columns = band_columns(sweep.axes)
-        self.unsure: BoolArray | None = None  #: (n_cells,); None where no cell has copies
-        self._widths: list[FloatArray] = []
-        if band is not None:
-            perturbed = np.zeros(sweep.count, dtype=bool)
-            perturbed[list(band.members)] = True
-            perturbed |= (found.kind != STANDING) & (found.kind != OVERTURNED)
-            unsure = _unsure(found, band, perturbed.reshape(sweep.shape))
-            self._widths = [
-                band_width(sweep.axes, unsure, k).ravel()
-                for k, axis in enumerate(sweep.axes)
-                if axis.is_numeric
-            ]
-            self.unsure = unsure.ravel()
+    def __init__(self, cells: CellRows) -> None:
+        self._cells = cells
+        self.rows: dict[int, dict[int, PerturbedRow]] = {}  #: by cell and number of the copy
 
-    def of(self, cell: int) -> Iterator[Any]:
+    def note(self, line: str) -> None:
+        """Add a line of the log."""
+        cell, member, _, status, outcome, ratio, _ = fields_of(line)
+        row = PerturbedRow(line=line, kind=kind_of(status, outcome), ratio=number_in(ratio))
+        self.rows.setdefault(int(cell), {})[int(member)] = row
+
+    def lines(self) -> Iterator[str]:
+        """The log, in the order of cells and copies."""
+        for _, copies in sorted(self.rows.items()):
+            yield from (copy.line for _, copy in sorted(copies.items()))
+
+    def unsure(self, seen: BoolArray) -> BoolArray:
+        """Which of the cells `seen` are unsure, (n_cells,): those that failed, or have a copy of another kind."""
+        found = seen & ~self._cells.decided
+        for cell, copies in self.rows.items():
+            if seen[cell]:
+                found[cell] |= any(copy.kind != self._cells.kind[cell] for copy in copies.values())
+        return found
+
+    def ratios(self, cell: int) -> tuple[float | None, float | None]:
+        """Least and largest rotation ratio of a cell and its copies; None where there is none."""
+        found = [copy.ratio for copy in self.rows.get(cell, {}).values() if copy.ratio is not None]
+        own = float(self._cells.rotation_ratio[cell])
+        return (min(own, *found), max(own, *found)) if found and np.isfinite(own) else (None, None)
+
+
+class BandColumns:
+    """The columns that the perturbed copies add to the table: see `table.band_columns`."""
+
+    def __init__(self, sweep: Sweep, cells: CellRows, perturbed: PerturbedRows) -> None:
+        self._perturbed = perturbed
+        seen = ~cells.decided
+        seen[list(perturbed.rows)] = True
+        self.unsure: BoolArray = perturbed.unsure(seen)  #: (n_cells,)
+        grid = self.unsure.reshape(sweep.shape)
+        self._widths: list[FloatArray] = [
+            band_width(sweep.axes, grid, k).ravel() for k, axis in enumerate(sweep.axes) if axis.is_numeric
+        ]
+
+    def values(self, cell: int) -> Iterator[Any]:
         """The values of a cell."""
-        if self._band is None or self.unsure is None:
-            yield from (None for _ in self.columns)
-            return
-        copies = self._band.members.get(cell, {}).values()
-        ratios = [copy.ratio for copy in copies if copy.ratio is not None]
-        low = high = None
-        if ratios and np.isfinite(self._found.rotation_ratio[cell]):
-            ratios.append(float(self._found.rotation_ratio[cell]))
-            low, high = min(ratios), max(ratios)
-        yield from (len(copies), self.unsure[cell], low, high)
+        yield len(self._perturbed.rows.get(cell, {}))
+        yield self.unsure[cell]
+        yield from self._perturbed.ratios(cell)
         yield from (width[cell] for width in self._widths)
 
 
-def _unsure(found: Found, band: Band, seen: BoolArray) -> BoolArray:
-    """Which of the cells that were looked at are unsure, shape of the sweep."""
-    unsure = np.zeros(seen.size, dtype=bool)
-    for cell in np.flatnonzero(seen):
-        unsure[cell] = band.is_unsure(int(cell), int(found.kind[cell]))
-    return unsure.reshape(seen.shape)
+def perturb_cells(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> PerturbedRows | None:
+    """Perturb the cells near a change of outcome, then the neighbours of those that are unsure.
+
+    Args:
+        runner: runs the copies.
+        sweep: whose cells.
+        cells: their rows, all of them.
+        log: of the copies; those of an earlier attempt are not computed again.
+
+    Returns:
+        The copies; None where none are wanted.
+    """
+    chosen = sweep.perturbation.cells
+    if chosen == "none" or (chosen == "auto" and sweep.base.solver.model == "full"):
+        return None
+    perturbed = PerturbedRows(cells)
+    LoggedRuns(
+        what="perturbed copies",
+        path=log,
+        columns=COLUMNS,
+        make=sweep.member_case,
+        model_of=lambda item: sweep.model_of(item[0]),
+        values=lambda item, row: _values(sweep, item, row),
+        note=perturbed.note,
+    ).run(runner, _missing(sweep, cells, perturbed))
+    return perturbed
 
 
-def _run_copies(
-    computing: Computing, cells: Iterable[int], band: Band, log: RowLog, stop: Callable[[], bool]
-) -> None:
-    """Run the copies of some cells that are not there yet."""
-    sweep = computing.sweep
-    items = [
-        (cell, member)
-        for cell in sweep.by_container(int(cell) for cell in cells)
-        for member in range(len(sweep.member_changes(cell)))
-        if member not in band.members.get(cell, {})
-    ]
-    for chunk, rows in computing.rows_of("perturbed copies", items, sweep.member_case, stop):
-        lines = []
-        for (cell, member), row in zip(chunk, rows, strict=True):
-            change = sweep.member_changes(cell)[member]
-            words = " ".join(f"{key}={value!r}" for key, value in change.items())
-            lines.append(line_of((cell, member, words, *(row[name] for name in COLUMNS[3:]))))
-        log.append(lines)
-        for line in lines:
-            band.note(line)
+def _missing(sweep: Sweep, cells: CellRows, perturbed: PerturbedRows) -> Iterator[list[tuple[int, int]]]:
+    """Copies that are not there yet, as cell and number: ring after ring around the unsure cells."""
+    shape, decided = sweep.shape, cells.decided.reshape(sweep.shape)
+    kind, ratio = cells.kind.reshape(shape), cells.rotation_ratio.reshape(shape)
+    wanted = decided & (
+        (sweep.perturbation.cells == "all") | near_cells(sweep.axes, kind, ratio, sweep.perturbation.close)
+    )
+    seen = np.zeros(shape, dtype=bool)
+    while wanted.any():
+        yield list(_copies(sweep, np.flatnonzero(wanted), perturbed))
+        seen |= wanted
+        wanted = around(sweep.axes, perturbed.unsure(seen.ravel()).reshape(shape)) & ~seen & decided
+
+
+def _copies(sweep: Sweep, cells: Iterable[int], perturbed: PerturbedRows) -> Iterator[tuple[int, int]]:
+    for cell in sweep.by_container(int(cell) for cell in cells):
+        known = perturbed.rows.get(cell, {})
+        yield from ((cell, k) for k in range(len(sweep.member_changes(cell))) if k not in known)
+
+
+def _values(sweep: Sweep, item: tuple[int, int], row: Row) -> Iterator[Any]:
+    cell, member = item
+    change = sweep.member_changes(cell)[member]
+    yield from (cell, member, " ".join(f"{key}={value!r}" for key, value in change.items()))
+    yield from (row[name] for name in COLUMNS[3:])

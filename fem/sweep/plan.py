@@ -4,7 +4,7 @@ Cells are numbered from 0 in the order of the axes, the last one fastest.
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,18 +12,17 @@ from typing import Any
 
 from pydantic import Field
 
-from fem.batch.axes import Axis
+from fem.batch.axes import Axis, indices_of, point_of, shape_of
 from fem.batch.case_maker import CaseMaker
-from fem.batch.expressions import Expression, ExpressionError
+from fem.batch.derived import Derived, with_derived
 from fem.case.case import Case
-from fem.case.tables import TABLES, Table
-from fem.case.validation import CaseError, known_keys
+from fem.case.tables import CaseTable
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.threshold import Threshold
 
 #: cells whose perturbed copies are remembered
 REMEMBERED = 4096
-#: tables and keys that make another container, or another way of computing it: see `running.container_key`
+#: tables and keys on which the container depends, or how it is computed: see `container_cache.container_key`
 OF_THE_CONTAINER = (
     "gravity_m_s2",
     "container.",
@@ -36,21 +35,13 @@ OF_THE_CONTAINER = (
 )
 
 
-@dataclass(frozen=True, kw_only=True)
-class Derived:
-    """A key that follows the axes."""
-
-    key: str  #: dotted
-    expression: Expression
-
-
-class MapChoice(Table):
+class MapChoice(CaseTable):
     """Which axes span the maps."""
 
     x: str | None = Field(default=None, description="key of an axis; default: one with the most values")
     y: str | None = Field(default=None, description="key of another axis")
     fixed: dict[str, Any] = Field(
-        default={}, description="values at which further axes are held; the rest has a panel each"
+        default={}, description="values at which further axes are held; the others have a panel each"
     )
 
 
@@ -71,7 +62,7 @@ class Sweep:
     @property
     def shape(self) -> tuple[int, ...]:
         """Values of each axis."""
-        return tuple(len(axis.values) for axis in self.axes)
+        return shape_of(self.axes)
 
     @property
     def count(self) -> int:
@@ -83,17 +74,9 @@ class Sweep:
         """Where mesh and motion files are looked for."""
         return self.base.folder
 
-    def indices(self, cell: int) -> tuple[int, ...]:
-        """Place of a cell on each axis."""
-        places = []
-        for size in reversed(self.shape):
-            cell, place = divmod(cell, size)
-            places.append(place)
-        return tuple(reversed(places))
-
     def point(self, cell: int) -> dict[str, Any]:
         """Values of the axes in a cell, by key."""
-        return {axis.key: axis.values[k] for axis, k in zip(self.axes, self.indices(cell), strict=True)}
+        return point_of(self.axes, cell)
 
     def values(self, point: Mapping[str, Any]) -> dict[str, Any]:
         """All keys that a point on the axes sets, derived ones included.
@@ -101,15 +84,11 @@ class Sweep:
         Raises:
             CaseError: an expression has no value there.
         """
-        values = dict(point)
-        for one in self.derived:
-            known = {key: self._value_of(key, values) for key in one.expression.keys}
-            try:
-                found = one.expression.value(known)
-            except ExpressionError as error:
-                raise CaseError(f"[derived] {one.key} {error}") from None
-            values[one.key] = int(found) if one.key in _WHOLE_KEYS and found == int(found) else found
-        return values
+        return with_derived(point, self.derived, self.base)
+
+    def model_of(self, cell: int) -> str:
+        """The model of a cell."""
+        return str(self.point(cell)["solver.model"]) if self._models else self.base.solver.model
 
     def case_at(self, point: Mapping[str, Any], more: Mapping[str, Any] | None = None) -> Case:
         """The case at a point on the axes, with further keys set.
@@ -124,7 +103,7 @@ class Sweep:
         return self.case_at(self.point(cell))
 
     def member_changes(self, cell: int) -> list[dict[str, Any]]:
-        """The keys that each perturbed copy of a cell sets besides."""
+        """The keys that each perturbed copy of a cell changes."""
         found = self._changes.get(cell)
         if found is None:
             found = self.perturbation.members(self.case(cell))
@@ -145,93 +124,35 @@ class Sweep:
 
     @property
     def threshold_axis(self) -> Axis:
-        """The axis along which changes of outcome are closed in on; only where that is asked for."""
+        """The axis along which changes of outcome are located; only where that is asked for."""
         assert self.threshold is not None
         return next(axis for axis in self.axes if axis.key == self.threshold.axis)
 
     def by_container(self, cells: Iterable[int]) -> list[int]:
-        """The cells in an order in which those of one container stand together."""
+        """The cells in an order in which those of one container are neighbours."""
         moving = {axis.key for axis in self.axes} | {one.key for one in self.derived}
         if not any(key.startswith(OF_THE_CONTAINER) for key in moving):
             return sorted(cells)
-        # A derived key of the container follows any axis: then the values themselves tell.
+        # A derived key of the container may follow any axis: then the values themselves decide.
         own = [k for k, axis in enumerate(self.axes) if axis.key.startswith(OF_THE_CONTAINER)]
         if any(one.key.startswith(OF_THE_CONTAINER) for one in self.derived):
             return sorted(cells, key=lambda cell: (self._container_values(cell), cell))
-        return sorted(cells, key=lambda cell: ([self.indices(cell)[k] for k in own], cell))
+        return sorted(cells, key=lambda cell: ([indices_of(self.axes, cell)[k] for k in own], cell))
 
     def _container_values(self, cell: int) -> str:
         values = self.values(self.point(cell))
         return repr([value for key, value in values.items() if key.startswith(OF_THE_CONTAINER)])
 
     @cached_property
+    def _models(self) -> bool:
+        """Whether the model is an axis."""
+        return any(axis.key == "solver.model" for axis in self.axes)
+
+    @cached_property
     def _changes(self) -> dict[int, list[dict[str, Any]]]:
-        """Of the cells last asked for: each is asked for by every one of its copies."""
+        """Of the cells last asked for: every copy of a cell asks for them."""
         return {}
 
     @cached_property
     def _make(self) -> CaseMaker:
         return CaseMaker(self.base.without_fields())
-
-    def _value_of(self, key: str, values: Mapping[str, Any]) -> float:
-        """Value of a key that an expression refers to: set here, given in the base, or a default."""
-        if key in values:
-            return float(values[key])
-        found = value_in(self.base, key, values)
-        if found is None:
-            raise CaseError(f"[derived] refers to {key}, which has no value in the base case")
-        return found
-
-
-def value_in(base: Case, key: str, values: Mapping[str, Any]) -> float | None:
-    """The number that a key has in a case where others are set; None if it has none.
-
-    A default that follows another key of its table (`mu_kinetic` that of `mu_static`) follows it here too.
-    """
-    table, dot, name = key.rpartition(".")
-    if not dot:
-        return _as_number(base.resolved().get(name))
-    model, content = TABLES[table], getattr(base, table)
-    if name in content.model_fields_set:
-        return _as_number(getattr(content, name))
-    own = content.model_dump() | {
-        k.rpartition(".")[2]: v for k, v in values.items() if k.startswith(f"{table}.")
-    }
-    return _as_number(known_keys(model)[name].get_default(call_default_factory=True, validated_data=own))
-
-
-def in_order(derived: Mapping[str, Expression]) -> Sequence[str]:
-    """The derived keys so that each stands behind those it refers to.
-
-    Raises:
-        CaseError: some refer to one another in a circle.
-    """
-    done: list[str] = []
-    while len(done) < len(derived):
-        ready = [
-            key
-            for key, expression in derived.items()
-            if key not in done and not (expression.keys & derived.keys() - set(done))
-        ]
-        if not ready:
-            circle = [key for key in derived if key not in done]
-            if len(circle) == 1 or any(key in derived[key].keys for key in circle):
-                own = next(key for key in circle if key in derived[key].keys)
-                raise CaseError(
-                    f"[derived] {own} refers to itself; let it follow an axis, or set it under [set]"
-                )
-            raise CaseError(f"[derived] {' and '.join(circle)} refer to one another; let one follow an axis")
-        done += ready
-    return done
-
-
-def _as_number(value: Any) -> float | None:
-    return float(value) if isinstance(value, int | float) and not isinstance(value, bool) else None
-
-
-_WHOLE_KEYS = frozenset(
-    f"{table}.{name}"
-    for table, model in TABLES.items()
-    for name, field in known_keys(model).items()
-    if field.annotation is int
-)

@@ -1,55 +1,45 @@
-"""A sweep, from its file to its table.
+"""A sweep, from its file to its folder.
 
-cells -> rows -> which are near a change of outcome -> these perturbed -> changes of outcome closed in on -> table,
-maps. Everything that was computed lies in a log before the next begins, so that a sweep that was cut off goes on
-where it was, and its table does not tell that it ever was.
+cells -> rows -> which are near a change of outcome -> these perturbed -> changes of outcome located -> table, maps.
+Every step is logged before the next begins, so an interrupted sweep continues where it was, to the same table.
 """
 
+import hashlib
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import ExitStack
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from fem.batch.runner import Row
+from fem.batch.log import LoggedRuns, fields_of, line_of, read_lines, table_of_lines
+from fem.batch.runner import Row, Runner
 from fem.batch.workers import LocalWorkers, WorkersOf
 from fem.case.case import case_hash
+from fem.case.toml import toml_document
 from fem.case.validation import CaseError
-from fem.results.result_folder import held
-from fem.results.run_folder import copy_data_files, naming_what_cannot_be_written
-from fem.runtime.arrays import BoolArray
-from fem.runtime.identity import program_identity, versions
-from fem.runtime.interrupts import interruptible
-from fem.runtime.progress import Reporter, SilentReporter
+from fem.results.folder import ResultFolder, open_result_folder, program_of_results
+from fem.results.kinds import SWEEP
+from fem.results.run_files import copy_data_files
+from fem.runtime.progress import Reporter, SilentReporter, clock_time
+from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
 from fem.sweep import perturbed
-from fem.sweep.cells import Band, Found
-from fem.sweep.executor import Computing
-from fem.sweep.folder import SweepFolder, band_hash, open_sweep_folder, sweep_hash, write_info, write_plan
+from fem.sweep.cells import CellRows
 from fem.sweep.maps import draw_maps
-from fem.sweep.neighbours import UNKNOWN
-from fem.sweep.perturbed import ToldOfCopies, copy_cells
+from fem.sweep.perturbed import BandColumns, perturb_cells
 from fem.sweep.plan import Sweep
-from fem.sweep.refine import refine, write_changes
-from fem.sweep.size import check_size
-from fem.sweep.table import (
-    FOUND,
-    RowLog,
-    band_columns,
-    fields_of,
-    line_of,
-    open_sweep,
-    read_info,
-    read_lines,
-    row_columns,
-    write_table,
-)
+from fem.sweep.refine import refine, table_of_changes
+from fem.sweep.table import FOUND, band_columns, open_sweep
 
-#: how often `sweep.json` tells how far the sweep has come [s]
-NOTE_S = 10.0
+ROWS, TABLE, MEMBERS, TRIED, CHANGES = "rows.csv", "table.csv", "members.csv", "tried.csv", "thresholds.csv"
+#: how often `sweep.json` is updated [s]
+UPDATE_S = 10.0
+#: cells that a sweep may have unless it is forced
+MOST_CELLS = 1_000_000
+#: rough CPU time of a simulated second [s]
+SECONDS_PER_SECOND = {"rigid": 3e-4, "reduced": 3e-3, "full": 6.0}
+#: room on the disk [bytes]: a cell in the log, the table, the copies and the maps; all else
+BYTES_OF_A_CELL, BYTES_BESIDE = 1800, 500_000
 
 
 def run_sweep(
@@ -62,23 +52,23 @@ def run_sweep(
     force: bool = False,
     reporter: Reporter | None = None,
 ) -> dict[str, Any]:
-    """Compute a sweep into a folder.
+    """Compute a sweep into a folder; a finished one is not computed again.
 
     Args:
         sweep: what is asked.
         folder: of the results.
         jobs: cores to use; all by default. The table does not depend on it.
         workers_of: who computes so many cases of a model, in place of this machine's cores.
-        resume: go on with what is there.
-        force: begin anew over what is there; also lifts the limit on the number of cells.
-        reporter: told of the progress.
+        resume: continue with the rows that are there.
+        force: overwrite earlier results; also lifts the limit on the number of cells.
+        reporter: of the progress.
 
     Returns:
-        What stands in `sweep.json`.
+        The content of `sweep.json`.
 
     Raises:
         CaseError: too many cells.
-        FolderError: the folder holds something else.
+        FolderError: the folder holds something else, or an unfinished sweep (without `resume` or `force`).
         FolderLockedError: another process writes into it.
         WorkersLostError: a worker died; what was computed is kept.
         OutputError: the disk is full, the folder was removed; what was written is kept.
@@ -86,38 +76,180 @@ def run_sweep(
     reporter = reporter or SilentReporter()
     jobs = jobs or cores()
     check_size(sweep, jobs, force)
-    with held(folder) as lock, interruptible(reporter) as stop, ExitStack() as stack:
-        place = open_sweep_folder(folder, sweep, force=force, resume=resume)
-        if place.finished:
+    with (
+        open_result_folder(folder, SWEEP, sweep_hash(sweep), force=force, resume=resume) as place,
+        interruptible(reporter) as stop,
+        ExitStack() as stack,
+    ):
+        found = place.found or {}
+        same_band = found.get("band_hash") == band_hash(sweep)
+        has_table = place.finished and (folder / TABLE).is_file()
+        if has_table and same_band:
             reporter.message(f"{folder} holds this sweep already; --force computes it again")
-            return _with_maps(place, sweep)
-        work = _Work(
-            sweep=sweep,
-            place=place,
-            computing=Computing(
-                sweep=sweep,
-                workers_of=workers_of or stack.enter_context(LocalWorkers(jobs)),
-                reporter=reporter,
-            ),
-            info=_asked(sweep) | {"jobs": jobs},
-            check=lock.check,
+            return _with_maps(place, found, sweep)
+        if not has_table and (rows := _rows_in(folder / ROWS)):
+            place.refuse_unfinished(f"{rows} of {sweep.count} rows")
+        place.require_same_program()
+        place.require_room(
+            sweep.count * BYTES_OF_A_CELL + BYTES_BESIDE,
+            f"the sweep ({sweep.count} cells)",
+            "take fewer values",
         )
-        with naming_what_cannot_be_written(folder, "--resume goes on"):
-            return work.run(stop)
+        runner = Runner(
+            workers_of=workers_of or stack.enter_context(LocalWorkers(jobs)), reporter=reporter, stop=stop
+        )
+        info = _asked(sweep) | {"jobs": jobs}
+        return _Work(sweep=sweep, place=place, runner=runner, info=info).run(same_band=same_band)
 
 
-def _with_maps(place: SweepFolder, sweep: Sweep) -> dict[str, Any]:
-    """A finished sweep; its maps are drawn anew if they are to be others."""
-    info = read_info(place.path)
+def sweep_hash(sweep: Sweep) -> str:
+    """Equal for sweeps whose rows are the same."""
+    digest = hashlib.sha256(case_hash(sweep.base).encode())
+    given = {key: value for key, value in sweep.base.given().items() if key != "title"}
+    digest.update(toml_document(given).encode())
+    digest.update(repr([(axis.key, axis.values) for axis in sweep.axes]).encode())
+    digest.update(repr([(one.key, one.expression.tree) for one in sweep.derived]).encode())
+    return digest.hexdigest()
+
+
+def band_hash(sweep: Sweep) -> str:
+    """Equal for sweeps that are perturbed and refined in the same way."""
+    return hashlib.sha256(repr((sweep.perturbation, sweep.threshold)).encode()).hexdigest()
+
+
+def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
+    """Refuse more cells than anybody asks for on purpose.
+
+    Raises:
+        CaseError: says how many, and about how long and how much disk they would take.
+    """
+    if sweep.count <= MOST_CELLS or force:
+        return
+    axes = {axis.key: axis.values for axis in sweep.axes}
+    durations = axes.get("solver.duration_s", (sweep.base.solver.duration_s,))
+    speeds = [SECONDS_PER_SECOND[one] for one in axes.get("solver.model", (sweep.base.solver.model,))]
+    seconds = sweep.count * sum(durations) / len(durations) * sum(speeds) / len(speeds) / jobs
+    sizes = " x ".join(str(size) for size in sweep.shape)
+    raise CaseError(
+        f"{sweep.name}: [axes] make {sizes} = {sweep.count} cells, more than {MOST_CELLS}: about "
+        f"{clock_time(seconds)} on {jobs} core{'s' * (jobs > 1)}, {sweep.count * BYTES_OF_A_CELL / 1e9:.1f} GB on the "
+        "disk; take fewer values, or say --force"
+    )
+
+
+class _Work:
+    """A sweep under way."""
+
+    def __init__(self, *, sweep: Sweep, place: ResultFolder, runner: Runner, info: dict[str, Any]) -> None:
+        self.sweep, self.place, self.runner, self.info = sweep, place, runner, info
+        self.cells = CellRows(sweep)
+        self._began = self._updated = time.perf_counter()
+
+    def run(self, *, same_band: bool) -> dict[str, Any]:
+        """Compute what is missing; `same_band`: the copies that are there belong to this sweep."""
+        place, stop = self.place, self.runner.stop
+        keep = place.found is not None
+        if keep and not same_band:
+            # The mark first: a kill must not leave the copies of another band beside the hash of this one.
+            place.write_result(self.info | {"band_hash": None})
+            place.remove(MEMBERS, TRIED, CHANGES)
+        base = toml_document(self.sweep.base.given())
+        place.begin(self.info, {"sweep.toml": self.sweep.text, "base.toml": base}, keep=keep)
+        copy_data_files(self.sweep.base, place.path)
+        self._compute_rows()
+        copies = None if stop() else perturb_cells(self.runner, self.sweep, self.cells, place.path / MEMBERS)
+        changes = None if stop() else refine(self.runner, self.sweep, self.cells, place.path / TRIED)
+        self.info["perturbed"] = 0 if copies is None else len(copies.rows)
+        self.info["status"] = "interrupted"
+        if not stop():
+            place.check()
+            self._write_table(None if copies is None else BandColumns(self.sweep, self.cells, copies))
+            if copies is not None:
+                place.write_text(MEMBERS, table_of_lines(perturbed.COLUMNS, copies.lines()))
+            if changes is not None:
+                place.write_text(CHANGES, table_of_changes(self.sweep, changes))
+                self.info["changes"] = len(changes)
+            self.info["status"] = "failed" if set(self.cells.outcomes) == {"failed"} else "completed"
+            self.info["maps"] = _draw(place, self.sweep)
+        self.info["wall_s"] = time.perf_counter() - self._began
+        self._update()
+        if not stop():
+            place.remove(ROWS)
+        return self.info
+
+    def _compute_rows(self) -> None:
+        """The rows that are missing; those of a finished table whose band is to be another are kept."""
+        log, table = self.place.path / ROWS, self.place.path / TABLE
+        columns = self.cells.columns
+        if table.exists() and not log.exists():
+            lines = read_lines(table, (*columns, *band_columns(self.sweep.axes)))
+            kept = (line_of(fields_of(line)[: len(columns)]) for line in lines)
+            self.place.write_text(ROWS, table_of_lines(columns, kept))
+        self.place.remove(TABLE)
+        LoggedRuns(
+            what="cells",
+            path=log,
+            columns=columns,
+            make=self.sweep.case,
+            model_of=self.sweep.model_of,
+            values=self._values,
+            note=self._note,
+        ).run(self.runner, self._missing())
+
+    def _missing(self) -> Iterator[list[int]]:
+        yield self.sweep.by_container(set(range(self.sweep.count)) - self.cells.lines.keys())
+
+    def _values(self, cell: int, row: Row) -> Iterator[Any]:
+        point = self.sweep.point(cell)
+        yield cell
+        yield from point.values()
+        if self.sweep.derived:
+            try:
+                values = self.sweep.values(point)
+            except CaseError:  # the row has the reason
+                values = {}
+            yield from (values.get(one.key) for one in self.sweep.derived)
+        yield from (row[name] for name in FOUND)
+
+    def _note(self, line: str) -> None:
+        self.cells.note(line)
+        if time.perf_counter() - self._updated > UPDATE_S:
+            self._update()
+
+    def _write_table(self, band: BandColumns | None) -> None:
+        columns = band_columns(self.sweep.axes)
+        lines = (
+            f"{self.cells.lines[cell]},{line_of(band.values(cell) if band else (None for _ in columns))}"
+            for cell in range(self.sweep.count)
+        )
+        self.place.write_text(TABLE, table_of_lines((*self.cells.columns, *columns), lines))
+        self.info["unsure"] = int(band.unsure.sum()) if band else None
+
+    def _update(self) -> None:
+        """Write into `sweep.json` how many rows there are."""
+        self._updated = time.perf_counter()
+        self.place.check()
+        self.info["rows"] = len(self.cells.lines)
+        self.info["outcomes"] = dict(sorted(self.cells.outcomes.items()))
+        self.place.write_result(self.info)
+
+
+def _with_maps(place: ResultFolder, info: dict[str, Any], sweep: Sweep) -> dict[str, Any]:
+    """A finished sweep; its maps are drawn again if other axes are asked for."""
     asked = sweep.maps.model_dump()
     if info.get("map_axes") != asked:
         info |= {"map_axes": asked, "maps": _draw(place, sweep)}
-        write_info(place, info)
+        place.write_result(info)
     return info
 
 
-def _draw(place: SweepFolder, sweep: Sweep) -> list[str]:
-    return draw_maps(open_sweep(place.path), place.maps, **sweep.maps.model_dump())
+def _draw(place: ResultFolder, sweep: Sweep) -> list[str]:
+    return draw_maps(open_sweep(place.path), place.path / "maps", **sweep.maps.model_dump())
+
+
+def _rows_in(log: Path) -> int:
+    """Whole lines below the header."""
+    return max(log.read_bytes().count(b"\n") - 1, 0) if log.is_file() else 0
 
 
 def _asked(sweep: Sweep) -> dict[str, Any]:
@@ -147,128 +279,5 @@ def _asked(sweep: Sweep) -> dict[str, Any]:
         "changes": None,
         "map_axes": sweep.maps.model_dump(),
         "maps": [],
-        "program": program_identity()["sources"],
-        "versions": versions(),
+        **program_of_results(),
     }
-
-
-@dataclass(kw_only=True)
-class _Work:
-    """A sweep under way."""
-
-    sweep: Sweep
-    place: SweepFolder
-    computing: Computing
-    info: dict[str, Any]
-    check: Callable[[], None]  #: raises FolderLostError once the folder is another's
-    _noted: float = 0.0
-
-    def run(self, stop: Callable[[], bool]) -> dict[str, Any]:
-        began = time.perf_counter()
-        found = self._known_rows()
-        if not self.place.same_band:
-            # Told first: a kill must not leave the copies of another band beside the hash of this one.
-            write_info(self.place, self.info | {"band_hash": None})
-            for file in (self.place.members, self.place.tried, self.place.thresholds):
-                file.unlink(missing_ok=True)
-        write_plan(self.place, self.sweep, self.info)
-        copy_data_files(self.sweep.base, self.place.path)
-        self._compute_rows(found, stop)
-        band = None if stop() else copy_cells(self.computing, found, self.place.members, stop)
-        self.info["perturbed"] = 0 if band is None else len(band.members)
-        changes = None if stop() else refine(self.computing, found, self.place.tried, stop)
-        if stop():
-            self.info["status"] = "interrupted"
-        else:
-            self.check()
-            unsure = self._write_table(found, band)
-            if band is not None:
-                write_table(self.place.members, perturbed.COLUMNS, band.lines())
-            if changes is not None:
-                write_changes(self.sweep, changes, self.place.thresholds)
-                self.info["changes"] = len(changes)
-            self.info["unsure"] = None if unsure is None else int(unsure.sum())
-            self.info["status"] = "completed" if self._any_outcome(found) else "failed"
-            self.info["maps"] = _draw(self.place, self.sweep)
-        self.info["wall_s"] = time.perf_counter() - began
-        self._note(found, force=True)
-        if self.info["status"] != "interrupted":
-            self.place.rows.unlink(missing_ok=True)
-        self.computing.reporter.finish()
-        return self.info
-
-    @staticmethod
-    def _any_outcome(found: Found) -> bool:
-        return set(found.outcomes) != {"failed"}
-
-    # rows
-
-    @property
-    def _columns(self) -> tuple[str, ...]:
-        return row_columns(self.sweep.axes, (one.key for one in self.sweep.derived))
-
-    def _known_rows(self) -> Found:
-        """Rows that an earlier attempt left, or the table of a finished sweep whose band is to be another."""
-        count, header = self.sweep.count, line_of(self._columns)
-        found = Found(kind=np.full(count, UNKNOWN), rotation_ratio=np.full(count, np.nan))
-        whole = line_of((*self._columns, *band_columns(self.sweep.axes)))
-        lines = read_lines(self.place.rows, header) + [
-            line_of(fields_of(line)[: len(self._columns)]) for line in read_lines(self.place.table, whole)
-        ]
-        first = self._columns.index("status")
-        ratio = first + FOUND.index("rotation_ratio")
-        outcome = first + FOUND.index("outcome")
-        for line in lines:
-            fields = fields_of(line)
-            cell = int(fields[0])
-            if cell not in found.lines:
-                number = float(fields[ratio]) if fields[ratio] else None
-                found.note(cell, line, fields[first], fields[outcome], number)
-        return found
-
-    def _compute_rows(self, found: Found, stop: Callable[[], bool]) -> None:
-        missing = self.sweep.by_container(set(range(self.sweep.count)) - found.lines.keys())
-        with RowLog(self.place.rows, line_of(self._columns)) as log:
-            lost = [found.lines[cell] for cell in sorted(found.lines)] if not log.lines else []
-            log.append(lost)  # rows of a finished table, to be kept should this be cut off as well
-            for cells, rows in self.computing.rows_of("cells", missing, self.sweep.case, stop):
-                lines = [line_of(self._row(cell, row)) for cell, row in zip(cells, rows, strict=True)]
-                log.append(lines)
-                for cell, line, row in zip(cells, lines, rows, strict=True):
-                    found.note(cell, line, row["status"], row["outcome"], row["rotation_ratio"])
-                self._note(found)
-            log.sync()
-        self.place.table.unlink(missing_ok=True)  # that of another band: its rows stand in the log now
-
-    def _row(self, cell: int, row: Row) -> Iterator[Any]:
-        point = self.sweep.point(cell)
-        yield cell
-        yield from point.values()
-        if self.sweep.derived:
-            try:
-                values: Mapping[str, Any] = self.sweep.values(point)
-            except CaseError:  # the row has the reason
-                values = {}
-            yield from (values.get(one.key) for one in self.sweep.derived)
-        yield from (row[name] for name in FOUND)
-
-    # table
-
-    def _write_table(self, found: Found, band: Band | None) -> BoolArray | None:
-        """The whole table; returns which cells are unsure."""
-        told = ToldOfCopies(self.sweep, found, band)
-        cells = range(self.sweep.count)
-        lines = (f"{found.lines[cell]},{line_of(told.of(cell))}" for cell in cells)
-        write_table(self.place.table, (*self._columns, *told.columns), lines)
-        return told.unsure
-
-    def _note(self, found: Found, *, force: bool = False) -> None:
-        """Tell in `sweep.json` how far the sweep has come, now and then."""
-        now = time.perf_counter()
-        if not force and now - self._noted < NOTE_S:
-            return
-        self._noted = now
-        self.check()
-        self.info["rows"] = len(found.lines)
-        self.info["outcomes"] = dict(sorted(found.outcomes.items()))
-        write_info(self.place, self.info)

@@ -1,39 +1,34 @@
-"""The table of a sweep: one row a cell, as it grows, as it is kept, and as it is read.
+"""The table of a sweep: one row a cell, as it is written and as it is read.
 
-While a sweep runs, rows are appended to `rows.csv` by whole lines in the order in which they come; a kill leaves whole
-lines and at most one broken one, which is cut off when the sweep goes on. `table.csv` is written at the end, in
-the order of the cells, and replaced whole. Both have the same columns up to the band's, which only the table has.
+While a sweep runs, rows are appended to `rows.csv` in the order in which they are ready; `table.csv` is written at the
+end, in the order of the cells. It has the columns of the log, and those of the perturbed copies.
 """
 
-import csv
-import io
-import json
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fem.batch.axes import Axis
+from fem.batch.axes import Axis, shape_of
+from fem.batch.log import fields_of, read_lines
 from fem.batch.runner import SCALARS
-from fem.results.run_folder import FolderError, write_atomically
+from fem.results.errors import FolderError
+from fem.results.folder import read_result
+from fem.results.kinds import SWEEP
 
-#: what stands behind the values of axes and derived keys in every row
+#: columns behind the values of axes and derived keys in every row
 FOUND = ("status", *SCALARS, "reason", "wall_s")
-#: what the perturbed copies of a cell say; the width of the band along each numeric axis follows
+#: columns of the perturbed copies of a cell; the width of the band along each numeric axis follows
 BAND = ("perturbed", "unsure", "band_rotation_ratio_low", "band_rotation_ratio_high")
 WIDTH = "band_width."  #: before the key of an axis
 WORDS = frozenset({"status", "outcome", "reason"})
-TRUTHS = frozenset({"restored", "unsure"})
-SYNC_S = 2.0
 
 
 def row_columns(axes: Sequence[Axis], derived: Iterable[str]) -> tuple[str, ...]:
-    """Columns of a row as it comes from a run."""
+    """Columns of the row of a run."""
     return ("cell", *(axis.key for axis in axes), *derived, *FOUND)
 
 
@@ -42,95 +37,18 @@ def band_columns(axes: Sequence[Axis]) -> tuple[str, ...]:
     return (*BAND, *(WIDTH + axis.key for axis in axes if axis.is_numeric))
 
 
-def line_of(values: Iterable[Any]) -> str:
-    """Values as a line of a table, without its end."""
-    text = io.StringIO()
-    csv.writer(text, lineterminator="").writerow([_text(value) for value in values])
-    return text.getvalue()
-
-
-def _text(value: Any) -> str:
-    """Numbers in the shortest form that reads back to the same bits; nothing for None; text on one line."""
-    if value is None:
-        return ""
-    if isinstance(value, bool | np.bool_):
-        return "true" if value else "false"
-    if isinstance(value, float | np.floating):
-        return repr(float(value))
-    return " ".join(str(value).split())
-
-
-class RowLog:
-    """Appends lines to a file, each as a whole; a context manager.
-
-    Args:
-        path: the file; made anew with `header` unless it begins with it already: then it is gone on with, behind
-            its last whole line.
-        header: the first line.
-    """
-
-    def __init__(self, path: Path, header: str) -> None:
-        self.lines = read_lines(path, header)
-        length = sum(len(line.encode()) + 1 for line in [header, *self.lines])
-        self._file = open(path, "r+b" if self.lines else "wb", buffering=0)  # noqa: SIM115
-        if self.lines:
-            self._file.truncate(length)
-            self._file.seek(length)
-        else:
-            self._file.write(header.encode() + b"\n")
-
-    def append(self, lines: Sequence[str]) -> None:
-        """Write lines in one go."""
-        data = "".join(f"{line}\n" for line in lines).encode()
-        done = 0
-        while done < len(data):
-            done += self._file.write(data[done:])
-
-    def sync(self) -> None:
-        """See to it that what was written survives a power cut as well."""
-        os.fsync(self._file.fileno())
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._file.close()
-
-
-def read_lines(path: Path, header: str) -> list[str]:
-    """The whole lines of a log behind its header; none if the file is missing, or begins otherwise."""
-    try:
-        text = path.read_text(encoding="utf-8", errors="replace")
-    except FileNotFoundError:
-        return []
-    lines = text[: text.rfind("\n") + 1].split("\n")[:-1]
-    return lines[1:] if lines[:1] == [header] else []
-
-
-def fields_of(line: str) -> list[str]:
-    """The fields of one line."""
-    return next(csv.reader([line]))
-
-
-def write_table(path: Path, columns: Sequence[str], lines: Iterable[str]) -> None:
-    """Replace the table."""
-    write_atomically(path, "".join(f"{line}\n" for line in [line_of(columns), *lines]))
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SweepTable:
-    """A sweep as it lies in its folder: what was asked, and what was found."""
+    """A sweep read from its folder: what was asked, and the results."""
 
     info: dict[str, Any]  #: as in sweep.json
     axes: tuple[Axis, ...]
-    columns: dict[str, NDArray[Any]]  #: (n_cells,) by name; nan and "" where nothing was found
+    columns: dict[str, NDArray[Any]]  #: (n_cells,) by name; nan and "" where there is no result
 
     @property
     def shape(self) -> tuple[int, ...]:
         """Values of each axis."""
-        return tuple(len(axis.values) for axis in self.axes)
+        return shape_of(self.axes)
 
     def __getitem__(self, column: str) -> NDArray[Any]:
         """A column, one value a cell; KeyError names the columns there are."""
@@ -153,10 +71,10 @@ def open_sweep(folder: Path | str) -> SweepTable:
     """Read the folder of a sweep, a running or interrupted one too.
 
     Raises:
-        FolderError: it is no folder of a sweep, or damaged.
+        FolderError: it is not the folder of a sweep, or it is damaged.
     """
     folder = Path(folder)
-    info = read_info(folder)
+    info = read_result(folder / SWEEP.mark, SWEEP)
     try:
         axes = tuple(
             Axis(key=one["key"], values=tuple(one["values"]), scale=one["scale"], unit=one["unit"])
@@ -167,35 +85,15 @@ def open_sweep(folder: Path | str) -> SweepTable:
         source = folder / "table.csv"
         if not source.is_file():
             source, names = folder / "rows.csv", rows
-        lines = [fields_of(line) for line in read_lines(source, line_of(names))]
+        lines = [fields_of(line) for line in read_lines(source, names)]
         if info["status"] in ("completed", "failed") and len(lines) != info["cells"]:
             raise ValueError(
-                f"{source.name} has {len(lines)} rows of {info['cells']}; compute it again: "
+                f"{source.name} has {len(lines)} rows of {info['cells']}; recompute it: "
                 f"python -m fem sweep {info['sweep']} --out {folder} --force"
             )
         return SweepTable(info=info, axes=axes, columns=_columns(info, axes, names, lines))
     except (KeyError, TypeError, ValueError, IndexError, OSError) as error:
         raise FolderError(f"{folder}: damaged, or not the folder of a sweep ({error})") from None
-
-
-def read_info(folder: Path) -> dict[str, Any]:
-    """The content of `sweep.json`.
-
-    Raises:
-        FolderError: there is none, or it is not one.
-    """
-    path = folder / "sweep.json"
-    try:
-        info = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise FolderError(
-            f"{path}: cannot be read ({error.strerror}); is this the folder of a sweep?"
-        ) from None
-    except ValueError:
-        info = None
-    if not isinstance(info, dict) or not isinstance(info.get("sweep_hash"), str):
-        raise FolderError(f"{path}: damaged, or not that of a sweep")
-    return info
 
 
 def _columns(

@@ -19,7 +19,7 @@ from measuring import Figure, at_most, report
 from fem.batch.axes import read_axis
 from fem.batch.runner import run_cases
 from fem.model.container import discretise
-from fem.model.equilibrium import set_down
+from fem.model.equilibrium import find_equilibrium
 from fem.model.model import build_model
 from fem.sweep.file import load_sweep
 from fem.sweep.plan import Sweep
@@ -76,11 +76,11 @@ def cost_of_a_cell() -> Figure:
     """Time to build the model of a cell."""
     sweep = map_of("rigid", RIGID_CELLS, band=False)
     container = discretise(sweep.case(0))
-    footing = set_down(sweep.case(0), container)  # shared, as in a sweep that changes only the motion
+    equilibrium = find_equilibrium(sweep.case(0), container)  # shared: only the motion differs
     times = []
     for cell in range(BUILDS):
         began = time.process_time()
-        build_model(sweep.case(cell), container, footing)
+        build_model(sweep.case(cell), container, equilibrium)
         times.append(time.process_time() - began)
     return at_most("from a cell's number to its model [ms]", 1e3 * float(np.median(times)), 1.0)
 

@@ -14,7 +14,7 @@ from container_runs import stack
 
 from fem.model.container import Container
 from fem.model.model import Model, build_model
-from fem.model.recovery import Frame, recovery_of
+from fem.model.recovery import NodalFields, recovery_of
 from fem.verification.elasticity import turn
 from fem.verification.runs import run
 
@@ -22,7 +22,7 @@ SECTIONS = ["solid", "shell"]
 STANDING: dict[str, Any] = {"initial__rotation_rad": 0.0, "solver__duration_s": 0.05}
 
 
-def frame_of(model: Model) -> Frame:
+def frame_of(model: Model) -> NodalFields:
     """Fields of the present state of a model."""
     return recovery_of(model).frame(model.run.old.position, model.run.old.velocity)
 

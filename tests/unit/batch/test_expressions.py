@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from fem.batch.expressions import ExpressionError, parse_expression
 
-VALUES = {"contact.mu_static": 0.4, "gravity_m_s2": 9.81}
+VALUES = {"contact.mu_static": 0.4, "gravity_m_s2": 9.81, "free.lambda": 3.0}
 
 
 @pytest.mark.parametrize(
@@ -23,6 +23,7 @@ VALUES = {"contact.mu_static": 0.4, "gravity_m_s2": 9.81}
         ("(1 + 2) * 3", 9.0),
         ("max(1e-3, min(gravity_m_s2, 2.))", 2.0),
         ("sqrt(2) * sin(pi / 4)", 1.0),
+        ("\n2 *\tfree.lambda ^ 2", 18.0),  # a key may be one of Python's words
     ],
 )
 def test_values(text, value):
@@ -32,16 +33,22 @@ def test_values(text, value):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "expected at character 1, found the end"),
-        ("1 +", "expected at character 4"),
-        ("(1", r"'\)' expected"),
-        ("1 2", "an operator or the end expected at character 3"),
-        ("contact.mu.static", "found '.'"),
-        ("().__class__", "expected"),
-        ("__import__('os')", "no function"),
+        ("", "invalid syntax at character 1"),
+        ("1 +", "at character 4; it may hold numbers, keys"),
+        ("2^3^(1", r"'\(' was never closed at character 5"),
+        ("1 2", "at character 3"),
+        ("1 if 2 else 3", "at character 3"),
+        ("contact.mu.static", "'contact.mu.static' is no number, key"),
+        ("2 ^ 10 // 3", "'2 \\^ 10 // 3' is no number"),
+        ("().__class__", r"'\(\).__class__' is no number"),
+        ("0x10 + 1_0", "'0x10' is no number"),
+        ("max(*contact.mu_static, 1)", "max takes|'.contact.mu_static' is no number"),
+        ("__import__('os')", 'unexpected "\'" at character 12'),
+        ("1 # 2", "unexpected '#' at character 3"),
+        ("sqrt(1,)", "unexpected ',' at character 7"),
         ("eval(1)", "no function 'eval'"),
         ("sqrt(1, 2)", "takes 1 argument, got 2"),
-        ("(" * 60 + "1" + ")" * 60, "nested deeper"),
+        ("(" * 199 + "1" + ")" * 199 + "^2", "characters long|too"),
         ("1+" * 500 + "1", "characters long"),
     ],
 )

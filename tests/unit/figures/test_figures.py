@@ -23,7 +23,7 @@ from fem.figures.run import FIGURES, figures_of
 from fem.figures.style import (
     STRETCHES,
     TIME,
-    followed,
+    cursor_axes,
     house_style,
     kept_samples,
     number,
@@ -330,13 +330,13 @@ def test_no_peak_is_lost_in_a_long_curve():
     assert kept_samples(values)[-1] == 199_999
 
 
-def test_a_panel_over_time_tells_where_it_lies():
+def test_a_panel_over_time_tells_where_it_lies(runs):
     with house_style():
-        figure, axes = time_panels((1.0, 1.0), states=("rest",))
-        axes[0].plot([2.0, 6.0], [0.0, 1.0])
+        figure, axes = time_panels((1.0, 1.0), history=runs["rest"].history)
+        axes[0].plot([0.0, 6.0], [0.0, 1.0])
     svg = svg_of(figure)
-    place = followed(figure)
-    assert (place["kind"], place["x"]) == ("time", [2.0, 6.0])
+    place = cursor_axes(figure)
+    assert (place["kind"], place["x"]) == ("time", [0.0, 6.0])
     # The frame of the axes in the SVG, whose y points down.
     size = [float(figure.get_size_inches()[i]) * 72.0 for i in (0, 1)]
     spine = re.search(r'id="patch_2">\s*<path d="M ([\d.]+) ([\d.]+)', svg)
@@ -344,14 +344,14 @@ def test_a_panel_over_time_tells_where_it_lies():
     upper, lower = (panel.get_position() for panel in axes[:2])
     assert 1.0 - float(spine[2]) / size[1] == pytest.approx(upper.y0, abs=1e-4)
     assert (place["top"], place["bottom"]) == (upper.y1, lower.y0) and upper.y0 > lower.y1
-    assert axes[-1].get_xlabel() == TIME
+    assert figure.axes[-1].get_xlabel() == TIME
 
 
 def test_a_cursor_follows_every_figure_over_time_and_the_phase_portrait(runs):
     run = runs["rocking"]
     for drawing in drawings_of(run, discretise(run.case)).values():
         kind = {"phase_portrait": "plane", "band": None, "modes": None}.get(drawing.name, "time")
-        assert (drawing.followed or {"kind": None})["kind"] == kind, drawing.name
+        assert (drawing.cursor or {"kind": None})["kind"] == kind, drawing.name
 
 
 def test_figures_in_one_page_share_no_id(drawn):

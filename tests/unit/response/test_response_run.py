@@ -11,10 +11,10 @@ import pytest
 
 from fem.__main__ import main
 from fem.case.case import CaseError, load_case
-from fem.response import run as study
 from fem.response.request import ResponseRequest
 from fem.response.run import run_response
-from fem.results.run_folder import FolderError
+from fem.results.errors import FolderError
+from fem.runtime.progress import SilentReporter
 
 ROOT = Path(__file__).parents[3]
 CHANGES = ("solver.model=rigid", "contact.mu_static=1", "contact.mu_kinetic=1", "solver.element_size_m=1")
@@ -32,53 +32,49 @@ def files_of(folder):
     }
 
 
-def test_a_study_cut_off_after_any_point_goes_on_to_the_same_files(tmp_path, monkeypatch):
+class Interrupting(SilentReporter):
+    """Interrupts after some periods of the drive."""
+
+    def __init__(self, periods):
+        self.left = periods
+
+    def update(self, time, rotation_ratio, mode):
+        self.left -= 1
+        if self.left == 0:
+            raise KeyboardInterrupt
+
+
+def test_an_interrupted_curve_continues_to_the_same_files(tmp_path):
     request = request_of()
     whole = run_response(request, folder=tmp_path / "whole")
     assert whole.status == "completed"
-    assert [record.row["direction"] for record in whole.records] == ["up"] * 3 + ["down"] * 3
-    sweep = study.sweep_points
-    for points in (1, 3):
-
-        def cut_off(*arguments, after=points, **options):
-            for k, found in enumerate(sweep(*arguments, **options), start=1):
-                yield found
-                if k == after:
-                    raise KeyboardInterrupt
-
-        folder = tmp_path / f"cut{points}"
-        with monkeypatch.context() as patch:
-            patch.setattr(study, "sweep_points", cut_off)
-            with pytest.raises(KeyboardInterrupt):
-                run_response(request, folder=folder)
+    assert [record.row.direction for record in whole.records] == ["up"] * 3 + ["down"] * 3
+    folder = tmp_path / "interrupted"
+    for periods in (5, 20, 30):  # in the first point; later; later still
+        with pytest.raises(KeyboardInterrupt):
+            run_response(request, folder=folder, resume=True, reporter=Interrupting(periods))
         assert json.loads((folder / "response.json").read_text())["status"] == "running"
-        assert run_response(request, folder=folder, resume=True).status == "completed"
-        assert files_of(folder) == files_of(tmp_path / "whole")
+    state = (folder / "state.npz").read_bytes()
+    (folder / "state.npz").write_bytes(b"half of it")
+    with pytest.raises(FolderError, match=r"state\.npz: damaged.*--force"):
+        run_response(request, folder=folder, resume=True)
+    (folder / "state.npz").write_bytes(state)
+    assert run_response(request, folder=folder, resume=True).status == "completed"
+    assert files_of(folder) == files_of(tmp_path / "whole")
 
 
-def test_a_finished_study_is_not_computed_again_and_a_foreign_folder_is_left_alone(tmp_path):
+def test_a_finished_curve_is_not_computed_again_and_a_foreign_folder_is_left_alone(tmp_path):
     request = request_of(count=2)
     run_response(request, folder=tmp_path / "a")
     before = files_of(tmp_path / "a")
     assert run_response(request, folder=tmp_path / "a").records == ()
-    with pytest.raises(FolderError, match="holds another response curve"):
+    with pytest.raises(FolderError, match="holds the results of another response curve"):
         run_response(request_of(count=2, observe=9), folder=tmp_path / "a")
     assert files_of(tmp_path / "a") == before
     (tmp_path / "b").mkdir()
     (tmp_path / "b" / "letter.txt").write_text("dear")
     with pytest.raises(FolderError, match="holds no response curve"):
         run_response(request, folder=tmp_path / "b")
-
-
-def test_a_damaged_state_is_refused_by_name(tmp_path, monkeypatch):
-    request = request_of(count=2)
-    monkeypatch.setattr(study, "sweep_points", lambda *a, **k: iter(()))
-    run_response(request, folder=tmp_path / "a")
-    result = json.loads((tmp_path / "a" / "response.json").read_text())
-    (tmp_path / "a" / "response.json").write_text(json.dumps(result | {"status": "running"}))
-    (tmp_path / "a" / "state.npz").write_bytes(b"half of it")
-    with pytest.raises(FolderError, match=r"state\.npz: damaged .*--force"):
-        run_response(request, folder=tmp_path / "a", resume=True)
 
 
 def test_what_is_held_is_what_the_case_states():

@@ -1,24 +1,26 @@
 """The file of a checkpoint: what comes back is what went in, and everything else is refused by name."""
 
-import io
+import gc
 import json
 import os
 import struct
+import sys
 import zipfile
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
-from contact.stepping.state import CLOCK
+from contact.stepping.state import STEP_RECORD
 from fem.results import archive as checkpoint
-from fem.results.archive import ABOUT, CheckpointError, read_checkpoint, write_checkpoint
+from fem.results.archive import ABOUT, CheckpointError, read_checkpoint, write_archive
 
 PROGRAM = {"unanchored": "0.1.0", "sources": "abc"}
 OWN = {"case_hash": "ours", "program": PROGRAM}
 
 
 def arrays():
-    clock = np.zeros(1, CLOCK)
+    clock = np.zeros(1, STEP_RECORD)
     clock["time"], clock["steps"] = 0.1 + 0.2, 7
     return {
         "old.position": np.array([0.1, -0.0, np.nan, np.inf, 5e-324]),
@@ -36,7 +38,7 @@ def read(path, case_hash="ours", program=PROGRAM):
 @pytest.fixture
 def path(tmp_path):
     place = tmp_path / "checkpoint.npz"
-    write_checkpoint(place, {**OWN, "time_s": 0.1 + 0.2}, arrays())
+    write_archive(place, {**OWN, "time_s": 0.1 + 0.2}, arrays())
     return place
 
 
@@ -58,7 +60,7 @@ def test_the_file_is_an_npz_that_numpy_reads_without_pickle(path):
 
 def test_objects_are_not_kept(tmp_path):
     with pytest.raises(ValueError, match="allow_pickle"):
-        write_checkpoint(tmp_path / "c.npz", OWN, {"a": np.array([print], dtype=object)})
+        write_archive(tmp_path / "c.npz", OWN, {"a": np.array([print], dtype=object)})
     assert list(tmp_path.iterdir()) == []
 
 
@@ -83,32 +85,32 @@ def test_a_single_damaged_bit_anywhere_is_refused(path):
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04", b"\x93NUMPY\x01\x00", b"{}", os.urandom(5000)])
 def test_what_is_no_checkpoint_is_refused(tmp_path, content):
     (tmp_path / "c.npz").write_bytes(content)
-    with pytest.raises(CheckpointError, match=r"c\.npz: damaged, or no checkpoint.*--force"):
+    with pytest.raises(CheckpointError, match=r"c\.npz: damaged, or not a checkpoint.*--force"):
         read(tmp_path / "c.npz")
 
 
-def test_a_folder_in_its_place_is_refused(tmp_path):
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        ({"case_hash": "theirs"}, r"belongs to another case.*--force"),
+        ({"program": PROGRAM | {"sources": "def"}}, r"another version.*sources abc, here def.*--force"),
+        ({"program": {"sources": "abc"}}, "another version"),
+    ],
+)
+def test_a_checkpoint_of_another_case_or_version_is_refused(path, asked, words):
+    with pytest.raises(CheckpointError, match=words):
+        read(path, **asked)
+
+
+def test_a_missing_checkpoint_and_another_format_are_refused(path, tmp_path, monkeypatch):
     with pytest.raises(CheckpointError, match="cannot be read"):
-        read(tmp_path)
-
-
-def test_another_case_is_refused(path):
-    with pytest.raises(CheckpointError, match=r"belongs to another case.*--force"):
-        read(path, case_hash="theirs")
-
-
-def test_another_version_is_refused_and_named(path):
-    with pytest.raises(CheckpointError, match=r"another version.*sources abc, here def.*--force"):
-        read(path, program=PROGRAM | {"sources": "def"})
-
-
-def test_another_format_is_refused(path, monkeypatch):
+        read(tmp_path / "none.npz")
     monkeypatch.setattr(checkpoint, "FORMAT", checkpoint.FORMAT + 1)
     with pytest.raises(CheckpointError, match="another version"):
         read(path)
 
 
-def forged(path, name, header, content=b"", compression=zipfile.ZIP_STORED):
+def forged(path, name, header, content, compression):
     """An archive whose checksum is right, with one array that is not what it seems."""
     text = f"{header!r}".encode().ljust(118) + b"\n"
     array = b"\x93NUMPY\x01\x00" + struct.pack("<H", len(text)) + text + content
@@ -120,26 +122,55 @@ def forged(path, name, header, content=b"", compression=zipfile.ZIP_STORED):
     path.write_bytes(content + checkpoint._digest(content))
 
 
-def test_an_array_that_claims_more_than_it_has_is_refused_without_taking_the_memory(tmp_path):
-    for count in (10, 10**9, 10**15, 10**30):
-        header = {"descr": "<f8", "fortran_order": False, "shape": (count,)}
-        forged(tmp_path / "c.npz", "a.npy", header, bytes(16))
-        with pytest.raises(CheckpointError, match="damaged"):
-            read(tmp_path / "c.npz")
-
-
-def test_a_pickle_is_refused(tmp_path):
-    header = {"descr": "|O", "fortran_order": False, "shape": (1,)}
-    forged(tmp_path / "c.npz", "a.npy", header, b"cos\nsystem\n(S'false'\ntR.")
-    with pytest.raises(CheckpointError, match="allow_pickle"):
+@pytest.mark.parametrize(
+    ("header", "content", "compression", "words"),
+    [
+        *(
+            ({"descr": "<f8", "shape": (10**k,)}, bytes(16), zipfile.ZIP_STORED, "damaged")
+            for k in (1, 9, 15, 30)
+        ),
+        ({"descr": "|O", "shape": (1,)}, b"cos\nsystem\n(S'false'\ntR.", zipfile.ZIP_STORED, "allow_pickle"),
+        ({"descr": "<f8", "shape": (10**6,)}, bytes(8 * 10**6), zipfile.ZIP_DEFLATED, "it is compressed"),
+    ],
+)
+def test_an_array_that_is_not_what_it_seems_is_refused(tmp_path, header, content, compression, words):
+    # .. without taking the memory that it claims, and without running what a pickle holds
+    forged(tmp_path / "c.npz", "a.npy", header | {"fortran_order": False}, content, compression)
+    with pytest.raises(CheckpointError, match=words):
         read(tmp_path / "c.npz")
 
 
-def test_an_archive_that_unpacks_to_more_than_it_is_is_refused(tmp_path):
-    header = {"descr": "<f8", "fortran_order": False, "shape": (10**6,)}
-    forged(tmp_path / "c.npz", "a.npy", header, bytes(8 * 10**6), zipfile.ZIP_DEFLATED)
-    with pytest.raises(CheckpointError, match="it is compressed"):
-        read(tmp_path / "c.npz")
+class Garbage:
+    """Rubbish whose collection runs Python code, so that threads change places where they otherwise would not."""
+
+    def __init__(self):
+        self.itself = self
+
+    def __del__(self):
+        for _ in range(30):
+            pass
+
+
+def test_two_threads_that_read_at_once_find_nothing_damaged(path):
+    # Members of a band read their checkpoints side by side; CPython 3.11.7 found one of them damaged now and then
+    # ("AST constructor recursion depth mismatch", CPython issue 106905).
+    def read_often(depth):
+        if depth:
+            return read_often(depth - 1)
+        for _ in range(300):
+            Garbage()
+            read(path)
+        return None
+
+    before = gc.get_threshold(), sys.getswitchinterval()
+    gc.set_threshold(50)
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(2) as pool:
+            list(pool.map(read_often, (1, 30)))  # raises what either of them found
+    finally:
+        gc.set_threshold(*before[0])
+        sys.setswitchinterval(before[1])
 
 
 def test_a_write_that_fails_keeps_the_old_checkpoint(path, monkeypatch):
@@ -150,11 +181,6 @@ def test_a_write_that_fails_keeps_the_old_checkpoint(path, monkeypatch):
 
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(OSError, match="No space"):
-        write_checkpoint(path, OWN, {"a": np.zeros(3)})
+        write_archive(path, OWN, {"a": np.zeros(3)})
     assert path.read_bytes() == before
     assert [entry.name for entry in path.parent.iterdir()] == [path.name]
-
-
-def test_members_are_stored_in_full(path):
-    with zipfile.ZipFile(io.BytesIO(path.read_bytes())) as archive:
-        assert {entry.compress_type for entry in archive.infolist()} == {zipfile.ZIP_STORED}

@@ -11,9 +11,9 @@ import pyvista
 
 import fem
 from fem.case.case import load_case
+from fem.results.errors import FolderError
 from fem.results.fields import FieldError
 from fem.results.history import HISTORY_COLUMNS
-from fem.results.run_folder import FolderError
 from fem.run.run import RunOptions, run_case
 
 ROOT = Path(__file__).parents[3]

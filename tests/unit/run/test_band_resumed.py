@@ -1,10 +1,12 @@
 """A band that is cut off amid a member goes on there, and comes to the band of the run left alone."""
 
 import json
+import re
 import signal
 import subprocess
 import sys
 import zipfile
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -12,19 +14,11 @@ from interrupted_runs import COARSE, one_slice, same
 
 import fem.run.simulation
 from fem.__main__ import main
-from fem.case.case import case_hash, load_case
-from fem.model.model import build_model
-from fem.results.archive import write_checkpoint
-from fem.results.lock import held_folder
-from fem.results.run_folder import RunFolder, read_result
+from fem.results.archive import write_archive
+from fem.results.folder import read_result
 from fem.run import band
-from fem.run import band_checkpoint as band_keeping
-from fem.run.band_checkpoint import BandFolder
-from fem.run.checkpoint import read_beginning
-from fem.run.recorder import Recorder
-from fem.run.simulation import Progress
+from fem.run.band_checkpoint import BandCheckpoint
 from fem.runtime.identity import program_identity
-from fem.runtime.progress import SilentReporter
 
 SHORT = ("solver.duration_s=0.5", "output.fields_s=0", "output.figures=false")
 MODELS = {"reduced, side by side": (), "full": (*COARSE, "solver.duration_s=0.06")}
@@ -36,14 +30,14 @@ from fem.run import band
 fem.run.checkpoint.CHECKPOINT_S = 0.0
 fem.run.simulation.SLICE_REDUCED = fem.run.simulation.SLICE_FULL = 0.02
 band.cores = lambda: 1
-keep, count = fem.run.checkpoint.CheckpointKeeper.keep, [0]
-def keep_and_wait(self, progress, *, at_once=False):
-    keep(self, progress, at_once=at_once)
-    count[0] += self._path.name == "member_3.npz"
+write, count = fem.run.checkpoint.write_archive, [0]
+def write_and_wait(path, about, arrays):
+    write(path, about, arrays)
+    count[0] += path.name == "member_3.npz"
     if count[0] == 3:
         print(flush=True)
         time.sleep(600.0)
-fem.run.checkpoint.CheckpointKeeper.keep = keep_and_wait
+fem.run.checkpoint.write_archive = write_and_wait
 from fem.__main__ import main
 main(sys.argv[1:])
 """
@@ -114,35 +108,39 @@ def test_a_band_killed_amid_a_member_goes_on_from_its_last_checkpoint(tmp_path, 
     same(tmp_path / "cut", tmp_path / "whole")
 
 
-@pytest.mark.parametrize("content", [b"", b"PK\x03\x04", "another case"])
-def test_a_members_checkpoint_that_cannot_be_trusted_is_named_and_begun_anew(tmp_path, content):
-    model = build_model(load_case("rocking", [*SHORT, "solver.model=rigid"]))
-    messages: list[str] = []
-    reporter = SilentReporter()
-    reporter.message = messages.append
-    place = RunFolder(path=tmp_path)
-    path = place.member_checkpoint(2)
-    path.parent.mkdir()
-    if isinstance(content, bytes):
-        path.write_bytes(content)
-    else:
-        write_checkpoint(path, {"case_hash": content, "program": program_identity()}, {})
-    with held_folder(tmp_path) as lock:
-        keeping = BandFolder(place, lock, case_hash="ours", reporter=reporter)
-        keeper, progress = keeping.begin(2, model, Recorder(model))
-        assert (progress, float(model.run.clock[0].time)) == (Progress(), 0.0)
-        keeper.keep(progress, at_once=True)  # in its place
-    (message,) = messages
-    assert str(path) in message
-    assert "begun anew" in message
-    assert read_beginning(path, model, case_hash(model.case)).progress == Progress()
+def test_checkpoints_of_a_band_that_cannot_be_trusted_are_reported_and_computed_again(
+    tmp_path, monkeypatch, short_slices, capsys
+):
+    rigid = ("solver.model=rigid",)
+    assert main(command(tmp_path / "whole", *rigid)) == 0
+    monkeypatch.setattr(band, "cores", lambda: 1)
+    with monkeypatch.context() as patch:
+        patch.setattr(band, "simulate", partial(one_slice, band.simulate))
+        assert main(command(tmp_path / "cut", *rigid)) == 4
+    members = tmp_path / "cut" / "members"
+    (members / "member_1.npz").write_bytes(b"PK\x03\x04")
+    write_archive(members / "member_2.npz", {"case_hash": "theirs", "program": program_identity()}, {})
+    write_archive(members / "member_3.npz", {"case_hash": "ours", "program": {"numpy": "1.0"}}, {})
+    (tmp_path / "cut" / "band.json").write_text('{"case_hash": "theirs"}')
+    capsys.readouterr()
+    assert main(command(tmp_path / "cut", *rigid)) == 0  # and -q
+    message = " ".join(capsys.readouterr().err.split())
+    for name, reason in {
+        "band.json": "another case",
+        "member_1.npz": "damaged",
+        "member_2.npz": "another case",
+        "member_3.npz": "another version",
+    }.items():
+        assert re.search(rf"{name} is refused \([^)]*{reason}", message), message
+    assert message.count("starts over at t = 0") == 3
+    same(tmp_path / "cut", tmp_path / "whole")
 
 
-def test_a_band_that_cannot_be_kept_ends_at_once(tmp_path, monkeypatch):
+def test_a_band_that_cannot_be_stored_ends_at_once(tmp_path, monkeypatch):
     def no_room(*_):
         raise OSError(28, "No space left on device", "band.json")
 
-    monkeypatch.setattr(band_keeping, "write_members", no_room)
+    monkeypatch.setattr(BandCheckpoint, "write_members", no_room)
     begun, stepping = [], band.simulate
     monkeypatch.setattr(
         band, "simulate", lambda *rest, **options: begun.append(1) or stepping(*rest, **options)

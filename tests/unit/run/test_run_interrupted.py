@@ -1,4 +1,4 @@
-"""A run that is cut off from outside, as a process of its own: Ctrl-C, SIGTERM, kill."""
+"""A run that is interrupted from outside, as a process of its own: Ctrl-C, SIGTERM."""
 
 import os
 import signal
@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from fem.results.folder import read_result
 from fem.results.history import read_history
-from fem.results.run_folder import read_result
 
 LONG = (
     "solver.model=full",
@@ -74,13 +74,3 @@ def test_a_request_to_stop_keeps_what_was_computed(running, number):
     assert history["time_s"].tolist() == pytest.approx([0.001 * k for k in range(len(history))])
     assert (folder / "summary.txt").is_file()
     assert (folder / "fields" / "run.pvd").is_file()
-
-
-def test_a_killed_run_leaves_a_folder_that_can_be_read_and_begun_anew(running):
-    process, folder = running
-    assert read_result(folder / "run.json")["status"] == "running"
-    process.kill()
-    process.wait()
-    assert len(read_history(folder / "history.csv")) >= 20
-    assert read_result(folder / "run.json")["status"] == "running"
-    assert not list(folder.glob("*.part"))

@@ -5,12 +5,14 @@ import pytest
 
 from fem.solid.elasticity import (
     cauchy_stress,
-    energy_density,
     first_stress,
     first_stress_tangent,
     green_strain,
+    least_principal_strain,
+    least_volume_ratio,
     plane_stress_lame,
     second_stress,
+    stress_and_energy,
     von_mises,
 )
 
@@ -29,6 +31,11 @@ def rotated_gradients(size, count=20, seed=1):
     stretch = np.eye(2) + size * draw.uniform(-1.0, 1.0, (count, 2, 2))
     turned = np.stack([rotation(angle) for angle in draw.uniform(-3.0, 3.0, count)]) @ stretch
     return np.moveaxis(turned - np.eye(2), 0, -1)
+
+
+def energy(gradient):
+    """Strain energy per reference volume of gradients (2, 2, ...) [J/m3]."""
+    return stress_and_energy(*gradient.reshape(4, -1), *STEEL)[4]
 
 
 def test_plane_stress_pair_gives_hookes_law_of_a_thin_sheet():
@@ -76,7 +83,7 @@ def test_first_stress_is_the_derivative_of_the_energy(size):
     for i, j in np.ndindex(2, 2):
         change = np.zeros((2, 2, 1))
         change[i, j] = step
-        ahead, behind = (energy_density(gradient + s * change, STEEL) for s in (1, -1))
+        ahead, behind = (energy(gradient + s * change) for s in (1, -1))
         # The energy is of fourth degree: the difference errs by step^2 E and by rounding of the energy.
         assert np.abs((ahead - behind) / (2 * step) - stress[i, j]).max() < 3e-6 * scale
 
@@ -124,3 +131,11 @@ def test_equivalent_stress_of_simple_states():
     # Pull, push, all-round in the plane, and pure shear (von Mises: sqrt(3) tau).
     states = np.array([[5.0, 0.0, 0.0], [0.0, -5.0, 0.0], [5.0, 5.0, 0.0], [0.0, 0.0, 5.0]]).T
     assert von_mises(states) == pytest.approx([5.0, 5.0, 5.0, 5.0 * np.sqrt(3)], rel=1e-14)
+
+
+def test_compression_and_volume_of_simple_deformations():
+    assert least_principal_strain(np.array([[0.1, 0.0], [0.0, -0.3]])) == pytest.approx(-0.3)
+    assert least_principal_strain(np.array([[0.0, 0.2], [0.2, 0.0]])) == pytest.approx(-0.2)  # pure shear
+    assert least_principal_strain(np.array([[0.0, 0.2], [-0.2, 0.0]])) == pytest.approx(0.0)  # a small turn
+    assert least_volume_ratio(rotation(1.0) - np.eye(2)) == pytest.approx(1.0)
+    assert least_volume_ratio(np.array([[0.1, 0.0], [0.0, -1.5]])) == pytest.approx(-0.55)

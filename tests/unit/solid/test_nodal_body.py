@@ -10,7 +10,7 @@ from fem.case.case import load_case, read_case
 from fem.model.model import build_model
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
-from fem.solid import nodal_kernels as nodal_body
+from fem.solid import nodal_kernels
 from fem.solid.nodal_body import RESIDUAL_TOLERANCE
 
 STEP = 2e-3
@@ -64,7 +64,7 @@ def test_substitution_solves_with_the_newmark_matrix(model):
     nodal, matrix = body.nodal, newmark_matrix(model)
     load = np.random.default_rng(2).normal(size=body.coordinates)
     nodal.permuted[nodal.order] = load
-    nodal_body.substitute(nodal, nodal_body.slot_of(nodal, STEP))
+    nodal_kernels.substitute(nodal, nodal_kernels.slot_of(nodal, STEP))
     expected = spsolve(matrix, load)
     assert nodal.permuted[nodal.order] == pytest.approx(expected, abs=1e-10 * np.abs(expected).max())
 
@@ -88,7 +88,7 @@ def test_forces_and_energy_are_those_of_the_elements_less_the_source(model):
     velocity = shaken.normal(size=position.size)
     body.nodal.source[:] = shaken.normal(size=body.nodal.source.shape)
     body.nodal.turn[:] = math.cos(0.3), math.sin(0.3)
-    nodal_body.forces(body.nodal, position, velocity)
+    nodal_kernels.forces(body.nodal, position, velocity)
     force, energy = body.elements.force_and_energy(position.reshape(-1, 2) - body.elements.nodes)
     assert np.array_equal(body.nodal.internal, force - body.nodal.source)
     assert body.nodal.strain_energy[0] == energy

@@ -15,13 +15,13 @@ import pytest
 from small_sweep import SMALL, rows_without_wall
 
 from fem.__main__ import main
+from fem.batch.log import RowLog
 from fem.case.validation import CaseError
-from fem.results.run_folder import FolderError, OutputError
+from fem.results.errors import FolderError, OutputError
 from fem.sweep.file import load_sweep
 from fem.sweep.neighbours import around
-from fem.sweep.run import run_sweep
-from fem.sweep.size import check_size
-from fem.sweep.table import RowLog, open_sweep
+from fem.sweep.run import check_size, run_sweep
+from fem.sweep.table import open_sweep
 
 ROOT = Path(__file__).parents[3]
 
@@ -140,7 +140,7 @@ def test_a_sweep_killed_and_resumed_gives_the_same_table(tmp_path, monkeypatch, 
     capsys.readouterr()
 
 
-def test_an_unfinished_sweep_is_not_begun_anew_silently(small, tmp_path):
+def test_an_unfinished_sweep_is_not_overwritten_silently(small, tmp_path):
     folder = tmp_path / "out"
     run_sweep(small, folder)
     table = (folder / "table.csv").read_text().splitlines()
@@ -174,16 +174,7 @@ def test_a_failed_cell_has_a_reason_and_never_stands(tmp_path):
     assert all("mu_kinetic must be at most mu_static" in reason for reason in table["reason"][middle])
 
 
-def test_a_million_cells_need_force(tmp_path):
-    path = tmp_path / "huge.toml"
-    path.write_text(SMALL.replace("count = 4", "count = 2000").replace("count = 5", "count = 2000"))
-    with pytest.raises(CaseError) as refused:
-        check_size(load_sweep(path), 2, False)
-    assert all(words in str(refused.value) for words in ("4000000 cells", " on 2 cores", "GB", "--force"))
-    check_size(load_sweep(path), 2, True)
-
-
-def test_the_time_of_a_huge_sweep_counts_the_models_and_durations_of_its_axes(tmp_path):
+def test_a_million_cells_need_force_and_name_time_and_disk(tmp_path):
     axes = """"solver.duration_s" = { from = 2.0, to = 6.0, count = 1100 }
 "solver.model" = ["rigid", "full"]
 """
@@ -194,7 +185,8 @@ def test_the_time_of_a_huge_sweep_counts_the_models_and_durations_of_its_axes(tm
     with pytest.raises(CaseError, match="1320000 cells") as refused:
         check_size(load_sweep(path), 1, False)
     # half of the cells are of the full model, which takes 6 s a second simulated: 660000 x 4 s x 6
-    assert "4400 h" in str(refused.value)
+    assert all(words in str(refused.value) for words in ("4400 h", "on 1 core,", "GB", "--force"))
+    check_size(load_sweep(path), 1, True)
 
 
 def test_a_kill_while_the_band_is_changed_leaves_no_copies_of_the_other(small, tmp_path, monkeypatch):
@@ -204,11 +196,11 @@ def test_a_kill_while_the_band_is_changed_leaves_no_copies_of_the_other(small, t
     path.write_text(SMALL + "[perturbation]\namplitude_share = 0.1\n", encoding="utf-8")
     other = load_sweep(path)
 
-    def killed(*arguments):
+    def killed(*arguments, **options):
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr("fem.sweep.run.write_plan", killed)
+        patch.setattr("fem.results.folder.ResultFolder.begin", killed)
         with pytest.raises(KeyboardInterrupt):
             run_sweep(other, folder)
     run_sweep(other, folder, resume=True)
@@ -219,7 +211,7 @@ def test_a_kill_while_the_band_is_changed_leaves_no_copies_of_the_other(small, t
     assert rows_without_wall(folder) == rows_without_wall(tmp_path / "alone")
 
 
-def test_a_disk_that_fills_up_is_told_with_the_way_on(small, tmp_path, monkeypatch):
+def test_a_disk_that_fills_up_is_named_with_the_way_out(small, tmp_path, monkeypatch):
     folder = tmp_path / "out"
     append, written = RowLog.append, []
 
@@ -232,7 +224,7 @@ def test_a_disk_that_fills_up_is_told_with_the_way_on(small, tmp_path, monkeypat
     with monkeypatch.context() as patch:
         patch.setattr(RowLog, "append", filling)
         with pytest.raises(
-            OutputError, match=r"out: cannot be written \(No space left.*--resume goes on"
+            OutputError, match=r"out: cannot be written \(No space left.*--resume continues"
         ) as told:
             run_sweep(small, folder, jobs=1)
     assert told.value.exit_code == 3
@@ -257,7 +249,7 @@ def test_a_folder_that_another_took_is_left_alone(small, tmp_path, monkeypatch):
     assert (folder / "sweep.json").read_text() == "another's"
 
 
-def test_rows_of_another_library_are_not_gone_on_with(small, tmp_path):
+def test_rows_of_another_library_version_are_not_continued(small, tmp_path):
     folder = tmp_path / "out"
     info = run_sweep(small, folder)
     versions = info["versions"] | {"numpy": "1.0"}

@@ -1,20 +1,35 @@
-"""What a file that varies a case begins with: its heading, its tables, the case it starts from."""
+"""What the file of a study of many cases has: a heading, tables, the case it starts from, the keys that vary."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
+from fem.batch.axes import Axis, AxisError
 from fem.case.case import Case, load_case
-from fem.case.files import CASES, Origin, is_there
-from fem.case.problem import leaves_the_folder
-from fem.case.tables import Table
+from fem.case.files import CASES, Origin, is_there, parse_case
+from fem.case.problem import outside_the_folder, stays_in_the_folder
+from fem.case.tables import CaseTable
 from fem.case.validation import CaseError, did_you_mean, problem_lines, read_table
 
-TableT = TypeVar("TableT", bound=Table)
+TableT = TypeVar("TableT", bound=CaseTable)
+StudyT = TypeVar("StudyT")
+
+
+def read_study(origin: Origin, read: Callable[[dict[str, Any], Origin], StudyT]) -> StudyT:
+    """Parse the file of a study, and have `read` make it from the data.
+
+    Raises:
+        CaseError: with one line for each reason why it cannot be used, each beginning with the file.
+    """
+    data = parse_case(origin)
+    try:
+        return read(data, origin)
+    except CaseError as error:
+        raise CaseError("\n".join(f"{origin.place}: {line}" for line in str(error).splitlines())) from None
 
 
 def read_as(name: str, model: type[TableT], content: Mapping[str, Any]) -> TableT:
-    """A table of the file; `name` is empty for what stands before the first one.
+    """A table of the file; `name` is empty for the keys before the first one.
 
     Raises:
         CaseError: with one line for each reason why it cannot be used.
@@ -28,10 +43,10 @@ def read_as(name: str, model: type[TableT], content: Mapping[str, Any]) -> Table
 def split_tables(
     data: Mapping[str, Any], known: Sequence[str]
 ) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
-    """What stands before the first table, and the tables.
+    """The keys before the first table, and the tables; a missing one is empty.
 
     Raises:
-        CaseError: a table that nobody knows, or one of these written as a value.
+        CaseError: an unknown table, or a table written as a value.
     """
     tables = {key: value for key, value in data.items() if isinstance(value, dict)}
     heading = {key: value for key, value in data.items() if key not in tables}
@@ -73,11 +88,10 @@ def base_case(name: str, changes: Mapping[str, Any], origin: Origin) -> Case:
     A file is looked for beside the one that names it, and wins over a shipped case.
 
     Raises:
-        CaseError: there is neither, it leads out of that folder, or it cannot be used.
+        CaseError: there is neither, it is outside that folder, or it cannot be used.
     """
-    problem = leaves_the_folder("case", name)
-    if problem is not None:
-        raise CaseError(f"{problem.key} {problem.reason}")
+    if not stays_in_the_folder(name):
+        raise CaseError(f"case {outside_the_folder(name)}")
     path = origin.folder / name
     is_file = is_there(Path.is_file, path)
     if is_file and not path.resolve().is_relative_to(origin.folder.resolve()):
@@ -91,8 +105,35 @@ def base_case(name: str, changes: Mapping[str, Any], origin: Origin) -> Case:
     return base.with_values(values) if values else base
 
 
+def read_axes(
+    content: Mapping[str, Any], most: int, example: str, read: Callable[[str, Any], Axis]
+) -> tuple[Axis, ...]:
+    """The table [axes].
+
+    Args:
+        content: of the table.
+        most: axes that there may be.
+        example: of an entry.
+        read: an axis from its key and what is given; may raise an `AxisError`.
+
+    Raises:
+        CaseError: with one line for each reason.
+    """
+    if not 1 <= len(content) <= most:
+        raise CaseError(f"[axes] must hold one to {most} keys, got {len(content)}; for instance {example}")
+    axes, problems = [], []
+    for key, value in content.items():
+        try:
+            axes.append(read(key, value))
+        except AxisError as error:
+            problems.append(f"[axes] {key!r} {error}")
+    if problems:
+        raise CaseError("\n".join(problems))
+    return tuple(axes)
+
+
 def require_once(changes: Mapping[str, Any], varied: Iterable[str]) -> None:
-    """Refuse a key of [set] that varies: one of the two would play no part.
+    """Refuse a key of [set] that varies: one of the two would have no effect.
 
     Raises:
         CaseError: with the key.

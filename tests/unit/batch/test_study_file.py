@@ -2,7 +2,7 @@
 
 import pytest
 
-from fem.batch.base_case import flat
+from fem.batch.study_file import flat
 from fem.case.files import CASES, ENSEMBLES, SWEEPS
 from fem.case.validation import CaseError
 from fem.ensemble.file import load_ensemble

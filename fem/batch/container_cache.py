@@ -1,0 +1,71 @@
+"""Meshed and reduced containers, shared by the cases that have the same one."""
+
+import threading
+from collections.abc import Hashable
+from concurrent.futures import Future
+
+from fem.case.case import Case
+from fem.model.container import Container, discretise
+from fem.model.model import Model
+from fem.model.recovery import Recovery, recovery_of
+
+
+def container_key(case: Case) -> Hashable:
+    """Equal for cases whose containers are the same, whatever floor they stand on."""
+    solver = case.solver
+    return (
+        case.container,
+        case.support,
+        case.gravity_m_s2,
+        case.folder,
+        solver.model,
+        solver.elastic_modes if solver.model == "reduced" else None,
+        solver.element_size_m,
+        solver.order,
+        case.output.stop_when_overturned,
+    )
+
+
+class ContainerCache:
+    """The containers used last; safe for threads, and no container is built twice at once."""
+
+    def __init__(self, most: int = 8) -> None:
+        self._most = most
+        self._lock = threading.Lock()
+        self._held: dict[Hashable, Future[Container]] = {}
+        self._recoveries: dict[int, tuple[Container, Recovery]] = {}
+
+    def container_of(self, case: Case) -> Container:
+        """The container of a case, built if it is missing.
+
+        Raises:
+            CaseError, MeshError: bad input.
+        """
+        key = container_key(case)
+        with self._lock:
+            found = self._held.pop(key, None)
+            mine = found is None
+            promise = Future[Container]() if found is None else found
+            self._held[key] = promise  # the one used last is last
+            while len(self._held) > self._most:
+                del self._held[next(iter(self._held))]
+        if mine:
+            try:
+                promise.set_result(discretise(case))
+            except BaseException as error:
+                promise.set_exception(error)
+        return promise.result()
+
+    def recovery_of(self, model: Model) -> Recovery:
+        """What recovers the stresses of a model's container; built once a container."""
+        key = id(model.container)
+        with self._lock:
+            found = self._recoveries.get(key)
+        if found is not None and found[0] is model.container:
+            return found[1]
+        made = recovery_of(model)
+        with self._lock:
+            self._recoveries[key] = (model.container, made)
+            while len(self._recoveries) > self._most:
+                del self._recoveries[next(iter(self._recoveries))]
+        return made

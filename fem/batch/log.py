@@ -1,0 +1,140 @@
+"""Tables of rows, and the log of a study: a table that grows by whole lines.
+
+Numbers are written in the shortest form that reads back to the same bits. While a study runs, rows are appended in the
+order in which they are ready; a kill leaves whole lines and at most one broken one, which is cut off when the study
+is resumed. At the end the table is replaced by one in the order of the study.
+"""
+
+import csv
+import io
+import os
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Generic, Self
+
+import numpy as np
+
+from fem.batch.runner import ItemT, Row, Runner
+from fem.case.case import Case
+
+
+def line_of(values: Iterable[Any]) -> str:
+    """Values as a line of a table, without its end."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="").writerow([_text(value) for value in values])
+    return text.getvalue()
+
+
+def fields_of(line: str) -> list[str]:
+    """The fields of one line."""
+    return next(csv.reader([line]))
+
+
+def number_in(field: str) -> float | None:
+    """A field as a number; None for an empty one."""
+    return float(field) if field else None
+
+
+def table_text(columns: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
+    """A table as text."""
+    return table_of_lines(columns, map(line_of, rows))
+
+
+def table_of_lines(columns: Iterable[str], lines: Iterable[str]) -> str:
+    """A table as text, of rows that are lines already."""
+    return "".join(f"{line}\n" for line in (line_of(columns), *lines))
+
+
+def read_lines(path: Path, columns: Iterable[str]) -> list[str]:
+    """The whole lines of a table below its header; none if the file is missing, or has other columns."""
+    try:
+        text = path.read_text(encoding="utf-8", errors="replace")
+    except FileNotFoundError:
+        return []
+    lines = text[: text.rfind("\n") + 1].split("\n")[:-1]
+    return lines[1:] if lines[:1] == [line_of(columns)] else []
+
+
+class RowLog:
+    """Appends lines to a table, each as a whole; a context manager.
+
+    Args:
+        path: of the table; continued behind its last whole line if it has these columns, else begun.
+        columns: names in the header.
+    """
+
+    def __init__(self, path: Path, columns: Iterable[str]) -> None:
+        columns = tuple(columns)
+        self.lines = read_lines(path, columns)  #: already there
+        kept = table_of_lines(columns, self.lines).encode()
+        self._file = open(path, "r+b" if self.lines else "wb", buffering=0)  # noqa: SIM115
+        if self.lines:
+            self._file.truncate(len(kept))
+            self._file.seek(len(kept))
+        else:
+            self._file.write(kept)
+
+    def append(self, lines: Iterable[str]) -> None:
+        """Write lines in one go."""
+        data = "".join(f"{line}\n" for line in lines).encode()
+        done = 0
+        while done < len(data):
+            done += self._file.write(data[done:])
+
+    def sync(self) -> None:
+        """Have what was written survive a power cut as well."""
+        os.fsync(self._file.fileno())
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._file.close()
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoggedRuns(Generic[ItemT]):
+    """Runs of one kind whose rows are kept in a log: none is computed twice, whatever interrupts the study."""
+
+    what: str  #: they are, for the line of progress
+    path: Path  #: of the log
+    columns: Sequence[str]  #: of the log
+    make: Callable[[ItemT], Case]  #: the case of an item; picklable
+    model_of: Callable[[ItemT], str]
+    values: Callable[[ItemT, Row], Iterable[Any]]  #: of the columns, from an item and its row
+    note: Callable[[str], None]  #: called with every line of the log, old and new
+
+    def run(self, runner: Runner, batches: Iterable[Sequence[ItemT]]) -> None:
+        """Note the rows of earlier attempts, then run the items that are missing.
+
+        Args:
+            runner: runs the cases.
+            batches: of missing items; each is asked for when all rows before are noted.
+        """
+        with RowLog(self.path, self.columns) as log:
+            for line in log.lines:
+                self.note(line)
+            for items in batches:
+                if runner.stop():
+                    break
+                for chunk, rows in runner.rows(self.what, items, self.make, self.model_of):
+                    lines = [line_of(self.values(*pair)) for pair in zip(chunk, rows, strict=True)]
+                    log.append(lines)
+                    for line in lines:
+                        self.note(line)
+            log.sync()
+
+
+def _text(value: Any) -> str:
+    """One field: nothing for None, text on one line."""
+    if value is None:
+        return ""
+    if isinstance(value, bool | np.bool_):
+        return "true" if value else "false"
+    if isinstance(value, float | np.floating):
+        return repr(float(value))
+    return " ".join(str(value).split())

@@ -1,0 +1,206 @@
+"""Maps over two axes: a colour for every cell, the change of outcome as a line, doubtful cells hatched.
+
+Cells are drawn side by side at equal size, whatever the spacing of their values; ticks stand at round values. Each
+panel is one map; all have the same axes and colours.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Colormap, ListedColormap, Normalize, to_rgba
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch, PathPatch
+from matplotlib.path import Path
+from matplotlib.patheffects import AbstractPathEffect, withStroke
+from matplotlib.ticker import LogLocator, MaxNLocator
+from matplotlib.transforms import Affine2D
+
+from fem.figures.style import BLACK, GREY, WIDTH, house_style, number
+from fem.runtime.arrays import BoolArray, FloatArray
+
+COLUMNS = 3  #: of panels at most
+TICKS = 7
+HATCH = "////"
+WHITE = "#FFFFFF"
+CASED: list[AbstractPathEffect] = [
+    withStroke(linewidth=2.8, foreground=WHITE)
+]  #: seen on black cells as well
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MapAxis:
+    """An axis of a map."""
+
+    label: str
+    values: Sequence[Any]  #: one a column or row; numbers that rise, or words
+    scale: str = "list"  #: linear | log: round values between the cells are marked; list: cells are
+
+    def places(self, values: FloatArray) -> FloatArray:
+        """Where values lie, counted in cells from the middle of the first; nan outside of the axis."""
+        known, given = np.array(self.values, dtype=float), np.asarray(values, dtype=float)
+        if self.scale == "log":
+            known, given = np.log(known), np.log(given)
+        return np.interp(given, known, np.arange(known.size), left=np.nan, right=np.nan)
+
+    def ticks(self) -> tuple[list[float], list[str]]:
+        """Places and labels of the marks."""
+        count = len(self.values)
+        if self.scale == "list":
+            chosen = sorted({round(k) for k in np.linspace(0, count - 1, min(count, TICKS))})
+            return [float(k) for k in chosen], [value_label(self.values[k]) for k in chosen]
+        low, high = float(self.values[0]), float(self.values[-1])
+        locator: Any = MaxNLocator(TICKS)
+        if self.scale == "log":
+            locator = LogLocator(subs=(1.0,) if high / low > 100.0 else (1.0, 2.0, 3.0, 5.0), numticks=20)
+        margin = 1e-9 * abs(high)
+        marks = [mark for mark in locator.tick_values(low, high) if low - margin <= mark <= high + margin]
+        return self.places(np.clip(marks, low, high)).tolist(), [number(mark) for mark in marks]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MapCurve:
+    """A line over a map, in the units of its axes."""
+
+    x: FloatArray
+    y: FloatArray
+    label: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Panel:
+    """One map; arrays have a row for each value of y and a column for each of x."""
+
+    values: FloatArray
+    title: str = ""
+    overturned: BoolArray | None = None  #: cells enclosed by a line; black where colours are a scale
+    unsure: BoolArray | None = None  #: cells that are hatched
+    texts: Sequence[Sequence[str]] | None = None  #: within the cells
+    curves: Sequence[MapCurve] = ()
+
+
+def draw_heat_map(
+    x: MapAxis,
+    y: MapAxis,
+    panels: Sequence[Panel],
+    *,
+    title: str = "",
+    colours: Colormap | Mapping[str, str],
+    norm: Normalize | None = None,
+    bar: str = "",
+) -> Figure:
+    """Draw maps side by side.
+
+    Args:
+        x, y: the axes, the same for all panels.
+        panels: the maps.
+        title: above all.
+        colours: a colour scale; or colours by their words, to whose places `values` refer.
+        norm: limits of the colour scale.
+        bar: label of the colour scale.
+    """
+    words = list(colours) if isinstance(colours, Mapping) else []
+    scale = ListedColormap(list(colours.values())) if isinstance(colours, Mapping) else colours
+    norm = Normalize(-0.5, len(words) - 0.5) if words else norm
+    columns = min(COLUMNS, len(panels))
+    rows = -(-len(panels) // columns)
+    with house_style():
+        figure = Figure(figsize=(WIDTH, (4.6 if columns == 1 else 2.6 * rows) + 0.9), layout="constrained")
+        places = list(figure.subplots(rows, columns, squeeze=False, sharex=True, sharey=True).flat)
+        for axes in places[len(panels) :]:
+            axes.set_visible(False)
+        for k, (axes, panel) in enumerate(zip(places, panels, strict=False)):
+            image = axes.imshow(
+                panel.values, origin="lower", aspect="auto", interpolation="none", cmap=scale, norm=norm
+            )
+            _draw_over(axes, x, y, panel, cover=not words)
+            axes.set_title(panel.title, fontsize=8.5)
+            axes.grid(visible=False)
+            axes.spines[["left", "bottom"]].set_visible(False)
+            axes.set_xticks(*x.ticks())
+            axes.set_yticks(*y.ticks())
+            if k % columns == 0:
+                axes.set_ylabel(y.label)
+            if k + columns >= len(panels):
+                axes.set_xlabel(x.label)
+                axes.tick_params(labelbottom=True)
+        figure.suptitle(title, x=0.01, ha="left", fontsize=10.0)
+        if bar:
+            figure.colorbar(image, ax=places[: len(panels)], label=bar, pad=0.02, aspect=30)
+        handles = _legend(panels, colours if isinstance(colours, Mapping) else {})
+        handles += places[0].get_legend_handles_labels()[0]
+        if handles:
+            figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 7))
+    return figure
+
+
+def value_label(value: Any) -> str:
+    """A value of an axis for people."""
+    return str(value) if isinstance(value, bool | str) else number(float(value))
+
+
+def _legend(panels: Sequence[Panel], colours: Mapping[str, str]) -> list[Any]:
+    """A patch for every colour and sign that occurs."""
+    seen = {int(value) for panel in panels for value in np.unique(panel.values)} if colours else set()
+    handles = [
+        Patch(facecolor=colour, edgecolor=GREY, label=word)
+        for k, (word, colour) in enumerate(colours.items())
+        if k in seen and word
+    ]
+    if not colours and any(panel.overturned is not None for panel in panels):
+        handles.append(Patch(facecolor=BLACK, label="overturned"))
+    if any(panel.unsure is not None and panel.unsure.any() for panel in panels):
+        handles.append(Patch(facecolor=WHITE, edgecolor=BLACK, hatch=HATCH, label="unsure", linewidth=0))
+    return handles
+
+
+def _draw_over(axes: Axes, x: MapAxis, y: MapAxis, panel: Panel, *, cover: bool) -> None:
+    """What is drawn over the colours of a panel."""
+    fallen = np.zeros(panel.values.shape, dtype=bool) if panel.overturned is None else panel.overturned
+    if cover:
+        shade = np.zeros((*fallen.shape, 4))
+        shade[fallen] = to_rgba(BLACK)
+        axes.imshow(shade, origin="lower", aspect="auto", interpolation="none")
+    if panel.unsure is not None:
+        _hatch(axes, panel.unsure & fallen, WHITE)
+        _hatch(axes, panel.unsure & ~fallen, BLACK)
+    _outline(axes, fallen, WHITE, 1.6)
+    _outline(axes, fallen, BLACK, 0.7)
+    for row, words in enumerate(panel.texts or ()):
+        for column, text in enumerate(words):
+            colour = WHITE if fallen[row, column] else BLACK
+            axes.text(column, row, text, ha="center", va="center", fontsize=6.5, color=colour)
+    for curve, style in zip(panel.curves, ("-", "--", ":", "-."), strict=False):
+        axes.plot(
+            x.places(curve.x),
+            y.places(curve.y),
+            style,
+            color=BLACK,
+            linewidth=1.2,
+            label=curve.label,
+            path_effects=CASED,
+        )
+
+
+def _hatch(axes: Axes, cells: BoolArray, colour: str) -> None:
+    """Hatch cells, all as one path."""
+    if not cells.any():
+        return
+    squares = [
+        Path.unit_rectangle().transformed(Affine2D().translate(column - 0.5, row - 0.5))
+        for row, column in np.argwhere(cells)
+    ]
+    path = Path.make_compound_path(*squares)
+    axes.add_patch(PathPatch(path, facecolor="none", edgecolor=colour, hatch=HATCH, linewidth=0))
+
+
+def _outline(axes: Axes, cells: BoolArray, colour: str, width: float) -> None:
+    """Draw the line between cells that are and cells that are not."""
+    upright = np.argwhere(cells[:, 1:] != cells[:, :-1])
+    level = np.argwhere(cells[1:] != cells[:-1])
+    lines = [[(column + 0.5, row - 0.5), (column + 0.5, row + 0.5)] for row, column in upright]
+    lines += [[(column - 0.5, row + 0.5), (column + 0.5, row + 0.5)] for row, column in level]
+    axes.add_collection(LineCollection(lines, colors=colour, linewidths=width, capstyle="projecting"))

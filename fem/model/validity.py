@@ -1,0 +1,127 @@
+"""Is the model valid? Refuses what a computation could not answer: sinking, crushing, too little memory.
+
+The contact springs and the material are idealisations of small deformations. Where the weight alone sinks deep into
+the springs, or crushes the container, the result would say nothing about a container.
+"""
+
+import math
+import os
+
+from fem.case.case import Case, CaseError
+from fem.model.support import normal_penalty
+from mesh.container import ContainerMesh
+
+LARGEST_SINKING = 0.1  #: of the container under its weight, over the smaller of width and height
+#: Stretch at which the nominal stress (s^3 - s) E/2 of St. Venant-Kirchhoff material has its minimum. Compressed
+#: further it carries less, flat it carries nothing, and inverted it comes to rest.
+LEAST_STRETCH = 1.0 / math.sqrt(3.0)
+#: Memory, measured on stacks of 2000 to 10,000 cells. A node: matrices, factors and work space. Columns as long as
+#: the unknowns: for each elastic mode and each contact degree of freedom (loads, responses, attachment modes).
+BYTES_OF_A_NODE, COLUMNS_OF_A_MODE, COLUMNS_OF_A_CONTACT = 10e3, 5, 6
+MEMORY_SHARE = 0.8  #: of the machine's memory that may be used
+
+
+def require_stiff_contact(case: Case, mesh: ContainerMesh, stiffness: float) -> None:
+    """Refuse contact springs into which the container would sink deep under its weight.
+
+    Args:
+        case: gives penalty and gravity; mesh: of its container.
+        stiffness: of the whole base [N/m].
+
+    Raises:
+        CaseError: with the depth.
+    """
+    weight, size = mesh.mass * case.gravity_m_s2, min(mesh.width, mesh.height)
+    if weight <= LARGEST_SINKING * size * stiffness:
+        return
+    depth = f"by {weight / stiffness:.3g} m" if stiffness > 0.0 else "without limit"
+    chosen = (
+        '"auto" follows container.youngs_modulus_Pa'
+        if case.contact.normal_penalty_Pa_m == "auto"
+        else '"auto" chooses it'
+    )
+    raise CaseError(
+        f"[contact] normal_penalty_Pa_m = {normal_penalty(case, mesh):.3g} Pa/m: the container would sink in {depth} "
+        f"under its weight alone; the limit is {LARGEST_SINKING:g} of its smaller dimension, {size:g} m; {chosen}"
+    )
+
+
+def require_stiff_corner(case: Case, *, width: float, depth: float, stored: float) -> None:
+    """Refuse a tilted start whose contact springs store more than the energy to overturn the container.
+
+    Tilted, the container stands on one corner. On a flat base this corner has only the stiffness of the length of base
+    beside it, and "auto" never chooses a penalty above 3 E/h: a soft container can sink in by many widths. The
+    springs, and not the container, would then decide the motion.
+
+    Args:
+        case: of the start.
+        width: of the container [m].
+        depth: by which the corner sinks in at the start [m].
+        stored: energy of the springs at the start over the energy to overturn the container [-].
+
+    Raises:
+        CaseError: with the depth.
+    """
+    if case.initial.rotation_rad == 0.0 or stored <= 1.0:
+        return
+    raise CaseError(
+        f"[initial] rotation_rad = {case.initial.rotation_rad:g} rad: the corner that carries the weight would sink in "
+        f"by {depth:.3g} m ({depth / width:.2g} of the width), and its spring would store {stored:.2g} times the "
+        "energy to overturn the container, and throw it; increase contact.normal_penalty_Pa_m (if it is "
+        '"auto", it follows container.youngs_modulus_Pa), or choose support.kind = "corners", whose two corners carry '
+        "the stiffness of the whole base"
+    )
+
+
+def require_stiff_container(case: Case, compression: float) -> None:
+    """Refuse a container whose weight alone compresses it beyond what its material can carry.
+
+    Args:
+        case: of the container; compression: largest compressive strain under its weight [-].
+
+    Raises:
+        CaseError: with the compression.
+    """
+    if compression < 1.0 - LEAST_STRETCH:
+        return
+    raise CaseError(
+        f"[container] youngs_modulus_Pa = {case.container.youngs_modulus_Pa:g} Pa: its own weight would compress the "
+        f"container by {100.0 * compression:.0f} % where it is strained most; beyond "
+        f"{100.0 * (1.0 - LEAST_STRETCH):.0f} % such a material gives way; choose a stiffer material, thicker walls, "
+        'or solver.model = "rigid"'
+    )
+
+
+def required_memory(case: Case, nodes: int, contact_nodes: int) -> float:
+    """Memory for matrices, modes and responses of a container with so many nodes and contact nodes [bytes]."""
+    modes = case.solver.elastic_modes if case.solver.model == "reduced" else 0
+    columns = COLUMNS_OF_A_MODE * modes + COLUMNS_OF_A_CONTACT * 2 * contact_nodes
+    return nodes * (BYTES_OF_A_NODE + 16.0 * columns)
+
+
+def require_memory(case: Case, nodes: int, contact_nodes: int) -> None:
+    """Refuse a container that does not fit into this machine's memory.
+
+    Raises:
+        CaseError: with the memory required and present.
+    """
+    required, present = required_memory(case, nodes, contact_nodes), _machine_memory()
+    if required > MEMORY_SHARE * present:
+        raise CaseError(
+            f"[solver] element_size_m = {case.solver.element_size_m:g} m gives {nodes} nodes, {contact_nodes} of them "
+            f"in contact, which need about {required / 1e9:.3g} GB; this machine has {present / 1e9:.3g} GB: use "
+            'larger elements, order = 1, fewer elastic_modes, or support.kind = "corners"'
+        )
+
+
+def runs_in_memory(count: int, bytes_each: float) -> int:
+    """How many of `count` runs fit into this machine's memory at a time; at least one."""
+    return int(min(count, max(1.0, MEMORY_SHARE * _machine_memory() // bytes_each)))
+
+
+def _machine_memory() -> float:
+    """Physical memory [bytes]; infinite where the system does not say."""
+    try:
+        return float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, ValueError, OSError):
+        return math.inf

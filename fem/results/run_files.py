@@ -1,0 +1,61 @@
+"""Places of the files of a run in its folder."""
+
+import shutil
+from pathlib import Path
+
+from fem.case.case import Case, CaseError
+
+
+class RunFiles:
+    """Paths of the files of a run."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path  #: of the folder itself
+        self.case = path / "case.toml"  #: as given
+        self.resolved = path / "resolved.toml"  #: with every default written out
+        self.result = path / "run.json"  #: status, verdict, static checks, energy, numerics
+        self.summary = path / "summary.txt"  #: printed at the end of the run
+        self.history = path / "history.csv"  #: one row a sample
+        self.rigid_check = path / "rigid_check.csv"  #: the analytic block's rotation beside the run's
+        self.fields = path / "fields"  #: folder of `run.pvd` and its frames
+        self.figures = path / "figures"  #: folder of the figures
+        self.drawn = self.figures / "drawn.json"  #: what the figures were drawn from
+        self.report = path / "report.html"  #: unless it was asked for elsewhere
+        self.variations = path / "variations.json"  #: the run under other assumptions, from a report
+        self.checkpoint = path / "checkpoint.npz"  #: of an unfinished run
+        self.band = path / "band.json"  #: finished members of an unfinished band
+        self.members = path / "members"  #: folder of the checkpoints of its other members
+        self.setup = path / ".setup"  #: folder of the arrays of an unfinished set-up
+
+    def member_checkpoint(self, number: int) -> Path:
+        """Checkpoint of a member of a band, numbered from 1."""
+        return self.members / f"member_{number}.npz"
+
+    def setup_part(self, number: int) -> Path:
+        """Arrays of a set-up that were stored together, numbered from 1."""
+        return self.setup / f"part_{number}.npz"
+
+    def require_free_names(self, case: Case) -> None:
+        """Refuse a mesh or motion file whose copy would replace a result.
+
+        Raises:
+            CaseError: with the key and the name.
+        """
+        taken = {value for value in vars(self).values() if value != self.path}
+        for key, file in case.data_files.items():
+            name = file.relative_to(case.folder)
+            if self.path / name.parts[0] in taken:
+                table, _, word = key.partition(".")
+                raise CaseError(
+                    f"[{table}] {word} is named {str(name)!r}, like a result of the run, which would replace it in the "
+                    "folder of results; rename the file"
+                )
+
+
+def copy_data_files(case: Case, folder: Path) -> None:
+    """Copy mesh and motion files into a folder, under the names that the case gives them."""
+    for path in case.data_files.values():
+        target = folder / path.relative_to(case.folder)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if target.resolve() != path.resolve():
+            shutil.copyfile(path, target)

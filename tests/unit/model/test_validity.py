@@ -1,0 +1,121 @@
+"""A model that could not be valid is refused with the reason, and a computation that fails says why."""
+
+import numpy as np
+import pytest
+
+import fem.model.validity
+from fem.assessment.verdict import audit
+from fem.case.case import CaseError, load_case
+from fem.cli.check import chosen_numerics
+from fem.model.container import discretise
+from fem.model.geometry import build_container
+from fem.model.model import build_model
+from fem.model.validity import LEAST_STRETCH, required_memory, runs_in_memory
+from fem.run.recorder import Recorder
+from fem.run.simulation import simulate, stepping_failure
+from fem.solid.elasticity import LamePair, first_stress
+
+COARSE = ("solver.element_size_m=0.5", "output.fields_s=0", "solver.duration_s=0.5")
+SOFT = ("container.youngs_modulus_Pa=1e6", *COARSE)
+TILTED = (*COARSE, "solver.model=rigid", "initial.rotation_rad=0.1")
+FLAT = ("container.section=solid", "container.youngs_modulus_Pa=1e6", "support.kind=flat")
+
+
+def test_contact_springs_into_which_the_container_sinks_are_refused_by_check_and_run():
+    case = load_case("rocking", ["solver.model=rigid", "contact.normal_penalty_Pa_m=1e4"])
+    reason = r"normal_penalty_Pa_m = 1e\+04 Pa/m: the container would sink in by 8.11 m under its weight"
+    with pytest.raises(CaseError, match=reason):
+        build_model(case)
+    with pytest.raises(CaseError, match=reason):
+        chosen_numerics(case, build_container(case))
+
+
+def test_a_corner_whose_spring_would_throw_the_container_is_refused():
+    with pytest.raises(CaseError, match=r"rotation_rad = 0.1 rad: the corner .* sink in by .* of the width"):
+        build_model(load_case("rocking", [*TILTED, *FLAT]))
+    build_model(load_case("rocking", [*TILTED, *FLAT, "container.youngs_modulus_Pa=2.1e11"]))
+
+
+def test_friction_without_springs_begins_without_their_energy():
+    # Its springs, stretched by the friction of the tilted stance, held 2 % of the energy to overturn, and lost them.
+    overrides = ["contact.friction=regularised", "contact.tangential_ratio=0.01", "initial.rotation_rad=0.02"]
+    model = build_model(load_case("rocking", [*TILTED, *overrides]))
+    assert not model.run.old.stick.any()
+    assert simulate(model, Recorder(model)).status == "completed"
+
+
+def test_the_nominal_stress_of_a_compressed_bar_is_largest_at_the_least_stretch():
+    stretches = np.linspace(0.3, 0.9, 6001)
+    zero = np.zeros_like(stretches)
+    bar = LamePair(first=0.0, shear=0.5)  # no cross-contraction, Young's modulus 1
+    stress = first_stress(np.array([[zero, zero], [zero, stretches - 1.0]]), bar)[1, 1]
+    assert stretches[np.argmin(stress)] == pytest.approx(LEAST_STRETCH, abs=1e-4)
+
+
+@pytest.mark.parametrize("model", ["reduced", "full"])
+def test_a_container_that_its_own_weight_crushes_is_refused(model):
+    with pytest.raises(CaseError, match=r"its own weight would compress the container by \d+ %.*stiffer"):
+        build_model(load_case("seed_stack_plateau", [f"solver.model={model}", *SOFT]))
+    build_model(load_case("seed_stack_plateau", ["solver.model=rigid", *SOFT]))
+
+
+def test_what_compresses_is_the_weight_over_the_walls():
+    """The strain named for a shell on its whole base is about its weight over the area of its walls and E."""
+    case = load_case(
+        "seed_box", ["support.kind=flat", "container.youngs_modulus_Pa=1e6", "solver.model=reduced", *COARSE]
+    )
+    with pytest.raises(CaseError) as refused:
+        build_model(case)
+    strain = float(str(refused.value).split("container by ")[1].split(" %")[0]) / 100.0
+    box = case.container
+    walls = 2.0 * box.wall_m * (box.width_m + (box.depth_m or box.width_m))
+    assert 0.5 < strain / (24525.0 / walls / 1e6) < 3.0
+
+
+def test_a_run_that_inverts_an_element_fails_and_says_where():
+    case = load_case("seed_stack_plateau", ["solver.model=full", "container.section=solid", *SOFT])
+    model = build_model(case)
+    ending = simulate(model, Recorder(model))
+    assert ending.status == "failed"
+    assert ending.error is not None and "inverted" in ending.error and "youngs_modulus_Pa" in ending.error
+    assert 0.0 < model.run.clock[0].time < 0.5
+
+
+def test_a_step_that_fails_says_what_failed():
+    model = build_model(load_case("seed_box", ["solver.model=rigid"]))
+    weight = model.container.mesh.mass * model.case.gravity_m_s2
+    told = {
+        residual: stepping_failure(model, residual) for residual in (np.nan, np.inf, 1e-12 * weight, weight)
+    }
+    for message in told.values():
+        assert message.startswith("step 1, t = 0 s: ") and "at the smallest step (" in message
+        assert "try a" in message and "nan" not in message and "inf" not in message
+    assert "trial solution is not finite" in told[np.nan]
+    assert "did not converge" in told[1e-12 * weight]
+    assert f"out of balance by {weight:.2g} N" in told[weight]
+
+
+def test_a_ledger_that_is_no_number_does_not_pass_the_audit():
+    model = build_model(load_case("seed_box", ["solver.model=rigid"]))
+    assert audit(model) is None
+    model.run.ledger[0] = np.nan
+    error = audit(model)
+    assert error is not None and "no longer made of numbers" in error
+
+
+def test_a_container_too_large_for_the_memory_is_refused_before_it_is_assembled(monkeypatch):
+    monkeypatch.setattr(fem.model.validity, "_machine_memory", lambda: 1e9)
+    assert runs_in_memory(5, 0.15e9) == 5 and runs_in_memory(5, 0.3e9) == 2 and runs_in_memory(5, 2e9) == 1
+    with pytest.raises(CaseError, match=r"need about .* GB; this machine has 1 GB: use larger elements"):
+        discretise(load_case("rocking", ["solver.element_size_m=0.005", "support.kind=flat"]))
+
+
+def test_the_memory_required_is_about_the_memory_used():
+    """Peak memory of processes that made these (MB)."""
+    for nodes, contact_nodes, model, modes, measured in (
+        (46217, 2, "rigid", 20, 381),
+        (46217, 2, "reduced", 200, 986),
+        (21637, 77, "reduced", 20, 429),
+    ):
+        case = load_case("rocking", [f"solver.model={model}", f"solver.elastic_modes={modes}"])
+        assert 0.8 < required_memory(case, nodes, contact_nodes) / (1e6 * measured) < 1.7
