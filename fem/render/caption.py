@@ -43,14 +43,13 @@ def caption(run: OpenedRun, frame: Frame) -> tuple[str, str]:
     """Title of a picture, and the lines below it: time and state, rotation and rotation ratio."""
     rotation = float(rotation_at(run, frame.time))
     sample = min(int(np.searchsorted(run.history["time_s"], frame.time - 1e-9)), len(run.history) - 1)
-    title = str(run.result.get("title") or run.name)
+    title = run.typed_result.title or run.name
     title = title if len(title) <= LONGEST else f"{title[: LONGEST - 3]}..."
     status = "" if run.status in ("completed", "overturned") else f" ({run.status})"
     degrees = f"{round(math.degrees(rotation), 2) + 0.0:.2f}".replace("-", "−")  # no minus zero
     ratio = ratio_in_words(rotation_ratio(rotation, run.slenderness_angle))
     return title + status, (
-        f"t = {frame.time:.3f} s    {run.history.modes[sample]}\n"
-        f"rotation {degrees}°, rotation ratio {ratio}"
+        f"t = {frame.time:.3f} s    {run.history.modes[sample]}\nrotation {degrees}°, rotation ratio {ratio}"
     )
 
 

@@ -292,7 +292,8 @@ def test_ranges_of_joint_forces_are_those_of_the_table(runs, drawn):
 
 
 def test_a_band_shows_every_member_the_fallen_above_the_slenderness_angle(runs):
-    member = {"normal_penalty_Pa_m": 1e9, "damping_ratio": 2.0, "outcome": "rock", "rotation_ratio": 0.4}
+    member = {"normal_penalty_Pa_m": 1e9, "damping_ratio": 2.0, "status": "completed"}
+    member |= {"outcome": "rock", "rotation_ratio": 0.4}
     fallen = {"normal_penalty_Pa_m": 3e9, "outcome": "overturned", "rotation_ratio": 5.9}
     failed = {"damping_ratio": 0.5, "outcome": None, "rotation_ratio": None}
     members = [member, member | fallen, member | failed]
