@@ -57,7 +57,7 @@ def test_samples_too_far_apart_for_the_motion_are_told(tmp_path):
 
 
 def test_accelerations_that_cannot_be_meant_are_refused_with_the_guess(tmp_path):
-    with pytest.raises(CaseError, match=r"reach 350 m/s2, at most 100 m/s2 are taken; looks like gal"):
+    with pytest.raises(CaseError, match=r"reach 350 m/s2, at most 100 m/s2 are accepted; looks like gal"):
         motion(tmp_path, 350.0 * np.cos(2.0 * np.pi * TIMES))
     with pytest.raises(CaseError, match=r"is its unit right|looks like"):
         motion(tmp_path, 50.0 * np.sin(2.0 * np.pi * TIMES), quantity="displacement", unit="m")
