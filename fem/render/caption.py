@@ -15,9 +15,9 @@ from fem.assessment.summary import ratio_in_words
 from fem.assessment.verdict import rotation_ratio
 from fem.figures.style import number
 from fem.render.scene import BAR, BOTTOM, SIDE, View
+from fem.results.errors import FolderError
 from fem.results.fields import Frame
 from fem.results.reader import OpenedRun
-from fem.results.run_folder import FolderError
 from fem.runtime.arrays import FloatArray
 
 INK, FAINT = "#222222", "#666666"

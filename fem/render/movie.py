@@ -5,14 +5,16 @@ Of frames closer in time than a browser can show, only every second, third, .. o
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 from PIL import Image
 
-from fem.render.picture import Scene, save_atomically
+from fem.render.picture import Scene
+from fem.results.errors import FolderError
+from fem.results.files import write_atomically
 from fem.results.reader import OpenedRun
-from fem.results.run_folder import FolderError
 
 try:
     import imageio_ffmpeg
@@ -43,14 +45,16 @@ def write_movie(
     require_movie_file(target)
     chosen, interval = select_frames(run.fields.times)
     scene = Scene(run)
+    write = _write_gif if target.suffix.lower() == ".gif" else _write_mp4
     try:
-        images = _rendered(run, scene, chosen, progress)
-        write = _write_gif if target.suffix.lower() == ".gif" else _write_mp4
-        return save_atomically(
-            target, lambda part: write(part, images, len(chosen), interval, scene.view.size)
-        )
+        with TemporaryDirectory() as folder:
+            movie = Path(folder) / target.name
+            write(movie, _rendered(run, scene, chosen, progress), len(chosen), interval, scene.view.size)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            write_atomically(target, movie.read_bytes())
     finally:
         scene.close()
+    return target
 
 
 def require_movie_file(path: Path) -> None:

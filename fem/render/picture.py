@@ -5,9 +5,8 @@ Displacements are true to scale. The floor carries hatches and a mark that move 
 Arrows below the base show the contact pressure.
 """
 
+import io
 import math
-import os
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -27,9 +26,10 @@ from fem.render.scene import (
     spatial,
     summarise_frames,
 )
+from fem.results.errors import FolderError
 from fem.results.fields import Frame
+from fem.results.files import write_atomically
 from fem.results.reader import OpenedRun
-from fem.results.run_folder import FolderError
 
 BODY, EDGE, SLAB, HATCH, ARROW, MARK = "#A9C1D6", "#333333", "#E4E1DC", "#A39E96", "#0072B2", "#222222"
 STRESS_MAP = "YlOrRd"  #: light at low stress, distinguishable by the colour-blind, grey in print
@@ -154,20 +154,11 @@ def write_picture(run: OpenedRun, *, time: float | None = None, path: Path | Non
         image = scene.image(frame)
     finally:
         scene.close()
-    return save_atomically(target, lambda part: image.save(part, format="PNG", optimize=True))
-
-
-def save_atomically(path: Path, save: Callable[[Path], None]) -> Path:
-    """Save a file beside its place and rename it, so that it is never half written."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.stem}.part{path.suffix}")
-    try:
-        save(part)
-        os.replace(part, path)
-    except BaseException:
-        part.unlink(missing_ok=True)
-        raise
-    return path
+    content = io.BytesIO()
+    image.save(content, format="PNG", optimize=True)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    write_atomically(target, content.getvalue())
+    return target
 
 
 def time_of_largest_rotation(run: OpenedRun) -> float:
