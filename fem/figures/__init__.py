@@ -1,1 +1,1 @@
-"""Figures of a run and their style, drawn with matplotlib. The room computes nothing."""
+"""Figures of a run and their style, drawn with matplotlib. No result is computed here."""

@@ -1,1 +1,1 @@
-"""Pictures and movies of a run; the only use of pyvista's renderer. The room computes nothing."""
+"""Pictures and movies of a run; the only use of pyvista's renderer. No result is computed here."""

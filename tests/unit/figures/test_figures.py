@@ -48,7 +48,7 @@ CASES = {
 
 
 class Collecting(SilentReporter):
-    """Keeps what it is told."""
+    """Collects the messages."""
 
     def __init__(self):
         self.messages = []
@@ -214,7 +214,7 @@ def test_a_free_block_returns_from_within_the_curve_of_the_phase_portrait(drawn)
             assert (motion.overturned_at is not None) == falls, (index, factor)
 
 
-def test_forces_of_impacts_are_cut_off_and_told(runs, drawn):
+def test_forces_of_impacts_are_cut_off_and_given_in_words(runs, drawn):
     normal = 1e-3 * runs["rocking"].history["normal_force_N"]
     figure = drawn["rocking"]["forces"]
     assert normal.max() > figure.axes[0].get_ylim()[1]
@@ -307,7 +307,7 @@ def test_no_peak_is_lost_in_a_long_curve():
     assert kept_samples(values)[-1] == 199_999
 
 
-def test_a_panel_over_time_tells_where_it_lies(runs):
+def test_the_cursor_axes_of_a_panel_over_time_are_its_frame(runs):
     with house_style():
         figure, axes = time_panels((1.0, 1.0), history=runs["rest"].history)
         axes[0].plot([0.0, 6.0], [0.0, 1.0])

@@ -160,7 +160,7 @@ def test_the_default_instant_is_that_of_the_largest_rotation(run, renders):
         assert image.format == "PNG"
 
 
-def test_the_caption_tells_time_rotation_and_ratio(run):
+def test_the_caption_gives_time_rotation_and_ratio(run):
     frame = run.frame(0.8)
     sample = np.searchsorted(run.history["time_s"], 0.8 - 1e-9)
     rotation = run.history["rotation_rad"][sample]
