@@ -1,1 +1,1 @@
-"""Figures of a run and the style they share, drawn with matplotlib. They step nothing."""
+"""Figures of a run and their style, drawn with matplotlib. No result is computed here."""

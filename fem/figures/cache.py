@@ -14,8 +14,9 @@ from typing import Any
 from fem.figures.style import Drawing
 from fem.html.page import require_drawing
 from fem.model.container import Container
+from fem.results.files import to_json, write_atomically
 from fem.results.reader import OpenedRun
-from fem.results.run_folder import RunFolder, to_json, write_atomically
+from fem.results.run_folder import RunFolder
 from fem.runtime.identity import program_identity
 
 

@@ -1,8 +1,5 @@
 """Figure of the energy over time: stored, supplied by the floor and dissipated, lost or gained by the time stepping."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -27,6 +24,7 @@ from fem.figures.style import (
 )
 from fem.results.history import History
 from fem.results.reader import OpenedRun
+from fem.results.run_result import Energy, StaticResult
 
 DISSIPATED = ("friction_J", "contact_damping_J", "material_damping_J")  #: columns of a history
 SMALL = 1e3  #: largest energy below which J is the unit, not kJ [J]
@@ -35,32 +33,32 @@ DECIMALS = 3  #: of an energy in a legend
 
 def energy_figure(run: OpenedRun) -> Figure:
     """Energy stored; supplied and dissipated since the start; imbalance of the time stepping."""
-    history, energy = run.history, run.result.get("energy") or {}
+    history, energy = run.history, run.typed_result.energy or Energy()
     figure, axes = time_panels((1.7, 1.9, 0.9), gaps=(LEGEND_GAP + LINE, LEGEND_GAP))
     largest = max(
         float(np.abs(history[name]).max())
         for name in ("kinetic_J", "strain_J", "base_work_J", "imbalance_J", *DISSIPATED)
     )
     unit = ("kJ", 1e3) if largest >= SMALL else ("J", 1.0)
-    _draw_stored(axes[0], run, *unit)
+    _draw_stored(axes[0], run, energy.reference_J, *unit)
     _draw_supplied(axes[1], history, *unit)
     imbalance = (history["imbalance_J"], PURPLE, "-", _imbalance_limits(energy))
     curve_panel(axes[2], "imbalance [J]", history["time_s"], imbalance)
     legend_above(axes[0])
     legend_above(axes[1], columns=3)
     legend_above(axes[2])
-    closure = energy.get("closure_error")
+    closure = energy.closure_error
     share = "" if closure is None else f": largest imbalance {number(closure, 2)} of the energy to overturn"
     head(figure, f"Energy{share}", status=run.status)
     return figure
 
 
-def _draw_stored(axes: Axes, run: OpenedRun, unit: str, size: float) -> None:
-    """Kinetic, gravitational and strain energy, and the energy to overturn; in units of `size` [J]."""
-    history, reference = run.history, (run.result.get("energy") or {}).get("reference_J")
+def _draw_stored(axes: Axes, run: OpenedRun, reference: float | None, unit: str, size: float) -> None:
+    """Kinetic, gravitational and strain energy, and the energy to overturn [J]; drawn in units of `size` [J]."""
+    history = run.history
     # From the mass centre of the standing container: the work that its weight can still do.
-    centroid = float((run.result.get("static") or {}).get("centroid_m") or 0.0)
-    raised = history["potential_J"] - run.case.weight * centroid
+    static = run.typed_result.static or StaticResult()
+    raised = history["potential_J"] - run.case.weight * (static.centroid_m or 0.0)
     curve_panel(
         axes,
         f"stored [{unit}]",
@@ -91,12 +89,12 @@ def _draw_supplied(axes: Axes, history: History, unit: str, size: float) -> None
     curve_panel(axes, f"since the start [{unit}]", history["time_s"], *curves)
 
 
-def _imbalance_limits(energy: Mapping[str, Any]) -> str:
+def _imbalance_limits(energy: Energy) -> str:
     """Meaning of the imbalance, and the values that would fail the run."""
-    text, reference = "lost (> 0) or gained by the time stepping", energy.get("reference_J")
+    text, reference = "lost (> 0) or gained by the time stepping", energy.reference_J
     if not reference:
         return text
-    dissipated = sum(energy.get(key) or 0.0 for key in DISSIPATED)
+    dissipated = sum(getattr(energy, key) or 0.0 for key in DISSIPATED)
     loss = max(LOSS_SHARE_LIMIT * dissipated, LOSS_LIMIT * reference)
     return (
         f"{text}; a loss of {number(loss)} J or a gain of {number(GAIN_LIMIT * reference, 2)} J fails the run"

@@ -30,6 +30,7 @@ from fem.figures.style import (
 )
 from fem.results.history import JOINT_COLUMNS
 from fem.results.reader import OpenedRun
+from fem.results.run_result import Verdict
 from fem.runtime.arrays import FloatArray
 
 HEADER = 3  #: lines of text above the panels of ranges: title, legend, largest force
@@ -44,7 +45,8 @@ def joints_figure(run: OpenedRun) -> Figure | None:
     history, case = run.history, run.case
     if history.joints == 0:
         return None
-    overturned_at = (run.result.get("verdict") or {}).get("overturned_at_s")
+    verdict = run.typed_result.verdict or Verdict()
+    overturned_at = verdict.overturned_at_s
     standing = history["time_s"] <= (np.inf if overturned_at is None else overturned_at)
     time, half, mu = history["time_s"][standing], 0.5 * case.container.width_m, case.contact.mu_static
     normal, shear, moment = (

@@ -5,8 +5,7 @@ degrees, lengths in mm, forces in kN; x to the right, rotation > 0 toward +x, fo
 """
 
 import math
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -48,6 +47,7 @@ from fem.figures.style import (
 )
 from fem.model.container import Container
 from fem.results.reader import OpenedRun
+from fem.results.run_result import StaticResult, Verdict
 from fem.runtime.arrays import FloatArray
 from fem.solid.modes import FEW, elastic_modes
 
@@ -93,7 +93,7 @@ def _drawing(name: str, figure: Figure) -> Drawing:
 
 def base_motion_figure(run: OpenedRun) -> Figure:
     """Displacement, velocity and acceleration of the floor."""
-    history, static = run.history, run.result.get("static") or {}
+    history, static = run.history, run.typed_result.static or StaticResult()
     displacement, acceleration = 1e3 * history["base_displacement_m"], history["base_acceleration_m_s2"]
     figure, axes = time_panels((1.25, 1.25, 1.35), gaps=(GAP, LEGEND_GAP), header=1)
     for panel, values, label, colour in (
@@ -105,7 +105,7 @@ def base_motion_figure(run: OpenedRun) -> Figure:
         keep_visible(panel, LEAST_MOTION)
     peak, moved = float(np.abs(acceleration).max()), float(np.abs(displacement).max())
     for limit, style, name in (
-        (static.get("uplift_acceleration_m_s2"), "--", "a static load tilts it"),
+        (static.uplift_acceleration_m_s2, "--", "a static load tilts it"),
         (run.case.contact.mu_static * run.case.gravity_m_s2, ":", "a static load slides it"),
     ):
         if limit and limit < 1.3 * peak:
@@ -139,7 +139,7 @@ def rotation_figure(run: OpenedRun) -> Figure:
         axes.plot([], [], " ", label=f"slenderness angle ±{number(angle, 4)}°: far off the scale")
     _mark_impact(axes, verdict)
     legend_above(axes)
-    found = math.degrees(verdict.get("max_rotation_rad") or math.radians(largest))
+    found = math.degrees(verdict.max_rotation_rad or math.radians(largest))
     largest_shown = f"< {LEAST_DEGREES:g}" if 0.0 < found < LEAST_DEGREES else number(found)
     ratio = ratio_in_words(found / angle)
     head(figure, f"Rotation: {largest_shown}° at most, {ratio} of the slenderness angle", status=run.status)
@@ -156,9 +156,9 @@ def slip_figure(run: OpenedRun) -> Figure:
     if small:
         draw_limits(axes, limit, f"counts as sliding, ±{number(limit, 2)} mm", color=GREY, linestyle=":")
         legend_above(axes)
-    largest = 1e3 * (verdict.get("max_slip_m") or 0.0)
-    travel = 1e3 * (verdict.get("slip_travel_m") or 0.0)
-    left = verdict.get("residual_slip_m")  # the end may lie between two samples
+    largest = 1e3 * (verdict.max_slip_m or 0.0)
+    travel = 1e3 * (verdict.slip_travel_m or 0.0)
+    left = verdict.residual_slip_m  # the end may lie between two samples
     end = slip[-1] if left is None else 1e3 * left
     title = f"Slip: {_millimetres(largest)} at most, {_millimetres(end)} at the end, {_millimetres(travel)} travelled"
     head(figure, title, status=run.status)
@@ -168,13 +168,13 @@ def slip_figure(run: OpenedRun) -> Figure:
 def uplift_figure(run: OpenedRun) -> Figure:
     """Uplift of the higher side of the base."""
     verdict, uplift = _verdict(run), 1e3 * run.history["uplift_m"]
-    struck = verdict.get("first_impact_s") is not None
+    struck = verdict.first_impact_s is not None
     figure, axes = _panel(run, uplift, "uplift [mm]", legend=struck)
     axes.set_ylim(0.0, max(1.08 * float(uplift.max()), run.case.container.width_m))
     if struck:
         _mark_impact(axes, verdict)
         legend_above(axes)
-    impacts, largest = verdict.get("impacts"), 1e3 * (verdict.get("max_uplift_m") or 0.0)
+    impacts, largest = verdict.impacts, 1e3 * (verdict.max_uplift_m or 0.0)
     count = "" if impacts is None else f", {impacts} impact{'' if impacts == 1 else 's'}"
     title = f"Uplift of the base: {number(largest)} mm at most{count}"
     head(figure, title if largest > 0.0 else "The base never opens", status=run.status)
@@ -183,7 +183,8 @@ def uplift_figure(run: OpenedRun) -> Figure:
 
 def phase_portrait_figure(run: OpenedRun) -> Figure:
     """Angular velocity over rotation, with the curve within which a free rigid block returns."""
-    angle, parameter = run.slenderness_angle, (run.result.get("static") or {}).get("frequency_parameter_1_s")
+    static = run.typed_result.static or StaticResult()
+    angle, parameter = run.slenderness_angle, static.frequency_parameter_1_s
     rotation, rate = run.history["rotation_rad"], run.history["angular_velocity_rad_s"]
     figure, (axes,) = panels((4.0,), width=0.8 * WIDTH, header=2)
     axes.set_label(PLANE)  # for `cursor_axes`
@@ -236,8 +237,8 @@ def _panel(
     return figure, axes
 
 
-def _verdict(run: OpenedRun) -> Mapping[str, Any]:
-    return run.result.get("verdict") or {}
+def _verdict(run: OpenedRun) -> Verdict:
+    return run.typed_result.verdict or Verdict()
 
 
 def _millimetres(value: float) -> str:
@@ -245,9 +246,9 @@ def _millimetres(value: float) -> str:
     return "< 0.01 mm" if 0.0 < abs(value) < 0.01 else f"{number(value)} mm"
 
 
-def _mark_impact(axes: Axes, verdict: Mapping[str, Any]) -> None:
+def _mark_impact(axes: Axes, verdict: Verdict) -> None:
     """A line at the first impact, if any."""
-    impact = verdict.get("first_impact_s")
+    impact = verdict.first_impact_s
     if impact is not None:
         label = f"first impact, {impact:.3f} s"
         axes.axvline(impact, color=GREY, linestyle=(0, (1, 2)), linewidth=1.0, label=label)

@@ -117,7 +117,7 @@ def _body(case: Case, container: Container, contact: Contact) -> ModalBody | Ful
 
 
 def _stance(case: Case, container: Container, contact: Contact) -> Stance:
-    """How the container stands on its floor at t = 0, the floor being at x = 0."""
+    """Stance of the container at t = 0, with the floor at x = 0."""
     mesh, elements, initial = container.mesh, container.elements, case.initial
     base = container.support.index.size
     nodes = container.nodes[:base]

@@ -1,4 +1,4 @@
-"""The mesh of a case: its container, filled, on the floor."""
+"""The mesh of a case: its filled container, standing on the floor."""
 
 import numpy as np
 
@@ -24,7 +24,7 @@ def container_geometry(case: Case) -> ContainerGeometry:
 
 
 def mass_fill(case: Case) -> MassFill:
-    """What one box of the case weighs, and how high its mass centre lies."""
+    """Mass of one box of the case and height of its mass centre."""
     return MassFill(
         mass=case.box_mass,
         centroid_height=case.container.centroid_m,
@@ -36,9 +36,9 @@ def build_container(case: Case) -> ContainerMesh:
     """The case's container: from its mesh file if it names one, else structured.
 
     Raises:
-        MeshError: too many cells, walls heavier than the box, a mass centre or feet that cannot be had, a
-            mesh file that does not fit the case.
-        CaseError: if there is no such mesh file in the folder of the case.
+        MeshError: too many cells, walls heavier than the box, an impossible mass centre or foot, a mesh file
+            that does not fit the case.
+        CaseError: the mesh file is missing in the folder of the case.
     """
     geometry, fill = container_geometry(case), mass_fill(case)
     if case.container.mesh_file is not None:
@@ -49,7 +49,7 @@ def build_container(case: Case) -> ContainerMesh:
 
 
 def node_count(mesh: ContainerMesh, order: int) -> int:
-    """Nodes of the elements: the mesh's points, for order 2 also one on every edge and in every cell."""
+    """Number of nodes: the points of the mesh; for order 2 also one on every edge and in every cell."""
     if order == 1:
         return len(mesh.points)
     edges = np.sort(np.stack([mesh.quads, np.roll(mesh.quads, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)

@@ -1,13 +1,13 @@
-"""The joints between the boxes of a stack: what a container that stays in one piece must carry in them.
+"""Forces in the joints between the boxes of a stack that moves as one body.
 
 The boxes are bolted and move as one body; the force in a joint follows from the motion of the boxes above it,
 
     F = d/dt (sum of m_i v_i) + m g z,        M = d/dt (sum of (x_i - o) x m_i v_i) - moment of the weight about o,
 
 with the consistent mass of the elements above. Both are means over an interval of the history, from the momentum at
-its ends: the instantaneous acceleration means nothing under the dashpot of an impact, it grows without bound as
-the step falls. o is where the joint's centre is in the middle of the interval; normal and shear are taken along the
-container's axes there. Forces act on the boxes above: normal > 0 in compression, shear > 0 toward +x, moment > 0
+its ends: under the dashpot of an impact the instantaneous acceleration grows without bound as the step falls. o is
+the position of the joint's centre in the middle of the interval; normal and shear are taken along the container's axes
+there. Forces act on the boxes above: normal > 0 in compression, shear > 0 toward +x, moment > 0
 toward +x; their resultant lies -M/N to the right of the joint's centre. In a floating frame terms of the order of the
 strain times the inertia are dropped, as in its equations of motion.
 """
@@ -35,7 +35,7 @@ INSTANT = 1e-4
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Joints:
-    """The joints of a container, J of them from the floor up, and how their forces are had from its coordinates."""
+    """The J joints of a container, from the floor up, and their forces from its coordinates."""
 
     height: FloatArray  #: (J,) above the floor, undeformed [m]
     mass: FloatArray  #: (J,) of what is above [kg]
@@ -53,7 +53,7 @@ class Joints:
     middle_shape: FloatArray  #: (m, J, 2) mean of each mode at both ends of the joint [1/sqrt(kg)]
 
     def motion(self, position: FloatArray, velocity: FloatArray, rotation: FloatArray) -> FloatArray:
-        """Momenta and places at k instants, shape (k, J, 8): see the columns above.
+        """Momenta and positions at k instants, shape (k, J, 8); see the columns above.
 
         Args:
             position, velocity: coordinates of the body, shape (k, n_d).

@@ -1,4 +1,4 @@
-"""The base motion of a case, as the stepping takes it."""
+"""The base motion of a case, and doubts about a recorded one."""
 
 import math
 from typing import TypeVar
@@ -10,9 +10,9 @@ from contact.motion.table_file import read_motion_table
 from fem.case import quantities as q
 from fem.case.case import Case, CaseError
 
-DRIFT = 0.1  #: velocity of the floor at the end of a table that is worth telling, over the largest
-COARSE = 2.0 * math.sin(math.pi / 10.0)  #: change between samples of a sine with ten a period, over its size
-PEAK_SAMPLES = 20_001  #: over a run, beside the instants at which a pulse or a table changes
+DRIFT = 0.1  #: over the largest velocity: velocity at the end of a table from which a drift is reported
+COARSE = 2.0 * math.sin(math.pi / 10.0)  #: change between samples over the amplitude, ten samples a period
+PEAK_SAMPLES = 20_001  #: over a run, in addition to the instants at which a pulse or a table changes
 
 ValueT = TypeVar("ValueT")
 
@@ -21,8 +21,7 @@ def build_motion(case: Case) -> BaseMotion:
     """How the floor of the case moves.
 
     Raises:
-        CaseError: if the file of a table is missing or is no table of motion, or if a motion is asked for
-            that cannot be, with the reason.
+        CaseError: the file of a table is missing or is no table of motion; an impossible motion.
     """
     try:
         return _build(case)
@@ -33,13 +32,10 @@ def build_motion(case: Case) -> BaseMotion:
 
 
 def peak_acceleration_within(motion: BaseMotion, duration: float) -> float:
-    """Largest |acceleration| that the floor reaches up to `duration` [m/s2].
-
-    What it would do afterwards is no business of a static rule that is compared with the run.
-    """
+    """Largest |acceleration| of the floor up to `duration`, the end of the run [m/s2]."""
     if isinstance(motion, NoMotion | HarmonicMotion):
-        return motion.peak_acceleration  # knows the duration of its case
-    if isinstance(motion, PulseMotion):  # between these its size rises or falls
+        return motion.peak_acceleration  # within the duration of its case
+    if isinstance(motion, PulseMotion):  # between these instants its size is monotonic
         quarters = motion.delay + motion.pulse * np.array([0.0, 0.25, 0.5, 0.75])
         instants = np.append(quarters, duration)
         return float(np.abs(motion.evaluate(instants[instants <= duration])[2]).max())
@@ -55,26 +51,26 @@ def peak_acceleration_within(motion: BaseMotion, duration: float) -> float:
 
 
 def motion_notes(motion: BaseMotion) -> list[str]:
-    """What is doubtful in a recorded motion: a drift, samples too far apart for it."""
+    """Doubts about a recorded motion: a drift, samples too far apart."""
     if not isinstance(motion, TableMotion):
         return []
-    said = []
+    notes = []
     velocity, values = motion.evaluate(motion.times)[1], motion.accelerations
     last, largest = float(velocity[-1]), float(np.abs(velocity).max())
     if motion.quantity == "acceleration" and abs(last) > DRIFT * largest > 0.0:
-        said.append(
+        notes.append(
             f"motion.file: its mean acceleration, {last / np.ptp(motion.times):.3g} m/s2, leaves the floor with "
-            f'{last:.3g} m/s at the end of the table: it drifts; baseline = "mean" lets it end at rest, "linear" at '
+            f'{last:.3g} m/s at the end of the table: it drifts; baseline = "mean" ends it at rest, "linear" at '
             "rest where it began"
         )
     size, change = float(np.sqrt(np.mean(values**2))), float(np.sqrt(np.mean(np.diff(values) ** 2)))
     if change > COARSE * size:
-        said.append(
+        notes.append(
             f"motion.file: the acceleration changes by {change / size:.2g} of its own size from one sample to the next "
             f"({COARSE:.2g} is ten samples a period): the samples, {np.median(np.diff(motion.times)):.3g} s apart, are "
-            "too coarse for this motion; take a record sampled more closely"
+            "too coarse for this motion; use a record with a shorter sampling interval"
         )
-    return said
+    return notes
 
 
 def _plausible(motion: TableMotion) -> TableMotion:
@@ -86,7 +82,7 @@ def _plausible(motion: TableMotion) -> TableMotion:
     )
     raise CaseError(
         f"[motion] file: its accelerations reach {peak:.4g} m/s2, at most {q.PEAK_ACCELERATION.most:g} m/s2 are "
-        f"taken; {guess}"
+        f"accepted; {guess}"
     )
 
 
@@ -124,7 +120,7 @@ def _build(case: Case) -> BaseMotion:
 
 
 def _given(value: ValueT | None, key: str) -> ValueT:
-    """What the rules of the table have seen to: the chosen kind of motion is complete."""
+    """A key that the rules of the case file require for this kind of motion."""
     if value is None:
         raise CaseError(f"[motion] {key} is missing")
     return value

@@ -1,4 +1,4 @@
-"""From the coordinates of a body back to fields on the whole mesh: displacement, velocity, von Mises stress."""
+"""Recovery of fields on the whole mesh from the coordinates of a body: displacement, velocity, von Mises stress."""
 
 import math
 from dataclasses import dataclass, field
@@ -16,7 +16,7 @@ from fem.solid.nodal_body import FullBody
 PROBE = 1e-6
 #: |VON_MISES_ROOT s| is the equivalent stress of s = (sx, sz, t)
 VON_MISES_ROOT = np.array([[1.0, -0.5, 0.0], [0.0, math.sqrt(0.75), 0.0], [0.0, 0.0, math.sqrt(3.0)]])
-#: what rounding may add to a stress against its bound
+#: relative rounding error of a stress against its bound
 ROUNDING = 1e-9
 
 
@@ -24,7 +24,7 @@ ROUNDING = 1e-9
 class NodalFields:
     """Fields at one instant, n nodes."""
 
-    displacement: FloatArray  #: (n, 2) from the undeformed place, absolute [m]
+    displacement: FloatArray  #: (n, 2) from the undeformed position, absolute [m]
     velocity: FloatArray  #: (n, 2) absolute [m/s]
     von_mises: FloatArray | None  #: (n,) [Pa]; None of a container without elastic modes
 
@@ -64,8 +64,8 @@ class Recovery:
     def largest_von_mises(self, position: FloatArray) -> float:
         """Largest nodal von Mises stress over rows of coordinates (n_s, n_d) [Pa]; 0 without modes.
 
-        The row of the most strain energy comes first; of the others only rows and nodes are looked at whose bound,
-        root of twice the strain energy times `_bounds`, reaches what that one has.
+        Starts with the row of the largest strain energy. Of the others, only rows and nodes are evaluated whose bound,
+        the root of twice the strain energy times `_bounds`, reaches that stress.
         """
         if self.full or not len(self.shapes) or not len(position):
             return 0.0
@@ -89,7 +89,7 @@ class Recovery:
 
 
 def recovery_of(model: Model) -> Recovery:
-    """How the fields of this model are had."""
+    """Recovery of the fields of this model."""
     elements, basis = model.container.elements, model.container.basis
     shapes = np.zeros((0, *elements.nodes.shape)) if basis is None else basis.shapes
     stress = np.zeros((3, len(shapes), len(elements.nodes)))

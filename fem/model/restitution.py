@@ -1,9 +1,9 @@
-"""What restitution a contact damping ratio amounts to: the shipped table, and what it says of a case.
+"""Restitution that follows from a contact damping ratio, by a shipped calibration table.
 
-Restitution is a property of the support, so it is not asked for but follows: from the contact damping ratio, the
-support and the slenderness. `data/contact_damping_restitution.csv` says how it was computed. It holds rigid
-homogeneous blocks; another distribution of mass is met through the share of Housner's loss, (1 - e)/(1 - e_H),
-which varies slowly. A container that deforms at an impact loses more.
+Restitution is not an input: it follows from contact damping ratio, support and slenderness.
+`data/contact_damping_restitution.csv` says how the table was computed, for rigid homogeneous blocks. Other
+distributions of mass are treated through the share of Housner's loss, (1 - e)/(1 - e_H), which varies slowly. A
+container that deforms at an impact loses more.
 """
 
 import csv
@@ -20,7 +20,7 @@ TABLE = "contact_damping_restitution.csv"
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Calibration:
-    """Loss of rigid blocks at an impact on one kind of support, over that of Housner's impact."""
+    """Loss of rigid blocks at an impact on one kind of support, over the loss of Housner's impact."""
 
     foot: FloatArray  #: (f,) length of a foot over the width, rising; one value for corners and flat [-]
     slenderness: FloatArray  #: (s,) height over width of a homogeneous block, rising [-]
@@ -39,7 +39,7 @@ class Calibration:
             if place is None:
                 return None
             first, share = place
-            if share in (0.0, 1.0):  # on an entry: what lies beside it may have no value
+            if share in (0.0, 1.0):  # on an entry: its neighbour may have no value
                 values = values[first + int(share)]
             else:
                 values = (1.0 - share) * values[first] + share * values[first + 1]
@@ -54,7 +54,7 @@ def apparent_restitution(
     damping_ratio: float,
     housner: float,
 ) -> float | None:
-    """Restitution that a rigid container shows on its support, or None where the table does not reach.
+    """Restitution of a rigid container on its support; None outside the table.
 
     Args:
         support: corners | feet | flat.
@@ -90,7 +90,7 @@ def _calibration(kind: str, rows: list[dict[str, str]]) -> Calibration:
     points = np.array([[float(row[name]) for name in names] for row in rows])
     axes = [np.unique(points[:, k]) for k in range(3)]
     if len(rows) != np.prod([axis.size for axis in axes]):
-        raise ValueError(f"{TABLE}: the rows of {kind} are no full grid")
+        raise ValueError(f"{TABLE}: the rows of {kind} do not form a full grid")
     values = [
         (1.0 - float(row["rigid"])) / (1.0 - float(row["housner"])) if row["rigid"] else np.nan
         for row in rows

@@ -1,8 +1,8 @@
-"""The static rules a run is held against, and what follows from the mass alone.
+"""The static rules that a run is compared with, and what follows from the mass alone.
 
-Equilibrium of a rigid container on its corners, after sections 4 and 5 of the seed paper, "A simple
-stick-slip model for the overturning stability of unanchored containers", here called the paper, with the
-lateral force method of EN 1998-1:2004, 4.3.3.2. The container stands on z = 0, its mass centre is above
+Equilibrium of a rigid container on its corners, after sections 4 and 5 of Knoedel and Hrabowski, "A simple
+stick-slip model for the overturning stability of unanchored containers" (the paper), with the lateral force
+method of EN 1998-1:2004, 4.3.3.2. The container stands on z = 0, its mass centre is above
 the middle of the base; weights, forces and moments are magnitudes. Angles are measured from the vertical:
 the `slenderness_angle` is the complement of the paper's alpha.
 
@@ -162,7 +162,7 @@ class ActionCheck:
 
 @dataclass(frozen=True, kw_only=True)
 class StaticChecks:
-    """Everything the static rules say of one container, with what its mass alone determines."""
+    """Results of the static rules for one container, and what follows from its mass alone."""
 
     weight: float  #: G, of all boxes with fill [N]
     centroid: float  #: z_c, height of the mass centre above the floor [m]
@@ -184,7 +184,7 @@ class StaticChecks:
 
     @property
     def housner_credible(self) -> bool:
-        """Whether the impact model of the rigid block can be believed: a restitution of at least 0.5."""
+        """Whether the impact model of the rigid block is credible: a restitution of at least 0.5."""
         return self.housner_restitution >= CREDIBLE_RESTITUTION
 
     def to_result(self) -> StaticResult:
@@ -247,7 +247,7 @@ def static_checks(
         initial_rotation: phi_0 of Eq. (2) [rad]; where it is 0, half the slenderness angle is taken, as an
             ordinary rotation of a rocking container.
 
-    The rocking period that is held against the limit of the lateral force method is that of Eq. (3), as
+    The rocking period that is compared with the limit of the lateral force method is that of Eq. (3), as
     in the paper's section 4.2.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Limits of the time stepping of a case: its largest step, what a step may lose, its scheme."""
+"""Limits of the time stepping of a case: largest step, tolerances of a step, scheme."""
 
 import math
 
@@ -16,39 +16,38 @@ from mesh.container import ContainerMesh
 
 #: largest step over the time scale of rocking, 1/p, and over that of the base motion
 STEP_OF_ROCKING, STEP_OF_MOTION = 0.01, 0.02
-#: .. of a motion shorter than this share of the run only while it lasts, in at most so many steps
+#: share of the run below which a motion sets the step only while it lasts, in at most so many steps
 SHORT_SHARE, MOST_PIECES = 0.5, 2000
-#: a given step may be at most this share of the shortest period of the motion
+#: largest step that may be given, over the shortest period of the motion
 COARSE_STEP = 0.1
-#: .. and any step so many intervals of the history: the samples of a step are held in memory
+#: intervals of the history that a step may span: its samples are held in memory
 MOST_SAMPLES_A_STEP = 64
-#: over the largest step: the step in which friction may change between sticking and sliding
+#: over the largest step: the step in which friction may change between stick and slip
 EVENT_SHARE = 0.01
 SMALLEST_SHARE = 1e-7
-#: over the time constant of a corner on its dashpot: the step that begins at a touch
+#: over the time constant of a corner on its dashpot: the step that begins at a contact
 CLOSING_SHARE_OF_TIME = 0.02
-#: imbalance of the ledger that a step may have: see `contact.stepping.state.Control`
+#: tolerances of the energy balance of a step: see `contact.stepping.state.Control`
 ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE = 1e-5, 2e-7, 4e-3
-#: .. at a first touch: over the energy that a rigid block would lose there
+#: .. at a first contact, over the energy that a rigid block would lose there
 CLOSING_SHARE, LEAST_LOSS = 2e-3, 0.02
 TRAIL_SHARE, TRAIL_TIME = 2e-2, 0.1
-#: .. and however loose the tolerance: what is lost of what is dissipated is judged in the end. A rigid container
-#: does not ring: it loses at the impact itself, once
+#: .. with the loosest tolerance: the audit judges the loss over the dissipated energy at the end. A rigid container
+#: does not ring: it loses energy once, at the impact itself
 MOST_SHARE, MOST_RIGID_SHARE, MOST_TRAIL = 8e-3, 4e-2, 3e-2
-#: closings with less energy than this, over the energy to overturn, are left to the ledger
+#: energy of a contact, over the energy to overturn, below which the energy balance alone controls the step
 SOFT_CLOSING = 1e-6
-#: a Newmark run without averaging gains energy beyond both
+#: beyond both limits a Newmark run without averaging gains energy
 STIFF_CONTACT, LARGE_CONTACT_STEP = 3.0, 0.7
 
 
 def largest_step_of(case: Case, static: StaticChecks, motion: BaseMotion) -> tuple[float, FloatArray]:
     """Largest step of the run [s], and the instants that a step must end on, rising [s].
 
-    A pulse or a record that is over long before the run is makes small steps while it lasts, by instants closely
-    set, and not ever after.
+    A pulse or record much shorter than the run sets small steps only while it lasts, by closely spaced instants.
 
     Raises:
-        CaseError: a step given that would step over the motion.
+        CaseError: a given step that is too long for the motion.
     """
     solver, output = case.solver, case.output
     free, wanted = STEP_OF_ROCKING / static.frequency_parameter, STEP_OF_MOTION * motion.time_scale
@@ -74,10 +73,10 @@ def largest_step_of(case: Case, static: StaticChecks, motion: BaseMotion) -> tup
 
 
 def _apart(instants: list[float], end: float, least: float) -> FloatArray:
-    """The instants (rising, before `end`) and the end, without those nearer than `least` to the one before, or the end.
+    """The instants (rising, before `end`) and the end, without those closer than `least` to their neighbour or the end.
 
-    No step is made shorter than the smallest for the sake of a motion that changes twice within it: the inertia over
-    the square of such a step is beyond all numbers, or noise.
+    A motion that changes twice within the smallest step does not shorten it: the inertia over the square of such a step
+    would overflow or be noise.
     """
     if np.diff([0.0, *instants, end]).min() >= least:
         return np.array([*instants, end])
@@ -89,7 +88,7 @@ def _apart(instants: list[float], end: float, least: float) -> FloatArray:
 
 
 def _span(motion: BaseMotion) -> tuple[float, float]:
-    """When a pulse or a record begins and ends; a drive is taken to go on [s]."""
+    """Begin and end of a pulse or a record; any other motion has no end [s]."""
     if isinstance(motion, PulseMotion):
         return motion.delay, motion.delay + motion.pulse
     if isinstance(motion, TableMotion):
@@ -98,14 +97,14 @@ def _span(motion: BaseMotion) -> tuple[float, float]:
 
 
 def reference_energy(mesh: ContainerMesh, static: StaticChecks, gravity: float) -> float:
-    """What it takes to overturn the container quasi-statically, M g R (1 - cos slenderness angle) [J]."""
+    """Energy to overturn the container quasi-statically, M g R (1 - cos slenderness angle) [J]."""
     return mesh.mass * gravity * static.radius * (1.0 - math.cos(static.slenderness_angle))
 
 
 def _struck_mass(case: Case, container: Container) -> float:
-    """Mass that a corner puts against the floor in the first instant of an impact [kg].
+    """Effective mass of a corner in the first instant of an impact [kg].
 
-    The whole, turning container's for a rigid one; for an elastic one hardly more than the corner's own.
+    For a rigid container that of the whole, rotating body; for an elastic one little more than the corner's own.
     """
     mesh, corner = container.mesh, container.nodes[0]
     if case.solver.model == "full":
@@ -120,14 +119,12 @@ def _struck_mass(case: Case, container: Container) -> float:
 def control_of(
     case: Case, container: Container, static: StaticChecks, largest: float, contact: Contact
 ) -> Control:
-    """Limits of the stepping, from what the container, its floor and its motion do by themselves.
+    """Limits of the stepping, from the time scales and energies of container and contact.
 
     Args:
-        case: whose tolerance and model are taken.
-        container: what is stepped.
-        static: its static checks.
+        case: gives tolerance and model; container, static: of the case.
         largest: step [s].
-        contact: with its floor.
+        contact: with the floor.
     """
     mesh, base = container.mesh, container.support.index.size
     reference = reference_energy(mesh, static, case.gravity_m_s2)
@@ -165,7 +162,7 @@ def control_of(
 
 
 def scheme_of(case: Case, container: Container, penalty: float, control: Control, contact: Contact) -> Scheme:
-    """The scheme asked for; `penalty` is the normal stiffness of the base [Pa/m].
+    """Time-stepping scheme of the case; `penalty` is the normal stiffness of the base [Pa/m].
 
     Raises:
         CaseError: a Newmark run without averaging that would gain energy.
@@ -181,6 +178,6 @@ def scheme_of(case: Case, container: Container, penalty: float, control: Control
             "[solver] scheme = 'newmark' gains energy at impacts here: normal_penalty_Pa_m x element_size_m / "
             f"youngs_modulus_Pa = {stiff:.3g} > {STIFF_CONTACT:g} together with step x contact frequency = "
             f"{control.largest_step * rate:.3g} > {LARGE_CONTACT_STEP:g}; lower the penalty, set solver.step_s "
-            f"<= {LARGE_CONTACT_STEP / rate:.2g} s, or take scheme = 'generalised-alpha'"
+            f"<= {LARGE_CONTACT_STEP / rate:.2g} s, or choose scheme = 'generalised-alpha'"
         )
     return newmark(solver.newmark_beta, solver.newmark_gamma)

@@ -1,4 +1,4 @@
-"""Where the container of a case touches the floor, and how stiffly."""
+"""The contact nodes of a case's container, and their penalty."""
 
 from contact.interface.penalty import choose_normal_penalty
 from contact.interface.support import Support, choose_support
@@ -9,11 +9,11 @@ from mesh.container import ContainerMesh
 
 
 def build_support(case: Case, mesh: ContainerMesh) -> Support:
-    """The base nodes that may touch the floor, each with its share of the base.
+    """The base nodes that can touch the floor, each with its share of the base.
 
     Raises:
-        CaseError: if feet do not fit the mesh.
-        MeshError: if no mesh line ends a foot.
+        CaseError: the feet do not fit the mesh.
+        MeshError: no mesh line ends a foot.
     """
     feet = (0.0, 0.0) if case.support.foot is None else mesh.foot_widths(case.support.foot)
     try:
@@ -29,7 +29,7 @@ def build_support(case: Case, mesh: ContainerMesh) -> Support:
 
 
 def normal_penalty(case: Case, mesh: ContainerMesh) -> float:
-    """The penalty of the case, or the one that "auto" chooses for its mesh [Pa/m]."""
+    """Normal penalty of the case; "auto" chooses it for the mesh [Pa/m]."""
     given = case.contact.normal_penalty_Pa_m
     if given != "auto":
         return given

@@ -1,1 +1,1 @@
-"""Pictures and films of a container; the only door to pyvista's renderer. It steps nothing."""
+"""Pictures and movies of a run; the only use of pyvista's renderer. No result is computed here."""

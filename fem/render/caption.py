@@ -1,29 +1,30 @@
-"""What is written on a picture: case, time, state, rotation, stress scale, a metre; drawn over the rendered scene.
+"""Text of a picture: case, time, state and rotation above it; scale, symbols and stress bar beside it.
 
-Positions in pixels from the upper left corner. The fonts are those that come with matplotlib.
+Positions in pixels from the lower left corner. The font comes with matplotlib, so it is the same everywhere.
 """
 
 import math
-from functools import cache
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+import pyvista
 
 from fem.assessment.summary import ratio_in_words
 from fem.assessment.verdict import rotation_ratio
 from fem.figures.style import number
+from fem.render.scene import BAR, BOTTOM, SIDE, View
+from fem.results.errors import FolderError
 from fem.results.fields import Frame
 from fem.results.reader import OpenedRun
-from fem.results.run_folder import FolderError
 from fem.runtime.arrays import FloatArray
 
-STRESS_MAP = "YlOrRd"  #: light where little is stressed, told apart by the colour-blind, grey in print
 INK, FAINT = "#222222", "#666666"
 LONGEST = 62  #: characters of a title
-BAR = (18, 300)  #: width and largest height of the stress scale [pixels]
-METRE = 120  #: longest ruler [pixels]
+BAR_SIZE = (18, 300)  #: width and largest height of the stress bar [pixels]
+RULER = 120  #: longest ruler [pixels]
+FONTS = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
 
 
 def rotation_at(run: OpenedRun, times: FloatArray | float) -> FloatArray:
@@ -38,79 +39,101 @@ def rotation_at(run: OpenedRun, times: FloatArray | float) -> FloatArray:
     return np.asarray(np.interp(times, history["time_s"], history["rotation_rad"]))
 
 
-def caption(run: OpenedRun, frame: Frame) -> tuple[str, str, str]:
-    """What stands above a picture: the case; time and state; rotation and rotation ratio."""
+def caption(run: OpenedRun, frame: Frame) -> tuple[str, str]:
+    """Title of a picture, and the lines below it: time and state, rotation and rotation ratio."""
     rotation = float(rotation_at(run, frame.time))
     sample = min(int(np.searchsorted(run.history["time_s"], frame.time - 1e-9)), len(run.history) - 1)
-    title = str(run.result.get("title") or run.name)
+    title = run.typed_result.title or run.name
     title = title if len(title) <= LONGEST else f"{title[: LONGEST - 3]}..."
-    whole = "" if run.status in ("completed", "overturned") else f" ({run.status})"
+    status = "" if run.status in ("completed", "overturned") else f" ({run.status})"
     degrees = f"{round(math.degrees(rotation), 2) + 0.0:.2f}".replace("-", "−")  # no minus zero
     ratio = ratio_in_words(rotation_ratio(rotation, run.slenderness_angle))
-    return (
-        title + whole,
-        f"t = {frame.time:.3f} s    {run.history.modes[sample]}",
-        f"rotation {degrees}°, rotation ratio {ratio}",
+    return title + status, (
+        f"t = {frame.time:.3f} s    {run.history.modes[sample]}\nrotation {degrees}°, rotation ratio {ratio}"
     )
 
 
-def write_caption(image: Image.Image, lines: tuple[str, str, str], left: int) -> None:
-    """Title and two lines below it in the upper left corner."""
-    pen, top = ImageDraw.Draw(image), 12
-    for text, font, step in zip(
-        lines, (_font(18, bold=True), _font(17), _font(17)), (30, 25, 25), strict=True
-    ):
-        pen.text((left, top), text, fill=INK, font=font)
-        top += step
+def symbols(frame: Frame) -> str:
+    """Meaning of the symbols on the floor."""
+    pressure = number(1e-6 * float(frame.contact_pressure.max()))
+    return f"▲ initial middle of the base    ↑ contact pressure, up to {pressure} MPa"
 
 
-def draw_stress_scale(image: Image.Image, limit: float, *, right: int, bottom: int) -> None:
-    """A vertical scale of von Mises stress from 0 to the limit [Pa], its foot at `bottom`."""
-    pen, font = ImageDraw.Draw(image), _font(14)
-    width, height = BAR[0], min(BAR[1], int(0.6 * bottom))
-    left, top = image.width - right, bottom - height
-    shades = 255.0 * matplotlib.colormaps[STRESS_MAP](np.linspace(1.0, 0.0, height))[:, None, :3]
-    bar = np.broadcast_to(shades, (height, width, 3)).round().astype(np.uint8)
-    image.paste(Image.fromarray(bar), (left, top))
-    pen.rectangle((left - 1, top - 1, left + width, bottom), outline=FAINT)
-    for share in (0.0, 0.25, 0.5, 0.75, 1.0):
-        place = bottom - 1 - share * (height - 1)
-        pen.line((left + width, place, left + width + 5, place), fill=FAINT)
-        over = "≥ " if share == 1.0 else ""
-        pen.text((left + width + 9, place), over + number(1e-6 * share * limit), INK, font, anchor="lm")
-    pen.text((left - 4, top - 34), "von Mises\nstress [MPa]", fill=INK, font=font, anchor="ls", spacing=2)
-
-
-def draw_no_stress(image: Image.Image, *, right: int, bottom: int) -> None:
-    """Where the scale would stand: that there is none, its foot at `bottom`."""
-    pen = ImageDraw.Draw(image)
-    text = "rigid:\nno stress\nis known"
-    pen.text((image.width - right - 4, bottom), text, fill=FAINT, font=_font(14), anchor="ld", spacing=2)
-
-
-def draw_foot(image: Image.Image, pixels_per_metre: float, *, pressure: float, left: int) -> None:
-    """In the lower corners: a ruler, which stands still, and what the signs on the floor mean.
+class Captions:
+    """The text on a picture; the first three change with the frame.
 
     Args:
-        image: drawn on.
-        pixels_per_metre: scale of the picture.
-        pressure: largest contact pressure at this instant [Pa].
-        left: margin [pixels].
+        plotter: of the scene; view: that it shows.
+        colours: pyvista's mapper of the stresses; None without them.
+        stress_limit: end of their scale [Pa].
     """
-    pen, font = ImageDraw.Draw(image), _font(14)
-    longest = METRE / pixels_per_metre
-    length = 10.0 ** math.floor(math.log10(longest))
-    length *= max(step for step in (1.0, 2.0, 5.0) if step * length <= longest)
-    end, foot = left + length * pixels_per_metre, image.height - 16
-    pen.line((left, foot, end, foot), fill=INK, width=2)
-    for x in (left, end):
-        pen.line((x, foot - 5, x, foot + 5), fill=INK, width=2)
-    pen.text((end + 8, foot), f"{length:g} m", fill=INK, font=font, anchor="lm")
-    meaning = f"▲ middle of the base at first    ↑ contact pressure, up to {number(1e-6 * pressure)} MPa"
-    pen.text((image.width - left, foot), meaning, fill=INK, font=font, anchor="rm")
 
+    def __init__(self, plotter: pyvista.Plotter, view: View, colours: Any, stress_limit: float) -> None:
+        self._plotter = plotter
+        width, height = view.size
+        self.title = self._write("", SIDE, height - 12, size=18, bold=True, align="top")
+        self.lines = self._write("", SIDE, height - 41, size=17, align="top")
+        self.symbols = self._write("", width - SIDE, 16, size=14, justify="right")
+        self._draw_ruler(view)
+        floor = BOTTOM + int(view.depth * view.pixels_per_metre) + 12
+        if colours is not None:
+            tall = min(BAR_SIZE[1], int(0.6 * (height - floor)))
+            self._draw_stress_bar(colours, stress_limit, view, floor, tall)
+            text, colour, above = "von Mises\nstress [MPa]", INK, floor + tall + 18
+        else:
+            text, colour, above = "rigid:\nno stress\nis computed", FAINT, floor
+        self._write(text, width - BAR - 4, above, size=14, colour=colour, align="bottom")
 
-@cache
-def _font(size: int, *, bold: bool = False) -> ImageFont.FreeTypeFont:
-    folder = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
-    return ImageFont.truetype(folder / f"DejaVuSans{'-Bold' if bold else ''}.ttf", size)
+    def _write(
+        self,
+        text: str,
+        x: float,
+        y: float,
+        *,
+        size: int,
+        colour: str = INK,
+        bold: bool = False,
+        justify: str = "left",
+        align: str = "center",
+    ) -> pyvista.Text:
+        font = FONTS / f"DejaVuSans{'-Bold' if bold else ''}.ttf"
+        written = pyvista.Text(text, position=(x, y))
+        prop = written.prop
+        prop.font_size, prop.color = size, colour
+        prop.set_font_file(str(font))
+        prop.SetLineSpacing(1.2)
+        prop.justification_horizontal, prop.justification_vertical = justify, align
+        self._plotter.add_actor(written)
+        return written
+
+    def _draw_ruler(self, view: View) -> None:
+        """A ruler of 1, 2 or 5 times a power of ten in the lower left corner; it does not move with the floor."""
+        left, _, low, _ = view.edges
+        pixel = 1.0 / view.pixels_per_metre
+        length = 10.0 ** math.floor(math.log10(RULER * pixel))
+        length *= max(step for step in (1.0, 2.0, 5.0) if step * length <= RULER * pixel)
+        start, foot, tick = left + SIDE * pixel, low + 16 * pixel, 5 * pixel
+        ends = (start, start + length)
+        lines = [*((x, foot) for x in ends), *((x, foot + z) for x in ends for z in (-tick, tick))]
+        self._plotter.add_lines(np.array([(*line, 4.0) for line in lines]), color=INK, width=2)
+        self._write(f"{length:g} m", SIDE + length / pixel + 8, 16, size=14)
+
+    def _draw_stress_bar(self, mapper: Any, limit: float, view: View, floor: int, tall: int) -> None:
+        """Vertical bar of von Mises stress from 0 to the limit [Pa], above the floor."""
+        width, height = view.size
+        shares = (0.0, 0.25, 0.5, 0.75, 1.0)
+        bar = self._plotter.add_scalar_bar(  # type: ignore[call-arg]
+            title="",
+            mapper=mapper,
+            n_labels=0,
+            vertical=True,
+            position_x=1.0 - BAR / width,
+            position_y=floor / height,
+            width=BAR_SIZE[0] / width,
+            height=tall / height,
+        )
+        bar.SetBarRatio(1.0)
+        for share in shares:
+            over = "≥ " if share == 1.0 else ""
+            y = floor + share * tall
+            self._write(over + number(1e-6 * share * limit), width - BAR + BAR_SIZE[0] + 9, y, size=14)

@@ -1,34 +1,36 @@
-"""A run as a film: GIF through pillow, MP4 where imageio-ffmpeg is installed, in real time.
+"""A run as a movie in real time: GIF through pillow, MP4 where imageio-ffmpeg is installed.
 
-Frames that follow one another faster than an eye or a browser can, are left out evenly.
+Of frames closer in time than a browser can show, only every second, third, .. one is taken.
 """
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 from PIL import Image
 
-from fem.render.picture import Scene, save_whole
+from fem.render.picture import Scene
+from fem.results.errors import FolderError
+from fem.results.files import write_atomically
 from fem.results.reader import OpenedRun
-from fem.results.run_folder import FolderError
 
 try:
     import imageio_ffmpeg
-except ImportError:  # 173 MB, and a GIF needs it not
+except ImportError:  # optional: 173 MB, not needed for a GIF
     imageio_ffmpeg = None
 
-FASTEST = 0.04  #: s between the frames of a film; browsers slow down what is faster than 0.02 s
+SHORTEST = 0.04  #: time between frames [s]; browsers slow down anything faster than 0.02 s
 SUFFIXES = (".gif", ".mp4")
 MEND_VIDEO = "python -m pip install imageio-ffmpeg"
-PALETTE_FRAMES = 5  #: from which the colours of a GIF are taken
+PALETTE_FRAMES = 5  #: first frames, from which the colours of a GIF are taken
 
 
 def write_movie(
     run: OpenedRun, *, path: Path | None = None, progress: Callable[[int, int], None] = lambda done, all: None
 ) -> Path:
-    """Render the frames of a run into a film.
+    """Render the frames of a run into a movie.
 
     Args:
         run: with fields.
@@ -36,23 +38,27 @@ def write_movie(
         progress: called with the number of frames done and of all.
 
     Raises:
-        FolderError, FieldError: no fields, a frame that is damaged, a file name that is no film's.
+        FolderError, FieldError: no fields, a damaged frame, a file name with another ending.
         OSError: the file cannot be written.
     """
     target = path or run.place.figures / "movie.gif"
-    require_film(target)
-    chosen, interval = frames_of_film(run.fields.times)
+    require_movie_file(target)
+    chosen, interval = select_frames(run.fields.times)
     scene = Scene(run)
+    write = _write_gif if target.suffix.lower() == ".gif" else _write_mp4
     try:
-        images = _rendered(run, scene, chosen, progress)
-        write = _write_gif if target.suffix.lower() == ".gif" else _write_mp4
-        return save_whole(target, lambda part: write(part, images, len(chosen), interval, scene.view.size))
+        with TemporaryDirectory() as folder:
+            movie = Path(folder) / target.name
+            write(movie, _rendered(run, scene, chosen, progress), len(chosen), interval, scene.view.size)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            write_atomically(target, movie.read_bytes())
     finally:
         scene.close()
+    return target
 
 
-def require_film(path: Path) -> None:
-    """Refuse a file that is not to be a film, or one that nothing here can write, before anything is rendered."""
+def require_movie_file(path: Path) -> None:
+    """Refuse a file name that is no movie, or MP4 without its encoder, before anything is rendered."""
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise FolderError(f"--to must end with {' or '.join(SUFFIXES)}, got {path.name!r}")
@@ -60,12 +66,12 @@ def require_film(path: Path) -> None:
         raise FolderError(f"MP4 needs imageio-ffmpeg, which is not installed: {MEND_VIDEO}; or give a .gif")
 
 
-def frames_of_film(times: np.ndarray) -> tuple[range, float]:
-    """Indices of the frames that are shown, and the time between them [s]: real time, at most 25 a second."""
+def select_frames(times: np.ndarray) -> tuple[range, float]:
+    """Indices of the frames shown, and the time between them [s]: real time, at most 25 a second."""
     if len(times) < 2:
         return range(len(times)), 1.0
     interval = float(times[1] - times[0])
-    stride = max(1, round(FASTEST / interval)) if interval < FASTEST else 1
+    stride = max(1, round(SHORTEST / interval)) if interval < SHORTEST else 1
     return range(0, len(times), stride), stride * interval
 
 
@@ -79,20 +85,20 @@ def _rendered(
 
 
 def _write_gif(path: Path, images: Iterator[Image.Image], count: int, interval: float, size: Any) -> None:
-    """One palette for all frames, so that what stands still is stored once."""
+    """One palette for all frames, so that parts that do not move are stored once."""
     first = [next(images) for _ in range(min(PALETTE_FRAMES, count))]
-    palette = _beside(first).quantize(256, method=Image.Quantize.MEDIANCUT)
+    palette = _side_by_side(first).quantize(256, method=Image.Quantize.MEDIANCUT)
 
     def reduced() -> Iterator[Image.Image]:
         for image in (*first, *images):
             yield image.quantize(palette=palette, dither=Image.Dither.NONE)
 
-    film = reduced()
-    next(film).save(
+    frames = reduced()
+    next(frames).save(
         path,
         format="GIF",
         save_all=True,
-        append_images=film,
+        append_images=frames,
         duration=max(20, 10 * round(100.0 * interval)),  # GIF counts hundredths of a second
         loop=0,
         optimize=False,
@@ -102,7 +108,7 @@ def _write_gif(path: Path, images: Iterator[Image.Image], count: int, interval: 
 def _write_mp4(
     path: Path, images: Iterator[Image.Image], count: int, interval: float, size: tuple[int, int]
 ) -> None:
-    """H.264, as every player and slide program takes it."""
+    """H.264, which every player and slide program reads."""
     writer = imageio_ffmpeg.write_frames(str(path), size, fps=1.0 / interval, macro_block_size=2)
     writer.send(None)
     try:
@@ -112,10 +118,5 @@ def _write_mp4(
         writer.close()
 
 
-def _beside(images: list[Image.Image]) -> Image.Image:
-    wide = Image.new("RGB", (sum(image.width for image in images), images[0].height))
-    left = 0
-    for image in images:
-        wide.paste(image, (left, 0))
-        left += image.width
-    return wide
+def _side_by_side(images: list[Image.Image]) -> Image.Image:
+    return Image.fromarray(np.concatenate([np.asarray(image) for image in images], axis=1))

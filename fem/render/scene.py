@@ -1,6 +1,6 @@
-"""What a picture of a run is made of, as pyvista's meshes: the view, body, outline, floor, arrows.
+"""Meshes of a picture of a run: body, outline, floor, arrows; and the view that encloses them.
 
-The elevation lies in the x-y plane, z toward the eye puts one thing before another. Lengths in m.
+The elevation lies in the x-y plane; z, toward the eye, decides what covers what. Lengths in m.
 """
 
 import math
@@ -19,13 +19,13 @@ from fem.solid.edges import chained, outline_edges
 PARTS = {4: ((0, 1, 2, 3),), 9: ((0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3))}
 CONTENT, LEAST_WIDTH = (1200, 760), 720  #: of the picture [pixels]
 TOP, BOTTOM, SIDE, BAR = 112, 16, 24, 110  #: margins: text above, below, at the sides, scale bar [pixels]
-STRESSED = 0.995  #: share of the nodes of a frame that the stress colours tell apart
+STRESSED = 0.995  #: quantile of a frame's stresses that ends the colour scale
 SLAB_SHARE = 0.16  #: depth of the slab over the container's height or width
 
 
 @dataclass(frozen=True, kw_only=True)
 class View:
-    """What a scene encloses, fixed for all its frames."""
+    """The region of the elevation that a scene shows, the same for all frames."""
 
     left: float  #: of all that moves [m]
     right: float
@@ -56,18 +56,17 @@ class View:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Survey:
-    """What has to be known of all frames before the first is drawn."""
+class FrameSummary:
+    """Extent and magnitudes of all frames, needed before the first is drawn."""
 
     view: View
     pressed: IntArray  #: nodes that ever carry contact pressure
     usual_pressure: float  #: the median over the frames of the largest [Pa]
-    #: the median over the frames of what all but a few nodes stay below [Pa]; 0 where no stress is known
-    usual_stress: float
+    usual_stress: float  #: the median over the frames of the stress quantile [Pa]; 0 without stresses
 
 
-def survey(frames: Iterable[Frame]) -> Survey:
-    """Look at every frame once, keeping none."""
+def summarise_frames(frames: Iterable[Frame]) -> FrameSummary:
+    """Read every frame once, one at a time."""
     lowest, highest = np.full(2, np.inf), np.full(2, -np.inf)
     size, pressed = 0.0, np.zeros(0, dtype=bool)
     floors, pressures, stresses = [], [], []
@@ -81,7 +80,7 @@ def survey(frames: Iterable[Frame]) -> Survey:
         pressures.append(float(frame.contact_pressure.max()))
         if frame.von_mises is not None:
             stresses.append(float(np.quantile(frame.von_mises, STRESSED)))
-    return Survey(
+    return FrameSummary(
         view=View(
             left=float(lowest[0]),
             right=float(highest[0]),
@@ -110,7 +109,7 @@ def outline_of(frame: Frame, boxes: int) -> pyvista.PolyData:
 
 
 def hatches_of(view: View) -> pyvista.PolyData:
-    """Strokes below the surface of the floor, as far as it ever comes into the view."""
+    """Strokes below the surface of the floor, over all of it that ever comes into view."""
     left, right, _, _ = view.edges
     length = 0.5 * view.depth
     first = math.floor((left - view.floor[1]) / length)
@@ -123,14 +122,14 @@ def hatches_of(view: View) -> pyvista.PolyData:
 
 
 def mark_of(view: View) -> pyvista.PolyData:
-    """A mark on the floor where the middle of the container stood at first: slip shows as its distance."""
+    """A mark on the floor at the initial middle of the base: its distance from the middle shows the slip."""
     size = 0.2 * view.depth
     points = [[0.0, 0.0, 1.5], [-0.6 * size, -size, 1.5], [0.6 * size, -size, 1.5]]
     return pyvista.PolyData(np.array(points), [3, 0, 1, 2])
 
 
 def arrows(count: int) -> pyvista.PolyData:
-    """So many arrows, of no length yet."""
+    """So many arrows, without length until `arrow_points` places them."""
     corner = 7 * np.arange(count)[:, None]
     heads = np.column_stack([np.full(count, 3), corner + np.arange(3)])
     shafts = np.column_stack([np.full(count, 4), corner + np.arange(3, 7)])
@@ -138,32 +137,20 @@ def arrows(count: int) -> pyvista.PolyData:
 
 
 def arrow_points(tips: FloatArray, share: FloatArray, *, depth: float) -> FloatArray:
-    """Corners of one arrow a pressed node, pointing up at it; none where it is not pressed.
+    """Corners of an arrow below each node, pointing up at it; without area where there is no pressure.
 
     Args:
-        tips: places of the nodes, shape (n, 3) [m].
-        share: pressure over the usual one, to which lengths are proportional up to the depth, shape (n,).
+        tips: positions of the nodes, shape (n, 3) [m].
+        share: pressure over the usual one, shape (n,); lengths are proportional to it up to the depth.
         depth: of the slab [m].
     """
     length = depth * np.minimum(0.42 * share, 0.92)
     head = np.minimum(0.3 * depth, length)
     wide = 0.08 * depth * (length > 0.0)
     thin = 0.3 * wide
-    tip, neck, tail = tips[:, 1], tips[:, 1] - head, tips[:, 1] - length
-    x = tips[:, 0]
-    corners = np.stack(
-        [
-            np.column_stack([across, up, np.full(len(x), 2.0)])
-            for across, up in (
-                (x, tip),
-                (x - wide, neck),
-                (x + wide, neck),
-                (x - thin, neck),
-                (x + thin, neck),
-                (x + thin, tail),
-                (x - thin, tail),
-            )
-        ],
-        axis=1,
-    )
-    return corners.reshape(-1, 3)
+    x, tip, neck, tail = tips[:, 0], tips[:, 1], tips[:, 1] - head, tips[:, 1] - length
+    head_corners = ((x, tip), (x - wide, neck), (x + wide, neck))
+    shaft_corners = ((x - thin, neck), (x + thin, neck), (x + thin, tail), (x - thin, tail))
+    front = np.full(len(x), 2.0)
+    corners = [np.column_stack([across, up, front]) for across, up in (*head_corners, *shaft_corners)]
+    return np.stack(corners, axis=1).reshape(-1, 3)

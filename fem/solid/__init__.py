@@ -1,1 +1,1 @@
-"""The elastic body: elements, assembly, modes, reduction, nodal stepping. It knows no case and no floor."""
+"""The elastic body: elements, assembly, modes, reduction, full model. It knows no case file and no contact law."""

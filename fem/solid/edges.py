@@ -1,4 +1,4 @@
-"""The outline of a container as pairs of nodes: its outer edges, and the joints between its boxes."""
+"""Outline of a container as pairs of nodes: its outer edges and the joints between its boxes."""
 
 import numpy as np
 
@@ -10,12 +10,12 @@ AT_JOINT = 1e-4  #: of the height, within which a side lies on a joint
 
 
 def outline_edges(points: FloatArray, cells: IntArray, boxes: int = 1) -> IntArray:
-    """Pairs of neighbouring nodes to be joined by lines.
+    """Pairs of neighbouring nodes on the outline.
 
     Args:
-        points: where the nodes stood, undeformed, shape (n, 2) [m].
+        points: undeformed positions of the nodes, shape (n, 2) [m].
         cells: nodes of each cell in the order of VTK, shape (m, 4 or 9).
-        boxes: of equal height, bolted on one another.
+        boxes: of equal height, one on the other.
 
     Returns:
         Shape (k, 2).
@@ -31,13 +31,13 @@ def outline_edges(points: FloatArray, cells: IntArray, boxes: int = 1) -> IntArr
 
 
 def chained(edges: IntArray) -> list[list[int]]:
-    """The same edges as few lines through many nodes, each edge once."""
+    """The same edges as a few long lines through the nodes, each edge once."""
     neighbours: dict[int, list[int]] = {}
     for start, end in edges.tolist():
         neighbours.setdefault(start, []).append(end)
         neighbours.setdefault(end, []).append(start)
     lines = []
-    # From the ends of open lines first, so that none is cut in the middle.
+    # Start at the ends of open lines, so that none is split.
     for node in sorted(neighbours, key=lambda node: len(neighbours[node]) % 2, reverse=True):
         while neighbours[node]:
             line = [node]

@@ -16,7 +16,7 @@ from numba.extending import register_jitable
 from contact.jit import compiled
 from fem.runtime.arrays import FloatArray, IntArray
 
-SOURCES = (Path(__file__),)  #: of the machine code of this module
+SOURCES = (Path(__file__),)  #: on which the machine code of this module depends
 Real = TypeVar("Real", float, FloatArray)
 
 
@@ -49,8 +49,8 @@ def plane_stress_lame(youngs_modulus: float, poisson_ratio: float) -> LamePair:
 def strain_components(xx: Real, xz: Real, zx: Real, zz: Real) -> tuple[Real, Real, Real]:
     """Green-Lagrange strain (H + H^T + H^T H)/2 of a gradient's components, xx, zz, xz [-].
 
-    Written in the gradient and not in F^T F - I, so that a strain of 1e-12 survives beside a small rotation;
-    a large rotation leaves a few units in the last place of 1. For numbers and for arrays alike.
+    Written in the gradient and not in F^T F - I, so that a strain of 1e-12 is not lost beside a small rotation;
+    a large rotation leaves a rounding error of a few 1e-16. For numbers and arrays.
     """
     return (
         xx + 0.5 * (xx * xx + zx * zx),
@@ -196,8 +196,8 @@ def least_volume_ratio(gradient: FloatArray) -> float:
 def cauchy_stress(gradient: FloatArray, lame: LamePair) -> FloatArray:
     """True stress F S F^T / J in the axes of space, not of the body, shape (3, ...) [Pa].
 
-    J includes the stretch of the thickness, sqrt(1 - (first/shear) tr(E)), which plane stress leaves free.
-    Where an absurd strain would make the thickness vanish (tr(E) beyond shear/first) the stress is nan.
+    J includes the stretch of the thickness, sqrt(1 - (first/shear) tr(E)), which is free in plane stress.
+    The stress is nan where the strain is so large that the thickness would vanish (tr(E) beyond shear/first).
     """
     strain = green_strain(gradient)
     sxx, szz, sxz = second_stress(strain, lame)

@@ -1,14 +1,13 @@
-"""The container with every node free to move: total Lagrangian, without a tangent ever being assembled.
+"""The full model: every node free to move, total Lagrangian, without assembling a tangent.
 
-In the frame that turns with the container the Newmark matrix M/(beta h^2) + K is constant, because M, the same
-on x and z, commutes with the rotation. It is factored once a step size (SuperLU); the residual is the exact one of
-finite rotation and St. Venant-Kirchhoff elasticity, and each iteration is one rotated back-substitution. What is left
-out of the matrix - geometric stiffness, of the order of the strain - only costs iterations. The contact is
-condensed to the base points and solved by the same compiled functions as for the reduced container.
+In the frame that turns with the container the Newmark matrix M/(beta h^2) + K is constant, because M, the same for x
+and z, commutes with the rotation. It is factored once for each step size (SuperLU). The residual is exact for finite
+rotation and St. Venant-Kirchhoff elasticity, and each iteration is one rotated back-substitution. The matrix leaves out
+the geometric stiffness, of the order of the strain; this only costs iterations. The contact is condensed to the base
+points and solved by the same compiled functions as for the reduced container.
 
-Coordinates are the absolute positions of the nodes, x and z in turn. Damping is proportional to the stiffness
-and acts in the turned frame, so that it does not brake the rocking itself. The step is compiled:
-`fem.solid.nodal_kernels`.
+Coordinates are the absolute positions of the nodes, x and z in turn. Damping is proportional to the stiffness and acts
+in the turned frame, so that it does not damp the rocking itself. `fem.solid.nodal_kernels` holds the compiled step.
 """
 
 import math
@@ -32,13 +31,13 @@ from fem.solid.assembly import FiniteElements
 from fem.solid.nodal_kernels import NodalBody, advance_nodal, enter_floor_frame_nodal
 from fem.solid.reduction import StaticResponse
 
-#: residual of a step at which its iteration stops, over the weight; the next iterate would have its square
+#: residual of a step over the weight at which its iteration stops; one more iteration would about square it
 RESIDUAL_TOLERANCE = 5e-6
 UNIT_ROUNDOFF = 2.0**-53
 FACTOR_MEMORY = 600_000_000  #: for factors of different step sizes [bytes]
 FEWEST_FACTORS, MOST_FACTORS = 8, 64
 BYTES_OF_A_NODE = 35e3  #: while the matrix is factored, measured on stacks of 2000 to 10,000 cells
-#: arrays of the last residual
+#: arrays of the last residual, which `complete` uses
 REMEMBERED = ("turn", "internal", "damping_force", "strain_energy")
 
 
@@ -54,12 +53,12 @@ class FullBody:
     Args:
         elements: the container, discretised.
         base: (n_c,) its supporting nodes, by rising x.
-        monitor: (n_m,) nodes whose motion is followed.
+        monitor: (n_m,) nodes whose motion is observed.
         gravity: [m/s2].
         damping: a of the stiffness-proportional damping C = a K in the turned frame [s].
     """
 
-    compiled = True  #: stepped by machine code; a body with methods of its own is stepped by the interpreter
+    compiled = True  #: stepped by machine code; a subclass with other methods is stepped by the interpreter
 
     def __init__(
         self,
@@ -107,14 +106,14 @@ class FullBody:
         nodal_kernels.forces(self.nodal, state.position, state.velocity)
 
     def start(self, state: State, floor: float) -> None:
-        """What follows from the coordinates and contact forces in `state`, and the acceleration they give."""
+        """Complete a state with given coordinates and contact forces: forces, energies and acceleration."""
         self.complete(state, floor)
         force = (state.external - state.internal).reshape(-1, 2)
         factor = scipy.sparse.linalg.splu(self.elements.mass.tocsc())
         state.acceleration[:] = factor.solve(force).ravel()
 
     def prepare(self, scheme: Scheme, step: float) -> None:
-        """Factor the effective matrix of this step size, in place of the oldest one if there is no room."""
+        """Factor the Newmark matrix of this step size; it replaces the oldest one if memory is full."""
         nodal = self.nodal
         now = 1.0 - scheme.alpha_f
         inertial = (1.0 - scheme.alpha_m) / (scheme.newmark_beta * step * step)
@@ -186,11 +185,11 @@ class FullBody:
         nodal_kernels.shift_velocity(self.nodal, state, velocity)
 
     def memory(self) -> dict[str, FloatArray]:
-        """What the last residual left behind for `complete`, by name; everything else follows from the state."""
+        """Arrays of the last residual by name; everything else follows from the state."""
         return {name: getattr(self.nodal, name).copy() for name in REMEMBERED}
 
     def recall(self, memory: Mapping[str, FloatArray]) -> None:
-        """Take over the memory of another body of the same container."""
+        """Restore the arrays that `memory` gave for a body of the same container."""
         for name in REMEMBERED:
             getattr(self.nodal, name)[:] = memory[name]
 
@@ -222,10 +221,10 @@ def leave_body_alone(body: ModalBody | FullBody, run: Run, floor_velocity: float
 
 
 def _rounding(elements: FiniteElements) -> float:
-    """What of the internal forces at a node may be rounding of the coordinates alone [N].
+    """Rounding error of the internal forces at a node from that of the coordinates [N].
 
-    More than the residual of a step may be where a wall is as thin as a hair: its stiffness across is enormous, and
-    the iterations would go on until they happen to hit.
+    In very thin walls, whose membrane stiffness is enormous, it exceeds the tolerance of a step: the iterations would
+    end only by chance.
     """
     stiffest = float(abs(elements.stiffness).sum(axis=1).max())
     return UNIT_ROUNDOFF * stiffest * float(np.abs(elements.nodes).max())
@@ -281,7 +280,7 @@ def _without_factors(body: FullBody, nodal_mass: FloatArray, mass_arm: FloatArra
 
 
 def _with_room(body: NodalBody, solver: scipy.sparse.linalg.SuperLU) -> NodalBody:
-    """Room for as many factors as the memory set aside takes; their entries are those of the first one, or zeros."""
+    """Arrays for as many factors as `FACTOR_MEMORY` holds; all have the sparsity of the first one."""
     unknowns, forces = body.residual.size, 2 * body.base.size
     entries = solver.nnz // 2  # of L and U together, with zeros that the blocks of SuperLU hold
     size = 12 * entries + 8 * (forces + 2) * unknowns

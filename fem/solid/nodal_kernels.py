@@ -1,10 +1,9 @@
-"""The compiled half of the full model: every node free to move, total Lagrangian, no tangent ever assembled.
+"""Compiled step of the full model: every node free to move, total Lagrangian, without assembling a tangent.
 
-What a step of `fem.solid.nodal_body` consists of, written for the compiled stepper (see `contact.stepping.body` for
-what each function
-owes it): internal forces cell by cell, products with mass and stiffness, and one back-substitution an iteration
-with factors of the turned Newmark matrix that `FullBody.prepare` made. Vectors of all unknowns are interleaved, x and z
-of a node in turn; positions are absolute.
+The functions that `contact.stepping.body` asks of a body, for `fem.solid.nodal_body`: internal forces cell by cell,
+products with mass and stiffness, and one back-substitution for each iteration, with the factors of the turned Newmark
+matrix that `FullBody.prepare` computes. Vectors of all unknowns are interleaved, x and z of a node in turn; positions
+are absolute.
 """
 
 import math
@@ -61,8 +60,8 @@ class NodalBody(NamedTuple):
     weights: FloatArray  #: (m, q) volumes [m3]
     base: IntArray  #: (n_c,) supporting nodes, by rising x
     watched: IntArray  #: (n_m,) nodes whose motion is followed
-    source: FloatArray  #: (n, 2) other forces on the nodes, given by whoever steps the body [N]
-    #: factors L D L^T of the turned Newmark matrix, for each of so many step sizes ..
+    source: FloatArray  #: (n, 2) further forces on the nodes, set by the caller [N]
+    #: factors L D L^T of the turned Newmark matrix, one slot for each step size
     cached_step: FloatArray  #: (slots + 1,) the step [s]; last, the slot to use next
     order: IntArray  #: (2 n,) where an unknown stands in the factors
     lower_starts: IntArray  #: (slots, 2 n + 1) L by columns, its unit diagonal left out

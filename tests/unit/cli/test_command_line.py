@@ -328,22 +328,22 @@ class TestDoctor:
     def test_a_rendering_that_ends_its_process_is_told_and_does_not_end_this_one(self, monkeypatch):
         monkeypatch.setattr(rendering, "RENDER", "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
         assert rendering.probe_rendering() == (
-            "no OpenGL library that works was found (the trial ended with signal 11)"
+            "no working OpenGL library was found (the rendering test ended with signal 11)"
         )
         with pytest.raises(
             rendering.RenderingError, match=r"nothing else is affected.*Debian.*apt-get install"
         ):
             rendering.require_rendering()
         monkeypatch.setattr(rendering, "RENDER", "raise RuntimeError('no GL')")
-        assert rendering.probe_rendering() == "rendering failed (RuntimeError: no GL)"
+        assert rendering.probe_rendering() == "the rendering test failed (RuntimeError: no GL)"
         monkeypatch.setattr(rendering, "RENDER", "pass")
         assert rendering.probe_rendering() is None
 
     def test_a_rendering_that_hangs_is_given_up(self, monkeypatch):
         monkeypatch.setattr(rendering, "RENDER", "import time; time.sleep(60)")
-        monkeypatch.setattr(rendering, "RENDER_SECONDS", 0.5)
+        monkeypatch.setattr(rendering, "PROBE_SECONDS", 0.5)
         began = time.monotonic()
-        assert rendering.probe_rendering() == "rendering did not end within 0.5 s"
+        assert rendering.probe_rendering() == "the rendering test did not end within 0.5 s"
         assert time.monotonic() - began < 30.0
 
 

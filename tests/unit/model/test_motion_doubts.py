@@ -40,7 +40,7 @@ def motion(folder, values, *, times=TIMES, quantity="acceleration", unit="m/s2",
     return build_motion(read_case(text, folder=folder))
 
 
-def test_a_mean_acceleration_that_drifts_is_told_with_the_baselines(tmp_path):
+def test_a_mean_acceleration_that_drifts_is_reported_with_the_baselines(tmp_path):
     drifting = 2.0 * np.sin(2.0 * np.pi * TIMES) + 0.1
     (note,) = motion_notes(motion(tmp_path, drifting))
     assert "mean acceleration, 0.1 m/s2" in note and "with 0.2 m/s at the end" in note
@@ -49,7 +49,7 @@ def test_a_mean_acceleration_that_drifts_is_told_with_the_baselines(tmp_path):
         assert motion_notes(motion(tmp_path, drifting, baseline=baseline)) == []
 
 
-def test_samples_too_far_apart_for_the_motion_are_told(tmp_path):
+def test_samples_too_far_apart_for_the_motion_are_reported(tmp_path):
     times = np.linspace(0.0, 4.0, 41)
     (note,) = motion_notes(motion(tmp_path, np.cos(2.0 * np.pi * 2.5 * times), times=times))
     assert "too coarse for this motion" in note and "0.1 s apart" in note
@@ -57,7 +57,7 @@ def test_samples_too_far_apart_for_the_motion_are_told(tmp_path):
 
 
 def test_accelerations_that_cannot_be_meant_are_refused_with_the_guess(tmp_path):
-    with pytest.raises(CaseError, match=r"reach 350 m/s2, at most 100 m/s2 are taken; looks like gal"):
+    with pytest.raises(CaseError, match=r"reach 350 m/s2, at most 100 m/s2 are accepted; looks like gal"):
         motion(tmp_path, 350.0 * np.cos(2.0 * np.pi * TIMES))
     with pytest.raises(CaseError, match=r"is its unit right|looks like"):
         motion(tmp_path, 50.0 * np.sin(2.0 * np.pi * TIMES), quantity="displacement", unit="m")

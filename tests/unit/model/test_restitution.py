@@ -52,15 +52,9 @@ def test_a_bouncing_contact_keeps_more(slenderness, expected):
 
 def test_a_wider_support_keeps_more_than_two_corners():
     # A flat base of eleven points: 0.945 for 0.8945; the impact works at the points between the corners.
-    flat = apparent_restitution(
-        support="flat", foot_over_width=None, slenderness=4.0 / 1.1, damping_ratio=2.0, housner=0.8945
-    )
-    feet = [
-        apparent_restitution(
-            support="feet", foot_over_width=foot, slenderness=4.0 / 1.1, damping_ratio=2.0, housner=0.8945
-        )
-        for foot in (0.1, 0.2)
-    ]
+    stack = {"slenderness": 4.0 / 1.1, "damping_ratio": 2.0, "housner": 0.8945}
+    flat = apparent_restitution(support="flat", foot_over_width=None, **stack)
+    feet = [apparent_restitution(support="feet", foot_over_width=foot, **stack) for foot in (0.1, 0.2)]
     assert flat == pytest.approx(0.945, abs=5e-3)
     assert on_corners(4.0 / 1.1) < feet[0] < feet[1] < flat
 
@@ -68,25 +62,15 @@ def test_a_wider_support_keeps_more_than_two_corners():
 @pytest.mark.parametrize(
     "outside",
     [
-        {"slenderness": 1.0},
-        {"slenderness": 9.0},
-        {"damping_ratio": 0.1},
-        {"damping_ratio": 0.0},
-        {"damping_ratio": 50.0},
-        {"support": "feet", "foot_over_width": 0.4},
-        {"support": "feet", "foot_over_width": 0.01},
+        *({"slenderness": value} for value in (1.0, 9.0)),
+        *({"damping_ratio": value} for value in (0.1, 0.0, 50.0)),
+        *({"support": "feet", "foot_over_width": value} for value in (0.4, 0.01)),
     ],
 )
-def test_beyond_the_table_nothing_is_said(outside):
-    inside = {
-        "support": "corners",
-        "foot_over_width": None,
-        "slenderness": 3.0,
-        "damping_ratio": 2.0,
-        "housner": 0.85,
-    }
-    assert apparent_restitution(**inside) is not None
-    assert apparent_restitution(**(inside | outside)) is None
+def test_outside_the_table_there_is_no_value(outside):
+    inside = {"support": "corners", "foot_over_width": None, "slenderness": 3.0, "damping_ratio": 2.0}
+    assert apparent_restitution(**inside, housner=0.85) is not None
+    assert apparent_restitution(**(inside | outside), housner=0.85) is None
 
 
 def test_between_entries_the_loss_is_linear_in_each_direction():
@@ -116,10 +100,7 @@ def test_an_entry_without_a_value_gives_none_and_spoils_no_other():
 
 
 def test_another_distribution_of_mass_keeps_the_share_of_housners_loss():
-    heavy = apparent_restitution(
-        support="flat", foot_over_width=None, slenderness=3.0, damping_ratio=2.0, housner=0.80
-    )
-    homogeneous = apparent_restitution(
-        support="flat", foot_over_width=None, slenderness=3.0, damping_ratio=2.0, housner=housner(3.0)
-    )
+    flat = {"support": "flat", "foot_over_width": None, "slenderness": 3.0, "damping_ratio": 2.0}
+    heavy = apparent_restitution(**flat, housner=0.80)
+    homogeneous = apparent_restitution(**flat, housner=housner(3.0))
     assert (1.0 - heavy) / 0.2 == pytest.approx((1.0 - homogeneous) / (1.0 - housner(3.0)))

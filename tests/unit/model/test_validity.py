@@ -84,15 +84,15 @@ def test_a_run_that_inverts_an_element_fails_and_says_where():
 def test_a_step_that_fails_says_what_failed():
     model = build_model(load_case("seed_box", ["solver.model=rigid"]))
     weight = model.container.mesh.mass * model.case.gravity_m_s2
-    told = {
+    messages = {
         residual: stepping_failure(model, residual) for residual in (np.nan, np.inf, 1e-12 * weight, weight)
     }
-    for message in told.values():
+    for message in messages.values():
         assert message.startswith("step 1, t = 0 s: ") and "at the smallest step (" in message
         assert "try a" in message and "nan" not in message and "inf" not in message
-    assert "trial solution is not finite" in told[np.nan]
-    assert "did not converge" in told[1e-12 * weight]
-    assert f"out of balance by {weight:.2g} N" in told[weight]
+    assert "trial solution is not finite" in messages[np.nan]
+    assert "did not converge" in messages[1e-12 * weight]
+    assert f"out of balance by {weight:.2g} N" in messages[weight]
 
 
 def test_a_ledger_that_is_no_number_does_not_pass_the_audit():

@@ -1,13 +1,10 @@
-"""Assembled matrices and forces: against closed forms, scikit-fem's own assembly, and differences."""
+"""Assembled matrices and forces: against closed forms and differences."""
 
-from dataclasses import FrozenInstanceError
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import scipy.sparse.linalg
-import skfem
-from skfem.helpers import ddot, eye, mul, trace, transpose
 
 from fem.solid.assembly import assemble
 from fem.solid.elasticity import cauchy_stress, plane_stress_lame
@@ -125,50 +122,8 @@ def test_stiffness_is_the_tangent_at_rest_and_leaves_three_rigid_motions_free(or
     assert values[3] > 1e-7 * values[-1]  # no hourglass
 
 
-def deformation_and_stress(w):
-    """F and the second Piola-Kirchhoff stress, of the Green-Lagrange strain (F^T F - I)/2."""
-    gradient = w.displacement.grad
-    identity = eye(np.ones_like(gradient[0, 0]), 2)
-    F = gradient + identity
-    strain = 0.5 * (mul(transpose(F), F) - identity)
-    return F, 2.0 * w.shear * strain + w.first * eye(trace(strain), 2)
-
-
-@skfem.LinearForm
-def internal_force_form(v, w):
-    F, S = deformation_and_stress(w)
-    return w.thickness * ddot(mul(F, S), v.grad)
-
-
-@skfem.BilinearForm
-def tangent_form(u, v, w):
-    """Derivative of the internal force: geometric part, then material part in the current frame."""
-    F, S = deformation_and_stress(w)
-    strain, test = (0.5 * (mul(transpose(F), g) + mul(transpose(g), F)) for g in (u.grad, v.grad))
-    material = 2.0 * w.shear * ddot(strain, test) + w.first * trace(strain) * trace(test)
-    return w.thickness * (ddot(mul(u.grad, S), v.grad) + material)
-
-
 @ORDERS
-def test_force_and_tangent_agree_with_the_weak_forms_in_scikit_fem(order):
-    mesh = distorted_mesh()
-    elements = assemble(mesh, order=order, **STEEL)
-    displacement = strained_and_turned(elements, strain=0.05)
-    kind = skfem.ElementVector({1: skfem.ElementQuad1, 2: skfem.ElementQuad2}[order]())
-    basis = skfem.Basis(skfem.MeshQuad(mesh.points.T.copy(), mesh.quads.T.copy()), kind, intorder=5)
-    fields = {
-        "displacement": basis.interpolate(displacement.ravel()),
-        "thickness": np.repeat(mesh.thickness[:, None], basis.X.shape[1], axis=1),
-        **elements.lame._asdict(),
-    }
-    force = internal_force_form.assemble(basis, **fields).reshape(-1, 2)
-    assert np.abs(elements.internal_force(displacement) - force).max() < 1e-12 * np.abs(force).max()
-    tangent = tangent_form.assemble(basis, **fields)
-    assert np.abs(elements.tangent(displacement) - tangent).max() < 1e-12 * np.abs(tangent).max()
-
-
-@ORDERS
-@pytest.mark.parametrize("strain", [1e-4, 1e-3, 1e-2, 1e-1])
+@pytest.mark.parametrize("strain", [1e-4, 1e-1])
 def test_internal_force_is_the_derivative_of_the_strain_energy(order, strain):
     elements = assemble(distorted_mesh(2, 3), order=order, **STEEL)
     displacement = strained_and_turned(elements, strain)
@@ -181,7 +136,7 @@ def test_internal_force_is_the_derivative_of_the_strain_energy(order, strain):
 
 
 @ORDERS
-@pytest.mark.parametrize("strain", [1e-6, 1e-4, 1e-2, 1e-1])
+@pytest.mark.parametrize("strain", [1e-6, 1e-1])
 def test_tangent_is_the_derivative_of_the_internal_force(order, strain):
     elements = assemble(distorted_mesh(2, 3), order=order, **STEEL)
     displacement = strained_and_turned(elements, strain)
@@ -191,15 +146,6 @@ def test_tangent_is_the_derivative_of_the_internal_force(order, strain):
     product = elements.tangent(displacement) @ direction.ravel()
     error = (ahead - behind).ravel() / (2 * step) - product
     assert np.abs(error).max() < 1e-8 * np.abs(product).max()
-
-
-@ORDERS
-def test_rigid_rotation_and_a_far_floor_cause_no_internal_force(order):
-    elements = assemble(distorted_mesh(), order=order, **STEEL)
-    displacement = rigid_displacement(elements.nodes, 1.3, shift=(10.0, -3.0))
-    linear = np.abs(elements.stiffness @ displacement.ravel()).max()
-    assert np.abs(elements.internal_force(displacement)).max() < 1e-12 * linear
-    assert elements.nodal_von_mises(displacement).max() < 1e-12 * STEEL["youngs_modulus"]
 
 
 @ORDERS
@@ -300,30 +246,23 @@ def test_equal_neighbours_share_the_stress_of_their_nodes_by_area(order):
     assert stress[between, 0] == pytest.approx((1e3 * 1.0 + 5e3 * 3.0) / 4.0, rel=1e-6)
 
 
-def test_unknown_order_is_refused():
+def test_meshes_that_cannot_be_assembled_are_refused_by_number_and_place():
+    def mesh():
+        return quad_mesh(np.linspace(0, 2, 3), np.linspace(0, 1, 2))
+
     with pytest.raises(ValueError, match=r"order must be 1 .* got 3"):
-        assemble(distorted_mesh(), order=3, **STEEL)
-
-
-def test_clockwise_cell_is_refused_by_number_and_place():
-    mesh = quad_mesh(np.linspace(0, 2, 3), np.linspace(0, 1, 2))
-    mesh.quads[1] = mesh.quads[1, ::-1]
-    with pytest.raises(ValueError, match=r"cell 1 at x = 1.5 m, z = 0.5 m .* counter-clockwise"):
-        assemble(mesh, order=1, **STEEL)
-
-
-def test_cell_of_nan_is_refused():
-    mesh = quad_mesh(np.linspace(0, 2, 3), np.linspace(0, 1, 2))
-    mesh.points[5, 0] = np.nan
-    with pytest.raises(ValueError, match=r"cell 1 .* Jacobian nan"):
-        assemble(mesh, order=2, **STEEL)
-
-
-def test_point_without_cell_is_refused():
-    mesh = quad_mesh(np.linspace(0, 2, 3), np.linspace(0, 1, 2))
-    mesh.points = np.vstack([mesh.points, [7.0, 8.0]])
-    with pytest.raises(ValueError, match="point 6 at x = 7 m, z = 8 m belongs to no cell"):
-        assemble(mesh, order=1, **STEEL)
+        assemble(mesh(), order=3, **STEEL)
+    clockwise, nan, lonely = mesh(), mesh(), mesh()
+    clockwise.quads[1] = clockwise.quads[1, ::-1]
+    nan.points[5, 0] = np.nan
+    lonely.points = np.vstack([lonely.points, [7.0, 8.0]])
+    for wrong, message in (
+        (clockwise, r"cell 1 at x = 1.5 m, z = 0.5 m .* counter-clockwise"),
+        (nan, r"cell 1 .* Jacobian nan"),
+        (lonely, "point 6 at x = 7 m, z = 8 m belongs to no cell"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            assemble(wrong, order=1, **STEEL)
 
 
 @pytest.mark.parametrize(
@@ -340,9 +279,3 @@ def test_impossible_cell_data_are_refused(name, values, message):
     setattr(mesh, name, np.array(values))
     with pytest.raises(ValueError, match=message):
         assemble(mesh, order=1, **STEEL)
-
-
-def test_assembled_elements_are_frozen():
-    elements = assemble(distorted_mesh(2, 2), order=1, **STEEL)
-    with pytest.raises(FrozenInstanceError):
-        elements.order = 2

@@ -9,7 +9,7 @@ import pyvista
 
 from fem.solid import modes as modes_module
 from fem.solid.assembly import assemble
-from fem.solid.modes import elastic_mode_table, elastic_modes, rigid_modes, write_modes
+from fem.solid.modes import elastic_modes, rigid_modes, write_modes
 
 
 def block(columns, rows, order, *, width=1.1, height=4.0, densities=(7850.0,)):
@@ -124,14 +124,6 @@ def test_slender_bar_bends_at_timoshenkos_frequency():
     assert lowering == pytest.approx(1.44e-3, rel=1e-2)
     modes = elastic_modes(block(2, 60, 2, width=width, height=height), 1)
     assert modes.frequencies_Hz[0] == pytest.approx(euler * (1.0 - lowering), rel=5e-5)
-
-
-def test_table_has_a_row_a_mode():
-    modes = elastic_modes(block(3, 5, 1), 3)
-    table = elastic_mode_table(modes)
-    assert [row["mode"] for row in table] == [1, 2, 3]
-    assert [row["frequency_Hz"] * row["period_s"] for row in table] == pytest.approx([1.0, 1.0, 1.0])
-    assert table[2]["ratio_to_first"] == pytest.approx(modes.frequencies_Hz[2] / modes.frequencies_Hz[0])
 
 
 @pytest.mark.parametrize("order", [1, 2])
