@@ -145,8 +145,8 @@ def hand_out(
                     found = future.result()
                 except BrokenExecutor as error:
                     raise WorkersLostError(
-                        f"a worker process died ({error}); perhaps it ran out of memory: --resume continues, -j 1 needs "
-                        "less memory"
+                        f"a worker process died ({error}); perhaps it ran out of memory: --resume continues, -j 1 "
+                        "needs less memory"
                     ) from None
                 pool, chunk = waiting.pop(future)
                 pool.given -= 1
