@@ -1,143 +1,165 @@
-"""The end of a run on screen and in `summary.txt`: the static rule beside what the run found.
+"""The summary of a run, on screen and in `summary.txt`: results first, the static rules beside them, then numerics.
 
-Made from the keys of `run.json` alone, in units for people (kN, kNm, mm, degrees). Only the static rule under
-this run's own peak floor acceleration is compared with the run; the code's base shear is a second matter and
-stands below it. A run says what happened under its motion and nothing beyond.
+Made from the result of a run alone, in units for people (kN, kNm, mm, degrees). Only the static rule under
+this run's own peak floor acceleration is compared with the run. The code's base shear answers another question
+and is shown below it. A summary states what happened under this motion and nothing beyond.
 """
 
 import io
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 from rich.box import SIMPLE
-from rich.console import Console, Group, RenderableType
+from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from fem.assessment.summary_joints import joint_table
-from fem.results.run_result import JointDemand
+from fem.results.run_result import (
+    Band,
+    Energy,
+    JointDemand,
+    Numerics,
+    RigidCheckResult,
+    RunAndBlock,
+    RunResult,
+    StaticResult,
+    Verdict,
+)
 
-Result = Mapping[str, Any]
-
-TEXT_WIDTH = 110
+TEXT_WIDTH = 80
+PADDING = (0, 1, 0, 0)
 INVISIBLE = 1e-9  #: in the units of people: smaller numbers are rounding
-#: what is smaller is told as smaller than that: lengths [m], rotations [degrees], rotation ratios
+#: values below these are shown as "< limit": lengths [m], rotations [degrees], rotation ratios
 LEAST_LENGTH, LEAST_DEGREES, LEAST_RATIO = 1e-5, 0.01, 1e-3
-CODE_NOTE = "The code's rows hold a design response (EN 1998-1:2004, 4.3.3.2), not the motion of this floor."
+LEAST_N = 1e-6  #: smaller joint forces [N] and moments [Nm] are rounding
+MOST_JOINTS = 8  #: joints shown; of more, those with a largest value
+CODE_NOTE = (
+    "The code's rows are a design response (EN 1998-1:2004, 4.3.3.2), not the motion of this floor; they are not "
+    "compared with the run."
+)
 BAND_NOTE = (
-    "The band repeats the run with a third and three times the contact penalty and with contact damping "
-    "ratios 0.5 and 2, for nobody knows a floor better: one outcome throughout means that it does not hang "
-    "on the contact, different ones mean that this model cannot tell."
+    "The band repeats the run with a third and three times the contact penalty and with contact damping ratios 0.5 "
+    "and 2, because no floor is known better than that. One outcome throughout does not depend on the contact; "
+    "where outcomes differ, this model cannot decide."
 )
 MARGIN_NOTE = (
-    "The rotation ratio is no margin: the factor on the motion is, and only a scan of motions finds it."
+    "The rotation ratio is no margin. The margin is the factor on the motion at which the container overturns; a "
+    "sweep over motions finds it."
 )
-CODE_ACTIONS = (("code", "code, q as given"), ("code_q1", "code, q = 1"))
+JOINTS_NOTE = (
+    "The boxes are bolted and move as one. The table gives the forces in their joints (means over output.history_s), "
+    "the tension in the bolts along one edge, the shear in the bolts beyond friction with the floor's mu_static, and "
+    "when a joint without bolts would open at an edge or slide."
+)
+LARGEST = ("max_shear_N", "max_moment_Nm", "bolt_tension_left_N", "bolt_tension_right_N", "bolt_shear_N")
+VERBS = {"rest": "rested", "slide": "slid", "rock": "rocked", "slide-rock": "slid and rocked"}
 
 
-def screen_summary(
-    result: Result, *, title: str, folder: Path, warnings: Sequence[str] = ()
-) -> RenderableType:
-    """The table of the end of a run, for a rich console.
+def plain_summary(result: RunResult, *, folder: Path) -> str:
+    """The summary as text, in lines of at most 80 characters where no path is longer.
 
     Args:
-        result: the keys of `run.json`; blocks that a run did not reach may be missing.
-        title: of the case; shown as it is, never read as markup.
+        result: of the run; blocks that it did not reach may be missing.
         folder: of the run.
-        warnings: as `fem.assessment.warnings.warnings_for` gives them.
     """
-    parts: list[RenderableType] = [
-        Text(title, style="bold"),
-        Text(outcome_sentence(result), style="bold"),
-        Text(),
-    ]
-    if result.get("static"):
-        parts += [_static_table(result), Text(CODE_NOTE), Text()]
-    rows = run_rows(result)
-    if rows:
-        parts.append(_run_table(rows))
-    if result.get("joints"):
-        parts.append(joint_table([JointDemand.from_json(joint) for joint in result["joints"]]))
-    if (result.get("verdict") or {}).get("outcome") in ("rock", "slide-rock"):
-        parts += [Text(MARGIN_NOTE), Text()]
-    if (result.get("verdict") or {}).get("band"):
-        parts += [Text(BAND_NOTE), Text()]
-    parts.append(_files(folder))
-    parts += [Text(f"Warning: {warning}", style="yellow") for warning in warnings]
-    return Group(*parts)
-
-
-def plain_summary(result: Result, *, title: str, folder: Path, warnings: Sequence[str] = ()) -> str:
-    """The same as text without colours, lines of at most 110 characters, for `summary.txt`."""
     console = Console(file=io.StringIO(), width=TEXT_WIDTH, color_system=None, highlight=False)
     with console.capture() as capture:
-        console.print(screen_summary(result, title=title, folder=folder, warnings=warnings))
+        console.print(*_parts(result, folder), sep="\n")
     return "\n".join(line.rstrip() for line in capture.get().splitlines()) + "\n"
 
 
-def outcome_sentence(result: Result) -> str:
+def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
+    # Text, never markup: titles, folders and warnings may hold anything.
+    verdict = result.verdict or Verdict()
+    yield Text(result.title or result.case or folder.name)
+    yield Text(f"{outcome_sentence(result)}\n")
+    yield from _table_of_pairs("The run", result_rows(result))
+    if result.static is not None:
+        yield _static_table(result.static, verdict)
+        yield Text(f"{CODE_NOTE}\n")
+    if result.joints:
+        yield _joint_table(result.joints)
+        left_out = len(result.joints) - len(_shown(result.joints))
+        yield Text(JOINTS_NOTE + (f" {left_out} more joints are in run.json." if left_out else "") + "\n")
+    if verdict.outcome in ("rock", "slide-rock"):
+        yield Text(f"{MARGIN_NOTE}\n")
+    if verdict.band is not None:
+        yield Text(f"{BAND_NOTE}\n")
+    if result.warnings:
+        yield Text("".join(f"Warning: {warning}\n" for warning in result.warnings))
+    yield from _table_of_pairs("Numerics", numerics_rows(result))
+    yield Text(_files(folder))
+
+
+def outcome_sentence(result: RunResult) -> str:
     """What happened, in one sentence."""
-    verdict, status = result.get("verdict") or {}, result.get("status")
-    if status == "failed":
-        reason = result.get("error") or "the solution failed"
-        return f"No verdict: {reason}. What was computed before is kept."
-    found = _found(verdict)
-    if status in ("interrupted", "running"):
-        return f"Not finished ({status}); up to there: {found}."
+    if result.status == "failed":
+        return f"No verdict: {result.error or 'the solution failed'}. Results up to there are kept."
+    found = _found(result.verdict or Verdict())
+    if result.status in ("interrupted", "running"):
+        return f"Not finished ({result.status}). So far: {found}."
     return f"Result: {found}."
 
 
-def _found(verdict: Mapping[str, Any]) -> str:
-    outcome = verdict.get("outcome")
-    if outcome is None:
-        return "nothing to tell yet"
-    if outcome == "overturned":
-        at = verdict.get("overturned_at_s")
+def _found(verdict: Verdict) -> str:
+    if verdict.outcome is None:
+        return "no result yet"
+    if verdict.outcome == "overturned":
+        at = verdict.overturned_at_s
         return "overturned" + (f" at t = {at:.3f} s" if at is not None else "")
-    verbs = {"rest": "rested", "slide": "slid", "rock": "rocked", "slide-rock": "slid and rocked"}
-    restored = ", was restored" if verdict.get("restored") else ""
-    band = verdict.get("band") or {}
-    unsure = " (unsure, see the band)" if band.get("unsure") else ""
-    return f"{verbs.get(outcome, outcome)}{restored} and did not overturn under this motion{unsure}"
+    restored = ", returned upright" if verdict.restored else ""
+    unsure = " (unsure, see the band)" if verdict.band is not None and verdict.band.unsure else ""
+    return f"{VERBS.get(verdict.outcome, verdict.outcome)}{restored} and did not overturn under this motion{unsure}"
 
 
-def _static_table(result: Result) -> Table:
-    static, verdict = result["static"], result.get("verdict") or {}
-    table = Table(title="Static rule and run", title_justify="left", box=SIMPLE, padding=(0, 1, 0, 0))
-    table.add_column("check")
-    table.add_column("action")
-    for name in ("demand", "capacity", "utilisation"):
-        table.add_column(name, justify="right", no_wrap=True)
-    table.add_column("the rule says")
-    table.add_column("the run found")
-    for check, unit, demand, capacity in (
-        ("sliding", "kN", "base_shear_N", static.get("sliding_limit_static_N")),
-        ("overturning", "kNm", "tilting_moment_Nm", static.get("restoring_moment_Nm")),
+def _static_table(static: StaticResult, verdict: Verdict) -> Table:
+    table = Table(
+        title=f"Static rules, {own_motion_name(static)}", title_justify="left", box=SIMPLE, padding=PADDING
+    )
+    for name in ("action", "check", "demand / capacity", "use", "rule says", "run found"):
+        table.add_column(name, no_wrap=name in ("demand / capacity", "use"))
+    for action, name in (
+        (static.own_motion, "own peak"),
+        (static.code, "code, q"),
+        (static.code_q1, "q = 1"),
     ):
-        found = run_slid(verdict) if check == "sliding" else run_tilted(verdict)
-        for key, name in (("own_motion", own_motion_name(static)), *CODE_ACTIONS):
-            action = static.get(key)
-            if action is None:
-                continue
-            use = action.get(f"utilisation_{check}")
+        if action is None:
+            continue
+        own = action is static.own_motion
+        for check, demand, capacity, unit, use, found in (
+            (
+                "sliding",
+                action.base_shear_N,
+                static.sliding_limit_static_N,
+                "kN",
+                action.utilisation_sliding,
+                run_slid(verdict),
+            ),
+            (
+                "overturning",
+                action.tilting_moment_Nm,
+                static.restoring_moment_Nm,
+                "kNm",
+                action.utilisation_overturning,
+                run_tilted(verdict),
+            ),
+        ):
             table.add_row(
+                name if check == "sliding" else "",
                 check,
-                name,
-                f"{_number(action.get(demand), 1e-3)} {unit}",
-                f"{_number(capacity, 1e-3)} {unit}",
+                f"{_number(demand, 1e-3)} / {_number(capacity, 1e-3)} {unit}",
                 _number(use, 1.0, ".3f"),
                 rule_says(check, use),
-                found if key == "own_motion" else "(not compared)",
+                found if own else "",
             )
     return table
 
 
-def own_motion_name(static: Mapping[str, Any]) -> str:
+def own_motion_name(static: StaticResult) -> str:
     """The run's own peak floor acceleration: the uplift acceleration times its utilisation."""
-    use = (static.get("own_motion") or {}).get("utilisation_overturning")
-    uplift = static.get("uplift_acceleration_m_s2")
+    use = static.own_motion.utilisation_overturning if static.own_motion is not None else None
+    uplift = static.uplift_acceleration_m_s2
     return "own peak" if use is None or uplift is None else f"own peak, {use * uplift:.3g} m/s2"
 
 
@@ -150,172 +172,211 @@ def rule_says(check: str, utilisation: float | None) -> str:
     return "overturns" if utilisation > 1.0 else "stands"
 
 
-def run_slid(verdict: Mapping[str, Any]) -> str:
+def run_slid(verdict: Verdict) -> str:
     """Whether the run slid, and how far."""
-    slip = verdict.get("max_slip_m")
-    if slip is None:
+    if verdict.max_slip_m is None:
         return "-"
-    sliding = {"slide", "slide-rock"} & {verdict.get("outcome"), *(verdict.get("modes") or ())}
-    return f"{'slides' if sliding else 'holds'}, slip {_millimetres(slip)} mm"
+    sliding = {"slide", "slide-rock"} & {verdict.outcome, *verdict.modes}
+    return f"{'slid' if sliding else 'held'}, slip {_millimetres(verdict.max_slip_m)} mm"
 
 
-def run_tilted(verdict: Mapping[str, Any]) -> str:
+def run_tilted(verdict: Verdict) -> str:
     """Whether the run overturned, and how far it turned."""
-    ratio = verdict.get("rotation_ratio")
-    if verdict.get("outcome") == "overturned":
+    if verdict.outcome == "overturned":
         return "overturned"
-    return "-" if ratio is None else f"did not (ratio {ratio_in_words(ratio)})"
+    ratio = verdict.rotation_ratio
+    return "-" if ratio is None else f"stood, ratio {ratio_in_words(ratio)}"
 
 
-def _run_table(rows: Sequence[tuple[str, str]]) -> Table:
-    table = Table(title="The run", title_justify="left", show_header=False, box=SIMPLE, padding=(0, 1, 0, 0))
-    table.add_column("quantity")
-    table.add_column("value")
-    for name, value in rows:
-        table.add_row(name, value)
-    return table
+def _table_of_pairs(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[Table]:
+    if rows:
+        table = Table(
+            "", "", title=title, title_justify="left", show_header=False, box=SIMPLE, padding=PADDING
+        )
+        for row in rows:
+            table.add_row(*map(Text, row))
+        yield table
 
 
-def run_rows(result: Result) -> list[tuple[str, str]]:
-    """Name and value of what the run found, in the order of reading; nothing that it did not reach."""
-    verdict, static = result.get("verdict") or {}, result.get("static") or {}
-    energy, numerics = result.get("energy") or {}, result.get("numerics") or {}
-    band = verdict.get("band") or {}
+def result_rows(result: RunResult) -> list[tuple[str, str]]:
+    """Name and value of what the run found, in the order of reading, without what it did not reach."""
+    verdict, static = result.verdict or Verdict(), result.static or StaticResult()
+    numerics = result.numerics or Numerics()
+    impacts = verdict.impacts
     rows = [
-        ("states seen", ", ".join(verdict.get("modes") or ())),
+        ("states seen", ", ".join(verdict.modes)),
         ("largest rotation", _rotation(verdict)),
         (
-            "slip: largest, at the end, travelled",
-            _lengths(verdict, ("max_slip_m", "residual_slip_m", "slip_travel_m")),
+            "slip: largest, at the end, path",
+            _lengths(verdict.max_slip_m, verdict.residual_slip_m, verdict.slip_travel_m),
         ),
-        ("largest uplift", _lengths(verdict, ("max_uplift_m",))),
+        ("largest uplift", _lengths(verdict.max_uplift_m)),
         (
             "largest corner force",
-            _mean(verdict.get("max_corner_force_N"), 1e-3, "kN", numerics.get("corner_force_window_s")),
+            _mean(verdict.max_corner_force_N, 1e-3, "kN", numerics.corner_force_window_s),
         ),
-        ("first uplift", _unit(verdict.get("first_uplift_s"), 1.0, "s")),
-        ("impacts", _count(verdict.get("impacts"))),
+        ("first uplift", _unit(verdict.first_uplift_s, 1.0, "s")),
+        ("impacts", "" if impacts is None else str(impacts)),
         ("velocity ratio, first impact", _restitution(verdict, static)),
-        ("top against the floor", _lengths(verdict, ("max_top_displacement_m",))),
+        ("displacement of the top", _lengths(verdict.max_top_displacement_m)),
         (
             "acceleration of the contents",
-            _mean(verdict.get("max_acceleration_m_s2"), 1.0, "m/s2", numerics.get("acceleration_window_s")),
+            _mean(verdict.max_acceleration_m_s2, 1.0, "m/s2", numerics.acceleration_window_s),
         ),
-        ("von Mises stress", _unit(verdict.get("max_von_mises_Pa"), 1e-6, "MPa")),
-        ("band of the contact", _band(band)),
-        *_rigid_rows(result.get("rigid_check") or {}, static.get("slenderness_angle_rad")),
-        ("energy closure", _closure(energy)),
-        ("steps", _steps(numerics)),
-        ("computed in", _times(result, numerics)),
+        ("von Mises stress", _unit(verdict.max_von_mises_Pa, 1e-6, "MPa")),
+        ("band over the contact", _band(verdict.band)),
+        *_rigid_rows(result.rigid_check, static.slenderness_angle_rad),
     ]
     return [(name, value) for name, value in rows if value]
 
 
-def _rotation(verdict: Mapping[str, Any]) -> str:
-    angle, ratio = verdict.get("max_rotation_rad"), verdict.get("rotation_ratio")
-    if angle is None or ratio is None:
+def numerics_rows(result: RunResult) -> list[tuple[str, str]]:
+    """Name and value of how well, and at what cost, the run was computed."""
+    numerics = result.numerics or Numerics()
+    rows = [
+        ("energy balance error", _balance(result.energy or Energy())),
+        ("steps", _steps(numerics)),
+        ("computing time", _times(result, numerics)),
+    ]
+    return [(name, value) for name, value in rows if value]
+
+
+def _rotation(verdict: Verdict) -> str:
+    if verdict.max_rotation_rad is None or verdict.rotation_ratio is None:
         return ""
-    degrees = math.degrees(angle)
+    degrees = math.degrees(verdict.max_rotation_rad)
     turned = f"< {LEAST_DEGREES:g}" if 0.0 < degrees < LEAST_DEGREES else f"{degrees:.3g}"
-    return f"{turned} degrees, {ratio_in_words(ratio)} of the slenderness angle"
+    return f"{turned} degrees, {ratio_in_words(verdict.rotation_ratio)} of the slenderness angle"
 
 
 def ratio_in_words(ratio: float) -> str:
-    """A rotation ratio; what is far below rocking is nobody's measure."""
-    return f"< {LEAST_RATIO:g}" if 0.0 < ratio < LEAST_RATIO else f"{ratio:.3g}"
+    """A rotation ratio with three figures; below a tenth of what counts as rocking, only that limit."""
+    if 0.0 < ratio < LEAST_RATIO:
+        return f"< {LEAST_RATIO:g}"
+    return f"{ratio:#.3g}".rstrip(".") if ratio else "0"
 
 
-def _restitution(verdict: Mapping[str, Any], static: Mapping[str, Any]) -> str:
-    found, housner = verdict.get("restitution_first"), static.get("housner_restitution")
+def _restitution(verdict: Verdict, static: StaticResult) -> str:
+    found, housner = verdict.restitution_first, static.housner_restitution
     if found is None:
         return ""
     return f"{found:.3f}" + (f" (Housner {housner:.3f})" if housner is not None else "")
 
 
-def _band(band: Mapping[str, Any]) -> str:
-    if not band:
+def _band(band: Band | None) -> str:
+    if band is None:
         return ""
-    low, high = band["rotation_ratio"]
-    members = band.get("members") or ()
-    failed = sum(member["outcome"] is None for member in members)
-    return (
-        f"{', '.join(band['outcomes'])}; rotation ratio {ratio_in_words(low)} to {ratio_in_words(high)}"
-        + (f"; {failed} of {len(members)} failed" if failed else "")
-        + ("; unsure" if band.get("unsure") else "")
-    )
+    parts = [", ".join(band.outcomes)]
+    if band.rotation_ratio is not None:
+        parts.append("rotation ratio " + " to ".join(map(ratio_in_words, band.rotation_ratio)))
+    failed = sum(member.outcome is None for member in band.members)
+    if failed:
+        parts.append(f"{failed} of {len(band.members)} failed")
+    return "; ".join([*parts, "unsure"] if band.unsure else parts)
 
 
-def _rigid_rows(check: Mapping[str, Any], angle: float | None) -> list[tuple[str, str]]:
+def _rigid_rows(check: RigidCheckResult | None, angle: float | None) -> list[tuple[str, str]]:
     """The run beside the analytic rigid block."""
-    if not check:
+    if check is None:
         return []
     rows = []
-    for key, name, form, unit in (
-        ("first_impact_s", "first impact", ".4f", " s"),
-        ("velocity_ratio", "velocity ratio", ".4f", ""),
+    for pair, name, unit in (
+        (check.first_impact_s or RunAndBlock(), "first impact", " s"),
+        (check.velocity_ratio or RunAndBlock(), "velocity ratio", ""),
     ):
-        run, block = (check.get(key) or {}).get("run"), (check.get(key) or {}).get("block")
-        if run is not None or block is not None:
-            rows.append(
-                (
-                    f"rigid check, {name}",
-                    f"{_number(run, 1.0, form)}{unit} (block {_number(block, 1.0, form)})",
-                )
-            )
-    peaks = check.get("peaks") or ()
-    if peaks and angle:
-        found, expected = (
-            ", ".join(f"{peak[key] / angle:.3f}" for peak in peaks[:4]) for key in ("run_rad", "block_rad")
-        )
-        rows.append(("rigid check, first peaks", f"{found} (block {expected}) of the slenderness angle"))
-    verdict = "a fair comparison" if check.get("meaningful") else "no fair comparison: "
-    rows.append(("rigid check", verdict + "; ".join(check.get("reasons") or ())))
-    return rows
+        if pair != RunAndBlock():
+            run, block = _number(pair.run, 1.0, ".4f"), _number(pair.block, 1.0, ".4f")
+            rows.append((f"rigid check, {name}", f"{run}{unit} (block {block})"))
+    if check.peaks and angle:
+        run = ", ".join(f"{peak.run_rad / angle:.3f}" for peak in check.peaks[:4])
+        block = ", ".join(f"{peak.block_rad / angle:.3f}" for peak in check.peaks[:4])
+        rows.append(("rigid check, first peaks", f"{run} (block {block}) of the slenderness angle"))
+    verdict = "a fair comparison" if check.meaningful else "no fair comparison: "
+    return [*rows, ("rigid check", verdict + "; ".join(check.reasons))]
 
 
-def _closure(energy: Mapping[str, Any]) -> str:
-    error, reference, final = (energy.get(key) for key in ("closure_error", "reference_J", "numerical_J"))
+def _balance(energy: Energy) -> str:
+    error, reference, final = energy.closure_error, energy.reference_J, energy.numerical_J
     if error is None or reference is None:
         return ""
     side = ""
     if final and abs(final) >= INVISIBLE * reference:
-        side = f"; the stepping {'lost' if final > 0.0 else 'won'} {abs(final):.3g} J"
-    return f"{_number(error, 1.0, '.2g')} of the {reference:.4g} J it takes to overturn{side}"
+        side = f"; numerical {'loss' if final > 0.0 else 'gain'} {abs(final):.3g} J"
+    return f"{_number(error, 1.0, '.2g')} of the {reference:.4g} J that it takes to overturn{side}"
 
 
-def _steps(numerics: Mapping[str, Any]) -> str:
-    steps, rejected, unknowns = (numerics.get(key) for key in ("steps", "rejected", "unknowns"))
-    return "" if steps is None else f"{steps}, {rejected or 0} rejected, {unknowns} unknowns"
-
-
-def _times(result: Result, numerics: Mapping[str, Any]) -> str:
-    if result.get("wall_s") is None:
+def _steps(numerics: Numerics) -> str:
+    if numerics.steps is None:
         return ""
-    compiling, stepping = result.get("compile_s"), numerics.get("stepping_cpu_s")
-    parts = [f"stepping {stepping:.3g} s"] if stepping is not None else []
-    if compiling:  # zero in every run but the first ones
-        parts.insert(0, f"compiling {compiling:.3g} s (once after installation)")
-    return f"{result['wall_s']:.3g} s" + (f", of which {', '.join(parts)}" if parts else "")
+    return f"{numerics.steps}, {numerics.rejected or 0} rejected, {numerics.unknowns} unknowns"
 
 
-def _files(folder: Path) -> Text:
-    # Not Text.from_markup: a folder may have any name.
-    lines = [
-        f"ParaView: open {folder / 'fields' / 'run.pvd'}, Apply, Warp By Vector displacement_m",
-        f"Tables: {folder / 'history.csv'}; all figures of this page: {folder / 'run.json'}",
-    ]
-    if not (folder / "fields" / "run.pvd").exists():
-        lines[0] = "ParaView: no fields were written; output.fields_s > 0 writes them"
-    return Text("\n".join(lines))
+def _times(result: RunResult, numerics: Numerics) -> str:
+    if result.wall_s is None:
+        return ""
+    parts = []
+    if result.compile_s:  # zero in every run but the first ones
+        parts.append(f"compilation {result.compile_s:.3g} s (once after installation)")
+    if numerics.stepping_cpu_s is not None:
+        parts.append(f"stepping {numerics.stepping_cpu_s:.3g} s")
+    return f"{result.wall_s:.3g} s" + (f", of which {', '.join(parts)}" if parts else "")
 
 
-def _lengths(verdict: Mapping[str, Any], keys: Sequence[str]) -> str:
-    values = [verdict.get(key) for key in keys]
-    return "" if values[0] is None else f"{', '.join(_millimetres(value) for value in values)} mm"
+def _files(folder: Path) -> str:
+    fields = folder / "fields" / "run.pvd"
+    paraview = (
+        f"open {fields}, Apply, Warp By Vector displacement_m"
+        if fields.exists()
+        else "no fields were written; output.fields_s > 0 writes them"
+    )
+    return f"ParaView: {paraview}\nTables: {folder / 'history.csv'}; all results: {folder / 'run.json'}"
+
+
+def _joint_table(joints: Sequence[JointDemand]) -> Table:
+    """One row a joint, from the floor up."""
+    table = Table(title="Joints between boxes", title_justify="left", box=SIMPLE, padding=PADDING)
+    table.add_column("joint at")
+    for name in ("normal kN", "shear kN", "moment kNm", "bolts l, r kN", "bolt shear kN", "mu needed"):
+        table.add_column(name, justify="right")
+    table.add_column("without bolts it")
+    for joint in _shown(joints):
+        table.add_row(
+            f"{joint.height_m:.4g} m",
+            f"{_kilo(joint.min_normal_N)} .. {_kilo(joint.max_normal_N)}",
+            _kilo(joint.max_shear_N),
+            _kilo(joint.max_moment_Nm),
+            f"{_kilo(joint.bolt_tension_left_N)}, {_kilo(joint.bolt_tension_right_N)}",
+            _kilo(joint.bolt_shear_N),
+            "no mu" if joint.friction_needed is None else f"{joint.friction_needed:.3g}",
+            unbolted(joint),
+        )
+    return table
+
+
+def _shown(joints: Sequence[JointDemand]) -> Sequence[JointDemand]:
+    if len(joints) <= MOST_JOINTS:
+        return joints
+    chosen = {max(range(len(joints)), key=lambda j: getattr(joints[j], key)) for key in LARGEST}
+    return [joints[j] for j in sorted(chosen)]
+
+
+def unbolted(joint: JointDemand) -> str:
+    """What the joint would do without bolts."""
+    events = (("opens", joint.opens_at_s), ("slides", joint.slides_at_s))
+    found = [f"{verb} at {instant:.3g} s" for verb, instant in events if instant is not None]
+    return ", ".join(found) or "stays closed, sticks"
+
+
+def _kilo(value: float) -> str:
+    return f"{1e-3 * value:.4g}" if abs(value) >= LEAST_N else "0"
+
+
+def _lengths(*values: float | None) -> str:
+    return "" if values[0] is None else f"{', '.join(map(_millimetres, values))} mm"
 
 
 def _millimetres(value: float | None) -> str:
-    """A length given in metres; what is below 0.01 mm is nobody's measure."""
+    """A length given in metres; below 0.01 mm only that limit."""
     if value is not None and 1e-3 * INVISIBLE <= abs(value) < LEAST_LENGTH:
         return f"< {1e3 * LEAST_LENGTH:g}"
     return _number(value, 1e3)
@@ -326,14 +387,9 @@ def _unit(value: float | None, factor: float, unit: str) -> str:
 
 
 def _mean(value: float | None, factor: float, unit: str, window: float | None) -> str:
-    """A value that is a mean over a while, for the instantaneous one of an impact means nothing."""
-    if value is None or window is None:
-        return _unit(value, factor, unit)
-    return f"{_number(value, factor)} {unit}, mean over {1e3 * window:.2g} ms"
-
-
-def _count(value: int | None) -> str:
-    return "" if value is None else str(value)
+    """A value that is a mean over a window [s]: the instantaneous value in an impact means nothing."""
+    mean = "" if value is None or window is None else f", mean over {1e3 * window:.2g} ms"
+    return _unit(value, factor, unit) + mean
 
 
 def _number(value: float | None, factor: float, form: str = ".4g") -> str:

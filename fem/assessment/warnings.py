@@ -1,25 +1,32 @@
-"""What the reader of a result must know before believing it: one function a warning.
+"""Warnings: what the reader of a result must know before believing it. One function a warning.
 
-A warning takes the result (the keys of `run.json`) and the case, and returns one sentence or two, or None. It
-states the figure that raised it, the limit, and what can be done. None of them changes a verdict.
+A warning takes the result of a run and its case, and returns one sentence or two, or None. It states the value
+that raised it, the limit, and what can be done. No warning changes a verdict.
 """
 
 import math
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable
 
+from fem.assessment.summary import ratio_in_words
 from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from fem.case.case import Case
-
-Result = Mapping[str, Any]
+from fem.results.run_result import (
+    ActionResult,
+    Energy,
+    MotionResult,
+    Numerics,
+    RunResult,
+    StaticResult,
+    Verdict,
+)
 
 # A tilt of one hundredth of the slenderness angle counts as rocking; the contact alone must stay well below.
 ROCKING_RATIO = 0.01
-NEAR = 0.5  #: share of a limit from which it is worth telling
+NEAR = 0.5  #: share of a limit from which there is a warning
 CREDIBLE_STIFFNESS_RATIO = 4.0  #: f1/f_c from which the impact of a rigid block is reproduced
 REJECTED_SHARE = 0.05
 #: largest von Mises stress over Young's modulus up to which `reduced` and `full` agree within 5 %: blocks of one to ten
-#: boxes, corners and flat, of 1e9 to 1.5e6 Pa; at 0.024 they part by 9 % (`fem/README.md`)
+#: boxes, corners and flat, of 1e9 to 1.5e6 Pa; at 0.024 they differ by 9 % (`fem/README.md`)
 SMALL_STRAIN = 0.01
 #: relaxation time of the contact over the time scale of rocking 1/p, from which the dashpot is more than a loss at
 #: impacts: the rotation ratio of a rigid `rocking` on its flat base is 0.85 at 0.006, 0.68 at 0.15, 0.49 at 0.31
@@ -27,57 +34,51 @@ FAST_RELAXATION = 0.1
 YIELD_STRENGTH = 235e6  #: [Pa], S235, EN 1993-1-1 Table 3.1
 
 
-def warnings_for(result: Result, case: Case) -> list[str]:
-    """All warnings that apply to a result, weightiest first."""
+def warnings_for(result: RunResult, case: Case) -> list[str]:
+    """All warnings that apply to a result, the most important first."""
     return [text for check in CHECKS if (text := check(result, case)) is not None]
 
 
-def band_is_unsure(result: Result, case: Case) -> str | None:
+def band_is_unsure(result: RunResult, case: Case) -> str | None:
     """The outcome changes within the uncertainty of the contact."""
-    band = _part(result, "verdict").get("band") or {}
-    if not band.get("unsure"):
+    band = _verdict(result).band
+    if band is None or not band.unsure:
         return None
-    low, high = band["rotation_ratio"]
-    failed = [member for member in band.get("members") or () if member["outcome"] is None]
+    ratios = " to ".join(map(ratio_in_words, band.rotation_ratio or ()))
     found = (
         "unsure: within the band of contact stiffness and damping the outcome is "
-        f"{' or '.join(band['outcomes'])}, the rotation ratio {low:.3g} to {high:.3g}"
+        f"{' or '.join(band.outcomes)}, the rotation ratio {ratios}"
     )
     places = ", ".join(
-        f"{member['normal_penalty_Pa_m']:.3g} Pa/m with damping ratio {member['damping_ratio']:g}"
-        for member in failed
+        f"{member.normal_penalty_Pa_m:.3g} Pa/m with damping ratio {member.damping_ratio:g}"
+        for member in band.members
+        if member.outcome is None
     )
-    return f"{found}; no outcome, because the solution failed, at penalty {places}" if failed else found
+    return f"{found}; no outcome, because the solution failed, at penalty {places}" if places else found
 
 
-def energy_is_near_its_limits(result: Result, case: Case) -> str | None:
-    """The imbalance of the ledger, won or lost by the scheme, is past half of what fails a run."""
-    energy = _part(result, "energy")
-    reference, final = energy.get("reference_J"), energy.get("numerical_J")
+def energy_is_near_its_limits(result: RunResult, case: Case) -> str | None:
+    """The energy balance error is past half of what fails a run."""
+    energy = result.energy or Energy()
+    reference, final = energy.reference_J, energy.numerical_J
     if not reference or final is None:
         return None
     if -final > NEAR * GAIN_LIMIT * reference:
         return (
-            f"the time stepping won {-final / reference:.1e} of the energy it takes to overturn (limit "
+            f"numerical energy gain {-final / reference:.1e} of the energy that it takes to overturn (limit "
             f"{GAIN_LIMIT:.0e}); a smaller solver.step_s should reduce it"
         )
-    dissipated = sum(
-        energy.get(key) or 0.0 for key in ("friction_J", "contact_damping_J", "material_damping_J")
-    )
-    limit = max(LOSS_SHARE_LIMIT * dissipated, LOSS_LIMIT * reference)
-    largest = (energy.get("closure_error") or 0.0) * reference
+    parts = (energy.friction_J, energy.contact_damping_J, energy.material_damping_J)
+    limit = max(LOSS_SHARE_LIMIT * sum(part or 0.0 for part in parts), LOSS_LIMIT * reference)
+    largest = (energy.closure_error or 0.0) * reference
     if largest > NEAR * limit:
-        return (
-            f"the energy ledger is open by {largest:.3g} J (limit {limit:.3g} J); a smaller solver.step_s "
-            "should close it"
-        )
+        return f"energy balance error {largest:.3g} J (limit {limit:.3g} J); a smaller solver.step_s should reduce it"
     return None
 
 
-def contact_penetrates(result: Result, case: Case) -> str | None:
+def contact_penetrates(result: RunResult, case: Case) -> str | None:
     """The penetration of a corner alone tilts the container by a good part of what counts as rocking."""
-    depth = _part(result, "numerics").get("max_penetration_m")
-    angle = _part(result, "static").get("slenderness_angle_rad")
+    depth, angle = _numerics(result).max_penetration_m, _static(result).slenderness_angle_rad
     if depth is None or not angle:
         return None
     limit = ROCKING_RATIO * angle * case.container.width_m
@@ -90,59 +91,53 @@ def contact_penetrates(result: Result, case: Case) -> str | None:
     )
 
 
-def regularised_friction_creeps(result: Result, case: Case) -> str | None:
+def regularised_friction_creeps(result: RunResult, case: Case) -> str | None:
     """v = v_reg artanh(s) under a steady load of share s of what friction carries: no true stick."""
     if case.contact.friction != "regularised":
         return None
-    share = _action(result, "own_motion").get("utilisation_sliding")
+    share = _own_motion(result).utilisation_sliding
     start = "friction regularised in velocity never sticks: the container creeps"
     if share is None or not 0.0 < share < 1.0:
         return f"{start}; friction = 'elastic-stick' does not"
     creep = case.contact.regularisation_velocity_m_s * math.atanh(share) * case.solver.duration_s
     return (
-        f"{start}, under a steady load of {share:.2g} of the friction limit, this run's peak, by "
+        f"{start}, under a steady load of {share:.2g} of the friction limit, the peak of this run, by "
         f"{1e3 * creep:.2g} mm in {case.solver.duration_s:g} s; friction = 'elastic-stick' does not"
     )
 
 
-def without_impact(result: Result) -> bool:
-    """No corner struck the floor, so that nothing hangs on how it rebounds."""
-    return _part(result, "verdict").get("impacts") == 0
-
-
-def shell_rings_on_the_floor(result: Result, case: Case) -> str | None:
+def shell_rings_on_the_floor(result: RunResult, case: Case) -> str | None:
     """Near and below f1/f_c = 4 an impact feeds vibration: restitution depends on the contact stiffness."""
-    numerics = _part(result, "numerics")
-    elastic, contact = numerics.get("elastic_frequencies_Hz"), numerics.get("contact_frequency_Hz")
-    if case.solver.model == "rigid" or not elastic or not contact or without_impact(result):
+    elastic, contact = _numerics(result).elastic_frequencies_Hz, _numerics(result).contact_frequency_Hz
+    if case.solver.model == "rigid" or not elastic or not contact or _verdict(result).impacts == 0:
         return None
     ratio = elastic[0] / contact
     if ratio >= CREDIBLE_STIFFNESS_RATIO:
         return None
-    banded = _part(result, "verdict").get("band") is not None
+    remedy = (
+        "run --band shows by how much" if _verdict(result).band is None else "the band belongs to the result"
+    )
     return (
         f"first elastic frequency over contact frequency is {ratio:.2g} (< {CREDIBLE_STIFFNESS_RATIO:g}): "
-        "impacts feed vibration, so restitution depends on the contact stiffness; "
-        + ("the band belongs to the result" if banded else "take results that matter as a band (run --band)")
+        f"impacts feed vibration, so restitution depends on the contact stiffness; {remedy}"
     )
 
 
-def housner_is_not_credible(result: Result, case: Case) -> str | None:
+def housner_is_not_credible(result: RunResult, case: Case) -> str | None:
     """Below 0.5 the plastic impact of Housner (1963) at the far corner is not what a squat block does."""
-    static = _part(result, "static")
-    if static.get("housner_credible") is not False or without_impact(result):
+    static = _static(result)
+    if static.housner_credible is not False or _verdict(result).impacts == 0:
         return None
     return (
-        f"Housner's restitution is {static['housner_restitution']:.3f} (< 0.5): the container is too squat "
-        "for his impact at a corner; compare no restitution with it"
+        f"Housner's restitution is {static.housner_restitution or 0.0:.3f} (< 0.5): the container is too squat for "
+        "his impact at a corner; compare no restitution with it"
     )
 
 
-def opening_is_not_uplift(result: Result, case: Case) -> str | None:
+def opening_is_not_uplift(result: RunResult, case: Case) -> str | None:
     """A base edge opens on its elastic bed at a third of the acceleration that lifts the body."""
-    verdict = _part(result, "verdict")
-    opening, uplift = verdict.get("first_opening_s"), verdict.get("first_uplift_s")
-    if opening is None or uplift is not None:
+    opening = _verdict(result).first_opening_s
+    if opening is None or _verdict(result).first_uplift_s is not None:
         return None
     return (
         f"a gap opened at the base at t = {opening:.4g} s, but no side was ever without load: that is the "
@@ -150,37 +145,37 @@ def opening_is_not_uplift(result: Result, case: Case) -> str | None:
     )
 
 
-def lateral_force_method_does_not_apply(result: Result, case: Case) -> str | None:
+def lateral_force_method_does_not_apply(result: RunResult, case: Case) -> str | None:
     """EN 1998-1:2004, 4.3.3.2.1 (2): T1 <= 4 T_C and T1 <= 2.0 s."""
-    static = _part(result, "static")
-    if static.get("method_applicable") is not False:
+    if _static(result).method_applicable is not False:
         return None
     return (
-        f"the lateral force method does not apply at this period ({static['clause']}); the code's rows are "
+        f"the lateral force method does not apply at this period ({_static(result).clause}); the code's rows are "
         "shown for comparison only"
     )
 
 
-def motion_is_doubtful(result: Result, case: Case) -> str | None:
+def motion_is_doubtful(result: RunResult, case: Case) -> str | None:
     """A recorded motion that drifts, or whose samples are too far apart."""
-    return "; ".join(_part(result, "motion").get("notes") or ()) or None
+    return "; ".join((result.motion or MotionResult()).notes) or None
 
 
-def rest_proves_nothing(result: Result, case: Case) -> str | None:
+def rest_proves_nothing(result: RunResult, case: Case) -> str | None:
     """Where the static rule also says that it stands, a run at rest is no argument against the rule."""
-    own = _action(result, "own_motion")
-    if _part(result, "verdict").get("outcome") != "rest" or not own:
+    own = _own_motion(result)
+    if _verdict(result).outcome != "rest" or own == ActionResult():
         return None
-    if max(own.get("utilisation_sliding") or 0.0, own.get("utilisation_overturning") or 0.0) > 1.0:
+    if max(own.utilisation_sliding or 0.0, own.utilisation_overturning or 0.0) > 1.0:
         return None
     return (
-        "the static rule, too, says that it stands under this motion: the run confirms it and decides nothing"
+        "the static rule also says that the container stands under this motion: the run confirms it and "
+        "decides nothing"
     )
 
 
-def stress_is_beyond_yield(result: Result, case: Case) -> str | None:
+def stress_is_beyond_yield(result: RunResult, case: Case) -> str | None:
     """The model is elastic; a steel shell past its yield strength is not."""
-    stress = _part(result, "verdict").get("max_von_mises_Pa")
+    stress = _verdict(result).max_von_mises_Pa
     steel = case.container.section == "shell" and case.container.youngs_modulus_Pa > 1.5e11
     if not steel or stress is None or stress <= YIELD_STRENGTH:
         return None
@@ -190,9 +185,9 @@ def stress_is_beyond_yield(result: Result, case: Case) -> str | None:
     )
 
 
-def strain_is_not_small(result: Result, case: Case) -> str | None:
+def strain_is_not_small(result: RunResult, case: Case) -> str | None:
     """The reduced model is linear elasticity in a turning frame: it leaves out what grows with the strain."""
-    stress = _part(result, "verdict").get("max_von_mises_Pa")
+    stress = _verdict(result).max_von_mises_Pa
     if case.solver.model != "reduced" or stress is None:
         return None
     strain = stress / case.container.youngs_modulus_Pa
@@ -200,15 +195,14 @@ def strain_is_not_small(result: Result, case: Case) -> str | None:
         return None
     return (
         f"strain reached {100.0 * strain:.2g} % (von Mises stress over Young's modulus; {100.0 * SMALL_STRAIN:g} % is "
-        "small): the reduced model is linear in it, and parts from the full one, by 5 % and more; take "
+        "small): the reduced model is linear in strain and differs from the full one by 5 % and more; use "
         'solver.model = "full"'
     )
 
 
-def contact_relaxes_slowly(result: Result, case: Case) -> str | None:
+def contact_relaxes_slowly(result: RunResult, case: Case) -> str | None:
     """A dashpot that carries the weight for a good part of a swing is a floor that creeps."""
-    frequency = _part(result, "numerics").get("contact_frequency_Hz")
-    rate = _part(result, "static").get("frequency_parameter_1_s")
+    frequency, rate = _numerics(result).contact_frequency_Hz, _static(result).frequency_parameter_1_s
     if not frequency or not rate:
         return None
     # dashpot over spring, of the whole mass on half the base's stiffness: see contact.penalty.relaxation_time
@@ -216,22 +210,21 @@ def contact_relaxes_slowly(result: Result, case: Case) -> str | None:
     if relaxation * rate <= FAST_RELAXATION:
         return None
     return (
-        f"the contact gives way over {relaxation:.2g} s (contact.damping_ratio = {case.contact.damping_ratio:g}), not "
-        f"fast against rocking (1/p = {1.0 / rate:.2g} s): it creeps under the weight besides its work at impacts; "
-        "a smaller contact.damping_ratio, or a larger contact.normal_penalty_Pa_m"
+        f"the contact relaxes in {relaxation:.2g} s (contact.damping_ratio = {case.contact.damping_ratio:g}), not "
+        f"fast compared with rocking (1/p = {1.0 / rate:.2g} s): it creeps under the weight; use a smaller "
+        "contact.damping_ratio, or a larger contact.normal_penalty_Pa_m"
     )
 
 
-def steps_were_rejected(result: Result, case: Case) -> str | None:
+def steps_were_rejected(result: RunResult, case: Case) -> str | None:
     """Many steps done twice mean that the contact was hard to solve."""
-    numerics = _part(result, "numerics")
-    steps, rejected = numerics.get("steps"), numerics.get("rejected")
+    steps, rejected = _numerics(result).steps, _numerics(result).rejected
     if not steps or rejected is None or rejected <= REJECTED_SHARE * (steps + rejected):
         return None
-    return f"{100.0 * rejected / (steps + rejected):.0f} % of the steps were rejected and made again smaller"
+    return f"{100.0 * rejected / (steps + rejected):.0f} % of the steps were rejected and repeated with a smaller step"
 
 
-CHECKS: tuple[Callable[[Result, Case], str | None], ...] = (
+CHECKS: tuple[Callable[[RunResult, Case], str | None], ...] = (
     band_is_unsure,
     motion_is_doubtful,
     energy_is_near_its_limits,
@@ -249,10 +242,18 @@ CHECKS: tuple[Callable[[Result, Case], str | None], ...] = (
 )
 
 
-def _part(result: Result, name: str) -> Mapping[str, Any]:
-    """A block of a result that may not have got that far."""
-    return result.get(name) or {}
+# The blocks of a result that may not have got that far.
+def _verdict(result: RunResult) -> Verdict:
+    return result.verdict or Verdict()
 
 
-def _action(result: Result, name: str) -> Mapping[str, Any]:
-    return _part(result, "static").get(name) or {}
+def _static(result: RunResult) -> StaticResult:
+    return result.static or StaticResult()
+
+
+def _numerics(result: RunResult) -> Numerics:
+    return result.numerics or Numerics()
+
+
+def _own_motion(result: RunResult) -> ActionResult:
+    return _static(result).own_motion or ActionResult()

@@ -52,7 +52,7 @@ def report(
                 opened,
                 signature=signature,
                 every_variation=all_variations,
-                told=reporter.message,
+                message=reporter.message,
                 stop=stop,
             )
     with naming_what_cannot_be_written(place.parent, "ask again, or elsewhere with --to FILE"):

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from fem.assessment.summary import ratio_in_words
 from fem.figures.style import (
     BLACK,
     BLUE,
@@ -111,7 +112,8 @@ def band_figure(run: OpenedRun) -> Figure | None:
     low, high = band["rotation_ratio"]
     outcomes = " or ".join(band.get("outcomes") or ())
     sure = "unsure" if band.get("unsure") else "the same outcome throughout"
-    statement = f"rotation ratio {low:.3g} to {high:.3g}; the large mark is the run itself"
+    ratios = " to ".join(map(ratio_in_words, (low, high)))
+    statement = f"rotation ratio {ratios}; the large mark is the run itself"
     head(figure, f"Band over the contact, {sure}: {outcomes}", statement)
     return figure
 

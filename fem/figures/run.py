@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from contact.stepping.observables import ROCKING
-from fem.assessment.summary import LEAST_DEGREES, LEAST_RATIO
+from fem.assessment.summary import LEAST_DEGREES, ratio_in_words
 from fem.assessment.verdict import SLIDING
 from fem.figures.checks import band_figure, rigid_check_figure
 from fem.figures.energy import energy_figure
@@ -140,10 +140,9 @@ def rotation_figure(run: OpenedRun) -> Figure:
     _mark_impact(axes, verdict)
     legend_above(axes)
     found = math.degrees(verdict.get("max_rotation_rad") or math.radians(largest))
-    size = f"{number(found)}° at most, {number(found / angle)} of the slenderness angle"
-    if 0.0 < found < LEAST_DEGREES and found / angle < LEAST_RATIO:
-        size = f"< {LEAST_DEGREES:g}° at most, < {LEAST_RATIO:g} of the slenderness angle"
-    head(figure, f"Rotation: {size}", status=run.status)
+    largest_shown = f"< {LEAST_DEGREES:g}" if 0.0 < found < LEAST_DEGREES else number(found)
+    ratio = ratio_in_words(found / angle)
+    head(figure, f"Rotation: {largest_shown}° at most, {ratio} of the slenderness angle", status=run.status)
     return figure
 
 

@@ -6,7 +6,7 @@ A trailing zero is kept where it is known (98.10, not 98.1), so that the figures
 import math
 import re
 
-from fem.assessment.summary import LEAST_DEGREES, LEAST_LENGTH, LEAST_RATIO
+from fem.assessment.summary import LEAST_DEGREES, LEAST_LENGTH, ratio_in_words
 
 ABSENT = "–"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -38,7 +38,7 @@ def quantity(value: float | None, unit: str, factor: float = 1.0, figures: int =
 
 
 def millimetres(value: float | None, figures: int = 3) -> str:
-    """A length given in metres, without its unit; what is below 0.01 mm is nobody's measure."""
+    """A length given in metres, without its unit; below 0.01 mm only that limit."""
     if value is not None and 0.0 < abs(value) < LEAST_LENGTH:
         return f"< {short(LEAST_LENGTH, 1000.0)}"
     return number(value, 1000.0, figures)
@@ -56,9 +56,8 @@ def turned(value: float) -> str:
 
 
 def rotation_ratio(value: float | None) -> str:
-    """A largest rotation over the slenderness angle; far below rocking, only that it is small."""
-    small = value is not None and 0.0 < value < LEAST_RATIO
-    return f"< {LEAST_RATIO:g}" if small else number(value, figures=3)
+    """A largest rotation over the slenderness angle."""
+    return ABSENT if value is None else typeset(ratio_in_words(value))
 
 
 def typeset(text: str) -> str:

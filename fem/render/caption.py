@@ -11,6 +11,8 @@ import matplotlib
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from fem.assessment.summary import ratio_in_words
+from fem.assessment.verdict import rotation_ratio
 from fem.figures.style import number
 from fem.results.fields import Frame
 from fem.results.reader import OpenedRun
@@ -44,10 +46,11 @@ def caption(run: OpenedRun, frame: Frame) -> tuple[str, str, str]:
     title = title if len(title) <= LONGEST else f"{title[: LONGEST - 3]}..."
     whole = "" if run.status in ("completed", "overturned") else f" ({run.status})"
     degrees = f"{round(math.degrees(rotation), 2) + 0.0:.2f}".replace("-", "−")  # no minus zero
+    ratio = ratio_in_words(rotation_ratio(rotation, run.slenderness_angle))
     return (
         title + whole,
         f"t = {frame.time:.3f} s    {run.history.modes[sample]}",
-        f"rotation {degrees}°, rotation ratio {abs(rotation) / run.slenderness_angle:.3f}",
+        f"rotation {degrees}°, rotation ratio {ratio}",
     )
 
 

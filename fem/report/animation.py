@@ -1,10 +1,10 @@
 """The animation of a report: mesh, motion, deformation, stress and contact forces, small enough to be sent.
 
-The motion is taken apart: the rigid part (rotation and mass centre, from the history, every few milliseconds)
-and, in every field frame, the elastic displacement that is left in the frame turning with the container (the
-mean-axis split: no momentum, no angular momentum). So the page can enlarge the one and leave the other. Numbers
-go as integers of the largest value of their kind: displacement and history on 16 bits, stress on 8. x to the right, z
-up, rotation > 0 toward +x; forces on the container.
+The motion has two parts: the rigid part (rotation and mass centre, from the history, every few milliseconds) and, in
+every field frame, the elastic displacement in the frame that turns with the container (the mean-axis split: no
+momentum, no angular momentum). So the page can enlarge the one and leave the other. Numbers are sent as integers in
+units of the largest value of their kind: displacement and history with 16 bits, stress with 8. x to the right, z up,
+rotation > 0 toward +x; forces on the container.
 """
 
 import base64
@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import to_hex
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
@@ -24,7 +26,7 @@ from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements
 
 FIELD_BYTES = 2_400_000  #: of all frames, before base64 makes four thirds of it
-LEAST_FRAMES = 40  #: rather than fewer frames, the outline alone is sent
+LEAST_FRAMES = 40  #: where cells would leave fewer frames, the outline alone is sent
 MOST_SAMPLES = 8000  #: of the history
 WIDE_JOURNEY = 4.0  #: a floor that travels more widths is followed by the view
 SHOWN_ELASTIC = 0.03  #: elastic displacement as first shown, over the height
@@ -49,7 +51,7 @@ SINGLE_PRECISION = 2.0**-24
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Split:
+class AnimationFrame:
     """One frame taken apart, n nodes."""
 
     time: float  #: [s]
@@ -62,15 +64,15 @@ class Split:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Film:
-    """What is shown: the drawn part of the mesh, and its frames."""
+class Animation:
+    """The drawn part of the mesh, and its frames."""
 
     centroid: FloatArray  #: (2,) of the undeformed container [m]
     points: FloatArray  #: (n, 2) of the drawn nodes, from the centroid [m]
     quads: IntArray  #: (m, 4) into `points`; none where only the outline is sent
     edges: IntArray  #: (k, 2) outline and borders between regions
     contact: IntArray  #: (n_c,) contact nodes, into `points`
-    frames: list[Split]  #: those sent; of the drawn nodes only
+    frames: list[AnimationFrame]  #: those sent; of the drawn nodes only
 
     @property
     def largest_stress(self) -> float:
@@ -79,7 +81,7 @@ class Film:
 
     @property
     def stresses(self) -> list[FloatArray]:
-        """Of the frames; none of a rigid container, whose stress nobody knows."""
+        """Of the frames; none of a rigid container."""
         return [frame.von_mises for frame in self.frames if frame.von_mises is not None]
 
     @property
@@ -95,7 +97,7 @@ class Film:
         return max((float(np.hypot(*frame.elastic.T).max()) for frame in self.frames), default=0.0)
 
 
-def film_of(model: Model, fields: Fields | None) -> Film:
+def animation_of(model: Model, fields: Fields | None) -> Animation:
     """The frames of a run, thinned out to what a page can carry.
 
     Raises:
@@ -114,14 +116,14 @@ def film_of(model: Model, fields: Fields | None) -> Film:
     place = np.full(len(elements.nodes), -1)
     place[drawn] = np.arange(drawn.size)
     centroid = np.asarray(model.container.mesh.centroid)
-    splits = [] if fields is None else list(_splits(model, fields, range(0, count, stride), drawn, contact))
-    return Film(
+    frames = [] if fields is None else list(_frames(model, fields, range(0, count, stride), drawn, contact))
+    return Animation(
         centroid=centroid,
         points=elements.nodes[drawn] - centroid,
         quads=place[quads],
         edges=place[edges],
         contact=place[contact],
-        frames=splits,
+        frames=frames,
     )
 
 
@@ -136,7 +138,7 @@ def outline(quads: IntArray, region: IntArray) -> IntArray:
     return edges[(counts == 1) | (least != most)]
 
 
-def split(elements: FiniteElements, frame: Frame) -> tuple[FloatArray, float, FloatArray]:
+def rigid_and_elastic(elements: FiniteElements, frame: Frame) -> tuple[FloatArray, float, FloatArray]:
     """Mass centre (2,) [m], rotation [rad] and elastic displacement (n, 2) [m] of a frame.
 
     The rotation is the mass-weighted best fit; the elastic part has no momentum and, in the best fit, no angular
@@ -160,13 +162,13 @@ def split(elements: FiniteElements, frame: Frame) -> tuple[FloatArray, float, Fl
     return centre, rotation, back - arm
 
 
-def player_data(film: Film, history: History, *, model: Model) -> dict[str, Any]:
+def player_data(shown: Animation, history: History, *, model: Model) -> dict[str, Any]:
     """What the script `player.js` reads."""
     stride = max(1, math.ceil(len(history) / MOST_SAMPLES))
     columns = {name: history[column][::stride] for name, column in COLUMNS.items()}
     modes = sorted(set(history.modes))
     mesh = model.container.mesh
-    scale = film.stress_scale
+    scale = shown.stress_scale
     drift = float(np.ptp(columns["base"])) if len(history) else 0.0
     return {
         "step": model.case.output.history_s * stride,
@@ -178,41 +180,46 @@ def player_data(film: Film, history: History, *, model: Model) -> dict[str, Any]
         "weight": model.static.weight,
         "width": mesh.width,
         "height": mesh.height,
-        "centroid": film.centroid.tolist(),
+        "centroid": shown.centroid.tolist(),
         "follow": drift > WIDE_JOURNEY * mesh.width,
-        "points": packed_floats(film.points.ravel()),
-        "quads": packed(film.quads.ravel(), "<u2" if len(film.points) < 65536 else "<u4"),
-        "edges": packed(film.edges.ravel(), "<u2" if len(film.points) < 65536 else "<u4"),
-        "wide": len(film.points) >= 65536,
-        "contact": film.contact.tolist(),
-        "times": [frame.time for frame in film.frames],
-        "elastic": packed_floats(np.array([frame.elastic for frame in film.frames]).ravel()),
-        "stress": packed(_on_scale(film.stresses, scale), "u1"),
+        "points": packed_floats(shown.points.ravel()),
+        "quads": packed(shown.quads.ravel(), "<u2" if len(shown.points) < 65536 else "<u4"),
+        "edges": packed(shown.edges.ravel(), "<u2" if len(shown.points) < 65536 else "<u4"),
+        "wide": len(shown.points) >= 65536,
+        "contact": shown.contact.tolist(),
+        "times": [frame.time for frame in shown.frames],
+        "elastic": packed_floats(np.array([frame.elastic for frame in shown.frames]).ravel()),
+        "stress": packed(_on_scale(shown.stresses, scale), "u1"),
         "stress_scale": scale,
-        "normal": packed_floats(np.array([frame.normal_force for frame in film.frames]).ravel()),
+        "normal": packed_floats(np.array([frame.normal_force for frame in shown.frames]).ravel()),
     }
 
 
-def exaggeration(film: Film, height: float) -> float:
+def exaggeration(shown: Animation, height: float) -> float:
     """Factor on the elastic displacement as first shown; 0 where there is none.
 
     Most frames then deform visibly. Frames are in single precision: a factor that would show its rounding as
     deformation is not taken.
     """
-    if film.largest_elastic == 0.0:
+    if shown.largest_elastic == 0.0:
         return 0.0
-    typical = float(np.percentile([np.hypot(*frame.elastic.T).max() for frame in film.frames], TYPICAL))
-    reach = max(float(np.abs(frame.centre).max()) for frame in film.frames) + height
+    typical = float(np.percentile([np.hypot(*frame.elastic.T).max() for frame in shown.frames], TYPICAL))
+    reach = max(float(np.abs(frame.centre).max()) for frame in shown.frames) + height
     most = SHOWN_ROUNDING * height / (SINGLE_PRECISION * reach)
     return max(1.0, round_down(min(SHOWN_ELASTIC * height / typical if typical else most, most)))
 
 
-def exaggerations(film: Film, height: float) -> list[float]:
+def exaggerations(shown: Animation, height: float) -> list[float]:
     """Factors to choose from; none where the container is rigid."""
-    fit = exaggeration(film, height)
+    fit = exaggeration(shown, height)
     if fit == 0.0:
         return []
     return sorted({1.0, *(round_down(fit * factor) for factor in (0.1, 0.3, 1.0, 3.0) if fit * factor > 1.0)})
+
+
+def colour_scale(name: str, count: int) -> list[str]:
+    """A colour map of matplotlib from low to high, as hexadecimal codes."""
+    return [str(to_hex(colour)) for colour in colormaps[name](np.linspace(0.0, 1.0, count))]
 
 
 def packed_floats(values: NDArray[np.floating]) -> dict[str, Any]:
@@ -228,17 +235,17 @@ def packed(values: NDArray[Any], kind: str) -> str:
     return base64.b64encode(np.asarray(values).astype(kind).tobytes()).decode()
 
 
-def _splits(
+def _frames(
     model: Model, fields: Fields, indices: range, drawn: IntArray, contact: IntArray
-) -> Iterator[Split]:
+) -> Iterator[AnimationFrame]:
     elements = model.container.elements
     area = model.run.contact.normal_stiffness[: contact.size] / model.penalty
     for index in indices:
         frame = fields.frame(index)
-        centre, rotation, elastic = split(elements, frame)
+        centre, rotation, elastic = rigid_and_elastic(elements, frame)
         if model.case.solver.model == "rigid":  # what is left is the rounding of the files
             elastic = np.zeros_like(elastic)
-        yield Split(
+        yield AnimationFrame(
             time=frame.time,
             centre=centre,
             rotation=rotation,

@@ -1,9 +1,7 @@
-"""What was asked and what came of it, as rows for a reader: the case, the static rule beside the run, assumptions."""
+"""Rows of a report: the case as given, the static rules beside the run, assumptions."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from markupsafe import Markup
@@ -11,16 +9,14 @@ from markupsafe import Markup
 from fem.assessment.summary import own_motion_name, rule_says, run_slid, run_tilted
 from fem.case.case import Case
 from fem.html.units import degrees, number, quantity, short, typeset
-from fem.model.static_checks import CLAUSE_OVERTURNING, CLAUSE_SLIDING
+from fem.model.static_checks import StaticChecks
 from fem.results.history import History
+from fem.results.run_result import Numerics, RunResult, Verdict
 
-Result = Mapping[str, Any]
-
-EDITION = "EN 1998-1:2004, "  #: of the clauses; it stands at the head of their column
+EDITION = "EN 1998-1:2004, "  #: of the clauses; the head of their column names it
 
 
-@dataclass(frozen=True, kw_only=True)
-class Compared:
+class Compared(NamedTuple):
     """The static rule under one action, and what the run found where the two may be compared."""
 
     check: str
@@ -34,46 +30,40 @@ class Compared:
     run: str  #: what the run found; empty where it is not to be compared
 
 
-def compared_rows(result: Result, case: Case) -> list[Compared]:
+def compared_rows(static: StaticChecks, verdict: Verdict, case: Case) -> list[Compared]:
     """Sliding and overturning under the run's own peak, then under the code's base shear."""
-    static, verdict = result["static"], result.get("verdict") or {}
-    q = short(case.static.behaviour_factor)
-    actions = [("own_motion", own_motion_name(static).replace("m/s2", "m/s²")), ("code", f"code, q = {q}")]
-    if case.static.behaviour_factor != 1.0:
-        actions.append(("code_q1", "code, q = 1"))
-    checks = (
-        ("sliding", "kN", "base_shear_N", static["sliding_limit_static_N"], CLAUSE_SLIDING, run_slid),
-        (
-            "overturning",
-            "kNm",
-            "tilting_moment_Nm",
-            static["restoring_moment_Nm"],
-            CLAUSE_OVERTURNING,
-            run_tilted,
-        ),
-    )
+    q = case.static.behaviour_factor
+    actions = [
+        (static.own_motion, typeset(own_motion_name(static.to_result()))),
+        (static.code, f"code, q = {short(q)}"),
+        (static.code_q1, "code, q = 1"),
+    ]
     rows = []
-    for key, name in actions:
-        for check, unit, demand, capacity, clause, found in checks:
-            use = static[key][f"utilisation_{check}"]
+    for action, name in actions if q != 1.0 else actions[:2]:
+        for check, rule, found in (
+            ("sliding", action.sliding, run_slid),
+            ("overturning", action.overturning, run_tilted),
+        ):
+            known = math.isfinite(rule.utilisation)
+            unit = f"k{rule.unit}"
             rows.append(
                 Compared(
                     check=check,
                     action=name,
-                    demand=quantity(static[key][demand], unit, 1e-3),
-                    capacity=quantity(capacity, unit, 1e-3),
-                    utilisation=number(use, figures=4),
-                    exceeded=use is None or use > 1.0,
-                    clause=clause.removeprefix(EDITION).removesuffix(f", {check}"),
-                    rule=rule_says(check, use),
-                    run=typeset(found(verdict)) if key == "own_motion" and verdict.get("outcome") else "",
+                    demand=quantity(rule.demand, unit, 1e-3),
+                    capacity=quantity(rule.capacity, unit, 1e-3),
+                    utilisation=number(rule.utilisation),
+                    exceeded=not rule.passed,
+                    clause=rule.clause.removeprefix(EDITION).removesuffix(f", {check}"),
+                    rule=rule_says(check, rule.utilisation if known else None),
+                    run=typeset(found(verdict)) if action is static.own_motion and verdict.outcome else "",
                 )
             )
     return rows
 
 
 def asked_rows(case: Case, history: History | None = None) -> list[tuple[str, str]]:
-    """The case in words: name and value; with a history, what the floor came to."""
+    """The case in words: name and value; with a history, the peaks of the floor."""
     box, contact = case.container, case.contact
     boxes = f"{box.boxes} boxes, bolted, each " if box.boxes > 1 else ""
     wall = f"shell, walls {short(box.wall_m, 1e3)} mm" if box.section == "shell" else "solid block"
@@ -98,19 +88,19 @@ def asked_rows(case: Case, history: History | None = None) -> list[tuple[str, st
     return rows
 
 
-def assumptions(result: Result, case: Case) -> list[str]:
-    """What the result rests on."""
-    contact, numerics = case.contact, result.get("numerics") or {}
-    penalty, bounce = contact.normal_penalty_Pa_m, numerics.get("contact_frequency_Hz")
+def assumptions(case: Case, result: RunResult | None = None) -> list[str]:
+    """What the result rests on; of a run, with its contact frequency."""
+    contact, numerics = case.contact, (result and result.numerics) or Numerics()
+    penalty, bounce = contact.normal_penalty_Pa_m, numerics.contact_frequency_Hz
     spring = "chosen by the program" if isinstance(penalty, str) else quantity(penalty, "GPa/m", 1e-9)
     if bounce is not None:
         spring += f" (bounce at {quantity(bounce, 'Hz', figures=3)})"
     law = (
-        "regularised in displacement: a stuck container does not creep"
+        "regularised in displacement: a container at rest does not creep"
         if contact.friction == "elastic-stick"
         else "regularised in velocity: under load it creeps"
     )
-    said = [
+    lines = [
         "Plane elevation; one horizontal floor motion, the same under the whole base.",
         f"Rigid, level floor under a unilateral contact: penalty {spring}, damping ratio "
         f"{short(contact.damping_ratio)}. The penalty is a numerical input, not the stiffness of a concrete slab.",
@@ -118,26 +108,26 @@ def assumptions(result: Result, case: Case) -> list[str]:
         _material(case),
     ]
     if case.container.boxes > 1:
-        listed = "; what the joints carry is listed below" if result.get("joints") else ""
-        said.append(f"The boxes are bolted and do not part{listed}.")
-    return said
+        listed = "; the forces in the joints are listed below" if result and result.joints else ""
+        lines.append(f"The boxes are bolted and do not separate{listed}.")
+    return lines
 
 
 def _material(case: Case) -> str:
     if case.solver.model == "rigid":
-        return "The container is rigid: it turns and slides as one, and its stress is not known."
+        return "The container is rigid: it turns and slides as one body, and has no stress."
     if case.container.section == "solid":
         return "A homogeneous block, linear elastic in plane stress (finite rotation)."
     return (
-        "Walls linear elastic in plane stress (finite rotation); the fill is mass without stiffness, fixed to its "
-        "place."
+        "Walls linear elastic in plane stress (finite rotation); the fill is mass without stiffness that moves "
+        "with the walls."
     )
 
 
 EXCLUSIONS = (
-    "vertical floor motion, torsion and motion out of the plane, wind",
+    "vertical floor motion, torsion, motion out of the plane, wind",
     "sloshing, plasticity, buckling and bending of the sheets out of their plane",
-    "compliance of floor and soil, neighbours, ropes or stops, loose stacking of boxes",
+    "compliance of floor and soil, neighbouring containers, ropes or stops, loose stacking of boxes",
     "partial factors, and further ground motions: EN 1998-1:2004, 3.2.3.1.2 (4) asks for three or more",
 )
 
@@ -164,7 +154,7 @@ def floor_in_words(case: Case) -> str:
         case "pulse":
             return (
                 f"{motion.shape} pulse, {quantity(motion.peak_acceleration_m_s2, 'm/s²')} for "
-                f"{quantity(motion.pulse_s, 's')}, from {short(motion.delay_s)} s on"
+                f"{quantity(motion.pulse_s, 's')}, from t = {short(motion.delay_s)} s"
             )
     return (
         f"record {motion.file} ({motion.quantity}, {motion.unit}), scale {short(motion.scale)}, "
@@ -201,7 +191,9 @@ def _start(case: Case) -> str:
     words = []
     if case.motion.kind != "none":
         moving = case.motion.start == "moving"
-        words.append("moving with the floor" if moving else "at rest, the floor jerks under it")
+        words.append(
+            "moving with the floor" if moving else "at rest while the floor starts with its velocity"
+        )
     if initial.rotation_rad:
         words.append(f"tilted by {degrees(initial.rotation_rad)}")
     if initial.angular_velocity_rad_s:

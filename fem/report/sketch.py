@@ -1,225 +1,144 @@
-"""The sketch of what was asked: the container in elevation with its dimensions, its support and the floor's motion.
+"""The sketch of the case: the container in elevation with its dimensions, its support and the floor's motion.
 
-Drawn to one scale, as SVG; lengths in m. x to the right, z up, as in the case.
+Drawn to scale; lengths in m, x to the right, z up.
 """
 
 import math
 
-from markupsafe import Markup, escape
+from markupsafe import Markup
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Arc, Rectangle
+from matplotlib.transforms import Affine2D
 
 from fem.case.case import Case
+from fem.figures.style import BLACK, BLUE, GREY, house_style, svg_of
+from fem.html.page import svg_element
 from fem.html.units import degrees, quantity, short
 
-WIDTH = 430.0  #: of the drawing, in its own units
-BODY_WIDTH, BODY_HEIGHT = 175.0, 250.0  #: room for the container
-TOP = 30.0
-INK, QUIET, ACCENT, STEEL = "#1c2330", "#55606f", "#0b5a8a", "#e4ebf1"
+WIDTH = 4.3  #: of the drawing [inch]
+WIDEST, TALLEST = 1.8, 2.6  #: of the container in it [inch]
+ABOVE, BELOW = 0.3, 1.2  #: room above and below the container [inch]
+BODY = "#E4EBF1"
 
 
 def sketch(case: Case, *, centroid: float, peak_acceleration: float) -> Markup:
     """An `svg` element.
 
     Args:
-        case: what was asked.
+        case: the case.
         centroid: height of the mass centre above the floor [m].
         peak_acceleration: largest |acceleration| of the floor in the run [m/s2].
     """
     box = case.container
-    scale = min(BODY_WIDTH / box.width_m, BODY_HEIGHT / box.total_height)
-    width, height = scale * box.width_m, scale * box.total_height
-    left, floor = 0.5 * (WIDTH - width), TOP + height
-    right, middle = left + width, 0.5 * WIDTH
-    centre = floor - scale * centroid
-    parts = [
-        *_floor(floor),
-        *_tilted_outline(case, left, right, floor, width, height),
-        *_body(case, left, floor, scale),
-        *_support(case, left, floor, scale),
-        *_angle(left + width, floor, middle, centre, case, centroid),
-        *_mass_centre(middle, centre),
-        *_dimension_below(left, right, floor + 30.0, f"a = {short(box.width_m)} m"),
-        *_dimension_beside(left - 34.0, TOP, floor, _height_label(case), left),
-        *_dimension_beside(right + 96.0, centre, floor, f"z_c = {short(centroid)} m", middle, after=True),
-        *_motion(case, middle, floor + 58.0, peak_acceleration),
-    ]
+    width, height = box.width_m, box.total_height
+    inch = max(height / TALLEST, width / WIDEST)  # so many metres
+    with house_style():
+        figure = Figure(figsize=(WIDTH, ABOVE + height / inch + BELOW))
+        axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        axes.set(xlim=(-0.5 * WIDTH * inch, 0.5 * WIDTH * inch), ylim=(-BELOW * inch, height + ABOVE * inch))
+        axes.set_axis_off()
+        unit = 0.04 * inch
+        _draw_floor(axes, case, unit)
+        _draw_container(axes, case)
+        _draw_mass_centre(axes, 0.5 * width, centroid, unit)
+        _dimension(axes, (-0.5 * width, -7 * unit), (0.5 * width, -7 * unit), f"a = {short(width)} m")
+        left, right = -0.5 * width - 8 * unit, 0.5 * width + 22 * unit
+        boxes = f"{box.boxes} × c = {box.boxes} × " if box.boxes > 1 else "c = "
+        _dimension(axes, (left, 0.0), (left, height), f"{boxes}{short(box.height_m)} m")
+        _dimension(axes, (right, 0.0), (right, centroid), f"$z_c$ = {short(centroid)} m")
+        axes.plot((0.0, right + unit), (centroid, centroid), color=GREY, linewidth=0.5)
+        if case.motion.kind != "none":
+            axes.annotate(
+                "", (-10 * unit, -15 * unit), (10 * unit, -15 * unit), arrowprops=_arrow("<|-|>", BLUE)
+            )
+        words = _motion(case, peak_acceleration)
+        axes.text(0.0, -17 * unit, "\n".join(words), color=BLUE, ha="center", va="top")
     label = (
-        f"Sketch: container {short(box.width_m)} m wide and {short(box.total_height)} m high, mass centre at "
-        f"{short(centroid)} m, on {case.support.kind}"
+        f"Sketch: container {short(width)} m wide and {short(height)} m high, mass centre at {short(centroid)} m, "
+        f"on {case.support.kind}"
     )
-    return Markup(
-        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {w:g} {h:g}" role="img" aria-label="{label}" '
-        'font-family="system-ui, sans-serif" font-size="12.5" fill="{ink}">{parts}</svg>'
-    ).format(w=WIDTH, h=floor + 98.0, label=label, ink=INK, parts=Markup("").join(parts))
+    return svg_element(svg_of(figure), label=label, prefix="sketch")
 
 
-def _line(x1: float, y1: float, x2: float, y2: float, colour: str = INK, extra: str = "") -> Markup:
-    return Markup('<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}" {}/>').format(
-        x1, y1, x2, y2, colour, Markup(extra)
+def _arrow(style: str, colour: str) -> dict[str, object]:
+    return {"arrowstyle": style, "color": colour, "shrinkA": 0, "shrinkB": 0}
+
+
+def _draw_floor(axes: Axes, case: Case, unit: float) -> None:
+    """The floor, and where the base may touch it: thick marks."""
+    reach, width = 0.45 * (axes.get_xlim()[1] - axes.get_xlim()[0]), case.container.width_m
+    axes.add_patch(
+        Rectangle((-reach, -2 * unit), 2 * reach, 2 * unit, hatch="////", fill=False, ec=GREY, lw=0)
     )
-
-
-def _text(
-    x: float, y: float, words: str, anchor: str = "middle", colour: str = INK, turn: bool = False
-) -> Markup:
-    """Words; `z_c` and the like get their index set lower."""
-    shown = escape(words)
-    for letter, index in (("z", "c"), ("μ", "s"), ("μ", "k")):
-        shown = Markup(
-            str(shown).replace(
-                f"{letter}_{index}",
-                f'{letter}<tspan dy="3" font-size="9">{index}</tspan><tspan dy="-3">\u200b</tspan>',
-            )
+    axes.plot((-reach, reach), (0.0, 0.0), color=BLACK, linewidth=1.5)
+    support = case.support
+    foot = {"corners": unit, "feet": support.foot_m or 0.0}.get(support.kind, 0.5 * width)
+    for side in (-1.0, 1.0):
+        inner = side * (0.5 * width - foot)
+        axes.plot(
+            (side * 0.5 * width, inner), (0.0, 0.0), color=BLUE, linewidth=4, solid_capstyle="butt", zorder=5
         )
-    place = Markup(' transform="rotate(-90 {:.1f} {:.1f})"').format(x, y) if turn else ""
-    return Markup('<text x="{:.1f}" y="{:.1f}" text-anchor="{}" fill="{}"{}>{}</text>').format(
-        x, y, anchor, colour, place, shown
-    )
 
 
-def _floor(floor: float) -> list[Markup]:
-    lines = [_line(40.0, floor, WIDTH - 40.0, floor, INK, 'stroke-width="2"')]
-    return lines + [_line(x, floor, x - 8.0, floor + 8.0, QUIET) for x in range(56, int(WIDTH) - 36, 12)]
-
-
-def _body(case: Case, left: float, floor: float, scale: float) -> list[Markup]:
-    box = case.container
-    width, height = scale * box.width_m, scale * box.height_m
-    wall = max(scale * (box.wall_m or 0.0), 1.8) if box.section == "shell" else 0.0
-    parts = []
+def _draw_container(axes: Axes, case: Case) -> None:
+    """The boxes with their walls, and dashed the tilted container where it starts so."""
+    box, rotation = case.container, case.initial.rotation_rad
+    left, width, height = -0.5 * box.width_m, box.width_m, box.height_m
     for k in range(box.boxes):
-        top = floor - (k + 1) * height
-        parts.append(
-            Markup(
-                '<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="{}" stroke="{}" stroke-width="1.4"/>'
-            ).format(left, top, width, height, STEEL, INK)
-        )
+        axes.add_patch(Rectangle((left, k * height), width, height, fc=BODY, ec=BLACK, lw=1.1))
+        wall = box.wall_m if box.section == "shell" and box.wall_m else 0.0
         if wall:
-            parts.append(
-                Markup(
-                    '<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" '
-                    'fill="none" stroke="{}" stroke-width=".6"/>'
-                ).format(left + wall, top + wall, width - 2.0 * wall, height - 2.0 * wall, QUIET)
-            )
-    return parts
+            inside = (left + wall, k * height + wall), width - 2 * wall, height - 2 * wall
+            axes.add_patch(Rectangle(*inside, fill=False, ec=GREY, lw=0.5))
+    if rotation:
+        pivot = math.copysign(0.5 * width, rotation)
+        turn = Affine2D().rotate_around(pivot, 0.0, -rotation) + axes.transData
+        outline = Rectangle(
+            (left, 0.0), width, box.total_height, fill=False, ec=BLUE, ls="--", transform=turn
+        )
+        axes.add_patch(outline)
+        place = pivot + math.sin(rotation) * box.total_height, 0.8 * box.total_height
+        side = "left" if rotation > 0.0 else "right"
+        axes.text(*place, f" θ = {degrees(rotation)} at t = 0 ", color=BLUE, ha=side)
 
 
-def _support(case: Case, left: float, floor: float, scale: float) -> list[Markup]:
-    """Where the base may touch: thick marks."""
-    width = scale * case.container.width_m
-    match case.support.kind:
-        case "corners":
-            spans = [(left - 3.0, left + 3.0), (left + width - 3.0, left + width + 3.0)]
-        case "feet":
-            foot = scale * case.support.foot_m
-            spans = [(left, left + foot), (left + width - foot, left + width)]
-        case _:
-            spans = [(left, left + width)]
-    return [_line(a, floor, b, floor, ACCENT, 'stroke-width="5"') for a, b in spans]
+def _draw_mass_centre(axes: Axes, half_width: float, centroid: float, unit: float) -> None:
+    """Mass centre and weight, and the slenderness angle at the right corner."""
+    angle = math.atan2(half_width, centroid)
+    reach = min(0.7 * math.hypot(half_width, centroid), 28 * unit)
+    top = max(centroid, reach) + 2 * unit
+    for x, z in ((half_width, top), (0.0, centroid)):
+        axes.plot((half_width, x), (0.0, z), color=BLUE, linestyle="--", linewidth=0.9)
+    turn = 90.0, 90.0 + math.degrees(angle)
+    axes.add_patch(Arc((half_width, 0.0), 2 * reach, 2 * reach, theta1=turn[0], theta2=turn[1], ec=BLUE))
+    axes.text(half_width + unit, reach, f"α = {degrees(angle)}", color=BLUE)
+    axes.annotate("", (0.0, centroid - 12 * unit), (0.0, centroid), arrowprops=_arrow("-|>", BLACK))
+    axes.plot(0.0, centroid, "o", color=BLACK, markerfacecoloralt="white", fillstyle="left", markersize=8)
+    axes.text(-1.5 * unit, centroid - 9 * unit, "G", ha="right")
 
 
-def _tilted_outline(
-    case: Case, left: float, right: float, floor: float, width: float, height: float
-) -> list[Markup]:
-    """Where a container starts that starts tilted: about its corner, dashed."""
-    rotation = case.initial.rotation_rad
-    if rotation == 0.0:
-        return []
-    pivot = right if rotation > 0.0 else left
-    side = 1.0 if rotation > 0.0 else -1.0
-    return [
-        _text(
-            pivot + side * (height * math.sin(abs(rotation)) + 8.0),
-            floor - 0.8 * height,
-            f"θ = {degrees(rotation)} at t = 0",
-            "start" if rotation > 0.0 else "end",
-            ACCENT,
-        ),
-        Markup(
-            '<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" fill="none" stroke="{}" '
-            'stroke-dasharray="4 3" transform="rotate({:.2f} {:.1f} {:.1f})"/>'
-        ).format(left, floor - height, width, height, ACCENT, math.degrees(rotation), pivot, floor),
-    ]
+def _dimension(axes: Axes, start: tuple[float, float], end: tuple[float, float], words: str) -> None:
+    """A dimension line with its words above it, or left of it where it is upright."""
+    upright = start[0] == end[0]
+    axes.annotate("", start, end, arrowprops=_arrow("|-|, widthA=0.25, widthB=0.25", GREY))
+    middle = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
+    axes.annotate(
+        words, middle, (-3, 0) if upright else (0, 3), textcoords="offset points",
+        ha="right" if upright else "center", va="center" if upright else "bottom", rotation=90 if upright else 0,
+    )  # fmt: skip
 
 
-def _angle(
-    corner: float, floor: float, middle: float, centre: float, case: Case, centroid: float
-) -> list[Markup]:
-    """The slenderness angle at the right corner, between the vertical and the line to the mass centre."""
-    angle = math.atan2(0.5 * case.container.width_m, centroid)
-    reach = min(0.7 * math.hypot(corner - middle, floor - centre), 120.0)
-    x, y = corner - reach * math.sin(angle), floor - reach * math.cos(angle)
-    return [
-        _line(corner, floor, corner, min(centre, floor - reach) - 8.0, ACCENT, 'stroke-dasharray="5 3"'),
-        _line(corner, floor, middle, centre, ACCENT, 'stroke-dasharray="5 3"'),
-        Markup(
-            '<path d="M{:.1f} {:.1f} A{:.1f} {:.1f} 0 0 0 {:.1f} {:.1f}" fill="none" stroke="{}"/>'
-        ).format(corner, floor - reach, reach, reach, x, y, ACCENT),
-        _text(corner + 5.0, floor - reach - 4.0, f"α = {degrees(angle)}", "start", ACCENT),
-    ]
-
-
-def _mass_centre(x: float, y: float) -> list[Markup]:
-    return [
-        Markup('<circle cx="{0:.1f}" cy="{1:.1f}" r="5" fill="#fff" stroke="{2}"/>').format(x, y, INK),
-        Markup('<path d="M{0:.1f} {1:.1f}v-5a5 5 0 0 1 5 5zM{0:.1f} {1:.1f}v5a5 5 0 0 1 -5 -5z"/>').format(
-            x, y
-        ),
-        _line(x, y + 6.0, x, y + 40.0, INK, 'stroke-width="1.6"'),
-        Markup('<path d="M{0:.1f} {1:.1f}l-4 -9h8z"/>').format(x, y + 47.0),
-        _text(x - 7.0, y + 36.0, "G", "end"),
-    ]
-
-
-def _dimension_below(left: float, right: float, y: float, words: str) -> list[Markup]:
-    return [
-        _line(left, y - 20.0, left, y + 4.0, QUIET, 'stroke-width=".7"'),
-        _line(right, y - 20.0, right, y + 4.0, QUIET, 'stroke-width=".7"'),
-        _line(left, y, right, y, QUIET),
-        _line(left - 4.0, y + 4.0, left + 4.0, y - 4.0),
-        _line(right - 4.0, y + 4.0, right + 4.0, y - 4.0),
-        _text(0.5 * (left + right), y - 4.0, words),
-    ]
-
-
-def _dimension_beside(
-    x: float, top: float, bottom: float, words: str, from_x: float, *, after: bool = False
-) -> list[Markup]:
-    reach = -5.0 if after else 5.0
-    return [
-        _line(x - reach, top, from_x + reach, top, QUIET, 'stroke-width=".7"'),
-        _line(x, top, x, bottom, QUIET),
-        _line(x - 4.0, top + 4.0, x + 4.0, top - 4.0),
-        _line(x - 4.0, bottom + 4.0, x + 4.0, bottom - 4.0),
-        _text(x + (14.0 if after else -6.0), 0.5 * (top + bottom), words, turn=True),
-    ]
-
-
-def _height_label(case: Case) -> str:
-    box = case.container
-    if box.boxes == 1:
-        return f"c = {short(box.height_m)} m"
-    return f"{box.boxes} × c = {box.boxes} × {short(box.height_m)} m"
-
-
-def _motion(case: Case, middle: float, y: float, peak: float) -> list[Markup]:
-    """The floor's motion below the floor."""
+def _motion(case: Case, peak: float) -> list[str]:
+    """The floor's motion."""
     motion = case.motion
     match motion.kind:
         case "none":
-            return [_text(middle, y + 14.0, "floor at rest")]
+            return ["floor at rest"]
         case "harmonic":
-            first = f"x = A sin(Ωt{f' + {degrees(motion.phase_rad)}' if motion.phase_rad else ''})"
-            second = f"A = {quantity(motion.amplitude, 'mm', 1e3)}, Ω = {short(motion.angular_frequency, 1.0, 5)} rad/s"
+            phase = f" + {degrees(motion.phase_rad)}" if motion.phase_rad else ""
+            amplitude, omega = quantity(motion.amplitude, "mm", 1e3), short(motion.angular_frequency, 1.0, 5)
+            return [f"x = A sin(Ωt{phase})", f"A = {amplitude}, Ω = {omega} rad/s, peak {short(peak)} m/s²"]
         case "pulse":
-            first, second = f"{motion.shape} pulse", f"{short(motion.pulse_s)} s long"
-        case _:
-            first, second = f"record {motion.file}", f"scale {short(motion.scale)}"
-    arrow = Markup(
-        '<path d="M{0:.1f} {1:.1f}h90M{0:.1f} {1:.1f}l9 -5v10zm90 0l-9 -5v10z" '
-        'stroke="{2}" fill="{2}" stroke-width="1.6"/>'
-    )
-    return [
-        arrow.format(middle - 45.0, y - 4.0, ACCENT),
-        _text(middle, y + 15.0, first, colour=ACCENT),
-        _text(middle, y + 32.0, f"{second}, peak {short(peak)} m/s²", colour=ACCENT),
-    ]
+            return [f"{motion.shape} pulse", f"{short(motion.pulse_s)} s long, peak {short(peak)} m/s²"]
+    return [f"record {motion.file}", f"scale {short(motion.scale)}, peak {short(peak)} m/s²"]

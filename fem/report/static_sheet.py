@@ -1,14 +1,13 @@
-"""The static calculation of a report: every line a formula, the same with the numbers put in, the result, the clause.
+"""The static calculation of a report: every line a formula, its numbers, the result, the clause.
 
-It can be redone with a pocket calculator: the numbers put in are those printed, and give the printed result
-to its last figure but one. The formulas are those of `fem.model.static_checks`; the results are the run's own.
-Weights in kN, moments in kNm, lengths in m.
+It can be repeated with a pocket calculator: the numbers are those printed, and give the printed result to its last
+figure but one. The formulas are those of `fem.model.static_checks`. Weights in kN, moments in kNm, lengths in m.
 """
 
 import math
-from collections.abc import Mapping
+import re
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from markupsafe import Markup
 
@@ -19,23 +18,96 @@ from fem.model.static_checks import (
     CLAUSE_OVERTURNING,
     CLAUSE_SLIDING,
     LIMIT_PERIOD,
+    ActionCheck,
+    StaticChecks,
 )
 
-PAPER = "seed paper"
-CODE_SHEAR = "EN 1998-1:2004, 4.3.3.2.2 (1)P, Eq. (4.5), with 3.2.2.5 (4)P, Eq. (3.14), λ = 1"
+PAPER = "Knoedel and Hrabowski"
+#: a function, which is upright, or a symbol, which is in italics, with its index
+SYMBOL = re.compile(r"\b(arctan|tan|cos)\b|([A-Za-zα-ορ-ωΩ])(?:_([A-Za-z]+))?")
+
+
+class Row(NamedTuple):
+    """One step of the calculation, with places for the numbers, which `_Printed` formats."""
+
+    name: str
+    formula: str  #: left side, equals sign, right side; an index after an underscore
+    numbers: str  #: the right side with numbers; a calculator's language with × · √ ²
+    value: str  #: which of the numbers it gives
+    unit: str
+    source: str = ""
+
+
+WEIGHT = (
+    Row("weight with fill", "G = n G_box", "{n:s4} × {G_box:s6}", "G", "kN", "n = {boxes}"),
+    Row("mass", "m = G/g", "{G} / {g:s4}", "m", "t"),
+)
+HEIGHT = Row(
+    *("height of the mass centre", "z_c = (n − 1) c/2 + z_box", "({n:s4} − 1) × {c:s4} / 2 + {z_box:s4}"),
+    *("z_c", "m", "c, height of a box; the last, of the mass centre in it"),
+)
+ANGLE = Row(
+    *("slenderness angle, from the vertical", "α = arctan(a/2/z_c)", "arctan({a:s4} / 2 / {z_c})", "α", "°"),
+    f"a, width of the base; 90° minus the α of {PAPER}",
+)
+AMPLITUDE = Row(
+    *("largest floor acceleration of this run", "a_max = A Ω²", "{A:5} × {Ω:5}²"),
+    *("a_max", "m/s²", "x = A sin(Ωt + φ)"),
+)
+SHEAR = Row("base shear", "F = m a_max", "{m} × {a_max}", "F", "kN")
+PLATEAU = Row(
+    *("base shear on the plateau, q = {q:s4}", "F_b = m γ_I a_gR S 2.5/q"),
+    *("{m} × {γ_I:s4} × {a_gR:s4} × {S:s4} × 2.5 / {q:s4}", "F", "kN"),
+    "EN 1998-1:2004, 4.3.3.2.2 (1)P, Eq. (4.5), with 3.2.2.5 (4)P, Eq. (3.14), λ = 1",
+)
+SLIDING = Row(
+    *("utilisation, sliding", "F/(μ_s G)", "{F} / ({μ_s:s4} × {G})", "sliding", ""),
+    f"{CLAUSE_SLIDING}; capacity {{F_limit}} kN",
+)
+OVERTURNING = Row(
+    *("utilisation, overturning", "F z_c/(G a/2)", "{F} × {z_c} / ({G} × {a:s4} / 2)", "overturning", ""),
+    f"{CLAUSE_OVERTURNING}; {{M}} kNm against {{M_limit}} kNm",
+)
+PERIOD = Row(
+    *("rocking period, against the limit of the method", "T = 2π √(4 R/(3 g))"),
+    *("2 × π × √(4 × {R} / (3 × {g:s4}))", "T", "s"),
+    f"{PAPER}, Eq. (3); limit min(4 <i>T</i><sub>C</sub>, {LIMIT_PERIOD:.1f} s) with <i>T</i><sub>C</sub> = "
+    f"{{T_C:s4}} s, {CLAUSE_APPLICABLE} a), Eq. (4.4)",
+)
+MASS = (
+    Row(
+        "floor acceleration of uplift",
+        "a_up = g tan α",
+        "{g:s4} × tan({α:5}°)",
+        "a_up",
+        "m/s²",
+        "West (1885)",
+    ),
+    Row("corner to mass centre", "R = √((a/2)² + z_c²)", "√(({a:s4} / 2)² + {z_c}²)", "R", "m"),
+    Row(
+        *("inertia about a corner", "I_O = I + m R²", "{I:5} + {m:5} × {R:5}²", "I_O", "t m²"),
+        "I, about the mass centre, from the mesh",
+    ),
+    Row("frequency parameter", "p = √(G R/I_O)", "√({G} × {R} / {I_O})", "p", "1/s", "Housner (1963)"),
+)
+RESTITUTION = Row(
+    *("Housner's restitution", "e = 1 − m R²/I_O (1 − cos 2α)"),
+    *("1 − {m:5} × {R:5}² / {I_O:5} × (1 − cos(2 × {α:5}°))", "e", ""),
+    "Housner (1963), plastic impact of a rigid block on a corner",
+)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Line:
-    """One step of the calculation."""
+    """One step of the calculation with its numbers, for a page."""
 
     name: str
-    formula: Markup  #: in symbols, with what it is on the left
-    numbers: str  #: the right side with numbers in it; a calculator's language with × · √ ²
-    value: float  #: in `unit`
+    formula: Markup
+    numbers: str
+    value: float
     unit: str
-    source: str = ""
-    verdict: str = ""  #: what the static rule says of a utilisation
+    source: Markup
+    verdict: str  #: what the static rule says of a utilisation
 
     @property
     def result(self) -> str:
@@ -43,231 +115,117 @@ class Line:
         return number(self.value)
 
 
-def static_sheet(result: Mapping[str, Any], case: Case) -> list[tuple[str, list[Line]]]:
-    """The calculation in groups: title and lines.
+class _Printed(float):
+    """A number that prints itself: with four figures, with N (`:N`), or without trailing zeros (`:sN`)."""
 
-    Args:
-        result: the keys of `run.json`; `static` is needed.
-        case: resolved.
-    """
-    static = result["static"]
+    def __format__(self, spec: str) -> str:
+        figures = int(spec.removeprefix("s") or 4)
+        return short(self, figures=figures) if spec.startswith("s") else number(self, figures=figures)
+
+
+Numbers = dict[str, _Printed | str]
+
+
+def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Line]]]:
+    """The calculation in groups: title and lines; the case is resolved."""
+    numbers = _numbers(static, case)
+    height = [HEIGHT] if case.container.mesh_file is None else []
+    own = numbers | _action(static.own_motion)
+    swings = case.motion.kind == "harmonic" and math.isclose(
+        _value(own, "a_max"), case.nominal_peak_acceleration or 0.0, rel_tol=1e-6
+    )
+    shear = SHEAR._replace(source="" if swings else "largest |acceleration| of the floor within the run")
+    factors = [(case.static.behaviour_factor, static.code), (1.0, static.code_q1)]
+    code = []
+    for q, action in factors if case.static.behaviour_factor != 1.0 else factors[:1]:
+        numbers_q = numbers | _action(action) | {"q": _Printed(q)}
+        code += [_line(PLATEAU, numbers_q), *_utilisations(action, numbers_q, "F_b")]
+    applies = "applies" if static.applicability.passed else "does not apply"
+    credible = "credible" if static.housner_credible else "not credible, below 0.5"
     return [
-        ("Container", _container_lines(static, case)),
-        ("Static rule under this run's own peak floor acceleration", _own_motion_lines(static, case)),
+        ("Container", [_line(row, numbers) for row in (*WEIGHT, *height, ANGLE)]),
         (
-            "Design base shear of the code, for the reader who has to deal with it (not compared with the run)",
-            _code_lines(static, case),
+            "Static rule under the peak floor acceleration of this run",
+            [
+                *(_line(row, own) for row in ((AMPLITUDE, shear) if swings else (shear,))),
+                *_utilisations(static.own_motion, own, "F"),
+            ],
         ),
-        ("What follows from the mass alone", _mass_lines(static, case)),
-    ]
-
-
-def _container_lines(static: Mapping[str, Any], case: Case) -> list[Line]:
-    box, weight = case.container, static["weight_N"] / 1e3
-    count, height, centroid = box.boxes, short(box.height_m), short(box.centroid_m)
-    lines = [
-        Line(
-            name="weight with fill",
-            formula=Markup("<i>G</i> = <i>n</i> <i>G</i><sub>box</sub>"),
-            numbers=f"{count} × {short(weight / count, figures=6)}",
-            value=weight,
-            unit="kN",
-            source=f"n = {count} {'boxes, bolted' if count > 1 else 'box'}",
+        (
+            "Design base shear of the code (not compared with the run)",
+            [*code, _line(PERIOD, numbers, applies)],
         ),
-        Line(
-            name="mass",
-            formula=Markup("<i>m</i> = <i>G</i>/<i>g</i>"),
-            numbers=f"{number(weight)} / {short(case.gravity_m_s2)}",
-            value=weight / case.gravity_m_s2,
-            unit="t",
+        (
+            "What follows from the mass alone",
+            [*(_line(row, numbers) for row in MASS), _line(RESTITUTION, numbers, credible)],
         ),
     ]
-    if box.mesh_file is None:
-        lines.append(
-            Line(
-                name="height of the mass centre",
-                formula=Markup("<i>z</i><sub>c</sub> = (<i>n</i> − 1) <i>c</i>/2 + <i>z</i><sub>box</sub>"),
-                numbers=f"({count} − 1) × {height} / 2 + {centroid}",
-                value=static["centroid_m"],
-                unit="m",
-                source="c, height of a box; the last, of the mass centre in it",
-            )
-        )
-    lines.append(
-        Line(
-            name="slenderness angle, from the vertical",
-            formula=Markup("<i>α</i> = arctan(<i>a</i>/2/<i>z</i><sub>c</sub>)"),
-            numbers=f"arctan({short(box.width_m)} / 2 / {number(static['centroid_m'])})",
-            value=math.degrees(static["slenderness_angle_rad"]),
-            unit="°",
-            source=f"a, width of the base; 90° minus the {PAPER}'s α",
-        )
-    )
-    return lines
 
 
-def _own_motion_lines(static: Mapping[str, Any], case: Case) -> list[Line]:
-    own = static["own_motion"]
-    mass = static["weight_N"] / case.gravity_m_s2
-    peak = own["base_shear_N"] / mass
+def _numbers(static: StaticChecks, case: Case) -> Numbers:
+    """The numbers of the calculation by their symbols."""
+    box, rule = case.container, case.static
+    weight, mass = static.weight / 1e3, static.weight / case.gravity_m_s2 / 1e3
+    found: dict[str, Any] = {
+        "n": box.boxes,
+        "G": weight,
+        "G_box": weight / box.boxes,
+        "g": case.gravity_m_s2,
+        "m": mass,
+    }
+    found |= {"a": box.width_m, "c": box.height_m, "z_box": box.centroid_m, "z_c": static.centroid}
+    found |= {"α": math.degrees(static.slenderness_angle), "R": static.radius, "I": static.inertia / 1e3}
+    found |= {"I_O": static.inertia / 1e3 + mass * static.radius**2, "p": static.frequency_parameter}
+    found |= {"e": static.housner_restitution, "a_up": static.uplift_acceleration, "T": static.period_eq3}
+    found |= {"μ_s": case.contact.mu_static, "T_C": rule.corner_period_s, "S": rule.soil_factor}
+    found |= {"γ_I": rule.importance_factor, "a_gR": rule.ground_acceleration_m_s2}
+    found |= {"a_max": static.own_motion.sliding.demand / 1e3 / mass}
+    if case.motion.kind == "harmonic":
+        found |= {"A": case.amplitude, "Ω": case.angular_frequency}
+    boxes = f"{box.boxes} {'boxes, bolted' if box.boxes > 1 else 'box'}"
+    return {name: _Printed(value) for name, value in found.items() if value is not None} | {"boxes": boxes}
+
+
+def _action(action: ActionCheck) -> Numbers:
+    sliding, overturning = action.sliding, action.overturning
+    return {
+        "F": _Printed(sliding.demand / 1e3),
+        "F_limit": _Printed(sliding.capacity / 1e3),
+        "sliding": _Printed(sliding.utilisation),
+        "M": _Printed(overturning.demand / 1e3),
+        "M_limit": _Printed(overturning.capacity / 1e3),
+        "overturning": _Printed(overturning.utilisation),
+    }
+
+
+def _utilisations(action: ActionCheck, numbers: Numbers, force: str) -> list[Line]:
+    """Sliding, where there is friction, and overturning; `force` is the symbol of the base shear."""
     lines = []
-    if case.motion.kind == "harmonic" and math.isclose(
-        peak, case.nominal_peak_acceleration or 0.0, rel_tol=1e-6
-    ):
-        amplitude, omega = case.amplitude, case.angular_frequency
-        lines.append(
-            Line(
-                name="largest floor acceleration of this run",
-                formula=Markup("<i>a</i><sub>max</sub> = <i>A</i> <i>Ω</i>²"),
-                numbers=f"{number(amplitude, 1.0, 5)} × {number(omega, 1.0, 5)}²",
-                value=peak,
-                unit="m/s²",
-                source="x = A sin(Ωt + φ)",
-            )
-        )
-    force = own["base_shear_N"] / 1e3
-    lines.append(
-        Line(
-            name="base shear",
-            formula=Markup("<i>F</i> = <i>m</i> <i>a</i><sub>max</sub>"),
-            numbers=f"{number(mass / 1e3)} × {number(peak)}",
-            value=force,
-            unit="kN",
-            source="" if lines else "largest |acceleration| of the floor within the run",
-        )
+    if math.isfinite(action.sliding.utilisation):
+        row = SLIDING._replace(formula=SLIDING.formula.replace("F", force))
+        lines.append(_line(row, numbers, "holds" if action.sliding.passed else "slides"))
+    row = OVERTURNING._replace(formula=OVERTURNING.formula.replace("F", force))
+    return [*lines, _line(row, numbers, "stands" if action.overturning.passed else "overturns")]
+
+
+def _line(row: Row, numbers: Numbers, verdict: str = "") -> Line:
+    return Line(
+        name=row.name.format(**numbers),
+        formula=Markup(SYMBOL.sub(_symbol, row.formula)),  # our own text, never a user's
+        numbers=row.numbers.format(**numbers),
+        value=_value(numbers, row.value),
+        unit=row.unit,
+        source=Markup(row.source).format(**numbers),
+        verdict=verdict,
     )
-    return lines + _utilisations(static, own, case, "F")
 
 
-def _code_lines(static: Mapping[str, Any], case: Case) -> list[Line]:
-    rule = case.static
-    mass = static["weight_N"] / case.gravity_m_s2 / 1e3
-    lines = []
-    for key, factor in (("code", rule.behaviour_factor), ("code_q1", 1.0)):
-        if key == "code_q1" and rule.behaviour_factor == 1.0:
-            continue
-        lines.append(
-            Line(
-                name=f"base shear on the plateau, q = {short(factor)}",
-                formula=Markup(
-                    "<i>F</i><sub>b</sub> = <i>m</i> <i>γ</i><sub>I</sub> <i>a</i><sub>gR</sub> <i>S</i> 2.5/<i>q</i>"
-                ),
-                numbers=(
-                    f"{number(mass)} × {short(rule.importance_factor)} × {short(rule.ground_acceleration_m_s2)} × "
-                    f"{short(rule.soil_factor)} × 2.5 / {short(factor)}"
-                ),
-                value=static[key]["base_shear_N"] / 1e3,
-                unit="kN",
-                source=CODE_SHEAR,
-            )
-        )
-        lines += _utilisations(static, static[key], case, "F_b")
-    arm = math.hypot(0.5 * case.container.width_m, static["centroid_m"])
-    lines.append(
-        Line(
-            name="rocking period, against the limit of the method",
-            formula=Markup("<i>T</i> = 2π √(4 <i>R</i>/(3 <i>g</i>))"),
-            numbers=f"2 × π × √(4 × {number(arm)} / (3 × {short(case.gravity_m_s2)}))",
-            value=static["period_eq3_s"],
-            unit="s",
-            source=Markup(
-                "{}, Eq. (3); limit min(4 <i>T</i><sub>C</sub>, {} s) with <i>T</i><sub>C</sub> = {} s, {} a), "
-                "Eq. (4.4)"
-            ).format(PAPER, f"{LIMIT_PERIOD:.1f}", short(case.static.corner_period_s), CLAUSE_APPLICABLE),
-            verdict="applies" if static["method_applicable"] else "does not apply",
-        )
-    )
-    return lines
+def _symbol(found: re.Match[str]) -> str:
+    word, letter, index = found.groups()
+    return word or f"<i>{letter}</i>" + (f"<sub>{index}</sub>" if index else "")
 
 
-def _utilisations(
-    static: Mapping[str, Any], action: Mapping[str, Any], case: Case, symbol: str
-) -> list[Line]:
-    weight, force = static["weight_N"] / 1e3, action["base_shear_N"] / 1e3
-    limit, moment = static["sliding_limit_static_N"] / 1e3, action["tilting_moment_Nm"] / 1e3
-    restoring = static["restoring_moment_Nm"] / 1e3
-    F = Markup("<i>F</i><sub>b</sub>") if symbol == "F_b" else Markup("<i>F</i>")
-    lines = []
-    if action["utilisation_sliding"] is not None:
-        lines.append(
-            Line(
-                name="utilisation, sliding",
-                formula=F + Markup("/(<i>μ</i><sub>s</sub> <i>G</i>)"),
-                numbers=f"{number(force)} / ({short(case.contact.mu_static)} × {number(weight)})",
-                value=action["utilisation_sliding"],
-                unit="",
-                source=f"{CLAUSE_SLIDING}; capacity {number(limit)} kN",
-                verdict="slides" if action["utilisation_sliding"] > 1.0 else "holds",
-            )
-        )
-    lines.append(
-        Line(
-            name="utilisation, overturning",
-            formula=F + Markup(" <i>z</i><sub>c</sub>/(<i>G</i> <i>a</i>/2)"),
-            numbers=(
-                f"{number(force)} × {number(static['centroid_m'])} / "
-                f"({number(weight)} × {short(case.container.width_m)} / 2)"
-            ),
-            value=action["utilisation_overturning"],
-            unit="",
-            source=f"{CLAUSE_OVERTURNING}; {number(moment)} kNm against {number(restoring)} kNm",
-            verdict="overturns" if action["utilisation_overturning"] > 1.0 else "stands",
-        )
-    )
-    return lines
-
-
-def _mass_lines(static: Mapping[str, Any], case: Case) -> list[Line]:
-    arm = math.hypot(0.5 * case.container.width_m, static["centroid_m"])
-    mass = static["weight_N"] / case.gravity_m_s2 / 1e3
-    about_corner = static["inertia_kg_m2"] / 1e3 + mass * arm**2
-    angle = number(math.degrees(static["slenderness_angle_rad"]), 1.0, 5)
-    g = short(case.gravity_m_s2)
-    return [
-        Line(
-            name="floor acceleration of uplift",
-            formula=Markup("<i>a</i><sub>up</sub> = <i>g</i> tan <i>α</i>"),
-            numbers=f"{g} × tan({angle}°)",
-            value=static["uplift_acceleration_m_s2"],
-            unit="m/s²",
-            source="West (1885)",
-        ),
-        Line(
-            name="corner to mass centre",
-            formula=Markup("<i>R</i> = √((<i>a</i>/2)² + <i>z</i><sub>c</sub>²)"),
-            numbers=f"√(({short(case.container.width_m)} / 2)² + {number(static['centroid_m'])}²)",
-            value=arm,
-            unit="m",
-        ),
-        Line(
-            name="inertia about a corner",
-            formula=Markup("<i>I</i><sub>O</sub> = <i>I</i> + <i>m</i> <i>R</i>²"),
-            numbers=(
-                f"{number(static['inertia_kg_m2'] / 1e3, 1.0, 5)} + "
-                f"{number(mass, 1.0, 5)} × {number(arm, 1.0, 5)}²"
-            ),
-            value=about_corner,
-            unit="t m²",
-            source="I, about the mass centre, from the mesh",
-        ),
-        Line(
-            name="frequency parameter",
-            formula=Markup("<i>p</i> = √(<i>G</i> <i>R</i>/<i>I</i><sub>O</sub>)"),
-            numbers=f"√({number(static['weight_N'] / 1e3)} × {number(arm)} / {number(about_corner)})",
-            value=static["frequency_parameter_1_s"],
-            unit="1/s",
-            source="Housner (1963)",
-        ),
-        Line(
-            name="Housner's restitution",
-            formula=Markup("<i>e</i> = 1 − <i>m</i> <i>R</i>²/<i>I</i><sub>O</sub> (1 − cos 2<i>α</i>)"),
-            numbers=(
-                f"1 − {number(mass, 1.0, 5)} × {number(arm, 1.0, 5)}² / {number(about_corner, 1.0, 5)} × "
-                f"(1 − cos(2 × {angle}°))"
-            ),
-            value=static["housner_restitution"],
-            unit="",
-            source="Housner (1963), plastic impact of a rigid block on a corner",
-            verdict="credible" if static["housner_credible"] else "not credible, below 0.5",
-        ),
-    ]
+def _value(numbers: Numbers, name: str) -> float:
+    value = numbers[name]
+    assert isinstance(value, _Printed)  # for the type checker
+    return float(value)

@@ -4,150 +4,116 @@ Same colours, same exaggeration of the elastic part as the animation first shows
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from markupsafe import Markup
 
-from fem.report.animation import Film, Split, exaggeration
+from fem.assessment.summary import ratio_in_words
+from fem.assessment.verdict import rotation_ratio
+from fem.report.animation import Animation, AnimationFrame, colour_scale, exaggeration
 from fem.results.history import History
+from fem.results.run_result import Verdict
 from fem.runtime.arrays import FloatArray
 
 MOST = 6
 BINS = 14  #: colours of a still
-#: of the stresses, from low to high: YlGnBu of Cynthia Brewer (colorbrewer2.org), darker and darker for anyone's eyes
-SCALE = ("ffffd9", "edf8b1", "c7e9b4", "7fcdbb", "41b6c4", "1d91c0", "225ea8", "253494", "081d58")
 STEEL, INK, QUIET = "#dfe7ee", "#1c2330", "#55606f"
 
 
-@dataclass(frozen=True, kw_only=True)
-class Still:
+class Still(NamedTuple):
     """The container at one instant."""
 
     caption: str
     svg: Markup
 
 
-def colours(count: int) -> list[str]:
-    """The colour scale of the stresses, from low to high, as hexadecimal codes."""
-    known = np.array([list(bytes.fromhex(colour)) for colour in SCALE], dtype=float)
-    places = np.linspace(0.0, len(SCALE) - 1.0, count)
-    channels = [np.interp(places, range(len(SCALE)), channel) for channel in known.T]
-    return ["#" + bytes(np.rint(colour).astype(np.uint8)).hex() for colour in np.transpose(channels)]
-
-
 def stills(
-    film: Film, history: History, verdict: Mapping[str, Any], *, angle: float, width: float, height: float
+    shown: Animation, history: History, verdict: Verdict, *, angle: float, width: float, height: float
 ) -> list[Still]:
-    """Start, first uplift, the extremes and the end, as far as frames show them and there was such a motion.
+    """Start, first uplift, the extremes and the end, where frames show them and there was such a motion.
 
     Args:
-        film: what is shown.
-        history: of the run.
-        verdict: of the run.
+        shown: the animation.
+        history, verdict: of the run.
         angle: slenderness angle [rad].
         width, height: of the container [m].
     """
-    chosen = _instants(film, history, verdict)
-    if not chosen:
-        return []
-    factor = exaggeration(film, height)
-    span = max(float(np.abs(_placed(film, film.frames[k], factor)[:, 0]).max()) for k in chosen)
-    span = max(span, 0.7 * width) * 1.05
-    top = max(float(_placed(film, film.frames[k], factor)[:, 1].max()) for k in chosen) * 1.03
+    chosen = _instants(shown, history, verdict)
+    factor = exaggeration(shown, height)
+    frames = {k: shown.frames[k] for k in chosen}
+    placed = {k: _placed(shown, frame, factor) for k, frame in frames.items()}
+    span = 1.05 * max([0.7 * width, *(float(np.abs(points[:, 0]).max()) for points in placed.values())])
+    top = 103.0 / span * max((float(points[:, 1].max()) for points in placed.values()), default=0.0)
     return [
         Still(
-            caption=_caption(film.frames[k], names, angle),
-            svg=_drawing(film, film.frames[k], factor, span=span, top=top),
+            f"t = {frame.time:.3f} s, {chosen[k]}; rotation ratio {_signed_ratio(frame, angle)}",
+            _drawing(shown, frame, placed[k] * [100.0 / span, -100.0 / span], top),
         )
-        for k, names in chosen.items()
+        for k, frame in frames.items()
     ]
 
 
-def _instants(film: Film, history: History, verdict: Mapping[str, Any]) -> dict[int, str]:
+def _instants(shown: Animation, history: History, verdict: Verdict) -> dict[int, str]:
     """Frames to show, in the order of time, and why."""
-    if not film.frames or not len(history):
+    if not shown.frames or not len(history):
         return {}
-    times = np.array([frame.time for frame in film.frames])
-    turned = np.array([frame.rotation for frame in film.frames])
+    times = np.array([frame.time for frame in shown.frames])
+    rotation = np.array([frame.rotation for frame in shown.frames])
     slip = np.interp(times, history["time_s"], history["slip_m"])
     wanted = [(0, "start")]
-    uplift = verdict.get("first_uplift_s")
-    if uplift is not None:
-        wanted.append((int(np.searchsorted(times, uplift)), "after the first uplift"))
-    seen = {verdict.get("outcome"), *(verdict.get("modes") or ())}
+    if verdict.first_uplift_s is not None:
+        wanted.append((int(np.searchsorted(times, verdict.first_uplift_s)), "after the first uplift"))
+    seen = {verdict.outcome, *verdict.modes}
     if seen & {"rock", "slide-rock", "overturned"}:
-        wanted.append((int(np.argmax(turned)), "farthest to the right"))
-        wanted.append((int(np.argmin(turned)), "farthest to the left"))
+        wanted.append((int(np.argmax(rotation)), "farthest to the right"))
+        wanted.append((int(np.argmin(rotation)), "farthest to the left"))
     if seen & {"slide", "slide-rock"}:
         wanted.append((int(np.argmax(np.abs(slip))), "largest slip"))
-    wanted.append((len(times) - 1, "last frame"))
     chosen: dict[int, str] = {}
-    for k, name in wanted:
+    for k, name in [*wanted, (len(times) - 1, "last frame")]:
         if k < len(times) and len(chosen) < MOST:
             chosen.setdefault(k, name)
     return dict(sorted(chosen.items()))
 
 
-def _caption(frame: Split, name: str, angle: float) -> str:
-    ratio = f"{round(frame.rotation / angle, 3) + 0.0:.3f}".replace("-", "−")  # never −0.000
-    return f"t = {frame.time:.3f} s, {name}; rotation ratio {ratio}"
+def _signed_ratio(frame: AnimationFrame, angle: float) -> str:
+    sign = "−" if frame.rotation < 0.0 else ""
+    ratio = ratio_in_words(rotation_ratio(frame.rotation, angle))
+    return ratio if ratio.startswith("<") else sign + ratio
 
 
-def _placed(film: Film, frame: Split, factor: float) -> FloatArray:
-    """Drawn nodes (n, 2), x from where the container first stood on the floor [m]."""
+def _placed(shown: Animation, frame: AnimationFrame, factor: float) -> FloatArray:
+    """Drawn nodes (n, 2), x from where the container first stood on the floor [m]; the loaded points stay in place."""
     weight = np.maximum(frame.normal_force, 0.0) + 1e-6 * max(1.0, float(np.abs(frame.normal_force).max()))
-    held = np.average(frame.elastic[film.contact], axis=0, weights=weight) if factor else np.zeros(2)
-    arm = film.points + factor * frame.elastic - (factor - 1.0) * held if factor else film.points
+    held = np.average(frame.elastic[shown.contact], axis=0, weights=weight) if factor else np.zeros(2)
+    arm = shown.points + factor * frame.elastic - (factor - 1.0) * held if factor else shown.points
     cosine, sine = math.cos(frame.rotation), math.sin(frame.rotation)
-    turn = np.array([[cosine, -sine], [sine, cosine]])
-    placed: FloatArray = frame.centre - np.array([frame.floor, 0.0]) + arm @ turn
+    placed: FloatArray = frame.centre - [frame.floor, 0.0] + arm @ np.array([[cosine, -sine], [sine, cosine]])
     return placed
 
 
-def _drawing(film: Film, frame: Split, factor: float, *, span: float, top: float) -> Markup:
-    scale = 100.0 / span
-    points = _placed(film, frame, factor) * [scale, -scale]
-    parts = [
-        f'<path d="M-104 0H104" stroke="{INK}" stroke-width="1.2"/>',
-        '<path d="'
-        + "".join(f"M{x} 0l-4 4" for x in range(-96, 108, 12))
-        + f'" stroke="{QUIET}" stroke-width=".6"/>',
-        *_cells(film, frame, points),
-        _edges(film, points),
-    ]
-    high = scale * top
+def _drawing(shown: Animation, frame: AnimationFrame, points: FloatArray, top: float) -> Markup:
+    """Floor, cells by colour (one path a colour) and edges."""
+    hatch = "".join(f"M{x} 0l-4 4" for x in range(-96, 108, 12))
+    parts = [_path("M-104 0H104", stroke=INK, width=1.2), _path(hatch, stroke=QUIET, width=0.6)]
+    bins, paints = np.zeros(len(shown.quads), dtype=int), [STEEL]
+    if shown.stress_scale > 0.0 and frame.von_mises is not None:
+        level = frame.von_mises[shown.quads].mean(axis=1) / shown.stress_scale
+        bins, paints = np.clip((BINS * level).astype(int), 0, BINS - 1), colour_scale("YlGnBu", BINS)
+    for k in np.unique(bins):
+        cells = "".join("M" + _line(points[quad]) + "Z" for quad in shown.quads[bins == k])
+        parts.append(_path(cells, stroke=paints[k], width=0.3, fill=paints[k]))
+    parts.append(_path("".join("M" + _line(points[edge]) for edge in shown.edges), stroke=INK, width=0.7))
     return Markup(
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-105 {-high - 2.0:.1f} 210 {high + 8.0:.1f}" fill="none" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="-105 {-top - 2.0:.1f} 210 {top + 8.0:.1f}" '
         f'role="img" aria-label="container at {frame.time:.3f} s">{"".join(parts)}</svg>'
     )
 
 
-def _cells(film: Film, frame: Split, points: FloatArray) -> list[str]:
-    """Cells by colour: one path each."""
-    if not len(film.quads):
-        return []
-    if film.stress_scale > 0.0 and frame.von_mises is not None:
-        level = frame.von_mises[film.quads].mean(axis=1) / film.stress_scale
-        bins = np.clip((BINS * level).astype(int), 0, BINS - 1)
-        paints = colours(BINS)
-    else:
-        bins, paints = np.zeros(len(film.quads), dtype=int), [STEEL]
-    return [
-        f'<path d="{"".join(_outline(points[quad]) for quad in film.quads[bins == k])}" '
-        f'fill="{paints[k]}" stroke="{paints[k]}" stroke-width=".3"/>'
-        for k in np.unique(bins)
-    ]
+def _line(points: FloatArray) -> str:
+    return "L".join(f"{x:.1f} {z:.1f}" for x, z in points)
 
 
-def _outline(corners: FloatArray) -> str:
-    return "M" + "L".join(f"{x:.1f} {z:.1f}" for x, z in corners) + "Z"
-
-
-def _edges(film: Film, points: FloatArray) -> str:
-    path = "".join(
-        f"M{points[a, 0]:.1f} {points[a, 1]:.1f}L{points[b, 0]:.1f} {points[b, 1]:.1f}" for a, b in film.edges
-    )
-    return f'<path d="{path}" stroke="{INK}" stroke-width=".7"/>'
+def _path(data: str, *, stroke: str, width: float, fill: str = "none") -> str:
+    return f'<path d="{data}" stroke="{stroke}" stroke-width="{width:g}" fill="{fill}"/>'

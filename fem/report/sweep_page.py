@@ -1,20 +1,54 @@
-"""The report of a sweep: the map with the values and the command of every cell, what was asked, what failed."""
+"""The report of a sweep: the map with the values and the command of every cell, the request, what failed.
+
+Cells are numbered as in `table.csv`, the last axis the fastest. The map shows a number or a word for every cell:
+numbers go in single precision; the values of axes and derived keys, from which the command of a cell is made, in full.
+"""
 
 import csv
 import datetime as dt
+import shlex
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 from markupsafe import Markup
+from numpy.typing import NDArray
 
 from fem.case.case import load_case
+from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html.page import Signature, render_page, svg_element
 from fem.html.units import number, short, typeset
+from fem.report.animation import colour_scale, packed
 from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions
-from fem.report.sweep_data import QUANTITIES, axis_label, counts, failures, map_data
-from fem.results.run_folder import FolderError
+from fem.results.errors import FolderError
 from fem.sweep.table import SweepTable, open_sweep
 
+#: what can be shown: column, words for it, unit, factor
+QUANTITIES = (
+    ("rotation_ratio", "rotation ratio", "", 1.0),
+    ("max_slip_m", "largest slip", "mm", 1e3),
+    ("residual_slip_m", "slip left at the end", "mm", 1e3),
+    ("max_uplift_m", "largest uplift", "mm", 1e3),
+    ("impacts", "impacts", "", 1.0),
+    ("first_uplift_s", "first uplift", "s", 1.0),
+    ("overturned_at_s", "overturned at", "s", 1.0),
+    ("max_corner_force_N", "largest corner force", "kN", 1e-3),
+    ("max_acceleration_m_s2", "acceleration of the contents", "m/s²", 1.0),
+    ("max_von_mises_Pa", "von Mises stress", "MPa", 1e-6),
+    ("band_rotation_ratio_low", "rotation ratio, perturbed, least", "", 1.0),
+    ("band_rotation_ratio_high", "rotation ratio, perturbed, most", "", 1.0),
+    ("wall_s", "computing time", "s", 1.0),
+)
+NEEDED = 3  #: of these, in the order above: without them no page is made
+MOST_BYTES = 3_600_000  #: of all columns, in base64
+COLOURS = 64
+#: outcome, words for it, its colour, and whether there is an outcome
+OUTCOMES = (
+    *((name, name, colour, True) for name, colour in STATE_COLOURS.items()),
+    ("failed", "no outcome: failed", VERMILLION, False),
+    ("", "not computed", "#FFFFFF", False),
+)
 MOST_MAP_BYTES = 400_000  #: of a drawn map, as SVG
 
 
@@ -54,7 +88,7 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
         failures=failures(table),
         thresholds=_thresholds(folder / "thresholds.csv"),
         maps=_maps(folder, info.get("maps") or []),
-        assumptions=assumptions({}, case),
+        assumptions=assumptions(case),
         exclusions=EXCLUSIONS,
         version=metadata.version("unanchored"),
         today=dt.date.today().isoformat(),
@@ -91,7 +125,7 @@ def _thresholds(path: Path) -> tuple[list[str], list[list[str]]] | None:
         with path.open(encoding="utf-8", newline="") as stream:
             header, *rows = list(csv.reader(stream))
     except (OSError, ValueError) as error:
-        raise FolderError(f"{path}: cannot be read ({error}); sweep again with --force") from None
+        raise FolderError(f"{path}: cannot be read ({error}); repeat the sweep with --force") from None
     return header, rows
 
 
@@ -106,5 +140,90 @@ def _maps(folder: Path, names: list[str]) -> list[Markup]:
             try:
                 drawn.append(svg_element(text, label=f"map: {path.stem.replace('_', ' ')}", prefix=f"map{k}"))
             except ValueError as error:
-                raise FolderError(f"{path}: {error}; remove it and sweep again: it is drawn anew") from None
+                raise FolderError(
+                    f"{path}: {error}; remove it and repeat the sweep, which draws it again"
+                ) from None
     return drawn
+
+
+def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
+    """What the script `map.js` reads.
+
+    Raises:
+        FolderError: more cells than one page can carry.
+    """
+    names = [name for name, *_ in OUTCOMES]
+    found = np.array(
+        [names.index(str(word)) if str(word) in names else len(names) - 1 for word in table.outcome]
+    )
+    outcome = {"name": "outcome", "label": "outcome", "unit": "", "factor": 1.0, "words": True}
+    columns: list[dict[str, Any]] = [outcome | {"values": packed(found, "u1")}]
+    if _has(table, "unsure"):
+        columns.append(_column(table, "unsure", "unsure", "", 1.0) | {"flag": True})
+    room = MOST_BYTES - sum(len(one["values"]) for one in columns)
+    for k, (name, label, unit, factor) in enumerate(QUANTITIES):
+        if k >= 1 and not _has(table, name):
+            continue
+        column = _column(table, name, label, unit, factor)
+        room -= len(column["values"])
+        if room < 0 and k < NEEDED:
+            raise FolderError(
+                f"{folder}: {len(found)} cells are more than one page can carry; table.csv holds them; report a sweep "
+                "with fewer values per axis"
+            )
+        if room >= 0:
+            columns.append(column)
+    return {
+        "axes": [
+            {"key": axis.key, "label": axis_label(axis.key, axis.unit), "values": list(axis.values)}
+            for axis in table.axes
+        ],
+        "columns": columns,
+        "derived": [{"key": key, "values": _plain(table[key])} for key in table.info["derived"]],
+        "outcomes": [
+            {"name": name, "label": label, "colour": colour, "found": found_any}
+            for name, label, colour, found_any in OUTCOMES
+        ],
+        "colours": colour_scale("viridis", COLOURS),
+        "command": f"python -m fem run {shlex.quote(str(folder / 'base.toml'))}",
+    }
+
+
+def axis_label(key: str, unit: str) -> str:
+    """A key as people read it: contact.mu_static as `mu static`, with its unit."""
+    name = key.rpartition(".")[2]
+    plain = unit.replace("/", "_").replace("^", "").replace("·", "_")
+    stem = name.removesuffix(f"_{plain}") if plain else name
+    words = stem.replace("_", " ")
+    return f"{words} [{unit.replace('m/s2', 'm/s²')}]" if unit else words
+
+
+def counts(table: SweepTable) -> list[tuple[str, str, int, float]]:
+    """Outcome, its colour, number of cells and their share, those that occur."""
+    words = np.asarray(table.outcome).astype(str)
+    rows = []
+    for name, label, colour, _ in OUTCOMES:
+        count = int(np.sum(words == name))
+        if count:
+            rows.append((label, colour, count, count / words.size))
+    return rows
+
+
+def failures(table: SweepTable, most: int = 20) -> list[tuple[int, str]]:
+    """Cells without an outcome and why, the first of them."""
+    failed = np.flatnonzero(np.asarray(table["status"]).astype(str) == "failed")[:most]
+    return [(int(cell), str(table["reason"][cell])) for cell in failed]
+
+
+def _has(table: SweepTable, name: str) -> bool:
+    return name in table.columns and bool(np.isfinite(table[name].astype(float)).any())
+
+
+def _column(table: SweepTable, name: str, label: str, unit: str, factor: float) -> dict[str, Any]:
+    values: NDArray[Any] = table.columns.get(name, np.full(len(table["cell"]), np.nan)).astype("<f4")
+    return {"name": name, "label": label, "unit": unit, "factor": factor, "values": packed(values, "<f4")}
+
+
+def _plain(values: NDArray[Any]) -> list[Any]:
+    """Numbers as they are; what is no number as text that changes nothing."""
+    return [float(value) if np.isfinite(value) else "auto" for value in values.astype(float)]

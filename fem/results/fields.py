@@ -18,14 +18,15 @@ import meshio
 import numpy as np
 from numpy.typing import NDArray
 
+from fem.results.files import replacing
 from fem.runtime.arrays import FloatArray, IntArray
 
 #: Names of meshio for cells by their number of nodes, corners first, then mid-sides, then the centre.
 CELL_TYPES = {4: "quad", 9: "quad9"}
 SERIES = "run.pvd"
 
-# Up to so many frames, the list of frames is rewritten with each of them; of longer series, with each
-# thousandth more, for rewriting it ever again would grow as the square of their number.
+# Up to so many frames, the list of frames is rewritten with each of them. A longer list is rewritten when it has
+# grown by a thousandth, since rewriting it with every frame would take a time that grows as the square of their number.
 PROMPT_FRAMES = 1000
 
 
@@ -128,13 +129,8 @@ class FieldWriter:
             cell_data={"region": self._region},
         )
         path = self.folder / frame_name(len(self._times))
-        part = path.with_name(f".{path.name}.part")
-        try:
+        with replacing(path) as part:
             meshio.write(part, mesh, file_format="vtu", binary=True, compression="zlib")
-            os.replace(part, path)
-        except BaseException:  # a full disk, or Ctrl-C
-            part.unlink(missing_ok=True)
-            raise
         self._times.append(float(time))
         if len(self._times) - self._listed > len(self._times) // PROMPT_FRAMES:
             self._list_frames()
@@ -154,13 +150,8 @@ class FieldWriter:
             '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'
             f"  <Collection>\n{entries}  </Collection>\n</VTKFile>\n"
         )
-        part = self.folder / f".{SERIES}.part"
-        try:
+        with replacing(self.folder / SERIES) as part:
             part.write_text(text, encoding="utf-8")
-            os.replace(part, self.folder / SERIES)
-        except BaseException:
-            part.unlink(missing_ok=True)
-            raise
         self._listed = len(self._times)
 
 
@@ -174,7 +165,7 @@ class Frame:
     region: IntArray  #: shape (m,)
     displacement: FloatArray  #: shape (n, 2) [m]
     velocity: FloatArray  #: shape (n, 2) [m/s]
-    von_mises: FloatArray | None  #: shape (n,) [Pa]; None of a rigid container, whose stress nobody knows
+    von_mises: FloatArray | None  #: shape (n,) [Pa]; None for a rigid container
     contact_pressure: FloatArray  #: shape (n,) [Pa]
     floor_displacement: float  #: [m]
 
@@ -195,7 +186,7 @@ class Fields:
         return len(self.files)
 
     def __iter__(self) -> Iterator[Frame]:
-        """Frames in order, each read when it is its turn."""
+        """Frames in order, each read when it is reached."""
         return (self.frame(index) for index in range(len(self)))
 
     def nearest(self, time: float) -> int:

@@ -3,15 +3,34 @@
 A reader, or the next run after a kill, finds the old file or the new one and never half of one.
 """
 
-import contextlib
 import json
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Give the place to write a file to; it is renamed at the end, or removed after an error.
+
+    Raises:
+        OSError: it cannot be written; the old file is still there.
+    """
+    part = path.with_name(f".{path.name}.part")
+    try:
+        yield part
+        os.replace(part, path)
+    except BaseException as error:
+        with suppress(OSError):
+            part.unlink()
+        if isinstance(error, OSError):
+            raise OSError(error.errno, error.strerror or str(error), str(path)) from None
+        raise
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
@@ -20,19 +39,10 @@ def write_atomically(path: Path, content: str | bytes) -> None:
     Raises:
         OSError: it cannot be written; the old file is still there.
     """
-    part = path.with_name(f".{path.name}.part")
-    try:
-        with open(part, "wb") as file:
-            file.write(content.encode() if isinstance(content, str) else content)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(part, path)
-    except BaseException as error:
-        with contextlib.suppress(OSError):
-            part.unlink()
-        if isinstance(error, OSError):
-            raise OSError(error.errno, error.strerror, str(path)) from None
-        raise
+    with replacing(path) as part, open(part, "wb") as file:
+        file.write(content.encode() if isinstance(content, str) else content)
+        file.flush()
+        os.fsync(file.fileno())
 
 
 def remove_files(folder: Path, patterns: Sequence[str]) -> None:
@@ -42,7 +52,7 @@ def remove_files(folder: Path, patterns: Sequence[str]) -> None:
             for file in (*place.glob(pattern), *place.glob(f".{pattern}.part")):
                 file.unlink(missing_ok=True)
         if place != folder:
-            with contextlib.suppress(OSError):  # missing, or something else lies in it
+            with suppress(OSError):  # missing, or something else lies in it
                 place.rmdir()
 
 

@@ -15,9 +15,8 @@ class ResultKind:
     results: str  #: where to look for the numbers
     #: patterns of the files that are removed before a new result is computed; nothing else ever is
     own: tuple[str, ...]
-    finished: frozenset[str] = frozenset(
-        {"completed"}
-    )  #: statuses after which there is nothing left to compute
+    #: statuses after which there is nothing left to compute
+    finished: frozenset[str] = frozenset({"completed"})
 
 
 RUN = ResultKind(
@@ -33,8 +32,6 @@ RUN = ResultKind(
         "summary.txt",
         "history.csv",
         "rigid_check.csv",
-        "report.html",
-        "variations.json",
         "fields/run.pvd",
         "fields/frame_*.vtu",
         "figures/*.svg",
@@ -42,6 +39,8 @@ RUN = ResultKind(
         "figures/picture_*.png",
         "figures/movie.gif",
         "figures/movie.mp4",
+        "report.html",
+        "variations.json",
     ),
     finished=frozenset({"completed", "overturned"}),
 )

@@ -6,22 +6,21 @@ place is cut off when the run resumes, and what lies before it must not have cha
 
 import hashlib
 import time
-from contextlib import ExitStack
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 
 from fem.model.model import Model
-from fem.model.recovery import NodalFields, recovery_of
+from fem.model.recovery import recovery_of
 from fem.results.fields import FieldWriter, frame_name
 from fem.results.history import HistoryWriter, read_history
 from fem.results.run_files import RunFiles
 from fem.run.checkpoint import SavedState, misfit, read_state
 from fem.run.recorder import Recorder
-from fem.runtime.arrays import FloatArray
 from fem.runtime.compilation import compilation_time
 
 
@@ -97,66 +96,47 @@ def read_start(files: RunFiles, model: Model, case_hash: str) -> Start:
     return Start(state=state, history_bytes=length, frames_s=frames_s, spent=spent)
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
 class RunOutput:
-    """History and frames of a run, written as they come; a context manager.
+    """History and frames of a run, written as they come."""
 
-    Args:
-        files: of the run.
-        model: at t = 0; it is put where the run starts.
-        start: of the run.
-    """
-
-    def __init__(self, files: RunFiles, model: Model, start: Start) -> None:
-        joints, elements = model.case.container.boxes - 1, model.container.elements
-        with ExitStack() as stack:
-            self._history = stack.enter_context(
-                HistoryWriter(files.history, position=start.history_bytes, joints=joints)
-            )
-            self._fields: FieldWriter | None = None
-            if model.case.output.fields_s > 0.0:
-                self._fields = FieldWriter(
-                    files.fields,
-                    points=elements.nodes,
-                    cells=elements.cells,
-                    region=elements.region.astype(np.int64),
-                    kept_times=start.frames_s,
-                )
-                stack.callback(self._fields.close)
-            sink = self._write_frame if self._fields is not None else None
-            self.recorder = Recorder(model, recovery_of(model), self._history.append, sink)
-            if start.is_resumed:
-                start.state.restore(model, self.recorder)
-                self.recorder.go_on(read_history(files.history))
-            self._closing = stack.pop_all()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._closing.__exit__(kind, error, trace)
+    recorder: Recorder  #: of the samples
+    history: HistoryWriter
+    fields: FieldWriter | None
 
     def sync(self) -> dict[str, Any]:
         """Bring the files to the disk; returns how long they are, for a checkpoint."""
-        self._history.sync()
-        if self._fields is not None:
-            self._fields.sync()
+        self.history.sync()
+        if self.fields is not None:
+            self.fields.sync()
         return {
-            "history": {"bytes": self._history.position, "sha256": self._history.digest},
-            "frames_s": list(self._fields.times) if self._fields is not None else [],
+            "history": {"bytes": self.history.position, "sha256": self.history.digest},
+            "frames_s": list(self.fields.times) if self.fields is not None else [],
         }
 
-    def _write_frame(self, instant: float, frame: NodalFields, pressure: FloatArray, floor: float) -> None:
-        assert self._fields is not None  # for the type checker
-        self._fields.write(
-            instant,
-            displacement=frame.displacement,
-            velocity=frame.velocity,
-            von_mises=frame.von_mises,
-            contact_pressure=pressure,
-            floor_displacement=floor,
+
+@contextmanager
+def open_output(files: RunFiles, model: Model, start: Start) -> Iterator[RunOutput]:
+    """Open the files of a run, and put its model where it starts."""
+    joints, elements, fields = model.case.container.boxes - 1, model.container.elements, None
+    with ExitStack() as stack:
+        history = stack.enter_context(
+            HistoryWriter(files.history, position=start.history_bytes, joints=joints)
         )
+        if model.case.output.fields_s > 0.0:
+            fields = FieldWriter(
+                files.fields,
+                points=elements.nodes,
+                cells=elements.cells,
+                region=elements.region.astype(np.int64),
+                kept_times=start.frames_s,
+            )
+            stack.callback(fields.close)
+        recorder = Recorder(model, recovery_of(model), history.append, fields.write if fields else None)
+        if start.is_resumed:
+            start.state.restore(model, recorder)
+            recorder.go_on(read_history(files.history))
+        yield RunOutput(recorder=recorder, history=history, fields=fields)
 
 
 def _digest_of_first(path: Path, count: int) -> str | None:

@@ -1,7 +1,7 @@
-"""What a run leaves behind while it goes on: history rows, field frames, the largest stress.
+"""The samples of a run: history rows, field frames, the largest stress.
 
-The stepper fills small arrays of samples; the recorder empties them between its calls, so that the memory of a
-run does not grow with its fields, and hands the rows on to files.
+The stepper fills small arrays of samples. The recorder empties them between its calls and passes the rows on to files,
+so that the memory of a run does not grow with its fields.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -33,7 +33,7 @@ from contact.stepping.state import (
 from fem.assessment.verdict import MODE_NAMES
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model
-from fem.model.recovery import NodalFields, Recovery
+from fem.model.recovery import Recovery
 from fem.results.history import JOINT_COLUMNS, NUMBERS, History
 from fem.runtime.arrays import FloatArray
 
@@ -57,14 +57,14 @@ ORDER = (
     ROW_MATERIAL_DAMPING,
 )
 
-#: samples searched for the largest stress at each emptying, those of the largest strain energy
+#: samples searched for the largest stress each time: those of the largest strain energy
 STRAINED = 4
 
-#: decimals of times that people write [s], and what multiplication may make of them, relative
+#: decimals of times that people write [s]; relative error of multiplication
 DECIMALS, ROUNDING = 12, 4.0 * float(np.finfo(float).eps)
 
 HistorySink = Callable[[FloatArray, Sequence[str]], None]
-FrameSink = Callable[[float, NodalFields, FloatArray, float], None]
+FrameSink = Callable[..., object]  #: with the arguments of `fem.results.fields.FieldWriter.write`
 
 
 class Recorder:
@@ -72,9 +72,9 @@ class Recorder:
 
     Args:
         model: what is stepped.
-        recovery: how its fields are had; None leaves fields and stresses out.
+        recovery: of its fields; None leaves fields and stresses out.
         history_sink: called with new rows (k, 20 + 3 joints) and their modes.
-        frame_sink: called with time, fields, contact pressures (n,) at the nodes and floor displacement.
+        frame_sink: called with every frame.
     """
 
     def __init__(
@@ -92,7 +92,7 @@ class Recorder:
         self._modes: list[str] = []
         self._area = _contact_areas(model)
         self.largest_von_mises: float | None = None  #: over frames and the most strained samples, if any [Pa]
-        #: of the joints at the last sample (J, 8), see `fem.model.joints`: what the next one is held against
+        #: of the joints at the last sample (J, 8), see `fem.model.joints`; the next forces follow from its change
         self.joint_motion = np.zeros((0, 0))
         self._joint_forces = np.zeros((0, len(JOINT_COLUMNS)))
         self.joints: Joints | None = None
@@ -118,7 +118,7 @@ class Recorder:
         return History(values=values, modes=tuple(self._modes))
 
     def memory(self) -> dict[str, FloatArray]:
-        """What the next samples depend on besides the run, by name."""
+        """State of the recorder on which the next samples depend, by name."""
         stress = self.largest_von_mises
         return {
             "largest_von_mises": np.array([] if stress is None else [stress]),
@@ -127,17 +127,17 @@ class Recorder:
         }
 
     def recall(self, memory: Mapping[str, FloatArray]) -> None:
-        """Go on with the memory of another recorder of the same run."""
+        """Restore the memory of an earlier recorder of the same run."""
         stress = memory["largest_von_mises"]
         self.largest_von_mises = float(stress[0]) if stress.size else None
         self.joint_motion, self._joint_forces = memory["joint_motion"], memory["joint_forces"]
 
     def go_on(self, history: History) -> None:
-        """Take over what was sampled before the run was cut off."""
+        """Take the samples of the run before it was interrupted."""
         self._rows, self._modes = [history.values], list(history.modes)
 
     def go_over_to_frame(self, velocity: float) -> None:
-        """From now on the run is told in a frame that moves with `velocity` along x [m/s]."""
+        """From now on the coordinates of the run are those in a frame that moves with `velocity` along x [m/s]."""
         if self.joints is not None:
             self.joint_motion = self.joints.in_moving_frame(self.joint_motion, velocity)
 
@@ -197,19 +197,26 @@ class Recorder:
                     pressure = np.zeros(len(frame.displacement))
                     pressure[self._model.container.nodes] = samples.force[k, :, 1] / self._area
                     floor, _, _ = floor_motion(run.motion, time)
-                    self._frame_sink(float(as_written(np.array(time))), frame, pressure, floor)
+                    self._frame_sink(
+                        float(as_written(np.array(time))),
+                        displacement=frame.displacement,
+                        velocity=frame.velocity,
+                        von_mises=frame.von_mises,
+                        contact_pressure=pressure,
+                        floor_displacement=floor,
+                    )
         clock.frames_drained = clock.frames
 
 
 def as_written(times: FloatArray) -> FloatArray:
-    """Instants of a grid as people write them: 0.15, where three times 0.05 is 0.15000000000000002.
+    """Instants of a grid as people write them: 0.15, although three times 0.05 is 0.15000000000000002.
 
-    Moved are only times that lie as near to a short decimal as rounding may have put them.
+    Only times within rounding of a short decimal are changed.
     """
     short = np.round(times, DECIMALS)
     return np.where(np.abs(short - times) <= ROUNDING * np.abs(times), short, times)
 
 
 def _contact_areas(model: Model) -> FloatArray:
-    """Area of the floor that each contact node stands for (n_c,) [m2]."""
+    """Tributary area of each contact node (n_c,) [m2]."""
     return model.run.contact.normal_stiffness / model.penalty

@@ -32,7 +32,7 @@ from fem.results.run_files import RunFiles, copy_data_files
 from fem.results.run_result import MotionResult, RunResult
 from fem.run.checkpoint import CheckpointWriter
 from fem.run.checks import WantedChecks, add_checks, lacks_band, lacks_checks
-from fem.run.output import RunOutput, Start, Stopwatch, read_start
+from fem.run.output import Start, Stopwatch, open_output, read_start
 from fem.run.setup_cache import SetupCache
 from fem.run.simulation import simulate
 from fem.run.size import required_disk, size_in_words
@@ -112,9 +112,8 @@ def run_case(
                 result, history = compute(
                     model, place, request, texts=texts, watch=watch, reporter=reporter, stop=stop
                 )
-                result = store(
-                    replace(result, **asdict(watch.spent())), case, place
-                )  # safe before its checks
+                result = store(replace(result, **asdict(watch.spent())), case, place)
+            # The run is safe before its checks begin, and complete after them.
             checked = add_checks(result, model, place, options, reporter=reporter, stop=stop)
             if checked is not result:
                 spent = asdict(watch.spent()) if known is None else {}
@@ -164,7 +163,7 @@ def compute(
     place.begin(result.to_json(), texts, keep=start.is_resumed)
     with failure_noted(place, result):
         copy_data_files(case, place.path)
-        with RunOutput(files, model, start) as output:
+        with open_output(files, model, start) as output:
             recorder = output.recorder
             if start.is_resumed:
                 reporter.message(f"resuming at t = {float(model.run.clock[0].time):.6g} s")
@@ -230,11 +229,9 @@ def store(result: RunResult, case: Case, place: ResultFolder) -> RunResult:
     Checkpoints are removed after that, when there is nothing left to resume.
     """
     place.check()
-    result = replace(result, warnings=tuple(warnings_for(result.to_json(), case)))
-    page, files = result.to_json(), RunFiles(place.path)
-    summary = plain_summary(page, title=case.title or case.name, folder=place.path, warnings=page["warnings"])
-    place.write_text(files.summary.name, summary)
-    place.write_result(page)
+    result = replace(result, warnings=tuple(warnings_for(result, case)))
+    place.write_text(RunFiles(place.path).summary.name, plain_summary(result, folder=place.path))
+    place.write_result(result.to_json())
     if result.status in RUN.finished:
         place.remove("checkpoint.npz", SETUP_PARTS)
         if result.verdict is not None and result.verdict.band is not None:

@@ -1,10 +1,10 @@
 /* The animation of a run: container, floor and contact forces at any instant, in step with a cursor on the curves.
- * Data: the element #film (see fem/report/animation.py). x to the right, z up, rotation > 0 tilts toward +x.
+ * Data: the element #run (see fem/report/animation.py). x to the right, z up, rotation > 0 tilts toward +x.
  * The address of the page may name an instant: report.html#t=3.2
  */
 "use strict";
 (() => {
-  const film = JSON.parse(document.getElementById("film").textContent);
+  const run = JSON.parse(document.getElementById("run").textContent);
   const byId = (id) => document.getElementById(id);
   const canvas = byId("stage"), pen = canvas.getContext("2d");
   const controls = { play: byId("play"), time: byId("time"), speed: byId("speed"), exaggeration: byId("exaggeration"),
@@ -18,22 +18,22 @@
     for (let i = 0; i < whole.length; i++) out[i] = whole[i] * packed.largest / 32767;
     return out;
   };
-  const indices = (text) => new (film.wide ? Uint32Array : Uint16Array)(bytes(text));
-  const columns = Object.fromEntries(Object.entries(film.columns).map(([name, packed]) => [name, floats(packed)]));
-  const mode = new Uint8Array(bytes(film.mode));
-  const points = floats(film.points), quads = indices(film.quads), edges = indices(film.edges);
-  const elastic = floats(film.elastic), normals = floats(film.normal), stress = new Uint8Array(bytes(film.stress));
-  const count = points.length / 2, contacts = film.contact.length;
-  const last = Math.max(film.samples - 1, 0), end = last * film.step;
+  const indices = (text) => new (run.wide ? Uint32Array : Uint16Array)(bytes(text));
+  const columns = Object.fromEntries(Object.entries(run.columns).map(([name, packed]) => [name, floats(packed)]));
+  const mode = new Uint8Array(bytes(run.mode));
+  const points = floats(run.points), quads = indices(run.quads), edges = indices(run.edges);
+  const elastic = floats(run.elastic), normals = floats(run.normal), stress = new Uint8Array(bytes(run.stress));
+  const count = points.length / 2, contacts = run.contact.length;
+  const last = Math.max(run.samples - 1, 0), end = last * run.step;
 
   // ---- state at an instant ----------------------------------------------------------------------------------
   const value = (name, t) => {
-    const column = columns[name], place = Math.min(Math.max(t / film.step, 0), last), i = Math.floor(place);
+    const column = columns[name], place = Math.min(Math.max(t / run.step, 0), last), i = Math.floor(place);
     return i >= last ? column[last] : column[i] + (place - i) * (column[i + 1] - column[i]);
   };
-  const modeAt = (t) => film.modes[mode[Math.min(Math.round(t / film.step), last)]];
+  const modeAt = (t) => run.modes[mode[Math.min(Math.round(t / run.step), last)]];
   const frameAt = (t) => {  // the frames before and after, and how far between them
-    const times = film.times;
+    const times = run.times;
     if (!times.length) return null;
     let a = 0, b = times.length - 1;
     if (t >= times[b]) return { a: b, b, share: 0 };
@@ -47,9 +47,9 @@
 
   // ---- what is in view --------------------------------------------------------------------------------------
   const corners = [[-0.5, 0], [0.5, 0], [0.5, 1], [-0.5, 1]].map(
-    ([x, z]) => [x * film.width - film.centroid[0], z * film.height - film.centroid[1]]);
+    ([x, z]) => [x * run.width - run.centroid[0], z * run.height - run.centroid[1]]);
   const extents = (onFloor) => {
-    const box = { left: -0.75 * film.width, right: 0.75 * film.width, top: film.height };
+    const box = { left: -0.75 * run.width, right: 0.75 * run.width, top: run.height };
     for (let i = 0; i <= last; i++) {
       const c = Math.cos(columns.rotation[i]), s = Math.sin(columns.rotation[i]);
       for (const [x, z] of corners) {
@@ -61,7 +61,7 @@
     return box;
   };
   const boxes = { ground: extents(false), floor: extents(true) };
-  const unit = 0.17 * Math.max(film.height, film.width);  // length of an arrow that stands for the weight
+  const unit = 0.17 * Math.max(run.height, run.width);  // length of an arrow that stands for the weight
   const below = 1.95 * unit;
 
   // ---- drawing ----------------------------------------------------------------------------------------------
@@ -87,7 +87,7 @@
   };
 
   const drawFloor = (X, Z, wide, base, scale) => {
-    const z = Z(0), pitch = 0.25 * film.width;
+    const z = Z(0), pitch = 0.25 * run.width;
     pen.strokeStyle = INK; pen.lineWidth = 2;
     pen.beginPath(); pen.moveTo(0, z); pen.lineTo(wide, z); pen.stroke();
     pen.strokeStyle = QUIET; pen.lineWidth = 1; pen.beginPath();
@@ -99,7 +99,7 @@
     }
     pen.stroke();
     // Where the container first stood, on the floor: the distance from it is slip.
-    pen.setLineDash([4, 4]); pen.strokeRect(X(base - 0.5 * film.width), Z(film.height), scale * film.width, scale * film.height);
+    pen.setLineDash([4, 4]); pen.strokeRect(X(base - 0.5 * run.width), Z(run.height), scale * run.width, scale * run.height);
     pen.setLineDash([]);
     if (controls.view.value === "ground") {  // a mark that stays, and how far the floor is from it
       pen.fillStyle = INK; pen.beginPath();  // below the words of the friction
@@ -116,7 +116,7 @@
     if (frame && factor) {  // the loaded base points stay where they are: the container stands on its floor
       let sum = 0;
       for (let k = 0; k < contacts; k++) {
-        const weight = Math.max(between(normals, contacts, frame, k), 0) + 1e-3 * film.weight, i = film.contact[k];
+        const weight = Math.max(between(normals, contacts, frame, k), 0) + 1e-3 * run.weight, i = run.contact[k];
         ex += weight * between(elastic, 2 * count, frame, 2 * i);
         ez += weight * between(elastic, 2 * count, frame, 2 * i + 1); sum += weight;
       }
@@ -130,7 +130,7 @@
       }
       placed[2 * i] = X(x0 + c * x + s * z); placed[2 * i + 1] = Z(z0 - s * x + c * z);
     }
-    const coloured = frame && film.stress_scale > 0 && controls.stress && controls.stress.checked;
+    const coloured = frame && run.stress_scale > 0 && controls.stress && controls.stress.checked;
     for (let q = 0; q < quads.length; q += 4) {
       let level = 0;
       pen.beginPath();
@@ -140,7 +140,7 @@
         if (coloured) level += 0.25 * between(stress, count, frame, i);
       }
       pen.closePath();
-      const paint = coloured ? film.colours[Math.min(Math.round(level * (film.colours.length - 1) / 255), film.colours.length - 1)] : STEEL;
+      const paint = coloured ? run.colours[Math.min(Math.round(level * (run.colours.length - 1) / 255), run.colours.length - 1)] : STEEL;
       pen.fillStyle = paint; pen.fill();
       const lines = controls.mesh && controls.mesh.checked;
       pen.strokeStyle = lines ? "rgba(28,35,48,.35)" : paint; pen.lineWidth = 0.6; pen.stroke();
@@ -156,7 +156,7 @@
     } else {  // of a mesh too fine to be sent, the outline alone carries the colours
       for (let e = 0; e < edges.length; e += 2) {
         const level = 0.5 * (between(stress, count, frame, edges[e]) + between(stress, count, frame, edges[e + 1]));
-        pen.strokeStyle = film.colours[Math.round(level * (film.colours.length - 1) / 255)]; pen.lineWidth = 3;
+        pen.strokeStyle = run.colours[Math.round(level * (run.colours.length - 1) / 255)]; pen.lineWidth = 3;
         pen.beginPath(); pen.moveTo(placed[2 * edges[e]], placed[2 * edges[e] + 1]);
         pen.lineTo(placed[2 * edges[e + 1]], placed[2 * edges[e + 1] + 1]); pen.stroke();
       }
@@ -179,29 +179,29 @@
     pen.fillText(text, x, y);
   };
   const drawForces = (X, Z, scale, origin) => {
-    const frame = frameAt(now), most = 1.6 * unit * scale, of = (force) => scale * unit * Math.abs(force) / film.weight;
+    const frame = frameAt(now), most = 1.6 * unit * scale, of = (force) => scale * unit * Math.abs(force) / run.weight;
     const total = value("normal", now), shear = value("shear", now);
     const c = Math.cos(value("rotation", now)), s = Math.sin(value("rotation", now));
-    const x0 = origin + value("x", now), places = film.contact.map((i) => x0 + c * points[2 * i] + s * points[2 * i + 1]);
+    const x0 = origin + value("x", now), places = run.contact.map((i) => x0 + c * points[2 * i] + s * points[2 * i + 1]);
     let centre = 0, sum = 0;
     // Between frames the history knows the sum: the frames share it out.
     const shares = places.map((_, k) => frame ? Math.max(between(normals, contacts, frame, k), 0) : 0);
     for (let k = 0; k < contacts; k++) sum += shares[k];
-    if (!(sum > 0) || Math.abs(value("rotation", now)) > 0.02 * film.angle) {  // it stands on one side
+    if (!(sum > 0) || Math.abs(value("rotation", now)) > 0.02 * run.angle) {  // it stands on one side
       const rightmost = places.indexOf(Math.max(...places)), leftmost = places.indexOf(Math.min(...places));
       shares.fill(0); shares[value("rotation", now) > 0 ? rightmost : leftmost] = 1; sum = 1;
     }
     places.forEach((x, k) => {
       const force = total * shares[k] / sum;
       centre += x * shares[k] / sum;
-      if (force > 2e-3 * film.weight) arrow(X(x), Z(0) + 3, 0, -Math.min(of(force), most), NORMAL);
+      if (force > 2e-3 * run.weight) arrow(X(x), Z(0) + 3, 0, -Math.min(of(force), most), NORMAL);
     });
-    if (total > 2e-3 * film.weight) {
+    if (total > 2e-3 * run.weight) {
       pen.font = "12px system-ui, sans-serif"; pen.fillStyle = NORMAL; pen.textAlign = "left";
       const cut = of(total) > most ? " (arrow cut)" : "";
       label(`N ${kilo(total)} kN${cut}`, X(centre) + 8, Z(0) + Math.min(of(total), most) + 4);
     }
-    if (Math.abs(shear) > 2e-3 * film.weight) {
+    if (Math.abs(shear) > 2e-3 * run.weight) {
       const dx = Math.sign(shear) * Math.min(of(shear), most), y = Z(0) + 14;
       arrow(X(centre) + (dx > 0 ? 6 + dx : -6 + dx), y, dx, 0, SHEAR);
       pen.font = "12px system-ui, sans-serif"; pen.fillStyle = SHEAR; pen.textAlign = dx > 0 ? "left" : "right";
@@ -216,11 +216,11 @@
   const readOut = () => {
     const rotation = value("rotation", now);
     const words = { clock: `${now.toFixed(3)} s`, rotation: `${minus((rotation * 180 / Math.PI).toFixed(3))}°`,
-      ratio: minus((rotation / film.angle).toFixed(3)), slip: `${millimetres(value("slip", now))} mm`,
+      ratio: minus((rotation / run.angle).toFixed(3)), slip: `${millimetres(value("slip", now))} mm`,
       uplift: `${millimetres(value("uplift", now))} mm`, floor: `${millimetres(value("base", now))} mm`,
       state: modeAt(now) };
     for (const [name, text] of Object.entries(words)) byId(`now-${name}`).textContent = text;
-    controls.time.value = Math.round(now / film.step);
+    controls.time.value = Math.round(now / run.step);
     if (!playing) controls.time.setAttribute("aria-valuetext",
       `${now.toFixed(3)} s, ${words.state}, rotation ${words.rotation}, ${words.ratio} of the slenderness angle`);
   };
@@ -276,14 +276,14 @@
 
   controls.play.addEventListener("click", toggle);
   controls.time.max = last;
-  controls.time.addEventListener("input", () => { if (playing) stop(); show(Number(controls.time.value) * film.step); });
+  controls.time.addEventListener("input", () => { if (playing) stop(); show(Number(controls.time.value) * run.step); });
   for (const name of ["exaggeration", "forces", "stress", "mesh", "view"]) {
     if (controls[name]) controls[name].addEventListener("change", draw);
   }
   byId("player").addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     const own = event.target.tagName === "SELECT" || event.target.tagName === "BUTTON" || event.target.type === "checkbox";
-    const steps = { ",": -film.step, ".": film.step, j: -0.1, l: 0.1 };
+    const steps = { ",": -run.step, ".": run.step, j: -0.1, l: 0.1 };
     if (event.key === "k" || (event.key === " " && !own)) { event.preventDefault(); toggle(); }
     else if (event.key in steps && event.target.tagName !== "SELECT") { stop(); show(now + steps[event.key]); }
   });
@@ -293,7 +293,7 @@
   };
   window.addEventListener("hashchange", named);
   new ResizeObserver(draw).observe(canvas);
-  controls.view.value = film.follow ? "floor" : "ground";
-  show(film.first);
+  controls.view.value = run.follow ? "floor" : "ground";
+  show(run.first);
   named();
 })();

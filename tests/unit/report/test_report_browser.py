@@ -246,7 +246,7 @@ def test_assumptions_and_exclusions_stand_on_the_first_page(run_page, tmp_path):
     ).stdout
     for words in (
         "Result:",
-        "What was asked",
+        "The case",
         "Assumptions and exclusions",
         "asks for three or more",
     ):

@@ -1,6 +1,7 @@
 """The report of a run: whole, self-contained, honest about what is missing, and its refusals."""
 
 import re
+from dataclasses import replace
 
 import pytest
 from markupsafe import escape
@@ -10,7 +11,7 @@ from fem.case.case import read_case
 from fem.html.units import typeset
 from fem.model.model import build_model
 from fem.report import variation_table as variation_table_module
-from fem.report.animation import film_of
+from fem.report.animation import animation_of
 from fem.report.run_page import Signature, run_report
 from fem.report.variation_table import variation_table, variations_meanwhile
 from fem.report.variations import by_importance, variations_of
@@ -54,6 +55,11 @@ def page(folder):
     return run_report(open_run(folder), signature=Signature(author="A. Author <a@b>"), every_variation=True)
 
 
+def without_band(run):
+    """The result of a run whose variations are not known yet."""
+    return replace(run.typed_result, verdict=replace(run.typed_result.verdict, band=None))
+
+
 def sections(page):
     return re.findall(r'<h2 id="([a-z-]+)"', page)
 
@@ -73,7 +79,7 @@ def test_the_page_has_every_part_in_the_order_of_reading(page):
         "numerics",
         "provenance",
     ]
-    assert page.index("Result: ") < page.index("What was asked")
+    assert page.index("Result: ") < page.index("The case")
 
 
 def test_the_page_loads_nothing_and_fits_into_a_mail(page):
@@ -99,14 +105,14 @@ def test_the_case_in_the_page_is_the_one_that_was_run(page, folder):
 def test_the_animation_of_a_rigid_run_has_no_stress(tmp_path):
     case = read_case(CASE.replace("elastic_modes = 4", 'model = "rigid"'), name="rigid")
     run_case(case, case_text=case.text, folder=tmp_path / "r", options=RunOptions(band=False))
-    film = film_of(build_model(case), open_run(tmp_path / "r").fields)
-    assert film.stress_scale == film.largest_stress == 0.0
-    assert film.frames[0].von_mises is None and len(film.frames) == 25
+    shown = animation_of(build_model(case), open_run(tmp_path / "r").fields)
+    assert shown.stress_scale == shown.largest_stress == 0.0
+    assert shown.frames[0].von_mises is None and len(shown.frames) == 25
 
 
 def test_variations_are_kept_beside_the_run(folder, page):
     said, run = [], open_run(folder)
-    table = variation_table(run.case, run.place.variations, result=run.result, told=said.append)
+    table = variation_table(run.case, run.place.variations, result=run.typed_result, message=said.append)
     assert said == []
     assert table.left_out == () and all(escape(line.variation.change) in page for line in table.lines)
 
@@ -117,16 +123,16 @@ def test_variations_that_take_long_are_named_and_computed_when_asked_for(folder,
     some = [one for one in variations_of(run.case) if one.subject in ("contact damping", "contact penalty")]
     monkeypatch.setattr(variation_table_module, "variations_of", lambda case: some)
     monkeypatch.setattr(variation_table_module, "AFFORDED_S", 0.0)
-    short = variation_table(run.case, kept, result=run.result)
+    short = variation_table(run.case, kept, result=run.typed_result)
     known = {line.variation.command: line.row for line in short.lines}
     assert len(known) == 4  # the run itself and those members of its band that differ in one thing
     assert [one.change for one in short.left_out] == ["ratio 1", "ratio 4"]
-    again = variation_table(run.case, kept, result=run.result)
+    again = variation_table(run.case, kept, result=run.typed_result)
     assert again == short  # not computed behind one's back by a second report
-    full = variation_table(run.case, kept, result=run.result, every=True)
+    full = variation_table(run.case, kept, result=run.typed_result, every=True)
     assert full.left_out == ()
     # A run that nobody has computed before comes to the same rows.
-    bare = {**run.result, "verdict": {**run.result["verdict"], "band": None}}
+    bare = without_band(run)
     fresh = variation_table(run.case, tmp_path / "other.json", result=bare, every=True)
     assert [line.row for line in fresh.lines] == [line.row for line in full.lines]
 
@@ -137,16 +143,16 @@ def test_variations_of_a_full_run_begin_with_the_run_as_reduced(folder, tmp_path
     monkeypatch.setattr(variation_table_module, "variations_of", lambda case: some)
     monkeypatch.setattr(variation_table_module, "AFFORDED_S", 0.0)
     case = run.case.with_values({"solver.model": "full"})
-    table = variation_table(case, tmp_path / "v.json", result=run.result)
+    table = variation_table(case, tmp_path / "v.json", result=run.typed_result)
     assert [line.variation.subject for line in table.lines] == ["as computed"]
-    assert table.lines[0].row["outcome"] == run.result["verdict"]["outcome"]
+    assert table.lines[0].row.outcome == run.typed_result.verdict.outcome
     assert list(table.left_out) == some and table.model == "reduced"
 
 
 def test_who_leaves_a_report_does_not_wait_for_its_variations(folder, tmp_path):
     run, kept = open_run(folder), tmp_path / "variations.json"
     endless = run.case.with_values({"solver.duration_s": 1e4})
-    bare = {**run.result, "verdict": {**run.result["verdict"], "band": None}}
+    bare = without_band(run)
     with (
         pytest.raises(OSError, match="disk"),
         variations_meanwhile(endless, kept, result=bare, every=True),

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from fem.report.animation import Film, Split
+from fem.report.animation import Animation, AnimationFrame
 from fem.report.stills import stills
 from fem.results.history import HISTORY_COLUMNS, NUMBERS, History
+from fem.results.run_result import Verdict
 
 COUNT, ANGLE = 21, 0.268
 TIMES = 0.1 * np.arange(COUNT)
@@ -14,15 +15,15 @@ SLIP = 0.02 * TIMES * (1.8 - TIMES)  # largest at 0.9 s, 16 mm
 CORNERS = np.array([[-0.55, -2.0], [0.55, -2.0], [0.55, 2.0], [-0.55, 2.0]])
 
 
-def film():
-    return Film(
+def animation():
+    return Animation(
         centroid=np.array([0.0, 2.0]),
         points=CORNERS,
         quads=np.array([[0, 1, 2, 3]]),
         edges=np.array([[0, 1], [1, 2], [2, 3], [3, 0]]),
         contact=np.array([0, 1]),
         frames=[
-            Split(
+            AnimationFrame(
                 time=float(time),
                 centre=np.array([0.0, 2.0]),
                 rotation=float(rotation),
@@ -64,11 +65,11 @@ def history():
     ],
 )
 def test_a_still_is_named_after_what_happened_and_only_that(verdict, named):
-    shown = stills(film(), history(), verdict, angle=ANGLE, width=1.1, height=4.0)
+    shown = stills(animation(), history(), Verdict.from_json(verdict), angle=ANGLE, width=1.1, height=4.0)
     assert [still.caption.split(", ")[1].split(";")[0] for still in shown] == named
 
 
 def test_a_still_tells_its_instant():
-    shown = stills(film(), history(), {"outcome": "rock"}, angle=ANGLE, width=1.1, height=4.0)
+    shown = stills(animation(), history(), Verdict(outcome="rock"), angle=ANGLE, width=1.1, height=4.0)
     assert shown[1].caption == f"t = 0.500 s, farthest to the right; rotation ratio {0.1 / ANGLE:.3f}"
     assert shown[2].caption == f"t = 1.500 s, farthest to the left; rotation ratio −{0.1 / ANGLE:.3f}"

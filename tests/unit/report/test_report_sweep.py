@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from fem.__main__ import main
-from fem.report import sweep_data
-from fem.report.sweep_data import axis_label, map_data
-from fem.report.sweep_page import sweep_report
+from fem.report import sweep_page
+from fem.report.sweep_page import axis_label, map_data, sweep_report
 from fem.results.run_folder import FolderError
 from fem.sweep.table import BAND, FOUND, WIDTH, open_sweep
 
@@ -123,7 +122,7 @@ def test_names_stay_text_and_files_outside_the_folder_stay_out(folder):
 
 
 def test_more_cells_than_a_page_can_carry_are_refused_with_a_way_out(folder, monkeypatch):
-    monkeypatch.setattr(sweep_data, "MOST_BYTES", 50)
+    monkeypatch.setattr(sweep_page, "MOST_BYTES", 50)
     with pytest.raises(FolderError, match="6 cells are more than one page can carry"):
         sweep_report(folder)
 

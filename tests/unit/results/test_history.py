@@ -64,20 +64,12 @@ def test_a_stack_has_three_columns_for_every_joint_behind_all_others(tmp_path):
         history["joint_3_shear_N"]
 
 
-@given(st.lists(st.floats(allow_nan=False), min_size=20, max_size=20))
-def test_every_double_survives(tmp_path_factory, row):
+@given(st.lists(st.floats(allow_nan=False) | st.just(math.nan), min_size=20, max_size=20))
+def test_every_double_survives_as_soon_as_it_is_appended(tmp_path_factory, row):
     path = tmp_path_factory.mktemp("h") / "h.csv"
     with HistoryWriter(path) as writer:
         writer.append(np.array([row]), ["rest"])
-    assert read_history(path).values.tobytes() == np.array([row]).tobytes()
-
-
-def test_samples_are_on_disk_as_soon_as_they_are_appended(tmp_path):
-    writer = HistoryWriter(tmp_path / "h.csv")
-    assert len(read_history(tmp_path / "h.csv")) == 0
-    writer.append(ROWS, MODES)
-    assert len(read_history(tmp_path / "h.csv")) == 7
-    writer.close()
+        assert read_history(path).values.tobytes() == np.array([row]).tobytes()
 
 
 def test_a_killed_writer_leaves_whole_lines_and_at_most_a_torn_last_one(tmp_path):
@@ -125,19 +117,6 @@ def test_wherever_a_file_is_torn_its_whole_lines_are_read_and_nothing_else(tmp_p
     with HistoryWriter(path, position=settled) as writer:  # as after --resume
         writer.append(ROWS[2:5], MODES[2:5])
     assert path.read_bytes() == data
-
-
-def test_going_on_from_a_position_gives_the_bytes_of_an_uninterrupted_history(tmp_path):
-    whole, cut = tmp_path / "whole.csv", tmp_path / "cut.csv"
-    with HistoryWriter(whole) as writer:
-        writer.append(ROWS, MODES)
-    with HistoryWriter(cut) as writer:
-        writer.append(ROWS[:4], MODES[:4])
-        position = writer.position
-        writer.append(ROWS[4:6] + 1.0, MODES[4:6])  # lost: written after the checkpoint
-    with HistoryWriter(cut, position=position) as writer:
-        writer.append(ROWS[4:], MODES[4:])
-    assert cut.read_bytes() == whole.read_bytes()
 
 
 def test_going_on_in_a_history_that_is_too_short_or_missing_is_refused(tmp_path):
@@ -199,12 +178,6 @@ def test_files_that_are_no_history_are_refused(tmp_path, text, words):
     (tmp_path / "h.csv").write_text(text)
     with pytest.raises(ValueError, match=words):
         read_history(tmp_path / "h.csv")
-
-
-def test_nan_is_written_and_read_as_nan(tmp_path):
-    with HistoryWriter(tmp_path / "h.csv") as writer:
-        writer.append(np.full((1, 20), math.nan), ["rest"])
-    assert np.isnan(read_history(tmp_path / "h.csv").values).all()
 
 
 def test_the_rigid_block_stands_in_the_last_column_and_is_replaced_not_repeated(tmp_path):

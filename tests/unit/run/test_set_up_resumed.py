@@ -10,7 +10,7 @@ from interrupted_runs import same
 
 from fem.__main__ import main
 from fem.results.folder import read_result
-from fem.run import setup_cache as part_keeping
+from fem.run import setup_cache
 from fem.solid import reduction
 
 #: a case of many unknowns in contact
@@ -42,8 +42,8 @@ def test_a_set_up_cut_off_after_every_file_is_the_set_up_left_alone(
 ):
     assert main(command(tmp_path / "whole", *overrides)) == 0
     folder, names, cuts = tmp_path / "cut", [], 0
-    write = part_keeping.write_checkpoint
-    monkeypatch.setattr(part_keeping, "CHECKPOINT_S", 0.0)
+    write = setup_cache.write_archive
+    monkeypatch.setattr(setup_cache, "CHECKPOINT_S", 0.0)
 
     def write_and_stop(path, about, arrays):
         write(path, about, arrays)
@@ -51,7 +51,7 @@ def test_a_set_up_cut_off_after_every_file_is_the_set_up_left_alone(
         if len(names) % 3 == 0:
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(part_keeping, "write_checkpoint", write_and_stop)
+    monkeypatch.setattr(setup_cache, "write_archive", write_and_stop)
     while main(command(folder, *overrides)) == 4:
         cuts += 1
         assert [entry.name for entry in folder.iterdir()] == [".setup"]
@@ -61,13 +61,14 @@ def test_a_set_up_cut_off_after_every_file_is_the_set_up_left_alone(
 
 
 def test_what_the_disk_has_no_room_for_is_not_kept_and_that_is_said(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(part_keeping, "CHECKPOINT_S", 0.0)
-    monkeypatch.setattr(part_keeping, "free_disk", lambda folder, data: 1e4)
+    monkeypatch.setattr(setup_cache, "CHECKPOINT_S", 0.0)
+    monkeypatch.setattr(setup_cache, "free_disk", lambda folder: 1e4)
     quiet = command(tmp_path / "r", *FULL)
     assert main([word for word in quiet if word != "-q"]) == 0
     message = capsys.readouterr().err
     assert (
-        ".setup: " in message and "GB of the set-up are not kept, for the disk has 1e-05 GB free" in message
+        ".setup: " in message
+        and "of the set-up are not stored, since the disk has only 10 kB free" in message
     )
 
 
@@ -75,8 +76,8 @@ def test_a_damaged_part_is_named_and_the_set_up_goes_on_before_it(
     tmp_path, monkeypatch, in_many_parts, capsys
 ):
     assert main(command(tmp_path / "whole", *FLAT)) == 0
-    write = part_keeping.write_checkpoint
-    monkeypatch.setattr(part_keeping, "CHECKPOINT_S", 0.0)
+    write = setup_cache.write_archive
+    monkeypatch.setattr(setup_cache, "CHECKPOINT_S", 0.0)
 
     def write_ten(path, about, arrays):
         if path.name == "part_11.npz":
@@ -84,21 +85,21 @@ def test_a_damaged_part_is_named_and_the_set_up_goes_on_before_it(
         write(path, about, arrays)
 
     with monkeypatch.context() as patch:
-        patch.setattr(part_keeping, "write_checkpoint", write_ten)
+        patch.setattr(setup_cache, "write_archive", write_ten)
         assert main(command(tmp_path / "cut", *FLAT)) == 4
     damaged = tmp_path / "cut" / ".setup" / "part_4.npz"
     damaged.write_bytes(damaged.read_bytes()[:-100])
     capsys.readouterr()
-    assert main([word for word in command(tmp_path / "cut", *FLAT) if word != "-q"]) == 0
+    assert main(command(tmp_path / "cut", *FLAT)) == 0  # and -q
     assert str(damaged) in "".join(capsys.readouterr().err.split("\n"))
     same(tmp_path / "cut", tmp_path / "whole")
 
 
 def test_a_short_set_up_keeps_nothing_and_a_refused_one_leaves_nothing(tmp_path, monkeypatch, in_many_parts):
-    monkeypatch.setattr(part_keeping, "write_checkpoint", lambda *_: pytest.fail("kept"))
+    monkeypatch.setattr(setup_cache, "write_archive", lambda *_: pytest.fail("kept"))
     assert main(command(tmp_path / "short", *FLAT)) == 0
     monkeypatch.undo()
-    monkeypatch.setattr(part_keeping, "CHECKPOINT_S", 0.0)
+    monkeypatch.setattr(setup_cache, "CHECKPOINT_S", 0.0)
     soft = (
         *FLAT,
         "container.youngs_modulus_Pa=1e6",

@@ -1,10 +1,14 @@
 """Ctrl-C and SIGTERM in the first moments of the process."""
 
+import os
 import signal
 import subprocess
 import sys
 
 import pytest
+
+from fem.runtime.progress import SilentReporter
+from fem.runtime.signals import interruptible
 
 
 def outcome(argument: str, script: str) -> tuple[int, str]:
@@ -40,3 +44,16 @@ def test_a_library_leaves_signals_alone():
 def test_a_signal_that_is_ignored_stays_ignored():
     script = "signal.signal(signal.SIGINT, signal.SIG_IGN); fem.exit_on_signal(); os.kill(os.getpid(), signal.SIGINT)"
     assert outcome("a script", script) == (0, "")
+
+
+def test_the_first_signal_requests_a_stop_and_a_second_ctrl_c_insists():
+    reporter, before = SilentReporter(), signal.getsignal(signal.SIGINT)
+    for number in (signal.SIGTERM, signal.SIGINT):
+        with interruptible(reporter) as stop:
+            assert not stop()
+            os.kill(os.getpid(), number)
+            assert stop()
+            with pytest.raises(KeyboardInterrupt):
+                os.kill(os.getpid(), signal.SIGINT)
+                signal.sigtimedwait([], 1.0)
+    assert signal.getsignal(signal.SIGINT) is before
