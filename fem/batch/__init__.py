@@ -1,1 +1,1 @@
-"""Many cases on many cores: runner, workers, axes, expressions. It knows neither sweep nor ensemble."""
+"""Many cases on all cores: the engine, its workers and log, axes and expressions. It knows no kind of study."""

@@ -1,4 +1,4 @@
-"""The axes of a sweep: one key of a case each, and the values that it takes."""
+"""The axes of a study: each is one key of a case and its values."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -17,7 +17,7 @@ from fem.case.validation import TOP, did_you_mean, known_keys, quantity_of, requ
 #: keys that do not change a result, and why
 NO_AXIS = {
     "schema": "it says how a file is read",
-    "title": "it is for people",
+    "title": "it changes no result",
     "output.fields_s": "no fields are kept",
 }
 MOST_VALUES = 1_000_000
@@ -124,7 +124,7 @@ def all_keys() -> list[str]:
 
 
 def read_axis(key: str, given: Any) -> Axis:
-    """An axis as a sweep file gives it: a list of values, or a range.
+    """Read an axis: a list of values, or a range.
 
     Raises:
         AxisError: an unknown key, no values, a range without an end or that does not rise, a log scale
@@ -171,14 +171,14 @@ def _spaced(given: Mapping[str, Any], quantity: Quantity | None, unit: str) -> t
     except ValidationError as error:
         raise AxisError(_reason_of_range(error)) from None
     if quantity is None:
-        raise AxisError("holds no number, so it has no range; list its values")
+        raise AxisError("is not a number, so it has no range; list its values")
     low, high, count = wanted.lowest, wanted.highest, wanted.count
     if count < 2:
         raise AxisError(
             f"has an empty range: count must be at least 2, got {count}; for one value write [{low!r}]"
         )
     if count > MOST_VALUES:
-        raise AxisError(f"has count = {count}; at most {MOST_VALUES} values are made of one range")
+        raise AxisError(f"has count = {count}; a range has at most {MOST_VALUES} values")
     if not low < high:
         raise AxisError(
             f"has an empty range: from = {with_unit(low, unit)} must be less than to = {with_unit(high, unit)}"
@@ -224,13 +224,13 @@ def _whole(value: Any) -> Any:
         return int(value)
     if isinstance(value, float):
         raise AxisError(
-            f"takes whole numbers, got {value!r}; choose from, to and count to meet them, or list them"
+            f"takes whole numbers, got {value!r}; choose from, to and count so that the values are whole, or list them"
         )
     return value
 
 
 def _check(field: FieldInfo, quantity: Quantity | None, unit: str, value: Any) -> None:
-    """Refuse what the key can never hold; what depends on other keys is judged with them."""
+    """Refuse a value that the key can never have; rules between keys are checked with the case."""
     if quantity is None:
         choices = {choice for choice in get_args(field.annotation) if isinstance(choice, str)}
         choices |= {c for part in get_args(field.annotation) for c in get_args(part) if isinstance(c, str)}

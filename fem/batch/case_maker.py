@@ -1,4 +1,4 @@
-"""Many cases that differ from one base in a few keys, made without reading the whole base again for each."""
+"""Many cases that differ from a base case in a few keys, made without validating all of it again."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,15 +15,15 @@ from fem.case.tables import TABLES
 class _Template:
     """What all cases that set the same keys share."""
 
-    fixed: dict[str, Any]  #: the tables that are not touched, as they are, and the keys of the heading
-    touched: dict[str, dict[str, Any]]  #: what stands in the others, alternatives replaced
+    fixed: dict[str, Any]  #: tables that do not change, and the keys of the heading
+    touched: dict[str, dict[str, Any]]  #: content of the tables that change, alternatives replaced
 
 
 class CaseMaker:
     """Makes `base.with_values(values)`, at a tenth of the cost.
 
-    Only the tables that are touched are read again, and the rules of the whole case; a case that breaks one is
-    made the long way, which tells what is wrong.
+    Only the tables that change and the rules of the whole case are checked again; a case that breaks one is made the
+    long way, which names the error.
     """
 
     def __init__(self, base: Case) -> None:

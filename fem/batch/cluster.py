@@ -1,7 +1,7 @@
 """The cases of a sweep on a running dask.distributed cluster (the extra `cluster`).
 
-Chunks of cases go to the scheduler as they would go to this machine's cores; rows come back to this process, which
-alone writes. Mesh and motion files are read by the workers where they lie here: on a file system that all share.
+Chunks of cases go to the scheduler in place of this machine's cores; only this process writes files. The workers read
+mesh and motion files from the same paths, on a shared file system.
 """
 
 import asyncio
@@ -23,14 +23,14 @@ class SchedulerError(ValueError):
 
 @contextmanager
 def cluster(address: str) -> Iterator[WorkersOf]:
-    """Connect to a scheduler; yields who computes the cases of a model.
+    """Connect to a scheduler; yields the pools that compute the cases of a model.
 
     Raises:
         SchedulerError: it does not answer, has no workers, or they run another version of this program.
-        WorkersLostError: they died on the way.
+        WorkersLostError: the workers died.
     """
     try:
-        # Asked by itself first: a client waits for ever for a peer that takes the connection and says nothing.
+        # A client waits for ever for a peer that accepts the connection and does not answer.
         asyncio.run(asyncio.wait_for(_identity(address), ANSWER_S))
         client = Client(address, timeout=ANSWER_S)
     except (OSError, TimeoutError, ValueError) as error:
@@ -57,7 +57,7 @@ def cluster(address: str) -> Iterator[WorkersOf]:
                 yield workers_of
             except (KilledWorker, CancelledError) as error:
                 raise WorkersLostError(
-                    f"the workers of {address} died ({error}); --resume goes on from here"
+                    f"the workers of {address} died ({error}); --resume continues"
                 ) from None
 
 

@@ -30,7 +30,7 @@ from fem.run.simulation import AFTERMATH, simulate, stepping_failure
 from fem.runtime.progress import Reporter, SilentReporter, clock_time
 from fem.runtime.threads import cores
 
-#: scalars of a verdict, as columns; None where a case does not have them
+#: scalars of a verdict, as columns; None where they do not apply
 SCALARS = (
     "outcome",
     "max_rotation_rad",
@@ -66,7 +66,7 @@ ItemT = TypeVar("ItemT")
 class Runner:
     """Runs the cases of a study, of any models, and reports the progress in one line.
 
-    Args of `rows` name cases by items; what an item is (a cell, a draw, a case itself) is the study's business.
+    An item names a case: a cell, a draw, or the case itself.
     """
 
     workers_of: WorkersOf  #: `LocalWorkers` or a cluster

@@ -1,4 +1,4 @@
-"""Who computes the cases of a list: the cores of this machine, and how chunks of the list are handed to them."""
+"""The cores of this machine as pools of workers, and how chunks of a list are handed to them."""
 
 import os
 import signal
@@ -21,7 +21,7 @@ from multiprocessing.synchronize import Event
 from types import TracebackType
 from typing import Self, TypeVar
 
-#: cases from which processes of their own, which take some seconds to start, are worth it for the compiled models
+#: number of cases from which processes, which take some seconds to start, pay off for the compiled models
 WORTH_PROCESSES = {"rigid": 500, "reduced": 100}
 #: chunks handed out for every worker, so that none waits for the next
 AHEAD = 2
@@ -36,32 +36,31 @@ def never() -> bool:
 
 
 class WorkersLostError(RuntimeError):
-    """The workers died; what they had computed before is kept."""
+    """The workers died; their finished rows are kept."""
 
     exit_code = 3
 
 
 @dataclass
 class Pool:
-    """An executor, how many chunks it works on at once, and how many are with it."""
+    """An executor, how many chunks it works on at once, and how many it has."""
 
     executor: Executor
     count: int
     given: int = field(default=0, init=False)
 
 
-#: who computes so many cases of a model
+#: the pools for so many cases of a model
 WorkersOf = Callable[[str, int], Sequence[Pool]]
 
 
 class LocalWorkers:
-    """The cores of this machine; called with a model and a number of cases, it tells who computes them.
+    """The cores of this machine; called with a model and a number of cases, it returns the pools that compute them.
 
-    `full` runs in processes. The compiled models step without the interpreter's lock, but two fifths of a rigid case
-    are the making of its model and its row: threads make two cores 1.3 times one. Many cases are therefore shared by
-    one thread of this process, which works while the others start, and a process for every other core. Processes once
-    started stay for later cases; to leave the context ends them, and does not wait for the case of a process, which
-    may take an hour.
+    `full` runs in processes. The compiled models step without the interpreter's lock, but building the model and the
+    row takes two fifths of a rigid case: with threads, two cores are 1.3 times as fast as one. Many cases are
+    therefore shared by one thread of this process, which works while the others start, and one process for each other
+    core. Started processes are kept for later cases; leaving the context ends them at once, as a case may take an hour.
     """
 
     def __init__(self, jobs: int) -> None:
@@ -114,15 +113,15 @@ def hand_out(
     stop: Callable[[], bool] = never,
     finish: bool = True,
 ) -> Iterator[tuple[list[ItemT], FoundT]]:
-    """Let pools work on chunks of items; yields chunks and what was found of them as they come, in any order.
+    """Let pools work on chunks of items; yields chunks and their results as they are ready, in any order.
 
     Args:
-        items: what is to be done, in the order in which it is begun.
-        work: done to a chunk; goes to the workers, so for processes it must be picklable.
-        pools: who works.
+        items: in the order in which they are started.
+        work: from a chunk to its result; for processes it must be picklable.
+        pools: of workers.
         at_a_time: items of a chunk.
-        stop: asked now and then; true ends the work.
-        finish: whether what has begun is waited for then.
+        stop: asked repeatedly; true ends the work.
+        finish: whether running chunks are then completed.
 
     Raises:
         WorkersLostError: a process died.
@@ -146,8 +145,8 @@ def hand_out(
                     found = future.result()
                 except BrokenExecutor as error:
                     raise WorkersLostError(
-                        f"a worker process died ({error}); perhaps it ran out of memory: --resume goes on, -j 1 needs "
-                        "less"
+                        f"a worker process died ({error}); perhaps it ran out of memory: --resume continues, -j 1 "
+                        "needs less memory"
                     ) from None
                 pool, chunk = waiting.pop(future)
                 pool.given -= 1
@@ -163,8 +162,8 @@ def hand_out(
 
 
 def _end_with_parent(parent: int, over: Event) -> None:
-    """End this worker when the work is over, or the process that started it is gone, however it went."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is heard by the process that started it
+    """End this worker when the work is over, or when the process that started it has ended."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles Ctrl-C
 
     def watch() -> None:
         while os.getppid() == parent and not over.wait(1.0):

@@ -1,1 +1,1 @@
-"""Probability of overturning from a seeded ensemble: fragility curves and confidence boundaries."""
+"""Probability of overturning over random quantities: fragility curves and boundaries. It knows no reports."""

@@ -1,7 +1,7 @@
 """Random quantities of an ensemble: their distributions, and the draws.
 
-A distribution maps a number between 0 and 1 to a value, so that independent draws, a Latin hypercube and a Sobol
-sequence go through the same door. Normal and lognormal ones are cut off a few deviations from their middle.
+A distribution maps a number between 0 and 1 to a value, so independent draws, a Latin hypercube and a Sobol sequence
+are treated alike. Normal and lognormal distributions are cut off a few deviations from their middle.
 """
 
 import math
@@ -117,8 +117,8 @@ def draw_shares(
 ) -> FloatArray:
     """Points of the unit cube for one cell, shape (draws, dimensions), replicate after replicate.
 
-    Every cell, and every replicate in it, has a stream of random numbers of its own, told by the seed, the cell
-    and the replicate alone: what else is computed, in what order and on how many cores, changes nothing.
+    Every cell and every replicate has a separate stream of random numbers, given by seed, cell and replicate alone: it
+    does not depend on what else is computed, in what order and on how many cores.
     """
     if sampling == "independent":
         return _generator(seed, cell, 0).random((draws, dimensions))

@@ -1,9 +1,9 @@
-"""The fragility curve: probability of overturning over the strength of the motion, and a lognormal one fitted to it.
+"""The fragility curve: probability of overturning over the strength of the motion, and a lognormal fit.
 
-p(a) = Phi(ln(a/median)/deviation), by the largest binomial likelihood of the counts: probit regression on ln a. The
-band is that of a bootstrap. A lognormal curve rises for ever; rocking need not: a stronger motion may leave standing
-what a weaker one overturned. So the counts with their intervals come first, and how far the fitted curve misses them,
-and where they fall, is said beside it.
+p(a) = Phi(ln(a/median)/deviation), by maximum binomial likelihood of the counts: probit regression on ln a. The band
+is that of a bootstrap. A lognormal curve always rises; rocking need not: a stronger motion may leave standing what a
+weaker one overturned. So the counts with their intervals come first; the levels that the fit misses and the levels at
+which the counts fall are reported beside it.
 """
 
 from dataclasses import dataclass
@@ -16,9 +16,9 @@ from fem.runtime.arrays import FloatArray
 
 BOOTSTRAPS = 1000
 SCORINGS = 60  #: of Fisher's method
-TIGHT = 1e-9  #: change of the coefficients at which it ends
-STEEPEST = 200.0  #: 1/deviation beyond which the counts are told apart by a step
-TAIL = 8.0  #: deviations from the median to which tails are followed
+TIGHT = 1e-9  #: change of the coefficients at convergence
+STEEPEST = 200.0  #: 1/deviation beyond which the counts are a step
+TAIL = 8.0  #: deviations from the median at which the tails are cut
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +58,7 @@ def fit_lognormal(strengths: FloatArray, overturned: FloatArray, draws: FloatArr
 def bootstrap_fits(
     strengths: FloatArray, counts: FloatArray, sizes: FloatArray, *, seed: int, independent: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """Medians and deviations of curves fitted to resampled counts, shape (k,), k the resamples that have one.
+    """Medians and deviations of curves fitted to resampled counts, shape (k,), k the resamples that have a fit.
 
     Independent draws are resampled draw by draw, replicates as a whole.
 
@@ -76,7 +76,7 @@ def bootstrap_fits(
     else:
         picked = generator.integers(counts.shape[1], size=(BOOTSTRAPS, *counts.shape))
         levels = np.arange(len(totals))[:, None]
-        # Replicates lose draws that failed; a picked one counts as if it had lost as many as they do on average.
+        # Replicates lack the draws that failed; a resampled one counts as if it lacked the average number.
         share = np.divide(counts, sizes, out=np.zeros_like(counts), where=sizes > 0.0)
         drawn = share[levels, picked].mean(axis=2) * totals
         weights = totals
@@ -108,7 +108,7 @@ def misses(curve: Lognormal, strengths: FloatArray, low: FloatArray, high: Float
 
 
 def misses_by_chance(levels: int, confidence: float) -> int:
-    """As many levels may miss a true curve, in nineteen of twenty such studies."""
+    """Levels that miss a true curve, at most, in nineteen of twenty such studies."""
     return int(binom.ppf(0.95, levels, 1.0 - confidence))
 
 

@@ -1,15 +1,15 @@
-"""Confidence intervals of a probability that was counted.
+"""Confidence intervals of a probability estimated from counts.
 
 Independent draws: Clopper and Pearson (Biometrika 26, 1934), which covers the true value with at least the stated
 confidence for every number of draws.
 
 Replicates of a randomised point set (a Latin hypercube, a scrambled Sobol sequence): the points of one replicate
-depend on one another, so that its count is not binomial. The replicates are independent of one another and each mean
-is an unbiased estimate (Owen, Ann. Stat. 25, 1997), so their spread gives Student's interval. Where next to nothing or
-nearly everything overturned, the few replicates that differ tell little of that spread, or nothing if none does: then
-the interval is widened to that of as many independent draws. This is no theorem: a Latin hypercube of n points
-has at most n/(n-1) times the variance of independent draws (Owen, 1997), a scrambled net at most a bounded multiple
-and in practice less; that the intervals cover as they should is measured by a test.
+depend on one another, so its count is not binomial. The replicates are independent and each mean is an unbiased
+estimate (Owen, Ann. Stat. 25, 1997), so their spread gives Student's interval. Where almost nothing or almost all
+overturned, too few replicates differ to estimate that spread: the interval is then widened to that of as many
+independent draws. This is no theorem: a Latin hypercube of n points has at most n/(n-1) times the variance of
+independent draws (Owen, 1997), a scrambled net at most a bounded multiple and in practice less; a test measures the
+coverage.
 """
 
 import math
@@ -20,7 +20,7 @@ from scipy.special import betaincinv, stdtrit
 
 from fem.runtime.arrays import FloatArray
 
-#: events, and non-events, in all replicates from which their spread is trusted alone
+#: events, and non-events, in all replicates from which their spread alone is used
 FEW = 10
 
 
@@ -36,7 +36,7 @@ class Estimate:
 def estimate(overturned: np.ndarray, failed: np.ndarray, *, replicates: int, confidence: float) -> Estimate:
     """Probability of overturning from the draws of one cell.
 
-    A draw that failed has no outcome: the lower end counts it as standing, the upper as overturned.
+    A failed draw has no outcome: the lower end counts it as standing, the upper as overturned.
 
     Args:
         overturned: (n,) bool; failed: (n,) bool, replicate after replicate.

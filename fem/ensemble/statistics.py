@@ -1,4 +1,4 @@
-"""What the draws of an ensemble came to: a row a point, and what the points show together."""
+"""The results of an ensemble: a row a point, and the fragility curve of all points."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -22,7 +22,7 @@ MISSING, STOOD, OVERTURNED, FAILED = -1, 0, 1, 2
 #: columns of `points.csv` behind those of the axes
 POINT_COLUMNS = ("draws", "stood", "overturned", "failed", "probability", "low", "high", "region")
 FEWEST_FITTED = 4  #: levels from which a curve is fitted
-FEWEST_RESAMPLED = 0.9  #: share of the resamples that must have a curve for a band to be given
+FEWEST_RESAMPLED = 0.9  #: share of the resamples that must have a curve, else there is no band
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,7 +34,7 @@ class PointResult:
     overturned: int
     failed: int
     estimate: Estimate
-    region: str  #: below | above | undecided: the probability of overturning against the one asked for
+    region: str  #: below | above | undecided: the probability of overturning against the limit asked for
 
     def row(self) -> dict[str, Any]:
         """By the axes' keys and `POINT_COLUMNS`."""
@@ -51,7 +51,7 @@ class PointResult:
 
 
 def count_point(ensemble: Ensemble, cell: int, codes: np.ndarray) -> PointResult:
-    """A point from the codes (draws,) of its draws."""
+    """The result of a point from the codes (draws,) of its draws."""
     overturned, failed = codes == OVERTURNED, codes == FAILED
     found = estimate(overturned, failed, replicates=ensemble.replicates, confidence=ensemble.confidence)
     region = "undecided"
@@ -72,7 +72,7 @@ def count_point(ensemble: Ensemble, cell: int, codes: np.ndarray) -> PointResult
 def fragility_of(
     ensemble: Ensemble, codes: np.ndarray, points: Sequence[PointResult]
 ) -> dict[str, Any] | None:
-    """The curve over the only axis: where it falls, the lognormal fitted, its band; None with more axes.
+    """The curve over the only axis: where it falls, the fitted lognormal, its band; None with more axes.
 
     Args:
         codes: (points, draws).

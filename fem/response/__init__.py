@@ -1,1 +1,1 @@
-"""Long-time motion under a harmonic drive: response curves, phase portraits, Poincare sections, stability."""
+"""Long-time motion under a harmonic drive: response curves, Poincare sections, stability. It knows no sweeps."""

@@ -1,8 +1,8 @@
-"""Without its drive a motion dies out, or it does not: the second half of the seed paper's notion of stability.
+"""Whether a motion dies out without its drive: the second condition of stability of the paper.
 
-The paper's section 2 calls a motion stable if (a) long-time amplitudes do not diverge and (b) without the drive they
-converge to zero. For (b) the floor is stopped at a turning point, where its velocity is zero, so that stopping is no
-kick, and the container is followed until it has come to rest or has fallen.
+Knoedel and Hrabowski (section 2) call a motion stable if (a) long-time amplitudes do not diverge and (b) without the
+drive they converge to zero. For (b) the floor is stopped at a turning point, where its velocity is zero, so that
+stopping is no impulse, and the container is followed until it is at rest or has overturned.
 """
 
 from dataclasses import dataclass
@@ -15,16 +15,16 @@ from fem.case.case import Case
 from fem.model.container import Container
 from fem.response.model import DrivenModel, stop_drive
 
-#: at rest: for so long, over 1/p, it neither turned beyond the limit of a verdict nor slid
+#: at rest: for so long, in 1/p, it neither turned beyond the limit of a verdict nor slid
 STILL = 2.0
-STILL_SLIP = 1e-6  #: over the width, in a look
-LOOK = 0.02  #: how often that is looked at, over 1/p
-PATIENCE = 400.0  #: followed for at most so long, over 1/p
+STILL_SLIP = 1e-6  #: over the width, between two checks
+LOOK = 0.02  #: between two checks, in 1/p
+PATIENCE = 400.0  #: followed at most, in 1/p
 
 
 @dataclass(frozen=True, kw_only=True)
 class Decay:
-    """What came of a motion whose drive was stopped."""
+    """A motion after its drive was stopped."""
 
     fate: str  #: dies out | overturns | goes on | failed
     time: float | None  #: from the stop until it is at rest, or overturned [s]
@@ -32,7 +32,7 @@ class Decay:
 
 
 def follow_decay(case: Case, container: Container, driven: DrivenModel) -> Decay:
-    """Stop the floor where it stands, at a section, and follow the container; `driven` is left as it is."""
+    """Stop the floor at a section and follow the container; `driven` does not change."""
     stopped = stop_drive(case, container, driven)
     run, control = stopped.run, stopped.run.control
     clock, track = run.clock[0], run.track[0]

@@ -1,6 +1,6 @@
 """Figures of a response curve: amplitudes over frequency, sections over frequency, phase portraits.
 
-For people: degrees, mm, Hz. Up and down differ in colour, mark and line, so that they can be told apart in grey.
+In degrees, mm, Hz. Up and down differ in colour, mark and line, so that they can be distinguished in grey.
 """
 
 from collections.abc import Sequence
@@ -90,7 +90,7 @@ def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Fig
 
 
 def draw_sections(request: ResponseRequest, records: Sequence[PointRecord]) -> Figure:
-    """Rotation at the sections over frequency: n dots for a motion of period n, a smear for one without."""
+    """Rotation at the sections over frequency: n dots for a motion of period n, a smear for one without period."""
     figure, (up, down) = panels((2.0, 2.0), gaps=(0.12,), header=2)
     head(
         figure,

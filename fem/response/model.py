@@ -1,12 +1,12 @@
 """A container on a harmonic floor whose frequency is changed while it moves.
 
-The frequency changes at a turning point of the floor: there the velocity of either motion is zero, and the mean
-position of the new one is laid so that the displacement goes on too. The container is taken along: its state
-is the last of the old motion, carried to the next model. Where the peak acceleration is held, even the acceleration
-goes on without a jump; where the displacement is held, it jumps in the ratio of the squares of the frequencies.
+The frequency changes at a turning point of the floor: there the velocity of both motions is zero, and the mean
+position of the new one is chosen so that the displacement is continuous too. The state of the container is carried to
+the next model. Where the peak acceleration is held, the acceleration is continuous as well; where the displacement is
+held, it jumps by the ratio of the squares of the frequencies.
 
-The mean position itself means nothing, as a level floor is everywhere the same: every motion is
-x = A cos(Omega t) from its own t = 0, and the container is moved along x by as much as the floor would have to be.
+The mean position itself has no effect, as a level floor is the same everywhere: every motion is x = A cos(Omega t) from
+t = 0, and the container is moved along x instead of the floor.
 """
 
 import math
@@ -25,7 +25,7 @@ from fem.model.model import Model, build_model
 from fem.response.request import Hold
 
 SAMPLES_PER_PERIOD = 128
-#: of the step control and of friction: what goes on from one motion to the next
+#: state of the step control and of friction that is carried from one motion to the next
 CARRIED = (
     "sliding",
     "slip_since_break",
@@ -43,7 +43,7 @@ CARRIED = (
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DrivenModel:
-    """A model on a floor of its own, at t = 0."""
+    """A model on a driven floor, at t = 0."""
 
     model: Model  #: its `run` is the one below
     body: ModalBody
@@ -83,7 +83,7 @@ def begin_drive(case: Case, container: Container) -> tuple[DrivenModel, float]:
 
 
 def driven_model(case: Case, container: Container) -> DrivenModel:
-    """The container on x = A cos(Omega t), before it is given its motion."""
+    """The container on x = A cos(Omega t), without the motion that it has."""
     model = build_model(case, container)
     omega = case.angular_frequency
     floor = as_floor_motion(HARMONIC, (case.amplitude, omega, 0.5 * math.pi, 0.0, math.inf))
@@ -98,7 +98,7 @@ def carry_drive(case: Case, container: Container, before: DrivenModel) -> Driven
 
 
 def stop_drive(case: Case, container: Container, before: DrivenModel) -> DrivenModel:
-    """The container, moving as `before` left it at a turning point of its floor, where the floor now stays."""
+    """The container, moving as `before` left it at a turning point of its floor; the floor stays there."""
     floor = as_floor_motion(UNIFORM, (0.0, case.amplitude, 0.0))
     driven = _on_floor(build_model(case, container), floor, np.empty(0), before.period)
     carry_state(before.run, driven.run)
@@ -106,7 +106,7 @@ def stop_drive(case: Case, container: Container, before: DrivenModel) -> DrivenM
 
 
 def carry_state(before: Run, after: Run) -> None:
-    """Let `after` go on from where `before` stands, moved along x to where its own floor is at t = 0."""
+    """Start `after` from the state of `before`, moved along x to where its floor is at t = 0."""
     for target, source in zip(after.old, before.old, strict=True):
         target[:] = source
     floor, _, _ = floor_motion(after.motion, 0.0)
@@ -128,8 +128,8 @@ def section_times(period: float, count: int) -> np.ndarray:
 def with_sections(driven: DrivenModel, count: int) -> DrivenModel:
     """The same at t = 0 again, with steps that end on each of the next `count` sections.
 
-    It stands at a section, so that a whole number of periods is taken off its time: the phase of the drive is
-    as exact in the last period as in the first.
+    It is at a section, so a whole number of periods is subtracted from its time: the phase of the drive is as exact in
+    the last period as in the first.
     """
     clock = driven.run.clock
     clock.time, clock.samples, clock.samples_drained, clock.next_break = 0.0, 0, 0, 0
@@ -140,7 +140,7 @@ def with_sections(driven: DrivenModel, count: int) -> DrivenModel:
 def _on_floor(model: Model, floor: FloorMotion, breaks: np.ndarray, period: float) -> DrivenModel:
     body, run = model.body, model.run
     if not isinstance(body, ModalBody):
-        raise TypeError("a response curve is followed with the compiled models")  # the request has seen to it
+        raise TypeError("a response curve is followed with the compiled models")  # the request excludes it
     points = run.old.point.shape[0]
     motion = floor_motion(floor, 0.0)
     run.floor[:] = motion

@@ -26,7 +26,7 @@ class ResponseRequest:
     """Frequencies swept up and down, and the periods waited for at each.
 
     Raises:
-        CaseError: a number out of range, a case without a harmonic drive that goes on, or of the full model.
+        CaseError: a number out of range, a case without a harmonic drive or with one that ends, the full model.
     """
 
     case: Case
@@ -39,7 +39,7 @@ class ResponseRequest:
     settle: int = DEFAULT_SETTLED  #: periods of the drive left out at each frequency
     observe: int = DEFAULT_OBSERVED  #: periods by which the long-time motion is judged
     tolerance: float = TOLERANCE  #: within which two sections count as the same, see `fem.response.stability`
-    largest_period: int = LARGEST_PERIOD  #: looked for, in periods of the drive
+    largest_period: int = LARGEST_PERIOD  #: tried, in periods of the drive
     held: Hold = field(init=False)  #: the same, decided
 
     def __post_init__(self) -> None:

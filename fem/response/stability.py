@@ -1,9 +1,9 @@
-"""What a motion comes to in the long run, judged from sections once a period, and how that was decided.
+"""The long-time motion, judged from sections once a period, with the figures that decide.
 
 - rest: within the limits of a verdict nothing turns and nothing slides;
-- periodic, of period n T: each section is the one n periods before, within a tolerance, over the whole window;
-- not settled: no such n, and sections come nearer to those before them as time goes on;
-- not periodic: no such n up to the largest looked for, and no approach either.
+- periodic, of period n T: each section equals the one n periods before, within a tolerance, over the whole window;
+- not settled: no such n, and the distance of sections decreases with time;
+- not periodic: no such n up to the largest tried, and no decrease.
 
 Sections are compared in units of the slenderness angle, of that times the frequency parameter, of the floor's peak
 velocity and of its amplitude.
@@ -15,27 +15,27 @@ import numpy as np
 
 from fem.runtime.arrays import FloatArray
 
-LARGEST_PERIOD = 16  #: looked for, in periods of the drive; and at most a third of the window
+LARGEST_PERIOD = 16  #: tried, in periods of the drive; and at most a third of the window
 REPEATS = 3  #: of a period within the window, at least
 #: of a section against the one n periods before; an elastic container that slides and rings scatters by 3e-3
 TOLERANCE = 5e-3
 #: distances over the second half of the window less than this share of those over the first: still settling
 SETTLING = 0.5
-#: largest amplitude of the second half over that of the first beyond which amplitudes are said to grow
+#: growth of the largest amplitude from the first half to the second beyond which amplitudes diverge
 GROWTH = 0.1
-NEGLIGIBLE = 0.01  #: of the slenderness angle: growth below it is none
+NEGLIGIBLE = 0.01  #: of the slenderness angle: smaller amplitudes do not grow
 
 
 @dataclass(frozen=True, kw_only=True)
 class LongTime:
-    """Long-time motion, with the figures that decided."""
+    """Long-time motion, with the figures that decide."""
 
     kind: str  #: rest | periodic | not periodic | not settled
     period: int | None  #: n of a periodic motion, in periods of the drive
     scatter: float  #: largest distance of sections n apart; of the best n where none was good enough
     compared: int  #: pairs of sections behind it
     settling: float | None  #: distances over the second half by those over the first; None where periodic
-    largest_period: int  #: looked for
+    largest_period: int  #: tried
 
 
 def classify(
@@ -47,7 +47,7 @@ def classify(
         sections: (n, k), scaled to order one.
         resting: nothing moved beyond the limits of a verdict.
         tolerance: of the largest coordinate.
-        largest_period: looked for; cut to a third of the window.
+        largest_period: tried; at most a third of the window.
 
     Raises:
         ValueError: fewer sections than a period-one motion needs.
@@ -55,7 +55,7 @@ def classify(
     count = len(sections)
     if count < REPEATS + 1:
         raise ValueError(
-            f"{count} sections tell nothing of a long-time motion; at least {REPEATS + 1} are needed"
+            f"{count} sections do not determine a long-time motion; at least {REPEATS + 1} are needed"
         )
     looked_for = max(1, min(largest_period, count // REPEATS))
     scatters = np.array([distances(sections, n).max() for n in range(1, looked_for + 1)])
@@ -97,5 +97,5 @@ def amplitude_growth(amplitudes: FloatArray) -> float:
 
 
 def amplitudes_diverge(amplitudes: FloatArray) -> bool:
-    """Whether the long-time amplitudes grow by more than a bounded motion's do."""
+    """Whether the amplitudes grow by more than those of a bounded motion."""
     return amplitude_growth(amplitudes) > GROWTH

@@ -1,1 +1,1 @@
-"""Many cases at once: sweeps over the keys of a case, their tables, maps and boundaries."""
+"""Sweeps over the keys of a case: table, maps, thresholds. They know neither ensembles nor reports."""

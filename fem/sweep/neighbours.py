@@ -1,10 +1,10 @@
-"""Which cells of a sweep are near a change of outcome, and how wide the band is in which it is not sure.
+"""Which cells of a sweep are near a change of outcome, and how wide the band of unsure cells is.
 
-Cells are standing or overturned; what failed is neither. A cell is near if one of its neighbours (diagonal ones
-included, along the axes whose values are rising numbers) is of another kind, or if it stands but turned by more than
-`close` of its slenderness angle. These are perturbed; then the neighbours of every cell that proved unsure, and
-so on, until the unsure ones are enclosed by sure ones. Cells farther off are not perturbed and count as sure: an
-island of the other outcome that lies between the cells of the grid, far from all others, goes unnoticed.
+Cells stand or overturn; a failed cell does neither. A cell is near if one of its neighbours (diagonal ones included,
+along the axes whose values are rising numbers) is of another kind, or if it stands but turned by more than `close` of
+its slenderness angle. These are perturbed, then the neighbours of every unsure cell, and so on, until the unsure cells
+are enclosed by sure ones. Cells farther away are not perturbed and count as sure: an island of the other outcome
+between the cells of the grid, far from all others, is missed.
 """
 
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ KIND_NAMES = {UNKNOWN: "unknown", STANDING: "standing", OVERTURNED: "overturned"
 
 
 def kind_of(status: str, outcome: str | None) -> int:
-    """Standing, overturned or failed; what failed never stands."""
+    """Standing, overturned or failed; a failed cell never stands."""
     if status not in ("completed", "overturned") or not outcome:
         return FAILED
     return OVERTURNED if outcome == "overturned" else STANDING
@@ -55,9 +55,9 @@ def around(axes: Sequence[Axis], cells: BoolArray) -> BoolArray:
 
 
 def band_width(axes: Sequence[Axis], unsure: BoolArray, place: int) -> FloatArray:
-    """Length along one axis of the stretch of unsure cells that a cell lies in, in the unit of the axis; else 0.
+    """Length along one axis of the stretch of unsure cells around a cell, in the unit of the axis; 0 for a sure cell.
 
-    A cell reaches half way to its neighbours (by their ratio on a log scale), the outermost ones to their own value.
+    A cell extends half way to its neighbours (by ratio on a log scale), the outermost cells to their own value.
 
     Args:
         axes: of the sweep.

@@ -1,9 +1,8 @@
-"""How sure a cell is: the same cell again with motion, friction and contact changed a little.
+"""Sensitivity of a cell: copies of it with motion, friction and contact changed a little.
 
-Each member changes one thing: the amplitude of the floor by some per cent up and down, both coefficients of
-friction up and down, the phase of a harmonic floor to and fro, the damping ratio of the contact to each of the
-values given. A cell is unsure if a member stands where the cell overturns, or overturns where it stands, or
-fails.
+Each copy changes one thing: the amplitude of the floor by some per cent up and down, both coefficients of friction up
+and down, the phase of a harmonic floor earlier and later, the damping ratio of the contact to each of the values given.
+A cell is unsure if a copy stands where the cell overturns, overturns where it stands, or fails.
 """
 
 import math
@@ -47,7 +46,7 @@ class Perturbation(CaseTable):
     )
 
     def members(self, case: Case) -> list[dict[str, Any]]:
-        """The keys that each member of a cell's band sets."""
+        """The keys that each copy of a case changes."""
         return list(self._members(case))
 
     def _members(self, case: Case) -> Iterator[dict[str, Any]]:
@@ -72,21 +71,20 @@ class Perturbation(CaseTable):
 
 
 def _scaled_motion(case: Case, factor: float) -> dict[str, Any]:
-    """The floor's motion times a factor, at the same frequency; nothing for a floor at rest."""
+    """The floor's motion times a factor, at the same frequency; empty for a floor at rest."""
     motion = case.motion
     match motion.kind:
         case "none":
             return {}
         case "table":
             return {"motion.scale": factor * motion.scale}
-    given = {
+    return {
         f"motion.{key}": factor * value
         for key in ("amplitude_m", "peak_acceleration_m_s2")
         if (value := getattr(motion, key)) is not None
     }
-    return given
 
 
 def _rounded(value: float) -> float:
-    """Without the noise of the last digits: 0.4 + 0.02 is 0.42."""
+    """Fifteen digits: 0.4 + 0.02 is 0.42."""
     return float(f"{value:.15g}")

@@ -1,9 +1,9 @@
-"""Where, along one axis, does the outcome change: a scan, then each change closed in on by itself.
+"""Changes of outcome along one axis: a scan, then every change located by refinement.
 
-Safe islands lie above the first amplitude that overturns, so there is no one threshold to bisect for. The values of
-the axis are the scan; between two neighbours of different outcome a few values are tried, and the same is done
-between any two of these that differ, until the bracket is narrow enough. A change inside a bracket that shows at
-none of the values tried goes unnoticed: the step of the scan is the finest island that is sure to be seen.
+There are safe islands above the first amplitude that overturns, so there is no single threshold to bisect for. The
+values of the axis are the scan; between two neighbours of different outcome a few values are tried, then between any
+two of these that differ, until the bracket is narrow enough. An island narrower than the step of the scan may be
+missed.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -21,11 +21,11 @@ RESOLUTION = Quantity(unit="", above=0.0, most=1.0, advice="0.01 is one per cent
 
 
 class Threshold(CaseTable):
-    """Along which axis changes of outcome are closed in on, and how far."""
+    """Along which axis changes of outcome are located, and how precisely."""
 
     axis: str = Field(description="the key of one of the axes", examples=["motion.peak_acceleration_m_s2"])
     resolution: Annotated[float, RESOLUTION] = Field(
-        default=0.01, description="width of a bracket over the value, at which it is narrow enough"
+        default=0.01, description="largest width of a bracket, relative to the value"
     )
     inner: Annotated[int, Quantity(unit="", least=1, most=100)] = Field(
         default=3, description="values tried within a bracket at a time"
@@ -55,18 +55,18 @@ def refine_changes(
     resolution: float = 0.01,
     inner: int = 3,
 ) -> list[Change]:
-    """Close in on every change of outcome along an axis.
+    """Locate every change of outcome along an axis.
 
     Args:
         values: of the scan, rising.
         outcomes: at these values.
         judge: the outcomes at further values; called with those of all brackets at once.
-        resolution: width of a bracket over its larger end (in magnitude) at which it is left; a bracket that
-            holds zero is left at this share of the scan's smallest step or value.
+        resolution: largest width of a bracket, relative to its larger end (in magnitude); around zero, relative to
+            the scan's smallest step or value.
         inner: values tried within a bracket at a time.
 
     Returns:
-        The brackets by rising value; several where the outcome changes to and fro.
+        The brackets by rising value; several where the outcome changes more than once.
     """
     known = dict(zip(values, outcomes, strict=True))
     least = least_width(values, resolution)
@@ -76,7 +76,7 @@ def refine_changes(
 
 
 def least_width(values: Sequence[float], resolution: float) -> float:
-    """Width at which a bracket around zero is narrow enough, where no share of its value can be."""
+    """Largest width of a bracket around zero, where no share of its value is meaningful."""
     steps = [high - low for low, high in pairwise(values)]
     return resolution * min([*steps, *(abs(value) for value in values if value)])
 
@@ -84,7 +84,7 @@ def least_width(values: Sequence[float], resolution: float) -> float:
 def values_to_try(
     known: Mapping[float, str], *, resolution: float, inner: int, least: float = 0.0
 ) -> list[float]:
-    """Values within the brackets that are still too wide; none if all are narrow enough.
+    """Values within the brackets that are too wide; empty if all are narrow enough.
 
     Args:
         known: outcome by value.

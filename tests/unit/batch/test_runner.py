@@ -114,3 +114,8 @@ def test_full_cases_run_in_processes_of_their_own():
     assert row["status"] == "completed"
     assert row["outcome"] == "rest"
     assert row["max_von_mises_Pa"] is None or row["max_von_mises_Pa"] > 0.0
+
+
+def test_no_case_is_started_after_the_time_limit(cases):
+    assert {row["status"] for row in run_cases(cases, time_limit_s=-1.0)} == {"interrupted"}
+    assert without_wall(run_cases(cases, time_limit_s=600.0)) == without_wall(run_cases(cases))

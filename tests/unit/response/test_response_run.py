@@ -1,4 +1,4 @@
-"""A response curve in its folder: what stands there, going on after an interruption, what is refused."""
+"""A response curve in its folder: tables, figures, and requests that are refused."""
 
 import csv
 import json
@@ -9,12 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from fem.__main__ import main
 from fem.case.case import CaseError, load_case
 from fem.response.request import ResponseRequest
 from fem.response.run import run_response
 from fem.results.errors import FolderError
-from fem.runtime.progress import SilentReporter
 
 ROOT = Path(__file__).parents[3]
 CHANGES = ("solver.model=rigid", "contact.mu_static=1", "contact.mu_kinetic=1", "solver.element_size_m=1")
@@ -26,55 +24,14 @@ def request_of(*changes, **values):
     return ResponseRequest(case=case, **chosen)
 
 
-def files_of(folder):
-    return {
-        path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()
-    }
-
-
-class Interrupting(SilentReporter):
-    """Interrupts after some periods of the drive."""
-
-    def __init__(self, periods):
-        self.left = periods
-
-    def update(self, time, rotation_ratio, mode):
-        self.left -= 1
-        if self.left == 0:
-            raise KeyboardInterrupt
-
-
-def test_an_interrupted_curve_continues_to_the_same_files(tmp_path):
-    request = request_of()
-    whole = run_response(request, folder=tmp_path / "whole")
-    assert whole.status == "completed"
-    assert [record.row.direction for record in whole.records] == ["up"] * 3 + ["down"] * 3
-    folder = tmp_path / "interrupted"
-    for periods in (5, 20, 30):  # in the first point; later; later still
-        with pytest.raises(KeyboardInterrupt):
-            run_response(request, folder=folder, resume=True, reporter=Interrupting(periods))
-        assert json.loads((folder / "response.json").read_text())["status"] == "running"
-    state = (folder / "state.npz").read_bytes()
+def test_a_damaged_state_is_refused(tmp_path):
+    folder = tmp_path / "r"
+    run_response(request_of(count=2), folder=folder)
+    mark = json.loads((folder / "response.json").read_text()) | {"status": "running"}
+    (folder / "response.json").write_text(json.dumps(mark))
     (folder / "state.npz").write_bytes(b"half of it")
     with pytest.raises(FolderError, match=r"state\.npz: damaged.*--force"):
-        run_response(request, folder=folder, resume=True)
-    (folder / "state.npz").write_bytes(state)
-    assert run_response(request, folder=folder, resume=True).status == "completed"
-    assert files_of(folder) == files_of(tmp_path / "whole")
-
-
-def test_a_finished_curve_is_not_computed_again_and_a_foreign_folder_is_left_alone(tmp_path):
-    request = request_of(count=2)
-    run_response(request, folder=tmp_path / "a")
-    before = files_of(tmp_path / "a")
-    assert run_response(request, folder=tmp_path / "a").records == ()
-    with pytest.raises(FolderError, match="holds the results of another response curve"):
-        run_response(request_of(count=2, observe=9), folder=tmp_path / "a")
-    assert files_of(tmp_path / "a") == before
-    (tmp_path / "b").mkdir()
-    (tmp_path / "b" / "letter.txt").write_text("dear")
-    with pytest.raises(FolderError, match="holds no response curve"):
-        run_response(request, folder=tmp_path / "b")
+        run_response(request_of(count=2), folder=folder, resume=True)
 
 
 def test_what_is_held_is_what_the_case_states():
@@ -130,17 +87,3 @@ def test_the_command_writes_its_tables_and_figures(tmp_path):
         assert len(list(csv.DictReader(file))) == 4 * 8
     names = {path.name for path in (tmp_path / "r" / "figures").iterdir()}
     assert names == {"response_curve.svg", "sections.svg", "portraits.svg"}
-
-
-def test_bad_input_ends_with_2_and_no_folder(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    assert main(["response", "--from", "2", "--to", "1"]) == 2
-    assert "--from must be less than --to" in capsys.readouterr().err
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_fraction_of_a_frequency_is_refused_and_not_rounded(tmp_path, capsys, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert main(["response", "rocking", "--from", "1", "--to", "2", "--count", "2.5"]) == 2
-    assert "--count: a whole number is needed, not '2.5'" in capsys.readouterr().err
-    assert list(tmp_path.iterdir()) == []

@@ -63,23 +63,6 @@ def test_the_folder_opens_as_arrays(small, tmp_path):
     assert table["unsure"].sum() == info["unsure"]
 
 
-def test_a_finished_sweep_is_left_alone_and_another_is_refused(small, tmp_path):
-    folder = tmp_path / "out"
-    run_sweep(small, folder)
-    before = (folder / "table.csv").stat().st_mtime_ns
-    assert run_sweep(small, folder)["status"] == "completed"
-    assert (folder / "table.csv").stat().st_mtime_ns == before
-    path = tmp_path / "other.toml"
-    path.write_text(SMALL.replace("count = 5", "count = 3"), encoding="utf-8")
-    with pytest.raises(FolderError, match=r"another sweep; .*--out DIR.*--force"):
-        run_sweep(load_sweep(path), folder)
-    assert run_sweep(load_sweep(path), folder, force=True)["cells"] == 12
-    (tmp_path / "letters").mkdir()
-    (tmp_path / "letters" / "mine.txt").write_text("dear")
-    with pytest.raises(FolderError, match="holds no sweep"):
-        run_sweep(small, tmp_path / "letters")
-
-
 def test_another_band_keeps_the_rows(small, tmp_path):
     folder = tmp_path / "out"
     run_sweep(small, folder)
@@ -247,35 +230,3 @@ def test_a_folder_that_another_took_is_left_alone(small, tmp_path, monkeypatch):
     with pytest.raises(OutputError, match="emptied or taken by another"):
         run_sweep(small, folder)
     assert (folder / "sweep.json").read_text() == "another's"
-
-
-def test_rows_of_another_library_version_are_not_continued(small, tmp_path):
-    folder = tmp_path / "out"
-    info = run_sweep(small, folder)
-    versions = info["versions"] | {"numpy": "1.0"}
-    (folder / "sweep.json").write_text(
-        json.dumps(info | {"status": "running", "versions": versions}, default=list)
-    )
-    with pytest.raises(FolderError, match=r"another version of numpy \(1.0, here .*--force"):
-        run_sweep(small, folder, resume=True)
-
-
-def test_shipped_sweeps_are_listed_and_written_out(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    assert main(["list"]) == 0
-    listed = capsys.readouterr().out
-    assert all(name in listed for name in ("outcome_map", "friction_slenderness", "rigid_to_soft"))
-    assert main(["init", "outcome_map", "--to", "mine.toml"]) == 0
-    assert "python -m fem sweep mine.toml" in capsys.readouterr().out
-    assert load_sweep("mine.toml").count == load_sweep("outcome_map").count
-
-
-def test_the_command_answers_bad_input_with_2(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    assert main(["sweep", "nowhere.toml"]) == 2
-    assert "no sweep file" in capsys.readouterr().err
-    (tmp_path / "a.toml").write_text(SMALL.replace("mu_kinetic", "mu"))
-    assert main(["sweep", "a.toml"]) == 2
-    assert "a.toml: [derived]" in capsys.readouterr().err
-    assert main(["sweep", "outcome_map", "-j", "0"]) == 2
-    assert not (tmp_path / "outputs").exists()
