@@ -187,7 +187,7 @@ def test_a_rotation_ratio_has_three_figures(ratio, text):
         ),
         (
             changed(verdict__outcome="slide-rock", verdict__band={"unsure": True}),
-            "Result: slid and rocked, returned upright and did not overturn under this motion "
+            "Result: slid, rocked, returned upright and did not overturn under this motion "
             "(unsure, see the band).",
         ),
         (
