@@ -1,10 +1,9 @@
-"""The rigid-limit check of a run: its rotation beside that of the analytic rigid block under the same floor.
+"""The rigid check of a run: its rotation compared with that of the analytic rigid block on the same floor.
 
 The block has mass centre, inertia and base of the mesh, and the case's friction; its impacts are Housner's
 (angular momentum about the new corner is kept, BSSA 53 (1963) 403). It shares no code with the finite
-elements or the time stepping. It is rigid, stands on two corners and does not bounce: where the container is
-otherwise, the two must differ, and the check says so instead of counting that against either. Rotation > 0
-toward +x.
+elements or the time stepping. It is rigid, stands on two corners and does not bounce: where the container
+differs from that, so must the motion, and the check says so. Rotation > 0 toward +x.
 """
 
 import math
@@ -41,10 +40,10 @@ COLUMNS = ("time_s", "rotation_rad", ANALYTIC_COLUMN, "analytic_angular_velocity
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RigidCheck:
-    """A run beside its rigid block."""
+    """A run compared with its rigid block."""
 
     result: RigidCheckResult
-    rows: FloatArray  #: (n, 4), see COLUMNS; nan where the block is no longer followed
+    rows: FloatArray  #: (n, 4), see COLUMNS; nan where the block is outside its model
 
     @property
     def analytic_rotation(self) -> FloatArray:
@@ -59,18 +58,18 @@ class RigidCheck:
 
 @dataclass(frozen=True, kw_only=True)
 class Reference:
-    """What the rigid block did."""
+    """The motion of the rigid block."""
 
     name: str
     at: Callable[[FloatArray], tuple[FloatArray, FloatArray]]  #: times -> rotation, angular velocity
     first_impact: float | None  #: [s]
     velocity_ratio: float | None  #: at that impact [-]
     slides_at_impact: bool
-    left_model_at: float | None  #: no longer followed from here on [s]
+    left_model_at: float | None  #: outside its model from here on [s]
 
 
 def wants_rigid_check(asked: bool, case: Case) -> bool:
-    """Free rocking always has the check, everything else where asked."""
+    """Free rocking always has the check, other runs where asked."""
     return asked or (case.motion.kind == "none" and case.initial.rotation_rad != 0.0)
 
 
@@ -84,10 +83,10 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
 
     Raises:
         ValueError: a history without two samples.
-        EventError: the block's motion has too many changes of state to be followed.
+        EventError: the block changes its state too often.
     """
     if len(history) < 2:
-        raise ValueError(f"rigid check: two samples of the history are needed, there are {len(history)}")
+        raise ValueError(f"rigid check: the history needs two samples and has {len(history)}")
     time, angle = history["time_s"], model.static.slenderness_angle
     reference = follow_block(model, float(time[-1]))
     rotation, rate = reference.at(time)
@@ -124,8 +123,8 @@ def block_of(model: Model) -> RigidBlock:
 def follow_block(model: Model, end: float) -> Reference:
     """The rigid block under the run's floor, from the run's start to `end` [s].
 
-    A floor that starts with a velocity under a container at rest leaves it behind at once: to the block that
-    is a slip velocity. Where friction never gives way, the block is the one that cannot slide.
+    A floor that starts with a velocity under a container at rest gives the block a slip velocity. Where the
+    block never slides, the block that cannot slide is the reference.
     """
     case, block = model.case, block_of(model)
     initial, friction = case.initial, case.contact
@@ -153,7 +152,7 @@ def follow_block(model: Model, end: float) -> Reference:
 
 
 def floor_of(motion: BaseMotion, *, driven_until: float) -> FloorAcceleration:
-    """Acceleration of the floor of a run, which coasts once its duration is over."""
+    """Acceleration of the floor of a run, zero after its duration."""
     data = motion.compiled()
     breaks = {*motion.break_times.tolist(), driven_until}
     if data.kind == PIECEWISE:  # it bends at every sample
@@ -201,7 +200,7 @@ def first_peaks(time: FloatArray, rotation: FloatArray, least: float) -> list[tu
 
 
 def reasons_against(model: Model, history: History, verdict: Verdict, reference: Reference) -> list[str]:
-    """Why the container is not the rigid block it is compared with; none where it is."""
+    """Why the container is not the rigid block; none where it is."""
     mesh, static, contact = model.container.mesh, model.static, model.case.contact
     kind = model.case.support.kind
     bounce = contact_frequency(mesh.mass, model.base_stiffness)
@@ -213,9 +212,11 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
             f"squat container: Housner's restitution is {static.housner_restitution:.3f}, below 0.5"
         )
     if kind != "corners":
-        reasons.append(f"support {kind!r}: it turns about a region that moves, the block about its corners")
+        reasons.append(
+            f"support {kind!r}: the container turns about a moving region, the block about its corners"
+        )
     if reference.slides_at_impact or _slides_at_impact(model, history, verdict):
-        reasons.append("it slides at the first impact: Housner's impact does not")
+        reasons.append("it slides at the first impact, which Housner's block does not")
     if stiffness < STIFF_CONTAINER:
         reasons.append(
             f"it deforms: first elastic over contact frequency is {stiffness:.2g}, below {STIFF_CONTAINER:g}"
@@ -233,7 +234,7 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
             f"the block leaves the floor, or its impact has no solution, at {reference.left_model_at:.4g} s"
         )
     if reference.first_impact is None and verdict.first_impact_s is None:
-        reasons.append("no impact in either")
+        reasons.append("no impact in the run or the block")
     return reasons
 
 
@@ -272,7 +273,7 @@ def _swung(at: Callable[[FloatArray], tuple[FloatArray, FloatArray]], impact: fl
 
 
 def _paired(found: list[tuple[float, float]], expected: list[tuple[float, float]]) -> tuple[PeakPair, ...]:
-    """Peaks of run and block in turn, as long as both swing to the same side."""
+    """Peaks of run and block, as long as both swing to the same side."""
     pairs = takewhile(lambda pair: pair[0][1] * pair[1][1] > 0.0, zip(found, expected, strict=False))
     return tuple(
         PeakPair(run_s=run[0], run_rad=run[1], block_s=block[0], block_rad=block[1]) for run, block in pairs

@@ -153,7 +153,7 @@ class TestMovingFloor:
         assert time[-1] > 2.0
         early = time < 2.0
         assert np.abs(found - expected)[early].max() < 0.01 * ANGLE
-        assert "no impact in either" in check.result.reasons
+        assert "no impact in the run or the block" in check.result.reasons
 
     def test_a_floor_from_a_table_bends_at_every_sample(self, tmp_path):
         times = np.linspace(0.0, 2.0, 41)
