@@ -18,9 +18,9 @@ from contact.motion.base_motion import BaseMotion
 from contact.motion.kernel import PIECEWISE, floor_motion
 from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
-from contact.reference.planar_motion import PlanarMode, PlanarMotion
+from contact.reference.planar_motion import PlanarImpact, PlanarMode
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.rocking import RockingMotion, simulate_rocking
+from contact.reference.rocking import RockingImpact, simulate_rocking
 from contact.stepping.observables import IMPACT_GAP, ROCKING
 from fem.assessment.verdict import SLIDING
 from fem.case.case import Case
@@ -62,10 +62,24 @@ class Reference:
 
     name: str
     at: Callable[[FloatArray], tuple[FloatArray, FloatArray]]  #: times -> rotation, angular velocity
-    first_impact: float | None  #: [s]
-    velocity_ratio: float | None  #: at that impact [-]
-    slides_at_impact: bool
-    left_model_at: float | None  #: outside its model from here on [s]
+    impact: PlanarImpact | RockingImpact | None  #: the first after it had tilted
+    left_model_at: float | None = None  #: outside its model from here on [s]
+
+    @property
+    def first_impact(self) -> float | None:
+        """Its time [s]."""
+        return None if self.impact is None else self.impact.time
+
+    @property
+    def velocity_ratio(self) -> float | None:
+        """After over before that impact [-]."""
+        return None if self.impact is None else self.impact.velocity_after / self.impact.velocity_before
+
+    @property
+    def slides_at_impact(self) -> bool:
+        """Whether it slides before or after that impact."""
+        impact = self.impact
+        return isinstance(impact, PlanarImpact) and (impact.slides or impact.slip_velocity_before != 0.0)
 
 
 def wants_rigid_check(asked: bool, case: Case) -> bool:
@@ -93,6 +107,9 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
     found = first_peaks(time, history["rotation_rad"], ROCKING * angle)
     expected = first_peaks(time, rotation, ROCKING * angle)
     reasons = reasons_against(model, history, verdict, reference)
+    impacts = (verdict.first_impact_s, reference.first_impact)
+    before = time < min((impact for impact in impacts if impact is not None), default=math.inf)
+    difference = np.abs(history["rotation_rad"] - rotation)[before & np.isfinite(rotation)]
     result = RigidCheckResult(
         reference=reference.name,
         meaningful=not reasons,
@@ -100,9 +117,7 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
         first_impact_s=RunAndBlock(run=verdict.first_impact_s, block=reference.first_impact),
         velocity_ratio=RunAndBlock(run=verdict.restitution_first, block=reference.velocity_ratio),
         peaks=_paired(found[:PEAKS], expected[:PEAKS]),
-        largest_difference_before_impact=_difference_before_impact(
-            time, history["rotation_rad"], rotation, verdict, reference, angle
-        ),
+        largest_difference_before_impact=float(difference.max()) / angle if difference.size else None,
     )
     rows = np.column_stack([time, history["rotation_rad"], rotation, rate])
     return RigidCheck(result=result, rows=rows)
@@ -140,7 +155,17 @@ def follow_block(model: Model, end: float) -> Reference:
         slip_velocity=initial.velocity_m_s - jerk,
     )
     if sliding.modes & {PlanarMode.SLIDE, PlanarMode.SLIDE_ROCK}:
-        return _sliding_reference(sliding, least)
+
+        def at(times: FloatArray) -> tuple[FloatArray, FloatArray]:
+            history = sliding.at(times)
+            return history.rotation, history.angular_velocity
+
+        return Reference(
+            name="rigid block with friction",
+            at=at,
+            impact=next((one for one in sliding.impacts if _had_tilted(at, one.time, least)), None),
+            left_model_at=sliding.end if sliding.outcome is PlanarMode.OUTSIDE else None,
+        )
     rocking = simulate_rocking(
         block,
         floor,
@@ -148,7 +173,11 @@ def follow_block(model: Model, end: float) -> Reference:
         rotation=initial.rotation_rad,
         angular_velocity=initial.angular_velocity_rad_s,
     )
-    return _rocking_reference(rocking, least)
+    return Reference(
+        name="rigid block that does not slide",
+        at=rocking.at,
+        impact=next((one for one in rocking.impacts if _had_tilted(rocking.at, one.time, least)), None),
+    )
 
 
 def floor_of(motion: BaseMotion, *, driven_until: float) -> FloorAcceleration:
@@ -233,42 +262,15 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
         reasons.append(
             f"the block leaves the floor, or its impact has no solution, at {reference.left_model_at:.4g} s"
         )
-    if reference.first_impact is None and verdict.first_impact_s is None:
+    if reference.impact is None and verdict.first_impact_s is None:
         reasons.append("no impact in the run or the block")
     return reasons
 
 
-def _sliding_reference(motion: PlanarMotion, least: float) -> Reference:
-    def at(times: FloatArray) -> tuple[FloatArray, FloatArray]:
-        history = motion.at(times)
-        return history.rotation, history.angular_velocity
-
-    impact = next((i for i in motion.impacts if _swung(at, i.time, least)), None)
-    outside = motion.outcome is PlanarMode.OUTSIDE
-    return Reference(
-        name="rigid block with friction",
-        at=at,
-        first_impact=None if impact is None else impact.time,
-        velocity_ratio=None if impact is None else impact.velocity_after / impact.velocity_before,
-        slides_at_impact=impact is not None and (impact.slides or impact.slip_velocity_before != 0.0),
-        left_model_at=motion.end if outside else None,
-    )
-
-
-def _rocking_reference(motion: RockingMotion, least: float) -> Reference:
-    impact = next((i for i in motion.impacts if _swung(motion.at, i.time, least)), None)
-    return Reference(
-        name="rigid block that does not slide",
-        at=motion.at,
-        first_impact=None if impact is None else impact.time,
-        velocity_ratio=None if impact is None else impact.velocity_after / impact.velocity_before,
-        slides_at_impact=False,
-        left_model_at=None,
-    )
-
-
-def _swung(at: Callable[[FloatArray], tuple[FloatArray, FloatArray]], impact: float, least: float) -> bool:
-    """Whether the block had tilted by more than `least` [rad] at any time before this impact."""
+def _had_tilted(
+    at: Callable[[FloatArray], tuple[FloatArray, FloatArray]], impact: float, least: float
+) -> bool:
+    """Whether the block tilted by more than `least` [rad] before this impact [s]."""
     return bool(np.nanmax(np.abs(at(np.linspace(0.0, impact, 512))[0])) > least)
 
 
@@ -280,29 +282,11 @@ def _paired(found: list[tuple[float, float]], expected: list[tuple[float, float]
     )
 
 
-def _difference_before_impact(
-    time: FloatArray,
-    rotation: FloatArray,
-    analytic: FloatArray,
-    verdict: Verdict,
-    reference: Reference,
-    angle: float,
-) -> float | None:
-    """Largest |difference| of rotation until either has its first impact, over the slenderness angle [-]."""
-    impacts = (verdict.first_impact_s, reference.first_impact)
-    end = min((impact for impact in impacts if impact is not None), default=math.inf)
-    before = (time < end) & np.isfinite(analytic)
-    return float(np.abs(rotation - analytic)[before].max()) / angle if before.any() else None
-
-
 def _first_elastic_frequency(model: Model) -> float:
     """Of the container [Hz]; infinite for the rigid model."""
-    match model.case.solver.model:
-        case "rigid":
-            return math.inf
-        case "reduced":
-            return float(model.frequencies[0])
-    return float(elastic_modes(model.container.elements, 1).frequencies_Hz[0])
+    if model.case.solver.model == "full":
+        return float(elastic_modes(model.container.elements, 1).frequencies_Hz[0])
+    return math.inf if model.case.solver.model == "rigid" else float(model.frequencies[0])
 
 
 def _slides_at_impact(model: Model, history: History, verdict: Verdict) -> bool:
