@@ -1,4 +1,4 @@
-"""What the joints between the boxes of a stack must carry, judged as an unbolted joint would be.
+"""What the joints between the boxes of a stack must carry, and what they would do without bolts.
 
 A joint of rigid faces carries compression at its two edges only: N/2 + M/a at the left, N/2 - M/a at the right, a
 the width. Where one of them is negative the resultant lies outside the joint (|M| > N a/2), an unbolted joint opens at
@@ -25,7 +25,7 @@ def edge_forces(normal: FloatArray, moment: FloatArray, width: float) -> tuple[F
 def joint_demands(model: Model, history: History) -> tuple[JointDemand, ...] | None:
     """The demands of all joints, from the floor up; None for a single box, or where nothing was sampled.
 
-    Of a container that overturned, until it had.
+    Of a container that overturned, until 90 degrees.
     """
     standing = history["time_s"] <= model.run.track[0].overturned_at
     if history.joints == 0 or not standing.any():
@@ -79,5 +79,5 @@ def _friction_needed(normal: FloatArray, shear: FloatArray) -> float | None:
 
 
 def _first(time: FloatArray, happens: NDArray[np.bool_]) -> float | None:
-    """The first sample at which it happens [s]."""
+    """Time of the first sample at which it happens [s]."""
     return float(time[np.argmax(happens)]) if happens.any() else None

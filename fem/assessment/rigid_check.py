@@ -1,10 +1,9 @@
-"""The rigid-limit check of a run: its rotation beside that of the analytic rigid block under the same floor.
+"""The rigid check of a run: its rotation compared with that of the analytic rigid block on the same floor.
 
 The block has mass centre, inertia and base of the mesh, and the case's friction; its impacts are Housner's
 (angular momentum about the new corner is kept, BSSA 53 (1963) 403). It shares no code with the finite
-elements or the time stepping. It is rigid, stands on two corners and does not bounce: where the container is
-otherwise, the two must differ, and the check says so instead of counting that against either. Rotation > 0
-toward +x.
+elements or the time stepping. It is rigid, stands on two corners and does not bounce: where the container
+differs from that, so must the motion, and the check says so. Rotation > 0 toward +x.
 """
 
 import math
@@ -19,9 +18,9 @@ from contact.motion.base_motion import BaseMotion
 from contact.motion.kernel import PIECEWISE, floor_motion
 from contact.reference.floor_acceleration import FloorAcceleration
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
-from contact.reference.planar_motion import PlanarMode, PlanarMotion
+from contact.reference.planar_motion import PlanarImpact, PlanarMode
 from contact.reference.rigid_block import RigidBlock
-from contact.reference.rocking import RockingMotion, simulate_rocking
+from contact.reference.rocking import RockingImpact, simulate_rocking
 from contact.stepping.observables import IMPACT_GAP, ROCKING
 from fem.assessment.verdict import SLIDING
 from fem.case.case import Case
@@ -41,10 +40,10 @@ COLUMNS = ("time_s", "rotation_rad", ANALYTIC_COLUMN, "analytic_angular_velocity
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RigidCheck:
-    """A run beside its rigid block."""
+    """A run compared with its rigid block."""
 
     result: RigidCheckResult
-    rows: FloatArray  #: (n, 4), see COLUMNS; nan where the block is no longer followed
+    rows: FloatArray  #: (n, 4), see COLUMNS; nan where the block is outside its model
 
     @property
     def analytic_rotation(self) -> FloatArray:
@@ -59,18 +58,32 @@ class RigidCheck:
 
 @dataclass(frozen=True, kw_only=True)
 class Reference:
-    """What the rigid block did."""
+    """The motion of the rigid block."""
 
     name: str
     at: Callable[[FloatArray], tuple[FloatArray, FloatArray]]  #: times -> rotation, angular velocity
-    first_impact: float | None  #: [s]
-    velocity_ratio: float | None  #: at that impact [-]
-    slides_at_impact: bool
-    left_model_at: float | None  #: no longer followed from here on [s]
+    impact: PlanarImpact | RockingImpact | None  #: the first after it had tilted
+    left_model_at: float | None = None  #: outside its model from here on [s]
+
+    @property
+    def first_impact(self) -> float | None:
+        """Its time [s]."""
+        return None if self.impact is None else self.impact.time
+
+    @property
+    def velocity_ratio(self) -> float | None:
+        """After over before that impact [-]."""
+        return None if self.impact is None else self.impact.velocity_after / self.impact.velocity_before
+
+    @property
+    def slides_at_impact(self) -> bool:
+        """Whether it slides before or after that impact."""
+        impact = self.impact
+        return isinstance(impact, PlanarImpact) and (impact.slides or impact.slip_velocity_before != 0.0)
 
 
 def wants_rigid_check(asked: bool, case: Case) -> bool:
-    """Free rocking always has the check, everything else where asked."""
+    """Free rocking always has the check, other runs where asked."""
     return asked or (case.motion.kind == "none" and case.initial.rotation_rad != 0.0)
 
 
@@ -84,16 +97,19 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
 
     Raises:
         ValueError: a history without two samples.
-        EventError: the block's motion has too many changes of state to be followed.
+        EventError: the block changes its state too often.
     """
     if len(history) < 2:
-        raise ValueError(f"rigid check: two samples of the history are needed, there are {len(history)}")
+        raise ValueError(f"rigid check: the history needs two samples and has {len(history)}")
     time, angle = history["time_s"], model.static.slenderness_angle
     reference = follow_block(model, float(time[-1]))
     rotation, rate = reference.at(time)
     found = first_peaks(time, history["rotation_rad"], ROCKING * angle)
     expected = first_peaks(time, rotation, ROCKING * angle)
     reasons = reasons_against(model, history, verdict, reference)
+    impacts = (verdict.first_impact_s, reference.first_impact)
+    before = time < min((impact for impact in impacts if impact is not None), default=math.inf)
+    difference = np.abs(history["rotation_rad"] - rotation)[before & np.isfinite(rotation)]
     result = RigidCheckResult(
         reference=reference.name,
         meaningful=not reasons,
@@ -101,9 +117,7 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
         first_impact_s=RunAndBlock(run=verdict.first_impact_s, block=reference.first_impact),
         velocity_ratio=RunAndBlock(run=verdict.restitution_first, block=reference.velocity_ratio),
         peaks=_paired(found[:PEAKS], expected[:PEAKS]),
-        largest_difference_before_impact=_difference_before_impact(
-            time, history["rotation_rad"], rotation, verdict, reference, angle
-        ),
+        largest_difference_before_impact=float(difference.max()) / angle if difference.size else None,
     )
     rows = np.column_stack([time, history["rotation_rad"], rotation, rate])
     return RigidCheck(result=result, rows=rows)
@@ -124,8 +138,8 @@ def block_of(model: Model) -> RigidBlock:
 def follow_block(model: Model, end: float) -> Reference:
     """The rigid block under the run's floor, from the run's start to `end` [s].
 
-    A floor that starts with a velocity under a container at rest leaves it behind at once: to the block that
-    is a slip velocity. Where friction never gives way, the block is the one that cannot slide.
+    A floor that starts with a velocity under a container at rest gives the block a slip velocity. Where the
+    block never slides, the block that cannot slide is the reference.
     """
     case, block = model.case, block_of(model)
     initial, friction = case.initial, case.contact
@@ -141,7 +155,17 @@ def follow_block(model: Model, end: float) -> Reference:
         slip_velocity=initial.velocity_m_s - jerk,
     )
     if sliding.modes & {PlanarMode.SLIDE, PlanarMode.SLIDE_ROCK}:
-        return _sliding_reference(sliding, least)
+
+        def at(times: FloatArray) -> tuple[FloatArray, FloatArray]:
+            history = sliding.at(times)
+            return history.rotation, history.angular_velocity
+
+        return Reference(
+            name="rigid block with friction",
+            at=at,
+            impact=next((one for one in sliding.impacts if _had_tilted(at, one.time, least)), None),
+            left_model_at=sliding.end if sliding.outcome is PlanarMode.OUTSIDE else None,
+        )
     rocking = simulate_rocking(
         block,
         floor,
@@ -149,11 +173,15 @@ def follow_block(model: Model, end: float) -> Reference:
         rotation=initial.rotation_rad,
         angular_velocity=initial.angular_velocity_rad_s,
     )
-    return _rocking_reference(rocking, least)
+    return Reference(
+        name="rigid block that does not slide",
+        at=rocking.at,
+        impact=next((one for one in rocking.impacts if _had_tilted(rocking.at, one.time, least)), None),
+    )
 
 
 def floor_of(motion: BaseMotion, *, driven_until: float) -> FloorAcceleration:
-    """Acceleration of the floor of a run, which coasts once its duration is over."""
+    """Acceleration of the floor of a run, zero after its duration."""
     data = motion.compiled()
     breaks = {*motion.break_times.tolist(), driven_until}
     if data.kind == PIECEWISE:  # it bends at every sample
@@ -201,7 +229,7 @@ def first_peaks(time: FloatArray, rotation: FloatArray, least: float) -> list[tu
 
 
 def reasons_against(model: Model, history: History, verdict: Verdict, reference: Reference) -> list[str]:
-    """Why the container is not the rigid block it is compared with; none where it is."""
+    """Why the container is not the rigid block; none where it is."""
     mesh, static, contact = model.container.mesh, model.static, model.case.contact
     kind = model.case.support.kind
     bounce = contact_frequency(mesh.mass, model.base_stiffness)
@@ -213,9 +241,11 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
             f"squat container: Housner's restitution is {static.housner_restitution:.3f}, below 0.5"
         )
     if kind != "corners":
-        reasons.append(f"support {kind!r}: it turns about a region that moves, the block about its corners")
+        reasons.append(
+            f"support {kind!r}: the container turns about a moving region, the block about its corners"
+        )
     if reference.slides_at_impact or _slides_at_impact(model, history, verdict):
-        reasons.append("it slides at the first impact: Housner's impact does not")
+        reasons.append("it slides at the first impact, which Housner's block does not")
     if stiffness < STIFF_CONTAINER:
         reasons.append(
             f"it deforms: first elastic over contact frequency is {stiffness:.2g}, below {STIFF_CONTAINER:g}"
@@ -232,76 +262,31 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
         reasons.append(
             f"the block leaves the floor, or its impact has no solution, at {reference.left_model_at:.4g} s"
         )
-    if reference.first_impact is None and verdict.first_impact_s is None:
-        reasons.append("no impact in either")
+    if reference.impact is None and verdict.first_impact_s is None:
+        reasons.append("no impact in the run or the block")
     return reasons
 
 
-def _sliding_reference(motion: PlanarMotion, least: float) -> Reference:
-    def at(times: FloatArray) -> tuple[FloatArray, FloatArray]:
-        history = motion.at(times)
-        return history.rotation, history.angular_velocity
-
-    impact = next((i for i in motion.impacts if _swung(at, i.time, least)), None)
-    outside = motion.outcome is PlanarMode.OUTSIDE
-    return Reference(
-        name="rigid block with friction",
-        at=at,
-        first_impact=None if impact is None else impact.time,
-        velocity_ratio=None if impact is None else impact.velocity_after / impact.velocity_before,
-        slides_at_impact=impact is not None and (impact.slides or impact.slip_velocity_before != 0.0),
-        left_model_at=motion.end if outside else None,
-    )
-
-
-def _rocking_reference(motion: RockingMotion, least: float) -> Reference:
-    impact = next((i for i in motion.impacts if _swung(motion.at, i.time, least)), None)
-    return Reference(
-        name="rigid block that does not slide",
-        at=motion.at,
-        first_impact=None if impact is None else impact.time,
-        velocity_ratio=None if impact is None else impact.velocity_after / impact.velocity_before,
-        slides_at_impact=False,
-        left_model_at=None,
-    )
-
-
-def _swung(at: Callable[[FloatArray], tuple[FloatArray, FloatArray]], impact: float, least: float) -> bool:
-    """Whether the block had tilted by more than `least` [rad] at any time before this impact."""
+def _had_tilted(
+    at: Callable[[FloatArray], tuple[FloatArray, FloatArray]], impact: float, least: float
+) -> bool:
+    """Whether the block tilted by more than `least` [rad] before this impact [s]."""
     return bool(np.nanmax(np.abs(at(np.linspace(0.0, impact, 512))[0])) > least)
 
 
 def _paired(found: list[tuple[float, float]], expected: list[tuple[float, float]]) -> tuple[PeakPair, ...]:
-    """Peaks of run and block in turn, as long as both swing to the same side."""
+    """Peaks of run and block, as long as both swing to the same side."""
     pairs = takewhile(lambda pair: pair[0][1] * pair[1][1] > 0.0, zip(found, expected, strict=False))
     return tuple(
         PeakPair(run_s=run[0], run_rad=run[1], block_s=block[0], block_rad=block[1]) for run, block in pairs
     )
 
 
-def _difference_before_impact(
-    time: FloatArray,
-    rotation: FloatArray,
-    analytic: FloatArray,
-    verdict: Verdict,
-    reference: Reference,
-    angle: float,
-) -> float | None:
-    """Largest |difference| of rotation until either has its first impact, over the slenderness angle [-]."""
-    impacts = (verdict.first_impact_s, reference.first_impact)
-    end = min((impact for impact in impacts if impact is not None), default=math.inf)
-    before = (time < end) & np.isfinite(analytic)
-    return float(np.abs(rotation - analytic)[before].max()) / angle if before.any() else None
-
-
 def _first_elastic_frequency(model: Model) -> float:
     """Of the container [Hz]; infinite for the rigid model."""
-    match model.case.solver.model:
-        case "rigid":
-            return math.inf
-        case "reduced":
-            return float(model.frequencies[0])
-    return float(elastic_modes(model.container.elements, 1).frequencies_Hz[0])
+    if model.case.solver.model == "full":
+        return float(elastic_modes(model.container.elements, 1).frequencies_Hz[0])
+    return math.inf if model.case.solver.model == "rigid" else float(model.frequencies[0])
 
 
 def _slides_at_impact(model: Model, history: History, verdict: Verdict) -> bool:

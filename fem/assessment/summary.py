@@ -28,7 +28,6 @@ from fem.results.run_result import (
 )
 
 TEXT_WIDTH = 80
-PADDING = (0, 1, 0, 0)
 INVISIBLE = 1e-9  #: in the units of people: smaller numbers are rounding
 #: values below these are shown as "< limit": lengths [m], rotations [degrees], rotation ratios
 LEAST_LENGTH, LEAST_DEGREES, LEAST_RATIO = 1e-5, 0.01, 1e-3
@@ -53,7 +52,7 @@ JOINTS_NOTE = (
     "when a joint without bolts would open at an edge or slide."
 )
 LARGEST = ("max_shear_N", "max_moment_Nm", "bolt_tension_left_N", "bolt_tension_right_N", "bolt_shear_N")
-VERBS = {"rest": "rested", "slide": "slid", "rock": "rocked", "slide-rock": "slid and rocked"}
+VERBS = {"rest": "rested", "slide": "slid", "rock": "rocked", "slide-rock": "slid, rocked"}
 
 
 def plain_summary(result: RunResult, *, folder: Path) -> str:
@@ -79,7 +78,7 @@ def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
         yield _static_table(result.static, verdict)
         yield Text(f"{CODE_NOTE}\n")
     if result.joints:
-        yield _joint_table(result.joints)
+        yield from _joint_tables(_shown(result.joints))
         left_out = len(result.joints) - len(_shown(result.joints))
         yield Text(JOINTS_NOTE + (f" {left_out} more joints are in run.json." if left_out else "") + "\n")
     if verdict.outcome in ("rock", "slide-rock"):
@@ -114,45 +113,23 @@ def _found(verdict: Verdict) -> str:
 
 
 def _static_table(static: StaticResult, verdict: Verdict) -> Table:
-    table = Table(
-        title=f"Static rules, {own_motion_name(static)}", title_justify="left", box=SIMPLE, padding=PADDING
-    )
-    for name in ("action", "check", "demand / capacity", "use", "rule says", "run found"):
-        table.add_column(name, no_wrap=name in ("demand / capacity", "use"))
+    """Sliding and overturning under each action, one below the other."""
+    columns = ("action", "check", "demand / limit", "use", "rule says", "run found")
+    table = _table(f"Static rules, {own_motion_name(static)}", *columns)
+    sliding, restoring = static.sliding_limit_static_N, static.restoring_moment_Nm
     for action, name in (
         (static.own_motion, "own peak"),
         (static.code, "code, q"),
         (static.code_q1, "q = 1"),
     ):
-        if action is None:
-            continue
-        own = action is static.own_motion
-        for check, demand, capacity, unit, use, found in (
-            (
-                "sliding",
-                action.base_shear_N,
-                static.sliding_limit_static_N,
-                "kN",
-                action.utilisation_sliding,
-                run_slid(verdict),
-            ),
-            (
-                "overturning",
-                action.tilting_moment_Nm,
-                static.restoring_moment_Nm,
-                "kNm",
-                action.utilisation_overturning,
-                run_tilted(verdict),
-            ),
-        ):
-            table.add_row(
-                name if check == "sliding" else "",
-                check,
-                f"{_number(demand, 1e-3)} / {_number(capacity, 1e-3)} {unit}",
-                _number(use, 1.0, ".3f"),
-                rule_says(check, use),
-                found if own else "",
-            )
+        if action is not None:
+            slid, tilted = (run_slid(verdict), run_tilted(verdict)) if name == "own peak" else ("", "")
+            demand = f"{_number(action.base_shear_N, 1e-3)} / {_number(sliding, 1e-3)} kN"
+            use = action.utilisation_sliding
+            table.add_row(name, "sliding", demand, _number(use, 1.0, ".3f"), rule_says("sliding", use), slid)
+            demand = f"{_number(action.tilting_moment_Nm, 1e-3)} / {_number(restoring, 1e-3)} kNm"
+            use, check = action.utilisation_overturning, "overturning"
+            table.add_row("", check, demand, _number(use, 1.0, ".3f"), rule_says(check, use), tilted)
     return table
 
 
@@ -188,11 +165,19 @@ def run_tilted(verdict: Verdict) -> str:
     return "-" if ratio is None else f"stood, ratio {ratio_in_words(ratio)}"
 
 
+def _table(title: str, *columns: str) -> Table:
+    """An empty table; the numbers of a column that begins with > are aligned at the right."""
+    table = Table(
+        title=title, title_justify="left", box=SIMPLE, padding=(0, 1, 0, 0), show_header=any(columns)
+    )
+    for name in columns:
+        table.add_column(name.removeprefix(">"), justify="right" if name.startswith(">") else "left")
+    return table
+
+
 def _table_of_pairs(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[Table]:
     if rows:
-        table = Table(
-            "", "", title=title, title_justify="left", show_header=False, box=SIMPLE, padding=PADDING
-        )
+        table = _table(title, "", "")
         for row in rows:
             table.add_row(*map(Text, row))
         yield table
@@ -332,25 +317,25 @@ def _files(folder: Path) -> str:
     return f"ParaView: {paraview}\nTables: {folder / 'history.csv'}; all results: {folder / 'run.json'}"
 
 
-def _joint_table(joints: Sequence[JointDemand]) -> Table:
-    """One row a joint, from the floor up."""
-    table = Table(title="Joints between boxes", title_justify="left", box=SIMPLE, padding=PADDING)
-    table.add_column("joint at")
-    for name in ("normal kN", "shear kN", "moment kNm", "bolts l, r kN", "bolt shear kN", "mu needed"):
-        table.add_column(name, justify="right")
-    table.add_column("without bolts it")
-    for joint in _shown(joints):
-        table.add_row(
-            f"{joint.height_m:.4g} m",
-            f"{_kilo(joint.min_normal_N)} .. {_kilo(joint.max_normal_N)}",
-            _kilo(joint.max_shear_N),
-            _kilo(joint.max_moment_Nm),
-            f"{_kilo(joint.bolt_tension_left_N)}, {_kilo(joint.bolt_tension_right_N)}",
-            _kilo(joint.bolt_shear_N),
-            "no mu" if joint.friction_needed is None else f"{joint.friction_needed:.3g}",
-            unbolted(joint),
+def _joint_tables(joints: Sequence[JointDemand]) -> Iterator[Table]:
+    """Forces, and what bolts carry; one row a joint, from the floor up."""
+    forces = _table(
+        "Forces in the joints between boxes", "joint at", ">normal kN", ">shear kN", ">moment kNm"
+    )
+    bolts = _table(
+        "Bolts", "joint at", ">tension left, right kN", ">shear kN", ">mu needed", "without bolts it"
+    )
+    for joint in joints:
+        place, normal = f"{joint.height_m:.4g} m", (joint.min_normal_N, joint.max_normal_N)
+        tension = (joint.bolt_tension_left_N, joint.bolt_tension_right_N)
+        needed = "no mu" if joint.friction_needed is None else f"{joint.friction_needed:.3g}"
+        forces.add_row(
+            place, " .. ".join(map(_kilo, normal)), _kilo(joint.max_shear_N), _kilo(joint.max_moment_Nm)
         )
-    return table
+        bolts.add_row(
+            place, ", ".join(map(_kilo, tension)), _kilo(joint.bolt_shear_N), needed, unbolted(joint)
+        )
+    yield from (forces, bolts)
 
 
 def _shown(joints: Sequence[JointDemand]) -> Sequence[JointDemand]:

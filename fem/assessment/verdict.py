@@ -34,13 +34,13 @@ SLIDING = 1e-4  #: slip over the width that counts as sliding
 
 
 def record_of(model: Model) -> SimpleNamespace:
-    """The run's record (`observables.OBSERVABLES`) as plain numbers, which are read a hundred times faster."""
+    """The record of a run (`observables.OBSERVABLES`) as plain numbers, which are read a hundred times faster."""
     track = model.run.track
     return SimpleNamespace(**dict(zip(track.dtype.names, track[0].item(), strict=True)))
 
 
 def outcome_of(model: Model, record: SimpleNamespace | None = None) -> str:
-    """One word for the whole run, of whose record there may be a copy already."""
+    """One word for the whole run; `record` is a copy of its record where there is one already."""
     track = record or record_of(model)
     if math.isfinite(track.overturned_at):
         return "overturned"
@@ -71,7 +71,7 @@ def verdict_from(
     """The `verdict` of a model that was stepped to its end.
 
     Args:
-        model: the run's record is all that is asked of it.
+        model: only the record of its run is used.
         end: time of the last sample [s]; None if there is none.
         time, slip: of the samples, as far back as a cycle of the drive at least [s], [m].
         largest_von_mises: [Pa].
@@ -134,10 +134,10 @@ def energy_of(model: Model) -> Energy:
 
 
 def audit(model: Model) -> str | None:
-    """Why the energy ledger fails this run, or None if it stands; of an overturned one, up to its fall."""
+    """Why the energy balance fails this run, or None; of an overturned run, up to its fall."""
     clock = model.run.clock[0]
     reference = model.run.control.reference_energy
-    won, lost = -float(clock.least_imbalance), float(clock.most_imbalance)
+    gained, lost = -float(clock.least_imbalance), float(clock.most_imbalance)
     dissipated = float(clock.dissipated)
     remedy = (
         f"set solver.step_s below the {model.run.control.largest_step:.2g} s used, "
@@ -145,17 +145,16 @@ def audit(model: Model) -> str | None:
     )
     if not np.all(np.isfinite(model.run.ledger)):
         return (
-            f"t = {float(clock.time):.6g} s: the energy ledger is no longer made of numbers: the motion grew beyond "
-            f"all bounds; {remedy}"
+            f"t = {float(clock.time):.6g} s: the energy balance is not finite, as the motion grew; {remedy}"
         )
-    if won > GAIN_LIMIT * reference:
+    if gained > GAIN_LIMIT * reference:
         return (
-            f"the time stepping won {won:.3g} J, {won / reference:.1e} of the energy to overturn "
+            f"numerical energy gain {gained:.3g} J, {gained / reference:.1e} of the energy to overturn "
             f"(limit {GAIN_LIMIT:.0e}); {remedy}"
         )
     limit = max(LOSS_SHARE_LIMIT * dissipated, LOSS_LIMIT * reference)
     if lost > limit:
-        return f"the energy ledger is open by {lost:.3g} J (limit {limit:.3g} J); {remedy}"
+        return f"energy balance error {lost:.3g} J (limit {limit:.3g} J); {remedy}"
     return None
 
 
@@ -164,7 +163,7 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
     run, container = model.run, model.container
     clock = run.clock[0]
     mass, stiffness = container.mesh.mass, model.base_stiffness
-    # Rayleigh and Ritz: the modes of the free container come first, then what its points' own forces add.
+    # Rayleigh and Ritz: the modes of the free container come first, then the attachment modes of its contact points.
     elastic = model.case.solver.elastic_modes if container.basis is not None else 1
     return Numerics(
         unknowns=int(run.old.position.size),
@@ -192,7 +191,7 @@ def _time(instant: float) -> float | None:
 
 
 def _modes_seen(model: Model, track: SimpleNamespace, outcome: str) -> tuple[str, ...]:
-    """Modes that the history passed through, and the outcome, which may have come about by creep.
+    """States that the history passed through, and the outcome, which may follow from creep alone.
 
     Sliding that is too small to count in the outcome does not count here.
     """
@@ -204,7 +203,7 @@ def _modes_seen(model: Model, track: SimpleNamespace, outcome: str) -> tuple[str
 
 
 def end_of_drive(model: Model) -> float:
-    """When the floor stops, or the run that it is asked for [s]."""
+    """When the floor stops, or else the run [s]."""
     return min(model.case.solver.duration_s, getattr(model.motion, "end_time", math.inf))
 
 

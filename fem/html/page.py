@@ -1,9 +1,8 @@
-"""Pages for people: one HTML file each that needs nothing else, no network and no other file.
+"""Pages: one self-contained HTML file each, without network and without other files.
 
-The templates lie in `fem/html/templates`; every page extends `page.html.j2` and looks like the others. Text from
-users is escaped wherever it stands: in the page, in JSON inside a script element, in a style sheet. The page
-itself forbids the browser to load anything (its content security policy), and to run any script but those it
-was made with.
+The templates are in `fem/html/templates`; every page extends `page.html.j2`. Text from users is escaped everywhere:
+in the page, in JSON inside a script element, in a style sheet. The content security policy of the page forbids the
+browser to load anything and to run any script but those of the page.
 """
 
 import base64
@@ -20,7 +19,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 TEMPLATES = "templates"
-#: the tag of an element that the drawings of matplotlib do not have; a comment begins like one
+#: the tag of an element that drawings of matplotlib never hold; a comment begins like one
 FOREIGN = re.compile(
     r"<(?!/|!--|(?:svg|g|defs|clipPath|path|pattern|rect|circle|line|polyline|polygon|use|text|tspan|image|style|title"
     r"|desc|metadata|rdf:RDF|cc:Work|cc:Agent|dc:(?:type|format|date|creator|title))[\s/>])[^\s/>]*"
@@ -29,7 +28,7 @@ FOREIGN = re.compile(
 
 @dataclass(frozen=True, kw_only=True)
 class Signature:
-    """Who answers for a page; may be left to be filled in."""
+    """Who answers for a page; may be filled in later."""
 
     author: str = ""
     checker: str = ""
@@ -45,7 +44,7 @@ def render_page(
         template: its file name.
         scripts: file names of the scripts that run in the page, in order.
         data: what they read, by the id of the element of type application/json that will hold it.
-        content: what the template asks for; it must be complete.
+        content: the variables of the template; none may be missing.
     """
     texts = [template_text(name) for name in scripts]
     page = _environment().get_template(template)
@@ -60,13 +59,13 @@ def render_page(
 
 @cache
 def template_text(name: str) -> Markup:
-    """A style sheet or script of `fem/html/templates`, to stand in a page as it is."""
+    """A style sheet or script of `fem/html/templates`, for a page."""
     text = resources.files("fem.html").joinpath(TEMPLATES, name).read_text(encoding="utf-8")
     return Markup(text)  # our own file, never a user's
 
 
 def svg_element(text: str, *, label: str, prefix: str) -> Markup:
-    """The `svg` element of a drawing, to stand in a page among others.
+    """The `svg` element of a drawing, for a page with others.
 
     Args:
         text: an SVG file, as matplotlib or this program writes it; its own texts are escaped.
@@ -74,7 +73,7 @@ def svg_element(text: str, *, label: str, prefix: str) -> Markup:
         prefix: put before every id in it, so that two drawings of a page share none.
 
     Raises:
-        ValueError: it is none, or something else stands in it.
+        ValueError: it is no drawing, or holds something else.
     """
     require_drawing(text)
     element = text[text.index("<svg") :]
@@ -83,7 +82,7 @@ def svg_element(text: str, *, label: str, prefix: str) -> Markup:
 
 
 def require_drawing(text: str) -> None:
-    """Refuse what a page must not show as its own.
+    """Refuse what is no drawing.
 
     Raises:
         ValueError: no SVG, or elements in it that no drawing has.
@@ -92,7 +91,7 @@ def require_drawing(text: str) -> None:
     if not start:
         raise ValueError("no drawing")
     if foreign := FOREIGN.search(inside):
-        raise ValueError(f"{foreign[0]}> stands in a drawing")
+        raise ValueError(f"a drawing must not hold {foreign[0]}>")
 
 
 @cache

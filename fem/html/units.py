@@ -1,6 +1,6 @@
-"""Numbers and units as people read them: kN, kNm, mm, degrees, MPa; four figures unless said otherwise.
+"""Numbers and units for pages: kN, kNm, mm, degrees, MPa; four figures unless stated otherwise.
 
-A trailing zero is kept where it is known (98.10, not 98.1), so that the figures printed are the figures there are.
+A trailing zero that is known is kept: 98.10, not 98.1.
 """
 
 import math

@@ -82,7 +82,7 @@ class VariationTable:
         ratios = [row.rotation_ratio for row in rows if row.rotation_ratio is not None]
         if ratios:
             low, high = ratio_in_words(min(ratios)), ratio_in_words(max(ratios))
-            reach = f"lies between {low} and {high}" if low != high else f"is {low}"
+            reach = f"ranges from {low} to {high}" if low != high else f"is {low}"
             words.append(f"Where it does not overturn, the rotation ratio {reach}.")
         return " ".join(words)
 

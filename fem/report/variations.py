@@ -1,7 +1,7 @@
-"""What is varied in the report of a run: friction, contact damping, penalty, phase, start, strength.
+"""The variations in the report of a run: friction, contact damping, penalty, phase, start, strength.
 
-None of them is known exactly. Every variation changes the run in one thing; which come first, where there is time for
-some of them only, is settled here as well: from each subject in turn, the moderate changes before the large ones.
+None of these is known exactly. Every variation changes one thing. Where there is time for some of them only, one of
+each subject comes first, and moderate changes come before large ones.
 """
 
 import math
@@ -26,7 +26,7 @@ class Variation:
 
     subject: str
     change: str  #: for people
-    values: Mapping[str, Any]  #: dotted keys; none: the run as it is
+    values: Mapping[str, Any]  #: dotted keys; none: the run as computed
 
     @property
     def command(self) -> str:
@@ -35,7 +35,7 @@ class Variation:
 
 
 def variations_of(case: Case) -> Iterator[Variation]:
-    """What is varied, in the order of the table."""
+    """The variations, in the order of the table."""
     contact, motion, initial = case.contact, case.motion, case.initial
     for factor in FRICTION_FACTORS:
         static, kinetic = (round(factor * mu, 6) for mu in (contact.mu_static, contact.mu_kinetic))
@@ -64,7 +64,7 @@ def variations_of(case: Case) -> Iterator[Variation]:
             )
     if motion.kind != "none":
         start = "rest" if motion.start == "moving" else "moving"
-        words = {"rest": "the floor jerks under it", "moving": "it moves with the floor"}
+        words = {"rest": "the floor starts with its velocity", "moving": "it moves with the floor"}
         yield Variation(subject="start", change=f"{start}: {words[start]}", values={"motion.start": start})
     if initial.rotation_rad != 0.0:
         for factor in ROTATIONS:
@@ -78,7 +78,7 @@ def variations_of(case: Case) -> Iterator[Variation]:
 
 
 def _strengths(case: Case) -> Iterator[Variation]:
-    """The floor's motion made stronger and weaker: the factor that it stands is the margin."""
+    """The floor's motion made stronger and weaker: the factor at which it overturns is the margin."""
     motion = case.motion
     key = next(
         (name for name in ("peak_acceleration_m_s2", "amplitude_m") if getattr(motion, name) is not None),
@@ -102,7 +102,7 @@ def _strengths(case: Case) -> Iterator[Variation]:
 
 
 def by_importance(variations: Sequence[Variation]) -> list[int]:
-    """Indices of variations, those first that are to be had first."""
+    """Indices of variations, the more important first."""
     subjects: dict[str, list[int]] = {}
     for index, one in enumerate(variations):
         subjects.setdefault(one.subject, []).append(index)

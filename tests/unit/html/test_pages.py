@@ -74,5 +74,5 @@ def test_drawings_of_one_page_share_no_ids():
     "inside", ["<script>alert(1)</script>", "</svg><h1>stands</h1>", "<a href='x'/>", "<!x", "<gx>"]
 )
 def test_what_is_no_drawing_is_not_shown_as_one(inside):
-    with pytest.raises(ValueError, match="stands in a drawing"):
+    with pytest.raises(ValueError, match="a drawing must not hold"):
         svg_element(f"<svg>{inside}</svg>", label="x", prefix="y")

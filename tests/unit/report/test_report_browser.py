@@ -11,7 +11,7 @@ import time
 import pytest
 from browser import CHROMIUM, Browser
 
-from fem.case.case import read_case
+from fem.case.case import load_case
 from fem.report.run_page import run_report
 from fem.report.sweep_page import sweep_report
 from fem.results.reader import open_run
@@ -23,29 +23,12 @@ from fem.sweep.table import open_sweep
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium: apt-get install chromium")
 
-CASE = """
-schema = 1
-title = "Stack"
-[container]
-width_m = 1.1
-height_m = 1.0
-boxes = 4
-weight_N = 24525.0
-wall_m = 0.008
-[contact]
-mu_static = 0.4
-[motion]
-kind = "harmonic"
-peak_acceleration_m_s2 = 4.0
-angular_frequency_rad_s = 6.928
-[solver]
-duration_s = 2.0
-element_size_m = 0.5
-order = 1
-elastic_modes = 4
-"""
+COARSE = ("solver.duration_s=2", "solver.element_size_m=0.5", "solver.order=1", "solver.elastic_modes=4")
 SWEEP = """
-case = "box.toml"
+case = "seed_stack_plateau"
+[set]
+"solver.model" = "rigid"
+"solver.duration_s" = 0.5
 [axes]
 "motion.peak_acceleration_m_s2" = { from = 1.0, to = 9.0, count = 5 }
 "contact.mu_static" = [0.2, 0.4, 0.6]
@@ -77,9 +60,9 @@ CLOCK = "parseFloat(document.getElementById('now-clock').textContent)"
 def pages(tmp_path_factory):
     """A report of a run and one of a sweep."""
     place = tmp_path_factory.mktemp("pages")
-    run_case(read_case(CASE, name="stack"), case_text=CASE, folder=place / "stack")
+    case = load_case("seed_stack_plateau", COARSE)
+    run_case(case, case_text=case.text, folder=place / "stack")
     (place / "run.html").write_text(run_report(open_run(place / "stack")), encoding="utf-8")
-    (place / "box.toml").write_text(CASE.replace("duration_s = 2.0", 'model = "rigid"\nduration_s = 0.5'))
     (place / "boxes.toml").write_text(SWEEP)
     asked = load_sweep(str(place / "boxes.toml"))
     run_sweep(asked, place / "boxes", jobs=1, resume=False, force=False, reporter=SilentReporter())

@@ -7,7 +7,7 @@ import pytest
 from markupsafe import escape
 
 from fem.__main__ import main
-from fem.case.case import read_case
+from fem.case.case import load_case, read_case
 from fem.html.units import typeset
 from fem.model.model import build_model
 from fem.report import variation_table as variation_table_module
@@ -19,34 +19,15 @@ from fem.results.reader import open_run
 from fem.run.run import RunOptions, run_case
 
 HOSTILE = "</title><script>alert(1)</script> & co"
-CASE = f"""
-schema = 1
-title = "{HOSTILE}"
-[container]
-width_m = 1.1
-height_m = 1.0
-boxes = 4
-weight_N = 24525.0
-wall_m = 0.008
-[contact]
-mu_static = 0.4
-[motion]
-kind = "harmonic"
-peak_acceleration_m_s2 = 4.0
-angular_frequency_rad_s = 6.928
-[solver]
-duration_s = 1.2
-element_size_m = 0.5
-order = 1
-elastic_modes = 4
-"""
+COARSE = ("solver.duration_s=1.2", "solver.element_size_m=0.5", "solver.order=1", "solver.elastic_modes=4")
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """A short run of the shell stack."""
     place = tmp_path_factory.mktemp("report") / "stack"
-    run_case(read_case(CASE, name="stack"), case_text=CASE, folder=place)
+    case = load_case("seed_stack_plateau", COARSE).model_copy(update={"title": HOSTILE})
+    run_case(case, case_text=case.text, folder=place)
     return place
 
 
@@ -103,7 +84,7 @@ def test_the_case_in_the_page_is_the_one_that_was_run(page, folder):
 
 
 def test_the_animation_of_a_rigid_run_has_no_stress(tmp_path):
-    case = read_case(CASE.replace("elastic_modes = 4", 'model = "rigid"'), name="rigid")
+    case = load_case("seed_stack_plateau", [*COARSE, "solver.model=rigid"])
     run_case(case, case_text=case.text, folder=tmp_path / "r", options=RunOptions(band=False))
     shown = animation_of(build_model(case), open_run(tmp_path / "r").fields)
     assert shown.stress_scale == shown.largest_stress == 0.0
