@@ -12,7 +12,7 @@ import numpy as np
 from contact.interface.equilibrium import standing
 from contact.interface.support import choose_support
 from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion
-from contact.reference.closed_forms_drop import damped_drop_restitution, drop_force
+from contact.reference.closed_forms_rocking import damped_drop_restitution, drop_force
 from contact.stepping.body import VELOCITY_Z
 from fem.assessment.verdict import audit
 from fem.model.model import Model, build_model
