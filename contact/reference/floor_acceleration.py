@@ -1,25 +1,23 @@
-"""Floor accelerations for the analytic references, with the instants where they jump or bend.
+"""Floor accelerations for the analytic references, with the instants of jumps and kinks.
 
-An acceleration is positive toward +x. The references work in the frame of the floor, so the
-acceleration is all they need; the velocity at the start enters as the initial slip velocity of the block.
+Positive toward +x. The references use the frame of the floor, so they need the acceleration only; the velocity at the
+start is the initial slip velocity of the block.
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-
-import numpy as np
 
 
 @dataclass(frozen=True, kw_only=True)
 class FloorSegment:
-    """A stretch of time without a break inside; at its ends the acceleration is the one-sided limit."""
+    """An interval without a break inside; at its ends the acceleration is the one-sided limit."""
 
     start: float  #: [s]
     end: float  #: [s]
-    first: float  #: earliest time at which the acceleration is asked for [s]
-    last: float  #: latest time at which the acceleration is asked for [s]
+    first: float  #: earliest time at which the function is evaluated [s]
+    last: float  #: latest time at which the function is evaluated [s]
     function: Callable[[float], float]
 
     def acceleration(self, time: float) -> float:
@@ -36,8 +34,8 @@ class FloorAcceleration:
     """
 
     function: Callable[[float], float]  #: time [s] -> acceleration, positive toward +x [m/s2]
-    break_times: tuple[float, ...] = ()  #: increasing instants where it jumps or bends [s]
-    longest_step: float  #: at which it is looked at: an eighth of a period, inf where it is straight [s]
+    break_times: tuple[float, ...] = ()  #: increasing instants of jumps and kinks [s]
+    longest_step: float  #: an eighth of a period; inf if piecewise linear [s]
 
     def __post_init__(self) -> None:
         if not all(math.isfinite(t) for t in self.break_times):
@@ -49,11 +47,11 @@ class FloorAcceleration:
             raise ValueError(f"floor acceleration: longest_step must be positive, got {self.longest_step} s")
 
     def segments(self, start: float, end: float) -> Iterator[FloorSegment]:
-        """The stretches between breaks that fill start to end [s]."""
+        """The intervals between breaks from start to end [s]."""
         inner = [t for t in self.break_times if start < t < end]
         breaks = set(self.break_times)
         for left, right in pairwise([start, *inner, end]):
-            # a few rounding errors inside, so that a pulse written as `start <= t < end` shows its own side
+            # a few rounding errors inside, so that a pulse given as `start <= t < end` is evaluated on the right side
             nudge = 1e-14 * max(abs(left), abs(right), right - left)
             first = left + nudge if left in breaks else left
             last = right - nudge if right in breaks else right
@@ -110,23 +108,6 @@ def one_sine_pulse(*, peak: float, duration: float, delay: float = 0.0) -> Floor
         duration=duration,
         delay=delay,
         longest_step=0.125 * duration,
-    )
-
-
-def sampled_floor(times: Sequence[float], accelerations: Sequence[float]) -> FloorAcceleration:
-    """Straight lines between samples of the acceleration [s], [m/s2]; zero outside the times given."""
-    time, value = np.asarray(times, dtype=float), np.asarray(accelerations, dtype=float)
-    if time.ndim != 1 or time.size < 2 or time.shape != value.shape:
-        raise ValueError(
-            "sampled floor: needs as many accelerations as times, at least two of each, "
-            f"got {time.size} times and {value.size} accelerations"
-        )
-    if not (np.isfinite(time).all() and np.isfinite(value).all()):
-        raise ValueError("sampled floor: times and accelerations must be finite")
-    return FloorAcceleration(
-        function=lambda t: float(np.interp(t, time, value, left=0.0, right=0.0)),
-        break_times=tuple(time.tolist()),
-        longest_step=math.inf,
     )
 
 
