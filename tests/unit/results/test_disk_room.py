@@ -3,6 +3,7 @@
 import contextlib
 import json
 import os
+import re
 import shutil
 import subprocess
 from collections.abc import Iterator
@@ -11,7 +12,6 @@ from pathlib import Path
 import pytest
 from small_sweep import SMALL
 
-import fem.paper.run
 import fem.report.run_page
 import fem.results.disk
 import fem.run.run
@@ -230,7 +230,11 @@ def test_a_full_disk_ends_a_study_of_many_runs_with_3_and_it_goes_on(command, sm
             filler.write(bytes(ROOM - 6 * 4096))
         assert main(command) == 3
         message = capsys.readouterr().err
-        assert "No space left on device" in message and "goes on" in message and "Traceback" not in message
+        assert (
+            "No space left on device" in message
+            and re.search("goes on|continues", message)
+            and "Traceback" not in message
+        )
         for file in (small / "f").glob("*.json"):
             json.loads(file.read_text())
         (small / "filler").unlink()
@@ -246,22 +250,11 @@ def test_a_read_only_folder_ends_a_study_of_many_runs_with_3(command, small, cap
     assert "Read-only file system" in message and "--out DIR" in message
 
 
-def test_a_folder_of_a_study_that_is_taken_or_removed_is_told(tmp_path, capsys, monkeypatch):
+def test_a_folder_of_a_study_that_is_taken_is_told(tmp_path, capsys):
     folder, command = tmp_path / "f", [*TWO_STATEMENTS, "--out", str(tmp_path / "f")]
     with locked_folder(folder):
         assert main(command) == 2
     assert "another run writes there" in capsys.readouterr().err
-    tried = fem.paper.run._tried
-
-    def removed(*arguments):
-        shutil.rmtree(folder)
-        return tried(*arguments)
-
-    monkeypatch.setattr(fem.paper.run, "_tried", removed)
-    assert main(command) == 3
-    message = capsys.readouterr().err
-    assert str(folder) in message and "Traceback" not in message
-    assert not folder.exists()
 
 
 def test_a_report_that_cannot_be_written_ends_with_3_and_names_another_place(
