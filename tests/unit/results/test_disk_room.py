@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 from small_sweep import SMALL
 
-import fem.paper.run
 import fem.report.run_page
 import fem.results.disk
 import fem.run.run
