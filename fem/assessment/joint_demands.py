@@ -8,13 +8,12 @@ unbolted joint slides where |V| > mu N, here with mu_static of the floor; bolts 
 rest in shear. Forces are means over `output.history_s` (`fem.model.joints`).
 """
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from fem.model.model import Model
 from fem.results.history import JOINT_COLUMNS, History
+from fem.results.run_result import JointDemand
 from fem.runtime.arrays import FloatArray
 
 
@@ -23,15 +22,15 @@ def edge_forces(normal: FloatArray, moment: FloatArray, width: float) -> tuple[F
     return 0.5 * normal + moment / width, 0.5 * normal - moment / width
 
 
-def joint_demands(model: Model, history: History) -> list[dict[str, Any]] | None:
-    """The `joints` of a result, from the floor up; None for a single box, or where nothing was sampled.
+def joint_demands(model: Model, history: History) -> tuple[JointDemand, ...] | None:
+    """The demands of all joints, from the floor up; None for a single box, or where nothing was sampled.
 
     Of a container that overturned, until it had.
     """
     standing = history["time_s"] <= model.run.track[0].overturned_at
     if history.joints == 0 or not standing.any():
         return None
-    return [
+    return tuple(
         _demands_of(
             joint,
             *(history[name.format(joint)][standing] for name in JOINT_COLUMNS),
@@ -39,7 +38,7 @@ def joint_demands(model: Model, history: History) -> list[dict[str, Any]] | None
             model=model,
         )
         for joint in range(1, history.joints + 1)
-    ]
+    )
 
 
 def _demands_of(
@@ -50,25 +49,25 @@ def _demands_of(
     *,
     time: FloatArray,
     model: Model,
-) -> dict[str, Any]:
+) -> JointDemand:
     width, mu = model.container.mesh.width, model.case.contact.mu_static
     left, right = edge_forces(normal, moment, width)
     carried = mu * np.maximum(normal, 0.0)
-    return {
-        "joint": joint,
-        "height_m": joint * model.case.container.height_m,
-        "min_normal_N": float(normal.min()),
-        "max_normal_N": float(normal.max()),
-        "max_shear_N": float(np.abs(shear).max()),
-        "max_moment_Nm": float(np.abs(moment).max()),
-        "bolt_tension_left_N": max(0.0, -float(left.min())),
-        "bolt_tension_right_N": max(0.0, -float(right.min())),
-        "bolt_shear_N": max(0.0, float((np.abs(shear) - carried).max())),
-        "friction_needed": _friction_needed(normal, shear),
-        "partly_opens_at_s": _first(time, np.abs(moment) > normal * width / 6.0),
-        "opens_at_s": _first(time, np.minimum(left, right) < 0.0),
-        "slides_at_s": _first(time, np.abs(shear) > carried),
-    }
+    return JointDemand(
+        joint=joint,
+        height_m=joint * model.case.container.height_m,
+        min_normal_N=float(normal.min()),
+        max_normal_N=float(normal.max()),
+        max_shear_N=float(np.abs(shear).max()),
+        max_moment_Nm=float(np.abs(moment).max()),
+        bolt_tension_left_N=max(0.0, -float(left.min())),
+        bolt_tension_right_N=max(0.0, -float(right.min())),
+        bolt_shear_N=max(0.0, float((np.abs(shear) - carried).max())),
+        friction_needed=_friction_needed(normal, shear),
+        partly_opens_at_s=_first(time, np.abs(moment) > normal * width / 6.0),
+        opens_at_s=_first(time, np.minimum(left, right) < 0.0),
+        slides_at_s=_first(time, np.abs(shear) > carried),
+    )
 
 
 def _friction_needed(normal: FloatArray, shear: FloatArray) -> float | None:

@@ -8,10 +8,9 @@ toward +x.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import takewhile
-from typing import Any
 
 import numpy as np
 
@@ -28,6 +27,7 @@ from fem.assessment.verdict import SLIDING
 from fem.case.case import Case
 from fem.model.model import Model
 from fem.results.history import ANALYTIC_COLUMN, History
+from fem.results.run_result import PeakPair, RigidCheckResult, RunAndBlock, Verdict
 from fem.runtime.arrays import FloatArray
 from fem.solid.modes import elastic_modes
 
@@ -43,7 +43,7 @@ COLUMNS = ("time_s", "rotation_rad", ANALYTIC_COLUMN, "analytic_angular_velocity
 class RigidCheck:
     """A run beside its rigid block."""
 
-    summary: dict[str, Any]  #: the `rigid_check` of a result
+    result: RigidCheckResult
     rows: FloatArray  #: (n, 4), see COLUMNS; nan where the block is no longer followed
 
     @property
@@ -74,7 +74,7 @@ def wants_rigid_check(asked: bool, case: Case) -> bool:
     return asked or (case.motion.kind == "none" and case.initial.rotation_rad != 0.0)
 
 
-def check_against_rigid_block(model: Model, history: History, verdict: Mapping[str, Any]) -> RigidCheck:
+def check_against_rigid_block(model: Model, history: History, verdict: Verdict) -> RigidCheck:
     """Compare a finished run with the rigid block.
 
     Args:
@@ -94,19 +94,19 @@ def check_against_rigid_block(model: Model, history: History, verdict: Mapping[s
     found = first_peaks(time, history["rotation_rad"], ROCKING * angle)
     expected = first_peaks(time, rotation, ROCKING * angle)
     reasons = reasons_against(model, history, verdict, reference)
-    summary = {
-        "reference": reference.name,
-        "meaningful": not reasons,
-        "reasons": reasons,
-        "first_impact_s": {"run": verdict.get("first_impact_s"), "block": reference.first_impact},
-        "velocity_ratio": {"run": verdict.get("restitution_first"), "block": reference.velocity_ratio},
-        "peaks": _paired(found[:PEAKS], expected[:PEAKS]),
-        "largest_difference_before_impact": _difference_before_impact(
+    result = RigidCheckResult(
+        reference=reference.name,
+        meaningful=not reasons,
+        reasons=tuple(reasons),
+        first_impact_s=RunAndBlock(run=verdict.first_impact_s, block=reference.first_impact),
+        velocity_ratio=RunAndBlock(run=verdict.restitution_first, block=reference.velocity_ratio),
+        peaks=_paired(found[:PEAKS], expected[:PEAKS]),
+        largest_difference_before_impact=_difference_before_impact(
             time, history["rotation_rad"], rotation, verdict, reference, angle
         ),
-    }
+    )
     rows = np.column_stack([time, history["rotation_rad"], rotation, rate])
-    return RigidCheck(summary=summary, rows=rows)
+    return RigidCheck(result=result, rows=rows)
 
 
 def block_of(model: Model) -> RigidBlock:
@@ -200,9 +200,7 @@ def first_peaks(time: FloatArray, rotation: FloatArray, least: float) -> list[tu
     return peaks
 
 
-def reasons_against(
-    model: Model, history: History, verdict: Mapping[str, Any], reference: Reference
-) -> list[str]:
+def reasons_against(model: Model, history: History, verdict: Verdict, reference: Reference) -> list[str]:
     """Why the container is not the rigid block it is compared with; none where it is."""
     mesh, static, contact = model.container.mesh, model.static, model.case.contact
     kind = model.case.support.kind
@@ -234,7 +232,7 @@ def reasons_against(
         reasons.append(
             f"the block leaves the floor, or its impact has no solution, at {reference.left_model_at:.4g} s"
         )
-    if reference.first_impact is None and verdict.get("first_impact_s") is None:
+    if reference.first_impact is None and verdict.first_impact_s is None:
         reasons.append("no impact in either")
     return reasons
 
@@ -273,25 +271,24 @@ def _swung(at: Callable[[FloatArray], tuple[FloatArray, FloatArray]], impact: fl
     return bool(np.nanmax(np.abs(at(np.linspace(0.0, impact, 512))[0])) > least)
 
 
-def _paired(found: list[tuple[float, float]], expected: list[tuple[float, float]]) -> list[dict[str, float]]:
+def _paired(found: list[tuple[float, float]], expected: list[tuple[float, float]]) -> tuple[PeakPair, ...]:
     """Peaks of run and block in turn, as long as both swing to the same side."""
     pairs = takewhile(lambda pair: pair[0][1] * pair[1][1] > 0.0, zip(found, expected, strict=False))
-    return [
-        {"run_s": run[0], "run_rad": run[1], "block_s": block[0], "block_rad": block[1]}
-        for run, block in pairs
-    ]
+    return tuple(
+        PeakPair(run_s=run[0], run_rad=run[1], block_s=block[0], block_rad=block[1]) for run, block in pairs
+    )
 
 
 def _difference_before_impact(
     time: FloatArray,
     rotation: FloatArray,
     analytic: FloatArray,
-    verdict: Mapping[str, Any],
+    verdict: Verdict,
     reference: Reference,
     angle: float,
 ) -> float | None:
     """Largest |difference| of rotation until either has its first impact, over the slenderness angle [-]."""
-    impacts = (verdict.get("first_impact_s"), reference.first_impact)
+    impacts = (verdict.first_impact_s, reference.first_impact)
     end = min((impact for impact in impacts if impact is not None), default=math.inf)
     before = (time < end) & np.isfinite(analytic)
     return float(np.abs(rotation - analytic)[before].max()) / angle if before.any() else None
@@ -307,9 +304,9 @@ def _first_elastic_frequency(model: Model) -> float:
     return float(elastic_modes(model.container.elements, 1).frequencies_Hz[0])
 
 
-def _slides_at_impact(model: Model, history: History, verdict: Mapping[str, Any]) -> bool:
+def _slides_at_impact(model: Model, history: History, verdict: Verdict) -> bool:
     """Whether the run slides by what counts as sliding within a few samples of its first impact."""
-    impact = verdict.get("first_impact_s")
+    impact = verdict.first_impact_s
     if impact is None:
         return False
     first = int(np.searchsorted(history["time_s"], impact))

@@ -17,6 +17,7 @@ from rich.table import Table
 from rich.text import Text
 
 from fem.assessment.summary_joints import joint_table
+from fem.results.run_result import JointDemand
 
 Result = Mapping[str, Any]
 
@@ -58,7 +59,7 @@ def screen_summary(
     if rows:
         parts.append(_run_table(rows))
     if result.get("joints"):
-        parts.append(joint_table(result["joints"]))
+        parts.append(joint_table([JointDemand.from_json(joint) for joint in result["joints"]]))
     if (result.get("verdict") or {}).get("outcome") in ("rock", "slide-rock"):
         parts += [Text(MARGIN_NOTE), Text()]
     if (result.get("verdict") or {}).get("band"):

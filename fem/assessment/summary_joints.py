@@ -1,12 +1,13 @@
 """The joints between the boxes of a stack, as a table for the end of a run."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from rich.box import SIMPLE
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
+
+from fem.results.run_result import JointDemand
 
 MOST_JOINTS = 8  #: shown; of more, those that something is largest in
 JOINTS_NOTE = (
@@ -18,7 +19,7 @@ LEAST_N = 1e-6  #: smaller forces and moments are rounding
 LARGEST = ("max_shear_N", "max_moment_Nm", "bolt_tension_left_N", "bolt_tension_right_N", "bolt_shear_N")
 
 
-def joint_table(joints: Sequence[Mapping[str, Any]]) -> RenderableType:
+def joint_table(joints: Sequence[JointDemand]) -> RenderableType:
     """One row a joint, from the floor up.
 
     Args:
@@ -31,13 +32,13 @@ def joint_table(joints: Sequence[Mapping[str, Any]]) -> RenderableType:
     table.add_column("unbolted, it")
     for joint in _shown(joints):
         table.add_row(
-            f"{joint['height_m']:.4g} m",
-            f"{_kilo(joint['min_normal_N'])} .. {_kilo(joint['max_normal_N'])}",
-            _kilo(joint["max_shear_N"]),
-            _kilo(joint["max_moment_Nm"]),
-            f"{_kilo(joint['bolt_tension_left_N'])}, {_kilo(joint['bolt_tension_right_N'])}",
-            _kilo(joint["bolt_shear_N"]),
-            "no mu" if joint["friction_needed"] is None else f"{joint['friction_needed']:.3g}",
+            f"{joint.height_m:.4g} m",
+            f"{_kilo(joint.min_normal_N)} .. {_kilo(joint.max_normal_N)}",
+            _kilo(joint.max_shear_N),
+            _kilo(joint.max_moment_Nm),
+            f"{_kilo(joint.bolt_tension_left_N)}, {_kilo(joint.bolt_tension_right_N)}",
+            _kilo(joint.bolt_shear_N),
+            "no mu" if joint.friction_needed is None else f"{joint.friction_needed:.3g}",
             _unbolted(joint),
         )
     left_out = len(joints) - table.row_count
@@ -45,15 +46,15 @@ def joint_table(joints: Sequence[Mapping[str, Any]]) -> RenderableType:
     return Group(table, Text(JOINTS_NOTE + rest), Text())
 
 
-def _shown(joints: Sequence[Mapping[str, Any]]) -> Sequence[Mapping[str, Any]]:
+def _shown(joints: Sequence[JointDemand]) -> Sequence[JointDemand]:
     if len(joints) <= MOST_JOINTS:
         return joints
-    chosen = {max(range(len(joints)), key=lambda j: joints[j][key]) for key in LARGEST}
+    chosen = {max(range(len(joints)), key=lambda j: getattr(joints[j], key)) for key in LARGEST}
     return [joints[j] for j in sorted(chosen)]
 
 
-def _unbolted(joint: Mapping[str, Any]) -> str:
-    opens, slides = joint["opens_at_s"], joint["slides_at_s"]
+def _unbolted(joint: JointDemand) -> str:
+    opens, slides = joint.opens_at_s, joint.slides_at_s
     found = [
         f"{verb} at {instant:.3g} s"
         for verb, instant in (("opens", opens), ("slides", slides))

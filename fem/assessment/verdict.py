@@ -1,4 +1,4 @@
-"""What a run found: outcome, extremes, events, energy, numerics, as `run.json` holds them.
+"""The verdict of a run: outcome, extremes, events, energy balance, numerics.
 
 The container slides when it slid more than 1e-4 of its width, it rocks when it turned by more than a
 hundredth of its slenderness angle with a side unloaded, below both it rested; overturned is 90 degrees.
@@ -6,7 +6,7 @@ hundredth of its slenderness angle with a side unloaded, below both it rested; o
 
 import math
 from types import SimpleNamespace
-from typing import Any
+from typing import TypeVar
 
 import numpy as np
 
@@ -24,8 +24,12 @@ from contact.stepping.ledger import (
 from contact.stepping.observables import FALLEN, FORCE_WINDOW, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
 from fem.model.model import Model
 from fem.results.history import History
+from fem.results.run_result import Energy, Numerics, Verdict
+from fem.runtime.arrays import FloatArray
 
 MODE_NAMES = {REST: "rest", SLIDE: "slide", ROCK: "rock", SLIDE_ROCK: "slide-rock", FALLEN: "overturned"}
+RotationT = TypeVar("RotationT", float, FloatArray)
+
 SLIDING = 1e-4  #: slip over the width that counts as sliding
 
 
@@ -45,7 +49,12 @@ def outcome_of(model: Model, record: SimpleNamespace | None = None) -> str:
     return MODE_NAMES[(ROCK if rocks else REST) + (SLIDE if slides else REST)]
 
 
-def verdict_of(model: Model, history: History, largest_von_mises: float | None) -> dict[str, Any]:
+def rotation_ratio(rotation: RotationT, slenderness_angle: float) -> RotationT:
+    """|rotation| over the slenderness angle [-], both in rad."""
+    return abs(rotation) / slenderness_angle
+
+
+def verdict_of(model: Model, history: History, largest_von_mises: float | None) -> Verdict:
     """The `verdict` of a result; what was not reached is None."""
     time, slip = history["time_s"], history["slip_m"]
     end = float(time[-1]) if time.size else None
@@ -58,7 +67,7 @@ def verdict_from(
     time: np.ndarray,
     slip: np.ndarray,
     largest_von_mises: float | None,
-) -> dict[str, Any]:
+) -> Verdict:
     """The `verdict` of a model that was stepped to its end.
 
     Args:
@@ -73,57 +82,55 @@ def verdict_from(
     outcome = outcome_of(model, track)
     rocked = outcome in ("rock", "slide-rock")
     at_end = abs(float(run.old.pose[0]))
-    return {
-        "outcome": outcome,
-        "modes": _modes_seen(model, track, outcome),
-        "max_rotation_rad": float(track.max_rotation),
-        "rotation_ratio": float(track.max_rotation) / angle,
-        "max_slip_m": float(track.max_slip),
-        "residual_slip_m": float(run.clock[0].slip),
-        "slip_peak_to_peak_m": _peak_to_peak(model, end, time, slip),
-        "slip_travel_m": float(track.slip_travel),
-        "max_uplift_m": float(track.max_uplift),
-        "impacts": int(track.impacts),
-        "first_opening_s": _time(track.first_opening),
-        "first_uplift_s": _time(track.first_uplift),
-        "first_impact_s": _time(track.first_impact),
-        "overturned_at_s": _time(track.overturned_at),
-        "restored": rocked and at_end < ROCKING * angle,
-        "restitution_first": _restitution(model, track),
-        "max_corner_force_N": float(track.max_corner_force),
-        "max_top_displacement_m": float(track.max_top_displacement) if sampled else None,
-        "max_acceleration_m_s2": float(track.max_acceleration) if sampled else None,
-        "max_von_mises_Pa": largest_von_mises,
-        "basis": "study",
-        "band": None,
-    }
+    return Verdict(
+        outcome=outcome,
+        modes=_modes_seen(model, track, outcome),
+        max_rotation_rad=float(track.max_rotation),
+        rotation_ratio=rotation_ratio(float(track.max_rotation), angle),
+        max_slip_m=float(track.max_slip),
+        residual_slip_m=float(run.clock[0].slip),
+        slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),
+        slip_travel_m=float(track.slip_travel),
+        max_uplift_m=float(track.max_uplift),
+        impacts=int(track.impacts),
+        first_opening_s=_time(track.first_opening),
+        first_uplift_s=_time(track.first_uplift),
+        first_impact_s=_time(track.first_impact),
+        overturned_at_s=_time(track.overturned_at),
+        restored=rocked and at_end < ROCKING * angle,
+        restitution_first=_restitution(model, track),
+        max_corner_force_N=float(track.max_corner_force),
+        max_top_displacement_m=float(track.max_top_displacement) if sampled else None,
+        max_acceleration_m_s2=float(track.max_acceleration) if sampled else None,
+        max_von_mises_Pa=largest_von_mises,
+    )
 
 
-def in_short(model: Model) -> dict[str, Any]:
-    """What of a verdict a run is told by that takes no samples."""
+def short_verdict(model: Model) -> Verdict:
+    """Those parts of a verdict that take no samples."""
     track = model.run.track[0]
-    return {
-        "outcome": outcome_of(model),
-        "rotation_ratio": float(track.max_rotation) / model.static.slenderness_angle,
-        "max_slip_m": float(track.max_slip),
-        "residual_slip_m": float(model.run.clock[0].slip),
-        "max_uplift_m": float(track.max_uplift),
-    }
+    return Verdict(
+        outcome=outcome_of(model),
+        rotation_ratio=rotation_ratio(float(track.max_rotation), model.static.slenderness_angle),
+        max_slip_m=float(track.max_slip),
+        residual_slip_m=float(model.run.clock[0].slip),
+        max_uplift_m=float(track.max_uplift),
+    )
 
 
-def energy_of(model: Model) -> dict[str, float]:
-    """The `energy` of a result [J]."""
+def energy_of(model: Model) -> Energy:
+    """The energy balance of a model that was stepped to its end."""
     ledger, clock = model.run.ledger, model.run.clock[0]
     reference = model.run.control.reference_energy
-    return {
-        "reference_J": reference,
-        "closure_error": max(-float(clock.least_imbalance), float(clock.most_imbalance)) / reference,
-        "friction_J": float(ledger[FRICTION]),
-        "contact_damping_J": float(ledger[CONTACT_DAMPING]),
-        "material_damping_J": float(ledger[MATERIAL_DAMPING]),
-        "numerical_J": float(ledger[IMBALANCE]),
-        "base_work_J": float(ledger[BASE_WORK]),
-    }
+    return Energy(
+        reference_J=reference,
+        closure_error=max(-float(clock.least_imbalance), float(clock.most_imbalance)) / reference,
+        friction_J=float(ledger[FRICTION]),
+        contact_damping_J=float(ledger[CONTACT_DAMPING]),
+        material_damping_J=float(ledger[MATERIAL_DAMPING]),
+        numerical_J=float(ledger[IMBALANCE]),
+        base_work_J=float(ledger[BASE_WORK]),
+    )
 
 
 def audit(model: Model) -> str | None:
@@ -152,39 +159,39 @@ def audit(model: Model) -> str | None:
     return None
 
 
-def numerics_of(model: Model, stepping_cpu: float) -> dict[str, Any]:
-    """The `numerics` of a result."""
+def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
+    """How a model was stepped."""
     run, container = model.run, model.container
     clock = run.clock[0]
     mass, stiffness = container.mesh.mass, model.base_stiffness
     # Rayleigh and Ritz: the modes of the free container come first, then what its points' own forces add.
     elastic = model.case.solver.elastic_modes if container.basis is not None else 1
-    return {
-        "unknowns": int(run.old.position.size),
-        "contact_nodes": int(container.support.index.size),
-        "steps": int(clock.steps),
-        "rejected": int(clock.rejected),
-        "newton_iterations": int(clock.contact_iterations),
-        "iterations": int(clock.iterations),
-        "largest_step_s": run.control.largest_step,
-        "smallest_step_s": float(clock.smallest_step) if clock.steps else None,
-        "stepping_cpu_s": stepping_cpu,
-        "normal_penalty_Pa_m": model.penalty,
-        "contact_frequency_Hz": contact_frequency(mass, stiffness),
-        "static_penetration_m": mass * model.case.gravity_m_s2 / stiffness,
-        "max_penetration_m": float(run.track[0].max_penetration),
-        "elastic_frequencies_Hz": model.frequencies[:elastic].tolist(),
-        "attachment_frequencies_Hz": model.frequencies[elastic:].tolist(),
-        "corner_force_window_s": FORCE_WINDOW / run.control.frequency_parameter,
-        "acceleration_window_s": run.history.interval,
-    }
+    return Numerics(
+        unknowns=int(run.old.position.size),
+        contact_nodes=int(container.support.index.size),
+        steps=int(clock.steps),
+        rejected=int(clock.rejected),
+        newton_iterations=int(clock.contact_iterations),
+        iterations=int(clock.iterations),
+        largest_step_s=run.control.largest_step,
+        smallest_step_s=float(clock.smallest_step) if clock.steps else None,
+        stepping_cpu_s=stepping_cpu,
+        normal_penalty_Pa_m=model.penalty,
+        contact_frequency_Hz=contact_frequency(mass, stiffness),
+        static_penetration_m=mass * model.case.gravity_m_s2 / stiffness,
+        max_penetration_m=float(run.track[0].max_penetration),
+        elastic_frequencies_Hz=tuple(model.frequencies[:elastic].tolist()),
+        attachment_frequencies_Hz=tuple(model.frequencies[elastic:].tolist()),
+        corner_force_window_s=FORCE_WINDOW / run.control.frequency_parameter,
+        acceleration_window_s=run.history.interval,
+    )
 
 
 def _time(instant: float) -> float | None:
     return float(instant) if math.isfinite(instant) else None
 
 
-def _modes_seen(model: Model, track: SimpleNamespace, outcome: str) -> list[str]:
+def _modes_seen(model: Model, track: SimpleNamespace, outcome: str) -> tuple[str, ...]:
     """Modes that the history passed through, and the outcome, which may have come about by creep.
 
     Sliding that is too small to count in the outcome does not count here.
@@ -193,7 +200,7 @@ def _modes_seen(model: Model, track: SimpleNamespace, outcome: str) -> list[str]
     seen = {name for mode, name in MODE_NAMES.items() if bits & 1 << mode}
     if track.max_slip <= SLIDING * model.container.mesh.width:
         seen = {{"slide": "rest", "slide-rock": "rock"}.get(name, name) for name in seen}
-    return [name for name in MODE_NAMES.values() if name in seen or name == outcome]
+    return tuple(name for name in MODE_NAMES.values() if name in seen or name == outcome)
 
 
 def end_of_drive(model: Model) -> float:

@@ -25,6 +25,7 @@ from fem.model.container import Container, discretise
 from fem.model.equilibrium import stands_like
 from fem.model.model import Model, build_model
 from fem.model.recovery import Recovery, recovery_of
+from fem.results.run_result import Verdict
 from fem.run.recorder import Recorder
 from fem.run.simulation import AFTERMATH, SLICE_REDUCED, simulate, stepping_failure
 from fem.runtime.threads import cores
@@ -234,13 +235,13 @@ def _row_of(model: Model, outcomes: Outcomes, k: int, until: float) -> Row:
     error = audit(model)
     if error is not None:
         return _row_without_outcome("failed", error) | _figures(verdict)
-    status = "overturned" if verdict["outcome"] == "overturned" else "completed"
-    return _row_without_outcome(status, None) | _figures(verdict) | {"outcome": verdict["outcome"]}
+    status = "overturned" if verdict.outcome == "overturned" else "completed"
+    return _row_without_outcome(status, None) | _figures(verdict) | {"outcome": verdict.outcome}
 
 
-def _figures(verdict: Mapping[str, Any]) -> Row:
+def _figures(verdict: Verdict) -> Row:
     """The figures of a verdict, without its outcome."""
-    return {name: verdict[name] for name in SCALARS if name != "outcome"}
+    return {name: getattr(verdict, name) for name in SCALARS if name != "outcome"}
 
 
 def _run_full(case: Case) -> Row:
@@ -249,7 +250,7 @@ def _run_full(case: Case) -> Row:
     ending = simulate(model, recorder)
     verdict = verdict_of(model, recorder.history(), recorder.largest_von_mises)
     row = _row_without_outcome(ending.status, ending.error) | _figures(verdict)
-    return row if ending.status == "failed" else row | {"outcome": verdict["outcome"]}
+    return row if ending.status == "failed" else row | {"outcome": verdict.outcome}
 
 
 def _with_wall(rows: list[Row], models: Mapping[int, Model], wall: float) -> list[Row]:

@@ -39,7 +39,7 @@ def check(
         "case": loaded.name,
         "asked_hash": case_hash(loaded),
         "derived": derived_numbers(loaded, mesh, peak),
-        "static": static.to_dict(),
+        "static": static.to_result().to_json(),
         "contact_restitution": contact_restitution(loaded, mesh, static),
         "numerics": chosen_numerics(loaded, mesh),
         "notes": notes(loaded, static, peak),

@@ -13,7 +13,8 @@ reduced response of an elastic building: another question, in columns of its own
 
 import math
 from dataclasses import dataclass
-from typing import Any
+
+from fem.results.run_result import ActionResult, StaticResult
 
 LIMIT_PERIOD = 2.0  # s, EN 1998-1:2004, 4.3.3.2.1 (2) a), Eq. (4.4)
 CREDIBLE_RESTITUTION = 0.5
@@ -147,14 +148,14 @@ class ActionCheck:
     sliding: CheckResult  #: base shear against static friction [N]
     overturning: CheckResult  #: tilting against restoring moment [Nm]
 
-    def to_dict(self) -> dict[str, float | None]:
-        """Demands and utilisations; a utilisation without capacity is null."""
-        return {
-            "base_shear_N": self.sliding.demand,
-            "tilting_moment_Nm": self.overturning.demand,
-            "utilisation_sliding": _finite(self.sliding.utilisation),
-            "utilisation_overturning": _finite(self.overturning.utilisation),
-        }
+    def to_result(self) -> ActionResult:
+        """Demands and utilisations; a utilisation without capacity is None."""
+        return ActionResult(
+            base_shear_N=self.sliding.demand,
+            tilting_moment_Nm=self.overturning.demand,
+            utilisation_sliding=_finite(self.sliding.utilisation),
+            utilisation_overturning=_finite(self.overturning.utilisation),
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -184,28 +185,28 @@ class StaticChecks:
         """Whether the impact model of the rigid block can be believed: a restitution of at least 0.5."""
         return self.housner_restitution >= CREDIBLE_RESTITUTION
 
-    def to_dict(self) -> dict[str, Any]:
-        """The `static` block of a result; SI units stand in the keys."""
-        return {
-            "weight_N": self.weight,
-            "centroid_m": self.centroid,
-            "inertia_kg_m2": self.inertia,
-            "slenderness_angle_rad": self.slenderness_angle,
-            "frequency_parameter_1_s": self.frequency_parameter,
-            "period_eq2_s": self.period_eq2,
-            "period_eq3_s": self.period_eq3,
-            "sliding_limit_static_N": self.sliding_limit_static,
-            "sliding_limit_kinetic_N": self.sliding_limit_kinetic,
-            "restoring_moment_Nm": self.restoring_moment,
-            "uplift_acceleration_m_s2": self.uplift_acceleration,
-            "housner_restitution": self.housner_restitution,
-            "housner_credible": self.housner_credible,
-            "own_motion": self.own_motion.to_dict(),
-            "code": self.code.to_dict(),
-            "code_q1": self.code_q1.to_dict(),
-            "method_applicable": self.applicability.passed,
-            "clause": self.applicability.clause,
-        }
+    def to_result(self) -> StaticResult:
+        """The checks as the result of a run holds them."""
+        return StaticResult(
+            weight_N=self.weight,
+            centroid_m=self.centroid,
+            inertia_kg_m2=self.inertia,
+            slenderness_angle_rad=self.slenderness_angle,
+            frequency_parameter_1_s=self.frequency_parameter,
+            period_eq2_s=self.period_eq2,
+            period_eq3_s=self.period_eq3,
+            sliding_limit_static_N=self.sliding_limit_static,
+            sliding_limit_kinetic_N=self.sliding_limit_kinetic,
+            restoring_moment_Nm=self.restoring_moment,
+            uplift_acceleration_m_s2=self.uplift_acceleration,
+            housner_restitution=self.housner_restitution,
+            housner_credible=self.housner_credible,
+            own_motion=self.own_motion.to_result(),
+            code=self.code.to_result(),
+            code_q1=self.code_q1.to_result(),
+            method_applicable=self.applicability.passed,
+            clause=self.applicability.clause,
+        )
 
 
 def static_checks(

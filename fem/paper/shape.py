@@ -242,11 +242,11 @@ def gaps_between_boxes(laboratory: Laboratory) -> Finding:
             ending = simulate(built, recorder)
             joints = joint_demands(built, recorder.history()) if ending.status == "completed" else None
             tension = max(
-                (max(one["bolt_tension_left_N"], one["bolt_tension_right_N"]) for one in joints or ()),
+                (max(one.bolt_tension_left_N, one.bolt_tension_right_N) for one in joints or ()),
                 default=math.nan,
             )
-            opened = [one["joint"] for one in joints or () if one["opens_at_s"] is not None]
-            slid = [one["joint"] for one in joints or () if one["slides_at_s"] is not None]
+            opened = [one.joint for one in joints or () if one.opens_at_s is not None]
+            slid = [one.joint for one in joints or () if one.slides_at_s is not None]
             comparisons.append(
                 Comparison(
                     what=f"largest tension at an edge of any joint, {model}, {name}",

@@ -40,6 +40,7 @@ from fem.results.fields import Fields
 from fem.results.history import History
 from fem.results.reader import OpenedRun
 from fem.results.run_folder import FINISHED, FolderError
+from fem.results.run_result import Verdict
 from fem.solid.modes import FEW, elastic_mode_table, elastic_modes
 
 COLOURS = 64  #: of the stress scale in the animation
@@ -169,7 +170,9 @@ def rigid_check(run: OpenedRun, model: Model, history: History) -> Mapping[str, 
     if run.status not in FINISHED or len(history) < 2:
         return None
     try:
-        return check_against_rigid_block(model, history, run.result["verdict"]).summary
+        return check_against_rigid_block(
+            model, history, Verdict.from_json(run.result["verdict"])
+        ).result.to_json()
     except (ValueError, EventError) as error:
         return {"meaningful": False, "reasons": [str(error)]}
 

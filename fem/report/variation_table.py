@@ -18,20 +18,22 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from fem.assessment.verdict import in_short
+from fem.assessment.verdict import short_verdict
 from fem.case.case import Case
 from fem.html.units import rotation_ratio
 from fem.model.container import Container, discretise
 from fem.model.model import build_model
 from fem.report.variations import Variation, by_importance, variations_of
 from fem.results.run_folder import to_json, write_atomically
-from fem.run.band import IN_SHORT, NO_SAMPLES_S
+from fem.run.band import NO_SAMPLES_S
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 from fem.runtime.identity import versions
 from fem.runtime.threads import cores
 
 AFFORDED_S = 4.0  #: wall time until the last line that is not asked for should be there
+#: of a verdict, kept of every line
+IN_SHORT = ("outcome", "rotation_ratio", "max_slip_m", "residual_slip_m", "max_uplift_m")
 SHOWN = ("status", "reason", *IN_SHORT)
 
 Row = dict[str, Any]
@@ -258,7 +260,8 @@ class _Computing:
             return row | {"reason": str(problem).partition("\n")[0]}, 0.0
         row |= {"status": ending.status, "reason": ending.error}
         if ending.status in ("completed", "overturned"):
-            row |= in_short(model)
+            short = short_verdict(model)
+            row |= {name: getattr(short, name) for name in IN_SHORT}
         return row, ending.stepping_cpu_s
 
 

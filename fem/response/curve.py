@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.stepping.observables import ROCK, ROCKING, SLIDE
-from fem.assessment.verdict import MODE_NAMES, SLIDING
+from fem.assessment.verdict import MODE_NAMES, SLIDING, rotation_ratio
 from fem.case.case import Case
 from fem.model.container import Container, discretise
 from fem.response.decay import Decay, follow_decay
@@ -52,7 +52,7 @@ class Point:
     @property
     def amplitudes(self) -> FloatArray:
         """Largest |rotation| of each period observed over the slenderness angle, shape (n,)."""
-        return self.orbit.extremes[:, 0] / self.slenderness_angle
+        return rotation_ratio(self.orbit.extremes[:, 0], self.slenderness_angle)
 
     @property
     def rotation_ratio(self) -> float | None:

@@ -17,6 +17,7 @@ from fem.case.case import Case, load_case
 from fem.results.fields import Fields, Frame, open_fields
 from fem.results.history import History, read_history
 from fem.results.run_folder import FolderError, RunFolder, read_result
+from fem.results.run_result import RunResult
 from fem.runtime.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -63,6 +64,14 @@ class OpenedRun:
     def status(self) -> str:
         """Status of the run: completed | overturned | failed | interrupted | running."""
         return str(self.result.get("status"))
+
+    @cached_property
+    def typed_result(self) -> RunResult:
+        """The result as typed data; what the run has not reached is None."""
+        try:
+            return RunResult.from_json(self.result)
+        except ValueError as error:
+            raise FolderError(f"{self.place.result}: {error}; run the case again") from None
 
     @property
     def slenderness_angle(self) -> float:

@@ -9,17 +9,17 @@ that fails is no outcome and makes it unsure as well.
 """
 
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
 from itertools import count, product
-from typing import Any, Protocol
+from typing import Protocol
 
-from fem.assessment.verdict import MODE_NAMES, in_short
+from fem.assessment.verdict import MODE_NAMES, short_verdict
 from fem.case.case import Case
 from fem.model.container import Container
 from fem.model.model import Model, build_model
 from fem.model.required_memory import fitting_full_bodies
+from fem.results.run_result import Band, BandMember, Verdict
 from fem.run.recorder import Recorder
 from fem.run.simulation import Keeper, NoKeeper, Progress, simulate
 from fem.runtime.threads import cores
@@ -28,43 +28,26 @@ PENALTY_FACTORS = (1.0 / 3.0, 1.0, 3.0)
 DAMPING_RATIOS = (0.5, 2.0)
 #: outcomes that depend on impacts, or may
 DEPENDENT = frozenset({"rock", "slide-rock", "overturned"})
-#: of a verdict, kept of every member
-IN_SHORT = ("outcome", "rotation_ratio", "max_slip_m", "residual_slip_m", "max_uplift_m")
 NO_SAMPLES_S = 1e4  #: interval of a history of which nobody will read more than its first row
-
-
-@dataclass(frozen=True, kw_only=True)
-class Member:
-    """One run of a band."""
-
-    normal_penalty_Pa_m: float  # noqa: N815 - the unit, as in a case file
-    damping_ratio: float  #: of the contact [-]
-    status: str  #: completed | overturned | failed | interrupted
-    outcome: str | None  #: None where it failed or was stopped
-    rotation_ratio: float | None  #: largest |rotation| over the slenderness angle; None where it failed
-    error: str | None = None
-    max_slip_m: float | None = None
-    residual_slip_m: float | None = None  #: signed, at the end
-    max_uplift_m: float | None = None
 
 
 class Keeping(Protocol):
     """Somebody who may keep what a band has come to; called by several threads."""
 
-    def members(self) -> Sequence[Member]:
+    def members(self) -> Sequence[BandMember]:
         """Computed before: they are not computed again."""
 
     def begin(self, number: int, model: Model, recorder: Recorder) -> tuple[Keeper, Progress]:
         """A member begins: it is put where it was cut off; returns who keeps it from there, and how far it has come."""
 
-    def finish(self, number: int, members: Sequence[Member]) -> None:
+    def finish(self, number: int, members: Sequence[BandMember]) -> None:
         """A member has ended; `members` are all that there are. Only one thread calls at a time."""
 
 
 class NoKeeping:
     """Keeps nothing."""
 
-    def members(self) -> Sequence[Member]:
+    def members(self) -> Sequence[BandMember]:
         """None."""
         return ()
 
@@ -72,18 +55,18 @@ class NoKeeping:
         """At t = 0."""
         return NoKeeper(), Progress()
 
-    def finish(self, number: int, members: Sequence[Member]) -> None:
+    def finish(self, number: int, members: Sequence[BandMember]) -> None:
         """Nothing."""
 
 
-def wants_band(asked: bool | None, case: Case, verdict: Mapping[str, Any]) -> bool:
+def wants_band(asked: bool | None, case: Case, verdict: Verdict) -> bool:
     """Whether a finished run is to have a band: as asked, else where its outcome depends on impacts.
 
     A run of the `full` model has one only when asked: it would take six times as long.
     """
     if asked is not None:
         return asked
-    return case.solver.model != "full" and verdict.get("outcome") in DEPENDENT
+    return case.solver.model != "full" and verdict.outcome in DEPENDENT
 
 
 def band_of(
@@ -91,10 +74,10 @@ def band_of(
     container: Container,
     *,
     penalty: float,
-    verdict: Mapping[str, Any],
+    verdict: Verdict,
     stop: Callable[[], bool] = lambda: False,
     keeping: Keeping | None = None,
-) -> dict[str, Any] | None:
+) -> Band | None:
     """Run the members of a band side by side and sum them up.
 
     Args:
@@ -112,11 +95,10 @@ def band_of(
         OSError: something could not be kept; the other members have stopped then.
     """
     keeping = keeping or NoKeeping()
-    given = Member(
-        normal_penalty_Pa_m=penalty,
-        damping_ratio=case.contact.damping_ratio,
-        status="overturned" if verdict["outcome"] == "overturned" else "completed",
-        **{name: verdict[name] for name in IN_SHORT},
+    given = member_from(
+        (penalty, case.contact.damping_ratio),
+        "overturned" if verdict.outcome == "overturned" else "completed",
+        verdict,
     )
     floors = _other_floors(penalty, case.contact.damping_ratio)
     found = {(member.normal_penalty_Pa_m, member.damping_ratio): member for member in keeping.members()}
@@ -125,7 +107,7 @@ def band_of(
     def halted() -> bool:
         return stop() or broken.is_set()
 
-    def member_of(number: int, floor: tuple[float, float]) -> Member:
+    def member_of(number: int, floor: tuple[float, float]) -> BandMember:
         if floor in found:
             return found[floor]
         if halted():
@@ -157,17 +139,32 @@ def band_of(
     return summed_up([given, *members])
 
 
-def summed_up(members: Sequence[Member]) -> dict[str, Any]:
+def summed_up(members: Sequence[BandMember]) -> Band:
     """The `band` of a verdict: outcomes in the order of the motion's states, range of rotation, doubt."""
     standing = [member for member in members if member.outcome is not None]
     found = {member.outcome for member in standing}
     ratios = [member.rotation_ratio for member in standing if member.rotation_ratio is not None]
-    return {
-        "outcomes": [name for name in MODE_NAMES.values() if name in found],
-        "rotation_ratio": [min(ratios), max(ratios)],
-        "unsure": len(found) > 1 or len(standing) < len(members),
-        "members": [asdict(member) for member in members],
-    }
+    return Band(
+        outcomes=tuple(name for name in MODE_NAMES.values() if name in found),
+        rotation_ratio=(min(ratios), max(ratios)),
+        unsure=len(found) > 1 or len(standing) < len(members),
+        members=tuple(members),
+    )
+
+
+def member_from(floor: tuple[float, float], status: str, verdict: Verdict) -> BandMember:
+    """The member with this penalty [Pa/m] and damping ratio."""
+    penalty, damping_ratio = floor
+    return BandMember(
+        normal_penalty_Pa_m=penalty,
+        damping_ratio=damping_ratio,
+        status=status,
+        outcome=verdict.outcome,
+        rotation_ratio=verdict.rotation_ratio,
+        max_slip_m=verdict.max_slip_m,
+        residual_slip_m=verdict.residual_slip_m,
+        max_uplift_m=verdict.max_uplift_m,
+    )
 
 
 def _other_floors(penalty: float, damping_ratio: float) -> list[tuple[float, float]]:
@@ -187,7 +184,7 @@ def _run_member(
     *,
     stop: Callable[[], bool],
     begin: Callable[[Model, Recorder], tuple[Keeper, Progress]],
-) -> Member:
+) -> BandMember:
     """One member; whatever keeps it from an outcome is its error, never an outcome."""
     penalty, damping_ratio = floor
     try:
@@ -207,17 +204,14 @@ def _run_member(
         return _without_outcome(floor, "failed", str(problem))
     if ending.status not in ("completed", "overturned"):
         return _without_outcome(floor, ending.status, ending.error)
-    return Member(
-        normal_penalty_Pa_m=penalty, damping_ratio=damping_ratio, status=ending.status, **in_short(model)
-    )
+    return member_from(floor, ending.status, short_verdict(model))
 
 
-def _without_outcome(floor: tuple[float, float], status: str, error: str | None = None) -> Member:
+def _without_outcome(floor: tuple[float, float], status: str, error: str | None = None) -> BandMember:
     penalty, damping_ratio = floor
-    return Member(
+    return BandMember(
         normal_penalty_Pa_m=penalty,
         damping_ratio=damping_ratio,
         status=status,
         error=error,
-        **dict.fromkeys(IN_SHORT),
     )

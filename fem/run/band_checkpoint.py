@@ -9,7 +9,6 @@ run does whose own checkpoint is damaged, would throw that away.
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +17,7 @@ from fem.model.model import Model
 from fem.results.archive import CheckpointError
 from fem.results.lock import FolderLock
 from fem.results.run_folder import RunFolder, to_json, write_atomically
-from fem.run.band import Member
+from fem.results.run_result import BandMember
 from fem.run.checkpoint import CheckpointKeeper, put_back, read_beginning
 from fem.run.recorder import Recorder
 from fem.run.simulation import Keeper, Progress
@@ -39,7 +38,7 @@ class BandFolder:
         self._place, self._lock = place, lock
         self._case_hash, self._reporter = case_hash, reporter
 
-    def members(self) -> Sequence[Member]:
+    def members(self) -> Sequence[BandMember]:
         """The finished ones."""
         return read_members(self._place.band, self._case_hash)
 
@@ -64,7 +63,7 @@ class BandFolder:
             progress,
         )
 
-    def finish(self, number: int, members: Sequence[Member]) -> None:
+    def finish(self, number: int, members: Sequence[BandMember]) -> None:
         """Keep the finished members, of which one has come to its end.
 
         Raises:
@@ -79,18 +78,18 @@ class BandFolder:
         return {}
 
 
-def read_members(path: Path, case_hash: str) -> list[Member]:
+def read_members(path: Path, case_hash: str) -> list[BandMember]:
     """The finished members in a file; none where it is missing, damaged, or of another case or program."""
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
         if (found["case_hash"], found["program"]) != (case_hash, program_identity()):
             return []
-        return [Member(**member) for member in found["members"]]
+        return [BandMember(**member) for member in found["members"]]
     except (OSError, ValueError, KeyError, TypeError):
         return []
 
 
-def write_members(path: Path, case_hash: str, members: Sequence[Member]) -> None:
+def write_members(path: Path, case_hash: str, members: Sequence[BandMember]) -> None:
     """Replace the file.
 
     Raises:
@@ -99,6 +98,6 @@ def write_members(path: Path, case_hash: str, members: Sequence[Member]) -> None
     page = {
         "case_hash": case_hash,
         "program": program_identity(),
-        "members": [asdict(one) for one in members],
+        "members": [one.to_json() for one in members],
     }
     write_atomically(path, to_json(page))

@@ -4,8 +4,7 @@ Both can be added to a run that was finished without them.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
 from contact.reference.event_driven import EventError
 from fem.assessment.rigid_check import check_against_rigid_block, wants_rigid_check
@@ -14,6 +13,7 @@ from fem.model.model import Model
 from fem.results.history import add_analytic_rotation, read_history
 from fem.results.lock import FolderLock
 from fem.results.run_folder import FINISHED, FolderError, RunFolder, write_atomically
+from fem.results.run_result import RigidCheckResult, RunResult, Verdict
 from fem.run.band import band_of, wants_band
 from fem.run.band_checkpoint import BandFolder
 from fem.runtime.progress import Reporter
@@ -28,7 +28,7 @@ class WantedChecks:
 
 
 def add_checks(
-    result: dict[str, Any],
+    result: RunResult,
     model: Model,
     place: RunFolder,
     lock: FolderLock,
@@ -36,52 +36,51 @@ def add_checks(
     *,
     reporter: Reporter,
     stop: Callable[[], bool],
-) -> bool:
+) -> RunResult:
     """Add the rigid check and the band to a finished run, where they are wanted and missing.
 
     Returns:
-        Whether anything was added.
+        The result with them; the same object where nothing was added.
 
     Raises:
         FolderError: the history in the folder cannot be read.
     """
-    case, verdict = model.case, result["verdict"]
-    added = False
-    if result["status"] not in FINISHED:
-        return added
+    case, verdict = model.case, result.verdict
+    if result.status not in FINISHED or verdict is None:
+        return result
     if _lacks_rigid_check(result, case, wanted):
-        result["rigid_check"] = _rigid_check(model, place, verdict)
-        added = True
+        result = replace(result, rigid_check=_rigid_check(model, place, verdict))
     if lacks_band(result, case, wanted) and not stop():
         reporter.message("band: the same run over contact penalty and damping")
-        verdict["band"] = band_of(
+        band = band_of(
             case,
             model.container,
             penalty=model.penalty,
             verdict=verdict,
             stop=stop,
-            keeping=BandFolder(place, lock, case_hash=str(result["case_hash"]), reporter=reporter),
+            keeping=BandFolder(place, lock, case_hash=str(result.case_hash), reporter=reporter),
         )
-        added = added or verdict["band"] is not None
-    return added
+        if band is not None:
+            result = replace(result, verdict=replace(verdict, band=band))
+    return result
 
 
-def lacks_checks(result: dict[str, Any], case: Case, wanted: WantedChecks) -> bool:
+def lacks_checks(result: RunResult, case: Case, wanted: WantedChecks) -> bool:
     """Whether a finished run is still to have its rigid check or its band."""
     return _lacks_rigid_check(result, case, wanted) or lacks_band(result, case, wanted)
 
 
-def lacks_band(result: dict[str, Any], case: Case, wanted: WantedChecks) -> bool:
+def lacks_band(result: RunResult, case: Case, wanted: WantedChecks) -> bool:
     """Whether a finished run is still to have its band."""
-    verdict = result["verdict"]
-    return wants_band(wanted.band, case, verdict) and verdict.get("band") is None
+    verdict = result.verdict
+    return verdict is not None and wants_band(wanted.band, case, verdict) and verdict.band is None
 
 
-def _lacks_rigid_check(result: dict[str, Any], case: Case, wanted: WantedChecks) -> bool:
-    return wants_rigid_check(wanted.check_rigid, case) and result.get("rigid_check") is None
+def _lacks_rigid_check(result: RunResult, case: Case, wanted: WantedChecks) -> bool:
+    return wants_rigid_check(wanted.check_rigid, case) and result.rigid_check is None
 
 
-def _rigid_check(model: Model, place: RunFolder, verdict: dict[str, Any]) -> dict[str, Any]:
+def _rigid_check(model: Model, place: RunFolder, verdict: Verdict) -> RigidCheckResult:
     """The comparison with the rigid block, its rotation beside the run's in a table of its own."""
     try:
         history = read_history(place.history)
@@ -92,7 +91,7 @@ def _rigid_check(model: Model, place: RunFolder, verdict: dict[str, Any]) -> dic
     try:
         check = check_against_rigid_block(model, history, verdict)
     except (ValueError, EventError) as error:  # a run too short, a block that bounces without end
-        return {"reference": None, "meaningful": False, "reasons": [str(error)]}
+        return RigidCheckResult(reasons=(str(error),))
     write_atomically(place.rigid_check, check.table())
     add_analytic_rotation(place.history, check.analytic_rotation)
-    return check.summary
+    return check.result

@@ -7,7 +7,7 @@ they are wanted, the comparison with the rigid block and the band over the conta
 import contextlib
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +40,7 @@ from fem.results.run_folder import (
     finished_run,
     open_run_folder,
 )
+from fem.results.run_result import MotionResult, RunResult
 from fem.run.checkpoint import CheckpointKeeper, put_back
 from fem.run.checks import WantedChecks, add_checks, lacks_band, lacks_checks
 from fem.run.recorder import Recorder
@@ -64,13 +65,22 @@ class RunOptions(WantedChecks):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class RunResult:
-    """What a run came to."""
+class Run:
+    """A run that has ended, or was interrupted."""
 
-    status: str  #: completed | overturned | failed | interrupted
-    result: dict[str, Any]  #: as in run.json
+    typed_result: RunResult
     history: History
     stopped: bool = False  #: the stepping was interrupted, or the band behind it
+
+    @property
+    def status(self) -> str:
+        """Status of the run: completed | overturned | failed | interrupted."""
+        return self.typed_result.status
+
+    @property
+    def result(self) -> dict[str, Any]:
+        """As in `run.json`."""
+        return self.typed_result.to_json()
 
 
 def run_case(
@@ -80,7 +90,7 @@ def run_case(
     folder: Path,
     options: RunOptions | None = None,
     reporter: Reporter | None = None,
-) -> RunResult:
+) -> Run:
     """Compute a case into a folder.
 
     A finished run of the same case is not computed again; a band or a rigid check that it lacks is added.
@@ -100,7 +110,7 @@ def run_case(
     if found is not None:
         reporter.message(f"{folder} holds this run already; --force computes it again")
     if found is not None and _is_whole(found, place, case, options):
-        return RunResult(status=str(found["status"]), result=found, history=History.empty())
+        return Run(typed_result=RunResult.from_json(found), history=History.empty())
     if found is None:
         require_disk(case, node_count(mesh, case.solver.order), folder)
     beginning = RunBeginning()
@@ -127,47 +137,47 @@ def run_case(
         result: dict[str, Any] = {}
         with naming_what_failed(place, result):
             if place.finished is not None:
-                result |= place.finished
-                added = add_checks(result, model, place, lock, options, reporter=reporter, stop=stop)
-                if added:
-                    store(result, case, place)
-                if added or not place.drawn.is_file():
+                before = RunResult.from_json(place.finished)
+                checked = add_checks(before, model, place, lock, options, reporter=reporter, stop=stop)
+                if checked is not before:
+                    checked = store(checked, case, place)
+                if checked is not before or not place.drawn.is_file():
                     draw(model, place, reporter)
-                return RunResult(
-                    status=str(result["status"]),
-                    result=result,
+                return Run(
+                    typed_result=checked,
                     history=History.empty(),
-                    stopped=_was_stopped(result, case, options),
+                    stopped=_was_stopped(checked, case, options),
                 )
             copy_data_files(case, place.path)
-            result |= {
-                "status": "running",
-                "case": case.name,
-                "title": case.title,
-                "case_hash": mark,
-                "static": model.static.to_dict(),
-                "motion": {"notes": motion_notes(model.motion)},
-                "versions": versions(),
-            }
+            started = RunResult(
+                status="running",
+                case=case.name,
+                title=case.title,
+                case_hash=mark,
+                static=model.static.to_result(),
+                motion=MotionResult(notes=tuple(motion_notes(model.motion))),
+                versions=versions(),
+            )
+            result |= started.to_json()
             place.write_result(result)
             ending, recorder = _step_into(place, lock, model, reporter, stop, beginning, mark, began)
-            result |= result_of(model, recorder, ending)
-            for once_more in (True, False):  # the run is safe before its checks begin, and whole after them
+            result["status"] = ending.status
+
+            def stored(done: RunResult) -> RunResult:
                 spent = spent_since(began, beginning.spent)
-                result |= asdict(spent)
                 lock.check()
-                store(result, case, place)
-                if not (
-                    once_more
-                    and add_checks(result, model, place, lock, options, reporter=reporter, stop=stop)
-                ):
-                    break
+                return store(replace(done, **asdict(spent)), case, place)
+
+            # The run is safe before its checks begin, and whole after them.
+            done = stored(with_outcome(started, model, recorder, ending))
+            checked = add_checks(done, model, place, lock, options, reporter=reporter, stop=stop)
+            if checked is not done:
+                done = stored(checked)
             draw(model, place, reporter)
-    return RunResult(
-        status=ending.status,
-        result=result,
+    return Run(
+        typed_result=done,
         history=recorder.history(),
-        stopped=_was_stopped(result, case, options),
+        stopped=_was_stopped(done, case, options),
     )
 
 
@@ -191,21 +201,23 @@ def naming_what_failed(place: RunFolder, result: dict[str, Any]) -> Iterator[Non
         raise OutputError(reason) from None
 
 
-def store(result: dict[str, Any], case: Case, place: RunFolder) -> None:
+def store(result: RunResult, case: Case, place: RunFolder) -> RunResult:
     """Write the summary, then `run.json` with its warnings: a run that says it is finished has both.
 
     What was kept to go on with goes when nothing is left to go on with, and not before that is written.
     """
-    result["warnings"] = warnings_for(result, case)
+    result = replace(result, warnings=tuple(warnings_for(result.to_json(), case)))
+    page = result.to_json()
     place.write_summary(
-        plain_summary(result, title=case.title or case.name, folder=place.path, warnings=result["warnings"])
+        plain_summary(page, title=case.title or case.name, folder=place.path, warnings=page["warnings"])
     )
-    place.write_result(result)
-    if result["status"] in FINISHED:
+    place.write_result(page)
+    if result.status in FINISHED:
         place.remove_checkpoint()
         place.remove_setup()
-        if result["verdict"].get("band") is not None:
+        if result.verdict is not None and result.verdict.band is not None:
             place.remove_band()
+    return result
 
 
 def draw(model: Model, place: RunFolder, reporter: Reporter) -> None:
@@ -218,32 +230,33 @@ def draw(model: Model, place: RunFolder, reporter: Reporter) -> None:
         reporter.message(f"figures were not drawn ({type(error).__name__}: {error}); the results are whole")
 
 
-def _was_stopped(result: dict[str, Any], case: Case, options: RunOptions) -> bool:
+def _was_stopped(result: RunResult, case: Case, options: RunOptions) -> bool:
     """Whether the stepping, or the band behind it, was interrupted."""
-    if result["status"] in FINISHED:
+    if result.status in FINISHED:
         return lacks_band(result, case, options)
-    return bool(result["status"] == "interrupted")
+    return result.status == "interrupted"
 
 
 def _is_whole(result: dict[str, Any], place: RunFolder, case: Case, options: RunOptions) -> bool:
     """Whether a finished run has the checks that are wanted, and its figures."""
-    return not lacks_checks(result, case, options) and (place.drawn.is_file() or not case.output.figures)
+    return not lacks_checks(RunResult.from_json(result), case, options) and (
+        place.drawn.is_file() or not case.output.figures
+    )
 
 
-def result_of(model: Model, recorder: Recorder, ending: Ending) -> dict[str, Any]:
-    """The blocks of `run.json` that the stepping fills."""
+def with_outcome(result: RunResult, model: Model, recorder: Recorder, ending: Ending) -> RunResult:
+    """The result with the blocks that the stepping fills."""
     rigid, history = model.case.solver.model == "rigid", recorder.history()
-    result: dict[str, Any] = {
-        "status": ending.status,
-        "verdict": verdict_of(model, history, None if rigid else recorder.largest_von_mises),
-        "joints": joint_demands(model, history),
-        "energy": energy_of(model),
-        "numerics": numerics_of(model, ending.stepping_cpu_s),
-    }
-    if ending.error is not None:
-        result["error"] = ending.error
-        result["verdict"]["outcome"] = None
-    return result
+    verdict = verdict_of(model, history, None if rigid else recorder.largest_von_mises)
+    return replace(
+        result,
+        status=ending.status,
+        verdict=verdict if ending.error is None else replace(verdict, outcome=None),
+        joints=joint_demands(model, history),
+        energy=energy_of(model),
+        numerics=numerics_of(model, ending.stepping_cpu_s),
+        error=ending.error,
+    )
 
 
 def resolve(case: Case, mesh: ContainerMesh) -> Case:

@@ -21,7 +21,7 @@ from contact.stepping.body import ROTATION
 from contact.stepping.control import most_attempts
 from contact.stepping.integrator import AFTERMATH_SLICE, FAILED, OVERTURNED, REACHED
 from contact.stepping.state import Run
-from fem.assessment.verdict import MODE_NAMES, audit
+from fem.assessment.verdict import MODE_NAMES, audit, rotation_ratio
 from fem.model.crushing import least_volume_ratio
 from fem.model.model import Model
 from fem.run.recorder import Recorder
@@ -135,7 +135,7 @@ def simulate(
         code, progress = _advance(model, run, progress, pace)
         if progress.slice is None:
             recorder.drain(run)
-        ratio = abs(float(run.old.pose[ROTATION])) / control.slenderness_angle
+        ratio = rotation_ratio(float(run.old.pose[ROTATION]), control.slenderness_angle)
         reporter.update(float(clock.time), ratio, MODE_NAMES[int(track.mode)])
         if progress.slice is not None:
             continue

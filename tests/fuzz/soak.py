@@ -39,9 +39,9 @@ def end_of(number: int, model: str, longest: float) -> str:
     outcome, energy = outcome_of(built), energy_of(built)
     if outcome not in OUTCOMES or (outcome == "overturned") != (ending.status == "overturned"):
         return f"BROKEN outcome {outcome} of a run that {ending.status}"
-    dissipated = energy["friction_J"] + energy["contact_damping_J"] + energy["material_damping_J"]
-    limit = max(LOSS_SHARE_LIMIT * dissipated, max(LOSS_LIMIT, GAIN_LIMIT) * energy["reference_J"])
-    if ending.status == "completed" and not abs(energy["numerical_J"]) <= limit:
+    dissipated = energy.friction_J + energy.contact_damping_J + energy.material_damping_J
+    limit = max(LOSS_SHARE_LIMIT * dissipated, max(LOSS_LIMIT, GAIN_LIMIT) * energy.reference_J)
+    if ending.status == "completed" and not abs(energy.numerical_J) <= limit:
         return f"BROKEN ledger: {energy}"
     return outcome
 

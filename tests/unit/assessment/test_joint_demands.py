@@ -1,7 +1,7 @@
 """What bolts and friction in a joint must do, against statics by hand; and how a page tells it."""
 
 import io
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -50,33 +50,33 @@ def test_edges_balance_normal_force_and_moment():
 def test_bolts_carry_what_the_edges_cannot_press():
     (joint,) = demands(FORCES)
     # 65 Nm toward -x on 1 m: N/2 - 65 = -15 N at the left edge, +115 N at the right; lifted off: 4 N at each.
-    assert joint["bolt_tension_left_N"] == pytest.approx(15.0)
-    assert joint["bolt_tension_right_N"] == pytest.approx(4.0)
-    assert (joint["partly_opens_at_s"], joint["opens_at_s"]) == (1.0, 2.0)
-    assert (joint["min_normal_N"], joint["max_normal_N"], joint["max_moment_Nm"]) == (-8.0, 100.0, 65.0)
+    assert joint.bolt_tension_left_N == pytest.approx(15.0)
+    assert joint.bolt_tension_right_N == pytest.approx(4.0)
+    assert (joint.partly_opens_at_s, joint.opens_at_s) == (1.0, 2.0)
+    assert (joint.min_normal_N, joint.max_normal_N, joint.max_moment_Nm) == (-8.0, 100.0, 65.0)
 
 
 def test_friction_that_holds_a_joint():
     (joint,) = demands(FORCES[:3])
-    assert joint["friction_needed"] == pytest.approx(0.5)
-    assert joint["bolt_shear_N"] == pytest.approx(50.0 - 0.4 * 100.0)
-    assert (joint["max_shear_N"], joint["slides_at_s"]) == (50.0, 1.0)
+    assert joint.friction_needed == pytest.approx(0.5)
+    assert joint.bolt_shear_N == pytest.approx(50.0 - 0.4 * 100.0)
+    assert (joint.max_shear_N, joint.slides_at_s) == (50.0, 1.0)
 
 
 def test_no_friction_holds_a_joint_that_is_lifted_off():
     (joint,) = demands(FORCES)
-    assert joint["friction_needed"] is None
+    assert joint.friction_needed is None
 
 
 def test_a_joint_that_holds_without_bolts_says_so():
     (joint,) = demands(FORCES[:1])
-    assert joint["opens_at_s"] is joint["partly_opens_at_s"] is joint["slides_at_s"] is None
-    assert joint["bolt_tension_left_N"] == joint["bolt_shear_N"] == 0.0
+    assert joint.opens_at_s is joint.partly_opens_at_s is joint.slides_at_s is None
+    assert joint.bolt_tension_left_N == joint.bolt_shear_N == 0.0
 
 
 def test_how_an_overturned_stack_slams_down_is_not_the_question():
     (joint,) = demands(FORCES, overturned_at=1.0)
-    assert joint["opens_at_s"] is None
+    assert joint.opens_at_s is None
 
 
 def test_a_single_box_has_no_joints():
@@ -98,5 +98,5 @@ def test_the_page_names_what_an_unbolted_joint_would_do():
 
 def test_of_many_joints_the_page_shows_those_that_decide():
     one, worse = demands(FORCES[:1])[0], demands(FORCES)[0]
-    text = page([*[one | {"height_m": float(k)} for k in range(1, 12)], worse | {"height_m": 12.0}])
+    text = page([*[replace(one, height_m=float(k)) for k in range(1, 12)], replace(worse, height_m=12.0)])
     assert "12 m" in text and "11 more joints are in run.json" in text

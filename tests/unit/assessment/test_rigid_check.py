@@ -36,7 +36,7 @@ def checked(name: str, *overrides: str) -> tuple[Model, RigidCheck]:
 
 
 def reasons(name: str, *overrides: str) -> str:
-    return " | ".join(checked(name, "solver.model=rigid", *overrides)[1].summary["reasons"])
+    return " | ".join(checked(name, "solver.model=rigid", *overrides)[1].result.reasons)
 
 
 @pytest.mark.parametrize(
@@ -67,18 +67,18 @@ class TestFreeRocking:
     def test_the_rigid_model_is_the_block(self):
         # Analytic: first impact 0.700737 s, velocity ratio 0.89454, first peak after it 0.098783 rad.
         _, check = checked("free_rocking", "solver.model=rigid", "solver.duration_s=5")
-        found = check.summary
-        assert found["meaningful"] is True
-        assert found["reference"] == "rigid block that does not slide"
-        assert found["first_impact_s"]["block"] == pytest.approx(0.700737, abs=1e-6)
-        assert found["first_impact_s"]["run"] == pytest.approx(0.700737, rel=3e-3)
-        assert found["velocity_ratio"]["block"] == pytest.approx(0.89454, abs=1e-5)
-        assert found["velocity_ratio"]["run"] == pytest.approx(0.89454, abs=5e-3)
-        first = found["peaks"][0]
-        assert first["block_rad"] == pytest.approx(-0.098783, abs=1e-6)
-        assert first["run_rad"] == pytest.approx(-0.098783, rel=5e-3)
-        assert len(found["peaks"]) >= 4
-        assert found["largest_difference_before_impact"] < 1e-3
+        found = check.result
+        assert found.meaningful is True
+        assert found.reference == "rigid block that does not slide"
+        assert found.first_impact_s.block == pytest.approx(0.700737, abs=1e-6)
+        assert found.first_impact_s.run == pytest.approx(0.700737, rel=3e-3)
+        assert found.velocity_ratio.block == pytest.approx(0.89454, abs=1e-5)
+        assert found.velocity_ratio.run == pytest.approx(0.89454, abs=5e-3)
+        first = found.peaks[0]
+        assert first.block_rad == pytest.approx(-0.098783, abs=1e-6)
+        assert first.run_rad == pytest.approx(-0.098783, rel=5e-3)
+        assert len(found.peaks) >= 4
+        assert found.largest_difference_before_impact < 1e-3
 
     def test_a_run_tilted_to_the_other_side_is_its_mirror_image(self):
         left, right = (
@@ -87,12 +87,12 @@ class TestFreeRocking:
                 "solver.model=rigid",
                 "solver.duration_s=2",
                 f"initial.rotation_rad={0.5 * sign * ANGLE!r}",
-            )[1].summary
+            )[1].result
             for sign in (-1.0, 1.0)
         )
-        assert left["meaningful"] and right["meaningful"]
-        assert left["peaks"][0]["block_rad"] == pytest.approx(-right["peaks"][0]["block_rad"], rel=1e-9)
-        assert left["peaks"][0]["run_rad"] == pytest.approx(-right["peaks"][0]["run_rad"], rel=1e-6)
+        assert left.meaningful and right.meaningful
+        assert left.peaks[0].block_rad == pytest.approx(-right.peaks[0].block_rad, rel=1e-9)
+        assert left.peaks[0].run_rad == pytest.approx(-right.peaks[0].run_rad, rel=1e-6)
 
     def test_the_table_holds_both_rotations_at_every_sample(self, tmp_path):
         case = load_case(
@@ -121,11 +121,11 @@ class TestMovingFloor:
     def test_a_driven_block_is_followed_from_rest(self):
         # The stack at 4.0 m/s2, exact: rocks without slip to 0.399 of its slenderness angle.
         model, check = checked("seed_stack_plateau", "solver.model=rigid", "solver.duration_s=8")
-        assert check.summary["reference"] == "rigid block that does not slide"
-        assert check.summary["meaningful"] is True
+        assert check.result.reference == "rigid block that does not slide"
+        assert check.result.meaningful is True
         analytic = np.nanmax(np.abs(check.rows[:, 2]))
         assert analytic / model.static.slenderness_angle == pytest.approx(0.399, abs=1e-3)
-        assert len(check.summary["peaks"]) == 6
+        assert len(check.result.peaks) == 6
 
     def test_a_floor_that_jerks_away_gives_the_block_a_slip_velocity(self):
         # 50 mm at 6.93 rad/s, floor moving off at 0.35 m/s under the stack, mu 0.4: exact 0.2505 of the angle.
@@ -138,7 +138,7 @@ class TestMovingFloor:
             "container.section=solid",
             "solver.duration_s=8",
         )
-        assert check.summary["reference"] == "rigid block with friction"
+        assert check.result.reference == "rigid block with friction"
         analytic = np.nanmax(np.abs(check.rows[:, 2]))
         assert analytic / model.static.slenderness_angle == pytest.approx(0.2505, abs=5e-4)
 
@@ -153,7 +153,7 @@ class TestMovingFloor:
         assert time[-1] > 2.0
         early = time < 2.0
         assert np.abs(found - expected)[early].max() < 0.01 * ANGLE
-        assert "no impact in either" in check.summary["reasons"]
+        assert "no impact in either" in check.result.reasons
 
     def test_a_floor_from_a_table_bends_at_every_sample(self, tmp_path):
         times = np.linspace(0.0, 2.0, 41)
@@ -170,10 +170,8 @@ class TestMovingFloor:
         assert floor.function(0.025) == pytest.approx(0.5 * 3.5 * math.sin(7.0 * 0.05), rel=1e-6)
         assert floor.just_after(2.5) == 0.0
         _, check = checked(str(tmp_path / "case.toml"))
-        assert check.summary["meaningful"] is True
-        assert check.summary["first_impact_s"]["run"] == pytest.approx(
-            check.summary["first_impact_s"]["block"], rel=3e-3
-        )
+        assert check.result.meaningful is True
+        assert check.result.first_impact_s.run == pytest.approx(check.result.first_impact_s.block, rel=3e-3)
 
 
 class TestFairness:
@@ -204,11 +202,11 @@ class TestFairness:
             "container.youngs_modulus_Pa=2.1e11",
             "solver.model=reduced",
         )
-        assert any("it deforms" in reason for reason in check.summary["reasons"])
+        assert any("it deforms" in reason for reason in check.result.reasons)
         _, stiff = checked(
             "free_rocking", "solver.duration_s=2", "container.youngs_modulus_Pa=5e12", "solver.model=reduced"
         )
-        assert stiff.summary["meaningful"] is True
+        assert stiff.result.meaningful is True
 
     def test_the_full_model_that_deforms(self):
         _, check = checked(
@@ -218,7 +216,7 @@ class TestFairness:
             "solver.model=full",
             "solver.element_size_m=0.55",
         )
-        assert any("it deforms" in reason for reason in check.summary["reasons"])
+        assert any("it deforms" in reason for reason in check.result.reasons)
 
     def test_a_contact_that_bounces(self):
         found = reasons("free_rocking", "solver.duration_s=2", "contact.damping_ratio=0.5")

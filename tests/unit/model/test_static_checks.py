@@ -63,7 +63,7 @@ def test_no_capacity_is_an_infinite_utilisation_and_no_demand_none():
 
 
 def test_a_floor_without_friction_has_null_for_its_utilisation_in_json():
-    static = block(mu_static=0.0, mu_kinetic=0.0).to_dict()
+    static = block(mu_static=0.0, mu_kinetic=0.0).to_result().to_json()
     assert static["own_motion"]["utilisation_sliding"] is None
     json.dumps(static, allow_nan=False)
 
@@ -132,7 +132,7 @@ def test_lateral_force_method_is_limited_to_two_seconds_and_four_control_periods
 
 
 def test_dictionary_has_the_keys_of_a_result():
-    static = block().to_dict()
+    static = block().to_result().to_json()
     assert set(static) == STATIC_KEYS
     assert {key for action in ("own_motion", "code", "code_q1") for key in static[action]} == ACTION_KEYS
     assert json.loads(json.dumps(static, allow_nan=False)) == static

@@ -19,7 +19,7 @@ def sheet_of(name, *overrides):
     motion = HarmonicMotion(
         amplitude=case.amplitude, angular_frequency=case.angular_frequency, duration=case.solver.duration_s
     )
-    static = checks_of(case, build_container(case), motion).to_dict()
+    static = checks_of(case, build_container(case), motion).to_result().to_json()
     return static_sheet({"static": static}, case)
 
 

@@ -19,7 +19,7 @@ from fem.__main__ import main
 from fem.case.case import load_case
 from fem.results.history import History, read_history
 from fem.results.run_folder import FolderError, read_result
-from fem.run.run import RunOptions, RunResult, run_case
+from fem.run.run import Run, RunOptions, run_case
 from fem.runtime.interrupts import interruptible
 from fem.runtime.progress import SilentReporter
 
@@ -27,7 +27,7 @@ QUICK = ("solver.model=rigid", "output.fields_s=0", "output.figures=false")
 ANGLE = math.atan(1.1 / 4.0)  #: slenderness angle of the shipped stack [rad]
 
 
-def run(folder: Path, name: str, *overrides: str, **options) -> RunResult:
+def run(folder: Path, name: str, *overrides: str, **options) -> Run:
     case = load_case(name, [*QUICK, *overrides])
     return run_case(case, case_text=case.text, folder=folder, options=RunOptions(**options))
 

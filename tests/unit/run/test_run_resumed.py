@@ -9,7 +9,7 @@ from interrupted_runs import COARSE, one_slice, same
 import fem.run.run
 import fem.run.simulation
 from fem.case.case import load_case
-from fem.run.run import RunOptions, RunResult, run_case
+from fem.run.run import Run, RunOptions, run_case
 
 RIGID = ("solver.model=rigid", "solver.duration_s=1.2", "output.fields_s=0.1")
 REDUCED = ("solver.duration_s=0.7", "output.fields_s=0.1")
@@ -28,7 +28,7 @@ CASES = {
 }
 
 
-def run(folder: Path, name: str, overrides: tuple[str, ...], **options) -> RunResult:
+def run(folder: Path, name: str, overrides: tuple[str, ...], **options) -> Run:
     case = load_case(name, [*overrides, "output.figures=false"])
     return run_case(case, case_text=case.text, folder=folder, options=RunOptions(band=False, **options))
 

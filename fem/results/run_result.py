@@ -1,0 +1,274 @@
+"""The result of a run as typed data: what `run.json` holds.
+
+Every field has the name of its key in the file, with its SI unit. A quantity that a run did not reach, or that an
+older version did not write, is None. Rotation > 0 toward +x, slip > 0 moves the container to +x.
+"""
+# ruff: noqa: N815 - a field is named as its key in the file, unit and all
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from functools import cache
+from types import UnionType
+from typing import Any, Self, get_args, get_origin, get_type_hints
+
+
+class JsonBlock:
+    """A dataclass that is written as a JSON object, with its fields as keys."""
+
+    @classmethod
+    def from_json(cls, block: Mapping[str, Any]) -> Self:
+        """Read a block; missing keys and null take the default, unknown keys are ignored.
+
+        Raises:
+            ValueError: the block is no object, or a required key is missing.
+        """
+        try:
+            readers = _readers(cls)  # type: ignore[arg-type]
+            return cls(
+                **{name: readers[name](block[name]) for name in readers if block.get(name) is not None}
+            )
+        except (AttributeError, TypeError) as error:
+            raise ValueError(f"cannot be read as {cls.__name__} ({error})") from None
+
+    def to_json(self) -> dict[str, Any]:
+        """The block as JSON types, its keys in the order of the fields."""
+        return {one.name: _plain(getattr(self, one.name)) for one in fields(self)}  # type: ignore[arg-type]
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, JsonBlock):
+        return value.to_json()
+    return [_plain(item) for item in value] if isinstance(value, tuple) else value
+
+
+@cache
+def _readers(kind: type[JsonBlock]) -> dict[str, Callable[[Any], Any]]:
+    """For each field, what makes its value from JSON types."""
+    return {name: _reader(hint) for name, hint in get_type_hints(kind).items()}
+
+
+def _reader(hint: Any) -> Callable[[Any], Any]:
+    if isinstance(hint, UnionType):  # X | None
+        hint = get_args(hint)[0]
+    if isinstance(hint, type) and issubclass(hint, JsonBlock):
+        return hint.from_json
+    if get_origin(hint) is tuple:
+        item = _reader(get_args(hint)[0])
+        return lambda values: tuple(item(value) for value in values)
+    return lambda value: value
+
+
+@dataclass(frozen=True, kw_only=True)
+class ActionResult(JsonBlock):
+    """The static rule under one action."""
+
+    base_shear_N: float | None = None
+    tilting_moment_Nm: float | None = None
+    utilisation_sliding: float | None = None  #: demand over capacity; None without capacity
+    utilisation_overturning: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class StaticResult(JsonBlock):
+    """The static rules, and what follows from the mass alone (`fem.model.static_checks`)."""
+
+    weight_N: float | None = None
+    centroid_m: float | None = None  #: height of the mass centre above the floor
+    inertia_kg_m2: float | None = None  #: about the mass centre
+    slenderness_angle_rad: float | None = None
+    frequency_parameter_1_s: float | None = None
+    period_eq2_s: float | None = None
+    period_eq3_s: float | None = None
+    sliding_limit_static_N: float | None = None
+    sliding_limit_kinetic_N: float | None = None
+    restoring_moment_Nm: float | None = None
+    uplift_acceleration_m_s2: float | None = None
+    housner_restitution: float | None = None
+    housner_credible: bool | None = None  #: a restitution of at least 0.5
+    own_motion: ActionResult | None = None  #: peak floor acceleration of this run
+    code: ActionResult | None = None  #: behaviour factor as given
+    code_q1: ActionResult | None = None  #: behaviour factor 1
+    method_applicable: bool | None = None  #: the lateral force method
+    clause: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionResult(JsonBlock):
+    """The floor's motion."""
+
+    notes: tuple[str, ...] = ()  #: doubts about a recorded motion
+
+
+@dataclass(frozen=True, kw_only=True)
+class BandMember(JsonBlock):
+    """One run of a band."""
+
+    normal_penalty_Pa_m: float
+    damping_ratio: float  #: of the contact
+    status: str  #: completed | overturned | failed | interrupted
+    outcome: str | None = None  #: None where it failed or was stopped
+    rotation_ratio: float | None = None
+    error: str | None = None
+    max_slip_m: float | None = None
+    residual_slip_m: float | None = None  #: signed, at the end
+    max_uplift_m: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Band(JsonBlock):
+    """Sensitivity of the outcome to contact stiffness and damping."""
+
+    outcomes: tuple[str, ...] = ()  #: that were found, from rest to overturned
+    rotation_ratio: tuple[float, float] | None = None  #: smallest, largest
+    unsure: bool = False  #: outcomes differ, or a member failed
+    members: tuple[BandMember, ...] = ()  #: the run itself first
+
+
+@dataclass(frozen=True, kw_only=True)
+class Verdict(JsonBlock):
+    """Outcome, extremes and events of a run."""
+
+    outcome: str | None = None  #: rest | slide | rock | slide-rock | overturned; None where the run failed
+    modes: tuple[str, ...] = ()  #: states passed through
+    max_rotation_rad: float | None = None  #: largest |rotation|
+    rotation_ratio: float | None = None  #: largest |rotation| over the slenderness angle
+    max_slip_m: float | None = None  #: largest |slip|
+    residual_slip_m: float | None = None  #: signed, at the end
+    slip_peak_to_peak_m: float | None = None  #: over the last full cycle of a harmonic drive
+    slip_travel_m: float | None = None  #: total path
+    max_uplift_m: float | None = None
+    impacts: int | None = None
+    first_opening_s: float | None = None  #: a base gap opens
+    first_uplift_s: float | None = None  #: a side carries nothing
+    first_impact_s: float | None = None
+    overturned_at_s: float | None = None
+    restored: bool | None = None  #: it rocked and stands again at the end
+    restitution_first: float | None = None
+    max_corner_force_N: float | None = None
+    max_top_displacement_m: float | None = None  #: relative to the floor
+    max_acceleration_m_s2: float | None = None  #: of the contents
+    max_von_mises_Pa: float | None = None  #: None of a rigid container
+    basis: str = "study"
+    band: Band | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointDemand(JsonBlock):
+    """What one joint between boxes must carry, and when it would open or slide without bolts."""
+
+    joint: int  #: from the floor up, from 1
+    height_m: float
+    min_normal_N: float
+    max_normal_N: float
+    max_shear_N: float
+    max_moment_Nm: float
+    bolt_tension_left_N: float
+    bolt_tension_right_N: float
+    bolt_shear_N: float
+    friction_needed: float | None = None  #: None: unloaded under shear
+    partly_opens_at_s: float | None = None
+    opens_at_s: float | None = None
+    slides_at_s: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Energy(JsonBlock):
+    """The energy balance."""
+
+    reference_J: float | None = None  #: what it takes to overturn, M g R (1 - cos slenderness angle)
+    closure_error: float | None = None  #: largest |imbalance| over the reference
+    friction_J: float | None = None
+    contact_damping_J: float | None = None
+    material_damping_J: float | None = None
+    numerical_J: float | None = None  #: final imbalance; > 0 lost, < 0 gained
+    base_work_J: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Numerics(JsonBlock):
+    """How the run was computed."""
+
+    unknowns: int | None = None
+    contact_nodes: int | None = None
+    steps: int | None = None
+    rejected: int | None = None
+    newton_iterations: int | None = None
+    iterations: int | None = None
+    largest_step_s: float | None = None
+    smallest_step_s: float | None = None
+    stepping_cpu_s: float | None = None  #: without compilation, set-up and output
+    normal_penalty_Pa_m: float | None = None
+    contact_frequency_Hz: float | None = None
+    static_penetration_m: float | None = None
+    max_penetration_m: float | None = None
+    elastic_frequencies_Hz: tuple[float, ...] = ()
+    attachment_frequencies_Hz: tuple[float, ...] = ()
+    corner_force_window_s: float | None = None
+    acceleration_window_s: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunAndBlock(JsonBlock):
+    """One quantity of the run and of the analytic rigid block."""
+
+    run: float | None = None
+    block: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class PeakPair(JsonBlock):
+    """One turning point of the run and of the rigid block."""
+
+    run_s: float
+    run_rad: float
+    block_s: float
+    block_rad: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class RigidCheckResult(JsonBlock):
+    """The run compared with the analytic rigid block."""
+
+    reference: str | None = None  #: None where there is no comparison; `reasons` says why
+    meaningful: bool = False
+    reasons: tuple[str, ...] = ()  #: why the container is not that block
+    first_impact_s: RunAndBlock | None = None
+    velocity_ratio: RunAndBlock | None = None  #: at the first impact
+    peaks: tuple[PeakPair, ...] = ()
+    largest_difference_before_impact: float | None = None  #: of rotation, over the slenderness angle
+
+    def to_json(self) -> dict[str, Any]:
+        """The block; without a reference, only why there is none."""
+        block = super().to_json()
+        if self.reference is None:
+            return {key: block[key] for key in ("reference", "meaningful", "reasons")}
+        return block
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunResult(JsonBlock):
+    """All of `run.json`; a block that the run has not reached is None."""
+
+    status: str  #: completed | overturned | failed | interrupted | running
+    case: str | None = None
+    title: str | None = None
+    case_hash: str | None = None
+    static: StaticResult | None = None
+    motion: MotionResult | None = None
+    versions: Mapping[str, str] | None = None
+    verdict: Verdict | None = None
+    joints: tuple[JointDemand, ...] | None = None  #: None for a single box
+    energy: Energy | None = None
+    numerics: Numerics | None = None
+    error: str | None = None  #: why it failed
+    wall_s: float | None = None
+    cpu_s: float | None = None
+    compile_s: float | None = None  #: of the wall time
+    warnings: tuple[str, ...] | None = None
+    rigid_check: RigidCheckResult | None = None
+
+    def to_json(self) -> dict[str, Any]:
+        """The result as JSON types; blocks that are not there are left out."""
+        block = super().to_json()
+        kept = {"joints"} if self.verdict is not None else set()
+        return {key: value for key, value in block.items() if value is not None or key in kept}
