@@ -13,7 +13,8 @@ from fem.model.geometry import build_container, node_count
 from fem.model.restitution import apparent_restitution
 from fem.model.static_checks import StaticChecks, static_checks
 from fem.model.support import build_support, normal_penalty, require_firm_floor
-from fem.results.disk import frames_of, in_units, required_disk, samples_of
+from fem.results.disk import in_units
+from fem.run.size import frames_of, required_disk, samples_of
 from mesh.container import ContainerMesh
 
 

@@ -24,6 +24,7 @@ DISTRIBUTIONS = (
     "cyclopts",
     "rich",
     "jinja2",
+    "filelock",
 )
 MEND_PACKAGES = "python -m pip install --upgrade unanchored"
 LEAST_FREE_GB = 1.0

@@ -1,16 +1,14 @@
-"""The checkpoint of a run: its state in one file that is whole or refused.
+"""A checkpoint file: arrays and notes in one npz archive that is whole or refused.
 
-An npz archive (plain arrays, nothing pickled, nothing compressed) with a page `about.json`: whose run it is,
-which program wrote it, how far it had come. A SHA-256 of every byte before it stands at the very end, as the
-comment of the archive. The arrays go back into the run bit for bit, so that it goes on as if nothing had
-happened; that holds for the program and the libraries that wrote them alone, so every other is refused.
+Plain arrays, nothing pickled, nothing compressed, with a page `about.json`: whose they are, which program wrote them,
+how far it was. A SHA-256 of every byte before it is the comment of the archive, at the very end. The arrays come back
+bit for bit. A run that continues from them reaches the same bits only with the program and the libraries that wrote
+them, so every other version is refused.
 """
 
-import contextlib
 import hashlib
 import io
 import json
-import os
 import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,14 +18,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fem.results.errors import FolderError
+from fem.results.files import write_atomically
+
 FORMAT = 1
 ABOUT = "about.json"
 DIGEST_LENGTH = 64
-REMEDY = "begin the run anew with --force"
+REMEDY = "start over with --force"
 
 
-class CheckpointError(ValueError):
-    """A checkpoint that cannot be gone on from; the message names the file, the reason and the way out."""
+class CheckpointError(FolderError):
+    """A checkpoint that cannot be continued from; the message names the file, the reason and the way out."""
 
     def __init__(self, path: Path, reason: str, remedy: str = REMEDY) -> None:
         super().__init__(f"{path}: {reason}; {remedy}")
@@ -35,19 +36,19 @@ class CheckpointError(ValueError):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Checkpoint:
-    """What a checkpoint holds."""
+class Archive:
+    """Content of a checkpoint file."""
 
-    about: dict[str, Any]  #: case_hash, program, and the run's own notes
+    about: dict[str, Any]  #: notes: case_hash, program, and more
     arrays: dict[str, NDArray[Any]]
 
 
-def write_checkpoint(path: Path, about: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Replace a checkpoint in one step; it reaches the disk before the old one goes.
+def write_archive(path: Path, about: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Replace a checkpoint file in one step.
 
     Args:
-        path: the file.
-        about: notes that JSON can hold, with `case_hash` and `program`; floats come back bit for bit.
+        path: of the file.
+        about: notes that JSON can hold; floats come back bit for bit. `read_checkpoint` needs case_hash and program.
         arrays: of plain numbers, or records of them.
 
     Raises:
@@ -60,56 +61,54 @@ def write_checkpoint(path: Path, about: Mapping[str, Any], arrays: Mapping[str, 
             archive.writestr(f"{name}.npy", _to_bytes(array))
         archive.comment = bytes(DIGEST_LENGTH)  # the last bytes of the file
     content = stream.getvalue()[:-DIGEST_LENGTH]
-    part = path.with_name(f".{path.name}.part")
-    try:
-        with open(part, "wb") as file:
-            file.write(content)
-            file.write(_digest(content))
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(part, path)
-    except BaseException as error:
-        with contextlib.suppress(OSError):
-            part.unlink()
-        if isinstance(error, OSError):
-            raise OSError(error.errno, error.strerror, str(path)) from None
-        raise
+    write_atomically(path, content + _digest(content))
 
 
-def read_checkpoint(path: Path, *, case_hash: str, program: Mapping[str, str]) -> Checkpoint:
-    """Read a checkpoint of this case, written by this program.
+def read_archive(path: Path) -> Archive:
+    """Read a checkpoint file, whoever wrote it.
 
     Raises:
-        CheckpointError: damaged, of another format, of another version of the program, of another case.
+        CheckpointError: missing or damaged.
     """
     try:
-        page, arrays = _read(path.read_bytes())
+        about, arrays = _read(path.read_bytes())
     except OSError as error:
         raise CheckpointError(path, f"cannot be read ({error.strerror or error})") from None
     except Exception as error:  # a reader of broken archives fails in every way there is
-        raise CheckpointError(path, f"damaged, or no checkpoint ({error})") from None
-    if page.get("format") != FORMAT or page.get("program") != dict(program):
+        raise CheckpointError(path, f"damaged, or not a checkpoint ({error})") from None
+    return Archive(about=about, arrays=arrays)
+
+
+def read_checkpoint(path: Path, *, case_hash: str, program: Mapping[str, str]) -> Archive:
+    """Read a checkpoint of this case, written by this program.
+
+    Raises:
+        CheckpointError: missing, damaged, of another format, of another version of the program, of another case.
+    """
+    found = read_archive(path)
+    theirs = found.about.get("program")
+    if found.about.get("format") != FORMAT or theirs != dict(program):
         raise CheckpointError(
             path,
             "written by another version of the program or of a library it computes with "
-            f"({_difference(page.get('program'), program)}), which would not go on to the same bits",
-            f"go on with that version, or {REMEDY}",
+            f"({_difference(theirs, program)}), which would not give the same bits",
+            f"continue with that version, or {REMEDY}",
         )
-    if page.get("case_hash") != case_hash:
-        raise CheckpointError(path, f"belongs to another case ({page.get('case_hash')!s:.12})")
-    return Checkpoint(about=page, arrays=arrays)
+    if found.about.get("case_hash") != case_hash:
+        raise CheckpointError(path, f"belongs to another case ({found.about.get('case_hash')!s:.12})")
+    return found
 
 
 def _read(content: bytes) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     """The page and the arrays; an archive that is not compressed takes no more memory than it has bytes."""
     if _digest(content[:-DIGEST_LENGTH]) != content[-DIGEST_LENGTH:]:
-        raise ValueError("its checksum does not fit its content")
+        raise ValueError("its checksum does not match its content")
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         if any(entry.compress_type != zipfile.ZIP_STORED for entry in archive.infolist()):
             raise ValueError("it is compressed")
         page = json.loads(archive.read(ABOUT))
         if not isinstance(page, dict):
-            raise ValueError(f"{ABOUT} holds no table")
+            raise ValueError(f"{ABOUT} is not a table")
         names = [name for name in archive.namelist() if name != ABOUT]
         return page, {name.removesuffix(".npy"): _to_array(archive.read(name)) for name in names}
 

@@ -22,7 +22,7 @@ from typing import Self
 
 import numpy as np
 
-from fem.results.run_folder import write_atomically
+from fem.results.files import write_atomically
 from fem.runtime.arrays import FloatArray
 
 #: Columns of `history.csv`, in a stack followed by those of its joints; `mode` is a word, all others are numbers.

@@ -9,7 +9,6 @@ import io
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,12 +16,11 @@ from typing import Any
 import numpy as np
 
 from fem.results.disk import require_room
-from fem.results.lock import FolderLock, held_folder
+from fem.results.lock import locked_folder as held
 from fem.results.run_folder import (
     FolderError,
     naming_what_cannot_be_written,
     to_json,
-    what_is_in_the_way,
     write_atomically,
 )
 from fem.runtime.identity import program_identity, versions
@@ -171,24 +169,3 @@ def _read_mark(path: Path) -> dict[str, Any]:
     except (OSError, ValueError):
         return {}
     return found if isinstance(found, dict) else {}
-
-
-@contextmanager
-def held(folder: Path) -> Iterator[FolderLock]:
-    """Hold a folder of results against other runs.
-
-    Raises:
-        FolderLockedError: another run writes there.
-        FolderUnwritableError: a read-only place, or a full one.
-        FolderError: it cannot be made for another reason.
-    """
-    with ExitStack() as stack:
-        try:
-            lock = stack.enter_context(held_folder(folder))
-        except (FileExistsError, NotADirectoryError):
-            raise FolderError(f"{what_is_in_the_way(folder)}; choose another with --out DIR") from None
-        except OSError as error:
-            raise FolderError(
-                f"{folder}: cannot be made or written ({error.strerror}); choose another folder with --out DIR"
-            ) from None
-        yield lock

@@ -6,77 +6,35 @@ kill, finds the old one or the new one and never half of one.
 """
 
 import contextlib
-import json
-import math
-import os
-import re
 import shutil
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from fem.case.case import Case
-from fem.results.lock import LOCK_NAME
+from fem.results.errors import FolderError, OutputError
+from fem.results.errors import obstacle as what_is_in_the_way
+from fem.results.errors import writing_into as naming_what_cannot_be_written
+from fem.results.files import to_json, write_atomically
+from fem.results.folder import read_result
+from fem.results.lock import LOCK_NAME, OWNER_NAME
+
+__all__ = [
+    "FolderError",
+    "OutputError",
+    "naming_what_cannot_be_written",
+    "read_result",
+    "to_json",
+    "what_is_in_the_way",
+    "write_atomically",
+]
 
 #: Statuses after which there is nothing left to compute.
 FINISHED = frozenset({"completed", "overturned"})
 STATUSES = FINISHED | {"failed", "interrupted", "running"}
 
 SETUP_NAME = ".setup"
-
-#: ends of the names of numbers in a result
-MEASURED = re.compile(r"_(m|m2|m3|s|s2|N|Nm|J|Pa|Hz|rad|ratio)$")
-
-
-class FolderError(ValueError):
-    """The folder of results cannot be used as asked; the message names the way out."""
-
-
-class OutputError(RuntimeError):
-    """Results could not be written any more; the message says where and why, and how to go on."""
-
-    exit_code = 3
-
-
-@contextmanager
-def naming_what_cannot_be_written(folder: Path, way_on: str) -> Iterator[None]:
-    """Turn a disk that is full, or a folder that is gone, into a message.
-
-    Args:
-        folder: of the results.
-        way_on: what to do when there is room again.
-
-    Raises:
-        FolderError: a file stands where a folder should, or none can be made there.
-        OutputError: in the place of any other OSError.
-    """
-    was_there = os.path.isdir(folder)
-    try:
-        yield
-    except (FileExistsError, NotADirectoryError) as error:
-        place = Path(error.filename or folder)
-        raise FolderError(f"{what_is_in_the_way(place)}; choose another place") from None
-    except OSError as error:
-        if isinstance(error, FileNotFoundError) and not was_there:
-            raise FolderError(f"{folder}: cannot be made ({error.strerror}); choose another place") from None
-        raise OutputError(
-            f"{error.filename or folder}: cannot be written ({error.strerror or error}); what was written before can "
-            f"be read; when there is room again, {way_on}"
-        ) from None
-
-
-def what_is_in_the_way(path: Path) -> str:
-    """What stands where a folder should, at this place or on the way to it."""
-    for place in (*reversed(path.parents), path):
-        if os.path.islink(place) and not os.path.exists(place):
-            return f"{place} is a link to {os.readlink(place)}, which is not there"
-        if os.path.exists(place) and not os.path.isdir(place):
-            break
-    return f"{place} is a file, not a folder"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -254,84 +212,6 @@ def finished_run(path: Path, *, case_hash: str, force: bool = False) -> dict[str
     return found if found is not None and found.get("status") in FINISHED else None
 
 
-def read_result(path: Path) -> dict[str, Any]:
-    """The content of a `run.json`.
-
-    Raises:
-        FolderError: there is none, or it is not one.
-    """
-    try:
-        result = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise FolderError(
-            f"{path}: cannot be read ({error.strerror}); is this the folder of a run?"
-        ) from None
-    except ValueError:
-        result = None
-    if not isinstance(result, dict) or not isinstance(result.get("case_hash"), str):
-        raise FolderError(f"{path}: damaged, or not the result of a run; compute it again with run --force")
-    wrong = _no_number(result)
-    if wrong is not None:
-        raise FolderError(f"{path}: damaged, {wrong} is no number; compute it again with run --force")
-    return result
-
-
-def _no_number(content: Any) -> str | None:
-    """The first key that is named after a unit or a ratio and holds something else, or None."""
-    if isinstance(content, list):
-        return next((wrong for wrong in map(_no_number, content) if wrong is not None), None)
-    if not isinstance(content, dict):
-        return None
-    for key, value in content.items():
-        values = value if isinstance(value, list) else [value]
-        if MEASURED.search(key) and not all(
-            one is None or isinstance(one, int | float | dict) for one in values
-        ):
-            return str(key)
-        wrong = _no_number(value)
-        if wrong is not None:
-            return wrong
-    return None
-
-
-def write_atomically(path: Path, text: str) -> None:
-    """Replace a file by a new one in one step; it reaches the disk before the old one goes."""
-    part = path.with_name(f".{path.name}.part")
-    try:
-        with open(part, "w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(part, path)
-    except BaseException as error:
-        with contextlib.suppress(OSError):
-            part.unlink()
-        if isinstance(error, OSError):
-            raise OSError(error.errno, error.strerror, str(path)) from None
-        raise
-
-
-def to_json(result: Mapping[str, Any]) -> str:
-    """Strict JSON of a result: numpy scalars and arrays as numbers and lists, nan and infinity as null."""
-    return json.dumps(_plain(result), indent=2, allow_nan=False, ensure_ascii=False) + "\n"
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
-    if isinstance(value, str | Path):
-        return str(value)
-    if isinstance(value, Sequence | set | frozenset):
-        return [_plain(item) for item in (sorted(value) if isinstance(value, set | frozenset) else value)]
-    if isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
-
-
 def _look_into(path: Path, case_hash: str, force: bool) -> dict[str, Any] | None:
     """The `run.json` already there, if it is one; refuses a folder that is not this case's unless forced."""
     remedy = "choose another folder with --out DIR, or overwrite it with --force"
@@ -390,7 +270,7 @@ def _names_in(path: Path) -> list[str]:
     return [
         entry.name
         for entry in path.iterdir()
-        if entry.name not in (LOCK_NAME, SETUP_NAME)
+        if entry.name not in (LOCK_NAME, OWNER_NAME, SETUP_NAME)
         and not (entry.name.startswith(".") and entry.name.endswith(".part"))
     ]
 

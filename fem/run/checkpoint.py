@@ -20,7 +20,7 @@ from contact.interface.solver import Workspace
 from contact.stepping.body import State
 from contact.stepping.state import Run
 from fem.model.model import Model
-from fem.results.archive import Checkpoint, CheckpointError, read_checkpoint, write_checkpoint
+from fem.results.archive import Archive, CheckpointError, read_checkpoint, write_archive
 from fem.run.recorder import Recorder
 from fem.run.simulation import Progress
 from fem.runtime.identity import program_identity
@@ -76,7 +76,7 @@ class CheckpointKeeper:
             "progress": asdict(progress),
             **self._settle(),
         }
-        write_checkpoint(self._path, about, state_of(self._model, self._recorder))
+        write_archive(self._path, about, state_of(self._model, self._recorder))
         self._last = time.monotonic()
 
 
@@ -158,13 +158,13 @@ def _named(arrays: Mapping[str, NDArray[Any]], prefix: str) -> Arrays:
     return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}
 
 
-def _require_fit(path: Path, found: Checkpoint, model: Model) -> None:
+def _require_fit(path: Path, found: Archive, model: Model) -> None:
     """Refuse arrays that are not those of this model's run."""
     _require_same(path, found, _changing(model))
     _require_same(path, found, _waiting(model.run, found.arrays["clock"]))
 
 
-def _require_same(path: Path, found: Checkpoint, arrays: Arrays) -> None:
+def _require_same(path: Path, found: Archive, arrays: Arrays) -> None:
     for name, mine in arrays.items():
         theirs = found.arrays.get(name)
         if theirs is None or theirs.shape != mine.shape or theirs.dtype.descr != mine.dtype.descr:

@@ -26,9 +26,10 @@ from fem.model.motion import build_motion, motion_notes
 from fem.model.recovery import Frame, recovery_of
 from fem.model.step_size import largest_step_of
 from fem.model.support import normal_penalty
-from fem.results.disk import require_disk
+from fem.results.disk import require_room
 from fem.results.fields import FieldWriter
 from fem.results.history import History, HistoryWriter, read_history
+from fem.results.kinds import RUN
 from fem.results.lock import FolderLock, FolderLostError
 from fem.results.reader import open_run
 from fem.results.result_folder import held
@@ -47,6 +48,7 @@ from fem.run.recorder import Recorder
 from fem.run.run_resumption import RunBeginning, Spent, beginning_in, clock_readings, settling, spent_since
 from fem.run.setup_cache import PartFolder
 from fem.run.simulation import Ending, simulate
+from fem.run.size import required_disk, size_in_words
 from fem.runtime.arrays import FloatArray
 from fem.runtime.compilation import compilation_announced
 from fem.runtime.identity import versions
@@ -112,7 +114,14 @@ def run_case(
     if found is not None and _is_whole(found, place, case, options):
         return Run(typed_result=RunResult.from_json(found), history=History.empty())
     if found is None:
-        require_disk(case, node_count(mesh, case.solver.order), folder)
+        nodes = node_count(mesh, case.solver.order)
+        require_room(
+            folder,
+            required_disk(case, nodes),
+            size_in_words(case, nodes),
+            "set a larger output.fields_s (0: no frames) or output.history_s",
+            RUN.own,
+        )
     beginning = RunBeginning()
 
     with ExitStack() as stack:

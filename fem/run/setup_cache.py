@@ -9,7 +9,7 @@ and makes the rest. They go when the run is finished. A set-up of less than that
 import time
 from collections.abc import Callable
 
-from fem.results.archive import CheckpointError, read_checkpoint, write_checkpoint
+from fem.results.archive import CheckpointError, read_checkpoint, write_archive
 from fem.results.disk import free_disk
 from fem.results.lock import FolderLock
 from fem.results.run_folder import RunFolder, naming_what_cannot_be_written
@@ -79,7 +79,7 @@ class PartFolder:
         if room is None or room > ROOM * size:
             with naming_what_cannot_be_written(self._place.path, "the same command goes on with the set-up"):
                 path.parent.mkdir(exist_ok=True)
-                write_checkpoint(path, {"case_hash": self._case_hash, "program": self._program}, self._made)
+                write_archive(path, {"case_hash": self._case_hash, "program": self._program}, self._made)
             self._number += 1
         else:
             self._reporter.message(

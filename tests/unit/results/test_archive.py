@@ -11,7 +11,7 @@ import pytest
 
 from contact.stepping.state import CLOCK
 from fem.results import archive as checkpoint
-from fem.results.archive import ABOUT, CheckpointError, read_checkpoint, write_checkpoint
+from fem.results.archive import ABOUT, CheckpointError, read_checkpoint, write_archive
 
 PROGRAM = {"unanchored": "0.1.0", "sources": "abc"}
 OWN = {"case_hash": "ours", "program": PROGRAM}
@@ -36,7 +36,7 @@ def read(path, case_hash="ours", program=PROGRAM):
 @pytest.fixture
 def path(tmp_path):
     place = tmp_path / "checkpoint.npz"
-    write_checkpoint(place, {**OWN, "time_s": 0.1 + 0.2}, arrays())
+    write_archive(place, {**OWN, "time_s": 0.1 + 0.2}, arrays())
     return place
 
 
@@ -58,7 +58,7 @@ def test_the_file_is_an_npz_that_numpy_reads_without_pickle(path):
 
 def test_objects_are_not_kept(tmp_path):
     with pytest.raises(ValueError, match="allow_pickle"):
-        write_checkpoint(tmp_path / "c.npz", OWN, {"a": np.array([print], dtype=object)})
+        write_archive(tmp_path / "c.npz", OWN, {"a": np.array([print], dtype=object)})
     assert list(tmp_path.iterdir()) == []
 
 
@@ -83,7 +83,7 @@ def test_a_single_damaged_bit_anywhere_is_refused(path):
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04", b"\x93NUMPY\x01\x00", b"{}", os.urandom(5000)])
 def test_what_is_no_checkpoint_is_refused(tmp_path, content):
     (tmp_path / "c.npz").write_bytes(content)
-    with pytest.raises(CheckpointError, match=r"c\.npz: damaged, or no checkpoint.*--force"):
+    with pytest.raises(CheckpointError, match=r"c\.npz: damaged, or not a checkpoint.*--force"):
         read(tmp_path / "c.npz")
 
 
@@ -150,7 +150,7 @@ def test_a_write_that_fails_keeps_the_old_checkpoint(path, monkeypatch):
 
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(OSError, match="No space"):
-        write_checkpoint(path, OWN, {"a": np.zeros(3)})
+        write_archive(path, OWN, {"a": np.zeros(3)})
     assert path.read_bytes() == before
     assert [entry.name for entry in path.parent.iterdir()] == [path.name]
 

@@ -19,11 +19,11 @@ import fem.sweep.run
 from fem.__main__ import main
 from fem.case.case import load_case
 from fem.model.geometry import build_container, node_count
-from fem.results.disk import required_disk
 from fem.results.fields import open_fields
 from fem.results.history import read_history
-from fem.results.lock import held_folder
+from fem.results.lock import locked_folder
 from fem.results.run_folder import read_result
+from fem.run.size import required_disk
 from fem.sweep.table import open_sweep
 
 COMMON = ("solver.model=rigid", "solver.duration_s=2", "output.figures=false", "output.fields_s=0.05")
@@ -248,7 +248,7 @@ def test_a_read_only_folder_ends_a_study_of_many_runs_with_3(command, small, cap
 
 def test_a_folder_of_a_study_that_is_taken_or_removed_is_told(tmp_path, capsys, monkeypatch):
     folder, command = tmp_path / "f", [*TWO_STATEMENTS, "--out", str(tmp_path / "f")]
-    with held_folder(folder):
+    with locked_folder(folder):
         assert main(command) == 2
     assert "another run writes there" in capsys.readouterr().err
     tried = fem.paper.run._tried

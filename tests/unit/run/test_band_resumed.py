@@ -14,8 +14,8 @@ import fem.run.simulation
 from fem.__main__ import main
 from fem.case.case import case_hash, load_case
 from fem.model.model import build_model
-from fem.results.archive import write_checkpoint
-from fem.results.lock import held_folder
+from fem.results.archive import write_archive
+from fem.results.lock import locked_folder
 from fem.results.run_folder import RunFolder, read_result
 from fem.run import band
 from fem.run import band_checkpoint as band_keeping
@@ -126,8 +126,8 @@ def test_a_members_checkpoint_that_cannot_be_trusted_is_named_and_begun_anew(tmp
     if isinstance(content, bytes):
         path.write_bytes(content)
     else:
-        write_checkpoint(path, {"case_hash": content, "program": program_identity()}, {})
-    with held_folder(tmp_path) as lock:
+        write_archive(path, {"case_hash": content, "program": program_identity()}, {})
+    with locked_folder(tmp_path) as lock:
         keeping = BandFolder(place, lock, case_hash="ours", reporter=reporter)
         keeper, progress = keeping.begin(2, model, Recorder(model))
         assert (progress, float(model.run.clock[0].time)) == (Progress(), 0.0)

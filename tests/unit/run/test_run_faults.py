@@ -17,7 +17,7 @@ import fem.run.checkpoint
 from fem.__main__ import main
 from fem.results.fields import open_fields
 from fem.results.history import read_history
-from fem.results.lock import LOCK_NAME, held_folder
+from fem.results.lock import LOCK_NAME, locked_folder
 from fem.results.run_folder import read_result
 from fem.runtime.progress import ScreenReporter
 
@@ -170,7 +170,7 @@ def test_a_folder_taken_by_another_run_is_left_to_it(tmp_path, capsys, monkeypat
 
     def take():
         shutil.rmtree(tmp_path / "r")
-        other.append(held_folder(tmp_path / "r"))
+        other.append(locked_folder(tmp_path / "r"))
         other[0].__enter__()
         (tmp_path / "r" / "run.json").write_text("theirs")
 
@@ -184,7 +184,7 @@ def test_a_folder_taken_by_another_run_is_left_to_it(tmp_path, capsys, monkeypat
 
 
 def test_two_runs_do_not_write_into_one_folder(tmp_path, capsys):
-    with held_folder(tmp_path / "r"):
+    with locked_folder(tmp_path / "r"):
         (tmp_path / "r" / "keep").write_text("")
         assert command(tmp_path / "r", "--force") == 2
     message = capsys.readouterr().err
@@ -224,7 +224,7 @@ def rewrite(folder: Path, **changes) -> None:
     page, arrays = fem.results.archive._read(path.read_bytes())
     for name, value in changes.items():
         (arrays if name in arrays else page)[name] = value
-    fem.results.archive.write_checkpoint(path, page, arrays)
+    fem.results.archive.write_archive(path, page, arrays)
 
 
 def edit_history(folder: Path) -> None:

@@ -1,0 +1,67 @@
+"""Errors of folders of results, each with a message that names the place, the reason and the way out."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+OTHER_FOLDER = "choose another folder with --out DIR"
+
+
+class FolderError(ValueError):
+    """The folder of results cannot be used as asked."""
+
+
+class FolderLockedError(FolderError):
+    """Another process writes into the folder."""
+
+
+class OutputError(RuntimeError):
+    """Results cannot be written: a full disk, a read-only place, a folder that was removed."""
+
+    exit_code = 3
+
+
+class FolderLostError(OSError):
+    """The folder was removed, or taken by another process, while this one was using it."""
+
+
+@contextmanager
+def writing_into(folder: Path, way_on: str) -> Iterator[None]:
+    """Turn errors of the file system into messages.
+
+    Args:
+        folder: of the results.
+        way_on: what to do when there is room again, such as "--resume continues the sweep".
+
+    Raises:
+        FolderError: a file stands where a folder should, or the folder cannot be made.
+        OutputError: in place of any other OSError.
+    """
+    existed = os.path.isdir(folder)
+    try:
+        yield
+    except (FileExistsError, NotADirectoryError) as error:
+        raise FolderError(f"{obstacle(Path(error.filename or folder))}; choose another place") from None
+    except OSError as error:
+        if isinstance(error, FileNotFoundError) and not existed:
+            raise FolderError(f"{folder}: cannot be made ({error.strerror}); choose another place") from None
+        raise OutputError(unwritable(folder, error, way_on)) from None
+
+
+def unwritable(folder: Path, error: OSError, way_on: str) -> str:
+    """The message of a write that failed half-way."""
+    return (
+        f"{error.filename or folder}: cannot be written ({error.strerror or error}); what was written before can be "
+        f"read; when there is room again, {way_on}"
+    )
+
+
+def obstacle(path: Path) -> str:
+    """What stands where a folder should, at this path or at one of its parents."""
+    for place in (*reversed(path.parents), path):
+        if os.path.islink(place) and not os.path.exists(place):
+            return f"{place} is a link to {os.readlink(place)}, which does not exist"
+        if os.path.exists(place) and not os.path.isdir(place):
+            break
+    return f"{place} is a file, not a folder"

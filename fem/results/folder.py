@@ -1,0 +1,249 @@
+"""The folder of a result: a run, a sweep, an ensemble, a response curve, the claims of the paper.
+
+One JSON file marks the folder; it holds the status and the hash of what was asked. It is written first, with status
+"running", so that whatever comes between, the folder is known as this request's, and as unfinished. Every file is
+replaced whole, one process writes at a time, and only files of the result's kind are ever removed.
+"""
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fem.results.archive import read_archive, write_archive
+from fem.results.disk import require_room
+from fem.results.errors import OTHER_FOLDER, FolderError, writing_into
+from fem.results.files import remove_files, to_json, write_atomically
+from fem.results.kinds import RUN, ResultKind
+from fem.results.lock import FolderLock, locked_folder
+from fem.runtime.identity import program_identity, versions
+
+REMEDY = f"{OTHER_FOLDER}, or overwrite it with --force"
+#: ends of the names of numbers in the result of a run
+MEASURED = re.compile(r"_(m|m2|m3|s|s2|N|Nm|J|Pa|Hz|rad|ratio)$")
+
+
+def program_of_results() -> dict[str, Any]:
+    """What a marking file says of the program that wrote it: unfinished results hold for that program alone."""
+    return {"program": program_identity()["sources"], "versions": versions()}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ResultFolder:
+    """A folder of results, opened for writing by `open_result_folder`."""
+
+    path: Path
+    kind: ResultKind
+    lock: FolderLock
+    found: (
+        dict[str, Any] | None
+    )  #: an earlier result of the same request; None if there is none, or with --force
+    resume: bool  #: --resume was given
+
+    @property
+    def finished(self) -> bool:
+        """Whether the folder holds the finished result: there is nothing to compute."""
+        return self.found is not None and self.found.get("status") in self.kind.finished
+
+    @property
+    def resuming(self) -> bool:
+        """Whether an unfinished result is to be continued."""
+        return self.resume and self.found is not None and not self.finished
+
+    def begin(
+        self, mark: Mapping[str, Any], texts: Mapping[str, str] | None = None, *, keep: bool | None = None
+    ) -> None:
+        """Mark the folder, remove the files of an earlier result, and write what was asked.
+
+        Args:
+            mark: content of the marking file, with status "running" and the hash of the request.
+            texts: further files to write, by name, such as the case.
+            keep: leave the earlier files, to continue with them; default: `resuming`.
+
+        Raises:
+            FolderError: nothing can be written; no file is then left in a folder that was empty.
+        """
+        texts = texts or {}
+        was_empty = not _names_in(self.path)
+        try:
+            self.write_result(mark)
+            if not (self.resuming if keep is None else keep):
+                self.remove(*self.kind.own)
+            for name, text in texts.items():
+                self.write_text(name, text)
+        except OSError as error:
+            for name in (self.kind.mark, *texts) if was_empty else ():
+                with suppress(OSError):
+                    (self.path / name).unlink()
+            raise FolderError(f"{self.path}: cannot be written ({error.strerror}); {OTHER_FOLDER}") from None
+
+    def check(self) -> None:
+        """Make sure that the folder is still this process's; raises FolderLostError."""
+        self.lock.check()
+
+    def write_result(self, mark: Mapping[str, Any]) -> None:
+        """Replace the marking file; numbers that are not finite become null."""
+        write_atomically(self.path / self.kind.mark, to_json(mark))
+
+    def write_text(self, name: str, text: str) -> None:
+        """Replace a file, in a subfolder if its name says so."""
+        place = self.path / name
+        place.parent.mkdir(exist_ok=True)
+        write_atomically(place, text)
+
+    def write_arrays(self, name: str, arrays: Mapping[str, np.ndarray]) -> None:
+        """Replace an npz file of plain arrays, to continue from; the folder must still be held."""
+        self.check()
+        write_archive(self.path / name, {}, arrays)
+
+    def read_arrays(self, name: str) -> dict[str, np.ndarray] | None:
+        """The arrays of such a file, or None if there is none.
+
+        Raises:
+            FolderError: it is damaged.
+        """
+        return read_archive(self.path / name).arrays if (self.path / name).exists() else None
+
+    def remove(self, *patterns: str) -> None:
+        """Remove files by patterns of their names, and subfolders that are empty then."""
+        remove_files(self.path, patterns)
+
+    def require_room(self, size: float, what: str, way_out: str) -> None:
+        """Refuse a result of about so many bytes that the disk cannot hold; raises FolderError."""
+        require_room(self.path, size, what, way_out, self.kind.own)
+
+    def require_same_program(self) -> None:
+        """Refuse to continue with what another version of the program computed.
+
+        Raises:
+            FolderError: names what differs.
+        """
+        if self.found is None:
+            return
+        if self.found.get("program") != program_identity()["sources"]:
+            raise FolderError(f"{self.path} holds results of another version of the program; {REMEDY}")
+        theirs = self.found.get("versions")
+        for name, mine in versions().items():
+            other = theirs.get(name) if isinstance(theirs, dict) else None
+            if other != mine:
+                raise FolderError(
+                    f"{self.path} holds results of another version of {name} ({other}, here {mine}); {REMEDY}"
+                )
+
+    def refuse_unfinished(self, progress: str) -> None:
+        """Refuse to overwrite an unfinished result that is worth continuing, unless it is to be.
+
+        Args:
+            progress: how far it is, such as "12 of 20 rows".
+
+        Raises:
+            FolderError: neither --resume nor --force was given.
+        """
+        if self.found is not None and not self.finished and not self.resume:
+            raise FolderError(
+                f"{self.path} holds this {self.kind.name}, unfinished, with {progress}; --resume continues it, --force "
+                "starts over"
+            )
+
+
+@contextmanager
+def open_result_folder(
+    path: Path, kind: ResultKind, request: str, *, force: bool = False, resume: bool = False, way_on: str = ""
+) -> Iterator[ResultFolder]:
+    """Hold the folder of a result, made if it is missing, and look at what is in it; `begin` changes it first.
+
+    Args:
+        path: of the folder.
+        kind: of the result.
+        request: hash of what is asked, as the marking file has it.
+        force, resume: as on the command line.
+        way_on: what to do after a full disk; default: "--resume continues".
+
+    Raises:
+        FolderError: it holds another request or something else (without `force`), is no folder, or cannot be made.
+        FolderLockedError: another process writes into it.
+        OutputError: a read-only place, a full disk, or a folder that was removed; in place of any OSError.
+    """
+    find_result(path, kind, request, force=force)  # before a lock is written into somebody's folder
+    with locked_folder(path) as lock:
+        found = find_result(path, kind, request, force=force)
+        with writing_into(path, way_on or "--resume continues"):
+            yield ResultFolder(path=path, kind=kind, lock=lock, found=found, resume=resume and not force)
+
+
+def find_result(path: Path, kind: ResultKind, request: str, *, force: bool = False) -> dict[str, Any] | None:
+    """What the marking file in a folder says; None without one, and with `force`. Nothing is written.
+
+    Raises:
+        FolderError: the folder holds another request or something else (without `force`), or is no folder.
+    """
+    try:
+        if not path.exists():
+            return None
+        if not path.is_dir():
+            raise FolderError(f"{path} is a file, not a folder; {OTHER_FOLDER}")
+        names = _names_in(path)
+    except OSError as error:
+        raise FolderError(f"{path}: cannot be read ({error.strerror}); {OTHER_FOLDER}") from None
+    if not names or force:
+        return None
+    if kind.mark not in names:
+        raise FolderError(f"{path} is not empty and holds no {kind.name}; {REMEDY}")
+    try:
+        found = read_result(path / kind.mark, kind)
+    except FolderError as error:
+        raise FolderError(f"{error}; {REMEDY}") from None
+    if found[kind.request] != request:
+        raise FolderError(f"{path} holds the results of another {kind.asked}; {REMEDY}")
+    return found
+
+
+def read_result(path: Path, kind: ResultKind = RUN) -> dict[str, Any]:
+    """The content of a marking file, `run.json` by default.
+
+    Raises:
+        FolderError: there is none, or it is damaged.
+    """
+    again = "compute it again with --force"
+    try:
+        result = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise FolderError(
+            f"{path}: cannot be read ({error.strerror}); is this the folder of {kind.article} {kind.name}?"
+        ) from None
+    except ValueError:
+        result = None
+    if not isinstance(result, dict) or not isinstance(result.get(kind.request), str):
+        raise FolderError(f"{path}: damaged, or not the result of {kind.article} {kind.name}; {again}")
+    wrong = _not_a_number(result) if kind is RUN else None
+    if wrong is not None:
+        raise FolderError(f"{path}: damaged, {wrong} is not a number; {again}")
+    return result
+
+
+def _not_a_number(content: Any) -> str | None:
+    """The first key that is named after a unit or a ratio and holds something else, or None."""
+    if isinstance(content, list):
+        return next((wrong for wrong in map(_not_a_number, content) if wrong is not None), None)
+    if not isinstance(content, dict):
+        return None
+    for key, value in content.items():
+        values = value if isinstance(value, list) else [value]
+        if MEASURED.search(key) and not all(
+            one is None or isinstance(one, int | float | dict) for one in values
+        ):
+            return str(key)
+        wrong = _not_a_number(value)
+        if wrong is not None:
+            return wrong
+    return None
+
+
+def _names_in(path: Path) -> list[str]:
+    """Names of the files in a folder, without hidden ones: locks, set-up caches, half-written files."""
+    return [entry.name for entry in path.iterdir() if not entry.name.startswith(".")]
