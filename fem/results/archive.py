@@ -9,6 +9,7 @@ them, so every other version is refused.
 import hashlib
 import io
 import json
+import threading
 import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -25,6 +26,9 @@ FORMAT = 1
 ABOUT = "about.json"
 DIGEST_LENGTH = 64
 REMEDY = "start over with --force"
+#: numpy parses the head of an array with `ast`, which before Python 3.11.8 counts its depth for all threads together
+#: (CPython issue 106905): two readers at once may then find sound files damaged
+ONE_READER = threading.Lock()
 
 
 class CheckpointError(FolderError):
@@ -124,7 +128,8 @@ def _to_bytes(array: NDArray[Any]) -> bytes:
 
 
 def _to_array(content: bytes) -> NDArray[Any]:
-    return np.asarray(np.lib.format.read_array(io.BytesIO(content), allow_pickle=False))
+    with ONE_READER:
+        return np.asarray(np.lib.format.read_array(io.BytesIO(content), allow_pickle=False))
 
 
 def _difference(found: Any, program: Mapping[str, str]) -> str:

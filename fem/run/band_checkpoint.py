@@ -53,7 +53,9 @@ class BandFolder:
             try:
                 beginning = read_beginning(path, model, mark)
             except CheckpointError as error:
-                self._reporter.message(f"{error.path} is refused ({error.reason}): the member is begun anew")
+                self._reporter.warning(
+                    f"{error.path} is refused ({error.reason}): its member starts over at t = 0"
+                )
             else:
                 progress = beginning.progress
                 put_back(model, recorder, beginning.arrays or {})

@@ -65,8 +65,8 @@ class PartFolder:
                 self._number += 1
             except CheckpointError as error:
                 if path.exists():
-                    self._reporter.message(
-                        f"{path} is refused ({error.reason}): the set-up goes on before it"
+                    self._reporter.warning(
+                        f"{path} is refused ({error.reason}): the set-up continues with the parts before it"
                     )
         return self._ahead.pop(name, None) if self._going_on else None
 

@@ -33,6 +33,9 @@ class Reporter(Protocol):
     def message(self, text: str) -> None:
         """A sentence for the user, once."""
 
+    def warning(self, text: str) -> None:
+        """A sentence that the user must see, also without progress: work that was lost."""
+
     def finish(self) -> None:
         """The work has ended, in whatever way; may be called twice."""
 
@@ -52,6 +55,9 @@ class SilentReporter:
     def message(self, text: str) -> None:
         """Nothing."""
 
+    def warning(self, text: str) -> None:
+        """Nothing."""
+
     def finish(self) -> None:
         """Nothing."""
 
@@ -61,7 +67,7 @@ class ScreenReporter:
 
     Args:
         console: where to; the error stream by default.
-        quiet: no progress and no messages; errors are not its matter.
+        quiet: no progress and no messages, but warnings; errors are not its matter.
         now: a clock that does not go back [s].
     """
 
@@ -112,7 +118,11 @@ class ScreenReporter:
     def message(self, text: str) -> None:
         """Print a sentence; a line in place moves down and stays."""
         if not self._quiet:
-            self._console.print(Text(text), soft_wrap=True)
+            self.warning(text)
+
+    def warning(self, text: str) -> None:
+        """Print a sentence, quiet or not."""
+        self._console.print(Text(text), soft_wrap=True)
 
     def finish(self) -> None:
         """Take the line away."""

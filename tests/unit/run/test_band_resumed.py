@@ -119,7 +119,7 @@ def test_a_members_checkpoint_that_cannot_be_trusted_is_named_and_begun_anew(tmp
     model = build_model(load_case("rocking", [*SHORT, "solver.model=rigid"]))
     messages: list[str] = []
     reporter = SilentReporter()
-    reporter.message = messages.append
+    reporter.warning = messages.append
     place = RunFolder(path=tmp_path)
     path = place.member_checkpoint(2)
     path.parent.mkdir()
@@ -134,7 +134,7 @@ def test_a_members_checkpoint_that_cannot_be_trusted_is_named_and_begun_anew(tmp
         keeper.keep(progress, at_once=True)  # in its place
     (message,) = messages
     assert str(path) in message
-    assert "begun anew" in message
+    assert "starts over" in message
     assert read_beginning(path, model, case_hash(model.case)).progress == Progress()
 
 
