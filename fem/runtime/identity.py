@@ -21,7 +21,7 @@ def versions() -> dict[str, str]:
 def program_identity() -> dict[str, str]:
     """What must be the same for a run to go on to the same bits: versions, machine, digest of the sources."""
     digest = hashlib.sha256()
-    root = Path(__file__).parents[1]
+    root = Path(__file__).parents[2]
     for source in sorted(path for package in PACKAGES for path in (root / package).rglob("*.py")):
         digest.update(source.relative_to(root).as_posix().encode())
         digest.update(source.read_bytes())
