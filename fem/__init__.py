@@ -7,7 +7,7 @@ import importlib
 import sys
 from typing import TYPE_CHECKING, Any
 
-from fem.runtime.first_signals import end_at_once
+from fem.runtime.signals import exit_on_signal
 
 if TYPE_CHECKING:
     from fem.results.reader import OpenedRun, open_run
@@ -17,7 +17,7 @@ __all__ = ["OpenedRun", "open_run"]
 if sys.argv[:1] == [
     "-m"
 ]:  # so it is while Python looks for the module of `python -m fem`, and never in a library
-    end_at_once()
+    exit_on_signal()
 
 
 def __getattr__(name: str) -> Any:

@@ -15,7 +15,7 @@ from typing import NoReturn
 
 from cyclopts import App, CycloptsError
 
-from fem.runtime.first_signals import INTERRUPTED, raise_from_now_on
+from fem.runtime.signals import INTERRUPTED, raise_on_signal
 from fem.runtime.threads import use_one_blas_thread
 
 BAD_INPUT, FAILED = 2, 3
@@ -123,7 +123,7 @@ def program() -> NoReturn:
     Before 3.12, Python ends itself by SIGINT instead where an interrupt has once come through `exec` of a text, as in
     an import that makes a named tuple, however it was caught.
     """
-    raise_from_now_on()
+    raise_on_signal()
     code = main()
     if code == INTERRUPTED:
         os._exit(code)  # both streams are flushed

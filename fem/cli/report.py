@@ -38,7 +38,7 @@ def report(
         )
     place = _place(to if to is not None else folder / PAGE)
     reporter = ScreenReporter(quiet=quiet)
-    interrupts = importlib.import_module("fem.runtime.interrupts")
+    interrupts = importlib.import_module("fem.runtime.signals")
     pages = importlib.import_module("fem.report.run_page")
     signature = pages.Signature(author=author, checker=checker, revision=revision)
     if (folder / "sweep.json").is_file():

@@ -64,7 +64,7 @@ def _conducted(folder: Path, chosen: Any, *, jobs: int | None, force: bool, quie
     """Try the statements, telling of each and of its runs."""
     laboratories = importlib.import_module("fem.paper.experiments")
     conducting = importlib.import_module("fem.paper.run")
-    interrupts = importlib.import_module("fem.runtime.interrupts")
+    interrupts = importlib.import_module("fem.runtime.signals")
     reporter = ScreenReporter(quiet=quiet)
     in_place = not quiet and sys.stderr.isatty()
 

@@ -30,8 +30,8 @@ from fem.ensemble.statistics import (
 )
 from fem.results.result_folder import COMPLETED, ResultFolder, opened_result_folder, program_of_results
 from fem.results.run_folder import FolderError
-from fem.runtime.interrupts import interruptible
 from fem.runtime.progress import Reporter, SilentReporter, clock_time
+from fem.runtime.signals import interruptible
 
 MARK, STATE = "ensemble.json", "state.npz"
 OWN = ("points.csv", "draws.csv", "base.toml", "ensemble.toml", STATE, "figures/*.svg")

@@ -30,8 +30,8 @@ from fem.response.records import (
 from fem.response.request import ResponseRequest
 from fem.results.result_folder import COMPLETED, ResultFolder, opened_result_folder, program_of_results
 from fem.results.run_folder import FolderError
-from fem.runtime.interrupts import interruptible
 from fem.runtime.progress import Reporter, SilentReporter
+from fem.runtime.signals import interruptible
 
 MARK, STATE = "response.json", "state.npz"
 OWN = ("response.csv", "sections.csv", "portraits.csv", "case.toml", STATE, "figures/*.svg")

@@ -52,8 +52,8 @@ from fem.run.size import required_disk, size_in_words
 from fem.runtime.arrays import FloatArray
 from fem.runtime.compilation import compilation_announced
 from fem.runtime.identity import versions
-from fem.runtime.interrupts import ending_at_once, interruptible
 from fem.runtime.progress import Reporter, SilentReporter
+from fem.runtime.signals import ending_at_once, interruptible
 from fem.solid.nodal_body import advance_body
 from mesh.container import ContainerMesh
 

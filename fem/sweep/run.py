@@ -22,8 +22,8 @@ from fem.results.result_folder import held
 from fem.results.run_folder import copy_data_files, naming_what_cannot_be_written
 from fem.runtime.arrays import BoolArray
 from fem.runtime.identity import program_identity, versions
-from fem.runtime.interrupts import interruptible
 from fem.runtime.progress import Reporter, SilentReporter
+from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
 from fem.sweep import perturbed
 from fem.sweep.cells import Band, Found

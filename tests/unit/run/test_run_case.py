@@ -20,8 +20,8 @@ from fem.case.case import load_case
 from fem.results.history import History, read_history
 from fem.results.run_folder import FolderError, read_result
 from fem.run.run import Run, RunOptions, run_case
-from fem.runtime.interrupts import interruptible
 from fem.runtime.progress import SilentReporter
+from fem.runtime.signals import interruptible
 
 QUICK = ("solver.model=rigid", "output.fields_s=0", "output.figures=false")
 ANGLE = math.atan(1.1 / 4.0)  #: slenderness angle of the shipped stack [rad]

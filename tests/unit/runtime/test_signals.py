@@ -38,7 +38,5 @@ def test_a_library_leaves_signals_alone():
 
 
 def test_a_signal_that_is_ignored_stays_ignored():
-    script = (
-        "signal.signal(signal.SIGINT, signal.SIG_IGN); fem.end_at_once(); os.kill(os.getpid(), signal.SIGINT)"
-    )
+    script = "signal.signal(signal.SIGINT, signal.SIG_IGN); fem.exit_on_signal(); os.kill(os.getpid(), signal.SIGINT)"
     assert outcome("a script", script) == (0, "")

@@ -1,0 +1,86 @@
+"""What Ctrl-C and SIGTERM do, from the first import of `python -m fem` to the end of a run.
+
+While the command line is imported (a good part of a second) nothing can be lost and nothing could catch an exception:
+the process ends. Then both signals raise KeyboardInterrupt. A command with results to save requests a stop at the next
+safe point. A signal that is ignored, as in a background job of a shell without job control, stays ignored.
+This module is imported first and loads no other of this program.
+"""
+
+import os
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from fem.runtime.progress import Reporter
+
+INTERRUPTED = 4  #: the exit code
+DEFAULTS: dict[signal.Signals, Any] = {
+    signal.SIGINT: signal.default_int_handler,
+    signal.SIGTERM: signal.SIG_DFL,
+}
+Handler = Callable[[int, FrameType | None], None]
+
+
+def exit_on_signal() -> None:
+    """From now on both signals end the process."""
+    _replace_defaults(_exit)
+
+
+def raise_on_signal() -> None:
+    """From now on both signals raise KeyboardInterrupt."""
+    _replace_defaults(_raise)
+
+
+@contextmanager
+def interruptible(reporter: "Reporter") -> Iterator[Callable[[], bool]]:
+    """Turn the first signal into a request to stop at the next safe point; a second Ctrl-C raises KeyboardInterrupt."""
+    received: list[int] = []
+
+    def note(number: int, frame: FrameType | None) -> None:
+        if received and number == signal.SIGINT:
+            raise KeyboardInterrupt
+        received.append(number)
+        reporter.message("stopping after the current step; press Ctrl-C again to quit now")
+
+    with _handled_by(note):
+        yield lambda: bool(received)
+
+
+@contextmanager
+def ending_at_once() -> Iterator[None]:
+    """Let both signals raise KeyboardInterrupt: for work that has nothing to save."""
+    with _handled_by(_raise):
+        yield
+
+
+@contextmanager
+def _handled_by(handler: Handler) -> Iterator[None]:
+    earlier = {}
+    for number in DEFAULTS:
+        try:
+            earlier[number] = signal.signal(number, handler)
+        except ValueError:  # not the main thread: the caller has its own means
+            break
+    try:
+        yield
+    finally:
+        for number, before in earlier.items():
+            signal.signal(number, before)
+
+
+def _replace_defaults(handler: Handler) -> None:
+    for number, default in DEFAULTS.items():
+        if signal.getsignal(number) in (default, _exit):
+            signal.signal(number, handler)
+
+
+def _exit(number: int, frame: FrameType | None) -> None:
+    os.write(2, b"interrupted\n")
+    os._exit(INTERRUPTED)
+
+
+def _raise(number: int, frame: FrameType | None) -> None:
+    raise KeyboardInterrupt
