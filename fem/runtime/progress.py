@@ -1,8 +1,7 @@
 """Progress of long work: one line with time, rate, remaining time, rotation ratio and mode.
 
-On a terminal the line is rewritten in place; elsewhere a plain line comes every few seconds; a quiet reporter
-says nothing (errors do not come this way). Reporting goes to the error stream, so that the standard output
-holds results alone.
+On a terminal the line is rewritten in place; elsewhere a plain line is printed every few seconds. Both go to the error
+stream, so that the standard output holds results alone. A quiet reporter prints warnings alone.
 """
 
 import sys
@@ -11,64 +10,64 @@ from collections.abc import Callable
 from typing import Protocol
 
 from rich.console import Console
-from rich.live import Live
+from rich.progress import Progress, TextColumn
 from rich.text import Text
 
-REDRAW_S = 0.1  #: between rewritings of the line on a terminal
+REDRAW_S = 0.1  #: between redraws of the line on a terminal
 PLAIN_S = 5.0  #: between plain lines
 
 
 class Reporter(Protocol):
-    """What a long computation tells of itself. All times are simulated seconds."""
+    """Where a long computation reports to. All times are simulated seconds."""
 
     def start(self, duration: float, begun: float = 0.0) -> None:
-        """The work begins at `begun` [s], where it was cut off before; it will go to `duration` [s]."""
+        """Work starts at `begun` [s], later than 0 in a resumed run, and will end at `duration` [s]."""
 
     def update(self, time: float, rotation_ratio: float, mode: str) -> None:
-        """It has come to `time` [s]; cheap enough to be called at every sample."""
+        """Work has reached `time` [s]; cheap enough to be called at every sample."""
 
     def tell(self, line: Callable[[], str]) -> None:
-        """How far work has come that is not one run; `line` is asked when it is time to say so again."""
+        """Progress of work that is not one run; `line` is called only when a new line is due."""
 
     def message(self, text: str) -> None:
-        """A sentence for the user, once."""
+        """A sentence for the user."""
 
     def warning(self, text: str) -> None:
-        """A sentence that the user must see, also without progress: work that was lost."""
+        """A sentence that the user must see, also when quiet: work was lost."""
 
     def finish(self) -> None:
-        """The work has ended, in whatever way; may be called twice."""
+        """Work has ended, with or without success; may be called twice."""
 
 
 class SilentReporter:
-    """Says nothing: for sweeps, tests and library use."""
+    """Prints nothing: for sweeps, tests and library use."""
 
     def start(self, duration: float, begun: float = 0.0) -> None:
-        """Nothing."""
+        """Print nothing."""
 
     def update(self, time: float, rotation_ratio: float, mode: str) -> None:
-        """Nothing."""
+        """Print nothing."""
 
     def tell(self, line: Callable[[], str]) -> None:
-        """Nothing."""
+        """Print nothing."""
 
     def message(self, text: str) -> None:
-        """Nothing."""
+        """Print nothing."""
 
     def warning(self, text: str) -> None:
-        """Nothing."""
+        """Print nothing."""
 
     def finish(self) -> None:
-        """Nothing."""
+        """Print nothing."""
 
 
 class ScreenReporter:
     """Reports to a person: in place on a terminal, by plain lines elsewhere.
 
     Args:
-        console: where to; the error stream by default.
-        quiet: no progress and no messages, but warnings; errors are not its matter.
-        now: a clock that does not go back [s].
+        console: the destination; the error stream by default.
+        quiet: no progress and no messages, but warnings; errors do not pass through a reporter.
+        now: a monotonic clock [s].
     """
 
     def __init__(
@@ -79,44 +78,40 @@ class ScreenReporter:
         now: Callable[[], float] = clock.monotonic,
     ) -> None:
         self._console = console or Console(file=sys.stderr, highlight=False)
-        self._quiet = quiet
-        self._now = now
-        self._live: Live | None = None
-        self._duration = self._begun = 0.0
-        self._began = self._due = 0.0
+        self._quiet, self._now, self._due = quiet, now, 0.0
+        self._pause = REDRAW_S if self._console.is_terminal else PLAIN_S
+        self._bar = self._new_bar()
+        self._task = self._bar.add_task("")
 
     def start(self, duration: float, begun: float = 0.0) -> None:
-        """The work begins at `begun` [s], where it was cut off before; it will go to `duration` [s]."""
+        """Work starts at `begun` [s], later than 0 in a resumed run, and will end at `duration` [s]."""
         if self._quiet:
             return
         self.finish()
-        self._duration, self._begun, self._began = duration, begun, self._now()
+        self._bar = self._new_bar()
+        self._task = self._bar.add_task("", total=duration)
+        self._bar.update(self._task, completed=begun)
+        self._bar.advance(self._task, 0.0)  # the first sample of the rate
         if self._console.is_terminal:
-            self._live = Live(console=self._console, auto_refresh=False, transient=True)
-            self._live.start()
-        self._due = self._began + self._pause
+            self._bar.start()
+        self._due = self._now() + self._pause
 
     def update(self, time: float, rotation_ratio: float, mode: str) -> None:
-        """Show the line, if the last one is old enough."""
-        elapsed = self._now() - self._began
-        begun = self._begun
-        self.tell(lambda: progress_line(time, self._duration, elapsed, rotation_ratio, mode, begun=begun))
+        """Show the line if the last one is old enough."""
+        self.tell(lambda: self._line_of_run(time, rotation_ratio, mode))
 
     def tell(self, line: Callable[[], str]) -> None:
-        """Show a line, if the last one is old enough."""
-        if self._quiet:
+        """Show a line if the last one is old enough."""
+        if self._quiet or self._now() < self._due:
             return
-        now = self._now()
-        if now < self._due:
-            return
-        self._due = now + self._pause
-        if self._live is not None:
-            self._live.update(Text(line(), no_wrap=True, overflow="ellipsis"), refresh=True)
+        self._due = self._now() + self._pause
+        if self._bar.live.is_started:
+            self._bar.update(self._task, description=line(), refresh=True)
         else:
             self._console.print(Text(line()), soft_wrap=True)
 
     def message(self, text: str) -> None:
-        """Print a sentence; a line in place moves down and stays."""
+        """Print a sentence; a line in place stays below it."""
         if not self._quiet:
             self.warning(text)
 
@@ -125,40 +120,29 @@ class ScreenReporter:
         self._console.print(Text(text), soft_wrap=True)
 
     def finish(self) -> None:
-        """Take the line away."""
-        if self._live is not None:
-            self._live.stop()
-            self._live = None
+        """Remove the line."""
+        if self._bar.live.is_started:
+            self._bar.stop()
 
-    @property
-    def _pause(self) -> float:
-        return REDRAW_S if self._live is not None else PLAIN_S
+    def _new_bar(self) -> Progress:
+        column = TextColumn("{task.description}", markup=False)
+        return Progress(column, console=self._console, auto_refresh=False, transient=True, get_time=self._now)
 
-
-def progress_line(
-    time: float, duration: float, elapsed: float, rotation_ratio: float, mode: str, *, begun: float = 0.0
-) -> str:
-    """The line itself.
-
-    Args:
-        time: simulated so far [s].
-        duration: to be simulated [s]; beyond it the run goes on until the container has fallen or come back.
-        elapsed: wall time so far [s].
-        rotation_ratio: |rotation| over the slenderness angle [-].
-        mode: state of motion.
-        begun: simulated before [s].
-    """
-    rate = (time - begun) / elapsed if elapsed > 0.0 else 0.0
-    if time >= duration:
-        remaining = "until it falls or comes back"
-    elif rate > 0.0:
-        remaining = f"{clock_time((duration - time) / rate)} left"
-    else:
-        remaining = "time left unknown"
-    return (
-        f"t = {time:.3f} of {duration:g} s, {rate:.3g} s per s, {remaining}, "
-        f"rotation ratio {rotation_ratio:.3f}, {mode}"
-    )
+    def _line_of_run(self, time: float, rotation_ratio: float, mode: str) -> str:
+        """Simulated time [s], rate [s/s], remaining wall time, rotation over the slenderness angle, state of motion."""
+        self._bar.update(self._task, completed=time)
+        task = self._bar.tasks[-1]
+        rate, duration = task.speed or 0.0, task.total or 0.0
+        if time >= duration:
+            remaining = "until it falls or comes back"
+        elif rate > 0.0:
+            remaining = f"{clock_time((duration - time) / rate)} left"
+        else:
+            remaining = "time left unknown"
+        return (
+            f"t = {time:.3f} of {duration:g} s, {rate:.3g} s per s, {remaining}, "
+            f"rotation ratio {rotation_ratio:.3f}, {mode}"
+        )
 
 
 def clock_time(seconds: float) -> str:
