@@ -7,10 +7,10 @@ from typing import Any, TypeVar
 from fem.case.case import Case, load_case
 from fem.case.files import CASES, Origin, is_there
 from fem.case.problem import leaves_the_folder
-from fem.case.tables import Table
+from fem.case.tables import CaseTable
 from fem.case.validation import CaseError, did_you_mean, problem_lines, read_table
 
-TableT = TypeVar("TableT", bound=Table)
+TableT = TypeVar("TableT", bound=CaseTable)
 
 
 def read_as(name: str, model: type[TableT], content: Mapping[str, Any]) -> TableT:

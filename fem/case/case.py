@@ -18,35 +18,35 @@ from fem.case.overrides import parse_override, with_overrides
 from fem.case.rules import RULES_OF_A_CASE
 from fem.case.tables import (
     TABLES,
-    Contact,
-    Container,
-    Heading,
-    Initial,
-    Motion,
-    Output,
-    Solver,
-    StaticRule,
-    Support,
+    CaseHeading,
+    ContactTable,
+    ContainerTable,
+    InitialTable,
+    MotionTable,
+    OutputTable,
+    SolverTable,
+    StaticTable,
+    SupportTable,
 )
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError, problem_lines, read_case_tables
 
 
-class Case(Heading):
+class Case(CaseHeading):
     """A whole case; the attributes are the tables of the case file.
 
     Raises pydantic's ValidationError when built from contradicting tables; files, overrides and
     mappings go through `load_case`, `read_case` and `with_values`, which raise `CaseError`.
     """
 
-    container: Container
-    support: Support = Field(default_factory=Support)
-    contact: Contact
-    motion: Motion
-    initial: Initial = Field(default_factory=Initial)
-    static: StaticRule = Field(default_factory=StaticRule)
-    solver: Solver = Field(default_factory=Solver)
-    output: Output = Field(default_factory=Output)
+    container: ContainerTable
+    support: SupportTable = Field(default_factory=SupportTable)
+    contact: ContactTable
+    motion: MotionTable
+    initial: InitialTable = Field(default_factory=InitialTable)
+    static: StaticTable = Field(default_factory=StaticTable)
+    solver: SolverTable = Field(default_factory=SolverTable)
+    output: OutputTable = Field(default_factory=OutputTable)
 
     _origin: Origin = PrivateAttr(default_factory=Origin)
 

@@ -17,7 +17,7 @@ from fem.case import rules as rules
 from fem.case.problem import BrokenRulesError, Rule
 
 
-class Table(BaseModel):
+class CaseTable(BaseModel):
     """A frozen table of a case file that knows the rules tying its keys together."""
 
     model_config = ConfigDict(strict=True, frozen=True, extra="forbid", allow_inf_nan=False)
@@ -43,7 +43,7 @@ def _follows(
     return lambda values: convert(values[key])
 
 
-class Container(Table):
+class ContainerTable(CaseTable):
     """One box of the container and how many of them are bolted on one another."""
 
     width_m: Annotated[float, q.LENGTH] = Field(description="outer width, along x", examples=[1.1])
@@ -107,7 +107,7 @@ class Container(Table):
         return frozenset() if self.section == "shell" else frozenset({"wall_m", "wall_density_kg_m3"})
 
 
-class Support(Table):
+class SupportTable(CaseTable):
     """Where the base may touch the floor."""
 
     kind: Literal["corners", "feet", "flat"] = Field(
@@ -127,7 +127,7 @@ class Support(Table):
         return frozenset() if self.kind == "feet" else frozenset({"foot_m"})
 
 
-class Contact(Table):
+class ContactTable(CaseTable):
     """Friction and the penalty contact of the base with the floor."""
 
     mu_static: Annotated[float, q.FRICTION] = Field(
@@ -163,7 +163,7 @@ class Contact(Table):
         return frozenset({"regularisation_velocity_m_s"}) if self.friction == "elastic-stick" else frozenset()
 
 
-class Motion(Table):
+class MotionTable(CaseTable):
     """How the floor moves; accelerations and displacements are positive toward +x."""
 
     kind: Literal["none", "harmonic", "pulse", "table"] = Field(
@@ -278,7 +278,7 @@ KEYS_OF_MOTION = {
 }
 
 
-class Initial(Table):
+class InitialTable(CaseTable):
     """Where the container starts, beside the motion of the floor."""
 
     rotation_rad: Annotated[float, q.ROTATION] = Field(
@@ -292,7 +292,7 @@ class Initial(Table):
     )
 
 
-class StaticRule(Table):
+class StaticTable(CaseTable):
     """The lateral force method the run is compared with, EN 1998-1:2004, 4.3.3.2."""
 
     ground_acceleration_m_s2: Annotated[float, q.GROUND_ACCELERATION] = Field(
@@ -307,7 +307,7 @@ class StaticRule(Table):
     importance_factor: Annotated[float, q.IMPORTANCE_FACTOR] = Field(default=1.0, description="gamma_I")
 
 
-class Solver(Table):
+class SolverTable(CaseTable):
     """Which model of the container, how finely meshed, how stepped, for how long."""
 
     model: Literal["full", "reduced", "rigid"] = Field(
@@ -348,7 +348,7 @@ class Solver(Table):
         return frozenset({"newmark_beta", "newmark_gamma"})
 
 
-class Output(Table):
+class OutputTable(CaseTable):
     """What is written, and how often."""
 
     history_s: Annotated[float, q.SAMPLING] = Field(default=0.005, description="interval of the history")
@@ -361,19 +361,19 @@ class Output(Table):
     )
 
 
-TABLES: dict[str, type[Table]] = {
-    "container": Container,
-    "support": Support,
-    "contact": Contact,
-    "motion": Motion,
-    "initial": Initial,
-    "static": StaticRule,
-    "solver": Solver,
-    "output": Output,
+TABLES: dict[str, type[CaseTable]] = {
+    "container": ContainerTable,
+    "support": SupportTable,
+    "contact": ContactTable,
+    "motion": MotionTable,
+    "initial": InitialTable,
+    "static": StaticTable,
+    "solver": SolverTable,
+    "output": OutputTable,
 }
 
 
-class Heading(Table):
+class CaseHeading(CaseTable):
     """The keys of a case file that stand before its first table."""
 
     schema_version: Annotated[int, Strict(), q.SCHEMA] = Field(

@@ -9,7 +9,7 @@ from typing import Any
 from pydantic.fields import FieldInfo
 
 from fem.case.case import Case
-from fem.case.tables import TABLES, Heading
+from fem.case.tables import TABLES, CaseHeading
 from fem.case.toml import toml_value
 from fem.case.validation import known_keys, quantity_of
 
@@ -27,7 +27,7 @@ def case_template(case: Case) -> str:
         "# Every key of a case file, with its unit and meaning. Keys in comments are alternatives.",
         "",
     ]
-    lines += _key_lines(known_keys(Heading), resolved)
+    lines += _key_lines(known_keys(CaseHeading), resolved)
     for name, table in TABLES.items():
         lines += ["", f"[{name}]  # {_first_line(table.__doc__)}"]
         lines += _key_lines(known_keys(table), resolved[name])

@@ -18,19 +18,19 @@ from pydantic_core import ErrorDetails, PydanticUndefined
 from fem.case.problem import Problem, Rule
 from fem.case.quantities import Quantity, with_unit
 from fem.case.rules import RULES_OF_A_CASE
-from fem.case.tables import TABLES, Heading, Table
+from fem.case.tables import TABLES, CaseHeading, CaseTable
 
 
 class CaseError(ValueError):
     """A case that cannot be used; the message has one line for each reason."""
 
 
-def known_keys(table: type[Table]) -> dict[str, FieldInfo]:
+def known_keys(table: type[CaseTable]) -> dict[str, FieldInfo]:
     """Keys of a table as they are written in a file, with their fields."""
     return {field.alias or name: field for name, field in table.model_fields.items()}
 
 
-TOP = known_keys(Heading)
+TOP = known_keys(CaseHeading)
 #: what values of the wrong type should have been, by pydantic's name of the fault
 KINDS = {
     "float_type": "a number",
@@ -67,7 +67,7 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
     """Read all tables of a case.
 
     Returns:
-        What could be read, by name: the heading's keys and one `Table` for each table; and every
+        What could be read, by name: the heading's keys and one `CaseTable` for each table; and every
         problem found. The first is complete only when the second is empty.
     """
     heading: dict[str, Any] = {}
@@ -80,7 +80,7 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
             problems.append(Problem(table=key, key="", reason=_unknown_table(key)))
         elif key not in TABLES:
             heading[key] = value
-    read, partial, found = read_table("", Heading, heading)
+    read, partial, found = read_table("", CaseHeading, heading)
     problems += found
     for name, model in TABLES.items():
         content = data.get(name, {})
@@ -108,7 +108,7 @@ def problem_lines(problems: Iterable[Problem], heading: str = "") -> list[str]:
 
 
 def read_table(
-    name: str, model: type[Table], content: Mapping[str, Any]
+    name: str, model: type[CaseTable], content: Mapping[str, Any]
 ) -> tuple[dict[str, Any], dict[str, Any], list[Problem]]:
     """Values as given, values by field with defaults as far as readable, and problems."""
     known = known_keys(model)
@@ -132,7 +132,7 @@ def read_table(
     return given, partial, problems
 
 
-def _partial(model: type[Table], given: Mapping[str, Any], bad: Iterable[str]) -> dict[str, Any]:
+def _partial(model: type[CaseTable], given: Mapping[str, Any], bad: Iterable[str]) -> dict[str, Any]:
     """Field values with defaults, without the keys that are bad and the defaults that follow them."""
     refused = set(bad)
     values: dict[str, Any] = {}

@@ -22,7 +22,7 @@ from fem.batch.axes import NO_AXIS, Axis, AxisError, field_of, read_axis
 from fem.batch.base_case import base_case, read_as, require_once, split_tables
 from fem.batch.expressions import Expression, ExpressionError, parse_expression
 from fem.case.files import DEFAULT_CASE, ENSEMBLES, Origin, parse_case
-from fem.case.tables import Table
+from fem.case.tables import CaseTable
 from fem.case.validation import CaseError
 from fem.ensemble.distributions import RandomQuantity, Sampling, read_random
 from fem.ensemble.intervals import least_draws
@@ -36,7 +36,7 @@ TRIED = 64  #: cases that are built to see whether axes and draws make cases at 
 REPLICATES = 16
 
 
-class EnsembleHeading(Table):
+class EnsembleHeading(CaseTable):
     """The keys of an ensemble file that stand before its first table."""
 
     case: str = Field(default=DEFAULT_CASE, description="a shipped case, or a file beside the ensemble file")

@@ -23,7 +23,7 @@ from fem.batch.base_case import base_case, flat, read_as, require_once, split_ta
 from fem.batch.expressions import Expression, ExpressionError, parse_expression
 from fem.case.case import Case
 from fem.case.files import DEFAULT_CASE, SWEEPS, Origin, parse_case
-from fem.case.tables import Table
+from fem.case.tables import CaseTable
 from fem.case.validation import CaseError, did_you_mean
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.plan import Derived, MapChoice, Sweep, in_order, value_in
@@ -34,7 +34,7 @@ MOST_AXES = 4
 TRIED = 64
 
 
-class SweepHeading(Table):
+class SweepHeading(CaseTable):
     """The keys of a sweep file that stand before its first table."""
 
     case: str = Field(default=DEFAULT_CASE, description="a shipped case, or a file beside the sweep file")

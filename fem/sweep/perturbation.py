@@ -14,7 +14,7 @@ from pydantic import Field
 
 from fem.case.case import Case
 from fem.case.quantities import CONTACT_DAMPING, Quantity
-from fem.case.tables import Table
+from fem.case.tables import CaseTable
 
 SHARE = Quantity(unit="", least=0.0, most=0.5, advice="0.02 is two per cent")
 FRICTION_STEP = Quantity(unit="", least=0.0, most=1.0, advice="0.02 is usual")
@@ -23,7 +23,7 @@ CLOSE = Quantity(unit="", least=0.0, advice="rotation over the slenderness angle
 TURN = 2.0 * math.pi
 
 
-class Perturbation(Table):
+class Perturbation(CaseTable):
     """Which cells are perturbed, and how much."""
 
     cells: Literal["auto", "near", "all", "none"] = Field(

@@ -16,7 +16,7 @@ from fem.batch.axes import Axis
 from fem.batch.case_maker import CaseMaker
 from fem.batch.expressions import Expression, ExpressionError
 from fem.case.case import Case
-from fem.case.tables import TABLES, Table
+from fem.case.tables import TABLES, CaseTable
 from fem.case.validation import CaseError, known_keys
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.threshold import Threshold
@@ -44,7 +44,7 @@ class Derived:
     expression: Expression
 
 
-class MapChoice(Table):
+class MapChoice(CaseTable):
     """Which axes span the maps."""
 
     x: str | None = Field(default=None, description="key of an axis; default: one with the most values")

@@ -15,12 +15,12 @@ import numpy as np
 from pydantic import Field
 
 from fem.case.quantities import Quantity
-from fem.case.tables import Table
+from fem.case.tables import CaseTable
 
 RESOLUTION = Quantity(unit="", above=0.0, most=1.0, advice="0.01 is one per cent")
 
 
-class Threshold(Table):
+class Threshold(CaseTable):
     """Along which axis changes of outcome are closed in on, and how far."""
 
     axis: str = Field(description="the key of one of the axes", examples=["motion.peak_acceleration_m_s2"])

@@ -20,7 +20,7 @@ from pydantic.fields import FieldInfo
 from fem.case.files import CASES
 from fem.case.overrides import with_overrides
 from fem.case.quantities import Quantity
-from fem.case.tables import TABLES, Heading
+from fem.case.tables import TABLES, CaseHeading
 from fem.case.toml import toml_value
 from fem.case.validation import known_keys, quantity_of
 from mesh.container import build_container_mesh
@@ -42,7 +42,7 @@ class Input:
 
 
 #: every key of a case file, dotted
-FIELDS: dict[str, FieldInfo] = known_keys(Heading) | {
+FIELDS: dict[str, FieldInfo] = known_keys(CaseHeading) | {
     f"{table}.{key}": info for table, model in TABLES.items() for key, info in known_keys(model).items()
 }
 #: ranges, for values that are meant to be valid, of what a run takes long for

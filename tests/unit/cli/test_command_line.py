@@ -205,11 +205,11 @@ class TestSchema:
     def test_is_json_and_knows_every_key_with_its_range(self, capsys):
         assert command_line.main(["schema"]) == 0
         schema = json.loads(capsys.readouterr().out)
-        width = schema["$defs"]["Container"]["properties"]["width_m"]
+        width = schema["$defs"]["ContainerTable"]["properties"]["width_m"]
         assert (width["minimum"], width["maximum"], width["x-unit"]) == (1e-3, 100.0, "m")
         assert "schema" in schema["properties"]
         assert schema["additionalProperties"] is False
-        assert schema["$defs"]["Motion"]["required"] == ["kind"]
+        assert schema["$defs"]["MotionTable"]["required"] == ["kind"]
 
 
 class TestCheck:
