@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 from fem.case.case import Case, load_case
 from fem.case.files import CASES, Origin, is_there
-from fem.case.problem import leaves_the_folder
+from fem.case.problem import outside_the_folder, stays_in_the_folder
 from fem.case.tables import CaseTable
 from fem.case.validation import CaseError, did_you_mean, problem_lines, read_table
 
@@ -75,9 +75,8 @@ def base_case(name: str, changes: Mapping[str, Any], origin: Origin) -> Case:
     Raises:
         CaseError: there is neither, it leads out of that folder, or it cannot be used.
     """
-    problem = leaves_the_folder("case", name)
-    if problem is not None:
-        raise CaseError(f"{problem.key} {problem.reason}")
+    if not stays_in_the_folder(name):
+        raise CaseError(f"case {outside_the_folder(name)}")
     path = origin.folder / name
     is_file = is_there(Path.is_file, path)
     if is_file and not path.resolve().is_relative_to(origin.folder.resolve()):

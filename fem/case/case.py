@@ -15,7 +15,7 @@ from pydantic import Field, PrivateAttr
 
 from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
 from fem.case.overrides import parse_override, with_overrides
-from fem.case.rules import RULES_OF_A_CASE
+from fem.case.rules import CASE_RULES
 from fem.case.tables import (
     TABLES,
     CaseHeading,
@@ -50,7 +50,7 @@ class Case(CaseHeading):
 
     _origin: Origin = PrivateAttr(default_factory=Origin)
 
-    rules = RULES_OF_A_CASE
+    rules = CASE_RULES
 
     @property
     def name(self) -> str:

@@ -1,6 +1,6 @@
-"""Why a case is refused: one key, one reason, one way out."""
+"""Rules between the keys of a case, and the problems of a case that breaks them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath, PureWindowsPath
 from typing import Any
@@ -10,11 +10,11 @@ from fem.case.quantities import with_unit
 
 @dataclass(frozen=True, kw_only=True)
 class Problem:
-    """Why a case is refused: the key (empty for a whole table) and the reason with its way out."""
+    """Why a case is refused."""
 
-    key: str
-    reason: str
-    table: str = ""  #: empty: the table that the rule was asked about
+    table: str  #: empty: the keys before the first table
+    key: str  #: empty: the whole table
+    reason: str  #: with a way out
 
 
 class BrokenRulesError(ValueError):
@@ -25,19 +25,50 @@ class BrokenRulesError(ValueError):
         self.problems = tuple(problems)
 
 
-Rule = Callable[[Any], Problem | None]
+@dataclass(frozen=True)
+class Rule:
+    """One relation between keys: the key it is about, whether it holds, and the reason if it does not.
+
+    It reads keys only, so that it can also judge a table of which other keys are wrong: a rule that reads a wrong key
+    is left out, all others are judged, and one look at the messages of a file is enough to correct it.
+    """
+
+    place: str  #: dotted key
+    holds: Callable[[Any], bool]  #: for a table, or for a whole case
+    reason: str | Callable[[Any], str]  #: keys of the table stand in it in braces
 
 
-def leaves_the_folder(key: str, path: str | None) -> Problem | None:
-    """A problem if the path may leave the folder of the case file; None if it stays, or is not given."""
+def broken(rules: Iterable[Rule], subject: Any) -> list[Problem]:
+    """Problems of a table or a case, as far as its keys could be read."""
+    problems = []
+    for rule in rules:
+        try:
+            if rule.holds(subject):
+                continue
+            said = (
+                rule.reason.format_map(vars(subject))
+                if isinstance(rule.reason, str)
+                else rule.reason(subject)
+            )
+        except AttributeError:  # it reads a key that is refused already
+            continue
+        table, _, key = rule.place.partition(".")
+        problems.append(Problem(table=table, key=key, reason=said))
+    return problems
+
+
+def stays_in_the_folder(path: str | None) -> bool:
+    """Whether a path, if there is one, names a file in the folder of the case file or below it."""
     if path is None:
-        return None
+        return True
     name = PurePosixPath(path)
     leaves = name.is_absolute() or ".." in name.parts or PureWindowsPath(path).drive or "\\" in path
-    if path.strip() and path.isprintable() and not leaves:
-        return None
-    return Problem(
-        key=key,
-        reason=f"must name a file in the folder of the case file or below it, got {with_unit(path, '')}; "
-        "copy the file there and give its relative path, with forward slashes",
+    return bool(path.strip() and path.isprintable() and not leaves)
+
+
+def outside_the_folder(path: str) -> str:
+    """The reason why such a path is refused."""
+    return (
+        f"must name a file in the folder of the case file or below it, got {with_unit(path, '')}; "
+        "copy the file there and give its relative path, with forward slashes"
     )

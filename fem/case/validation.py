@@ -1,8 +1,7 @@
-"""From what stands in a case file to its tables, or to every reason why not.
+"""Read the tables of a case file, or find every reason why they cannot be used.
 
-One pass collects all that is wrong: keys that nobody knows, values of the wrong type or out of
-range, and rules broken among the keys that could be read. Each reason is one line: table, key, what
-is required, the value with its unit, and what to do.
+One pass collects all that is wrong: unknown keys, values of the wrong type or out of range, and broken rules among the
+keys that could be read. Each reason is one line: table, key, what is required, the value with its unit, and what to do.
 """
 
 import datetime
@@ -15,9 +14,9 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticUndefined
 
-from fem.case.problem import Problem, Rule
+from fem.case.problem import Problem, broken
 from fem.case.quantities import Quantity, with_unit
-from fem.case.rules import RULES_OF_A_CASE
+from fem.case.rules import CASE_RULES
 from fem.case.tables import TABLES, CaseHeading, CaseTable
 
 
@@ -91,8 +90,7 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
         partial[name] = SimpleNamespace(**part)
         if not found:
             read[name] = model.model_validate(given)
-    problems += _broken(RULES_OF_A_CASE, SimpleNamespace(**partial), "")
-    return read, problems
+    return read, problems + broken(CASE_RULES, SimpleNamespace(**partial))
 
 
 def problem_lines(problems: Iterable[Problem], heading: str = "") -> list[str]:
@@ -101,9 +99,9 @@ def problem_lines(problems: Iterable[Problem], heading: str = "") -> list[str]:
     ranked = sorted(problems, key=lambda problem: order.index(problem.table) if problem.table in order else 0)
     lines = []
     for problem in ranked:
-        place = f"[{problem.table}] " if problem.table else ""
-        comma = "" if not problem.key or problem.reason.startswith((",", ";")) else " "
-        lines.append(f"{heading}{place}{problem.key}{comma}{problem.reason}")
+        table = f"[{problem.table}] " if problem.table else ""
+        space = " " if problem.key and not problem.reason.startswith(",") else ""
+        lines.append(f"{heading}{table}{problem.key}{space}{problem.reason}")
     return lines
 
 
@@ -128,8 +126,7 @@ def read_table(
     for key, details in reasons.items():
         problems.append(Problem(table=name, key=key, reason=_reason(known[key], details)))
     partial = _partial(model, given, reasons.keys())
-    problems += _broken(model.rules, SimpleNamespace(**partial), name)
-    return given, partial, problems
+    return given, partial, problems + broken(model.rules, SimpleNamespace(**partial))
 
 
 def _partial(model: type[CaseTable], given: Mapping[str, Any], bad: Iterable[str]) -> dict[str, Any]:
@@ -152,48 +149,37 @@ def _partial(model: type[CaseTable], given: Mapping[str, Any], bad: Iterable[str
     return values
 
 
-def _broken(rules: Iterable[Rule], subject: SimpleNamespace, table: str) -> list[Problem]:
-    """Problems of the rules that can be judged with the keys at hand."""
-    problems = []
-    for rule in rules:
-        try:
-            problem = rule(subject)
-        except AttributeError:  # a key it asks for could not be read: its own problem is already told
-            continue
-        if problem is not None:
-            owner = problem.table or table
-            problems.append(Problem(table=owner, key=problem.key, reason=problem.reason))
-    return problems
-
-
 def _reason(field: FieldInfo, details: list[ErrorDetails]) -> str:
     """One reason for all that pydantic says of one key."""
-    out_of_range = [detail for detail in details if detail["type"] == "value_error"]
-    detail = (out_of_range or details)[0]
+    faults = {detail["type"]: detail for detail in details}
+    detail = faults.get("value_error", details[0])
     value = detail["input"]
     quantity = quantity_of(field.annotation, field.metadata)
     unit = quantity.unit if quantity else ""
-    kinds = {entry["type"] for entry in details}
-    if out_of_range:
+    if "value_error" in faults:
         return str(detail.get("ctx", {}).get("error", detail["msg"]))
-    if "missing" in kinds:
+    if "missing" in faults:
         example = f", for instance {field.examples[0]!r}" if field.examples else ""
-        what = f"{field.description}{example} {unit}".strip().replace("'", '"')
-        return f"is missing: {what}"
-    if "literal_error" in kinds and len(kinds) > 1:
+        return f"is missing: {field.description}{example} {unit}".strip().replace("'", '"')
+    if "literal_error" in faults and len(faults) > 1:
         return f'must be a number or "auto", got {_shown(value)}'
-    if "literal_error" in kinds:
-        choices = [choice for choice in get_args(field.annotation) if isinstance(choice, str)]
-        choices = choices or [c for part in get_args(field.annotation) for c in get_args(part)]
+    if "literal_error" in faults:
+        choices = choices_of(field.annotation)
         near = did_you_mean(value, choices) if isinstance(value, str) else ""
         listed = " or ".join(f'"{choice}"' for choice in choices)
         return f"must be {listed}, got {_shown(value)}" + (f"; {near}" if near else "")
-    for kind, words in KINDS.items():
-        if kind in kinds:
-            hint = _number_in_text(value, unit) if isinstance(value, str) and quantity else ""
-            shown = repr(value) if isinstance(value, float) else _shown(value)
-            return f"must be {words}, got {shown}{hint}"
-    return f"{requirement_of(detail)}, got {_shown(value)}"
+    hint = (
+        _number_in_text(value, unit) if isinstance(value, str) and quantity and faults.keys() & KINDS else ""
+    )
+    return f"{requirement_of(detail)}, got {repr(value) if isinstance(value, float) else _shown(value)}{hint}"
+
+
+def choices_of(annotation: Any) -> list[str]:
+    """The words that a field may hold; optional fields included."""
+    parts = get_args(annotation)
+    return [part for part in parts if isinstance(part, str)] or [
+        c for part in parts for c in choices_of(part)
+    ]
 
 
 def requirement_of(detail: ErrorDetails) -> str:
@@ -218,7 +204,7 @@ def requirement_of(detail: ErrorDetails) -> str:
 
 
 def _number_in_text(text: str, unit: str) -> str:
-    """How to write what stands in quotes, or in a way that TOML does not read as a number."""
+    """How to write a number that stands in quotes, or that TOML does not read as a number."""
     try:
         return f"; write {float(text)!r}"
     except ValueError:
