@@ -1,9 +1,10 @@
-"""Find a case, a sweep, an ensemble and read its text: a file of the user, or one that comes with the program.
+"""Find a case, sweep or ensemble and read it: a file of the user, or one that comes with the program.
 
-Such a file is data from anywhere: its size is checked before it is read, and what is no text or no TOML is
-refused with the line.
+A file of the user may hold anything: its size is checked before it is read, what is no text or no TOML is refused with
+the line and a way out, and a file of another kind with the command that computes it.
 """
 
+import re
 import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -16,12 +17,33 @@ from fem.case.validation import CaseError, did_you_mean
 
 DEFAULT_CASE = "seed_stack_plateau"
 LARGEST_FILE = 1_000_000  # bytes; a case file has a few thousand
+#: kind of a file -> the command that computes it
+COMMANDS = {"case": "run", "sweep": "sweep", "ensemble": "ensemble"}
+#: kind of a file -> keys and tables that make it one
+MARKS = {
+    "ensemble": {"random", "draws", "sampling", "replicates"},
+    "sweep": {"axes", "perturbation", "threshold", "maps"},
+    "case": {"container", "contact", "motion"},
+}
+#: what people write that TOML does not read: pattern of the line, and the way out
+SLIPS = (
+    (r"=\s*[-+]?\d+,\d", "write numbers with a decimal point, such as 1.1, not with a comma"),
+    (r'"[^"]*\\', 'write paths with forward slashes, such as "records/floor.csv"'),
+    (r"=\s*[-+]?\.\d", "write a digit before the decimal point, such as 0.4"),
+    (r"=\s*[-+]?\d+\.(\s|$)", "write a digit after the decimal point, such as 4.0"),
+    (r"=\s*[-+]?[\d.]+(e[-+]?\d+)?\s*[a-zA-Z%]", "give the bare number; its unit stands in the key"),
+    (r"=\s*(True|False)\b", "write true or false in small letters"),
+    (r"=\s*[A-Za-z]", 'put text in quotes, such as kind = "harmonic"'),
+    (r"^\s*[\w.]+\s*:", "write = between a key and its value"),
+    (r"=\s*(#|$)", "give a value behind =, or put # before the line"),
+)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Origin:
     """Where a case comes from; it plays no part when two cases are compared."""
 
+    kind: str = field(default="case", compare=False)  #: of the file: a key of `COMMANDS`
     name: str = field(default="case", compare=False)  #: file stem or name of the shipped case
     place: str = field(default="case", compare=False)  #: how messages call it: path or name
     folder: Path = field(default_factory=Path, compare=False)  #: where its mesh and motion files are
@@ -71,12 +93,17 @@ class Collection:
         name = str(name_or_path)
         if is_there(Path.is_file, name):
             path = Path(name)
-            return Origin(name=path.stem, place=str(path), folder=path.parent, text=_read_text(path))
+            return Origin(
+                kind=self.kind, name=path.stem, place=str(path), folder=path.parent, text=_read_text(path)
+            )
         if name in self.names:
             return self.shipped(name)
         if name and is_there(Path.is_dir, name):
             example = f", for instance {Path(name) / 'resolved.toml'}" if self is CASES else ""
             raise CaseError(f"{name!r} is a folder; give the {self.kind} file{example}")
+        for other in COLLECTIONS:
+            if name in other.names:
+                raise CaseError(_other_kind(name, other.kind))
         name = name if len(name) <= 200 else f"{name[:200]} ..."
         raise CaseError(
             f"no {self.kind} file {name!r} and no shipped {self.kind} of that name{self.hint(Path(name).stem)}"
@@ -84,7 +111,7 @@ class Collection:
 
     def shipped(self, name: str) -> Origin:
         """One that comes with the program, whatever files there are."""
-        return Origin(name=name, place=name, text=self.text(name))
+        return Origin(kind=self.kind, name=name, place=name, text=self.text(name))
 
     def hint(self, name: str) -> str:
         """The one that may have been meant, and all there are."""
@@ -95,22 +122,41 @@ class Collection:
 CASES = Collection("case", "case")
 SWEEPS = Collection("sweep", "sweep")
 ENSEMBLES = Collection("ensemble", "ensemble")
+COLLECTIONS = (CASES, SWEEPS, ENSEMBLES)
 
 
 def parse_case(origin: Origin) -> dict[str, Any]:
-    """The tables of a case file as TOML reads them.
+    """The tables of a file as TOML reads them.
 
     Raises:
-        CaseError: if it is no TOML, with the line.
+        CaseError: if it is no TOML, with the line and a way out, or a file of another kind.
     """
     try:
-        return tomllib.loads(origin.text)
-    except tomllib.TOMLDecodeError as error:
-        raise CaseError(f"{origin.place}: not a TOML file: {error}") from error
+        data = tomllib.loads(origin.text)
     except RecursionError as error:
         raise CaseError(f"{origin.place}: not a case file: lists or tables nested too deep") from error
-    except ValueError as error:  # a whole number of thousands of digits
-        raise CaseError(f"{origin.place}: not a TOML file: {error}") from error
+    except ValueError as error:  # TOMLDecodeError, or a whole number of thousands of digits
+        raise CaseError(f"{origin.place}: not a TOML file: {error}{_slip_in(origin.text, error)}") from error
+    kinds = [kind for kind, marks in MARKS.items() if not marks.isdisjoint(data)]
+    if kinds and (origin.kind not in kinds or (origin.kind == "sweep" and "ensemble" in kinds)):
+        raise CaseError(_other_kind(origin.place, kinds[0]))
+    return data
+
+
+def _other_kind(place: str, kind: str) -> str:
+    article = "an" if kind == "ensemble" else "a"
+    return f"{place}: this is {article} {kind} file: python -m fem {COMMANDS[kind]} {place}"
+
+
+def _slip_in(text: str, error: ValueError) -> str:
+    """The line that is no TOML and the way out, for the slips that people make."""
+    place = re.search(r"line (\d+)", str(error))
+    lines = text.splitlines()
+    if place is None or int(place[1]) > len(lines):
+        return ""
+    line = lines[int(place[1]) - 1].strip()
+    way_out = next((advice for pattern, advice in SLIPS if re.search(pattern, line)), "")
+    return f"\n  {line[:80]}" + (f"\n  {way_out}" if way_out else "")
 
 
 def _read_text(path: Path) -> str:
