@@ -7,7 +7,6 @@ stream, so that the standard output holds results alone. A quiet reporter prints
 import sys
 import time as clock
 from collections.abc import Callable
-from typing import Protocol
 
 from rich.console import Console
 from rich.progress import Progress, TextColumn
@@ -17,8 +16,8 @@ REDRAW_S = 0.1  #: between redraws of the line on a terminal
 PLAIN_S = 5.0  #: between plain lines
 
 
-class Reporter(Protocol):
-    """Where a long computation reports to. All times are simulated seconds."""
+class Reporter:
+    """Where a long computation reports to; this one prints nothing. All times are simulated seconds."""
 
     def start(self, duration: float, begun: float = 0.0) -> None:
         """Work starts at `begun` [s], later than 0 in a resumed run, and will end at `duration` [s]."""
@@ -39,29 +38,11 @@ class Reporter(Protocol):
         """Work has ended, with or without success; may be called twice."""
 
 
-class SilentReporter:
+class SilentReporter(Reporter):
     """Prints nothing: for sweeps, tests and library use."""
 
-    def start(self, duration: float, begun: float = 0.0) -> None:
-        """Print nothing."""
 
-    def update(self, time: float, rotation_ratio: float, mode: str) -> None:
-        """Print nothing."""
-
-    def tell(self, line: Callable[[], str]) -> None:
-        """Print nothing."""
-
-    def message(self, text: str) -> None:
-        """Print nothing."""
-
-    def warning(self, text: str) -> None:
-        """Print nothing."""
-
-    def finish(self) -> None:
-        """Print nothing."""
-
-
-class ScreenReporter:
+class ScreenReporter(Reporter):
     """Reports to a person: in place on a terminal, by plain lines elsewhere.
 
     Args:
