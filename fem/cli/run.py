@@ -9,9 +9,8 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from fem.case.case import Case, CaseError, load_case
-from fem.cli.check import chosen_numerics, page_of_numerics, peak_floor_acceleration
+from fem.cli.check import numerics_lines, preview_of
 from fem.cli.console import EXIT_CODES, Folder, Force, Overrides, Quiet, flag
-from fem.model.geometry import build_container
 from fem.results.disk import free_disk, in_units
 from fem.results.run_folder import read_result
 from fem.runtime.progress import ScreenReporter
@@ -88,12 +87,13 @@ def text_with_overrides(case: Case) -> str:
 
 def plan_of(case: Case, folder: Path) -> dict[str, Any]:
     """What would be computed, and where it would go."""
+    preview = preview_of(case)
     return {
         "case": case.name,
         "folder": str(folder),
         "free_bytes": free_disk(folder),
-        "peak_floor_acceleration_m_s2": peak_floor_acceleration(case),
-        "numerics": chosen_numerics(case, build_container(case)),
+        "peak_floor_acceleration_m_s2": preview.peak,
+        "numerics": preview.numerics,
     }
 
 
@@ -107,4 +107,4 @@ def page_of_plan(case: Case, plan: dict[str, Any]) -> str:
         f"  folder      {plan['folder']}{there}",
         f"  floor       {case.motion.kind}, peak {plan['peak_floor_acceleration_m_s2']:.4g} m/s2",
     ]
-    return "\n".join(lines + page_of_numerics(plan["numerics"]))
+    return "\n".join(lines + numerics_lines(plan["numerics"]))

@@ -16,6 +16,9 @@ from dataclasses import dataclass
 
 from fem.results.run_result import ActionResult, StaticResult
 
+from fem.case.case import Case
+from mesh.container import ContainerMesh
+
 LIMIT_PERIOD = 2.0  # s, EN 1998-1:2004, 4.3.3.2.1 (2) a), Eq. (4.4)
 CREDIBLE_RESTITUTION = 0.5
 CLAUSE_APPLICABLE = "EN 1998-1:2004, 4.3.3.2.1 (2)"
@@ -305,6 +308,26 @@ def static_checks(
         code=under(code_base_shear(behaviour_factor)),
         code_q1=under(code_base_shear(1.0)),
         applicability=method_applicable(period=period, corner_period=corner_period),
+    )
+
+
+def static_checks_of(case: Case, mesh: ContainerMesh, peak_floor_acceleration: float) -> StaticChecks:
+    """Static checks of a case's container on its mesh, under the peak acceleration of its own floor [m/s2]."""
+    return static_checks(
+        mass=mesh.mass,
+        centroid=mesh.centroid[1],
+        inertia=mesh.inertia,
+        width=mesh.width,
+        gravity=case.gravity_m_s2,
+        mu_static=case.contact.mu_static,
+        mu_kinetic=case.contact.mu_kinetic,
+        peak_floor_acceleration=peak_floor_acceleration,
+        ground_acceleration=case.static.ground_acceleration_m_s2,
+        soil_factor=case.static.soil_factor,
+        corner_period=case.static.corner_period_s,
+        behaviour_factor=case.static.behaviour_factor,
+        importance_factor=case.static.importance_factor,
+        initial_rotation=case.initial.rotation_rad,
     )
 
 

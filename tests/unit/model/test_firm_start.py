@@ -3,7 +3,7 @@
 import pytest
 
 from fem.case.case import CaseError, load_case
-from fem.cli.check import chosen_numerics
+from fem.cli.check import preview_of
 from fem.model.geometry import build_container
 from fem.model.model import build_model
 from fem.run.recorder import Recorder
@@ -32,7 +32,7 @@ def test_a_floor_into_which_the_container_sinks_by_itself_is_refused_by_check_an
     with pytest.raises(CaseError, match=reason):
         build_model(case)
     with pytest.raises(CaseError, match=reason):
-        chosen_numerics(case, build_container(case))
+        preview_of(case).numerics
 
 
 def test_friction_without_springs_begins_without_their_energy():
