@@ -8,23 +8,20 @@ from textwrap import fill
 from typing import Any
 
 from fem.case.case import Case, case_hash, load_case
-from fem.cli.console import AsJson, Overrides
+from fem.cli.console import WIDTH, AsJson, CaseName, Overrides
 from fem.model.geometry import build_container
 from fem.results.disk import in_units
 from fem.run.preview import Preview, peak_without_motion
 
 
 def check(
-    case: str | None = None,
+    case: CaseName = None,
     /,
     *,
     overrides: Overrides = (),
     as_json: AsJson = False,
 ) -> None:
-    """Print static checks, derived numbers and the numerical settings of a case; nothing is solved or written.
-
-    Example: python -m fem check my-stack.toml --set contact.mu_static=0.3
-    """
+    """Print static checks, derived numbers and numerical settings of a case; nothing is computed or written."""
     loaded = load_case(case, overrides)
     preview = preview_of(loaded)
     document = {"case": loaded.name, "asked_hash": case_hash(loaded)} | preview.to_json()

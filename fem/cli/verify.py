@@ -17,7 +17,7 @@ FOLDER = Path("outputs") / "verify"
 def verify(
     *,
     quick: Annotated[bool, flag("Leave out what takes long: two minutes.")] = False,
-    room: Annotated[tuple[str, ...], flag("Only this topic; may be repeated.")] = (),
+    room: Annotated[tuple[str, ...], flag("Only this topic; may be repeated.", "--topic", "--room")] = (),
     out: Annotated[Path, Parameter(help="Folder of verify.json and verify.html.")] = FOLDER,
     as_json: AsJson = False,
     quiet: Quiet = False,

@@ -14,9 +14,8 @@ reduced response of an elastic building: another question, in columns of its own
 import math
 from dataclasses import dataclass
 
-from fem.results.run_result import ActionResult, StaticResult
-
 from fem.case.case import Case
+from fem.results.run_result import ActionResult, StaticResult
 from mesh.container import ContainerMesh
 
 LIMIT_PERIOD = 2.0  # s, EN 1998-1:2004, 4.3.3.2.1 (2) a), Eq. (4.4)
