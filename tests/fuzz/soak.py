@@ -1,8 +1,7 @@
 """Soak: random valid cases, or extreme ones, to their ends: `python tests/fuzz/soak.py rigid 1000 | extremes [MODEL]`.
 
 Each must end: completed or overturned with its energy balance closed and an outcome of the list, failed with a reason,
-or refused with one. A random case is stuck after a minute of CPU time, an extreme one after two. Every odd one is printed
-with its name.
+or refused with one. A random case is stuck after a minute of CPU time, an extreme one after two. Odd ones are printed.
 """
 
 import collections
