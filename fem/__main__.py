@@ -26,98 +26,39 @@ WORDS = defaultdict(lambda: "another value", float="a number", int="a whole numb
 OWN_PACKAGES = {"fem", "mesh", "contact"}
 
 FLAGS = ("--help", "-h", "--version")
-#: group -> command -> import string, what it does, example
+#: group -> command -> what it does, and arguments as an example
 GROUPS = {
     "Start": {
-        "run": (
-            "fem.cli.run:run",
-            "Compute a case: does it rest, slide, rock or overturn?",
-            "python -m fem run my-stack.toml --set contact.mu_static=0.3",
-        ),
-        "check": (
-            "fem.cli.check:check",
-            "Print static checks and settings of a case without computing it.",
-            "python -m fem check my-stack.toml",
-        ),
-        "init": (
-            "fem.cli.init:init",
-            "Write a commented case, sweep or ensemble file to start from.",
-            "python -m fem init --to my-stack.toml",
-        ),
-        "list": (
-            "fem.cli.list_cases:list_cases",
-            "List the shipped cases, sweeps and ensembles.",
-            "python -m fem list",
-        ),
-        "completion": (
-            "fem.__main__:completion",
-            "Print the completion script of a shell, for `unanchored`.",
-            "unanchored completion bash >> ~/.bash_completion",
-        ),
+        "run": ("Compute a case: does it rest, slide, rock or overturn?", "my-stack.toml"),
+        "check": ("Print static checks and settings of a case without computing it.", "my-stack.toml"),
+        "init": ("Write a commented case, sweep or ensemble file to start from.", "--to my-stack.toml"),
+        "list": ("List the shipped cases, sweeps and ensembles.", ""),
+        "completion": ("Print the completion script of a shell, for `unanchored`.", "bash"),
     },
     "Many runs": {
-        "sweep": (
-            "fem.cli.sweep:sweep",
-            "Compute a case over ranges of some keys, and map the outcome.",
-            "python -m fem sweep outcome_map -j 4",
-        ),
-        "ensemble": (
-            "fem.cli.ensemble:ensemble",
-            "Estimate the probability of overturning, parameters uncertain.",
-            "python -m fem ensemble fragility -j 4",
-        ),
+        "sweep": ("Compute a case over ranges of some keys, and map the outcome.", "outcome_map -j 4"),
+        "ensemble": ("Estimate the probability of overturning, parameters uncertain.", "fragility -j 4"),
         "response": (
-            "fem.cli.response:response",
             "Compute the long-time motion over the frequency of the floor.",
-            "python -m fem response rocking --from 0.5 --to 2",
+            "rocking --from 0.5 --to 2",
         ),
     },
     "Look": {
-        "report": (
-            "fem.cli.report:report",
-            "Make one HTML page from a run, a sweep or a study.",
-            "python -m fem report outputs/my-stack --author 'A. Engineer'",
-        ),
-        "picture": (
-            "fem.cli.picture:picture",
-            "Draw one instant of a run (PNG).",
-            "python -m fem picture outputs/my-stack --time 3.2",
-        ),
-        "movie": (
-            "fem.cli.movie:movie",
-            "Animate a run (GIF or MP4).",
-            "python -m fem movie outputs/my-stack --to rocking.gif",
-        ),
-        "modes": (
-            "fem.cli.modes:modes",
-            "Compute elastic frequencies and shapes of the free container.",
-            "python -m fem modes my-stack.toml --count 10",
-        ),
+        "report": ("Make one HTML page from a run, a sweep or a study.", "outputs/my-stack"),
+        "picture": ("Draw one instant of a run (PNG).", "outputs/my-stack --time 3.2"),
+        "movie": ("Animate a run (GIF or MP4).", "outputs/my-stack --to rocking.gif"),
+        "modes": ("Compute elastic frequencies and shapes of the free container.", "my-stack.toml"),
     },
     "Trust": {
-        "verify": (
-            "fem.cli.verify:verify",
-            "Compare the program with reference solutions.",
-            "python -m fem verify --quick",
-        ),
-        "study": (
-            "fem.cli.study:study",
-            "Check every claim of the paper (Knoedel and Hrabowski) by runs.",
-            "python -m fem study seed -j 4",
-        ),
-        "doctor": (
-            "fem.cli.doctor:doctor",
-            "Report missing dependencies and how to install them.",
-            "python -m fem doctor",
-        ),
-        "schema": (
-            "fem.cli.schema:schema",
-            "Print the JSON schema of a case, sweep or ensemble file.",
-            "python -m fem schema sweep",
-        ),
+        "verify": ("Compare the program with reference solutions.", "--quick"),
+        "study": ("Check every claim of the paper (Knoedel and Hrabowski) by runs.", "seed -j 4"),
+        "doctor": ("Report missing dependencies and how to install them.", ""),
+        "schema": ("Print the JSON schema of a case, sweep or ensemble file.", "sweep"),
     },
 }
-COMMANDS = {name: command for commands in GROUPS.values() for name, command in commands.items()}
+COMMANDS = [name for commands in GROUPS.values() for name in commands]
+#: import strings of commands that are not `fem.cli.NAME:NAME`
+PLACES = {"list": "fem.cli.list_cases:list_cases", "completion": "fem.__main__:completion"}
 
 
 def build_app(name: str = "python -m fem") -> App:
@@ -134,11 +75,11 @@ def build_app(name: str = "python -m fem") -> App:
     )
     for number, (title, commands) in enumerate(GROUPS.items()):
         group = Group(title, sort_key=number)
-        for order, (command, (place, help_line, example)) in enumerate(commands.items()):
+        for order, (command, (help_line, example)) in enumerate(commands.items()):
             app.command(
-                place,
+                PLACES.get(command, f"fem.cli.{command}:{command}"),
                 name=command,
-                help=f"{help_line}\n\nExample: {example}",
+                help=f"{help_line}\n\nExample: python -m fem {command} {example}".rstrip(),
                 group=group,
                 sort_key=order,
             )
