@@ -1,75 +1,94 @@
-"""The command line, `python -m fem`.
+"""The command line, `python -m fem` or `unanchored`.
 
-Commands are loaded by name when they are called, so that help and bad input answer at once. This is the
-one place where errors of the user become a message and an exit code: 0 finished (overturned is a
-result), 2 bad input, 3 the solution failed, 4 interrupted.
+Commands are loaded by name when they are called, so that help and bad input are answered at once. This is the one place
+where errors of the user become a message and an exit code: 0 finished (overturned is a result), 2 bad input, 3 the
+solution failed, 4 interrupted.
 """
 
 import difflib
 import errno
 import os
+import re
 import sys
+from collections import defaultdict
 from collections.abc import Sequence
 from importlib import metadata
-from typing import NoReturn
+from typing import Literal, NoReturn
 
-from cyclopts import App, CycloptsError
+from cyclopts import App, CycloptsError, Group, MissingArgumentError, UnusedCliTokensError
 
 from fem.runtime.signals import INTERRUPTED, raise_on_signal
 from fem.runtime.threads import use_one_blas_thread
 
 BAD_INPUT, FAILED = 2, 3
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+WORDS = defaultdict(lambda: "another value", float="a number", int="a whole number", bool="yes or no")
 OWN_PACKAGES = {"fem", "mesh", "contact"}
 
 FLAGS = ("--help", "-h", "--version")
-COMMANDS = {
-    "run": ("fem.cli.run:run", "Compute a case: rest, slide, rock, slide-rock or overturn."),
-    "check": ("fem.cli.check:check", "Static checks, derived numbers and chosen numerics; no solution."),
-    "init": ("fem.cli.init:init", "Write a commented case, sweep or ensemble file to start from."),
-    "list": (
-        "fem.cli.list_cases:list_cases",
-        "The shipped cases, sweeps and ensembles, and what each shows.",
-    ),
-    "modes": ("fem.cli.modes:modes", "Elastic frequencies and shapes of the free container."),
-    "sweep": (
-        "fem.cli.sweep:sweep",
-        "Compute many cases, over ranges of some keys.",
-    ),
-    "report": ("fem.cli.report:report", "One self-contained page from a run, a sweep or a study."),
-    "ensemble": (
-        "fem.cli.ensemble:ensemble",
-        "Probability of overturning: fragility curve, or boundary over two axes.",
-    ),
-    "response": (
-        "fem.cli.response:response",
-        "Long-time motion, the frequency of the drive swept up and down.",
-    ),
-    "verify": ("fem.cli.verify:verify", "The verification ladder: every case with its reference."),
-    "study": ("fem.cli.study:study", "Every statement of the seed paper, tried by runs."),
-    "picture": ("fem.cli.picture:picture", "One instant of a run as a picture."),
-    "movie": ("fem.cli.movie:movie", "A run as a film."),
-    "doctor": (
-        "fem.cli.doctor:doctor",
-        "Versions, pictures, threads, disk; how to mend what is missing.",
-    ),
-    "schema": ("fem.cli.schema:schema", "JSON schema of the case file."),
+#: group -> command -> what it does, and arguments as an example
+GROUPS = {
+    "Start": {
+        "run": ("Compute a case: does it rest, slide, rock or overturn?", "my-stack.toml"),
+        "check": ("Print static checks and settings of a case without computing it.", "my-stack.toml"),
+        "init": ("Write a commented case, sweep or ensemble file to start from.", "--to my-stack.toml"),
+        "list": ("List the shipped cases, sweeps and ensembles.", ""),
+        "completion": ("Print the completion script of a shell, for `unanchored`.", "bash"),
+    },
+    "Many runs": {
+        "sweep": ("Compute a case over ranges of some keys, and map the outcome.", "outcome_map -j 4"),
+        "ensemble": ("Estimate the probability of overturning, parameters uncertain.", "fragility -j 4"),
+        "response": (
+            "Compute the long-time motion over the frequency of the floor.",
+            "rocking --from 0.5 --to 2",
+        ),
+    },
+    "Look": {
+        "report": ("Make one HTML page from a run, a sweep or a study.", "outputs/my-stack"),
+        "picture": ("Draw one instant of a run (PNG).", "outputs/my-stack --time 3.2"),
+        "movie": ("Animate a run (GIF or MP4).", "outputs/my-stack --to rocking.gif"),
+        "modes": ("Compute elastic frequencies and shapes of the free container.", "my-stack.toml"),
+    },
+    "Trust": {
+        "verify": ("Compare the program with reference solutions.", "--quick"),
+        "study": ("Check every claim of the paper (Knoedel and Hrabowski) by runs.", "seed -j 4"),
+        "doctor": ("Report missing dependencies and how to install them.", ""),
+        "schema": ("Print the JSON schema of a case, sweep or ensemble file.", "sweep"),
+    },
 }
+COMMANDS = [name for commands in GROUPS.values() for name in commands]
+#: import strings of commands that are not `fem.cli.NAME:NAME`
+PLACES = {"list": "fem.cli.list_cases:list_cases", "completion": "fem.__main__:completion"}
 
 
-def build_app() -> App:
+def build_app(name: str = "python -m fem") -> App:
     """The command line with its commands, none of them loaded."""
     app = App(
-        name="python -m fem",
-        help="Does an unanchored container rest, slide, rock or overturn when the floor moves?",
+        name=name,
+        help="Does an unanchored container rest, slide, rock or overturn when the floor moves?\n\n"
+        "`unanchored` is the same program as `python -m fem`. COMMAND --help gives an example.",
         help_format="plaintext",
         version=lambda: metadata.version("unanchored"),
+        group_commands=Group("Options", sort_key=len(GROUPS)),
         result_action="return_value",
         suppress_keyboard_interrupt=False,  # it would end the process with a code of its own
     )
-    for name, (place, help_line) in COMMANDS.items():
-        app.command(place, name=name, help=help_line)
+    for number, (title, commands) in enumerate(GROUPS.items()):
+        group = Group(title, sort_key=number)
+        for order, (command, (help_line, example)) in enumerate(commands.items()):
+            app.command(
+                PLACES.get(command, f"fem.cli.{command}:{command}"),
+                name=command,
+                help=f"{help_line}\n\nExample: python -m fem {command} {example}".rstrip(),
+                group=group,
+                sort_key=order,
+            )
     return app
+
+
+def completion(shell: Literal["bash", "zsh", "fish"] = "bash", /) -> None:
+    """Print the completion script of a shell for `unanchored`, the installed name of the program."""
+    print(build_app("unanchored").generate_completion(shell=shell))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -87,7 +106,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout.flush()
     except CycloptsError as error:
         command = f"{tokens[0]} " if tokens and tokens[0] in COMMANDS else ""
-        return _refuse(f"{error}\nsee python -m fem {command}--help")
+        return _refuse(f"{_in_words(error)}\nsee python -m fem {command}--help")
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
@@ -109,6 +128,20 @@ def _unknown_command(name: str) -> str:
     near = difflib.get_close_matches(name, COMMANDS, n=1)
     way_out = f"; did you mean {near[0]!r}?" if near else ""
     return f"no command {name!r}{way_out} (known: {', '.join(COMMANDS)})"
+
+
+def _in_words(error: CycloptsError) -> str:
+    """An error in the arguments, without the phrases of the library."""
+    if isinstance(error, UnusedCliTokensError):
+        return f"too many arguments: {' '.join(map(repr, error.unused_tokens or []))}"
+    if isinstance(error, MissingArgumentError) and error.argument is not None:
+        name = error.argument.name
+        return f"{name} needs a value" if name.startswith("-") else f"{name} is missing"
+    return re.sub(
+        r'unable to convert (".*") into (\w+)\.',
+        lambda found: f"{WORDS[found[2]]} is needed, not {found[1]}",
+        str(error),
+    )
 
 
 def _refuse(message: str, exit_code: int = BAD_INPUT) -> int:

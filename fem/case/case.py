@@ -1,8 +1,7 @@
-"""The case: one container, one base motion, and how the run is to be made, read once and frozen.
+"""The case: one container, one base motion and the settings of the run, read once and frozen.
 
-`load_case` reads a file or a shipped case into a `Case`; below that nobody sees a dictionary. All
-values are SI, the unit is part of every key. What the file leaves out has its default in the tables
-of `fem.case.tables`; what follows from several keys is a property here.
+`load_case` reads a file or a shipped case into a `Case`; all other modules work with its attributes. All values are SI,
+the unit is part of every key. Defaults are in `fem.case.tables`; what follows from several keys is a property here.
 """
 
 import hashlib
@@ -59,7 +58,7 @@ class Case(CaseHeading):
 
     @property
     def folder(self) -> Path:
-        """The folder in which mesh and motion files are looked for."""
+        """The folder of its mesh and motion files."""
         return self._origin.folder
 
     @property
@@ -69,7 +68,7 @@ class Case(CaseHeading):
 
     @property
     def overrides(self) -> tuple[str, ...]:
-        """What was changed on the command line or by a sweep, as `table.key=value`."""
+        """Changes by the command line or a sweep, as `table.key=value`."""
         return self._origin.overrides
 
     @property
@@ -80,7 +79,7 @@ class Case(CaseHeading):
             return box.weight_N / self.gravity_m_s2
         if box.density_kg_m3 is not None:
             return box.density_kg_m3 * box.box_volume
-        raise CaseError("[container] weight_N or density_kg_m3 is missing")  # a rule has seen to it
+        raise CaseError("[container] weight_N or density_kg_m3 is missing")  # excluded by a rule
 
     @property
     def mass(self) -> float:
@@ -94,7 +93,7 @@ class Case(CaseHeading):
 
     @property
     def mean_areal_density(self) -> float:
-        """Mass over elevation, the mean of what the cells of the mesh carry [kg/m2]."""
+        """Mass over the area of the elevation, the mean over the cells of the mesh [kg/m2]."""
         return self.box_mass / (self.container.width_m * self.container.height_m)
 
     @property
@@ -111,8 +110,7 @@ class Case(CaseHeading):
     def nominal_peak_acceleration(self) -> float | None:
         """A Omega^2 of a harmonic floor, the peak of a pulse, 0 of a floor at rest [m/s2].
 
-        Without ramps, and without the end of a run that stops before the peak: what the floor really
-        reaches is asked of the motion itself. None for a table, whose file is not read here.
+        Ramps are ignored, and so is the end of a run before the peak. None for a table, whose file is not read here.
         """
         match self.motion.kind:
             case "none":
@@ -125,10 +123,10 @@ class Case(CaseHeading):
 
     @property
     def data_files(self) -> dict[str, Path]:
-        """The files beside the case file that it reads, by dotted key: mesh and motion table.
+        """Mesh and motion file, as far as the case has them, by dotted key.
 
         Raises:
-            CaseError: if one is missing, is no file, or lies outside the folder of the case file.
+            CaseError: a file is missing or outside the folder of the case file.
         """
         named = {"container.mesh_file": self.container.mesh_file}
         named["motion.file"] = self.motion.file if self.motion.kind == "table" else None
@@ -141,7 +139,7 @@ class Case(CaseHeading):
         return keys | {name: content for name, content in tables.items() if content}
 
     def resolved(self) -> dict[str, Any]:
-        """Every key that plays a part, with every default written out, by table."""
+        """Every key that is used, defaults included, by table."""
         document = self.model_dump(by_alias=True, exclude=set(TABLES))
         for name in TABLES:
             table = getattr(self, name)
@@ -162,7 +160,7 @@ class Case(CaseHeading):
         return _read(with_overrides(self.given(), values), self.origin_with(values), values)
 
     def without_fields(self) -> "Case":
-        """This case without frames; not read again, for nothing depends on them."""
+        """This case without frames; not validated again, since no other key depends on them."""
         if self.output.fields_s == 0.0:
             return self
         output = self.output.model_copy(update={"fields_s": 0.0})
@@ -171,12 +169,12 @@ class Case(CaseHeading):
         )
 
     def origin_with(self, values: Mapping[str, Any]) -> Origin:
-        """Where this case with dotted keys set comes from."""
+        """The origin of this case with dotted keys set."""
         overrides = (*self.overrides, *(f"{key}={value}" for key, value in values.items()))
         return replace(self._origin, overrides=overrides)
 
     def from_origin(self, origin: Origin) -> Self:
-        """This case with another place of birth."""
+        """This case with another origin."""
         copy = self.model_copy()
         copy._origin = origin
         return copy
@@ -214,8 +212,7 @@ def to_toml(case: Case) -> str:
 def case_hash(case: Case) -> str:
     """SHA-256 of the resolved case without its title, and of the files that it reads.
 
-    Cases that differ only in a comment, in what is written out, in the keys of an option that is not
-    chosen, or in whether figures are drawn have the same hash.
+    Comments, written-out defaults, keys of options that are not chosen and `output.figures` do not change it.
 
     Raises:
         CaseError: if a mesh or motion file cannot be read.
@@ -242,7 +239,7 @@ def _read(data: Mapping[str, Any], origin: Origin, overrides: Mapping[str, Any])
 
 
 def _naming_overrides(lines: list[str], overrides: Mapping[str, Any]) -> list[str]:
-    """Say which override is to blame: behind its own key, else below the reasons."""
+    """Name each override on the line of its key, else on a line of its own."""
     named = []
     unnamed = dict(overrides)
     for line in lines:

@@ -1,7 +1,7 @@
 """Change single keys of a case: `table.key=value` from the command line, or dotted keys of a sweep.
 
-Setting one of a group of alternatives replaces the others of its group, so that a case given by
-amplitude and frequency can be asked for a peak acceleration without taking it apart.
+A key that is one of a group of alternatives replaces the others: `motion.peak_acceleration_m_s2` replaces the amplitude
+of a case given by amplitude and frequency.
 """
 
 import re
@@ -18,10 +18,10 @@ FREQUENCIES = ("angular_frequency_rad_s", "frequency_Hz")
 
 
 def parse_override(text: str) -> tuple[str, Any]:
-    """Dotted key and value of one `--set`: the value as TOML if it is, else as plain text.
+    """Dotted key and value of one `--set`; what is no TOML value is plain text.
 
     Raises:
-        CaseError: if there is no key or no value.
+        CaseError: the key or the value is missing.
     """
     key, equals, value = text.partition("=")
     key, value = key.strip(), value.strip()
@@ -40,7 +40,7 @@ def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
     """A copy of a case's data with dotted keys set, alternatives replaced.
 
     Raises:
-        CaseError: if a key names no table of a case file, or something that is no table.
+        CaseError: a key names no table of a case file.
     """
     changed = deepcopy(dict(data))
     for dotted, value in overrides.items():
@@ -59,14 +59,14 @@ def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
                 f"--set {dotted}: unknown table [{table}]{'; ' + near if near else ''} (known: {known})"
             )
         content = changed.setdefault(table, {})
-        if isinstance(content, dict):  # else the reading of the case says what is wrong with it
+        if isinstance(content, dict):  # else refused when the case is read
             content[key] = value
     _replace_alternatives(changed, overrides.keys())
     return changed
 
 
 def _replace_alternatives(data: dict[str, Any], dotted: Any) -> None:
-    """Drop what the keys just set stand in for; what was set together stays together."""
+    """Remove the alternatives of the keys just set; keys that were set together stay."""
     container, motion = data.get("container"), data.get("motion")
     if isinstance(container, dict):
         _drop_others(container, ("weight_N", "density_kg_m3"), _keys_set("container", dotted))

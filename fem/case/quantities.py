@@ -1,9 +1,8 @@
-"""The physical quantities a case file may hold: unit, allowed range, and the slips people make.
+"""The physical quantities of a case file: unit, allowed range, and common slips.
 
-Every number of a case file is SI and carries its unit in its key. A number outside its range is
-refused with the range, the value, the unit and, where it would fit in another unit that is in daily
-use (mm, kN, GPa, degrees, per cent), with that guess. The ranges leave room for every container the
-program can compute; they are there to catch a slip, not to judge a design.
+Every number of a case file is SI and carries its unit in its key. A number outside its range is refused with the range,
+the value, the unit and, where it would fit in another common unit (mm, kN, GPa, degrees, per cent), with that guess.
+The ranges include every container that the program can compute; they catch slips and do not judge a design.
 """
 
 import math
@@ -28,7 +27,7 @@ class Quantity:
     slips: Mapping[str, float] = field(
         default_factory=dict, hash=False
     )  #: other unit -> what one of it is in SI
-    advice: str = ""  #: what to do about a value out of range that is no slip
+    advice: str = ""  #: for a value out of range that is no slip
 
     def allows(self, value: float) -> bool:
         """Whether the value is a finite number within the range."""
@@ -42,7 +41,7 @@ class Quantity:
 
     @property
     def range_in_words(self) -> str:
-        """The range as it stands in a message, without its unit."""
+        """The range in words, without its unit."""
         if self.least is not None and self.most is not None:
             return (
                 f"{self.least:g}" if self.least == self.most else f"between {self.least:g} and {self.most:g}"
@@ -59,10 +58,9 @@ class Quantity:
         return " and ".join(words)
 
     def guess(self, value: float, accept: Callable[[float], bool] | None = None) -> str:
-        """The unit the value was probably meant in, as a question, or an empty string.
+        """The unit that the value was probably meant in, as a question, or an empty string.
 
-        Of the units in `slips` that bring the value into the range (and into `accept`), the one that
-        comes nearest to `typical` in order of magnitude.
+        It is the unit of `slips` that brings the value into the range (and into `accept`) and nearest to `typical`.
         """
         if self.typical is None or value == 0.0 or not math.isfinite(value):
             return ""
@@ -105,7 +103,7 @@ class Quantity:
 
 
 def with_unit(value: object, unit: str) -> str:
-    """A value as printed in a message: numbers short, text in quotes, the unit behind."""
+    """A value for a message: numbers short, text in quotes, with its unit."""
     shown = f"{value:.7g}" if isinstance(value, float) else repr(value)
     shown = shown if len(shown) <= 80 else f"{shown[:76]} ..."
     return f"{shown} {unit}" if unit else shown
@@ -175,7 +173,7 @@ ROTATION = Quantity(
     below=math.pi / 2,
     typical=0.1,
     slips=DEGREES,
-    advice="a quarter turn lies on its side",
+    advice="at a quarter turn the container lies on its side",
 )
 ANGULAR_VELOCITY = Quantity(unit="rad/s", least=-100.0, most=100.0, typical=0.5, slips=DEGREES)
 VELOCITY = Quantity(unit="m/s", least=-100.0, most=100.0, typical=0.5, slips={"mm/s": 1e-3})

@@ -1,8 +1,7 @@
 """The tables of a case file, one frozen model each: keys, units, defaults and what they mean.
 
-A key carries its unit. What stands in one field alone (type, range, unit slips) is checked by the
-field's `Quantity`; what ties several keys of one table together is a rule of `fem.case.rules`. The keys
-of an option that is not chosen are checked like all others and play no part otherwise.
+A key carries its unit. The type, range and unit of one key are checked by its `Quantity`; relations between keys are
+rules of `fem.case.rules` and `fem.case.motion_rules`. Keys of an option that is not chosen are checked and not used.
 """
 
 import math
@@ -19,20 +18,20 @@ from fem.case.rules import CONTACT_RULES, CONTAINER_RULES, SOLVER_RULES
 
 
 class CaseTable(BaseModel):
-    """A frozen table of a case file that knows the rules tying its keys together."""
+    """A frozen table of a case file, with the rules between its keys."""
 
     model_config = ConfigDict(strict=True, frozen=True, extra="forbid", allow_inf_nan=False)
     rules: ClassVar[tuple[Rule, ...]] = ()
 
     @model_validator(mode="after")
     def _obey_rules(self) -> Self:
-        """Refuse a table whose keys contradict one another, with every reason at once."""
+        """Refuse a table that breaks rules, with every reason at once."""
         if problems := broken(self.rules, self):
             raise BrokenRulesError(problems)
         return self
 
     def idle_keys(self) -> frozenset[str]:
-        """Keys that play no part because another option is chosen."""
+        """Keys that are not used because another option is chosen."""
         return frozenset(
             name for name, (key, options) in _options(type(self)).items() if getattr(self, key) not in options
         )
@@ -60,7 +59,7 @@ def _key(
         default: left out where the key must be given or its default follows others.
         follows: function of the keys above it that gives the default.
         example: for the template, where there is no default.
-        only: the key that chooses whether this one plays a part, and the options for which it does.
+        only: the key that chooses whether this one is used, and the options for which it is.
     """
     given: dict[str, Any] = {"default_factory": follows} if follows else {"default": default}
     if example is not None:
@@ -71,14 +70,14 @@ def _key(
 
 
 class ContainerTable(CaseTable):
-    """One box of the container and how many of them are bolted on one another."""
+    """One box of the container, and how many of them are bolted together."""
 
     width_m: Annotated[float, q.LENGTH] = _key("outer width, along x", example=1.1)
     height_m: Annotated[float, q.LENGTH] = _key("outer height of one box", example=1.0)
     depth_m: Annotated[float, q.LENGTH] = _key(
         "outer depth, out of the plane; default: the width", follows=lambda values: values["width_m"]
     )
-    boxes: Annotated[int, Strict(), q.BOXES] = _key("bolted on one another", 1)
+    boxes: Annotated[int, Strict(), q.BOXES] = _key("number of boxes bolted together", 1)
     weight_N: Annotated[float, q.WEIGHT] | None = _key(  # noqa: N815
         "of one box with its fill; or density_kg_m3", None, example=24525.0
     )
@@ -197,7 +196,7 @@ class MotionTable(CaseTable):
         "harmonic: cycles over which the beginning and the end are tapered", 0.0, only=("kind", "harmonic")
     )
     cycles: Annotated[float, q.CYCLES] | None = _key(
-        "harmonic: the floor stops where it comes to rest after so many cycles; default: never",
+        "harmonic: the floor stops when it next comes to rest after so many cycles; default: never",
         None,
         example=10.0,
         only=("kind", "harmonic"),
@@ -260,7 +259,7 @@ class InitialTable(CaseTable):
 
 
 class StaticTable(CaseTable):
-    """The lateral force method the run is compared with, EN 1998-1:2004, 4.3.3.2."""
+    """The lateral force method that the run is compared with, EN 1998-1:2004, 4.3.3.2."""
 
     ground_acceleration_m_s2: Annotated[float, q.GROUND_ACCELERATION] = _key(
         "reference peak ground acceleration a_gR", 1.6
@@ -274,7 +273,7 @@ class StaticTable(CaseTable):
 
 
 class SolverTable(CaseTable):
-    """Which model of the container, how finely meshed, how stepped, for how long."""
+    """Model of the container, mesh, time steps and duration."""
 
     model: Literal["full", "reduced", "rigid"] = _key(
         '"full" (every node) | "reduced" (elastic modes) | "rigid"', "reduced"
@@ -304,7 +303,7 @@ class SolverTable(CaseTable):
 
 
 class OutputTable(CaseTable):
-    """What is written, and how often."""
+    """Files to write, and their intervals."""
 
     history_s: Annotated[float, q.SAMPLING] = _key("interval of the history", 0.005)
     fields_s: Annotated[float, q.FRAME_INTERVAL] = _key("interval of the fields for ParaView; 0: none", 0.05)
@@ -331,4 +330,4 @@ class CaseHeading(CaseTable):
         default=1, alias="schema", description="of this file's keys"
     )
     title: Annotated[str, Field(max_length=500)] = _key("for people", "")
-    gravity_m_s2: Annotated[float, q.GRAVITY] = _key("g; the seed paper takes 10", 9.81)
+    gravity_m_s2: Annotated[float, q.GRAVITY] = _key("g; the paper (Knoedel and Hrabowski) takes 10", 9.81)

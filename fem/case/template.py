@@ -1,6 +1,6 @@
 """A case file with every key: value, unit and meaning, ready to be changed.
 
-It is written from the tables themselves, so that no key can be missing and no default wrong.
+It is generated from the tables, so that no key is missing and no default is wrong.
 """
 
 from collections.abc import Mapping
@@ -17,14 +17,14 @@ COMMENT_COLUMN = 34
 
 
 def case_template(case: Case) -> str:
-    """A commented case file with all keys; those that `case` leaves open stand as comments.
+    """A commented case file with all keys; those that `case` does not set are comments.
 
     Args:
         case: gives the values; the file reads back to an equal case.
     """
     resolved = case.resolved()
     lines = [
-        "# Every key of a case file, with its unit and meaning. Keys in comments are alternatives.",
+        "# Every key of a case file, with its meaning and [unit]. Keys in comments are alternatives.",
         "",
     ]
     lines += _key_lines(known_keys(CaseHeading), resolved)

@@ -1,4 +1,4 @@
-"""Write the flat tables of a case as TOML that reads back to the very same values."""
+"""Write the flat tables of a case as TOML that reads back to the same values, bit for bit."""
 
 import json
 from collections.abc import Mapping

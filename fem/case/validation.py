@@ -183,7 +183,7 @@ def choices_of(annotation: Any) -> list[str]:
 
 
 def requirement_of(detail: ErrorDetails) -> str:
-    """What pydantic asks of a value, in the words of this program."""
+    """What pydantic requires of a value, in plain words."""
     limits = detail.get("ctx", {})
     match detail["type"]:
         case kind if kind in KINDS:

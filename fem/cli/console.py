@@ -1,4 +1,4 @@
-"""What commands have in common: options that mean the same everywhere, and how a status becomes an exit code."""
+"""What commands have in common: options that mean the same everywhere, and the exit code of a status."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -6,17 +6,20 @@ from typing import Annotated
 
 from cyclopts import Parameter, Token
 
-#: of a run, a sweep, a study: 0 computed, 3 could not be, 4 interrupted
+ELSEWHERE_OUT = "run the command again, or choose another place with --out DIR"
+ELSEWHERE_TO = "run the command again, or choose another place with --to FILE"
+WIDTH = 79  #: of what is printed for people
+#: exit codes by status: 0 computed, 3 failed, 4 interrupted
 EXIT_CODES = {"completed": 0, "overturned": 0, "failed": 3, "interrupted": 4}
 
 
 def flag(text: str, *names: str) -> Parameter:
-    """A switch without a negative form; by default named as the argument is."""
+    """A switch without a negative form, named like the argument unless names are given."""
     return Parameter(name=names or None, negative=(), show_default=False, help=text)
 
 
 def _whole(kind: type, tokens: Sequence[Token]) -> int:
-    """A whole number as it stands; cyclopts would round 2.5 without a word."""
+    """A whole number; cyclopts would round 2.5 silently."""
     try:
         return int(tokens[0].value)
     except ValueError:
@@ -33,18 +36,26 @@ def whole(text: str) -> Parameter:
     return Parameter(help=text, converter=_whole)
 
 
+CaseName = Annotated[
+    str | None,
+    Parameter(name="CASE", help="A case file or the name of a shipped case; default: seed_stack_plateau."),
+]
+RunFolder = Annotated[Path, Parameter(name="RUN", help="Folder of a run, such as outputs/my-stack.")]
 Folder = Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/NAME.")]
-Overrides = Annotated[tuple[str, ...], flag("table.key=value; may be repeated.", "--set")]
+Overrides = Annotated[
+    tuple[str, ...], flag("Set a key of the case, as in contact.mu_static=0.3; may be repeated.", "--set")
+]
 Jobs = Annotated[
     int | None,
     Parameter(
         name=("--jobs", "-j"),
         show_default=False,
-        help="Cores; default: all.",
+        help="Number of cores; default: all.",
         converter=_whole,
         validator=_at_least_one,
     ),
 ]
-Force = Annotated[bool, flag("Compute anew, over what is there.")]
+Resume = Annotated[bool, flag("Continue an interrupted computation.")]
+Force = Annotated[bool, flag("Recompute and overwrite existing results.")]
 AsJson = Annotated[bool, flag("Print JSON.", "--json")]
-Quiet = Annotated[bool, flag("No progress.", "--quiet", "-q")]
+Quiet = Annotated[bool, flag("Print no progress.", "--quiet", "-q")]

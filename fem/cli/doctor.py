@@ -1,7 +1,6 @@
-"""`doctor`: what this machine has, and the line that mends what is missing."""
+"""`doctor`: missing dependencies of this machine, and how to install them."""
 
 import json
-import os
 import platform
 import shutil
 from importlib import metadata
@@ -10,6 +9,7 @@ from typing import Any
 
 from fem.cli.console import AsJson
 from fem.render.opengl import MEND, probe_rendering
+from fem.runtime.threads import cores
 
 DISTRIBUTIONS = (
     "unanchored",
@@ -26,7 +26,7 @@ DISTRIBUTIONS = (
     "jinja2",
     "filelock",
 )
-MEND_PACKAGES = "python -m pip install --upgrade unanchored"
+INSTALL_PACKAGES = "python -m pip install --upgrade unanchored"
 LEAST_FREE_GB = 1.0
 
 
@@ -34,15 +34,15 @@ def doctor(
     *,
     as_json: AsJson = False,
 ) -> None:
-    """Versions, rendering, threads and disk, and the command that mends what is missing."""
+    """Report versions, rendering, cores and free disk, and how to install what is missing."""
     versions = {name: _version(name) for name in DISTRIBUTIONS}
     rendering = probe_rendering()
     free = shutil.disk_usage(Path.cwd()).free / 1e9
     remedies = []
     if missing := [name for name, version in versions.items() if version is None]:
-        remedies.append(f"missing: {', '.join(missing)}; {MEND_PACKAGES}")
+        remedies.append(f"missing: {', '.join(missing)}; {INSTALL_PACKAGES}")
     if rendering is not None:
-        remedies.append(f"no pictures and movies (runs are not affected): {rendering}; {MEND}")
+        remedies.append(f"pictures and movies do not work (runs do): {rendering}; {MEND}")
     if free < LEAST_FREE_GB:
         remedies.append(f"only {free:.2f} GB free in {Path.cwd()}: write elsewhere with --out")
     report: dict[str, Any] = {
@@ -50,16 +50,11 @@ def doctor(
         "platform": platform.platform(),
         "versions": versions,
         "rendering": rendering is None,
-        "threads": available_threads(),
+        "threads": cores(),
         "disk_free_GB": round(free, 2),
         "remedies": remedies,
     }
     print(json.dumps(report, indent=2) if as_json else _page(report))
-
-
-def available_threads() -> int:
-    """Processors this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _version(name: str) -> str | None:

@@ -1,12 +1,12 @@
-"""`ensemble`: how probable is it that the container overturns, over strength of motion, slenderness, friction."""
+"""`ensemble`: probability of overturning with uncertain parameters."""
 
 import importlib
 import json
 from pathlib import Path
 from typing import Annotated
 
-from fem.cli.console import EXIT_CODES, Folder, Force, Jobs, Quiet, flag
-from fem.results.run_folder import to_json
+from fem.cli.console import EXIT_CODES, Folder, Force, Jobs, Quiet, Resume, flag
+from fem.results.files import to_json
 from fem.runtime.progress import ScreenReporter
 
 
@@ -16,12 +16,12 @@ def ensemble(
     *,
     out: Folder = None,
     jobs: Jobs = None,
-    resume: Annotated[bool, flag("Go on with the draws that are there.")] = False,
+    resume: Resume = False,
     force: Force = False,
     as_json: Annotated[bool, flag("Print ensemble.json.", "--json")] = False,
     quiet: Quiet = False,
 ) -> int:
-    """Draw what nobody knows beforehand and count what overturns, with confidence intervals.
+    """Sample the uncertain parameters and count how often the container overturns, with confidence intervals.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def ensemble(
     """
     asked = importlib.import_module("fem.ensemble.file").load_ensemble(ensemble)
     folder = out if out is not None else Path("outputs") / asked.name
-    # The solver is loaded only now: bad input is answered before anything is compiled.
+    # Loaded only now, so that bad input is answered before anything is compiled.
     study = importlib.import_module("fem.ensemble.run")
     done = study.run_ensemble(
         asked, folder=folder, jobs=jobs, force=force, resume=resume, reporter=ScreenReporter(quiet=quiet)

@@ -6,7 +6,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from fem.case.case import CaseError, load_case
-from fem.case.files import CASES, ENSEMBLES, SWEEPS
+from fem.case.files import COLLECTIONS, COMMANDS
 from fem.case.template import case_template
 
 
@@ -14,37 +14,32 @@ def init(
     name: str | None = None,
     /,
     *,
-    to: Annotated[Path | None, Parameter(help="The file to write; default: NAME.toml, or case.toml.")] = None,
+    to: Annotated[Path | None, Parameter(help="The file; default: NAME.toml, or case.toml.")] = None,
 ) -> None:
-    """Write a commented case, sweep or ensemble file to start from; a file that is already there is never overwritten.
+    """Write a commented case, sweep or ensemble file to start from; an existing file is never overwritten.
 
     Parameters
     ----------
     name:
-        A shipped case, sweep or ensemble (see `python -m fem list`); without it, a case file with every key there is.
+        A shipped case, sweep or ensemble (see `python -m fem list`); default: a case file with every key.
     """
-    computed_by = ""
+    kind, text = "case", ""
     if name is None:
         text = case_template(load_case())
-    elif name in SWEEPS.names:
-        text, computed_by = SWEEPS.text(name), "sweep"
-    elif name in ENSEMBLES.names:
-        text, computed_by = ENSEMBLES.text(name), "ensemble"
     else:
-        text = CASES.text(name)
+        kind = next((each.kind for each in COLLECTIONS if name in each.names), "case")
+        text = next(each for each in COLLECTIONS if each.kind == kind).text(name)
     path = to if to is not None else Path(f"{name or 'case'}.toml")
     try:
         with path.open("x", encoding="utf-8") as stream:
             stream.write(text)
     except FileExistsError:
-        raise CaseError(
-            f"{path} is already there and is not overwritten; give another name with --to"
-        ) from None
+        raise CaseError(f"{path} exists and is not overwritten; give another name with --to") from None
     except OSError as error:
         raise CaseError(
-            f"{path}: cannot be written ({error.strerror or error}); give another place with --to"
+            f"{path}: cannot be written ({error.strerror or error}); choose another place with --to"
         ) from None
-    if computed_by:
-        print(f"{path} written; python -m fem {computed_by} {path} computes it")
-        return
-    print(f"{path} written; python -m fem check {path} looks at it, python -m fem run {path} computes it")
+    print(f"{path} written; next:")
+    if kind == "case":
+        print(f"  python -m fem check {path}    static checks and settings, nothing is computed")
+    print(f"  python -m fem {COMMANDS[kind]} {path}")

@@ -1,21 +1,35 @@
 """`list`: the shipped cases, sweeps and ensembles."""
 
-from fem.case.files import CASES, DEFAULT_CASE, ENSEMBLES, SWEEPS
+import json
+from textwrap import fill
+
+from fem.case.files import COLLECTIONS, COMMANDS, DEFAULT_CASE
+from fem.cli.console import WIDTH, AsJson
 
 
-def list_cases() -> None:
-    """Print the name of every shipped case, sweep and ensemble and what it shows."""
-    width = max(len(name) for name in (*CASES.names, *SWEEPS.names, *ENSEMBLES.names))
-    for name in CASES.names:
-        mark = " (default)" if name == DEFAULT_CASE else ""
-        print(f"{name:{width}}  {CASES.description(name)}{mark}")
-    print("\nSweeps, many cases each:")
-    for name in SWEEPS.names:
-        print(f"{name:{width}}  {SWEEPS.description(name)}")
-    print("\nEnsembles, what nobody knows beforehand drawn many times:")
-    for name in ENSEMBLES.names:
-        print(f"{name:{width}}  {ENSEMBLES.description(name)}")
-    print(
-        "\npython -m fem run NAME computes a case, python -m fem sweep NAME a sweep, "
-        "python -m fem ensemble NAME an ensemble; python -m fem init NAME writes any of them to a file."
-    )
+def list_cases(*, as_json: AsJson = False) -> None:
+    """List the shipped cases, sweeps and ensembles, each with its description."""
+    if as_json:
+        document = {
+            f"{collection.kind}s": [
+                {"name": name, "description": collection.description(name)} for name in collection.names
+            ]
+            for collection in COLLECTIONS
+        }
+        print(json.dumps({"default": DEFAULT_CASE} | document, indent=2))
+        return
+    width = max(len(name) for collection in COLLECTIONS for name in collection.names)
+    for collection in COLLECTIONS:
+        print(f"{collection.kind.capitalize()}s: python -m fem {COMMANDS[collection.kind]} NAME")
+        for name in collection.names:
+            mark = " (default)" if name == DEFAULT_CASE else ""
+            print(
+                fill(
+                    collection.description(name) + mark,
+                    WIDTH,
+                    initial_indent=f"{name:{width}}  ",
+                    subsequent_indent=" " * (width + 2),
+                )
+            )
+        print()
+    print("python -m fem init NAME writes any of them to a file.")

@@ -7,11 +7,12 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from fem.case.case import CaseError, load_case
-from fem.cli.console import AsJson, Overrides, whole
+from fem.cli.console import ELSEWHERE_OUT, AsJson, CaseName, Overrides, whole
 from fem.figures.modes import modes_figure
 from fem.figures.style import house_style, svg_of
 from fem.model.geometry import build_container
-from fem.results.run_folder import naming_what_cannot_be_written, write_atomically
+from fem.results.errors import writing_into
+from fem.results.files import write_atomically
 from fem.solid.assembly import assemble
 from fem.solid.modes import elastic_mode_table, elastic_modes, write_modes
 
@@ -19,21 +20,15 @@ RIGID_MODES, SHOWN = 3, 20
 
 
 def modes(
-    case: str | None = None,
+    case: CaseName = None,
     /,
     *,
-    count: Annotated[int | None, whole("How many; default: solver.elastic_modes, or 20.")] = None,
+    count: Annotated[int | None, whole("Number of modes; default: solver.elastic_modes, or 20.")] = None,
     out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/NAME/modes.")] = None,
     overrides: Overrides = (),
     as_json: AsJson = False,
 ) -> None:
-    """Elastic frequencies and shapes of the container, free of the floor; the shapes go to modes.vtu and modes.svg.
-
-    Parameters
-    ----------
-    case:
-        A case file or the name of a shipped case; default: seed_stack_plateau.
-    """
+    """Print elastic frequencies of the free container; the shapes go to modes.vtu and modes.svg."""
     loaded = load_case(case, overrides)
     elements = assemble(
         build_container(loaded),
@@ -44,7 +39,7 @@ def modes(
     available = elements.unknowns - RIGID_MODES
     if count is not None and not 1 <= count <= available:
         raise CaseError(f"--count {count}: this mesh has from 1 to {available} elastic modes")
-    # A case may do without elastic modes, or take all of a coarse mesh by asking for more.
+    # A case may keep no elastic modes, or more than a coarse mesh has.
     found = elastic_modes(elements, count or min(loaded.solver.elastic_modes or SHOWN, available))
     with house_style():
         drawn = modes_figure(
@@ -55,7 +50,7 @@ def modes(
             name=loaded.name,
         )
     folder = out if out is not None else Path("outputs") / loaded.name / "modes"
-    with naming_what_cannot_be_written(folder, "ask again, or elsewhere with --out DIR"):
+    with writing_into(folder, ELSEWHERE_OUT):
         path = write_modes(elements, found, folder)
         figure = path.with_suffix(".svg")
         write_atomically(figure, svg_of(drawn))

@@ -7,39 +7,33 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from fem.cli.console import Quiet
+from fem.cli.console import ELSEWHERE_TO, Quiet, RunFolder
 from fem.render.opengl import require_rendering
+from fem.results.errors import writing_into
 from fem.results.reader import open_run
-from fem.results.run_folder import naming_what_cannot_be_written
 
 
 def movie(
-    run: Path,
+    run: RunFolder,
     /,
     *,
     to: Annotated[
-        Path | None, Parameter(help="The film, .gif or .mp4; default: figures/movie.gif of the run.")
+        Path | None, Parameter(help="The file, .gif or .mp4; default: figures/movie.gif of the run.")
     ] = None,
     quiet: Quiet = False,
 ) -> None:
-    """Render the frames of a run into a film in real time; MP4 needs imageio-ffmpeg.
-
-    Parameters
-    ----------
-    run:
-        The folder of a run, such as outputs/NAME.
-    """
+    """Animate the frames of a run in real time; MP4 needs imageio-ffmpeg."""
     opened = open_run(run)
-    _ = opened.fields  # without fields there is nothing to probe for
+    _ = opened.fields  # raises where there are no frames to draw
     require_rendering()
-    # pyvista is loaded only where it can work.
+    # Loads pyvista.
     film = importlib.import_module("fem.render.movie")
-    with naming_what_cannot_be_written(to.parent if to else run, "ask again, or elsewhere with --to FILE"):
-        print(film.write_movie(opened, path=to, progress=_ignore if quiet else _tell))
+    with writing_into(to.parent if to else run, ELSEWHERE_TO):
+        print(film.write_movie(opened, path=to, progress=_ignore if quiet else _show))
 
 
-def _tell(done: int, count: int) -> None:
-    """One line on a terminal, and nothing elsewhere."""
+def _show(done: int, count: int) -> None:
+    """Progress on a terminal, nothing elsewhere."""
     if sys.stderr.isatty():
         print(f"\r{done} of {count} frames", end="" if done < count else "\n", file=sys.stderr, flush=True)
 

@@ -6,33 +6,28 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from fem.cli.console import ELSEWHERE_TO, RunFolder
 from fem.render.opengl import require_rendering
+from fem.results.errors import writing_into
 from fem.results.reader import open_run
-from fem.results.run_folder import naming_what_cannot_be_written
 
 
 def picture(
-    run: Path,
+    run: RunFolder,
     /,
     *,
     time: Annotated[
-        float | None, Parameter(help="Instant in s; default: the frame of the largest rotation.")
+        float | None, Parameter(help="Instant [s]; default: the frame of the largest rotation.")
     ] = None,
     to: Annotated[
         Path | None, Parameter(help="The PNG; default: figures/picture_TIME.png of the run.")
     ] = None,
 ) -> None:
-    """Render the deformed container on its floor: stress, contact pressure, time and rotation ratio.
-
-    Parameters
-    ----------
-    run:
-        The folder of a run, such as outputs/NAME.
-    """
+    """Draw the deformed container on its floor: stress, contact pressure, time and rotation ratio."""
     opened = open_run(run)
-    _ = opened.fields  # without fields there is nothing to probe for
+    _ = opened.fields  # raises where there are no frames to draw
     require_rendering()
-    # pyvista is loaded only where it can work.
+    # Loads pyvista.
     pictures = importlib.import_module("fem.render.picture")
-    with naming_what_cannot_be_written(to.parent if to else run, "ask again, or elsewhere with --to FILE"):
+    with writing_into(to.parent if to else run, ELSEWHERE_TO):
         print(pictures.write_picture(opened, time=time, path=to))

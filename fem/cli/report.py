@@ -6,8 +6,9 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from fem.cli.console import Quiet, flag
-from fem.results.run_folder import FolderError, naming_what_cannot_be_written, write_atomically
+from fem.cli.console import ELSEWHERE_TO, Quiet, flag
+from fem.results.errors import FolderError, writing_into
+from fem.results.files import write_atomically
 from fem.runtime.progress import ScreenReporter
 
 PAGE = "report.html"
@@ -19,13 +20,15 @@ def report(
     /,
     *,
     to: Annotated[Path | None, Parameter(help="The file; default: report.html in the folder.")] = None,
-    author: Annotated[str, Parameter(show_default=False, help="Who made it; may be filled in later.")] = "",
-    checker: Annotated[str, Parameter(show_default=False, help="Who checked it.")] = "",
-    revision: Annotated[str, Parameter(show_default=False, help="Which revision it is.")] = "",
-    all_variations: Annotated[bool, flag("Compute every variation of a run, however long it takes.")] = False,
+    author: Annotated[str, Parameter(show_default=False, help="Author; may be filled in later.")] = "",
+    checker: Annotated[str, Parameter(show_default=False, help="Checker.")] = "",
+    revision: Annotated[str, Parameter(show_default=False, help="Revision.")] = "",
+    all_variations: Annotated[
+        bool, flag("Compute every variation of a run, even if that takes long.")
+    ] = False,
     quiet: Quiet = False,
 ) -> None:
-    """Make one HTML file that can be sent, read without a network, and printed.
+    """Make one HTML file that can be sent, read offline and printed.
 
     Parameters
     ----------
@@ -55,22 +58,22 @@ def report(
                 message=reporter.message,
                 stop=stop,
             )
-    with naming_what_cannot_be_written(place.parent, "ask again, or elsewhere with --to FILE"):
+    with writing_into(place.parent, ELSEWHERE_TO):
         write_atomically(place, page)
     print(place)
 
 
 def _place(path: Path) -> Path:
-    """Where the page goes, known to be possible before anything is computed: never over a file of results."""
+    """Where the page goes, checked before anything is computed; never a file of results."""
     if path.suffix.lower() not in SUFFIXES:
         raise FolderError(f"--to {path}: the page is HTML; give a name that ends in {' or '.join(SUFFIXES)}")
     if path.is_dir():
-        raise FolderError(f"--to {path}: a folder stands there; give the name of a file in it")
+        raise FolderError(f"--to {path}: this is a folder; give the name of a file in it")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         reason = error.strerror or error
         raise FolderError(
-            f"--to {path}: no folder can be made there ({reason}); choose another place"
+            f"--to {path}: the folder cannot be made ({reason}); choose another place"
         ) from None
     return path

@@ -1,4 +1,4 @@
-"""`response`: what the container does in the long run under a harmonic drive, frequency by frequency."""
+"""`response`: long-time motion under a harmonic floor, frequency by frequency."""
 
 import importlib
 import json
@@ -8,50 +8,44 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from fem.case.case import load_case
-from fem.cli.console import EXIT_CODES, Force, Overrides, Quiet, flag, whole
+from fem.cli.console import EXIT_CODES, CaseName, Force, Overrides, Quiet, Resume, flag, whole
 from fem.runtime.progress import ScreenReporter
 
 
 def response(
-    case: str | None = None,
+    case: CaseName = None,
     /,
     *,
-    first: Annotated[float, Parameter(name="--from", help="Lowest frequency of the drive [Hz].")],
+    first: Annotated[float, Parameter(name="--from", help="Lowest frequency of the floor [Hz].")],
     last: Annotated[float, Parameter(name="--to", help="Highest frequency [Hz].")],
-    count: Annotated[int, whole("Frequencies, both ends included.")] = 41,
-    scale: Annotated[Literal["linear", "log"], Parameter(help="How they are spread.")] = "linear",
+    count: Annotated[int, whole("Number of frequencies, both ends included.")] = 41,
+    scale: Annotated[Literal["linear", "log"], Parameter(help="Their spacing.")] = "linear",
     hold: Annotated[
         Literal["displacement", "acceleration"] | None,
         Parameter(
             show_default=False,
-            help="Amplitude of the floor that stays the same; default: the one that the case states.",
+            help="Amplitude of the floor that is kept constant; default: the one that the case gives.",
         ),
     ] = None,
     order: Annotated[
-        Literal["up-down", "down-up"], Parameter(help="Which way first; the motion is carried on.")
+        Literal["up-down", "down-up"], Parameter(help="Which way first; the motion continues at the turn.")
     ] = "up-down",
-    settle: Annotated[int, whole("Periods left out at each frequency.")] = 60,
-    observe: Annotated[int, whole("Periods by which the motion is judged.")] = 48,
+    settle: Annotated[int, whole("Periods to leave out at each frequency.")] = 60,
+    observe: Annotated[int, whole("Periods to observe at each frequency.")] = 48,
     tolerance: Annotated[
-        float, Parameter(help="Within which two sections are the same, of the slenderness angle.")
+        float, Parameter(help="Distance below which two sections are equal, over the slenderness angle.")
     ] = 5e-3,
-    largest_period: Annotated[int, whole("Looked for, in periods of the drive.")] = 16,
+    largest_period: Annotated[int, whole("Longest period to look for, in periods of the floor.")] = 16,
     out: Annotated[
         Path | None, Parameter(help="Folder of the results; default: outputs/NAME-response.")
     ] = None,
     overrides: Overrides = (),
-    resume: Annotated[bool, flag("Go on where it was interrupted.")] = False,
+    resume: Resume = False,
     force: Force = False,
     as_json: Annotated[bool, flag("Print response.json.", "--json")] = False,
     quiet: Quiet = False,
 ) -> int:
-    """Sweep the frequency of the drive up and down with the motion carried on: branches, jumps, drop-outs.
-
-    Parameters
-    ----------
-    case:
-        A case file or the name of a shipped case, with a harmonic motion; default: seed_stack_plateau.
-    """
+    """Sweep the frequency of the floor up and down without restarting the motion: branches, jumps, drop-outs."""
     loaded = load_case(case, overrides)
     requests = importlib.import_module("fem.response.request")
     request = requests.ResponseRequest(
@@ -68,7 +62,7 @@ def response(
         largest_period=largest_period,
     )
     folder = out if out is not None else Path("outputs") / f"{loaded.name}-response"
-    # The solver is loaded only now: bad input is answered before anything is compiled.
+    # Loaded only now, so that bad input is answered before anything is compiled.
     study = importlib.import_module("fem.response.run")
     done = study.run_response(
         request, folder=folder, force=force, resume=resume, reporter=ScreenReporter(quiet=quiet)

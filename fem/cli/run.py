@@ -9,16 +9,15 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from fem.case.case import Case, CaseError, load_case
-from fem.cli.check import chosen_numerics, page_of_numerics, peak_floor_acceleration
-from fem.cli.console import EXIT_CODES, Folder, Force, Overrides, Quiet, flag
-from fem.model.geometry import build_container
+from fem.cli.check import numerics_lines, preview_of
+from fem.cli.console import EXIT_CODES, CaseName, Folder, Force, Overrides, Quiet, Resume, flag
 from fem.results.disk import free_disk, in_units
-from fem.results.run_folder import read_result
+from fem.results.folder import read_result
 from fem.runtime.progress import ScreenReporter
 
 
 def run(
-    case: str | None = None,
+    case: CaseName = None,
     /,
     *,
     out: Folder = None,
@@ -28,25 +27,19 @@ def run(
         bool | None,
         Parameter(
             show_default=False,
-            help="Repeat over contact penalty and damping; default: where the outcome is not rest or slide.",
+            help="Sensitivity to contact stiffness and damping; default: where it rocks or overturns.",
         ),
     ] = None,
-    resume: Annotated[bool, flag("Go on from the checkpoint, if there is one.")] = False,
+    resume: Resume = False,
     force: Force = False,
-    dry_run: Annotated[bool, flag("Say what would be computed, and stop.")] = False,
+    dry_run: Annotated[bool, flag("Print the plan and exit.")] = False,
     as_json: Annotated[bool, flag("Print run.json.", "--json")] = False,
     quiet: Quiet = False,
-    verbose: Annotated[bool, flag("Tell more.", "--verbose", "-v")] = False,
+    verbose: Annotated[bool, flag("Print the plan before the run.", "--verbose", "-v")] = False,
 ) -> int:
-    """Compute a case: does the container rest, slide, rock, slide-rock or overturn?
-
-    Parameters
-    ----------
-    case:
-        A case file or the name of a shipped case; default: seed_stack_plateau.
-    """
+    """Compute a case: does the container rest, slide, rock, slide-rock or overturn?"""
     if quiet and verbose:
-        raise CaseError("-q and -v contradict one another; give one of them")
+        raise CaseError("-q and -v contradict each other; give one of them")
     loaded = load_case(case, overrides)
     folder = out if out is not None else Path("outputs") / loaded.name
     if dry_run or verbose:
@@ -55,7 +48,7 @@ def run(
         print(text, file=sys.stdout if dry_run else sys.stderr)
     if dry_run:
         return 0
-    # The solver is loaded only now: bad input is answered before anything is compiled.
+    # Loaded only now, so that bad input is answered before anything is compiled.
     solver = importlib.import_module("fem.run.run")
     result = solver.run_case(
         loaded,
@@ -70,16 +63,16 @@ def run(
         print((folder / "summary.txt").read_text(encoding="utf-8"), end="")
     if result.status == "interrupted":
         print(
-            f"interrupted; the same command with --resume goes on from {folder / 'checkpoint.npz'}",
+            f"interrupted; run the same command with --resume to continue from {folder / 'checkpoint.npz'}",
             file=sys.stderr,
         )
     elif result.stopped:
-        print("interrupted amid the band; the same command goes on with it", file=sys.stderr)
+        print("interrupted during the sensitivity runs; run the same command to continue", file=sys.stderr)
     return EXIT_CODES["interrupted" if result.stopped else result.status]
 
 
 def text_with_overrides(case: Case) -> str:
-    """The case file as given, with what the command line changed as comments at its end."""
+    """The case file as given, with the changes of the command line as comments at its end."""
     if not case.overrides:
         return case.text
     changes = "".join(f"#   --set {override!r}\n" for override in case.overrides)
@@ -87,13 +80,14 @@ def text_with_overrides(case: Case) -> str:
 
 
 def plan_of(case: Case, folder: Path) -> dict[str, Any]:
-    """What would be computed, and where it would go."""
+    """What would be computed, and its folder."""
+    preview = preview_of(case)
     return {
         "case": case.name,
         "folder": str(folder),
         "free_bytes": free_disk(folder),
-        "peak_floor_acceleration_m_s2": peak_floor_acceleration(case),
-        "numerics": chosen_numerics(case, build_container(case)),
+        "peak_floor_acceleration_m_s2": preview.peak,
+        "numerics": preview.numerics,
     }
 
 
@@ -107,4 +101,4 @@ def page_of_plan(case: Case, plan: dict[str, Any]) -> str:
         f"  folder      {plan['folder']}{there}",
         f"  floor       {case.motion.kind}, peak {plan['peak_floor_acceleration_m_s2']:.4g} m/s2",
     ]
-    return "\n".join(lines + page_of_numerics(plan["numerics"]))
+    return "\n".join(lines + numerics_lines(plan["numerics"]))

@@ -1,10 +1,18 @@
-"""`schema`: the JSON schema of the case file."""
+"""`schema`: the JSON schema of a case, sweep or ensemble file."""
 
+import importlib
 import json
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
 
 from fem.case.case import Case
 
 
-def schema() -> None:
-    """Print the JSON schema of the case file: keys, types, units, ranges, defaults."""
-    print(json.dumps(Case.model_json_schema(by_alias=True), indent=2))
+def schema(
+    kind: Annotated[Literal["case", "sweep", "ensemble"], Parameter(help="Kind of file.")] = "case", /
+) -> None:
+    """Print the JSON schema of a kind of file: keys, types, units, ranges, defaults."""
+    # The models of the other kinds take long to load.
+    models = {} if kind == "case" else importlib.import_module("fem.cli.file_models").FILE_MODELS
+    print(json.dumps(models.get(kind, Case).model_json_schema(by_alias=True), indent=2))

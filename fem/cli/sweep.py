@@ -1,4 +1,4 @@
-"""`sweep`: many cases, from the file of a sweep to its table and maps."""
+"""`sweep`: many cases, from a sweep file to a table and maps."""
 
 import importlib
 import json
@@ -10,8 +10,8 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from fem.case.case import CaseError
-from fem.cli.console import EXIT_CODES, Folder, Jobs, Quiet, flag
-from fem.results.run_folder import to_json
+from fem.cli.console import EXIT_CODES, Folder, Force, Jobs, Quiet, Resume, flag
+from fem.results.files import to_json
 from fem.runtime.progress import ScreenReporter
 from fem.sweep.file import load_sweep
 
@@ -26,12 +26,12 @@ def sweep(
         str | None,
         Parameter(show_default=False, help="Address of a dask scheduler, such as tcp://127.0.0.1:8786."),
     ] = None,
-    resume: Annotated[bool, flag("Go on with the rows that are there.")] = False,
-    force: Annotated[bool, flag("Compute anew, over what is there; however many.")] = False,
+    resume: Resume = False,
+    force: Force = False,
     as_json: Annotated[bool, flag("Print sweep.json.", "--json")] = False,
     quiet: Quiet = False,
 ) -> int:
-    """Compute the cases of a sweep: where does the container stand?
+    """Compute the cases of a sweep: where does the container rest, slide, rock or overturn?
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def sweep(
     """
     asked = load_sweep(sweep)
     folder = out if out is not None else Path("outputs") / asked.name
-    # The solver is loaded only now: bad input is answered before anything is compiled.
+    # Loaded only now, so that bad input is answered before anything is compiled.
     solver = importlib.import_module("fem.sweep.run")
     with ExitStack() as stack:
         workers_of = None
@@ -60,7 +60,7 @@ def sweep(
 
 
 def _cluster_module() -> ModuleType:
-    """Loaded where it is asked for: dask is an extra, and takes a second."""
+    """Loaded only with --scheduler: dask is an optional dependency, and takes a second."""
     try:
         return importlib.import_module("fem.batch.cluster")
     except ModuleNotFoundError as error:
@@ -72,7 +72,7 @@ def _cluster_module() -> ModuleType:
 
 
 def page_of(info: dict[str, Any], folder: Path) -> str:
-    """What a sweep found, for people."""
+    """The result of a sweep, for people."""
     title = f": {info['title']}" if info["title"] else ""
     lines = [f"{info['sweep']}{title}", f"  {info['rows']} of {info['cells']} cells, {info['status']}"]
     for outcome, count in info["outcomes"].items():
@@ -85,7 +85,7 @@ def page_of(info: dict[str, Any], folder: Path) -> str:
     table = "rows.csv" if info["status"] == "interrupted" else "table.csv"
     lines.append(f"  {folder}: {table}, sweep.json" + "".join(f", {name}" for name in info["maps"]))
     if info["changes"] is not None:
-        lines.append(f"  {folder}: thresholds.csv, {info['changes']} changes of outcome closed in on")
+        lines.append(f"  {folder}: thresholds.csv, {info['changes']} changes of outcome refined")
     if info["status"] == "interrupted":
-        lines.append("  --resume goes on from here")
+        lines.append("  --resume continues")
     return "\n".join(lines)

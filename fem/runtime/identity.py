@@ -1,4 +1,4 @@
-"""Which program this is: its version, its sources, and the libraries its numbers depend on."""
+"""Identity of the program: its version, its sources, and the libraries that its results depend on."""
 
 import hashlib
 import platform
@@ -13,13 +13,13 @@ _version = cache(metadata.version)
 
 
 def versions() -> dict[str, str]:
-    """Of the program and of what its numbers depend on."""
+    """Versions of the program and of the libraries that its results depend on."""
     return {"python": platform.python_version()} | {name: _version(name) for name in DISTRIBUTIONS}
 
 
 @cache
 def program_identity() -> dict[str, str]:
-    """What must be the same to resume to the same bits: versions, machine, digest of sources and shipped files."""
+    """Versions, machine and digest of sources and shipped files: a run resumes to the same bits only where they are equal."""
     digest = hashlib.sha256()
     root = Path(__file__).parents[2]
     files = (path for package in PACKAGES for path in (root / package).rglob("*"))

@@ -1,13 +1,12 @@
 """Progress of long work: one line with time, rate, remaining time, rotation ratio and mode.
 
 On a terminal the line is rewritten in place; elsewhere a plain line is printed every few seconds. Both go to the error
-stream, so that the standard output holds results alone. A quiet reporter prints neither lines nor messages.
+stream, so that the standard output holds results alone. A quiet reporter prints warnings alone.
 """
 
 import sys
 import time as clock
 from collections.abc import Callable
-from typing import Protocol
 
 from rich.console import Console
 from rich.progress import Progress, TextColumn
@@ -17,8 +16,8 @@ REDRAW_S = 0.1  #: between redraws of the line on a terminal
 PLAIN_S = 5.0  #: between plain lines
 
 
-class Reporter(Protocol):
-    """Where a long computation reports to. All times are simulated seconds."""
+class Reporter:
+    """Where a long computation reports to; this one prints nothing. All times are simulated seconds."""
 
     def start(self, duration: float, begun: float = 0.0) -> None:
         """Work starts at `begun` [s], later than 0 in a resumed run, and will end at `duration` [s]."""
@@ -33,35 +32,17 @@ class Reporter(Protocol):
         """A sentence for the user."""
 
     def warning(self, text: str) -> None:
-        """A sentence that the user must see, also without progress: work that was lost."""
+        """A sentence that the user must see, also when quiet: work was lost."""
 
     def finish(self) -> None:
         """Work has ended, with or without success; may be called twice."""
 
 
-class SilentReporter:
+class SilentReporter(Reporter):
     """Prints nothing: for sweeps, tests and library use."""
 
-    def start(self, duration: float, begun: float = 0.0) -> None:
-        """Print nothing."""
 
-    def update(self, time: float, rotation_ratio: float, mode: str) -> None:
-        """Print nothing."""
-
-    def tell(self, line: Callable[[], str]) -> None:
-        """Print nothing."""
-
-    def message(self, text: str) -> None:
-        """Print nothing."""
-
-    def warning(self, text: str) -> None:
-        """Print nothing."""
-
-    def finish(self) -> None:
-        """Print nothing."""
-
-
-class ScreenReporter:
+class ScreenReporter(Reporter):
     """Reports to a person: in place on a terminal, by plain lines elsewhere.
 
     Args:

@@ -1,8 +1,8 @@
-"""One thread for the dense algebra: a run's bytes must not depend on how many cores a machine has free.
+"""One BLAS thread: the bits of a run must not depend on the number of free cores.
 
-A BLAS that shares a sum among threads adds in another order with another number of them; elastic modes then
-differ in their last bits, and so does everything after an impact. The matrices here are small, for which threads
-cost more than they gain; whoever has many runs uses his cores by `sweep -j`.
+A BLAS that splits a sum among threads adds in an order that depends on their number; elastic modes then differ in their
+last bits, and so does everything after an impact. The matrices are small, so that threads would not pay; many runs use
+all cores (`sweep -j`).
 """
 
 import contextlib
@@ -23,8 +23,8 @@ MAPS = Path("/proc/self/maps")
 def use_one_blas_thread() -> None:
     """Keep BLAS to one thread from now on, in this process and in those that it starts.
 
-    Libraries not loaded yet, and those of child processes, read the environment; an OpenBLAS that is loaded is
-    told, on Linux.
+    Libraries that are not loaded yet, and those of child processes, read the environment; a loaded OpenBLAS is called
+    directly, on Linux.
     """
     os.environ |= dict.fromkeys(VARIABLES, "1")
     for path in _loaded_openblas():

@@ -236,8 +236,9 @@ def test_any_value_at_any_key_is_a_case_or_an_error_in_words(values):
         case = load_case("seed_box").with_values(values)
     except CaseError as error:
         assert str(error).strip()
-        assert "pydantic" not in str(error)
-        assert "Input should" not in str(error)
+        # Phrases of the library; a drawn key or value, repeated in the message, may hold one by chance.
+        phrases = [phrase for phrase in ("pydantic", "Input should") if phrase not in repr(values)]
+        assert not any(phrase in str(error) for phrase in phrases)
     else:
         assert isinstance(case, Case)
 

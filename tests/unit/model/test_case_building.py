@@ -7,7 +7,7 @@ from mesh_writer import write_container_mesh
 from contact.motion.base_motion import HarmonicMotion, NoMotion, PulseMotion, TableMotion
 from fem.case.case import CaseError, load_case, read_case
 from fem.case.files import CASES
-from fem.cli.check import peak_floor_acceleration
+from fem.cli.check import preview_of
 from fem.model.geometry import base_positions, build_container, node_count
 from fem.model.motion import build_motion
 from fem.model.support import build_support, normal_penalty
@@ -96,7 +96,7 @@ def test_pulse_of_a_case_has_its_sign_and_delay():
     motion = build_motion(case)
     assert isinstance(motion, PulseMotion)
     np.testing.assert_allclose(motion.evaluate(np.array([0.5, 1.25, 1.75]))[2], [0.0, -3.0, 0.0])
-    assert peak_floor_acceleration(case) == 3.0
+    assert preview_of(case).peak == 3.0
 
 
 TABLE = 'kind = "table"\nfile = "floor.csv"\nquantity = "acceleration"\nunit = "g"\nscale = 2.0\n'
@@ -111,7 +111,7 @@ def with_table(folder, content):
 def test_table_of_a_case_is_read_beside_it_and_scaled(tmp_path):
     case = with_table(tmp_path, "0,0\n0.5,-0.2\n1.0,0.1\n")
     assert isinstance(build_motion(case), TableMotion)
-    assert peak_floor_acceleration(case) == pytest.approx(2.0 * 0.2 * 9.80665)
+    assert preview_of(case).peak == pytest.approx(2.0 * 0.2 * 9.80665)
 
 
 def test_a_table_that_is_none_is_refused_as_an_error_of_the_case(tmp_path):
@@ -131,4 +131,4 @@ def test_a_table_that_is_none_is_refused_as_an_error_of_the_case(tmp_path):
 )
 def test_peak_of_the_floor_is_that_of_the_motion_within_the_run(overrides):
     case = load_case("seed_stack_plateau", overrides)
-    assert peak_floor_acceleration(case) == pytest.approx(build_motion(case).peak_acceleration, rel=1e-9)
+    assert preview_of(case).peak == pytest.approx(build_motion(case).peak_acceleration, rel=1e-9)

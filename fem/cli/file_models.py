@@ -1,0 +1,42 @@
+"""Whole sweep and ensemble files as models, for their JSON schemas; the files themselves are read table by table."""
+
+from typing import Any
+
+from pydantic import Field
+
+from fem.batch.axes import Range
+from fem.ensemble.distributions import Distribution
+from fem.ensemble.file import EnsembleHeading
+from fem.sweep.file import SweepHeading
+from fem.sweep.perturbation import Perturbation
+from fem.sweep.plan import MapChoice
+from fem.sweep.threshold import Threshold
+
+Axes = dict[str, list[float | bool | str] | Range]
+CHANGES = "keys changed in the base case"
+DERIVED = "keys that follow others, as expressions in quotes"
+
+
+class SweepFile(SweepHeading):
+    """A sweep: a base case over one to four axes."""
+
+    set: dict[str, Any] = Field(default={}, description=CHANGES)
+    axes: Axes = Field(description="one to four keys: a list of values each, or a range")
+    derived: dict[str, str] = Field(default={}, description=DERIVED)
+    perturbation: Perturbation = Perturbation()
+    threshold: Threshold | None = None
+    maps: MapChoice = MapChoice()
+
+
+class EnsembleFile(EnsembleHeading):
+    """An ensemble: a base case with random quantities over one to three axes."""
+
+    set: dict[str, Any] = Field(default={}, description=CHANGES)
+    axes: Axes = Field(
+        description="one to three keys, or variables free.NAME: a list of values each, or a range"
+    )
+    random: dict[str, Distribution] = Field(description="distributions of keys, or of variables free.NAME")
+    derived: dict[str, str] = Field(default={}, description=DERIVED)
+
+
+FILE_MODELS = {"sweep": SweepFile, "ensemble": EnsembleFile}

@@ -1,0 +1,150 @@
+"""What is known of a run before it is computed, for `check` and `run --dry-run`. No kernel is loaded."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from contact.interface.penalty import contact_frequency
+from fem.case.case import Case
+from fem.model.geometry import node_count
+from fem.model.restitution import apparent_restitution
+from fem.model.static_checks import StaticChecks, static_checks_of
+from fem.model.support import build_support, normal_penalty
+from fem.model.validity import require_stiff_contact
+from fem.run.size import frames_of, required_disk, samples_of
+from mesh.container import ContainerMesh
+
+
+def peak_without_motion(case: Case) -> float | None:
+    """Largest |acceleration| that the floor reaches in the run [m/s2], as far as the keys alone determine it.
+
+    None where the motion itself must be evaluated: a table, ramps, a run that ends before the peak.
+    """
+    motion, duration = case.motion, case.solver.duration_s
+    reached = {
+        "none": True,
+        "harmonic": motion.ramp_cycles == 0.0 and duration >= 0.5 * motion.period,
+        "pulse": duration >= motion.delay_s + (motion.pulse_s or 0.0),
+    }
+    return case.nominal_peak_acceleration if reached.get(motion.kind) else None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Preview:
+    """A case with its mesh, before its run."""
+
+    case: Case
+    mesh: ContainerMesh
+    peak: float  #: largest |acceleration| that the floor reaches in the run [m/s2]
+    motion_notes: tuple[str, ...] = ()  #: what is doubtful in a recorded motion
+
+    @cached_property
+    def static(self) -> StaticChecks:
+        """Static checks of the container under its own motion."""
+        return static_checks_of(self.case, self.mesh, self.peak)
+
+    @property
+    def derived(self) -> dict[str, float | None]:
+        """What follows from the case before anything moves; SI units stand in the keys."""
+        case, mesh, harmonic = self.case, self.mesh, self.case.motion.kind == "harmonic"
+        return {
+            "mass_kg": mesh.mass,
+            "box_mass_kg": case.box_mass,
+            "mean_areal_density_kg_m2": case.mean_areal_density,
+            "width_m": mesh.width,
+            "height_m": mesh.height,
+            "peak_floor_acceleration_m_s2": self.peak,
+            "amplitude_m": case.amplitude if harmonic else None,
+            "angular_frequency_rad_s": case.angular_frequency if harmonic else None,
+            "period_s": case.motion.period if harmonic else None,
+        }
+
+    @cached_property
+    def numerics(self) -> dict[str, Any]:
+        """Model, scheme and sizes of the computation.
+
+        Raises:
+            CaseError: the contact is too soft to carry the container.
+        """
+        case, mesh, solver = self.case, self.mesh, self.case.solver
+        nodes = node_count(mesh, solver.order)
+        penalty = normal_penalty(case, mesh)
+        springs = build_support(case, mesh).normal_stiffness(penalty)
+        stiffness = float(springs.sum())
+        require_stiff_contact(case, mesh, stiffness)
+        return {
+            "model": solver.model,
+            "scheme": solver.scheme,
+            "elements": len(mesh.quads),
+            "nodes": nodes,
+            "mesh_unknowns": 2 * nodes,
+            "elastic_modes": {"rigid": 0, "reduced": solver.elastic_modes}.get(solver.model),
+            "contact_nodes": len(springs),
+            "normal_penalty_Pa_m": penalty,
+            "contact_frequency_Hz": contact_frequency(mesh.mass, stiffness),
+            "static_penetration_m": mesh.mass * case.gravity_m_s2 / stiffness,
+            "duration_s": solver.duration_s,
+            "history_samples": samples_of(case),
+            "field_frames": frames_of(case),
+            "output_bytes": required_disk(case, nodes),
+        }
+
+    @property
+    def contact_restitution(self) -> float | None:
+        """Restitution of a rigid container with this contact damping ratio; None outside the table of calibration."""
+        foot = self.case.support.foot
+        return apparent_restitution(
+            support=self.case.support.kind,
+            foot_over_width=None if foot is None else foot / self.mesh.width,
+            slenderness=self.static.centroid / (0.5 * self.mesh.width),
+            damping_ratio=self.case.contact.damping_ratio,
+            housner=self.static.housner_restitution,
+        )
+
+    @property
+    def notes(self) -> list[str]:
+        """What to keep in mind when the run is read."""
+        case, static, limit = self.case, self.static, self.static.applicability
+        kick = case.amplitude * case.angular_frequency * abs(math.cos(case.motion.phase_rad))
+        notes = [
+            (
+                abs(case.initial.rotation_rad) >= static.slenderness_angle,
+                f"initial.rotation_rad = {case.initial.rotation_rad:g} is beyond the slenderness angle, "
+                f"{static.slenderness_angle:.4g} rad: without help from the floor the container falls",
+            ),
+            (
+                not static.housner_credible,
+                f"Housner's restitution is {static.housner_restitution:.3f}, below 0.5: for a container so squat "
+                "the rigid block's impact model is not credible",
+            ),
+            (
+                not limit.passed,
+                f"the lateral force method does not apply: rocking period {limit.demand:.2f} s > "
+                f"{limit.capacity:.1f} s ({limit.clause})",
+            ),
+            *((True, note) for note in self.motion_notes),
+            (
+                case.contact.friction == "regularised",
+                "friction regularised in velocity creeps under constant load; elastic-stick does not",
+            ),
+            (
+                case.motion.start == "rest" and case.motion.kind == "harmonic",
+                f'start = "rest": the floor begins with a jerk of {kick:.3g} m/s',
+            ),
+            (
+                self.peak >= static.uplift_acceleration and static.own_motion.sliding.passed,
+                "the floor reaches the acceleration of uplift, and friction holds until then: expect rocking",
+            ),
+        ]
+        return [note for applies, note in notes if applies]
+
+    def to_json(self) -> dict[str, Any]:
+        """Everything but the hash of the case, as JSON types."""
+        return {
+            "derived": self.derived,
+            "static": self.static.to_result().to_json(),
+            "contact_restitution": self.contact_restitution,
+            "numerics": self.numerics,
+            "notes": self.notes,
+        }

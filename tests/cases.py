@@ -1,0 +1,25 @@
+"""Named cases that many tests begin with, as texts of case files."""
+
+from fem.case.case import Case, load_case, read_case
+
+#: one box at rest, with the keys that must be given and no other
+LEAST = """
+[container]
+width_m = 1.1
+height_m = 1.0
+weight_N = 24525.0
+[contact]
+mu_static = 0.4
+[motion]
+kind = "none"
+"""
+HARMONIC = LEAST.replace('"none"', '"harmonic"\namplitude_m = 0.05\nangular_frequency_rad_s = 6.928')
+PULSE = LEAST.replace('"none"', '"pulse"\nshape = "sine"\npeak_acceleration_m_s2 = -3.0\npulse_s = 0.5')
+TABLE = LEAST.replace('"none"', '"table"\nfile = "floor.csv"\nquantity = "acceleration"\nunit = "g"')
+TEXTS = {"least": LEAST, "harmonic": HARMONIC, "pulse": PULSE, "table": TABLE}
+
+
+def named_case(name: str, overrides: dict[str, object] | None = None) -> Case:
+    """A named case with dotted keys set."""
+    case = read_case(TEXTS[name]) if name in TEXTS else load_case(name)
+    return case.with_values(overrides) if overrides else case
