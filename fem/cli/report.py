@@ -44,7 +44,7 @@ def report(
     if (folder / "sweep.json").is_file():
         page = importlib.import_module("fem.report.sweep_page").sweep_report(folder, signature=signature)
     elif (folder / "study.json").is_file():
-        page = importlib.import_module("fem.paper.study_page").study_report(folder, signature=signature)
+        page = importlib.import_module("fem.paper.page").paper_report(folder, signature=signature)
     else:
         opened = importlib.import_module("fem.results.reader").open_run(folder)
         with interrupts.interruptible(reporter) as stop:

@@ -1,8 +1,9 @@
-"""`study`: every statement of the seed paper, tried."""
+"""`study`: every claim of the paper (Knoedel and Hrabowski), checked."""
 
 import difflib
 import importlib
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,11 +11,10 @@ from cyclopts import Parameter
 
 from fem.case.case import CaseError
 from fem.cli.console import EXIT_CODES, Jobs, Quiet, flag
-from fem.results.run_folder import naming_what_cannot_be_written, to_json
+from fem.results.files import to_json
 from fem.runtime.progress import ScreenReporter
 
 STUDIES = ("seed",)
-LONG = 10.0  #: s, from which a statement is worth compiling for beforehand
 
 
 def study(
@@ -23,15 +23,16 @@ def study(
     *,
     out: Annotated[Path | None, Parameter(help="Folder of the results; default: outputs/study_NAME.")] = None,
     jobs: Jobs = None,
-    only: Annotated[tuple[str, ...], flag("Only this statement; may be repeated.")] = (),
-    force: Annotated[bool, flag("Compute what is there as well.")] = False,
+    only: Annotated[tuple[str, ...], flag("Only this claim; may be repeated.")] = (),
+    force: Annotated[bool, flag("Recompute and overwrite existing results.")] = False,
     as_json: Annotated[bool, flag("Print study.json.", "--json")] = False,
     quiet: Quiet = False,
 ) -> int:
-    """Try every statement of the seed paper: confirmed, confirmed within stated bounds, or refuted.
+    """Check every claim of the paper: confirmed, confirmed within stated bounds, or refuted.
 
-    Writes study.html, one page with the run, figure and number behind each verdict, and study.json.
-    What the same program has tried before is not tried again.
+    The paper is Knoedel and Hrabowski, A simple stick-slip model for the overturning stability of unanchored
+    containers. Writes study.html, one page with the run, figure and number behind each conclusion, and study.json.
+    A claim that the same version of the program has decided is not checked again.
 
     Parameters
     ----------
@@ -40,17 +41,16 @@ def study(
     """
     if name not in STUDIES:
         raise CaseError(f"no study {name!r}{_near(name, STUDIES)} (known: {', '.join(STUDIES)})")
-    catalogue = importlib.import_module("fem.paper.index")
-    every = catalogue.all_statements()
-    known = [statement.name for _, statement in every]
+    every = importlib.import_module("fem.paper.index").all_claims()
+    known = [claim.name for claim in every]
     for wanted in only:
         if wanted not in known:
             raise CaseError(
-                f"--only {wanted!r}: no such statement{_near(wanted, known)} (known: {', '.join(known)})"
+                f"--only {wanted!r}: no such claim{_near(wanted, known)} (known: {', '.join(known)})"
             )
-    chosen = [pair for pair in every if not only or pair[1].name in only]
+    chosen = [claim for claim in every if not only or claim.name in only]
     folder = out if out is not None else Path("outputs") / f"study_{name}"
-    document = _conducted(folder, chosen, jobs=jobs, force=force, quiet=quiet)
+    document = _checked(folder, chosen, jobs=jobs, force=force, quiet=quiet)
     if as_json:
         print(to_json(document).rstrip())
     else:
@@ -60,11 +60,14 @@ def study(
     return EXIT_CODES[document["status"]]
 
 
-def _conducted(folder: Path, chosen: Any, *, jobs: int | None, force: bool, quiet: bool) -> dict[str, Any]:
-    """Try the statements, telling of each and of its runs."""
-    laboratories = importlib.import_module("fem.paper.experiments")
-    conducting = importlib.import_module("fem.paper.run")
-    interrupts = importlib.import_module("fem.runtime.signals")
+def _checked(
+    folder: Path, claims: Sequence[Any], *, jobs: int | None, force: bool, quiet: bool
+) -> dict[str, Any]:
+    """Check the claims, and report each with its runs."""
+    experiments = importlib.import_module("fem.paper.experiments")
+    paper = importlib.import_module("fem.paper.run")
+    signals = importlib.import_module("fem.runtime.signals")
+    compilation = importlib.import_module("fem.runtime.compilation")
     reporter = ScreenReporter(quiet=quiet)
     in_place = not quiet and sys.stderr.isatty()
 
@@ -73,17 +76,14 @@ def _conducted(folder: Path, chosen: Any, *, jobs: int | None, force: bool, quie
             end = "\r" if done < total else "\r" + " " * 40 + "\r"
             print(f"    {done} of {total} runs", end=end, file=sys.stderr, flush=True)
 
-    with interrupts.interruptible(reporter) as stop:
-        laboratory = laboratories.Laboratory(jobs=jobs, progress=progress, stop=stop)
-        if any(statement.seconds > LONG for _, statement in chosen):
-            laboratory.warm_up(reporter.message)
-        with naming_what_cannot_be_written(folder, "the same command goes on from there"):
-            found: dict[str, Any] = conducting.conduct(
-                folder, laboratory, statements=chosen, force=force, tell=reporter.message
-            )
-    return found
+    with signals.interruptible(reporter) as stop, compilation.compilation_announced(reporter.message):
+        runs = experiments.Experiments(jobs=jobs, progress=progress, stop=stop)
+        document: dict[str, Any] = paper.check_claims(
+            folder, runs, claims=claims, force=force, report=reporter.message
+        )
+    return document
 
 
-def _near(name: str, known: Any) -> str:
+def _near(name: str, known: Sequence[str]) -> str:
     near = difflib.get_close_matches(name, known, n=1)
     return f"; did you mean {near[0]!r}?" if near else ""

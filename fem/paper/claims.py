@@ -1,25 +1,20 @@
-"""What a statement of the paper is, what trying it gave, and the rule that makes a verdict of it.
+"""A claim of the paper, what its check found, and the rule from comparisons to a conclusion.
 
-A verdict is never written down: it follows from comparisons of measured numbers with limits by `verdict_of`.
+A conclusion is never written down: it follows from comparisons of measured numbers with limits by `conclude`.
 Rotation > 0 tilts toward +x; SI units, each with its number.
 """
 
-import math
-from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
-from fem.case.case import Case, load_case
-
-if TYPE_CHECKING:
-    from fem.paper.experiments import Laboratory
-
-Relation = Literal["=", "<=", ">="]
+from fem.paper.cases import PaperCase
+from fem.paper.experiments import Experiments, VariantBand
 
 
-class Verdict(Enum):
-    """What became of a statement."""
+class Conclusion(Enum):
+    """Result of checking a claim."""
 
     CONFIRMED = "confirmed"
     BOUNDED = "confirmed within stated bounds"
@@ -28,53 +23,20 @@ class Verdict(Enum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Setup:
-    """A case that a reader can run again: a shipped case and what is changed of it."""
-
-    base: str  #: name of a shipped case
-    values: Mapping[str, Any] = field(default_factory=dict)  #: dotted keys
-    what: str = ""  #: for people
-
-    def but(self, values: Mapping[str, Any], what: str = "") -> "Setup":
-        """This setup with more keys changed."""
-        return Setup(base=self.base, values={**self.values, **values}, what=what or self.what)
-
-    @property
-    def case(self) -> Case:
-        """The case itself, without fields.
-
-        Raises:
-            CaseError: as for a case file.
-        """
-        return load_case(self.base).with_values({**self.values, "output.fields_s": 0.0})
-
-    @property
-    def key(self) -> tuple[Any, ...]:
-        """Equal for setups that compute the same."""
-        return self.base, *sorted(self.values.items())
-
-    @property
-    def command(self) -> str:
-        """The line that runs it."""
-        changes = "".join(f" --set {key}={_literal(value)}" for key, value in self.values.items())
-        return f"python -m fem run {self.base}{changes} --out outputs/try"
-
-
-@dataclass(frozen=True, kw_only=True)
 class Comparison:
     """A measured number against a limit."""
 
     what: str
     measured: float
-    relation: Relation
+    relation: Literal["=", "<=", ">="]
     limit: float
-    unit: str
+    unit: str = "-"
     tolerance: float = 0.0  #: of "=", absolute
-    inside: bool = True  #: whether it lies inside the bounds of the statement
+    inside: bool = True  #: whether it is made inside the stated bounds of the claim
 
     @property
     def holds(self) -> bool:
-        """Whether the measured number stands in the relation; nan never does."""
+        """Whether the measured number satisfies the relation; nan never does."""
         match self.relation:
             case "=":
                 return abs(self.measured - self.limit) <= self.tolerance
@@ -84,146 +46,131 @@ class Comparison:
                 return self.measured >= self.limit
 
 
+def at_most(what: str, measured: float, limit: float, unit: str = "-", *, inside: bool = True) -> Comparison:
+    """The measured number must not exceed the limit."""
+    return Comparison(
+        what=what, measured=float(measured), relation="<=", limit=limit, unit=unit, inside=inside
+    )
+
+
+def at_least(what: str, measured: float, limit: float, unit: str = "-", *, inside: bool = True) -> Comparison:
+    """The measured number must reach the limit."""
+    return Comparison(
+        what=what, measured=float(measured), relation=">=", limit=limit, unit=unit, inside=inside
+    )
+
+
+def equal(
+    what: str, measured: float, limit: float, tolerance: float, unit: str = "-", *, inside: bool = True
+) -> Comparison:
+    """The measured number must be within an absolute tolerance of the limit."""
+    return Comparison(
+        what=what,
+        measured=float(measured),
+        relation="=",
+        limit=limit,
+        unit=unit,
+        tolerance=tolerance,
+        inside=inside,
+    )
+
+
 @dataclass(frozen=True, kw_only=True)
-class Table:
-    """Rows for people; numbers as they are, formatted by the page."""
+class ClaimTable:
+    """Rows for people; numbers in full, rounded by the page."""
 
     caption: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[Any, ...], ...]
+    columns: Sequence[str]
+    rows: Sequence[Sequence[Any]]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Drawing:
+class ClaimFigure:
     """A figure of the page."""
 
-    name: str  #: of its file, without ending
+    name: str  #: of its file, without suffix
     caption: str
     svg: str
 
 
 @dataclass(frozen=True, kw_only=True)
-class Member:
-    """The statement's own case on another container or floor."""
-
-    what: str
-    command: str
-    outcome: str | None  #: None where the run failed
-    value: float | None
-    holds: bool | None  #: whether the statement's criterion holds there; None where the run failed
-
-
-@dataclass(frozen=True, kw_only=True)
-class Band:
-    """What elasticity, contact and support make of one number that a statement rests on."""
-
-    quantity: str
-    unit: str
-    criterion: str
-    members: tuple[Member, ...]
-
-    @property
-    def low(self) -> float:
-        """Smallest value of the members that were computed; nan if there is none."""
-        return min(self._values, default=math.nan)
-
-    @property
-    def high(self) -> float:
-        """Largest value of the members that were computed; nan if there is none."""
-        return max(self._values, default=math.nan)
-
-    @property
-    def holding(self) -> int:
-        """In how many members the criterion holds."""
-        return sum(member.holds is True for member in self.members)
-
-    @property
-    def summary(self) -> str:
-        """One line: how often the criterion holds, and whether elasticity, contact or support decide."""
-        total = len(self.members)
-        failed = sum(member.holds is None for member in self.members)
-        lost = f", {failed} not computed" if failed else ""
-        if self.holding == total:
-            change = "deformation, contact and support do not change it"
-        elif self.holding == 0:
-            change = "it holds in none of them"
-        else:
-            change = "it depends on deformation, contact or support"
-        return f"holds in {self.holding} of {total}{lost}: {change}"
-
-    @property
-    def _values(self) -> list[float]:
-        return [member.value for member in self.members if member.value is not None]
-
-
-@dataclass(frozen=True, kw_only=True)
 class Finding:
-    """What trying a statement gave."""
+    """Result of the check of a claim."""
 
-    comparisons: tuple[Comparison, ...]
+    comparisons: Sequence[Comparison]
     reading: str  #: what the numbers say, in a sentence or two
-    bounds: str = ""  #: under which the comparisons marked `inside` are made; empty: as the paper claims it
-    setups: tuple[Setup, ...] = ()
-    tables: tuple[Table, ...] = ()
-    drawings: tuple[Drawing, ...] = ()
-    band: Band | None = None
+    bounds: str = ""  #: of the comparisons marked `inside`; empty: the claim as the paper makes it
+    cases: Sequence[PaperCase] = ()
+    tables: Sequence[ClaimTable] = ()
+    figures: Sequence[ClaimFigure] = ()
+    band: VariantBand | None = None
 
     @property
-    def verdict(self) -> Verdict:
-        """By `verdict_of`."""
-        return verdict_of(self.comparisons, self.bounds)
+    def conclusion(self) -> Conclusion:
+        """By `conclude`."""
+        return conclude(self.comparisons, self.bounds)
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data, without the drawings' contents."""
-        document = asdict(self)
-        document["verdict"] = self.verdict.value
-        document["rule"] = rule_applied(self.comparisons, self.bounds)
-        for entry, comparison in zip(document["comparisons"], self.comparisons, strict=True):
-            entry["holds"] = comparison.holds
-        document["setups"] = [{"what": setup.what, "command": setup.command} for setup in self.setups]
-        document["drawings"] = [{"name": one.name, "caption": one.caption} for one in self.drawings]
-        if self.band is not None:
-            document["band"] |= {"low": self.band.low, "high": self.band.high, "summary": self.band.summary}
-        return document
+        """Plain data for `study.json`, without the contents of the figures."""
+        return {
+            "comparisons": [asdict(one) | {"holds": one.holds} for one in self.comparisons],
+            "reading": self.reading,
+            "bounds": self.bounds,
+            "setups": [{"what": case.what, "command": case.command} for case in self.cases],
+            "tables": [asdict(table) for table in self.tables],
+            "drawings": [{"name": figure.name, "caption": figure.caption} for figure in self.figures],
+            "band": None if self.band is None else self.band.to_dict(),
+            "verdict": self.conclusion.value,
+            "rule": counts_in_words(self.comparisons, self.bounds),
+        }
 
 
-@dataclass(frozen=True, kw_only=True)
-class Statement:
-    """A sentence, equation or number of the paper that a run or a closed form can try."""
-
-    name: str  #: short, stable: anchors of the page, files of the figures
-    section: str
-    quote: str
-    tried: str  #: how, in a sentence
-    examine: Callable[["Laboratory"], Finding]
-    seconds: float = 1.0  #: about, on one core; only for the time left
-
-
-def verdict_of(comparisons: tuple[Comparison, ...], bounds: str) -> Verdict:
+def conclude(comparisons: Sequence[Comparison], bounds: str) -> Conclusion:
     """Confirmed if every comparison holds; within bounds if bounds are stated, all comparisons inside them
     hold and there is one; refuted otherwise. Without comparisons nothing is decided.
     """
     if not comparisons:
-        return Verdict.UNDECIDED
+        return Conclusion.UNDECIDED
     if all(one.holds for one in comparisons):
-        return Verdict.CONFIRMED
-    inside = [one for one in comparisons if one.inside]
-    if bounds and inside and all(one.holds for one in inside):
-        return Verdict.BOUNDED
-    return Verdict.REFUTED
+        return Conclusion.CONFIRMED
+    inside = [one.holds for one in comparisons if one.inside]
+    return Conclusion.BOUNDED if bounds and inside and all(inside) else Conclusion.REFUTED
 
 
-def rule_applied(comparisons: tuple[Comparison, ...], bounds: str) -> str:
-    """The rule with its numbers, for people."""
+def counts_in_words(comparisons: Sequence[Comparison], bounds: str) -> str:
+    """How many comparisons hold, in all and inside the bounds."""
     holding = sum(one.holds for one in comparisons)
     text = f"{holding} of {len(comparisons)} comparisons hold"
     if bounds and holding < len(comparisons):
-        inside = [one for one in comparisons if one.inside]
-        text += f"; {sum(one.holds for one in inside)} of {len(inside)} inside the bounds"
+        inside = [one.holds for one in comparisons if one.inside]
+        text += f"; {sum(inside)} of {len(inside)} inside the bounds"
     return text
 
 
-def _literal(value: Any) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return repr(value) if isinstance(value, int | float) else str(value)
+Check = Callable[[Experiments], Finding]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claim:
+    """A sentence, equation or number of the paper that a run or a closed form can check."""
+
+    name: str  #: short, stable: anchor in the page, option of the command
+    section: str
+    quote: str
+    tried: str  #: how it is checked, in a sentence
+    check: Check
+
+
+def claim(*, section: str, quote: str, more: str = "") -> Callable[[Check], Claim]:
+    """Decorator: make a claim of the function that checks it.
+
+    The function gives the claim its name, with dashes, and its docstring says how it is checked; `more` is added
+    to that.
+    """
+
+    def claimed_by(check: Check) -> Claim:
+        name = check.__name__.replace("_", "-")
+        tried = " ".join([*(check.__doc__ or "").split(), *([more] if more else [])])
+        return Claim(name=name, section=section, quote=quote, tried=tried, check=check)
+
+    return claimed_by

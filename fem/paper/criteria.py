@@ -1,25 +1,29 @@
-"""What static rule and paper say of a motion beforehand, and how often a criterion is right.
+"""What the static rule and the paper predict for a motion, and how often such a criterion is right.
 
-Each criterion says of a motion whether the container stands or overturns; the run says what happens. A criterion is
-right, conservative (it says "overturns", the container stands) or unconservative (it says "stands", the container
-overturns).
+A criterion says whether the container stands or overturns; the run decides. A criterion is right, conservative (it
+says "overturns", the container stands) or unconservative (it says "stands", the container overturns).
 """
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from fem.paper.cases import GRAVITY, WIDTH
+from fem.paper.cases import GRAVITY, HALF_WIDTH
 
 
 @dataclass(frozen=True, kw_only=True)
-class Motion:
-    """What a criterion may know of a cell."""
+class MapMotion:
+    """What a criterion knows of a cell of a map."""
 
+    angular_frequency: float  #: [rad/s]
     peak: float  #: [m/s2]
-    amplitude: float  #: [m]
     slenderness: float  #: c/a
     mu_static: float
     mu_kinetic: float
+
+    @property
+    def amplitude(self) -> float:
+        """A of the floor [m]."""
+        return self.peak / self.angular_frequency**2
 
     @property
     def tilts(self) -> bool:
@@ -36,36 +40,41 @@ class Motion:
         """Stiction is lost below the acceleration of tilting."""
         return self.mu_static < 1.0 / self.slenderness
 
+    @property
+    def tilts_while_sliding(self) -> bool:
+        """Eqs. (9) to (11): once it slides, the shear is mu_k G."""
+        return self.mu_kinetic > 1.0 / self.slenderness
 
-def static_rule(motion: Motion) -> bool:
+
+Criterion = Callable[[MapMotion], bool]
+
+
+def static_rule(motion: MapMotion) -> bool:
     """Lateral force method under the run's own peak: it overturns as soon as M_T exceeds M_R."""
     return motion.tilts
 
 
-def static_rule_or_sliding(motion: Motion) -> bool:
+def static_rule_or_sliding(motion: MapMotion) -> bool:
     """The strict quasi-static reading of section 1: loss of stiction is loss of bearing capacity as well."""
     return motion.tilts or motion.slides
 
 
-def half_width(motion: Motion) -> bool:
+def half_width_rule(motion: MapMotion) -> bool:
     """Section 5.4: A > a/2 overturns, A <= a/2 does not."""
-    return motion.amplitude > 0.5 * WIDTH
+    return motion.amplitude > HALF_WIDTH
 
 
-def paper_criteria(motion: Motion) -> bool:
-    """Eqs. (8) to (13) with A > a/2: it tilts before it slides, or while it slides, and the amplitude suffices.
-
-    Once it slides, the shear is mu_k G, and Eqs. (9) to (11) tilt it only if mu_k > a/c.
-    """
-    tilted = motion.tilts and (not motion.slides_first or motion.mu_kinetic > 1.0 / motion.slenderness)
-    return tilted and half_width(motion)
+def paper_rule(motion: MapMotion) -> bool:
+    """Eqs. (8) to (13) with A > a/2: it tilts before or while it slides, and the amplitude suffices."""
+    tilted = motion.tilts and (not motion.slides_first or motion.tilts_while_sliding)
+    return tilted and half_width_rule(motion)
 
 
-CRITERIA: Mapping[str, Callable[[Motion], bool]] = {
+CRITERIA: Mapping[str, Criterion] = {
     "static rule, own peak": static_rule,
     "static rule, tilting or sliding": static_rule_or_sliding,
-    "A <= a/2": half_width,
-    "the paper's, Eqs. 8 to 13 and A": paper_criteria,
+    "A <= a/2": half_width_rule,
+    "the paper's, Eqs. 8 to 13 and A": paper_rule,
 }
 
 
@@ -79,10 +88,9 @@ class Contingency:
     unconservative: int
 
     @property
-    def shares(self) -> tuple[float, float, float]:
-        """Right, conservative, unconservative, over all cells."""
-        total = max(self.cells, 1)
-        return self.right / total, self.conservative / total, self.unconservative / total
+    def share_right(self) -> float:
+        """Right predictions over all cells."""
+        return self.right / max(self.cells, 1)
 
 
 def contingency(says_overturns: Sequence[bool], overturned: Sequence[bool]) -> Contingency:
@@ -96,12 +104,12 @@ def contingency(says_overturns: Sequence[bool], overturned: Sequence[bool]) -> C
     )
 
 
-def mode_said(motion: Motion) -> str:
+def predicted_mode(motion: MapMotion) -> str:
     """The mode of section 5 that Eqs. (8) to (13) predict."""
-    if paper_criteria(motion):
+    if paper_rule(motion):
         return "overturned"
     if motion.tilts and not motion.slides_first:
         return "rock"
     if motion.slides:
-        return "slide-rock" if motion.tilts and motion.mu_kinetic > 1.0 / motion.slenderness else "slide"
+        return "slide-rock" if motion.tilts and motion.tilts_while_sliding else "slide"
     return "rest"

@@ -1,6 +1,5 @@
 """Section 7 of the paper, its verdicts on one box and on four: which mode, and how far within the limit cycle."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,37 +13,50 @@ from fem.paper.cases import (
     NO_SLIDING,
     PLATEAU,
     PLATEAU_PEAK,
+    RIGID,
+    SHELL,
     STACK,
     STATED_PEAK,
     UPLIFT,
+    PaperCase,
+    duration,
     harmonic,
+    sampled,
 )
-from fem.paper.claims import Comparison, Finding, Setup, Statement, Table
-from fem.paper.experiments import RIGID, Laboratory, Row
-from fem.paper.figures import Line, drawing
+from fem.paper.claims import ClaimTable, Finding, at_least, at_most, claim
+from fem.paper.experiments import Experiments, capped_ratio, stands
+from fem.paper.figures import PlottedLine, draw_curves
 
 SLIDING = 1e-4 * 1.1  # m, what counts as sliding
 
 
-def box_sticks(laboratory: Laboratory) -> Finding:
-    """One box: it just sticks and does not tilt."""
-    plateau = harmonic(4.0, ANGULAR_FREQUENCY)
-    cases = (
-        (BOX.but(RIGID, "box, stated motion, g = 9.81"), True),
-        (BOX.but({**RIGID, **G_TEN}, "box, stated motion, g = 10"), True),
-        (BOX.but({**RIGID, **G_TEN, **harmonic(3.98, ANGULAR_FREQUENCY)}, "box, 3.98 m/s², g = 10"), True),
-        (BOX.but({**RIGID, **G_TEN, **plateau}, "box, plateau value, g = 10 (utilisation 1.000)"), False),
-        (BOX.but({**RIGID, **plateau}, "box, plateau value, g = 9.81 (utilisation 1.019)"), False),
-    )
-    rows = laboratory.rows([setup for setup, _ in cases])
+@claim(
+    section="7, one box",
+    quote="In this example, the body will just remain in the sticking mode and will not tilt",
+)
+def box_just_sticks(experiments: Experiments) -> Finding:
+    """Rigid box under the stated motion and the plateau value, g = 10 and 9.81 m/s²."""
+    box, plateau = BOX.but(RIGID), harmonic(4.0, ANGULAR_FREQUENCY)
+    below = [
+        box.but(what="box, stated motion, g = 9.81"),
+        box.but(G_TEN, what="box, stated motion, g = 10"),
+        box.but(G_TEN, harmonic(3.98, ANGULAR_FREQUENCY), what="box, 3.98 m/s², g = 10"),
+    ]
+    at_plateau = [
+        box.but(G_TEN, plateau, what="box, plateau value, g = 10 (utilisation 1.000)"),
+        box.but(plateau, what="box, plateau value, g = 9.81 (utilisation 1.019)"),
+    ]
+    cases = [*below, *at_plateau]
+    rows = experiments.rows(cases)
     comparisons = []
-    for (setup, inside), row in zip(cases, rows, strict=True):
+    for case, row in zip(cases, rows, strict=True):
+        slip, tilts = 1e3 * row["max_slip_m"], row["first_uplift_s"] is not None
         comparisons += [
-            _at_most(f"slip, {setup.what}", 1e3 * row["max_slip_m"], 1e3 * SLIDING, "mm", inside=inside),
-            _none(f"tilts, {setup.what}", row["first_uplift_s"] is not None),
+            at_most(f"slip, {case.what}", slip, 1e3 * SLIDING, "mm", inside=case in below),
+            at_most(f"tilts, {case.what}", tilts, 0.0),
         ]
     return Finding(
-        comparisons=tuple(comparisons),
+        comparisons=comparisons,
         bounds="under the stated motion, and up to half a per cent below the plateau value with g = 10",
         reading=(
             f"The box tilts in {sum(row['first_uplift_s'] is not None for row in rows)} of {len(rows)} runs. At the "
@@ -52,9 +64,9 @@ def box_sticks(laboratory: Laboratory) -> Finding:
             f"rounding decides: the run slides by up to {1e3 * rows[3]['max_slip_m']:.1f} mm. With 9.81 it is "
             f"{PLATEAU_PEAK / (0.4 * GRAVITY):.3f}, and the slip {1e3 * rows[4]['max_slip_m']:.1f} mm."
         ),
-        setups=tuple(setup for setup, _ in cases),
-        band=laboratory.band(
-            cases[0][0].but({"solver.duration_s": 10.0}),
+        cases=cases,
+        band=experiments.band(
+            cases[0].but(duration(10.0)),
             quantity="slip under the stated motion",
             unit="m",
             value=lambda row: row["max_slip_m"],
@@ -64,206 +76,160 @@ def box_sticks(laboratory: Laboratory) -> Finding:
     )
 
 
-def stack_tilts_at_plateau(laboratory: Laboratory) -> Finding:
-    """Four boxes under the plateau value: they stick and tilt."""
-    cases = (
-        (PLATEAU.but({**RIGID, **G_TEN}, "rigid stack, plateau value, g = 10"), True),
-        (PLATEAU.but(RIGID, "rigid stack, plateau value, g = 9.81"), True),
-        (PLATEAU.but({"solver.model": "reduced", **G_TEN}, "shell, plateau value, g = 10"), False),
-        (PLATEAU.but({"solver.model": "reduced"}, "shell, plateau value, g = 9.81"), False),
-    )
+@claim(
+    section="7, four boxes",
+    quote="In this example, the body will just remain in the sticking mode and will tilt (plateau "
+    "value, 4.0 m/s²)",
+)
+def stack_tilts_at_plateau(experiments: Experiments) -> Finding:
+    """The stack with the floor reaching the plateau value, rigid and shell, g = 10 and 9.81 m/s²."""
+    rigid = [
+        PLATEAU.but(RIGID, G_TEN, what="rigid stack, plateau value, g = 10"),
+        PLATEAU.but(RIGID, what="rigid stack, plateau value, g = 9.81"),
+    ]
+    shell = [
+        PLATEAU.but(SHELL, G_TEN, what="shell, plateau value, g = 10"),
+        PLATEAU.but(SHELL, what="shell, plateau value, g = 9.81"),
+    ]
     return _tilts_and_sticks(
-        laboratory,
-        cases,
+        experiments,
+        rigid,
+        shell,
         bounds="the rigid body",
         reading=(
-            f"{_outcomes(laboratory, [setup for setup, _ in cases])}. With g = 9.81 the static check of sliding "
+            f"{_outcomes(experiments, [*rigid, *shell])}. With g = 9.81 the static check of sliding "
             f"has a utilisation of {PLATEAU_PEAK / (0.4 * GRAVITY):.3f}; it takes the base to be pushed with m "
             'a(t), which holds only until the stack rocks. "Will tilt" is not "falls": see the column overturned.'
         ),
-        band_of=PLATEAU.but({"solver.duration_s": 10.0}),
+        band_of=PLATEAU.but(duration(10.0)),
     )
 
 
-def stack_tilts_as_stated(laboratory: Laboratory) -> Finding:
-    """Four boxes under the stated motion of 2.4 m/s2."""
-    jerked = STACK.but(
-        {**RIGID, "motion.start": "rest"}, "rigid stack, the floor jerks at t = 0, mu_k = mu_s/2"
-    )
-    cases = (
-        (STACK.but({**RIGID, **G_TEN}, "rigid stack, stated motion, g = 10"), True),
-        (STACK.but(RIGID, "rigid stack, stated motion, g = 9.81"), True),
-        (STACK.but({"solver.model": "reduced"}, "shell, stated motion, g = 9.81"), True),
-        (
-            STACK.but(
-                {**RIGID, "motion.start": "rest", "contact.mu_kinetic": 0.4},
-                "rigid stack, the floor jerks at t = 0, mu_k = mu_s",
-            ),
-            True,
-        ),
-    )
+@claim(
+    section="7, four boxes",
+    quote="In this example, the body will just remain in the sticking mode and will tilt (stated "
+    "motion, 2.4 m/s²)",
+)
+def stack_tilts_as_stated(experiments: Experiments) -> Finding:
+    """The stack under 50 mm at 6.928 rad/s, rigid and shell, started moving and with a jerk."""
+    jerk = STACK.but(RIGID, {"motion.start": "rest"})
+    jerked = jerk.but(what="rigid stack, the floor jerks at t = 0, mu_k = mu_s/2")
+    cases = [
+        STACK.but(RIGID, G_TEN, what="rigid stack, stated motion, g = 10"),
+        STACK.but(RIGID, what="rigid stack, stated motion, g = 9.81"),
+        STACK.but(SHELL, what="shell, stated motion, g = 9.81"),
+        jerk.but({"contact.mu_kinetic": 0.4}, what="rigid stack, the floor jerks at t = 0, mu_k = mu_s"),
+    ]
     return _tilts_and_sticks(
-        laboratory,
+        experiments,
         cases,
-        bounds="",
         reading=(
             f"The motion that the paper states reaches {STATED_PEAK:g} m/s², against g a/c = {UPLIFT:.2f} m/s²; the "
-            "80 kNm are those of the plateau value, an amplified response. "
-            f"{_outcomes(laboratory, [setup for setup, _ in cases])}. Where the container does not move with the "
+            f"80 kNm are those of the plateau value, an amplified response. {_outcomes(experiments, cases)}. Where "
+            "the container does not move with the "
             f"floor at t = 0, the floor starts with a jerk of {0.05 * ANGULAR_FREQUENCY:.2f} m/s, and what follows "
-            f"belongs to that jerk; with mu_k = 0.2 instead: {_outcomes(laboratory, [jerked])}."
+            f"belongs to that jerk; with mu_k = 0.2 instead: {_outcomes(experiments, [jerked])}."
         ),
-        band_of=STACK.but({"solver.duration_s": 10.0}),
+        band_of=STACK.but(duration(10.0)),
     )
 
 
-def _outcomes(laboratory: Laboratory, setups: Sequence[Setup]) -> str:
-    """What each run came to, in words."""
+def _outcomes(experiments: Experiments, cases: Sequence[PaperCase]) -> str:
+    """The result of each run, in words."""
     return "; ".join(
-        f"{setup.what}: {row['outcome']}, rotation ratio {row['rotation_ratio']:.3g}, slip "
+        f"{case.what}: {row['outcome']}, rotation ratio {row['rotation_ratio']:.3g}, slip "
         f"{1e3 * row['max_slip_m']:.3g} mm"
-        for setup, row in zip(setups, laboratory.rows(setups), strict=True)
+        for case, row in zip(cases, experiments.rows(cases), strict=True)
     )
 
 
 def _tilts_and_sticks(
-    laboratory: Laboratory,
-    cases: tuple[tuple[Setup, bool], ...],
+    experiments: Experiments,
+    inside: Sequence[PaperCase],
+    outside: Sequence[PaperCase] = (),
     *,
-    bounds: str,
     reading: str,
-    band_of: Setup,
+    band_of: PaperCase,
+    bounds: str = "",
 ) -> Finding:
-    rows = laboratory.rows([setup for setup, _ in cases])
-    comparisons = []
-    for (setup, inside), row in zip(cases, rows, strict=True):
+    cases = [*inside, *outside]
+    comparisons, table = [], []
+    for case, row in zip(cases, experiments.rows(cases), strict=True):
+        ratio, slip = row["rotation_ratio"], 1e3 * row["max_slip_m"]
         comparisons += [
-            Comparison(
-                what=f"rotation ratio, {setup.what}",
-                measured=float(row["rotation_ratio"]),
-                relation=">=",
-                limit=0.01,
-                unit="-",
-                inside=inside,
-            ),
-            _at_most(f"slip, {setup.what}", 1e3 * row["max_slip_m"], 1e3 * SLIDING, "mm", inside=inside),
+            at_least(f"rotation ratio, {case.what}", ratio, 0.01, inside=case in inside),
+            at_most(f"slip, {case.what}", slip, 1e3 * SLIDING, "mm", inside=case in inside),
         ]
+        table.append((case.what, row["outcome"], ratio, slip, not stands(row)))
     return Finding(
-        comparisons=tuple(comparisons),
+        comparisons=comparisons,
         bounds=bounds,
         reading=reading,
-        setups=tuple(setup for setup, _ in cases),
-        tables=(
-            Table(
+        cases=cases,
+        tables=[
+            ClaimTable(
                 caption="What the stack does",
                 columns=("run", "outcome", "rotation ratio [-]", "slip [mm]", "overturned"),
-                rows=tuple(
-                    (
-                        setup.what,
-                        row["outcome"],
-                        row["rotation_ratio"],
-                        1e3 * row["max_slip_m"],
-                        row["outcome"] == "overturned",
-                    )
-                    for (setup, _), row in zip(cases, rows, strict=True)
-                ),
-            ),
-        ),
-        band=laboratory.band(
+                rows=table,
+            )
+        ],
+        band=experiments.band(
             band_of,
             quantity="rotation ratio",
-            unit="-",
-            value=lambda row: row["rotation_ratio"],
             criterion="it tilts (0.01 and more) and does not slide",
-            holds=_rocks_alone,
+            holds=lambda row: row["outcome"] == "rock",
         ),
     )
 
 
-def _rocks_alone(row: Row) -> bool:
-    return bool(row["outcome"] == "rock")
-
-
-def within_the_limit_cycle(laboratory: Laboratory) -> Finding:
-    """50 mm whatever the frequency: how far the stack turns, whether it diverges, whether it dies out."""
+@claim(
+    section="7",
+    quote="50 mm is << a/2. Regardless of sticking or slipping the tilting of the body will remain well "
+    "within the limit cycle. Thus, Lyapunov stability is given",
+)
+def within_the_limit_cycle(experiments: Experiments) -> Finding:
+    """50 mm at the paper's frequency and from 4 to 40 rad/s, slipping and sticking: rotation, growth, decay without
+    drive."""
     frequencies = [float(f"{w:.4g}") for w in np.geomspace(4.0, 40.0, 25)]
-    curves, comparisons, setups = [], [], []
+    curves, comparisons, cases = [], [], []
     at_paper: list[float] = []
     growths: list[float] = []
     died: list[bool] = []
     for name, values in (("slipping, mu 0.4/0.2", {}), ("sticking, mu 1.0", NO_SLIDING)):
+        base = STACK.but(FOR_MAPS, values)
         group = [
-            STACK.but(
-                {
-                    **FOR_MAPS,
-                    **values,
-                    "motion.angular_frequency_rad_s": frequency,
-                    "solver.duration_s": 20.0,
-                },
-                f"stack, {name}, 50 mm at {frequency:g} rad/s",
+            base.but(
+                {"motion.angular_frequency_rad_s": frequency},
+                duration(20.0),
+                what=f"stack, {name}, 50 mm at {frequency:g} rad/s",
             )
             for frequency in frequencies
         ]
-        rows = laboratory.attempts(group)
-        ratios = [
-            math.nan if row["status"] == "failed" else min(float(row["rotation_ratio"]), 1.0) for row in rows
-        ]
+        rows = experiments.rows(group, also_failed=True)
+        ratios = [capped_ratio(row) for row in rows]
         worst = int(np.nanargmax(ratios))
-        standing = [
-            one if row["outcome"] != "overturned" else -1.0 for one, row in zip(ratios, rows, strict=True)
-        ]
+        standing = [ratio if stands(row) else -1.0 for ratio, row in zip(ratios, rows, strict=True)]
         widest = group[int(np.nanargmax(standing))]
-        setups.append(group[worst])
-        at_paper.append(float(laboratory.rows([STACK.but({**FOR_MAPS, **values})])[0]["rotation_ratio"]))
-        growths.append(_growth(laboratory, widest))
-        curves.append(Line(x=frequencies, y=ratios, label=name, style="o-"))
-        comparisons += [
-            Comparison(
-                what=f"{name}: rotation ratio at the paper's 6.928 rad/s",
-                measured=at_paper[-1],
-                relation="<=",
-                limit=0.5,
-                unit="-",
-            ),
-            Comparison(
-                what=f"{name}: largest rotation ratio from 4 to 40 rad/s",
-                measured=ratios[worst],
-                relation="<=",
-                limit=0.5,
-                unit="-",
-                inside=False,
-            ),
-            Comparison(
-                what=f"{name}: frequencies at which it overturns",
-                measured=float(sum(row["outcome"] == "overturned" for row in rows)),
-                relation="<=",
-                limit=0.0,
-                unit="-",
-                inside=False,
-            ),
-            Comparison(
-                what=f"{name}: rotation in the last 5 s over that before, widest that stands",
-                measured=growths[-1],
-                relation="<=",
-                limit=1.05,
-                unit="-",
-                inside=False,
-            ),
-        ]
         ended = widest.but(
-            {"motion.cycles": 20.0, "solver.duration_s": 30.0}, f"{widest.what}, 20 cycles, then rest"
+            {"motion.cycles": 20.0}, duration(30.0), what=f"{widest.what}, 20 cycles, then rest"
         )
-        died.append(bool(laboratory.rows([ended])[0]["restored"]))
-        comparisons.append(
-            _some(
-                f"{name}: without drive the motion dies out, widest that stands",
-                float(died[-1]),
-                inside=False,
-            )
-        )
-        setups.append(ended)
+        cases += [group[worst], ended]
+        at_paper.append(float(experiments.row(base)["rotation_ratio"]))
+        growths.append(_growth(experiments, widest))
+        died.append(bool(experiments.row(ended)["restored"]))
+        curves.append(PlottedLine(x=frequencies, y=ratios, label=name, style="o-"))
+        overturned = sum(not stands(row) for row in rows)
+        growth = f"{name}: rotation in the last 5 s over that before, widest that stands"
+        decay = f"{name}: without drive the motion dies out, widest that stands"
+        comparisons += [
+            at_most(f"{name}: rotation ratio at the paper's 6.928 rad/s", at_paper[-1], 0.5),
+            at_most(f"{name}: largest rotation ratio from 4 to 40 rad/s", ratios[worst], 0.5, inside=False),
+            at_most(f"{name}: frequencies at which it overturns", overturned, 0.0, inside=False),
+            at_most(growth, growths[-1], 1.05, inside=False),
+            at_least(decay, died[-1], 1.0, inside=False),
+        ]
     return Finding(
-        comparisons=tuple(comparisons),
+        comparisons=comparisons,
         bounds="at the paper's frequency, where the stack does not move at all",
         reading=(
             f"At 6.928 rad/s 50 mm are {0.05 * ANGULAR_FREQUENCY**2:.2f} m/s² against g a/c = {UPLIFT:.2f} m/s²: the "
@@ -272,89 +238,29 @@ def within_the_limit_cycle(laboratory: Laboratory) -> Finding:
             f"a/2 cannot tell. In its last 5 s the widest motion that stands reaches {max(growths):.2f} of what it "
             f"reached before, and {sum(died)} of {len(died)} such motions have died out after their drive."
         ),
-        setups=tuple(setups),
-        drawings=(
-            drawing(
+        cases=cases,
+        figures=[
+            draw_curves(
                 "within-the-limit-cycle",
                 "Largest rotation over beta (1: overturned) of the rigid stack under 50 mm, over frequency.",
                 curves,
                 x_label="angular frequency [rad/s]",
                 y_label="rotation ratio [-]",
                 log_x=True,
-            ),
-        ),
-        band=laboratory.band(
-            STACK.but({"solver.duration_s": 10.0}),
+            )
+        ],
+        band=experiments.band(
+            STACK.but(duration(10.0)),
             quantity="rotation ratio at the paper's frequency",
-            unit="-",
-            value=lambda row: row["rotation_ratio"],
             criterion="at most half of beta",
-            holds=lambda row: row["outcome"] != "overturned" and row["rotation_ratio"] <= 0.5,
+            holds=lambda row: stands(row) and row["rotation_ratio"] <= 0.5,
         ),
     )
 
 
-def _growth(laboratory: Laboratory, setup: Setup) -> float:
+def _growth(experiments: Experiments, case: PaperCase) -> float:
     """Largest rotation of the last 5 s of a run over the largest before."""
-    history = laboratory.record(setup.but({"output.history_s": 0.02})).history
+    history = experiments.run(case.but(sampled(0.02))).history
     time, rotation = history["time_s"], np.abs(history["rotation_rad"])
     late = time >= time[-1] - 5.0
     return float(rotation[late].max() / rotation[~late].max())
-
-
-def _at_most(what: str, measured: float, limit: float, unit: str, *, inside: bool = True) -> Comparison:
-    return Comparison(what=what, measured=measured, relation="<=", limit=limit, unit=unit, inside=inside)
-
-
-def _none(what: str, found: bool) -> Comparison:
-    return Comparison(what=what, measured=float(found), relation="<=", limit=0.0, unit="-")
-
-
-def _some(what: str, count: float, *, inside: bool = True) -> Comparison:
-    return Comparison(what=what, measured=float(count), relation=">=", limit=1.0, unit="-", inside=inside)
-
-
-STATEMENTS = (
-    Statement(
-        name="box-just-sticks",
-        section="7, one box",
-        quote="In this example, the body will just remain in the sticking mode and will not tilt",
-        tried="Rigid box under the stated motion and the plateau value, g = 10 and 9.81 m/s².",
-        examine=box_sticks,
-    ),
-    Statement(
-        name="stack-tilts-at-plateau",
-        section="7, four boxes",
-        quote=(
-            "In this example, the body will just remain in the sticking mode and will tilt (plateau "
-            "value, 4.0 m/s²)"
-        ),
-        tried="The stack with the floor reaching the plateau value, rigid and shell, g = 10 and 9.81 m/s².",
-        examine=stack_tilts_at_plateau,
-        seconds=5.0,
-    ),
-    Statement(
-        name="stack-tilts-as-stated",
-        section="7, four boxes",
-        quote=(
-            "In this example, the body will just remain in the sticking mode and will tilt (stated "
-            "motion, 2.4 m/s²)"
-        ),
-        tried="The stack under 50 mm at 6.928 rad/s, rigid and shell, started moving and with a jerk.",
-        examine=stack_tilts_as_stated,
-        seconds=2.0,
-    ),
-    Statement(
-        name="within-the-limit-cycle",
-        section="7",
-        quote=(
-            "50 mm is << a/2. Regardless of sticking or slipping the tilting of the body will remain well "
-            "within the limit cycle. Thus, Lyapunov stability is given"
-        ),
-        tried=(
-            "50 mm at the paper's frequency and from 4 to 40 rad/s, slipping and sticking: rotation, "
-            "growth, decay without drive."
-        ),
-        examine=within_the_limit_cycle,
-    ),
-)

@@ -1,65 +1,131 @@
-"""Where statements are tried: runs without files, each computed once, on all cores.
+"""The runs behind the claims: without files, each computed once, on all cores.
 
-Rows hold the scalars of a verdict; a history is kept where a statement needs one. A run that failed has no
-outcome and is counted nowhere as standing or fallen: where a number of it is needed, the statement is not decided;
-where runs are counted, it is left out, and the page says how many were.
+Rows hold the scalars of a verdict; a history is kept where a claim needs one. A failed run has no outcome and
+counts neither as standing nor as overturned: where its number is needed, the claim is not decided; where runs are
+counted, it is left out, and the page gives the number of failed runs.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
 from typing import Any
 
-from contact.jit import is_compiled
+from contact.reference.rigid_block import RigidBlock
+from fem.assessment.rigid_check import block_of
 from fem.batch.case_maker import CaseMaker
-from fem.batch.container_cache import ContainerCache
-from fem.batch.runner import run_cases
+from fem.batch.runner import Row, Shelf, run_cases
 from fem.case.case import Case
 from fem.model.model import Model, build_model
 from fem.model.support import normal_penalty
-from fem.paper.claims import Band, Member, Setup
+from fem.paper.cases import RIGID, SHELL, PaperCase
 from fem.results.history import History
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 
-Row = dict[str, Any]
-
-RIGID = {"solver.model": "rigid"}
-#: contact penalty over the one that "auto" chooses, and contact damping ratio, of the shell's members
+#: contact penalty over the one that "auto" chooses, and contact damping ratio, of the variants with a shell
 PENALTY_FACTORS = (1.0 / 3.0, 1.0, 3.0)
 DAMPING_RATIOS = (0.5, 2.0)
 SUPPORTS = ("feet", "flat")
 
 
 class FailedRunError(RuntimeError):
-    """A run whose figures a statement needs has failed."""
+    """A run whose numbers a claim needs has failed."""
 
 
 class InterruptedStudyError(Exception):
-    """The user has asked to stop."""
+    """The user has interrupted the work."""
 
     exit_code = 4
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Record:
+class CaseRun:
     """A finished run with its history."""
 
     model: Model
     history: History
     status: str  #: completed | overturned | failed
 
+
+@dataclass(frozen=True, kw_only=True)
+class VariantResult:
+    """The case of a claim on another container or floor."""
+
+    what: str
+    command: str
+    outcome: str | None  #: None where the run failed
+    value: float | None
+    holds: bool | None  #: whether the criterion of the claim holds there; None where the run failed
+
+
+@dataclass(frozen=True, kw_only=True)
+class VariantBand:
+    """Range of one number of a claim over deformation, contact stiffness, contact damping and support."""
+
+    quantity: str
+    unit: str
+    criterion: str
+    members: Sequence[VariantResult]
+
     @property
-    def track(self) -> Any:
-        """Extremes and events, see `contact.stepping.observables.OBSERVABLES`."""
-        return self.model.run.track[0]
+    def low(self) -> float:
+        """Smallest computed value; nan without any."""
+        return min(self._values, default=math.nan)
+
+    @property
+    def high(self) -> float:
+        """Largest computed value; nan without any."""
+        return max(self._values, default=math.nan)
+
+    @property
+    def holding(self) -> int:
+        """In how many variants the criterion holds."""
+        return sum(member.holds is True for member in self.members)
+
+    @property
+    def summary(self) -> str:
+        """One line: how often the criterion holds, and whether that depends on the variant."""
+        total = len(self.members)
+        failed = sum(member.holds is None for member in self.members)
+        lost = f", {failed} not computed" if failed else ""
+        if self.holding == total:
+            change = "deformation, contact and support do not change it"
+        elif self.holding == 0:
+            change = "it holds in none of them"
+        else:
+            change = "it depends on deformation, contact or support"
+        return f"holds in {self.holding} of {total}{lost}: {change}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data for `study.json`."""
+        return asdict(self) | {"low": self.low, "high": self.high, "summary": self.summary}
+
+    @property
+    def _values(self) -> list[float]:
+        return [member.value for member in self.members if member.value is not None]
 
 
-class Laboratory:
-    """Runs setups and remembers them.
+def rotation_ratio(row: Row) -> float:
+    """Largest rotation over the slenderness angle [-]."""
+    return float(row["rotation_ratio"])
+
+
+def capped_ratio(row: Row) -> float:
+    """Rotation ratio, 1 where the container overturned, nan where the run failed [-]."""
+    return math.nan if row["status"] == "failed" else min(float(row["rotation_ratio"]), 1.0)
+
+
+def stands(row: Row) -> bool:
+    """Whether the container did not overturn, of a run that did not fail."""
+    return row["outcome"] != "overturned"
+
+
+class Experiments:
+    """Runs cases and remembers their results.
 
     Args:
         jobs: cores to use; None: all.
-        progress: told how many of how many runs of a batch are done.
+        progress: called with the number of finished runs of a batch and of all.
         stop: asked now and then; true ends the work with `InterruptedStudyError`.
     """
 
@@ -70,154 +136,132 @@ class Laboratory:
         progress: Callable[[int, int], None] = lambda done, total: None,
         stop: Callable[[], bool] = lambda: False,
     ) -> None:
-        self._jobs = jobs
-        self._progress = progress
-        self._stop = stop
-        self._containers = ContainerCache()
+        self._jobs, self._progress, self._stop = jobs, progress, stop
+        self._shelf = Shelf()
         self._makers: dict[str, CaseMaker] = {}
         self._rows: dict[Any, Row] = {}
-        self._records: dict[Any, Record] = {}
-        self.failed: set[Any] = set()  #: keys of the setups that failed, of those asked for; to be cleared
+        self._runs: dict[Any, CaseRun] = {}
+        self.failed: set[Any] = set()  #: keys of the failed cases that were asked for; to be cleared
 
-    def warm_up(self, tell: Callable[[str], None]) -> None:
-        """Have the kernels of rigid container and shell compiled and loaded before a statement's clock starts."""
-        if not is_compiled("advance_in_slices"):
-            tell("compiling the stepping kernels, once after installation: some minutes")
-        for model in ("rigid", "reduced"):
-            values = {"solver.model": model, "solver.duration_s": 0.01, "output.history_s": 0.01}
-            self.record(Setup(base="seed_stack", values=values))
-            self.rows([Setup(base="seed_stack", values=values)])
-
-    def case(self, setup: Setup) -> Case:
-        """The case of a setup, without reading its shipped case again.
+    def case(self, wanted: PaperCase) -> Case:
+        """The case as a run reads it; its shipped case is read once.
 
         Raises:
             CaseError: as for a case file.
         """
-        if setup.base not in self._makers:
-            self._makers[setup.base] = CaseMaker(Setup(base=setup.base).case)
-        return self._makers[setup.base](setup.values)
+        if wanted.base not in self._makers:
+            self._makers[wanted.base] = CaseMaker(PaperCase(base=wanted.base).case)
+        return self._makers[wanted.base](wanted.values)
 
-    def attempts(self, setups: Sequence[Setup]) -> list[Row]:
-        """Verdict scalars of each setup, in order; `status` says how each ended, `outcome` is None where it failed.
+    def rows(self, wanted: Sequence[PaperCase], *, also_failed: bool = False) -> list[Row]:
+        """Verdict scalars of each case, in order.
+
+        Args:
+            wanted: the cases.
+            also_failed: return the rows of failed runs as well, with outcome None.
 
         Raises:
+            FailedRunError: a run failed.
             CaseError: bad input.
-            InterruptedStudyError: told to stop.
+            InterruptedStudyError: interrupted.
         """
-        missing = {setup.key: setup for setup in setups if setup.key not in self._rows}
+        missing = {one.key: self.case(one) for one in wanted if one.key not in self._rows}
         if missing:
-            cases = [self.case(setup) for setup in missing.values()]
             found = run_cases(
-                cases, jobs=self._jobs, done=lambda done: self._progress(done, len(cases)), stop=self._stop
+                list(missing.values()),
+                jobs=self._jobs,
+                done=lambda done: self._progress(done, len(missing)),
+                stop=self._stop,
             )
-            if self._stop():
-                raise InterruptedStudyError("the study was stopped; what is finished is kept")
+            self._require_going()
             self._rows.update(zip(missing, found, strict=True))
-        rows = [self._rows[setup.key] for setup in setups]
-        self.failed |= {s.key for s, row in zip(setups, rows, strict=True) if row["status"] == "failed"}
-        return rows
-
-    def rows(self, setups: Sequence[Setup]) -> list[Row]:
-        """Verdict scalars of each setup, in order, of runs that all came to their end.
-
-        Raises:
-            FailedRunError: one failed.
-            CaseError, InterruptedStudyError: as `attempts`.
-        """
-        rows = self.attempts(setups)
-        for setup, row in zip(setups, rows, strict=True):
+        rows = [self._rows[one.key] for one in wanted]
+        for one, row in zip(wanted, rows, strict=True):
             if row["status"] == "failed":
-                raise FailedRunError(f"{setup.what or setup.command}: {row['reason']}")
+                self.failed.add(one.key)
+                if not also_failed:
+                    raise FailedRunError(f"{one.what or one.command}: {row['reason']}")
         return rows
 
-    def attempt(self, setup: Setup) -> Record:
-        """The run of a setup with its history, failed or not.
+    def row(self, wanted: PaperCase) -> Row:
+        """Verdict scalars of one case; raises as `rows`."""
+        return self.rows([wanted])[0]
 
-        Raises:
-            CaseError: bad input.
-            InterruptedStudyError: told to stop.
-        """
-        if setup.key not in self._records:
-            model = self.model(setup)
+    def run(self, wanted: PaperCase, *, also_failed: bool = False) -> CaseRun:
+        """The run of a case with its history; arguments and errors as for `rows`."""
+        if wanted.key not in self._runs:
+            model = self.model(wanted)
             recorder = Recorder(model)
             ending = simulate(model, recorder, stop=self._stop)
-            if ending.status == "interrupted":
-                raise InterruptedStudyError("the study was stopped; what is finished is kept")
-            self._records[setup.key] = Record(model=model, history=recorder.history(), status=ending.status)
-        record = self._records[setup.key]
-        if record.status == "failed":
-            self.failed.add(setup.key)
-        return record
+            self._require_going(ending.status)
+            self._runs[wanted.key] = CaseRun(model=model, history=recorder.history(), status=ending.status)
+        run = self._runs[wanted.key]
+        if run.status == "failed":
+            self.failed.add(wanted.key)
+            if not also_failed:
+                raise FailedRunError(f"{wanted.what or wanted.command}: the run failed")
+        return run
 
-    def record(self, setup: Setup) -> Record:
-        """The run of a setup with its history, come to its end.
+    def model(self, wanted: PaperCase) -> Model:
+        """The model of a case, at t = 0."""
+        case = self.case(wanted)
+        return build_model(case, self._shelf.container_of(case))
 
-        Raises:
-            FailedRunError: it failed.
-            CaseError, InterruptedStudyError: as `attempt`.
-        """
-        record = self.attempt(setup)
-        if record.status == "failed":
-            raise FailedRunError(f"{setup.what or setup.command}: the run failed")
-        return record
+    def block(self, wanted: PaperCase) -> RigidBlock:
+        """The analytic block with the mass and geometry of a case."""
+        return block_of(self.model(wanted.but(RIGID)))
 
-    def model(self, setup: Setup) -> Model:
-        """What is stepped, at t = 0."""
-        case = self.case(setup)
-        return build_model(case, self._containers.container_of(case))
-
-    def penalty(self, setup: Setup) -> float:
-        """Normal penalty of a setup, chosen or given [Pa/m]."""
-        case = self.case(setup)
-        return normal_penalty(case, self._containers.container_of(case).mesh)
-
-    def variants(self, setup: Setup) -> list[Setup]:
+    def variants(self, wanted: PaperCase) -> list[PaperCase]:
         """The rigid container and the shell: on corners of three penalties and two dampings, on feet, flat."""
-        shell = setup.but({"solver.model": "reduced"})
-        auto = self.penalty(shell)
-        members = [setup.but(RIGID, "rigid, corners")]
-        for factor in PENALTY_FACTORS:
-            for damping in DAMPING_RATIOS:
-                values = {
+        shell = wanted.but(SHELL)
+        case = self.case(shell)
+        auto = normal_penalty(case, self._shelf.container_of(case).mesh)
+        corners = [
+            shell.but(
+                {
                     "contact.normal_penalty_Pa_m": float(f"{factor * auto:.6g}"),
                     "contact.damping_ratio": damping,
-                }
-                members.append(
-                    shell.but(values, f"shell, corners, penalty x {factor:.2g}, contact damping {damping:g}")
-                )
-        return members + [shell.but({"support.kind": kind}, f"shell, {kind}") for kind in SUPPORTS]
+                },
+                what=f"shell, corners, penalty x {factor:.2g}, contact damping {damping:g}",
+            )
+            for factor in PENALTY_FACTORS
+            for damping in DAMPING_RATIOS
+        ]
+        others = [shell.but({"support.kind": kind}, what=f"shell, {kind}") for kind in SUPPORTS]
+        return [wanted.but(RIGID, what="rigid, corners"), *corners, *others]
 
     def band(
         self,
-        setup: Setup,
+        wanted: PaperCase,
         *,
         quantity: str,
-        unit: str,
-        value: Callable[[Row], float | None],
         criterion: str,
         holds: Callable[[Row], bool],
-        values: Mapping[str, Any] | None = None,
-    ) -> Band:
-        """One number of a setup over deformation, contact stiffness, contact damping and support.
+        value: Callable[[Row], float | None] = rotation_ratio,
+        unit: str = "-",
+    ) -> VariantBand:
+        """One number of a case over deformation, contact stiffness, contact damping and support.
 
         Args:
-            setup: the statement's case.
-            quantity, unit, value: which number, of a row.
-            criterion, holds: what the statement asks of a row.
-            values: keys changed for all members, such as a shorter duration.
+            wanted: the case of the claim.
+            quantity, unit, value: the number, taken from a row.
+            criterion, holds: what the claim requires of a row.
         """
-        members = self.variants(setup.but(values or {}))
-        found = []
-        for member, row in zip(members, self.attempts(members), strict=True):
-            stands = row["status"] != "failed"
-            found.append(
-                Member(
-                    what=member.what,
-                    command=member.command,
+        members = []
+        variants = self.variants(wanted)
+        for variant, row in zip(variants, self.rows(variants, also_failed=True), strict=True):
+            computed = row["status"] != "failed"
+            members.append(
+                VariantResult(
+                    what=variant.what,
+                    command=variant.command,
                     outcome=row["outcome"],
-                    value=value(row) if stands else None,
-                    holds=bool(holds(row)) if stands else None,
+                    value=value(row) if computed else None,
+                    holds=bool(holds(row)) if computed else None,
                 )
             )
-        return Band(quantity=quantity, unit=unit, criterion=criterion, members=tuple(found))
+        return VariantBand(quantity=quantity, unit=unit, criterion=criterion, members=members)
+
+    def _require_going(self, status: str = "") -> None:
+        if status == "interrupted" or (not status and self._stop()):
+            raise InterruptedStudyError("interrupted; the claims checked so far are kept")

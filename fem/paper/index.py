@@ -1,6 +1,7 @@
-"""Every statement of the paper that is tried, by subject, and those that are not, with the reason."""
+"""Every claim of the paper that is checked, by topic, and those that are not, with the reason."""
 
 from dataclasses import dataclass
+from types import ModuleType
 
 from fem.paper import (
     amplification,
@@ -14,7 +15,7 @@ from fem.paper import (
     shape,
     sliding,
 )
-from fem.paper.claims import Statement
+from fem.paper.claims import Claim
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,17 +27,22 @@ class Untried:
     reason: str
 
 
-GROUPS: dict[str, tuple[Statement, ...]] = {
-    "The central claim, counted": counting.STATEMENTS,
-    "The example of section 7": example.STATEMENTS,
-    "The printed numbers": numbers.STATEMENTS,
-    "Limit conditions": quasi_static.STATEMENTS,
-    "Sliding": sliding.STATEMENTS,
-    "Friction": friction.STATEMENTS,
-    "Rocking": rocking.STATEMENTS,
-    "Response": amplification.STATEMENTS,
-    "Overturning": overturning.STATEMENTS,
-    "The body": shape.STATEMENTS,
+def _claims_in(module: ModuleType) -> tuple[Claim, ...]:
+    """The claims of a module, in the order of its file."""
+    return tuple(one for one in vars(module).values() if isinstance(one, Claim))
+
+
+TOPICS = {
+    "The central claim, counted": _claims_in(counting),
+    "The example of section 7": _claims_in(example),
+    "The printed numbers": _claims_in(numbers),
+    "Limit conditions": _claims_in(quasi_static),
+    "Sliding": _claims_in(sliding),
+    "Friction": _claims_in(friction),
+    "Rocking": _claims_in(rocking),
+    "Response": _claims_in(amplification),
+    "Overturning": _claims_in(overturning),
+    "The body": _claims_in(shape),
 }
 
 UNTRIED = (
@@ -52,9 +58,7 @@ UNTRIED = (
     ),
     Untried(
         section="4.1",
-        quote=(
-            "there is no simple engineering solution published, which includes friction with belt-reversals"
-        ),
+        quote="there is no simple engineering solution published, which includes friction with belt-reversals",
         reason=(
             "A statement on the literature. Westermo and Udwadia (1983) give the sliding oscillator on a "
             "reversing floor in closed form; rocking and sliding together have criteria of initiation "
@@ -77,6 +81,6 @@ UNTRIED = (
 )
 
 
-def all_statements() -> list[tuple[str, Statement]]:
-    """Group and statement, in the order of the page."""
-    return [(group, statement) for group, statements in GROUPS.items() for statement in statements]
+def all_claims() -> list[Claim]:
+    """All checked claims, in the order of the page."""
+    return [claim for claims in TOPICS.values() for claim in claims]

@@ -1,59 +1,75 @@
-"""Maps of the stack over frequency and peak acceleration, and which of their cells are sure.
+"""Outcome maps: the stack over frequency and peak acceleration, a container over slenderness and friction.
 
-Cells next to one that ends otherwise, or that stand beyond half of the slenderness angle, are perturbed as a sweep
-perturbs them (`fem.sweep.perturbation`): amplitude 2 % less and more, both friction coefficients 0.02 less and
-more, the phase a twentieth of a turn earlier and later, a contact damping ratio of 0.5. A cell is sure if all its
-copies stand, or all fall, as it does.
+The container is rigid, or a shell on a coarser grid. Counts are of the cells of these maps, and say nothing of how
+often such motions occur.
+
+Cells next to one that ends otherwise, or that stand beyond half of the slenderness angle, are perturbed as in a sweep
+(`fem.sweep.perturbation`): amplitude 2 % less and more, both friction coefficients 0.02 less and more, the phase a
+twentieth of a turn earlier and later, a contact damping ratio of 0.5. A cell is sure if all its copies stand, or all
+overturn, as it does.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from scipy import ndimage
 
-from fem.paper.cases import FOR_MAPS, STACK, harmonic
-from fem.paper.claims import Setup
-from fem.paper.experiments import Laboratory, Row
-from fem.sweep.neighbours import OVERTURNED, STANDING, kind_of
+from fem.batch.axes import Axis
+from fem.batch.runner import Row
+from fem.paper.cases import (
+    ANGULAR_FREQUENCY,
+    BOX_WEIGHT,
+    FOR_MAPS,
+    FREQUENCY_PARAMETER,
+    HEIGHT,
+    PLATEAU_PEAK,
+    SHELL,
+    STACK,
+    WIDTH,
+    PaperCase,
+    duration,
+    friction,
+    harmonic,
+)
+from fem.paper.criteria import Contingency, Criterion, MapMotion, contingency
+from fem.paper.experiments import Experiments, stands
+from fem.runtime.arrays import BoolArray
+from fem.sweep.neighbours import OVERTURNED, STANDING, kind_of, near_cells
 from fem.sweep.perturbation import Perturbation
 
 FREQUENCIES = tuple(float(f"{w:.4g}") for w in np.linspace(1.5, 12.0, 20))  #: [rad/s]
 PEAKS = tuple(float(f"{a:.4g}") for a in np.geomspace(1.8, 12.0, 20))  #: [m/s2]
-DURATION = 15.0  #: s
-FALLEN = "overturned"
+SLENDERNESS = tuple(float(f"{one:.4g}") for one in np.linspace(1.5, 6.0, 19))  #: c/a
+FRICTION = tuple(float(f"{one:.4g}") for one in np.linspace(0.1, 0.8, 15))  #: mu_s; mu_k is half of it
+SHAPE_FREQUENCIES = (2.5, 4.0, ANGULAR_FREQUENCY)  #: [rad/s]
+FAST = 3.0 * FREQUENCY_PARAMETER  #: of a floor, against the stack [rad/s]
+FOR_SHELL = SHELL | duration(10.0)
 PERTURBATION = Perturbation(contact_damping_ratios=[0.5])
 
 
 @dataclass(frozen=True, kw_only=True)
-class Cell:
-    """One motion of a map."""
+class MapCell:
+    """One run of a map."""
 
-    angular_frequency: float  #: [rad/s]
-    peak: float  #: [m/s2]
-    setup: Setup
-    row: Row
+    motion: MapMotion
+    case: PaperCase
+    row: Row = field(repr=False)
     sure: bool = True
 
     @property
-    def amplitude(self) -> float:
-        """A of the floor [m]."""
-        return self.peak / self.angular_frequency**2
-
-    @property
     def computed(self) -> bool:
-        """Whether the run came to its end."""
+        """Whether the run did not fail."""
         return bool(self.row["status"] != "failed")
 
     @property
     def fell(self) -> bool:
-        """Whether it overturned."""
-        return bool(self.row["outcome"] == FALLEN)
+        """Whether the container overturned."""
+        return not stands(self.row)
 
     @property
     def stood(self) -> bool:
-        """Whether it came to its end and stands."""
+        """Whether the run did not fail and the container stands."""
         return self.computed and not self.fell
 
     @property
@@ -62,93 +78,187 @@ class Cell:
         return self.row["first_uplift_s"] is not None
 
 
-def stack_setup(
-    peak: float, angular_frequency: float, values: Mapping[str, Any] | None = None, what: str = ""
-) -> Setup:
-    """The stack under a harmonic floor, rigid unless `values` say otherwise."""
-    return STACK.but(
-        {
-            **FOR_MAPS,
-            "solver.duration_s": DURATION,
-            **harmonic(peak, angular_frequency),
-            **(values or {}),
-        },
-        what or f"stack, {peak:g} m/s² at {angular_frequency:g} rad/s",
-    )
+@dataclass(frozen=True, kw_only=True)
+class OutcomeMap:
+    """Cells over two axes, row by row of rising y."""
+
+    title: str
+    rigid: bool
+    x: Sequence[float]
+    y: Sequence[float]
+    every: Sequence[MapCell]  #: failed ones as well
+
+    @property
+    def cells(self) -> list[MapCell]:
+        """The computed cells."""
+        return [cell for cell in self.every if cell.computed]
+
+    @property
+    def rows(self) -> list[list[MapCell]]:
+        """All cells, those of one y together."""
+        width = len(self.x)
+        return [list(self.every[first : first + width]) for first in range(0, len(self.every), width)]
+
+    @property
+    def fast(self) -> bool:
+        """Whether it holds motions faster than FAST."""
+        return any(cell.motion.angular_frequency > FAST for cell in self.every)
+
+    def count(self, criterion: Criterion, *, sure: bool | None = None) -> Contingency:
+        """The criterion against all computed cells, or the sure or the unsure ones."""
+        chosen = [cell for cell in self.cells if sure is None or cell.sure is sure]
+        return contingency([criterion(cell.motion) for cell in chosen], [cell.fell for cell in chosen])
+
+    def standing_share(self, criterion: Criterion, frequencies: Collection[float] = ()) -> float:
+        """Of the computed cells that a criterion turns over, the share that stands; nan without any.
+
+        Args:
+            criterion: says which cells overturn.
+            frequencies: only cells at these, if there are any [rad/s].
+        """
+        said = [
+            cell.stood
+            for cell in self.cells
+            if criterion(cell.motion) and (not frequencies or cell.motion.angular_frequency in frequencies)
+        ]
+        return sum(said) / len(said) if said else np.nan
 
 
 def stack_map(
-    laboratory: Laboratory,
+    experiments: Experiments,
     values: Mapping[str, Any] | None = None,
     *,
-    frequencies: Sequence[float] = FREQUENCIES,
     peaks: Sequence[float] = PEAKS,
-    perturbed: bool = False,
-) -> list[Cell]:
-    """The cells of a map, row by row of rising peak.
+    rigid: bool = True,
+    perturbed: bool = True,
+) -> OutcomeMap:
+    """The stack over frequency and peak acceleration.
 
     Args:
+        experiments: computes the cells.
         values: keys changed in all cells.
-        frequencies: [rad/s]; peaks: [m/s2].
-        perturbed: find out which cells are sure.
+        peaks: [m/s2].
+        rigid: or a shell, at every second frequency and peak.
+        perturbed: find out which cells are sure; all count as sure otherwise.
     """
+    frequencies = FREQUENCIES if rigid else FREQUENCIES[::2]
+    peaks = peaks if rigid else peaks[1::2]
+    base = STACK.but(FOR_MAPS, duration(15.0))
+    changes: Mapping[str, Any] = (values or {}) if rigid else {**FOR_SHELL, **(values or {})}
     places = [(peak, frequency) for peak in peaks for frequency in frequencies]
-    setups = [stack_setup(peak, frequency, values) for peak, frequency in places]
-    rows = laboratory.attempts(setups)
-    sure = [True] * len(setups)
-    if perturbed:
-        sure = mark_sure(laboratory, setups, rows, len(frequencies))
-    return [
-        Cell(angular_frequency=frequency, peak=peak, setup=setup, row=row, sure=certain)
-        for (peak, frequency), setup, row, certain in zip(places, setups, rows, sure, strict=True)
+    cases = [
+        base.but(harmonic(peak, frequency), changes, what=f"stack, {peak:g} m/s² at {frequency:g} rad/s")
+        for peak, frequency in places
     ]
+    motions = [
+        MapMotion(
+            angular_frequency=frequency,
+            peak=peak,
+            slenderness=HEIGHT / WIDTH,
+            mu_static=changes.get("contact.mu_static", 0.4),
+            mu_kinetic=changes.get("contact.mu_kinetic", 0.2),
+        )
+        for peak, frequency in places
+    ]
+    return OutcomeMap(
+        title=f"{'rigid' if rigid else 'shell'} stack, frequency x peak",
+        rigid=rigid,
+        x=frequencies,
+        y=peaks,
+        every=_cells(experiments, cases, motions, frequencies, peaks, perturbed=perturbed),
+    )
 
 
-def mark_sure(laboratory: Laboratory, setups: Sequence[Setup], rows: Sequence[Row], width: int) -> list[bool]:
-    """Which cells of a map, `width` to a row, are sure; only those near a change are perturbed."""
-    near = near_change(rows, width)
-    doubtful = [setup for setup, asked in zip(setups, near, strict=True) if asked]
-    found = iter(sure_ones(laboratory, doubtful))
-    return [next(found) if asked else True for asked in near]
-
-
-def sure_ones(laboratory: Laboratory, setups: Sequence[Setup]) -> list[bool]:
-    """For each setup, whether all its perturbed copies stand, or all fall, as it does; never where one failed."""
-    copies = [perturbations(setup) for setup in setups]
-    laboratory.attempts([copy for group in copies for copy in group])  # all in one batch
+def shape_maps(experiments: Experiments, *, rigid: bool = True) -> list[OutcomeMap]:
+    """One container over slenderness and friction under 4.0 m/s2, a map for each frequency."""
+    shapes, frictions = (SLENDERNESS, FRICTION) if rigid else (SLENDERNESS[1::2], FRICTION[1::2])
+    kind, model = ("rigid", {}) if rigid else ("shell", FOR_SHELL)
+    places = [(mu, slenderness) for mu in frictions for slenderness in shapes]
     found = []
-    for setup, group in zip(setups, copies, strict=True):
-        rows = laboratory.attempts([setup, *group])
-        kinds = {kind_of(row["status"], row["outcome"]) for row in rows}
-        found.append(kinds in ({STANDING}, {OVERTURNED}))
+    for frequency in SHAPE_FREQUENCIES:
+        base = STACK.but(FOR_MAPS, duration(15.0), harmonic(PLATEAU_PEAK, frequency), model)
+        cases = [
+            base.but(
+                {
+                    "container.boxes": 1,
+                    "container.height_m": round(slenderness * WIDTH, 4),
+                    "container.centroid_m": round(0.5 * slenderness * WIDTH, 4),
+                    "container.weight_N": round(BOX_WEIGHT * slenderness * WIDTH, 1),
+                },
+                friction(mu, round(0.5 * mu, 4)),
+                what=f"{kind}, c/a = {slenderness:g}, mu_s = {mu:g}, {frequency:g} rad/s",
+            )
+            for mu, slenderness in places
+        ]
+        motions = [
+            MapMotion(
+                angular_frequency=frequency,
+                peak=PLATEAU_PEAK,
+                slenderness=slenderness,
+                mu_static=mu,
+                mu_kinetic=0.5 * mu,
+            )
+            for mu, slenderness in places
+        ]
+        found.append(
+            OutcomeMap(
+                title=f"{kind}, c/a x mu_s, {PLATEAU_PEAK:.1f} m/s² at {frequency:g} rad/s",
+                rigid=rigid,
+                x=shapes,
+                y=frictions,
+                every=_cells(experiments, cases, motions, shapes, frictions),
+            )
+        )
     return found
 
 
-def near_change(rows: Sequence[Row], width: int) -> list[bool]:
-    """Which cells of a map, `width` to a row, are to be perturbed."""
-    kind = np.array([kind_of(row["status"], row["outcome"]) for row in rows]).reshape(-1, width)
-    ratio = np.array([row["rotation_ratio"] or 0.0 for row in rows]).reshape(-1, width)
-    highest = ndimage.maximum_filter(kind, size=3, mode="nearest")
-    lowest = ndimage.minimum_filter(kind, size=3, mode="nearest")
-    near = (highest != lowest) | ((kind == STANDING) & (ratio >= PERTURBATION.close))
-    return [bool(one) for one in near.ravel()]
+def pairs(one: OutcomeMap, other: OutcomeMap) -> list[tuple[MapCell, MapCell]]:
+    """Cells at the same place of two maps, both computed; the other's places must be among those of the first."""
+    known = {
+        (x, y): cell
+        for y, row in zip(one.y, one.rows, strict=True)
+        for x, cell in zip(one.x, row, strict=True)
+    }
+    found = [
+        (known[x, y], cell)
+        for y, row in zip(other.y, other.rows, strict=True)
+        for x, cell in zip(other.x, row, strict=True)
+    ]
+    return [(first, second) for first, second in found if first.computed and second.computed]
 
 
-def perturbations(setup: Setup) -> list[Setup]:
-    """The copies of a setup under slightly other conditions."""
-    return [setup.but(change) for change in PERTURBATION.members(setup.case)]
+def near_change(rows: Sequence[Row], x: Sequence[float], y: Sequence[float]) -> BoolArray:
+    """Which cells of a map over x and y are to be perturbed, (n_cells,)."""
+    shape = (len(y), len(x))
+    kind = np.array([kind_of(row["status"], row["outcome"]) for row in rows]).reshape(shape)
+    ratio = np.array([row["rotation_ratio"] or 0.0 for row in rows]).reshape(shape)
+    axes = [Axis(key="", values=tuple(values)) for values in (y, x)]
+    return near_cells(axes, kind, ratio, PERTURBATION.close).ravel()
 
 
-def grid(cells: Sequence[Cell], width: int = len(FREQUENCIES)) -> list[list[Cell]]:
-    """Cells of a map, `width` to a row, as rows."""
-    return [list(cells[first : first + width]) for first in range(0, len(cells), width)]
-
-
-def outcomes(cells: Sequence[Cell], width: int = len(FREQUENCIES)) -> list[list[str]]:
-    """Outcome of each cell, "failed" where there is none."""
-    return [[cell.row["outcome"] or "failed" for cell in row] for row in grid(cells, width)]
-
-
-def doubts(cells: Sequence[Cell], width: int = len(FREQUENCIES)) -> list[list[bool]]:
-    """Which cells are not sure."""
-    return [[not cell.sure for cell in row] for row in grid(cells, width)]
+def _cells(
+    experiments: Experiments,
+    cases: Sequence[PaperCase],
+    motions: Sequence[MapMotion],
+    x: Sequence[float],
+    y: Sequence[float],
+    *,
+    perturbed: bool = True,
+) -> list[MapCell]:
+    """Compute a map; where asked, perturb the cells near a change of outcome."""
+    rows = experiments.rows(cases, also_failed=True)
+    sure = [True] * len(cases)
+    if perturbed:
+        near = np.flatnonzero(near_change(rows, x, y)).tolist()
+        copies = {
+            k: [cases[k].but(one) for one in PERTURBATION.members(experiments.case(cases[k]))] for k in near
+        }
+        experiments.rows([one for group in copies.values() for one in group], also_failed=True)  # one batch
+        for k, group in copies.items():
+            found = experiments.rows([cases[k], *group], also_failed=True)
+            kinds = {kind_of(row["status"], row["outcome"]) for row in found}
+            sure[k] = kinds in ({STANDING}, {OVERTURNED})
+    return [
+        MapCell(motion=motion, case=case, row=row, sure=certain)
+        for motion, case, row, certain in zip(motions, cases, rows, sure, strict=True)
+    ]

@@ -1,35 +1,52 @@
-"""The page of a study, and its table for a terminal, from what `study.json` holds."""
+"""The page of the checked claims, and their table for a terminal, made from `study.json`."""
 
 import datetime as dt
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from fem.html.page import Signature, render_page, svg_element
-from fem.paper.claims import Verdict
+from fem.paper.claims import Conclusion
+from fem.results.errors import FolderError
+from fem.results.folder import read_result
+from fem.results.kinds import PAPER
 
 MARKS = {
-    Verdict.CONFIRMED.value: "pass",
-    Verdict.BOUNDED.value: "doubt",
-    Verdict.REFUTED.value: "fail",
-    Verdict.UNDECIDED.value: "fail",
+    Conclusion.CONFIRMED.value: "pass",
+    Conclusion.BOUNDED.value: "doubt",
+    Conclusion.REFUTED.value: "fail",
+    Conclusion.UNDECIDED.value: "fail",
 }
 
 
-def study_page(
-    document: Mapping[str, Any], svgs: Mapping[str, str], *, signature: Signature | None = None
-) -> str:
-    """One self-contained HTML page.
+def paper_report(folder: Path, *, signature: Signature | None = None) -> str:
+    """One self-contained HTML page, as text.
 
     Args:
-        document: a `study.json`.
-        svgs: its figures, by their names.
+        folder: of the checked claims, finished or not.
         signature: author, checker, revision.
+
+    Raises:
+        FolderError: `study.json` is missing, damaged, or something else.
     """
+    path = folder / PAPER.mark
+    document = read_result(path, PAPER)
+    try:
+        svgs = {one.stem: one.read_text(encoding="utf-8") for one in (folder / "figures").glob("*.svg")}
+        return _page(document, svgs, signature or Signature())
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise FolderError(
+            f"{path}: damaged, or not the result of a study ({error}); compute it again with "
+            "python -m fem study seed --force"
+        ) from None
+
+
+def _page(document: Mapping[str, Any], svgs: Mapping[str, str], signature: Signature) -> str:
     return render_page(
         "study.html.j2",
         scripts=["signature.js"],
         name=f"study_{document['study']}",
-        signature=signature or Signature(),
+        signature=signature,
         today=dt.date.today().isoformat(),
         study=document,
         marks=MARKS,
@@ -47,7 +64,7 @@ def study_page(
 
 
 def table_lines(document: Mapping[str, Any]) -> list[str]:
-    """One line a statement, for a terminal, and the counts."""
+    """One line a claim, for a terminal, and the counts."""
     lines = []
     for group in document["groups"]:
         lines += ["", group["title"]]
@@ -55,7 +72,7 @@ def table_lines(document: Mapping[str, Any]) -> list[str]:
             rule = entry.get("rule") or entry.get("error", "")
             lines.append(f"  {entry['name']:<26} {entry['verdict']:<31} {rule}")
     counts = ", ".join(f"{count} {verdict}" for verdict, count in document["counts"].items() if count)
-    return [*lines, "", f"{document['statements']} statements: {counts}"]
+    return [*lines, "", f"{document['statements']} claims: {counts}"]
 
 
 def number(value: Any) -> str:
@@ -70,7 +87,7 @@ def number(value: Any) -> str:
 
 
 def limit(comparison: Mapping[str, Any]) -> str:
-    """What a comparison asks for."""
+    """The limit of a comparison, with its relation."""
     sign = {"<=": "≤", ">=": "≥", "=": "="}[comparison["relation"]]
     tolerance = f" ± {number(comparison['tolerance'])}" if comparison["tolerance"] else ""
     return f"{sign} {number(comparison['limit'])}{tolerance}"

@@ -1,36 +1,37 @@
-"""Statements of the seed paper whose verdict is known beforehand, tried by runs of the rigid container."""
+"""Claims of Knoedel and Hrabowski (the paper) whose conclusion is known beforehand, by runs of the rigid container."""
 
 import numpy as np
 import pytest
 
 from fem.paper import numbers, quasi_static, rocking, shape
-from fem.paper.claims import Verdict
-from fem.paper.experiments import Laboratory
+from fem.paper.claims import Conclusion
+from fem.paper.experiments import Experiments
 
 
 @pytest.fixture(scope="module")
-def laboratory():
-    return Laboratory()
+def experiments():
+    return Experiments()
 
 
 @pytest.mark.parametrize(
-    ("examine", "verdict"),
+    ("claim", "conclusion"),
     [
-        (numbers.one_box, Verdict.BOUNDED),  # with g = 9.81 the utilisation of stiction is 1.019
-        (numbers.four_boxes, Verdict.BOUNDED),
-        (numbers.half_width, Verdict.REFUTED),  # 550 mm, printed 600
-        (quasi_static.kinetic_limit, Verdict.CONFIRMED),  # Coulomb
-        (quasi_static.moments_of_a_tilted_body, Verdict.CONFIRMED),  # statics: g tan(al - theta)
-        (quasi_static.sign_beyond_balance, Verdict.REFUTED),  # the sign of a cosine
-        (rocking.eq_2, Verdict.BOUNDED),  # sqrt(3/4) of the block's period at small rotation
-        (rocking.eq_3, Verdict.BOUNDED),  # T p/4 = arccosh(1/(1 - theta/al)), which 2 pi/4 meets near 0.6 al
-        (rocking.control_periods, Verdict.BOUNDED),  # the same
+        (numbers.numbers_one_box, Conclusion.BOUNDED),  # with g = 9.81 the utilisation of stiction is 1.019
+        (numbers.numbers_four_boxes, Conclusion.BOUNDED),
+        (numbers.half_width, Conclusion.REFUTED),  # 550 mm, printed 600
+        (quasi_static.kinetic_limit, Conclusion.CONFIRMED),  # Coulomb
+        (quasi_static.moments_of_a_tilted_body, Conclusion.CONFIRMED),  # statics: g tan(al - theta)
+        (quasi_static.sign_beyond_balance, Conclusion.REFUTED),  # the sign of a cosine
+        (rocking.eq_2, Conclusion.BOUNDED),  # sqrt(3/4) of the block's period at small rotation
+        # T p/4 = arccosh(1/(1 - theta/al)), which 2 pi/4 meets near 0.6 al
+        (rocking.eq_3, Conclusion.BOUNDED),
+        (rocking.control_periods, Conclusion.BOUNDED),  # the same
     ],
 )
-def test_verdict_on_a_statement_that_theory_decides(laboratory, examine, verdict):
-    finding = examine(laboratory)
-    assert not laboratory.failed
-    assert finding.verdict is verdict
+def test_conclusion_on_a_claim_that_theory_decides(experiments, claim, conclusion):
+    finding = claim.check(experiments)
+    assert not experiments.failed
+    assert finding.conclusion is conclusion
 
 
 def test_inertia_of_a_cylinder_about_the_edge_of_its_base():

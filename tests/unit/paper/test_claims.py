@@ -1,94 +1,82 @@
-"""Verdicts of a study follow from numbers; what is kept is what this very program found."""
+"""Conclusions on the paper follow from numbers; what is kept was found by this version of the program."""
 
 import json
 import math
+import shutil
+from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from fem.__main__ import main
 from fem.case.case import load_case
-from fem.paper.cases import STACK, harmonic
+from fem.paper import maps
+from fem.paper.cases import STACK, PaperCase, harmonic
 from fem.paper.claims import (
-    Band,
-    Comparison,
-    Drawing,
+    Claim,
+    ClaimFigure,
+    Conclusion,
     Finding,
-    Member,
-    Setup,
-    Statement,
-    Verdict,
-    verdict_of,
+    at_least,
+    at_most,
+    conclude,
+    equal,
 )
-from fem.paper.criteria import Motion, contingency, mode_said, paper_criteria, static_rule
-from fem.paper.experiments import InterruptedStudyError, Laboratory
-from fem.paper.index import all_statements
-from fem.paper.maps import near_change
-from fem.paper.run import conduct
-from fem.results.run_folder import FolderError
-
-
-def compared(measured, relation="<=", limit=1.0, *, tolerance=0.0, inside=True):
-    return Comparison(
-        what="a number",
-        measured=measured,
-        relation=relation,
-        limit=limit,
-        unit="-",
-        tolerance=tolerance,
-        inside=inside,
-    )
+from fem.paper.criteria import MapMotion, contingency, paper_rule, predicted_mode, static_rule
+from fem.paper.experiments import Experiments, InterruptedStudyError, VariantBand, VariantResult
+from fem.paper.index import all_claims
+from fem.paper.run import check_claims
+from fem.results.errors import FolderError, OutputError
 
 
 @pytest.mark.parametrize(
-    ("measured", "relation", "tolerance", "holds"),
+    ("comparison", "holds"),
     [
-        (1.0, "<=", 0.0, True),
-        (1.1, "<=", 0.0, False),
-        (1.0, ">=", 0.0, True),
-        (0.9, ">=", 0.0, False),
-        (1.04, "=", 0.05, True),
-        (1.06, "=", 0.05, False),
-        (math.nan, "<=", 0.0, False),
-        (math.nan, ">=", 0.0, False),
-        (math.nan, "=", 1.0, False),
+        (at_most("a", 1.0, 1.0), True),
+        (at_most("a", 1.1, 1.0), False),
+        (at_least("a", 1.0, 1.0), True),
+        (at_least("a", 0.9, 1.0), False),
+        (equal("a", 1.04, 1.0, 0.05), True),
+        (equal("a", 1.06, 1.0, 0.05), False),
+        (at_most("a", math.nan, 1.0), False),
+        (at_least("a", math.nan, 1.0), False),
+        (equal("a", math.nan, 1.0, 1.0), False),
     ],
 )
-def test_a_comparison_holds_by_its_numbers_and_never_with_nan(measured, relation, tolerance, holds):
-    assert compared(measured, relation, tolerance=tolerance).holds is holds
+def test_a_comparison_holds_by_its_numbers_and_never_with_nan(comparison, holds):
+    assert comparison.holds is holds
 
 
-GOOD, BAD = compared(0.5), compared(2.0)
-GOOD_OUTSIDE, BAD_OUTSIDE = compared(0.5, inside=False), compared(2.0, inside=False)
+GOOD, BAD = at_most("a", 0.5, 1.0), at_most("a", 2.0, 1.0)
+GOOD_OUTSIDE, BAD_OUTSIDE = replace(GOOD, inside=False), replace(BAD, inside=False)
 
 
 @pytest.mark.parametrize(
-    ("comparisons", "bounds", "verdict"),
+    ("comparisons", "bounds", "conclusion"),
     [
-        ((GOOD, GOOD_OUTSIDE), "", Verdict.CONFIRMED),
-        ((GOOD, GOOD_OUTSIDE), "some", Verdict.CONFIRMED),
-        ((GOOD, BAD_OUTSIDE), "some", Verdict.BOUNDED),
-        ((GOOD, BAD_OUTSIDE), "", Verdict.REFUTED),
-        ((GOOD, BAD), "some", Verdict.REFUTED),
-        ((BAD, GOOD_OUTSIDE), "some", Verdict.REFUTED),
-        ((BAD_OUTSIDE,), "some", Verdict.REFUTED),
-        ((BAD,), "", Verdict.REFUTED),
-        ((), "some", Verdict.UNDECIDED),
+        ((GOOD, GOOD_OUTSIDE), "", Conclusion.CONFIRMED),
+        ((GOOD, GOOD_OUTSIDE), "some", Conclusion.CONFIRMED),
+        ((GOOD, BAD_OUTSIDE), "some", Conclusion.BOUNDED),
+        ((GOOD, BAD_OUTSIDE), "", Conclusion.REFUTED),
+        ((GOOD, BAD), "some", Conclusion.REFUTED),
+        ((BAD, GOOD_OUTSIDE), "some", Conclusion.REFUTED),
+        ((BAD_OUTSIDE,), "some", Conclusion.REFUTED),
+        ((BAD,), "", Conclusion.REFUTED),
+        ((), "some", Conclusion.UNDECIDED),
     ],
 )
-def test_the_verdict_follows_from_the_comparisons(comparisons, bounds, verdict):
-    assert verdict_of(comparisons, bounds) is verdict
+def test_the_conclusion_follows_from_the_comparisons(comparisons, bounds, conclusion):
+    assert conclude(comparisons, bounds) is conclusion
 
 
 def band_of(*holds):
-    members = tuple(
-        Member(what=f"{n}", command="", outcome="rock", value=None if one is None else float(n), holds=one)
+    members = [
+        VariantResult(what=f"{n}", command="", outcome="rock", value=None if one is None else n, holds=one)
         for n, one in enumerate(holds)
-    )
-    return Band(quantity="a ratio", unit="-", criterion="small", members=members)
+    ]
+    return VariantBand(quantity="a ratio", unit="-", criterion="small", members=members)
 
 
-def test_a_band_says_how_often_it_holds_and_leaves_failed_members_out():
+def test_a_band_counts_how_often_the_criterion_holds_and_leaves_failed_runs_out():
     band = band_of(None, True, False)
     assert (band.low, band.high, band.holding) == (1.0, 2.0, 1)
     assert band.summary == "holds in 1 of 3, 1 not computed: it depends on deformation, contact or support"
@@ -97,132 +85,103 @@ def test_a_band_says_how_often_it_holds_and_leaves_failed_members_out():
     assert math.isnan(band_of(None).low)
 
 
-def test_a_band_takes_a_truth_of_any_kind(monkeypatch):
-    laboratory = Laboratory()
-    row = {"status": "completed", "outcome": "rock", "rotation_ratio": 0.4}
-    monkeypatch.setattr(laboratory, "variants", lambda setup: [setup])
-    monkeypatch.setattr(laboratory, "attempts", lambda setups: [row])
-    band = laboratory.band(
-        STACK,
-        quantity="a ratio",
-        unit="-",
-        value=lambda row: row["rotation_ratio"],
-        criterion="small",
-        holds=lambda row: np.float64(row["rotation_ratio"]) < 0.5,  # a truth of numpy's
-    )
-    assert band.holding == 1
-
-
-def test_the_command_of_a_setup_runs_the_very_case():
-    setup = STACK.but(
-        {
-            **harmonic(4.0, 7.1),
-            "support.kind": "flat",
-            "output.stop_when_overturned": True,
-            "solver.model": "rigid",
-        }
-    )
-    words = setup.command.split()
+def test_the_command_of_a_case_runs_the_very_case():
+    changes = {"support.kind": "flat", "output.stop_when_overturned": True, "solver.model": "rigid"}
+    case = STACK.but(harmonic(4.0, 7.1), changes)
+    words = case.command.split()
     overrides = [words[n + 1] for n, word in enumerate(words) if word == "--set"]
     typed = load_case(words[4], overrides).with_values({"output.fields_s": 0.0})
     assert words[:5] == ["python", "-m", "fem", "run", "seed_stack"]
-    assert typed.resolved() == setup.case.resolved()
-
-
-def test_every_setup_of_the_laboratory_is_the_case_of_its_command():
-    setup = STACK.but({**harmonic(4.0, 7.1), "contact.mu_static": 0.3, "contact.mu_kinetic": 0.15})
-    assert Laboratory().case(setup).resolved() == setup.case.resolved()
+    assert typed.resolved() == case.case.resolved() == Experiments().case(case).resolved()
 
 
 def test_a_contingency_counts_each_cell_once():
     found = contingency([True, True, False, False, True], [True, False, True, False, True])
     assert (found.cells, found.right, found.conservative, found.unconservative) == (5, 3, 1, 1)
-    assert sum(found.shares) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize(
-    ("peak", "amplitude", "slenderness", "mu", "tilts", "overturns", "mode"),
+    ("peak", "angular_frequency", "slenderness", "mu", "tilts", "overturns", "mode"),
     [
-        (2.4, 0.05, 3.636, (0.4, 0.2), False, False, "rest"),  # the stack under its stated motion
-        (4.0, 0.083, 3.636, (0.4, 0.2), True, False, "rock"),  # .. under the plateau value
-        (4.0, 1.0, 3.636, (0.4, 0.2), True, True, "overturned"),
-        (4.0, 1.0, 0.909, (0.4, 0.2), False, False, "slide"),  # one box
-        (4.0, 1.0, 3.636, (0.2, 0.1), True, False, "slide"),  # it slides before it tilts
+        (2.4, 6.928, 3.636, (0.4, 0.2), False, False, "rest"),  # the stack under its stated motion
+        (4.0, 6.928, 3.636, (0.4, 0.2), True, False, "rock"),  # .. under the plateau value
+        (4.0, 2.0, 3.636, (0.4, 0.2), True, True, "overturned"),
+        (4.0, 2.0, 0.909, (0.4, 0.2), False, False, "slide"),  # one box
+        (4.0, 2.0, 3.636, (0.2, 0.1), True, False, "slide"),  # it slides before it tilts
     ],
 )
 def test_the_papers_criteria_say_of_known_motions_what_they_must(
-    peak, amplitude, slenderness, mu, tilts, overturns, mode
+    peak, angular_frequency, slenderness, mu, tilts, overturns, mode
 ):
-    motion = Motion(
-        peak=peak, amplitude=amplitude, slenderness=slenderness, mu_static=mu[0], mu_kinetic=mu[1]
+    motion = MapMotion(
+        angular_frequency=angular_frequency,
+        peak=peak,
+        slenderness=slenderness,
+        mu_static=mu[0],
+        mu_kinetic=mu[1],
     )
-    assert (static_rule(motion), paper_criteria(motion), mode_said(motion)) == (tilts, overturns, mode)
+    assert (static_rule(motion), paper_rule(motion), predicted_mode(motion)) == (tilts, overturns, mode)
 
 
 def test_cells_beside_a_change_of_outcome_or_close_to_falling_are_perturbed():
-    def row(outcome, ratio=0.1, status="completed"):
-        return {"outcome": outcome, "status": status, "rotation_ratio": ratio}
+    def near(*rows):
+        rows = [{"outcome": outcome, "status": status, "rotation_ratio": r} for outcome, status, r in rows]
+        return maps.near_change(rows, range(len(rows)), [0.0]).tolist()
 
-    rows = [row("rest"), row("rock"), row("rest"), row("rest"), row("overturned"), row("rock")]
-    assert near_change(rows, 6) == [False, False, False, True, True, True]
-    assert near_change([row("rock", 0.7), row("rest")], 2) == [True, False]
-    assert near_change([row("rest"), row(None, None, "failed")], 2) == [True, True]
-
-
-def statement(name, examine):
-    return "The printed numbers", Statement(name=name, section="0", quote="q", tried="t", examine=examine)
+    rest, rock = ("rest", "completed", 0.1), ("rock", "completed", 0.1)
+    fallen, failed = ("overturned", "overturned", 1.0), (None, "failed", None)
+    assert near(rest, rock, rest, rest, fallen, rock) == [False, False, False, True, True, True]
+    assert near(("rock", "completed", 0.7), rest) == [True, False]
+    assert near(rest, failed) == [True, True]
 
 
 def finding(*comparisons):
+    figure = ClaimFigure(name="a-figure", caption="c", svg="<svg></svg>")
     return Finding(
-        comparisons=comparisons,
-        reading="as read",
-        drawings=(Drawing(name="a-figure", caption="c", svg="<svg></svg>"),),
-        setups=(Setup(base="seed_box"),),
+        comparisons=comparisons, reading="as read", figures=[figure], cases=[PaperCase(base="seed_box")]
     )
 
 
 @pytest.fixture
-def three(monkeypatch):
-    """A catalogue of one good, one bad and one statement that cannot be computed."""
+def three():
+    """One good and one bad claim, one that cannot be computed, and the names of those that were checked.
+
+    They have names of the paper's first claims, under which `study.json` lists them.
+    """
     calls = []
 
-    def counted(name, result):
-        def examine(laboratory):
-            calls.append(name)
-            if isinstance(result, Exception):
+    def counted(kind, result, claim):
+        def check(experiments):
+            calls.append(kind)
+            if isinstance(result, BaseException):
                 raise result
             return result
 
-        return statement(name, examine)
+        return Claim(name=claim.name, section="0", quote="q", tried="t", check=check)
 
-    pairs = [
-        counted("good", finding(GOOD)),
-        counted("bad", finding(BAD)),
-        counted("broken", ArithmeticError("no balance")),
-    ]
-    groups = {"The printed numbers": tuple(one for _, one in pairs)}
-    monkeypatch.setattr("fem.paper.run.GROUPS", groups)
-    return pairs, calls
-
-
-def test_what_cannot_be_computed_is_no_verdict_and_ends_as_failed(three, tmp_path):
-    pairs, _ = three
-    document = conduct(tmp_path / "study", Laboratory(), statements=pairs)
-    assert document["status"] == "failed"
-    assert document["counts"] == {
-        "confirmed": 1,
-        "confirmed within stated bounds": 0,
-        "refuted": 1,
-        "not computed": 1,
+    results = {
+        "good": finding(GOOD),
+        "bad": finding(BAD),
+        "broken": ArithmeticError("no balance"),
+        "stopped": InterruptedStudyError("stopped"),
     }
+    names = all_claims()
+    made = [counted(kind, result, names[n]) for n, (kind, result) in enumerate(results.items())]
+    return made, calls
+
+
+def test_a_claim_that_cannot_be_computed_has_no_conclusion_and_ends_as_failed(three, tmp_path):
+    claims, _ = three
+    document = check_claims(tmp_path / "study", Experiments(), claims=claims[:3])
+    assert document["status"] == "failed"
+    assert list(document["counts"].values()) == [1, 0, 1, 1]
     page = (tmp_path / "study" / "study.html").read_text()
     assert "no balance" in page and "as read" in page
 
 
-def test_a_study_is_signed_in_its_report(three, tmp_path):
-    pairs, _ = three
-    conduct(tmp_path / "study", Laboratory(), statements=pairs[:1])
+def test_the_report_of_a_study_is_signed(three, tmp_path):
+    claims, _ = three
+    check_claims(tmp_path / "study", Experiments(), claims=claims[:1])
     assert 'name="author" value=""' in (tmp_path / "study" / "study.html").read_text()
     words = ["--author", 'A. "Author" <a@b>', "--checker", "C. Checker", "--revision", "B"]
     assert main(["report", str(tmp_path / "study"), *words]) == 0
@@ -231,46 +190,60 @@ def test_a_study_is_signed_in_its_report(three, tmp_path):
     assert 'value="C. Checker"' in page and 'value="B"' in page
 
 
-def test_a_second_call_tries_only_what_is_not_decided_and_force_tries_all(three, tmp_path):
-    pairs, calls = three
+def test_a_second_call_checks_only_undecided_claims_and_force_checks_all(three, tmp_path):
+    claims, calls = three
     for force in (False, False, True):
-        conduct(tmp_path / "study", Laboratory(), statements=pairs, force=force)
+        check_claims(tmp_path / "study", Experiments(), claims=claims[:3], force=force)
     assert calls == ["good", "bad", "broken", "broken", "good", "bad", "broken"]
 
 
-def test_what_another_program_found_is_tried_again(three, tmp_path, monkeypatch):
-    pairs, calls = three
-    conduct(tmp_path / "study", Laboratory(), statements=pairs[:1])
-    monkeypatch.setattr("fem.paper.run.fingerprint", lambda: "another")
-    conduct(tmp_path / "study", Laboratory(), statements=pairs[:1])
+@pytest.mark.parametrize("change", ["program", "versions"])
+def test_a_claim_that_another_program_decided_is_checked_again(three, tmp_path, change):
+    claims, calls = three
+    check_claims(tmp_path, Experiments(), claims=claims[:1])
+    document = json.loads((tmp_path / "study.json").read_text())
+    if change == "program":
+        document["groups"][0]["statements"][0]["program"] = "another"
+    else:
+        document["versions"]["numpy"] = "0.0"
+    (tmp_path / "study.json").write_text(json.dumps(document))
+    check_claims(tmp_path, Experiments(), claims=claims[:1])
     assert calls == ["good", "good"]
 
 
-def test_an_interrupted_study_keeps_what_it_has(three, tmp_path):
-    pairs, calls = three
-
-    def stopped(laboratory):
-        raise InterruptedStudyError("stopped")
-
-    both = [pairs[0], statement("bad", stopped)]
-    document = conduct(tmp_path / "study", Laboratory(), statements=both)
+def test_an_interrupted_study_keeps_the_claims_checked_so_far(three, tmp_path):
+    (good, bad, _, stopped), calls = three
+    document = check_claims(tmp_path / "study", Experiments(), claims=[good, stopped])
     assert (document["status"], document["statements"]) == ("interrupted", 1)
-    assert conduct(tmp_path / "study", Laboratory(), statements=pairs[:2])["status"] == "completed"
-    assert calls == ["good", "bad"]
+    assert check_claims(tmp_path / "study", Experiments(), claims=[good, bad])["status"] == "completed"
+    assert calls == ["good", "stopped", "bad"]
 
 
-def test_a_folder_that_holds_something_else_is_refused(tmp_path):
-    (tmp_path / "mine.txt").write_text("mine")
-    with pytest.raises(FolderError, match="holds no study"):
-        conduct(tmp_path, Laboratory(), statements=[])
-    (tmp_path / "study.json").write_text("{")
+def test_a_folder_that_is_removed_under_way_ends_the_study(tmp_path):
+    folder = tmp_path / "study"
+
+    def check(experiments):
+        shutil.rmtree(folder)
+        return Finding(comparisons=[GOOD], reading="as read")
+
+    removing = Claim(name="half-width", section="0", quote="q", tried="t", check=check)
+    with pytest.raises(OutputError, match=str(folder)):
+        check_claims(folder, Experiments(), claims=[removing])
+
+
+@pytest.mark.parametrize(
+    "content", ["{", '{"study": "seed", "groups": 3}', '{"study": "seed", "groups": [1]}']
+)
+def test_a_damaged_study_is_refused(tmp_path, content):
+    (tmp_path / "study.json").write_text(content)
     with pytest.raises(FolderError, match="damaged"):
-        conduct(tmp_path, Laboratory(), statements=[])
+        check_claims(tmp_path, Experiments(), claims=[])
+    assert (tmp_path / "study.json").read_text() == content
 
 
-def test_names_of_statements_and_figures_are_used_once():
-    names = [one.name for _, one in all_statements()]
-    assert len(names) == len(set(names))
+def test_names_of_claims_are_used_once():
+    names = [claim.name for claim in all_claims()]
+    assert len(set(names)) == len(names) == 38
 
 
 def test_the_command_writes_page_and_document(tmp_path, capsys):
