@@ -5,20 +5,8 @@ import math
 import numpy as np
 
 from fem.model.static_checks import period_eq3
-from fem.paper.cases import (
-    FOR_MAPS,
-    GRAVITY,
-    HEIGHT,
-    PLATEAU,
-    PLATEAU_PEAK,
-    STACK,
-    WIDTH,
-    PaperCase,
-    duration,
-    harmonic,
-    sampled,
-)
-from fem.paper.claims import ClaimTable, Finding, at_most, claim
+from fem.paper.cases import FOR_MAPS, GRAVITY, HEIGHT, PLATEAU, PLATEAU_PEAK, STACK, WIDTH, PaperCase
+from fem.paper.claims import Finding, at_most, claim, table
 from fem.paper.experiments import CaseRun, Experiments, VariantBand, VariantResult
 from fem.paper.figures import PlottedLine, draw_curves
 
@@ -40,10 +28,10 @@ def mass_centre(experiments: Experiments) -> Finding:
     curves, comparisons, cases = [], [], []
     overturned = np.zeros(RATIOS.size, dtype=int)
     near = math.sqrt(2.0) >= RATIOS
-    base = STACK.but(FOR_MAPS, sampled(0.002), duration(25.0))
+    base = STACK.but(FOR_MAPS, interval=0.002, duration=25.0)
     for peak in PEAKS:
         group = [
-            base.but(harmonic(peak, ratio * OMEGA_EQ_3), what=f"stack, {peak:g} m/s² at eta = {ratio:g}")
+            base.but(peak=peak, frequency=ratio * OMEGA_EQ_3, what=f"stack, {peak:g} m/s² at eta = {ratio:g}")
             for ratio in RATIOS
         ]
         runs = [experiments.run(case, also_failed=True) for case in group]
@@ -91,8 +79,7 @@ def mass_centre(experiments: Experiments) -> Finding:
 
 
 @claim(
-    section="8",
-    quote="by dynamic effects, there is no amplification that leads to higher horizontal loads",
+    section="8", quote="by dynamic effects, there is no amplification that leads to higher horizontal loads"
 )
 def no_amplification(experiments: Experiments) -> Finding:
     """Horizontal force between floor and stack under the plateau value, over mass times 4.0 m/s²."""
@@ -121,10 +108,10 @@ def no_amplification(experiments: Experiments) -> Finding:
         ),
         cases=[case for case, _ in loads[:2]],
         tables=[
-            ClaimTable(
-                caption="Largest horizontal force over M x 4.0 m/s² in 10 s",
-                columns=("container and floor", "peaks of impacts", "mean of 50 ms", "95 % of the time"),
-                rows=[(case.what, *load) for case, load in loads],
+            table(
+                "Largest horizontal force over M x 4.0 m/s² in 10 s",
+                "container and floor | peaks of impacts | mean of 50 ms | 95 % of the time",
+                [(case.what, *load) for case, load in loads],
             )
         ],
         band=_band(
@@ -136,7 +123,7 @@ def no_amplification(experiments: Experiments) -> Finding:
 
 def _at_plateau(experiments: Experiments) -> list[tuple[PaperCase, CaseRun]]:
     """The plateau value over deformation, contact and support, sampled closely."""
-    variants = experiments.variants(PLATEAU.but(duration(10.0), sampled(0.002)))
+    variants = experiments.variants(PLATEAU.but(duration=10.0, interval=0.002))
     return [(case, experiments.run(case, also_failed=True)) for case in variants]
 
 

@@ -17,6 +17,24 @@ ANGULAR_FREQUENCY = 6.928  #: sqrt(2.4 m/s2 / 50 mm), the paper's motion [rad/s]
 STATED_PEAK, PLATEAU_PEAK = 2.4, 4.0  #: [m/s2]
 
 
+#: short names of the keys that claims change most
+KEYS = {
+    "model": "solver.model",
+    "duration": "solver.duration_s",
+    "interval": "output.history_s",
+    "support": "support.kind",
+    "boxes": "container.boxes",
+    "mu_static": "contact.mu_static",
+    "mu_kinetic": "contact.mu_kinetic",
+    "amplitude": "motion.amplitude_m",
+    "peak": "motion.peak_acceleration_m_s2",
+    "frequency": "motion.angular_frequency_rad_s",
+    "cycles": "motion.cycles",
+    "rotation": "initial.rotation_rad",
+    "velocity": "initial.angular_velocity_rad_s",
+}
+
+
 @dataclass(frozen=True, kw_only=True)
 class PaperCase:
     """A case that a reader can run: a shipped case and the keys changed in it."""
@@ -25,11 +43,18 @@ class PaperCase:
     values: Mapping[str, Any] = field(default_factory=dict)  #: dotted keys
     what: str = ""  #: for people
 
-    def but(self, *changes: Mapping[str, Any], what: str = "") -> "PaperCase":
-        """This case with more keys changed; the last of two values of a key counts."""
+    def but(self, *changes: Mapping[str, Any], what: str = "", **named: float | str) -> "PaperCase":
+        """This case with more keys changed; of two values of a key the last one counts.
+
+        Args:
+            changes: values by dotted keys.
+            what: text for people; default: as before.
+            named: values by the short names in KEYS; numbers are rounded to eight digits, as the command has them.
+        """
         values = dict(self.values)
         for change in changes:
             values |= change
+        values |= {KEYS[name]: _rounded(value) for name, value in named.items()}
         return PaperCase(base=self.base, values=values, what=what or self.what)
 
     @property
@@ -53,6 +78,10 @@ class PaperCase:
         return f"python -m fem run {self.base}{changes} --out outputs/try"
 
 
+def _rounded(value: float | str) -> float | str:
+    return float(f"{value:.8g}") if isinstance(value, float) else value
+
+
 def _literal(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
@@ -68,40 +97,4 @@ RIGID, SHELL = {"solver.model": "rigid"}, {"solver.model": "reduced"}
 FOR_MAPS = {**RIGID, "output.history_s": 2.0}
 #: the paper's g with its mass: 2500 kg
 G_TEN = {"gravity_m_s2": 10.0, "container.weight_N": 25000.0}
-
-
-def friction(static: float, kinetic: float) -> dict[str, float]:
-    """Both coefficients of friction."""
-    return {"contact.mu_static": static, "contact.mu_kinetic": kinetic}
-
-
-NO_SLIDING = friction(1.0, 1.0)
-
-
-def duration(seconds: float) -> dict[str, float]:
-    """A run of another length."""
-    return {"solver.duration_s": seconds}
-
-
-def sampled(interval: float) -> dict[str, float]:
-    """A history at another interval [s]."""
-    return {"output.history_s": interval}
-
-
-def harmonic(peak: float, angular_frequency: float) -> dict[str, float]:
-    """A harmonic motion by its peak acceleration [m/s2] and frequency [rad/s]."""
-    return {
-        "motion.peak_acceleration_m_s2": float(f"{peak:.8g}"),
-        "motion.angular_frequency_rad_s": float(f"{angular_frequency:.8g}"),
-    }
-
-
-def amplitude(metres: float, angular_frequency: float | None = None) -> dict[str, float]:
-    """A harmonic motion by its amplitude, at the paper's frequency unless another is given [rad/s]."""
-    frequency = {} if angular_frequency is None else {"motion.angular_frequency_rad_s": angular_frequency}
-    return {"motion.amplitude_m": metres, **frequency}
-
-
-def released(rotation: float) -> dict[str, float]:
-    """Start at rest from a rotation [rad]."""
-    return {"initial.rotation_rad": float(f"{rotation:.8g}")}
+NO_SLIDING = {"contact.mu_static": 1.0, "contact.mu_kinetic": 1.0}

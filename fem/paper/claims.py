@@ -84,6 +84,11 @@ class ClaimTable:
     rows: Sequence[Sequence[Any]]
 
 
+def table(caption: str, columns: str, rows: Sequence[Sequence[Any]]) -> ClaimTable:
+    """A table; the names of the columns are separated by " | "."""
+    return ClaimTable(caption=caption, columns=columns.split(" | "), rows=rows)
+
+
 @dataclass(frozen=True, kw_only=True)
 class ClaimFigure:
     """A figure of the page."""

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from fem.paper.cases import FREQUENCY_PARAMETER, GRAVITY, HALF_WIDTH, UPLIFT, PaperCase
-from fem.paper.claims import ClaimFigure, ClaimTable, Finding, at_least, at_most, claim
+from fem.paper.claims import ClaimFigure, ClaimTable, Finding, at_least, at_most, claim, table
 from fem.paper.criteria import CRITERIA, Contingency, Criterion, paper_rule, predicted_mode, static_rule
 from fem.paper.experiments import Experiments
 from fem.paper.figures import PlottedLine, draw_curves, draw_map
@@ -234,20 +234,16 @@ def _table(one: OutcomeMap) -> ClaimTable:
             found = one.count(criterion, sure=sure)
             if found.cells:
                 rows.append((name, which, found.cells, found.right, found.conservative, found.unconservative))
-    return ClaimTable(
-        caption=one.title,
-        columns=("criterion", "cells", "number", "right", "conservative", "unconservative"),
-        rows=rows,
-    )
+    return table(one.title, "criterion | cells | number | right | conservative | unconservative", rows)
 
 
 def _mode_table(modes: Counter[tuple[str, str]]) -> ClaimTable:
     names = ("rest", "slide", "rock", "slide-rock", "overturned")
     predicted = {one for one, _ in modes}
-    return ClaimTable(
-        caption="Mode by Eqs. 8 to 13 and A (rows) and by the run (columns), rigid stack, mu 0.4/0.2",
-        columns=("said", *names),
-        rows=[(said, *(modes[said, found] for found in names)) for said in names if said in predicted],
+    return table(
+        "Mode by Eqs. 8 to 13 and A (rows) and by the run (columns), rigid stack, mu 0.4/0.2",
+        "said",
+        [(said, *(modes[said, found] for found in names)) for said in names if said in predicted],
     )
 
 

@@ -19,11 +19,8 @@ from fem.paper.cases import (
     STATED_PEAK,
     UPLIFT,
     PaperCase,
-    duration,
-    harmonic,
-    sampled,
 )
-from fem.paper.claims import ClaimTable, Finding, at_least, at_most, claim
+from fem.paper.claims import Finding, at_least, at_most, claim, table
 from fem.paper.experiments import Experiments, capped_ratio, stands
 from fem.paper.figures import PlottedLine, draw_curves
 
@@ -36,15 +33,24 @@ SLIDING = 1e-4 * 1.1  # m, what counts as sliding
 )
 def box_just_sticks(experiments: Experiments) -> Finding:
     """Rigid box under the stated motion and the plateau value, g = 10 and 9.81 m/s²."""
-    box, plateau = BOX.but(RIGID), harmonic(4.0, ANGULAR_FREQUENCY)
+    box = BOX.but(RIGID)
     below = [
         box.but(what="box, stated motion, g = 9.81"),
         box.but(G_TEN, what="box, stated motion, g = 10"),
-        box.but(G_TEN, harmonic(3.98, ANGULAR_FREQUENCY), what="box, 3.98 m/s², g = 10"),
+        box.but(G_TEN, peak=3.98, frequency=ANGULAR_FREQUENCY, what="box, 3.98 m/s², g = 10"),
     ]
     at_plateau = [
-        box.but(G_TEN, plateau, what="box, plateau value, g = 10 (utilisation 1.000)"),
-        box.but(plateau, what="box, plateau value, g = 9.81 (utilisation 1.019)"),
+        box.but(
+            G_TEN,
+            peak=PLATEAU_PEAK,
+            frequency=ANGULAR_FREQUENCY,
+            what="box, plateau value, g = 10 (utilisation 1.000)",
+        ),
+        box.but(
+            peak=PLATEAU_PEAK,
+            frequency=ANGULAR_FREQUENCY,
+            what="box, plateau value, g = 9.81 (utilisation 1.019)",
+        ),
     ]
     cases = [*below, *at_plateau]
     rows = experiments.rows(cases)
@@ -66,7 +72,7 @@ def box_just_sticks(experiments: Experiments) -> Finding:
         ),
         cases=cases,
         band=experiments.band(
-            cases[0].but(duration(10.0)),
+            cases[0].but(duration=10.0),
             quantity="slip under the stated motion",
             unit="m",
             value=lambda row: row["max_slip_m"],
@@ -101,7 +107,7 @@ def stack_tilts_at_plateau(experiments: Experiments) -> Finding:
             f"has a utilisation of {PLATEAU_PEAK / (0.4 * GRAVITY):.3f}; it takes the base to be pushed with m "
             'a(t), which holds only until the stack rocks. "Will tilt" is not "falls": see the column overturned.'
         ),
-        band_of=PLATEAU.but(duration(10.0)),
+        band_of=PLATEAU.but(duration=10.0),
     )
 
 
@@ -118,7 +124,7 @@ def stack_tilts_as_stated(experiments: Experiments) -> Finding:
         STACK.but(RIGID, G_TEN, what="rigid stack, stated motion, g = 10"),
         STACK.but(RIGID, what="rigid stack, stated motion, g = 9.81"),
         STACK.but(SHELL, what="shell, stated motion, g = 9.81"),
-        jerk.but({"contact.mu_kinetic": 0.4}, what="rigid stack, the floor jerks at t = 0, mu_k = mu_s"),
+        jerk.but(mu_kinetic=0.4, what="rigid stack, the floor jerks at t = 0, mu_k = mu_s"),
     ]
     return _tilts_and_sticks(
         experiments,
@@ -130,7 +136,7 @@ def stack_tilts_as_stated(experiments: Experiments) -> Finding:
             f"floor at t = 0, the floor starts with a jerk of {0.05 * ANGULAR_FREQUENCY:.2f} m/s, and what follows "
             f"belongs to that jerk; with mu_k = 0.2 instead: {_outcomes(experiments, [jerked])}."
         ),
-        band_of=STACK.but(duration(10.0)),
+        band_of=STACK.but(duration=10.0),
     )
 
 
@@ -153,25 +159,21 @@ def _tilts_and_sticks(
     bounds: str = "",
 ) -> Finding:
     cases = [*inside, *outside]
-    comparisons, table = [], []
+    comparisons, lines = [], []
     for case, row in zip(cases, experiments.rows(cases), strict=True):
         ratio, slip = row["rotation_ratio"], 1e3 * row["max_slip_m"]
         comparisons += [
             at_least(f"rotation ratio, {case.what}", ratio, 0.01, inside=case in inside),
             at_most(f"slip, {case.what}", slip, 1e3 * SLIDING, "mm", inside=case in inside),
         ]
-        table.append((case.what, row["outcome"], ratio, slip, not stands(row)))
+        lines.append((case.what, row["outcome"], ratio, slip, not stands(row)))
     return Finding(
         comparisons=comparisons,
         bounds=bounds,
         reading=reading,
         cases=cases,
         tables=[
-            ClaimTable(
-                caption="What the stack does",
-                columns=("run", "outcome", "rotation ratio [-]", "slip [mm]", "overturned"),
-                rows=table,
-            )
+            table("What the stack does", "run | outcome | rotation ratio [-] | slip [mm] | overturned", lines)
         ],
         band=experiments.band(
             band_of,
@@ -198,11 +200,7 @@ def within_the_limit_cycle(experiments: Experiments) -> Finding:
     for name, values in (("slipping, mu 0.4/0.2", {}), ("sticking, mu 1.0", NO_SLIDING)):
         base = STACK.but(FOR_MAPS, values)
         group = [
-            base.but(
-                {"motion.angular_frequency_rad_s": frequency},
-                duration(20.0),
-                what=f"stack, {name}, 50 mm at {frequency:g} rad/s",
-            )
+            base.but(frequency=frequency, duration=20.0, what=f"stack, {name}, 50 mm at {frequency:g} rad/s")
             for frequency in frequencies
         ]
         rows = experiments.rows(group, also_failed=True)
@@ -210,9 +208,7 @@ def within_the_limit_cycle(experiments: Experiments) -> Finding:
         worst = int(np.nanargmax(ratios))
         standing = [ratio if stands(row) else -1.0 for ratio, row in zip(ratios, rows, strict=True)]
         widest = group[int(np.nanargmax(standing))]
-        ended = widest.but(
-            {"motion.cycles": 20.0}, duration(30.0), what=f"{widest.what}, 20 cycles, then rest"
-        )
+        ended = widest.but(cycles=20.0, duration=30.0, what=f"{widest.what}, 20 cycles, then rest")
         cases += [group[worst], ended]
         at_paper.append(float(experiments.row(base)["rotation_ratio"]))
         growths.append(_growth(experiments, widest))
@@ -250,7 +246,7 @@ def within_the_limit_cycle(experiments: Experiments) -> Finding:
             )
         ],
         band=experiments.band(
-            STACK.but(duration(10.0)),
+            STACK.but(duration=10.0),
             quantity="rotation ratio at the paper's frequency",
             criterion="at most half of beta",
             holds=lambda row: stands(row) and row["rotation_ratio"] <= 0.5,
@@ -260,7 +256,7 @@ def within_the_limit_cycle(experiments: Experiments) -> Finding:
 
 def _growth(experiments: Experiments, case: PaperCase) -> float:
     """Largest rotation of the last 5 s of a run over the largest before."""
-    history = experiments.run(case.but(sampled(0.02))).history
+    history = experiments.run(case.but(interval=0.02)).history
     time, rotation = history["time_s"], np.abs(history["rotation_rad"])
     late = time >= time[-1] - 5.0
     return float(rotation[late].max() / rotation[~late].max())

@@ -6,19 +6,8 @@ import numpy as np
 
 from contact.reference.floor_acceleration import sine_floor
 from contact.reference.sliding import RigidSlider, simulate_sliding
-from fem.paper.cases import (
-    ANGULAR_FREQUENCY,
-    BOX,
-    FOR_MAPS,
-    GRAVITY,
-    PLATEAU,
-    RIGID,
-    STACK,
-    duration,
-    friction,
-    harmonic,
-)
-from fem.paper.claims import ClaimTable, Finding, at_most, claim, equal
+from fem.paper.cases import ANGULAR_FREQUENCY, BOX, FOR_MAPS, GRAVITY, PLATEAU, RIGID, STACK
+from fem.paper.claims import Finding, at_most, claim, equal, table
 from fem.paper.experiments import Experiments, stands
 from fem.paper.figures import PlottedLine, draw_curves
 from fem.paper.maps import pairs, stack_map
@@ -61,7 +50,7 @@ def halt_at_extremes(experiments: Experiments) -> Finding:
             f"where mu_k g is at most a quarter of its peak, and up to {max(lags):.0f}° beside them over all peaks: "
             "it ends where body and floor are equally fast, and the body has the speed that friction gave it."
         ),
-        cases=[BOX.but(RIGID, harmonic(4.5, frequency), duration(5.0), what="box, 4.5 m/s² at 10 rad/s")],
+        cases=[BOX.but(RIGID, peak=4.5, frequency=frequency, duration=5.0, what="box, 4.5 m/s² at 10 rad/s")],
         figures=[
             draw_curves(
                 "halt-at-extremes",
@@ -88,9 +77,11 @@ def reversal(experiments: Experiments) -> Finding:
             group = [
                 base.but(
                     FOR_MAPS,
-                    friction(static, 0.2),
-                    duration(10.0),
-                    harmonic(peak, 10.0),
+                    mu_static=static,
+                    mu_kinetic=0.2,
+                    duration=10.0,
+                    peak=peak,
+                    frequency=10.0,
                     what=f"{name}, mu {static:g}/0.2, {peak:g} m/s² at 10 rad/s",
                 )
                 for static in (0.2, 0.4)
@@ -118,21 +109,15 @@ def reversal(experiments: Experiments) -> Finding:
         ),
         cases=cases,
         tables=[
-            ClaimTable(
-                caption="Stick-slip at the reversals: mu_s = 0.2 and 0.4, mu_k = 0.2",
-                columns=(
-                    "container",
-                    "peak [m/s²]",
-                    "outcome, 0.2/0.2",
-                    "outcome, 0.4/0.2",
-                    "path, 0.2/0.2 [mm]",
-                    "path, 0.4/0.2 [mm]",
-                ),
-                rows=rows,
+            table(
+                "Stick-slip at the reversals: mu_s = 0.2 and 0.4, mu_k = 0.2",
+                "container | peak [m/s²] | outcome, 0.2/0.2 | outcome, 0.4/0.2 | path, 0.2/0.2 [mm] "
+                "| path, 0.4/0.2 [mm]",
+                rows,
             )
         ],
         band=experiments.band(
-            STACK.but(harmonic(5.0, 10.0), duration(6.0)),
+            STACK.but(peak=5.0, frequency=10.0, duration=6.0),
             quantity="rotation ratio of the stack at 5.0 m/s², 10 rad/s, mu 0.4/0.2",
             criterion="it stands",
             holds=stands,
@@ -148,7 +133,7 @@ def friction_ratio(experiments: Experiments) -> Finding:
     """Maps of the rigid stack with mu_k at 50, 92 and 100 % of 0.4, and the slip of a box."""
     names = {0.5: "50 %", 0.92: "92 %", 1.0: "100 %"}
     maps = {
-        ratio: stack_map(experiments, friction(0.4, round(0.4 * ratio, 6)), perturbed=ratio in (0.5, 1.0))
+        ratio: stack_map(experiments, (0.4, round(0.4 * ratio, 6)), perturbed=ratio in (0.5, 1.0))
         for ratio in names
     }
     comparisons, cases, rows = [], [], []
@@ -163,9 +148,10 @@ def friction_ratio(experiments: Experiments) -> Finding:
     boxes = [
         BOX.but(
             FOR_MAPS,
-            {"contact.mu_kinetic": round(0.4 * ratio, 6)},
-            duration(10.0),
-            harmonic(5.0, ANGULAR_FREQUENCY),
+            mu_kinetic=round(0.4 * ratio, 6),
+            duration=10.0,
+            peak=5.0,
+            frequency=ANGULAR_FREQUENCY,
             what=f"box, mu_k = {name} of 0.4, 5.0 m/s² at 6.928 rad/s",
         )
         for ratio, name in names.items()
@@ -186,14 +172,14 @@ def friction_ratio(experiments: Experiments) -> Finding:
         ),
         cases=[*cases, *boxes],
         tables=[
-            ClaimTable(
-                caption="Cells of the stack's map that end otherwise than with mu_k = 50 % of mu_s = 0.4",
-                columns=("mu_k over mu_s", "cells", "end otherwise", ".. and are sure"),
-                rows=rows,
+            table(
+                "Cells of the stack's map that end otherwise than with mu_k = 50 % of mu_s = 0.4",
+                "mu_k over mu_s | cells | end otherwise | .. and are sure",
+                rows,
             )
         ],
         band=experiments.band(
-            PLATEAU.but({"contact.mu_kinetic": 0.4}, duration(10.0)),
+            PLATEAU.but(mu_kinetic=0.4, duration=10.0),
             quantity="rotation ratio at the plateau value with mu_k = mu_s",
             criterion="the same outcome as with mu_k = 0.5 mu_s on the rigid block: it rocks",
             holds=lambda row: row["outcome"] == "rock",

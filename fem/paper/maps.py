@@ -9,9 +9,8 @@ twentieth of a turn earlier and later, a contact damping ratio of 0.5. A cell is
 overturn, as it does.
 """
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -24,13 +23,9 @@ from fem.paper.cases import (
     FREQUENCY_PARAMETER,
     HEIGHT,
     PLATEAU_PEAK,
-    SHELL,
     STACK,
     WIDTH,
     PaperCase,
-    duration,
-    friction,
-    harmonic,
 )
 from fem.paper.criteria import Contingency, Criterion, MapMotion, contingency
 from fem.paper.experiments import Experiments, stands
@@ -44,7 +39,8 @@ SLENDERNESS = tuple(float(f"{one:.4g}") for one in np.linspace(1.5, 6.0, 19))  #
 FRICTION = tuple(float(f"{one:.4g}") for one in np.linspace(0.1, 0.8, 15))  #: mu_s; mu_k is half of it
 SHAPE_FREQUENCIES = (2.5, 4.0, ANGULAR_FREQUENCY)  #: [rad/s]
 FAST = 3.0 * FREQUENCY_PARAMETER  #: of a floor, against the stack [rad/s]
-FOR_SHELL = SHELL | duration(10.0)
+FOR_SHELL = {"solver.model": "reduced", "solver.duration_s": 10.0}
+HOLDING = (1.0, 1.0)  #: friction of a stack that cannot slide
 PERTURBATION = Perturbation(contact_damping_ratios=[0.5])
 
 
@@ -83,7 +79,6 @@ class OutcomeMap:
     """Cells over two axes, row by row of rising y."""
 
     title: str
-    rigid: bool
     x: Sequence[float]
     y: Sequence[float]
     every: Sequence[MapCell]  #: failed ones as well
@@ -94,10 +89,20 @@ class OutcomeMap:
         return [cell for cell in self.every if cell.computed]
 
     @property
+    def places(self) -> list[tuple[float, float]]:
+        """x and y of all cells."""
+        return [(across, up) for up in self.y for across in self.x]
+
+    @property
     def rows(self) -> list[list[MapCell]]:
         """All cells, those of one y together."""
         width = len(self.x)
         return [list(self.every[first : first + width]) for first in range(0, len(self.every), width)]
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the container is rigid, or a shell."""
+        return bool(self.every[0].case.values["solver.model"] == "rigid")
 
     @property
     def fast(self) -> bool:
@@ -126,7 +131,7 @@ class OutcomeMap:
 
 def stack_map(
     experiments: Experiments,
-    values: Mapping[str, Any] | None = None,
+    mu: tuple[float, float] | None = None,
     *,
     peaks: Sequence[float] = PEAKS,
     rigid: bool = True,
@@ -136,95 +141,74 @@ def stack_map(
 
     Args:
         experiments: computes the cells.
-        values: keys changed in all cells.
+        mu: static and kinetic friction; default: the paper's, 0.4 and 0.2.
         peaks: [m/s2].
         rigid: or a shell, at every second frequency and peak.
         perturbed: find out which cells are sure; all count as sure otherwise.
     """
-    frequencies = FREQUENCIES if rigid else FREQUENCIES[::2]
-    peaks = peaks if rigid else peaks[1::2]
-    base = STACK.but(FOR_MAPS, duration(15.0))
-    changes: Mapping[str, Any] = (values or {}) if rigid else {**FOR_SHELL, **(values or {})}
-    places = [(peak, frequency) for peak in peaks for frequency in frequencies]
-    cases = [
-        base.but(harmonic(peak, frequency), changes, what=f"stack, {peak:g} m/s² at {frequency:g} rad/s")
-        for peak, frequency in places
-    ]
-    motions = [
-        MapMotion(
-            angular_frequency=frequency,
-            peak=peak,
-            slenderness=HEIGHT / WIDTH,
-            mu_static=changes.get("contact.mu_static", 0.4),
-            mu_kinetic=changes.get("contact.mu_kinetic", 0.2),
-        )
-        for peak, frequency in places
-    ]
-    return OutcomeMap(
+    static, kinetic = mu or (0.4, 0.2)
+    friction = {"mu_static": static, "mu_kinetic": kinetic}
+    base = STACK.but(FOR_MAPS, duration=15.0)
+
+    def place(frequency: float, peak: float) -> tuple[PaperCase, MapMotion]:
+        what = f"stack, {peak:g} m/s² at {frequency:g} rad/s"
+        case = base.but(peak=peak, frequency=frequency, what=what, **(friction if mu else {}))
+        motion = MapMotion(angular_frequency=frequency, peak=peak, slenderness=HEIGHT / WIDTH, **friction)
+        return case if rigid else case.but(FOR_SHELL), motion
+
+    return _computed(
+        experiments,
+        place,
         title=f"{'rigid' if rigid else 'shell'} stack, frequency x peak",
-        rigid=rigid,
-        x=frequencies,
-        y=peaks,
-        every=_cells(experiments, cases, motions, frequencies, peaks, perturbed=perturbed),
+        x=FREQUENCIES if rigid else FREQUENCIES[::2],
+        y=peaks if rigid else peaks[1::2],
+        perturbed=perturbed,
     )
 
 
 def shape_maps(experiments: Experiments, *, rigid: bool = True) -> list[OutcomeMap]:
-    """One container over slenderness and friction under 4.0 m/s2, a map for each frequency."""
-    shapes, frictions = (SLENDERNESS, FRICTION) if rigid else (SLENDERNESS[1::2], FRICTION[1::2])
-    kind, model = ("rigid", {}) if rigid else ("shell", FOR_SHELL)
-    places = [(mu, slenderness) for mu in frictions for slenderness in shapes]
-    found = []
-    for frequency in SHAPE_FREQUENCIES:
-        base = STACK.but(FOR_MAPS, duration(15.0), harmonic(PLATEAU_PEAK, frequency), model)
-        cases = [
-            base.but(
-                {
-                    "container.boxes": 1,
-                    "container.height_m": round(slenderness * WIDTH, 4),
-                    "container.centroid_m": round(0.5 * slenderness * WIDTH, 4),
-                    "container.weight_N": round(BOX_WEIGHT * slenderness * WIDTH, 1),
-                },
-                friction(mu, round(0.5 * mu, 4)),
-                what=f"{kind}, c/a = {slenderness:g}, mu_s = {mu:g}, {frequency:g} rad/s",
-            )
-            for mu, slenderness in places
-        ]
-        motions = [
-            MapMotion(
+    """One container over slenderness and friction under 4.0 m/s2, a map for each frequency.
+
+    Rigid, or a shell at every second slenderness and friction.
+    """
+    kind = "rigid" if rigid else "shell"
+    base = STACK.but(FOR_MAPS, duration=15.0, peak=PLATEAU_PEAK)
+
+    def of_frequency(frequency: float) -> OutcomeMap:
+        floor = base.but(frequency=frequency).but({} if rigid else FOR_SHELL)
+
+        def place(slenderness: float, mu: float) -> tuple[PaperCase, MapMotion]:
+            body = {
+                "container.boxes": 1,
+                "container.height_m": round(slenderness * WIDTH, 4),
+                "container.centroid_m": round(0.5 * slenderness * WIDTH, 4),
+                "container.weight_N": round(BOX_WEIGHT * slenderness * WIDTH, 1),
+            }
+            what = f"{kind}, c/a = {slenderness:g}, mu_s = {mu:g}, {frequency:g} rad/s"
+            return floor.but(body, mu_static=mu, mu_kinetic=round(0.5 * mu, 4), what=what), MapMotion(
                 angular_frequency=frequency,
                 peak=PLATEAU_PEAK,
                 slenderness=slenderness,
                 mu_static=mu,
                 mu_kinetic=0.5 * mu,
             )
-            for mu, slenderness in places
-        ]
-        found.append(
-            OutcomeMap(
-                title=f"{kind}, c/a x mu_s, {PLATEAU_PEAK:.1f} m/s² at {frequency:g} rad/s",
-                rigid=rigid,
-                x=shapes,
-                y=frictions,
-                every=_cells(experiments, cases, motions, shapes, frictions),
-            )
+
+        return _computed(
+            experiments,
+            place,
+            title=f"{kind}, c/a x mu_s, {PLATEAU_PEAK:.1f} m/s² at {frequency:g} rad/s",
+            x=SLENDERNESS if rigid else SLENDERNESS[1::2],
+            y=FRICTION if rigid else FRICTION[1::2],
         )
-    return found
+
+    return [of_frequency(frequency) for frequency in SHAPE_FREQUENCIES]
 
 
 def pairs(one: OutcomeMap, other: OutcomeMap) -> list[tuple[MapCell, MapCell]]:
-    """Cells at the same place of two maps, both computed; the other's places must be among those of the first."""
-    known = {
-        (x, y): cell
-        for y, row in zip(one.y, one.rows, strict=True)
-        for x, cell in zip(one.x, row, strict=True)
-    }
-    found = [
-        (known[x, y], cell)
-        for y, row in zip(other.y, other.rows, strict=True)
-        for x, cell in zip(other.x, row, strict=True)
-    ]
-    return [(first, second) for first, second in found if first.computed and second.computed]
+    """Cells at the same place of two maps, both computed; every place of the other must be one of the first."""
+    known = dict(zip(one.places, one.every, strict=True))
+    both = [(known[place], cell) for place, cell in zip(other.places, other.every, strict=True)]
+    return [(first, second) for first, second in both if first.computed and second.computed]
 
 
 def near_change(rows: Sequence[Row], x: Sequence[float], y: Sequence[float]) -> BoolArray:
@@ -236,16 +220,17 @@ def near_change(rows: Sequence[Row], x: Sequence[float], y: Sequence[float]) -> 
     return near_cells(axes, kind, ratio, PERTURBATION.close).ravel()
 
 
-def _cells(
+def _computed(
     experiments: Experiments,
-    cases: Sequence[PaperCase],
-    motions: Sequence[MapMotion],
+    place: Callable[[float, float], tuple[PaperCase, MapMotion]],
+    *,
+    title: str,
     x: Sequence[float],
     y: Sequence[float],
-    *,
     perturbed: bool = True,
-) -> list[MapCell]:
+) -> OutcomeMap:
     """Compute a map; where asked, perturb the cells near a change of outcome."""
+    cases, motions = zip(*(place(across, up) for up in y for across in x), strict=True)
     rows = experiments.rows(cases, also_failed=True)
     sure = [True] * len(cases)
     if perturbed:
@@ -258,7 +243,8 @@ def _cells(
             found = experiments.rows([cases[k], *group], also_failed=True)
             kinds = {kind_of(row["status"], row["outcome"]) for row in found}
             sure[k] = kinds in ({STANDING}, {OVERTURNED})
-    return [
+    cells = [
         MapCell(motion=motion, case=case, row=row, sure=certain)
         for motion, case, row, certain in zip(motions, cases, rows, sure, strict=True)
     ]
+    return OutcomeMap(title=title, x=x, y=y, every=cells)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from fem.batch.runner import Row
 from fem.model.static_checks import StaticChecks
 from fem.paper.cases import PLATEAU, RIGID
-from fem.paper.claims import ClaimTable, Comparison, Finding, at_least, at_most, claim, equal
+from fem.paper.claims import ClaimTable, Comparison, Finding, at_least, at_most, claim, equal, table
 from fem.paper.experiments import Experiments
 from fem.verification.statics import BOX_HEIGHT, BOX_MASS, WIDTH, seed_checks
 
@@ -46,10 +46,10 @@ def _side_by_side(boxes: int) -> ClaimTable:
         }
 
     second = values(full)
-    return ClaimTable(
-        caption=f"{boxes} box{'es' if boxes > 1 else ''}; the mass is kept",
-        columns=("quantity", "g = 10 m/s²", "g = 9.81 m/s²"),
-        rows=[(name, value, second[name]) for name, value in values(ten).items()],
+    return table(
+        f"{boxes} box{'es' if boxes > 1 else ''}; the mass is kept",
+        "quantity | g = 10 m/s² | g = 9.81 m/s²",
+        [(name, value, second[name]) for name, value in values(ten).items()],
     )
 
 
@@ -136,10 +136,8 @@ def amplitude_50_mm(experiments: Experiments) -> Finding:
     cases = [
         PLATEAU.but(
             RIGID,
-            {
-                "motion.peak_acceleration_m_s2": peak,
-                "motion.angular_frequency_rad_s": float(f"{math.sqrt(peak / amplitude):.5g}"),
-            },
+            peak=peak,
+            frequency=float(f"{math.sqrt(peak / amplitude):.5g}"),
             what=f"stack, {peak:g} m/s² at {1e3 * amplitude:.0f} mm",
         )
         for amplitude in (0.001 * short, 0.05, 0.001 * long)
@@ -164,10 +162,10 @@ def amplitude_50_mm(experiments: Experiments) -> Finding:
         ),
         cases=cases,
         tables=[
-            ClaimTable(
-                caption="What the amplitude changes (rigid stack)",
-                columns=("run", "outcome", "rotation ratio [-]"),
-                rows=[
+            table(
+                "What the amplitude changes (rigid stack)",
+                "run | outcome | rotation ratio [-]",
+                [
                     (case.what, row["outcome"], row["rotation_ratio"])
                     for case, row in zip(cases, rows, strict=True)
                 ],

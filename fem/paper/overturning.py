@@ -1,7 +1,6 @@
 """What the paper says of overturning: what is restored before it happens, reversal, and A against a/2."""
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 
@@ -19,17 +18,13 @@ from fem.paper.cases import (
     SHELL,
     STACK,
     UPLIFT,
-    amplitude,
-    duration,
-    harmonic,
-    sampled,
 )
-from fem.paper.claims import ClaimFigure, ClaimTable, Finding, at_least, at_most, claim
+from fem.paper.claims import ClaimFigure, Finding, at_least, at_most, claim, table
 from fem.paper.experiments import Experiments, capped_ratio, stands
 from fem.paper.figures import PlottedLine, draw_curves, draw_map
-from fem.paper.maps import FAST, FREQUENCIES, MapCell, OutcomeMap, stack_map
+from fem.paper.maps import FAST, FREQUENCIES, HOLDING, MapCell, OutcomeMap, stack_map
 
-FRICTIONS: Mapping[str, Mapping[str, float]] = {"mu 0.4/0.2": {}, "mu 1.0": NO_SLIDING}
+FRICTIONS = {"mu 0.4/0.2": (0.4, 0.2), "mu 1.0": HOLDING}
 
 
 @claim(
@@ -41,19 +36,19 @@ def beginning_is_restored(experiments: Experiments) -> Finding:
     """Map of the rigid stack over frequency and peak acceleration, with friction that slips and that holds; ten
     cycles of the plateau value."""
     comparisons, rows = [], []
-    for name, values in FRICTIONS.items():
-        cells = stack_map(experiments, values).cells
+    for name, mu in FRICTIONS.items():
+        cells = stack_map(experiments, mu).cells
         tilted = [cell for cell in cells if cell.tilted]
         slid = [cell for cell in cells if cell.row["max_slip_m"] > 1.1e-4]
         back, held = (sum(cell.stood and cell.sure for cell in group) for group in (tilted, slid))
         rows.append((name, len(cells), len(tilted), back, len(slid), held))
         comparisons.append(at_least(f"{name}: cells that tilt and surely stand", back, 1.0))
-        if not values:
+        if mu != HOLDING:
             comparisons.append(at_least(f"{name}: cells that lose stiction and surely stand", held, 1.0))
     pulse = PLATEAU.but(
         RIGID,
-        {"motion.cycles": 10.0},
-        duration(25.0),
+        cycles=10.0,
+        duration=25.0,
         what="stack, ten cycles of 4.0 m/s² at 6.928 rad/s, then a floor at rest",
     )
     restored = bool(experiments.row(pulse)["restored"])
@@ -70,21 +65,14 @@ def beginning_is_restored(experiments: Experiments) -> Finding:
         ),
         cases=[pulse],
         tables=[
-            ClaimTable(
-                caption="Cells of the stack's map",
-                columns=(
-                    "friction",
-                    "cells",
-                    "tilt",
-                    ".. and surely stand",
-                    "lose stiction",
-                    ".. and surely stand",
-                ),
-                rows=rows,
+            table(
+                "Cells of the stack's map",
+                "friction | cells | tilt | .. and surely stand | lose stiction | .. and surely stand",
+                rows,
             )
         ],
         band=experiments.band(
-            pulse.but(SHELL, duration(20.0)),
+            pulse.but(SHELL, duration=20.0),
             quantity="rotation ratio",
             criterion="it tilts and does not overturn",
             holds=lambda row: row["first_uplift_s"] is not None and stands(row),
@@ -102,7 +90,7 @@ def short_before_reversal(experiments: Experiments) -> Finding:
     end."""
     ratios = (1.01, 1.02, 1.04, 1.07, 1.1, 1.15, 1.2, 1.3, 1.4, 1.6, 1.8, 2.0, 2.5, 3.0)
     peaks = [float(f"{ratio * UPLIFT:.5g}") for ratio in ratios]
-    cells = stack_map(experiments, NO_SLIDING, peaks=peaks).cells
+    cells = stack_map(experiments, HOLDING, peaks=peaks).cells
     fallen = [cell for cell in cells if cell.fell]
     late = [cell for cell in fallen if cell.sure and _lead(cell) <= 1.0 / 12.0]
     fast = [cell for cell in late if cell.motion.angular_frequency >= FAST]
@@ -149,7 +137,7 @@ def short_before_reversal(experiments: Experiments) -> Finding:
             )
         ],
         band=experiments.band(
-            STACK.but(NO_SLIDING, harmonic(1.1 * UPLIFT, ANGULAR_FREQUENCY), duration(8.0)),
+            STACK.but(NO_SLIDING, peak=1.1 * UPLIFT, frequency=ANGULAR_FREQUENCY, duration=8.0),
             quantity="rotation ratio at 1.1 g a/c, 6.928 rad/s",
             criterion="it stands",
             holds=stands,
@@ -164,8 +152,7 @@ def _lead(cell: MapCell) -> float:
 
 
 @claim(
-    section="5.3",
-    quote="the condition A <= a/2 is only a conservative description of the falling over limit",
+    section="5.3", quote="the condition A <= a/2 is only a conservative description of the falling over limit"
 )
 def half_width_is_conservative(experiments: Experiments) -> Finding:
     """The same maps below A = a/2, a scan of the amplitude at the paper's frequency, and the exact first swing."""
@@ -182,8 +169,8 @@ def half_width_is_conservative(experiments: Experiments) -> Finding:
     held = STACK.but(FOR_MAPS, NO_SLIDING)
     scan = [
         held.but(
-            amplitude(round(part * HALF_WIDTH, 5)),
-            duration(15.0),
+            amplitude=round(part * HALF_WIDTH, 5),
+            duration=15.0,
             what=f"stack that cannot slide, A = {part:.2f} a/2 at 6.928 rad/s",
         )
         for part in [round(0.1 + 0.02 * n, 3) for n in range(46)]
@@ -195,8 +182,8 @@ def half_width_is_conservative(experiments: Experiments) -> Finding:
     ]
     smallest = min((case.values["motion.amplitude_m"] / HALF_WIDTH for case in falling), default=math.nan)
     comparisons, witnesses, rows = [], [], []
-    for name, values in FRICTIONS.items():
-        cells = stack_map(experiments, values).cells
+    for name, mu in FRICTIONS.items():
+        cells = stack_map(experiments, mu).cells
         below = [cell for cell in cells if cell.motion.amplitude <= HALF_WIDTH]
         against = sorted((cell for cell in below if cell.fell), key=lambda cell: cell.motion.amplitude)
         sure = [cell for cell in against if cell.sure]
@@ -215,7 +202,7 @@ def half_width_is_conservative(experiments: Experiments) -> Finding:
     ]
     first = (falling or scan[-1:])[0]
     witness = first.but(
-        amplitude(round(0.45 * HALF_WIDTH, 5)), what="stack that cannot slide, A = 0.45 a/2 at 6.928 rad/s"
+        amplitude=round(0.45 * HALF_WIDTH, 5), what="stack that cannot slide, A = 0.45 a/2 at 6.928 rad/s"
     )
     return Finding(
         comparisons=comparisons,
@@ -227,21 +214,15 @@ def half_width_is_conservative(experiments: Experiments) -> Finding:
         ),
         cases=[first, witness, *witnesses],
         tables=[
-            ClaimTable(
-                caption="Cells of the stack's map with A <= a/2",
-                columns=(
-                    "friction",
-                    "cells",
-                    "overturn",
-                    ".. and are sure",
-                    "smallest A/(a/2) that overturns",
-                ),
-                rows=rows,
+            table(
+                "Cells of the stack's map with A <= a/2",
+                "friction | cells | overturn | .. and are sure | smallest A/(a/2) that overturns",
+                rows,
             )
         ],
-        figures=[_map_figure(stack_map(experiments, NO_SLIDING), block.frequency_parameter)],
+        figures=[_map_figure(stack_map(experiments, HOLDING), block.frequency_parameter)],
         band=experiments.band(
-            witness.but(SHELL, duration(10.0)),
+            witness.but(SHELL, duration=10.0),
             quantity=f"rotation ratio at A = {witness.values['motion.amplitude_m'] / HALF_WIDTH:.2f} a/2",
             value=capped_ratio,
             criterion="it stands, as A <= a/2 says",
@@ -280,9 +261,10 @@ def rotation_at_half_width(experiments: Experiments) -> Finding:
         case = STACK.but(
             FOR_MAPS,
             NO_SLIDING,
-            amplitude(HALF_WIDTH, frequency),
-            duration(10.0),
-            sampled(0.005),
+            amplitude=HALF_WIDTH,
+            frequency=frequency,
+            duration=10.0,
+            interval=0.005,
             what=f"stack that cannot slide, A = a/2 at {frequency:g} rad/s",
         )
         run = experiments.run(case)
@@ -306,15 +288,10 @@ def rotation_at_half_width(experiments: Experiments) -> Finding:
         ),
         cases=cases,
         tables=[
-            ClaimTable(
-                caption="A = a/2 = 550 mm",
-                columns=(
-                    "frequency [rad/s]",
-                    "peak [m/s²]",
-                    "rotation/beta in the first quarter [-]",
-                    "in the end",
-                ),
-                rows=rows,
+            table(
+                "A = a/2 = 550 mm",
+                "frequency [rad/s] | peak [m/s²] | rotation/beta in the first quarter [-] | in the end",
+                rows,
             )
         ],
     )
@@ -329,7 +306,7 @@ def beyond_half_width(experiments: Experiments) -> Finding:
     """The map of the stack that cannot slide, above A = a/2 and g a/c."""
     beyond = [
         cell
-        for cell in stack_map(experiments, NO_SLIDING).cells
+        for cell in stack_map(experiments, HOLDING).cells
         if cell.motion.amplitude > HALF_WIDTH and cell.motion.peak > UPLIFT
     ]
     standing = [cell for cell in beyond if cell.stood]
@@ -351,7 +328,7 @@ def beyond_half_width(experiments: Experiments) -> Finding:
         ),
         cases=[cell.case for cell in [*sure[:2], *beyond[:1]]],
         band=experiments.band(
-            STACK.but(NO_SLIDING, amplitude(0.66, 2.5), duration(8.0)),
+            STACK.but(NO_SLIDING, amplitude=0.66, frequency=2.5, duration=8.0),
             quantity="rotation ratio at A = 1.2 a/2, 2.5 rad/s (1: overturned)",
             value=capped_ratio,
             criterion="it overturns",

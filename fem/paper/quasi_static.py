@@ -18,13 +18,8 @@ from fem.paper.cases import (
     STACK,
     WIDTH,
     PaperCase,
-    duration,
-    friction,
-    harmonic,
-    released,
-    sampled,
 )
-from fem.paper.claims import ClaimTable, Comparison, Finding, at_least, at_most, claim, equal
+from fem.paper.claims import Comparison, Finding, at_least, at_most, claim, equal, table
 from fem.paper.experiments import Experiments
 from fem.paper.figures import PlottedLine, draw_curves
 
@@ -44,8 +39,10 @@ def stiction_limit(experiments: Experiments) -> Finding:
         scan = [
             BOX.but(
                 FOR_MAPS,
-                friction(mu, 0.5 * mu),
-                harmonic(share * mu * GRAVITY, ANGULAR_FREQUENCY),
+                mu_static=mu,
+                mu_kinetic=0.5 * mu,
+                peak=share * mu * GRAVITY,
+                frequency=ANGULAR_FREQUENCY,
                 what=f"box, mu_s = {mu:g}, peak {share:g} of mu_s g",
             )
             for share in AROUND
@@ -61,7 +58,7 @@ def stiction_limit(experiments: Experiments) -> Finding:
         ),
         cases=cases,
         band=experiments.band(
-            BOX.but(harmonic(0.98 * 0.4 * GRAVITY, ANGULAR_FREQUENCY), duration(5.0)),
+            BOX.but(peak=0.98 * 0.4 * GRAVITY, frequency=ANGULAR_FREQUENCY, duration=5.0),
             quantity="slip at 0.98 mu_s g",
             unit="m",
             value=lambda row: row["max_slip_m"],
@@ -78,11 +75,7 @@ def stiction_limit(experiments: Experiments) -> Finding:
 def kinetic_limit(experiments: Experiments) -> Finding:
     """The shear force of a rigid box while it slides under 5.0 m/s², mu 0.4/0.2."""
     case = BOX.but(
-        RIGID,
-        {"motion.angular_frequency_rad_s": 10.0},
-        duration(8.0),
-        sampled(0.002),
-        what="box, 50 mm at 10 rad/s: 5.0 m/s²",
+        RIGID, frequency=10.0, duration=8.0, interval=0.002, what="box, 50 mm at 10 rad/s: 5.0 m/s²"
     )
     run = experiments.run(case)
     history, weight = run.history, run.model.static.weight
@@ -138,9 +131,11 @@ def uplift_limit(experiments: Experiments) -> Finding:
         shares = AROUND_FLAT if kind == "flat" else AROUND
         scan = [
             base.but(
-                {"container.boxes": boxes, "support.kind": kind},
-                duration(5.0),
-                harmonic(share * limit, ANGULAR_FREQUENCY),
+                boxes=boxes,
+                support=kind,
+                duration=5.0,
+                peak=share * limit,
+                frequency=ANGULAR_FREQUENCY,
                 what=f"{boxes} boxes on {kind}, peak {share:g} of g a/c",
             )
             for share in shares
@@ -149,8 +144,8 @@ def uplift_limit(experiments: Experiments) -> Finding:
         what = f"onset of tilting over g a/c, {boxes} boxes on {kind}"
         comparisons.append(_onset(what, tilts, shares, inside=kind == "corners"))
         cases.append(_first(scan, tilts))
-    flat = base.but({"support.kind": "flat"}, duration(5.0))
-    opening = [flat.but(harmonic(share * GRAVITY * WIDTH / 12.0, ANGULAR_FREQUENCY)) for share in AROUND]
+    flat = base.but(support="flat", duration=5.0)
+    opening = [flat.but(peak=share * GRAVITY * WIDTH / 12.0, frequency=ANGULAR_FREQUENCY) for share in AROUND]
     opens = [row["first_opening_s"] is not None for row in experiments.rows(opening)]
     third = _onset("first opening of an edge over g a/(3 c), 4 boxes on flat", opens)
     return Finding(
@@ -164,7 +159,9 @@ def uplift_limit(experiments: Experiments) -> Finding:
         ),
         cases=cases,
         band=experiments.band(
-            STACK.but(NO_SLIDING, harmonic(0.97 * GRAVITY * WIDTH / 4.0, ANGULAR_FREQUENCY), duration(5.0)),
+            STACK.but(
+                NO_SLIDING, peak=0.97 * GRAVITY * WIDTH / 4.0, frequency=ANGULAR_FREQUENCY, duration=5.0
+            ),
             quantity="rotation ratio at 0.97 g a/c",
             criterion="it does not rock (rotation ratio below 0.01)",
             holds=lambda row: row["rotation_ratio"] < 0.01,
@@ -181,7 +178,7 @@ def centre_or_base(experiments: Experiments) -> Finding:
     """Shear force of the sticking stack over mass times floor acceleration, rigid and shell."""
     comparisons, cases = [], []
     for name, model in (("rigid", RIGID), ("reduced", SHELL)):
-        case = STACK.but(model, duration(5.0), what=f"stack, {name}, 50 mm at 6.928 rad/s")
+        case = STACK.but(model, duration=5.0, what=f"stack, {name}, 50 mm at 6.928 rad/s")
         run = experiments.run(case)
         shear = np.abs(run.history["shear_force_N"]).max()
         floor = run.model.container.mesh.mass * np.abs(run.history["base_acceleration_m_s2"]).max()
@@ -229,10 +226,10 @@ def moments_of_a_tilted_body(experiments: Experiments) -> Finding:
         ),
         cases=cases,
         tables=[
-            ClaimTable(
-                caption=f"Rotation after {TURNING} s less that at the start, released at rest",
-                columns=("phi/beta [-]", "balance [m/s²]", "2 % below [mrad]", "2 % above [mrad]"),
-                rows=rows,
+            table(
+                f"Rotation after {TURNING} s less that at the start, released at rest",
+                "phi/beta [-] | balance [m/s²] | 2 % below [mrad] | 2 % above [mrad]",
+                rows,
             )
         ],
     )
@@ -278,9 +275,9 @@ def _released(rotation: float, acceleration: float) -> PaperCase:
         RIGID,
         NO_SLIDING,
         motion if acceleration else {"motion.kind": "none"},
-        released(rotation),
-        duration(TURNING),
-        sampled(0.01),
+        rotation=rotation,
+        duration=TURNING,
+        interval=0.01,
         what=f"stack released at {rotation:.4f} rad, floor at {-acceleration:.3f} m/s²",
     )
 

@@ -7,21 +7,8 @@ import numpy as np
 from contact.reference.closed_forms_rocking import quarter_period
 from contact.reference.rigid_block import RigidBlock
 from fem.model.static_checks import period_eq2, period_eq3
-from fem.paper.cases import (
-    BOX,
-    GRAVITY,
-    HEIGHT,
-    NO_SLIDING,
-    RIGID,
-    SHELL,
-    STACK,
-    WIDTH,
-    PaperCase,
-    duration,
-    released,
-    sampled,
-)
-from fem.paper.claims import ClaimTable, Finding, at_least, at_most, claim, equal
+from fem.paper.cases import BOX, GRAVITY, HEIGHT, NO_SLIDING, RIGID, SHELL, STACK, WIDTH, PaperCase
+from fem.paper.claims import Finding, at_least, at_most, claim, equal, table
 from fem.paper.experiments import Experiments, VariantBand, VariantResult, stands
 from fem.paper.figures import PlottedLine, draw_curves
 
@@ -40,8 +27,8 @@ def _periods(experiments: Experiments, name: str) -> tuple[RigidBlock, list[Pape
         BODIES[name].but(
             RIGID,
             FREE,
-            released(share * block.slenderness_angle),
-            duration(3.0),
+            rotation=share * block.slenderness_angle,
+            duration=3.0,
             what=f"{name} released at {share:g} of beta",
         )
         for share in RELEASES
@@ -123,10 +110,10 @@ def eq_3(experiments: Experiments) -> Finding:
             PlottedLine(x=RELEASES, y=[third] * len(RELEASES), label=f"{name}, Eq. 3", style="--"),
         ]
         tables.append(
-            ClaimTable(
-                caption=f"Period of the {name} [s]",
-                columns=("phi_0/beta [-]", "run", "exact", "Eq. 2", "Eq. 3"),
-                rows=[
+            table(
+                f"Period of the {name} [s]",
+                "phi_0/beta [-] | run | exact | Eq. 2 | Eq. 3",
+                [
                     (share, run, true, two, third)
                     for (share, run), true, two in zip(periods.items(), exact, second, strict=True)
                 ],
@@ -179,7 +166,7 @@ def _band_of_periods(experiments: Experiments) -> VariantBand:
     rotation = 0.5 * block.slenderness_angle
     exact = quarter_period(block, rotation)
     return experiments.band(
-        STACK.but(FREE, released(rotation), duration(1.5)),
+        STACK.but(FREE, rotation=rotation, duration=1.5),
         quantity="period of the stack released at 0.5 beta over the exact block's",
         value=lambda row: None if row["first_impact_s"] is None else row["first_impact_s"] / exact,
         criterion="within 5 % of the exact block's",
@@ -240,9 +227,9 @@ def semi_stable_orbit(experiments: Experiments) -> Finding:
                 base.but(
                     FREE,
                     model,
-                    released(share * block.slenderness_angle),
-                    duration(10.0),
-                    sampled(0.01),
+                    rotation=share * block.slenderness_angle,
+                    duration=10.0,
+                    interval=0.01,
                     what=f"{name}, {kind}, released at {share:g} beta",
                 )
                 for share in (0.98, 1.02)
@@ -300,7 +287,7 @@ def _band_of_kicks(experiments: Experiments) -> VariantBand:
         members.append(
             VariantResult(
                 what=case.what,
-                command=case.but(_kick(kick)).command,
+                command=_kicked(case, kick).command,
                 outcome="" if found else None,
                 value=largest if found else None,
                 holds=abs(largest - 1.0) <= 0.03 if found else None,
@@ -314,9 +301,8 @@ def _band_of_kicks(experiments: Experiments) -> VariantBand:
     )
 
 
-def _kick(angular_velocity: float) -> dict[str, float]:
-    initial = {"initial.angular_velocity_rad_s": float(f"{angular_velocity:.8g}")}
-    return initial | duration(5.0) | sampled(0.02)
+def _kicked(case: PaperCase, velocity: float) -> PaperCase:
+    return case.but(velocity=velocity, duration=5.0, interval=0.02)
 
 
 def _largest_kick(
@@ -325,7 +311,7 @@ def _largest_kick(
     """Scan around a kick: where standing ends, over the kick; nan if it does not end, or more than once."""
     count = round(share / step)
     factors = [1.0 + step * n for n in range(-count, count + 1)]
-    rows = experiments.rows([case.but(_kick(factor * kick)) for factor in factors], also_failed=True)
+    rows = experiments.rows([_kicked(case, factor * kick) for factor in factors], also_failed=True)
     if any(row["status"] == "failed" for row in rows):
         return math.nan
     falls = [not stands(row) for row in rows]

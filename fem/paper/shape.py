@@ -24,10 +24,8 @@ from fem.paper.cases import (
     STACK,
     WIDTH,
     PaperCase,
-    duration,
-    sampled,
 )
-from fem.paper.claims import ClaimTable, Finding, at_most, claim, equal
+from fem.paper.claims import Finding, at_most, claim, equal, table
 from fem.paper.experiments import Experiments
 from fem.paper.figures import PlottedLine, draw_curves
 from fem.run.recorder import Recorder
@@ -55,8 +53,7 @@ def _block(ratio: float) -> RigidBlock:
 
 
 @claim(
-    section="3",
-    quote="Thus, the findings do also hold for a vertical cylindrical body instead of a prism",
+    section="3", quote="Thus, the findings do also hold for a vertical cylindrical body instead of a prism"
 )
 def cylinder(experiments: Experiments) -> Finding:
     """Inertia in the plane of motion: closed forms, analytic blocks, and the rigid model with the cylinder's
@@ -101,17 +98,11 @@ def cylinder(experiments: Experiments) -> Finding:
         ),
         cases=[case],
         tables=[
-            ClaimTable(
-                caption="In the plane of motion, 1.1 m wide, 4.0 m high",
-                columns=(
-                    "body",
-                    "I_O/(M R²) [-]",
-                    "p [1/s]",
-                    "e [-]",
-                    "largest rotation/beta at the plateau value [-]",
-                    "first-swing peak at 6.928 rad/s [m/s²]",
-                ),
-                rows=[
+            table(
+                "In the plane of motion, 1.1 m wide, 4.0 m high",
+                "body | I_O/(M R²) [-] | p [1/s] | e [-] | largest rotation/beta at the plateau value [-] "
+                "| first-swing peak at 6.928 rad/s [m/s²]",
+                [
                     (
                         name,
                         body.inertia_ratio,
@@ -149,7 +140,7 @@ def _runs(experiments: Experiments, ratio: float) -> tuple[float, float, PaperCa
         RIGID,
         NO_SLIDING,
         {"container.section": "solid"},
-        duration(3.0),
+        duration=3.0,
         what="homogeneous rigid stack, plateau value (the prism)",
     )
     found = []
@@ -171,17 +162,16 @@ def _runs(experiments: Experiments, ratio: float) -> tuple[float, float, PaperCa
 @claim(section="3", quote="body and surface are rigid; the stack remains rigid, whipping is excluded")
 def rigid_assumption(experiments: Experiments) -> Finding:
     """The plateau value with the rigid block, the shell of 8 mm and solid steel, with mu_k of 50 and 100 %."""
-    base = PLATEAU.but(duration(10.0))
+    base = PLATEAU.but(duration=10.0)
     rigid = base.but(RIGID, what="stack, rigid, plateau value")
     shell = base.but(SHELL, what="stack, shell of 8 mm, plateau value")
     steel = {"container.section": "solid", "container.youngs_modulus_Pa": 2.1e11}
-    equal_mu = {"contact.mu_kinetic": 0.4}
     cases = [
         rigid,
         shell,
         base.but(SHELL, steel, what="stack, solid steel, plateau value"),
-        rigid.but(equal_mu, what="rigid, mu 0.4/0.4"),
-        shell.but(equal_mu, what="shell, mu 0.4/0.4"),
+        rigid.but(mu_kinetic=0.4, what="rigid, mu 0.4/0.4"),
+        shell.but(mu_kinetic=0.4, what="shell, mu 0.4/0.4"),
     ]
     rows = experiments.rows(cases)
     outcomes = [row["outcome"] for row in rows]
@@ -241,7 +231,7 @@ def gaps_between_boxes(experiments: Experiments) -> Finding:
     comparisons, rows, cases = [], [], []
     for base, name in ((STACK, "stated motion"), (PLATEAU, "plateau value")):
         for kind, model in (("rigid", RIGID), ("reduced", SHELL)):
-            case = base.but(model, duration(10.0), sampled(0.002), what=f"stack, {kind}, {name}")
+            case = base.but(model, duration=10.0, interval=0.002, what=f"stack, {kind}, {name}")
             cases.append(case)
             tension, opened, slid = _joints(experiments, case)
             what = f"largest tension at an edge of any joint, {kind}, {name}"
@@ -260,10 +250,10 @@ def gaps_between_boxes(experiments: Experiments) -> Finding:
         ),
         cases=cases,
         tables=[
-            ClaimTable(
-                caption="Joints from the floor up; faces rigid, friction as on the floor",
-                columns=("run", "largest tension [kN]", "would open", "would slide"),
-                rows=rows,
+            table(
+                "Joints from the floor up; faces rigid, friction as on the floor",
+                "run | largest tension [kN] | would open | would slide",
+                rows,
             )
         ],
     )

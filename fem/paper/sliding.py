@@ -5,23 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from fem.batch.runner import Row
-from fem.paper.cases import (
-    FOR_MAPS,
-    HEIGHT,
-    NO_SLIDING,
-    PLATEAU,
-    RIGID,
-    STACK,
-    WIDTH,
-    amplitude,
-    duration,
-    friction,
-    harmonic,
-)
-from fem.paper.claims import ClaimTable, Comparison, Finding, at_most, claim
+from fem.paper.cases import FOR_MAPS, HEIGHT, NO_SLIDING, PLATEAU, RIGID, STACK, WIDTH
+from fem.paper.claims import Comparison, Finding, at_most, claim, table
 from fem.paper.experiments import Experiments, VariantBand, capped_ratio
 from fem.paper.figures import PlottedLine, draw_curves
-from fem.paper.maps import MapCell, pairs, stack_map
+from fem.paper.maps import HOLDING, MapCell, pairs, stack_map
 
 #: c/a of the stack is 3.636: below a/c = 0.275 it slides before it tilts
 WIDTH_OVER_HEIGHT = WIDTH / HEIGHT
@@ -38,17 +26,19 @@ def number_of_boxes(experiments: Experiments) -> Finding:
     stacks = (1, 2, 3, 4, 6)
     flat: list[Comparison] = []
     every: list[Comparison] = []
-    comparisons, table, cases = [], [], []
+    comparisons, lines, cases = [], [], []
     for static, kinetic in ((0.2, 0.1), (0.4, 0.2)):
         for peak in (2.5, 5.0, 8.0):
             title = f"mu {static:g}/{kinetic:g}, {peak:g} m/s²"
             group = [
                 STACK.but(
                     FOR_MAPS,
-                    {"container.boxes": boxes},
-                    friction(static, kinetic),
-                    duration(10.0),
-                    harmonic(peak, 10.0),
+                    boxes=boxes,
+                    mu_static=static,
+                    mu_kinetic=kinetic,
+                    duration=10.0,
+                    peak=peak,
+                    frequency=10.0,
                     what=f"{boxes} boxes, {title} at 10 rad/s",
                 )
                 for boxes in stacks
@@ -66,7 +56,7 @@ def number_of_boxes(experiments: Experiments) -> Finding:
                 found.append(every[-1])
             comparisons += found
             cases += [group[0], group[-1]]
-            table += [
+            lines += [
                 (title, boxes, row["outcome"], 1e3 * row["slip_travel_m"], row["rotation_ratio"])
                 for boxes, row in zip(stacks, rows, strict=True)
             ]
@@ -80,10 +70,10 @@ def number_of_boxes(experiments: Experiments) -> Finding:
         ),
         cases=cases,
         tables=[
-            ClaimTable(
-                caption="Path over the floor in 10 s, 10 rad/s, rigid",
-                columns=("case", "boxes", "outcome", "path [mm]", "rotation ratio [-]"),
-                rows=table,
+            table(
+                "Path over the floor in 10 s, 10 rad/s, rigid",
+                "case | boxes | outcome | path [mm] | rotation ratio [-]",
+                lines,
             )
         ],
         band=_band_of_paths(experiments),
@@ -101,10 +91,10 @@ def _largest(comparisons: Sequence[Comparison]) -> float:
 
 def _band_of_paths(experiments: Experiments) -> VariantBand:
     """Path of the stack that stays flat, over that of one rigid box under the same floor."""
-    changes = friction(0.2, 0.1) | duration(5.0) | harmonic(5.0, 10.0)
-    path = experiments.row(STACK.but(FOR_MAPS, changes, {"container.boxes": 1}))["slip_travel_m"]
+    case = STACK.but(mu_static=0.2, mu_kinetic=0.1, duration=5.0, peak=5.0, frequency=10.0)
+    path = experiments.row(case.but(FOR_MAPS, boxes=1))["slip_travel_m"]
     return experiments.band(
-        STACK.but(changes),
+        case,
         quantity="path of four boxes over that of one rigid box, mu 0.2/0.1, 5.0 m/s² at 10 rad/s",
         value=lambda row: row["slip_travel_m"] / path,
         criterion="within 5 % of one rigid box",
@@ -116,12 +106,14 @@ def _band_of_paths(experiments: Experiments) -> VariantBand:
 def slipping_stabilises(experiments: Experiments) -> Finding:
     """Maps of the rigid stack over frequency and peak acceleration with five frictions, against friction that
     holds."""
-    holding = stack_map(experiments, NO_SLIDING)
-    fixed = experiments.row(PLATEAU.but(RIGID, NO_SLIDING, duration(10.0)))["rotation_ratio"]
+    holding = stack_map(experiments, HOLDING)
+    fixed = experiments.row(PLATEAU.but(RIGID, NO_SLIDING, duration=10.0))["rotation_ratio"]
     low_cells: list[MapCell] = []
-    comparisons, table, worse = [], [], []
+    comparisons, lines, worse = [], [], []
     for static, kinetic in ((0.2, 0.1), (0.25, 0.125), (0.3, 0.15), (0.4, 0.2), (0.4, 0.4)):
-        slipping = stack_map(experiments, friction(static, kinetic), perturbed=static in (0.25, 0.4))
+        slipping = stack_map(
+            experiments, mu_static=static, mu_kinetic=kinetic, perturbed=static in (0.25, 0.4)
+        )
         slid = [pair for pair in pairs(holding, slipping) if pair[1].row["max_slip_m"] > 1e-3]
         saved = [one for one, other in slid if one.fell and not other.fell]
         lost = [pair for pair in slid if pair[1].fell and not pair[0].fell]
@@ -137,9 +129,9 @@ def slipping_stabilises(experiments: Experiments) -> Finding:
             at_most(f"{name}: sure cells that fall only because they slip", len(sure), 0.0, inside=inside),
             at_most(turning, share, 0.0, inside=inside),
         ]
-        table.append((name, len(slid), len(saved), len(lost), len(sure), len(more)))
+        lines.append((name, len(slid), len(saved), len(lost), len(sure), len(more)))
         worse += [other.case for _, other in (sure or more)[:2]]
-    _, cells, saved_by, lost_by, surely, further = (list(column) for column in zip(*table, strict=True))
+    _, cells, saved_by, lost_by, surely, further = (list(column) for column in zip(*lines, strict=True))
     return Finding(
         comparisons=comparisons,
         bounds=f"mu_s below a/c = {WIDTH_OVER_HEIGHT:.3f}: the stack slides before it could tilt",
@@ -152,21 +144,14 @@ def slipping_stabilises(experiments: Experiments) -> Finding:
         ),
         cases=worse,
         tables=[
-            ClaimTable(
-                caption=f"Cells of {len(holding.every)} that slip more than 1 mm, against friction that holds (1.0)",
-                columns=(
-                    "friction",
-                    "slip",
-                    "saved by slipping",
-                    "lost by slipping",
-                    ".. of them sure",
-                    "turn more by slipping",
-                ),
-                rows=table,
+            table(
+                f"Cells of {len(holding.every)} that slip more than 1 mm, against friction that holds (1.0)",
+                "friction | slip | saved by slipping | lost by slipping | .. of them sure | turn more by slipping",
+                lines,
             )
         ],
         band=experiments.band(
-            PLATEAU.but(duration(10.0)),
+            PLATEAU.but(duration=10.0),
             quantity="rotation ratio at the plateau value",
             criterion=f"it slides and turns less than the rigid block that cannot slide ({fixed:.3f})",
             holds=lambda row: row["outcome"] == "slide-rock" and row["rotation_ratio"] < fixed,
@@ -195,9 +180,10 @@ def same_amplitude(experiments: Experiments) -> Finding:
         group = [
             STACK.but(
                 FOR_MAPS,
-                friction(static, kinetic),
-                amplitude(float(one)),
-                duration(15.0),
+                mu_static=static,
+                mu_kinetic=kinetic,
+                amplitude=float(one),
+                duration=15.0,
                 what=f"{name}, {1e3 * one:.0f} mm at 6.928 rad/s",
             )
             for one in amplitudes
@@ -244,7 +230,7 @@ def same_amplitude(experiments: Experiments) -> Finding:
             )
         ],
         band=experiments.band(
-            STACK.but(amplitude(0.1), duration(8.0)),
+            STACK.but(amplitude=0.1, duration=8.0),
             quantity="rotation ratio at 100 mm, mu 0.4/0.2",
             criterion=f"no more than the rigid stack that cannot slide ({at_100:.3f})",
             holds=lambda row: row["rotation_ratio"] <= at_100 * LARGER,
