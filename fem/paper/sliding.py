@@ -111,9 +111,7 @@ def slipping_stabilises(experiments: Experiments) -> Finding:
     low_cells: list[MapCell] = []
     comparisons, lines, worse = [], [], []
     for static, kinetic in ((0.2, 0.1), (0.25, 0.125), (0.3, 0.15), (0.4, 0.2), (0.4, 0.4)):
-        slipping = stack_map(
-            experiments, mu_static=static, mu_kinetic=kinetic, perturbed=static in (0.25, 0.4)
-        )
+        slipping = stack_map(experiments, (static, kinetic), perturbed=static in (0.25, 0.4))
         slid = [pair for pair in pairs(holding, slipping) if pair[1].row["max_slip_m"] > 1e-3]
         saved = [one for one, other in slid if one.fell and not other.fell]
         lost = [pair for pair in slid if pair[1].fell and not pair[0].fell]

@@ -21,14 +21,9 @@ def versions() -> dict[str, str]:
 def program_identity() -> dict[str, str]:
     """What must be the same to resume to the same bits: versions, machine, digest of sources and shipped files."""
     digest = hashlib.sha256()
-<<<<<<< HEAD
     root = Path(__file__).parents[2]
-    for source in sorted(path for package in PACKAGES for path in (root / package).rglob("*.py")):
-=======
-    root = Path(__file__).parents[1]
     files = (path for package in PACKAGES for path in (root / package).rglob("*"))
     for source in sorted(path for path in files if path.suffix in (".py", ".toml")):
->>>>>>> 723a766 (Check the paper claim by claim: claims as decorators, one map, ResultFolder)
         digest.update(source.relative_to(root).as_posix().encode())
         digest.update(source.read_bytes())
     return versions() | {"machine": platform.machine(), "sources": digest.hexdigest()[:16]}
