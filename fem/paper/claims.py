@@ -166,7 +166,7 @@ class Claim:
     check: Check
 
 
-def claim(*, section: str, quote: str, more: str = "") -> Callable[[Check], Claim]:
+def claim(section: str, quote: str, *, more: str = "") -> Callable[[Check], Claim]:
     """Decorator: make a claim of the function that checks it.
 
     The function gives the claim its name, with dashes, and its docstring says how it is checked; `more` is added

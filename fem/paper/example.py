@@ -27,10 +27,7 @@ from fem.paper.figures import PlottedLine, draw_curves
 SLIDING = 1e-4 * 1.1  # m, what counts as sliding
 
 
-@claim(
-    section="7, one box",
-    quote="In this example, the body will just remain in the sticking mode and will not tilt",
-)
+@claim("7, one box", "In this example, the body will just remain in the sticking mode and will not tilt")
 def box_just_sticks(experiments: Experiments) -> Finding:
     """Rigid box under the stated motion and the plateau value, g = 10 and 9.81 m/s²."""
     box = BOX.but(RIGID)
@@ -83,9 +80,8 @@ def box_just_sticks(experiments: Experiments) -> Finding:
 
 
 @claim(
-    section="7, four boxes",
-    quote="In this example, the body will just remain in the sticking mode and will tilt (plateau "
-    "value, 4.0 m/s²)",
+    "7, four boxes",
+    "In this example, the body will just remain in the sticking mode and will tilt (plateau value, 4.0 m/s²)",
 )
 def stack_tilts_at_plateau(experiments: Experiments) -> Finding:
     """The stack with the floor reaching the plateau value, rigid and shell, g = 10 and 9.81 m/s²."""
@@ -112,9 +108,8 @@ def stack_tilts_at_plateau(experiments: Experiments) -> Finding:
 
 
 @claim(
-    section="7, four boxes",
-    quote="In this example, the body will just remain in the sticking mode and will tilt (stated "
-    "motion, 2.4 m/s²)",
+    "7, four boxes",
+    "In this example, the body will just remain in the sticking mode and will tilt (stated motion, 2.4 m/s²)",
 )
 def stack_tilts_as_stated(experiments: Experiments) -> Finding:
     """The stack under 50 mm at 6.928 rad/s, rigid and shell, started moving and with a jerk."""
@@ -185,8 +180,8 @@ def _tilts_and_sticks(
 
 
 @claim(
-    section="7",
-    quote="50 mm is << a/2. Regardless of sticking or slipping the tilting of the body will remain well "
+    "7",
+    "50 mm is << a/2. Regardless of sticking or slipping the tilting of the body will remain well "
     "within the limit cycle. Thus, Lyapunov stability is given",
 )
 def within_the_limit_cycle(experiments: Experiments) -> Finding:

@@ -14,8 +14,8 @@ from fem.paper.maps import pairs, stack_map
 
 
 @claim(
-    section="3",
-    quote="we have decaying speeds towards the extreme points, so that the relative motion ... "
+    "3",
+    "we have decaying speeds towards the extreme points, so that the relative motion ... "
     "gradually comes to a halt",
 )
 def halt_at_extremes(experiments: Experiments) -> Finding:
@@ -64,10 +64,7 @@ def halt_at_extremes(experiments: Experiments) -> Finding:
     )
 
 
-@claim(
-    section="3",
-    quote="stick-slip phenomena towards the reversal ... do not affect the findings of this study",
-)
+@claim("3", "stick-slip phenomena towards the reversal ... do not affect the findings of this study")
 def reversal(experiments: Experiments) -> Finding:
     """Box and stack with the same kinetic friction and with or without more static friction at the reversals."""
     comparisons, cases, rows = [], [], []
@@ -126,8 +123,8 @@ def reversal(experiments: Experiments) -> Finding:
 
 
 @claim(
-    section="4.3, Eq. 6",
-    quote="the relation of mu_k being app. 50 % of mu_s is arbitrary; 92 % ... nearly 100 % of the stiction",
+    "4.3, Eq. 6",
+    "the relation of mu_k being app. 50 % of mu_s is arbitrary; 92 % ... nearly 100 % of the stiction",
 )
 def friction_ratio(experiments: Experiments) -> Finding:
     """Maps of the rigid stack with mu_k at 50, 92 and 100 % of 0.4, and the slip of a box."""

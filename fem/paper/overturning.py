@@ -28,8 +28,8 @@ FRICTIONS = {"mu 0.4/0.2": (0.4, 0.2), "mu 1.0": HOLDING}
 
 
 @claim(
-    section="abstract, 1",
-    quote="neither the beginning of an overturning motion nor the loss of stiction necessarily causes "
+    "abstract, 1",
+    "neither the beginning of an overturning motion nor the loss of stiction necessarily causes "
     "the structure to fall over",
 )
 def beginning_is_restored(experiments: Experiments) -> Finding:
@@ -81,8 +81,8 @@ def beginning_is_restored(experiments: Experiments) -> Finding:
 
 
 @claim(
-    section="1",
-    quote="if tilting starts short before reversal of the ground motion, some bumping will happen, but "
+    "1",
+    "if tilting starts short before reversal of the ground motion, some bumping will happen, but "
     "the stack will not fall over",
 )
 def short_before_reversal(experiments: Experiments) -> Finding:
@@ -151,9 +151,7 @@ def _lead(cell: MapCell) -> float:
     return (0.25 - cell.motion.angular_frequency * uplift / (2.0 * math.pi)) % 0.5
 
 
-@claim(
-    section="5.3", quote="the condition A <= a/2 is only a conservative description of the falling over limit"
-)
+@claim("5.3", "the condition A <= a/2 is only a conservative description of the falling over limit")
 def half_width_is_conservative(experiments: Experiments) -> Finding:
     """The same maps below A = a/2, a scan of the amplitude at the paper's frequency, and the exact first swing."""
     block = experiments.block(STACK)
@@ -249,8 +247,8 @@ def _map_figure(one: OutcomeMap, frequency_parameter: float) -> ClaimFigure:
 
 
 @claim(
-    section="5.3",
-    quote="the acceleration of the center of mass during the first quarter period, leading to phi < "
+    "5.3",
+    "the acceleration of the center of mass during the first quarter period, leading to phi < "
     "beta for A = a/2",
 )
 def rotation_at_half_width(experiments: Experiments) -> Finding:
@@ -298,8 +296,8 @@ def rotation_at_half_width(experiments: Experiments) -> Finding:
 
 
 @claim(
-    section="5.4",
-    quote="Overturning: tilting moment does exceed restoring moment; steady state amplitude A > a/2 "
+    "5.4",
+    "Overturning: tilting moment does exceed restoring moment; steady state amplitude A > a/2 "
     "(weak condition)",
 )
 def beyond_half_width(experiments: Experiments) -> Finding:

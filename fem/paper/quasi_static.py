@@ -31,7 +31,7 @@ AROUND_FLAT = tuple(round(0.8 + 0.01 * n, 4) for n in range(26))
 TURNING = 0.2  #: s, in which a released container shows where it goes
 
 
-@claim(section="5.1, Eqs. 7, 8", quote="F_F^S(t) = m a(t) <= G mu_s")
+@claim("5.1, Eqs. 7, 8", "F_F^S(t) = m a(t) <= G mu_s")
 def stiction_limit(experiments: Experiments) -> Finding:
     """Scan of the peak acceleration around mu_s g, for four coefficients of friction, rigid box."""
     comparisons, cases = [], []
@@ -69,8 +69,7 @@ def stiction_limit(experiments: Experiments) -> Finding:
 
 
 @claim(
-    section="5.2, Eq. 11",
-    quote="F_F^k(t) = m a(t) <= G mu_k; compared to stiction, the accelerating base shear is reduced",
+    "5.2, Eq. 11", "F_F^k(t) = m a(t) <= G mu_k; compared to stiction, the accelerating base shear is reduced"
 )
 def kinetic_limit(experiments: Experiments) -> Finding:
     """The shear force of a rigid box while it slides under 5.0 m/s², mu 0.4/0.2."""
@@ -121,7 +120,7 @@ def kinetic_limit(experiments: Experiments) -> Finding:
     )
 
 
-@claim(section="5.1, Eqs. 9, 10", quote="M_T(t) = m a(t) c/2, M_R = -G a/2")
+@claim("5.1, Eqs. 9, 10", "M_T(t) = m a(t) c/2, M_R = -G a/2")
 def uplift_limit(experiments: Experiments) -> Finding:
     """Scan of the peak acceleration around g a/c for two, three and four boxes that cannot slide."""
     base = STACK.but(FOR_MAPS, NO_SLIDING)
@@ -170,8 +169,8 @@ def uplift_limit(experiments: Experiments) -> Finding:
 
 
 @claim(
-    section="5.1",
-    quote="Assessment of the quasi-static mode is possible only, if the center of gravity ... is "
+    "5.1",
+    "Assessment of the quasi-static mode is possible only, if the center of gravity ... is "
     "accelerated instead of the base",
 )
 def centre_or_base(experiments: Experiments) -> Finding:
@@ -198,8 +197,8 @@ def centre_or_base(experiments: Experiments) -> Finding:
 
 
 @claim(
-    section="5.3, Eqs. 12, 13",
-    quote="M_T = m a c/(2 sin alpha) sin(phi + alpha), M_R = -G a/(2 cos alpha) cos(phi + alpha)",
+    "5.3, Eqs. 12, 13",
+    "M_T = m a c/(2 sin alpha) sin(phi + alpha), M_R = -G a/(2 cos alpha) cos(phi + alpha)",
 )
 def moments_of_a_tilted_body(experiments: Experiments) -> Finding:
     """Rigid stack released at rest at three rotations on a floor that accelerates 2 % beside their balance."""
@@ -235,7 +234,7 @@ def moments_of_a_tilted_body(experiments: Experiments) -> Finding:
     )
 
 
-@claim(section="5.3, below Eq. 13", quote="Note, that the restoring moments is negative for phi > beta")
+@claim("5.3, below Eq. 13", "Note, that the restoring moments is negative for phi > beta")
 def sign_beyond_balance(experiments: Experiments) -> Finding:
     """The sign of Eq. 13 as printed, and the stack released at rest beside beta."""
     angle = experiments.block(STACK).slenderness_angle

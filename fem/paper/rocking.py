@@ -48,10 +48,7 @@ def _eq_2(block: RigidBlock, share: float) -> float:
     )
 
 
-@claim(
-    section="4.2, Eq. 2",
-    quote="T = 8 sqrt(phi_0 r²/(a g)) ... a mathematical pendulum rather than a physical pendulum",
-)
+@claim("4.2, Eq. 2", "T = 8 sqrt(phi_0 r²/(a g)) ... a mathematical pendulum rather than a physical pendulum")
 def eq_2(experiments: Experiments) -> Finding:
     """Rigid stack released at twelve rotations; four times the time to its first impact; the exact point mass."""
     block, cases, periods = _periods(experiments, "stack")
@@ -83,8 +80,8 @@ def eq_2(experiments: Experiments) -> Finding:
 
 
 @claim(
-    section="4.2, Eq. 3",
-    quote="T = 2 pi sqrt(4 r/(3 g)) ... seems to be a better representation for our engineering problem",
+    "4.2, Eq. 3",
+    "T = 2 pi sqrt(4 r/(3 g)) ... seems to be a better representation for our engineering problem",
 )
 def eq_3(experiments: Experiments) -> Finding:
     """The same runs, of stack and box, against Eqs. 2 and 3."""
@@ -177,9 +174,8 @@ def _band_of_periods(experiments: Experiments) -> VariantBand:
 
 
 @claim(
-    section="4.2, Eq. 4",
-    quote="the rocking period of bodies with practical dimensions is T >= 2 s ... smaller than the "
-    "plateau value",
+    "4.2, Eq. 4",
+    "the rocking period of bodies with practical dimensions is T >= 2 s ... smaller than the plateau value",
 )
 def control_periods(experiments: Experiments) -> Finding:
     """The same runs against 2 s, and Eq. 4 with their periods."""
@@ -209,9 +205,8 @@ def control_periods(experiments: Experiments) -> Finding:
 
 
 @claim(
-    section="2, Lyapunov stability, Klotter",
-    quote="semi-stable ... perturbations to the outside are divergent while perturbations to the inside "
-    "are stable",
+    "2, Lyapunov stability, Klotter",
+    "semi-stable ... perturbations to the outside are divergent while perturbations to the inside are stable",
 )
 def semi_stable_orbit(experiments: Experiments) -> Finding:
     """Kicks at rest scanned around the analytic limit, and release beside beta; box and stack, rigid and shell."""

@@ -52,9 +52,7 @@ def _block(ratio: float) -> RigidBlock:
     )
 
 
-@claim(
-    section="3", quote="Thus, the findings do also hold for a vertical cylindrical body instead of a prism"
-)
+@claim("3", "Thus, the findings do also hold for a vertical cylindrical body instead of a prism")
 def cylinder(experiments: Experiments) -> Finding:
     """Inertia in the plane of motion: closed forms, analytic blocks, and the rigid model with the cylinder's
     inertia."""
@@ -159,7 +157,7 @@ def _runs(experiments: Experiments, ratio: float) -> tuple[float, float, PaperCa
     return found[0], found[1], case
 
 
-@claim(section="3", quote="body and surface are rigid; the stack remains rigid, whipping is excluded")
+@claim("3", "body and surface are rigid; the stack remains rigid, whipping is excluded")
 def rigid_assumption(experiments: Experiments) -> Finding:
     """The plateau value with the rigid block, the shell of 8 mm and solid steel, with mu_k of 50 and 100 %."""
     base = PLATEAU.but(duration=10.0)
@@ -222,10 +220,7 @@ def _verb(outcome: str) -> str:
     return words.get(outcome, "overturns")
 
 
-@claim(
-    section="3",
-    quote="either gapping between the boxes is counterbalanced by the self-weight or the boxes are bolted",
-)
+@claim("3", "either gapping between the boxes is counterbalanced by the self-weight or the boxes are bolted")
 def gaps_between_boxes(experiments: Experiments) -> Finding:
     """Forces in the joints of the stack, rigid and shell, at rest and rocking."""
     comparisons, rows, cases = [], [], []

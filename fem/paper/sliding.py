@@ -17,8 +17,8 @@ LARGER = 1.05  #: a rotation that much larger counts as larger
 
 
 @claim(
-    section="8",
-    quote="Slipping is not affected by the number of boxes in the stack, only by the base acceleration "
+    "8",
+    "Slipping is not affected by the number of boxes in the stack, only by the base acceleration "
     "and the coefficient of friction",
 )
 def number_of_boxes(experiments: Experiments) -> Finding:
@@ -102,7 +102,7 @@ def _band_of_paths(experiments: Experiments) -> VariantBand:
     )
 
 
-@claim(section="8", quote="According to the above findings slipping leads to increased overall stability")
+@claim("8", "According to the above findings slipping leads to increased overall stability")
 def slipping_stabilises(experiments: Experiments) -> Finding:
     """Maps of the rigid stack over frequency and peak acceleration with five frictions, against friction that
     holds."""
@@ -165,8 +165,8 @@ def _turns_more(held: MapCell, slid: MapCell) -> bool:
 
 
 @claim(
-    section="5.2",
-    quote="the body is less accelerated, leading to a smaller rotation phi if tilting. With the same "
+    "5.2",
+    "the body is less accelerated, leading to a smaller rotation phi if tilting. With the same "
     "displacement amplitude A, the motion of the body becomes less critical",
 )
 def same_amplitude(experiments: Experiments) -> Finding:
