@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from fem.figures.heat_map import MapCurve
 from fem.paper.cases import FREQUENCY_PARAMETER, GRAVITY, HALF_WIDTH, UPLIFT, PaperCase
 from fem.paper.claims import ClaimFigure, ClaimTable, Finding, at_least, at_most, claim, table
 from fem.paper.criteria import CRITERIA, Contingency, Criterion, paper_rule, predicted_mode, static_rule
@@ -263,26 +264,22 @@ def _stack_figure(one: OutcomeMap) -> ClaimFigure:
     smooth = np.linspace(min(FREQUENCIES), max(FREQUENCIES), 100)
     return draw_map(
         "criteria-map",
-        "Outcome of the rigid stack, mu 0.4/0.2, with the criteria; dots: unsure cells.",
+        "Outcome of the rigid stack, mu 0.4/0.2, with the criteria; hatched: unsure cells.",
         one,
-        x_label="angular frequency [rad/s]",
-        y_label="peak floor acceleration [m/s²]",
-        curves=[
-            PlottedLine(x=smooth, y=HALF_WIDTH * smooth**2, label="A = a/2"),
-            PlottedLine(x=smooth, y=np.full_like(smooth, UPLIFT), label="M_T = M_R"),
-            PlottedLine(x=smooth, y=np.full_like(smooth, 0.4 * GRAVITY), label="stiction"),
+        [
+            MapCurve(x=smooth, y=HALF_WIDTH * smooth**2, label="A = a/2"),
+            MapCurve(x=smooth, y=np.full_like(smooth, UPLIFT), label="M_T = M_R"),
+            MapCurve(x=smooth, y=np.full_like(smooth, 0.4 * GRAVITY), label="stiction"),
         ],
     )
 
 
 def _shape_figure(one: OutcomeMap) -> ClaimFigure:
     frequency = f"{one.every[0].motion.angular_frequency:g}"
+    shapes = np.array(SLENDERNESS)
     return draw_map(
         f"slenderness-friction-{frequency}".replace(".", "-"),
-        f"Outcome over slenderness and friction (mu_k = mu_s/2): {one.title}; dots: unsure cells.",
+        f"Outcome over slenderness and friction (mu_k = mu_s/2): {one.title}; hatched: unsure cells.",
         one,
-        x_label="slenderness c/a [-]",
-        y_label="static friction mu_s [-]",
-        curves=[PlottedLine(x=SLENDERNESS, y=[1.0 / one for one in SLENDERNESS], label="mu_s = a/c")],
-        log_y=False,
+        [MapCurve(x=shapes, y=1.0 / shapes, label="mu_s = a/c")],
     )

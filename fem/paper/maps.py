@@ -10,12 +10,13 @@ overturn, as it does.
 """
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from fem.batch.axes import Axis
 from fem.batch.runner import Row
+from fem.figures.heat_map import MapAxis
 from fem.paper.cases import (
     ANGULAR_FREQUENCY,
     BOX_WEIGHT,
@@ -37,6 +38,10 @@ FREQUENCIES = tuple(float(f"{w:.4g}") for w in np.linspace(1.5, 12.0, 20))  #: [
 PEAKS = tuple(float(f"{a:.4g}") for a in np.geomspace(1.8, 12.0, 20))  #: [m/s2]
 SLENDERNESS = tuple(float(f"{one:.4g}") for one in np.linspace(1.5, 6.0, 19))  #: c/a
 FRICTION = tuple(float(f"{one:.4g}") for one in np.linspace(0.1, 0.8, 15))  #: mu_s; mu_k is half of it
+FREQUENCY = MapAxis(label="angular frequency [rad/s]", values=FREQUENCIES, scale="linear")
+PEAK = MapAxis(label="peak floor acceleration [m/s²]", values=PEAKS, scale="log")
+SHAPE = MapAxis(label="slenderness c/a [-]", values=SLENDERNESS, scale="linear")
+STICTION = MapAxis(label="static friction mu_s [-]", values=FRICTION, scale="linear")
 SHAPE_FREQUENCIES = (2.5, 4.0, ANGULAR_FREQUENCY)  #: [rad/s]
 FAST = 3.0 * FREQUENCY_PARAMETER  #: of a floor, against the stack [rad/s]
 FOR_SHELL = {"solver.model": "reduced", "solver.duration_s": 10.0}
@@ -79,8 +84,8 @@ class OutcomeMap:
     """Cells over two axes, row by row of rising y."""
 
     title: str
-    x: Sequence[float]
-    y: Sequence[float]
+    x: MapAxis
+    y: MapAxis
     every: Sequence[MapCell]  #: failed ones as well
 
     @property
@@ -91,12 +96,12 @@ class OutcomeMap:
     @property
     def places(self) -> list[tuple[float, float]]:
         """x and y of all cells."""
-        return [(across, up) for up in self.y for across in self.x]
+        return [(across, up) for up in self.y.values for across in self.x.values]
 
     @property
     def rows(self) -> list[list[MapCell]]:
         """All cells, those of one y together."""
-        width = len(self.x)
+        width = len(self.x.values)
         return [list(self.every[first : first + width]) for first in range(0, len(self.every), width)]
 
     @property
@@ -160,8 +165,8 @@ def stack_map(
         experiments,
         place,
         title=f"{'rigid' if rigid else 'shell'} stack, frequency x peak",
-        x=FREQUENCIES if rigid else FREQUENCIES[::2],
-        y=peaks if rigid else peaks[1::2],
+        x=FREQUENCY if rigid else _every_second(FREQUENCY, 0),
+        y=replace(PEAK, values=peaks if rigid else peaks[1::2]),
         perturbed=perturbed,
     )
 
@@ -197,11 +202,16 @@ def shape_maps(experiments: Experiments, *, rigid: bool = True) -> list[OutcomeM
             experiments,
             place,
             title=f"{kind}, c/a x mu_s, {PLATEAU_PEAK:.1f} m/s² at {frequency:g} rad/s",
-            x=SLENDERNESS if rigid else SLENDERNESS[1::2],
-            y=FRICTION if rigid else FRICTION[1::2],
+            x=SHAPE if rigid else _every_second(SHAPE, 1),
+            y=STICTION if rigid else _every_second(STICTION, 1),
         )
 
     return [of_frequency(frequency) for frequency in SHAPE_FREQUENCIES]
+
+
+def _every_second(axis: MapAxis, first: int) -> MapAxis:
+    """Of the maps of a shell."""
+    return replace(axis, values=axis.values[first::2])
 
 
 def pairs(one: OutcomeMap, other: OutcomeMap) -> list[tuple[MapCell, MapCell]]:
@@ -225,16 +235,16 @@ def _computed(
     place: Callable[[float, float], tuple[PaperCase, MapMotion]],
     *,
     title: str,
-    x: Sequence[float],
-    y: Sequence[float],
+    x: MapAxis,
+    y: MapAxis,
     perturbed: bool = True,
 ) -> OutcomeMap:
     """Compute a map; where asked, perturb the cells near a change of outcome."""
-    cases, motions = zip(*(place(across, up) for up in y for across in x), strict=True)
+    cases, motions = zip(*(place(across, up) for up in y.values for across in x.values), strict=True)
     rows = experiments.rows(cases, also_failed=True)
     sure = [True] * len(cases)
     if perturbed:
-        near = np.flatnonzero(near_change(rows, x, y)).tolist()
+        near = np.flatnonzero(near_change(rows, x.values, y.values)).tolist()
         copies = {
             k: [cases[k].but(one) for one in PERTURBATION.members(experiments.case(cases[k]))] for k in near
         }

@@ -7,6 +7,7 @@ import numpy as np
 from contact.reference.closed_forms_overturning import sustained_sine_threshold_slender
 from contact.reference.floor_acceleration import sine_floor
 from contact.reference.rocking import first_swing_threshold
+from fem.figures.heat_map import MapCurve
 from fem.paper.cases import (
     ANGULAR_FREQUENCY,
     FOR_MAPS,
@@ -234,14 +235,12 @@ def _map_figure(one: OutcomeMap, frequency_parameter: float) -> ClaimFigure:
     first = [UPLIFT * sustained_sine_threshold_slender(w / frequency_parameter) for w in smooth]
     return draw_map(
         "half-width-map",
-        "Outcome of the rigid stack that cannot slide; dots: unsure cells.",
+        "Outcome of the rigid stack that cannot slide; hatched: unsure cells.",
         one,
-        x_label="angular frequency [rad/s]",
-        y_label="peak floor acceleration [m/s²]",
-        curves=[
-            PlottedLine(x=smooth, y=HALF_WIDTH * smooth**2, label="A = a/2"),
-            PlottedLine(x=smooth, y=np.full_like(smooth, UPLIFT), label="static rule, g a/c"),
-            PlottedLine(x=smooth, y=first, label="first swing (slender)"),
+        [
+            MapCurve(x=smooth, y=HALF_WIDTH * smooth**2, label="A = a/2"),
+            MapCurve(x=smooth, y=np.full_like(smooth, UPLIFT), label="static rule, g a/c"),
+            MapCurve(x=smooth, y=np.array(first), label="first swing (slender)"),
         ],
     )
 
