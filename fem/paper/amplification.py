@@ -7,7 +7,7 @@ import numpy as np
 from fem.model.static_checks import period_eq3
 from fem.paper.cases import FOR_MAPS, GRAVITY, HEIGHT, PLATEAU, PLATEAU_PEAK, STACK, WIDTH, PaperCase
 from fem.paper.claims import Finding, at_most, claim, table
-from fem.paper.experiments import CaseRun, Experiments, VariantBand, VariantResult
+from fem.paper.experiments import CaseRun, Experiments, VariantBand, variant_result
 from fem.paper.figures import PlottedLine, draw_curves
 
 #: of the stack with g = 9.81 [rad/s]
@@ -128,13 +128,7 @@ def _at_plateau(experiments: Experiments) -> list[tuple[PaperCase, CaseRun]]:
 def _band(quantity: str, found: list[tuple[PaperCase, CaseRun, float]]) -> VariantBand:
     """Of values that must be at most 1; nan where a run gave none."""
     members = [
-        VariantResult(
-            what=case.what,
-            command=case.command,
-            outcome=run.status if math.isfinite(value) else None,
-            value=value if math.isfinite(value) else None,
-            holds=value <= 1.0 if math.isfinite(value) else None,
-        )
+        variant_result(case, run.status if math.isfinite(value) else None, value, value <= 1.0)
         for case, run, value in found
     ]
     return VariantBand(quantity=quantity, unit="-", criterion="at most 1", members=members)

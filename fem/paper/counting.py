@@ -144,27 +144,16 @@ def less_conservative(experiments: Experiments) -> Finding:
     unsafe = stack.count(paper_rule, sure=True).unconservative
     both = pairs(stack, shell)
     differ = [pair for pair in both if pair[0].fell != pair[1].fell]
+    standing = "of the map that the static rule turns over and the run lets stand"
+    fewer = "conservative verdicts of the paper's criteria less those of the static rule"
+    on_unsafe_side = "the paper's criteria are on the unsafe side"
+    changed = "whose end the deformable shell changes, of those where it is computed"
     return Finding(
         comparisons=[
-            at_least(
-                "motions of the map that the static rule turns over and the run lets stand",
-                rule.conservative,
-                1.0,
-            ),
-            at_most(
-                "conservative verdicts of the paper's criteria less those of the static rule",
-                paper.conservative - rule.conservative,
-                0.0,
-            ),
-            at_most(
-                "sure cells on which the paper's criteria are on the unsafe side", unsafe, 0.0, inside=False
-            ),
-            at_most(
-                "cells whose end the deformable shell changes, of those where it is computed",
-                len(differ) / max(len(both), 1),
-                0.1,
-                inside=False,
-            ),
+            at_least(f"motions {standing}", rule.conservative, 1.0),
+            at_most(fewer, paper.conservative - rule.conservative, 0.0),
+            at_most(f"sure cells on which {on_unsafe_side}", unsafe, 0.0, inside=False),
+            at_most(f"cells {changed}", len(differ) / max(len(both), 1), 0.1, inside=False),
         ],
         bounds="by time history; not by the amplitude A",
         reading=(

@@ -105,6 +105,15 @@ class VariantBand:
         return [member.value for member in self.members if member.value is not None]
 
 
+def variant_result(case: PaperCase, outcome: str | None, value: float | None, holds: bool) -> VariantResult:
+    """What a variant gave; nothing if it has no outcome."""
+    if outcome is None:
+        return VariantResult(what=case.what, command=case.command, outcome=None, value=None, holds=None)
+    return VariantResult(
+        what=case.what, command=case.command, outcome=outcome, value=value, holds=bool(holds)
+    )
+
+
 def rotation_ratio(row: Row) -> float:
     """Largest rotation over the slenderness angle [-]."""
     return float(row["rotation_ratio"])
@@ -247,19 +256,13 @@ class Experiments:
             quantity, unit, value: the number, taken from a row.
             criterion, holds: what the claim requires of a row.
         """
-        members = []
         variants = self.variants(wanted)
-        for variant, row in zip(variants, self.rows(variants, also_failed=True), strict=True):
-            computed = row["status"] != "failed"
-            members.append(
-                VariantResult(
-                    what=variant.what,
-                    command=variant.command,
-                    outcome=row["outcome"],
-                    value=value(row) if computed else None,
-                    holds=bool(holds(row)) if computed else None,
-                )
-            )
+        members = [
+            variant_result(variant, row["outcome"], value(row), holds(row))
+            if row["status"] != "failed"
+            else variant_result(variant, None, None, False)
+            for variant, row in zip(variants, self.rows(variants, also_failed=True), strict=True)
+        ]
         return VariantBand(quantity=quantity, unit=unit, criterion=criterion, members=members)
 
     def _require_going(self, status: str = "") -> None:

@@ -191,12 +191,9 @@ def half_width_is_conservative(experiments: Experiments) -> Finding:
         least = against[0].motion.amplitude / HALF_WIDTH if against else None
         rows.append((name, len(below), len(against), len(sure), least))
         witnesses += [cell.case for cell in sure[:1]]
+    scanned = "smallest A/(a/2) that overturns at 6.928 rad/s, in a scan by 0.02"
     comparisons += [
-        at_least(
-            "smallest A/(a/2) that overturns at 6.928 rad/s, in a scan by 0.02",
-            smallest if falling else math.inf,
-            1.0,
-        ),
+        at_least(scanned, smallest if falling else math.inf, 1.0),
         at_least("A/(a/2) that overturns in the first swing at 6.928 rad/s, exact block", share, 1.0),
     ]
     first = (falling or scan[-1:])[0]

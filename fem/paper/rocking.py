@@ -9,7 +9,7 @@ from contact.reference.rigid_block import RigidBlock
 from fem.model.static_checks import period_eq2, period_eq3
 from fem.paper.cases import BOX, GRAVITY, HEIGHT, NO_SLIDING, RIGID, SHELL, STACK, WIDTH, PaperCase
 from fem.paper.claims import Finding, at_least, at_most, claim, equal, table
-from fem.paper.experiments import Experiments, VariantBand, VariantResult, stands
+from fem.paper.experiments import Experiments, VariantBand, stands, variant_result
 from fem.paper.figures import PlottedLine, draw_curves
 
 FREE = {"motion.kind": "none", **NO_SLIDING}
@@ -119,19 +119,11 @@ def eq_3(experiments: Experiments) -> Finding:
     typical_2, typical_3 = (math.exp(float(np.median(far))) - 1.0 for far in (far_2, far_3))
     length = math.hypot(WIDTH, HEIGHT)
     bar = 2.0 * math.pi * math.sqrt(2.0 * length / (3.0 * GRAVITY))
+    of_bar = "Eq. 3 over the period of a hanging bar of length 2 r, 2 pi sqrt(2 L/(3 g))"
+    median = "median distance from the runs' periods, Eq. 3 over Eq. 2"
     comparisons += [
-        equal(
-            "Eq. 3 over the period of a hanging bar of length 2 r, 2 pi sqrt(2 L/(3 g))",
-            period_eq3(radius=0.5 * length, gravity=GRAVITY) / bar,
-            1.0,
-            1e-9,
-        ),
-        at_most(
-            "median distance from the runs' periods, Eq. 3 over Eq. 2",
-            typical_3 / typical_2,
-            1.0,
-            inside=False,
-        ),
+        equal(of_bar, period_eq3(radius=0.5 * length, gravity=GRAVITY) / bar, 1.0, 1e-9),
+        at_most(median, typical_3 / typical_2, 1.0, inside=False),
     ]
     return Finding(
         comparisons=comparisons,
@@ -278,16 +270,8 @@ def _band_of_kicks(experiments: Experiments) -> VariantBand:
     members = []
     for case in experiments.variants(STACK.but(FREE)):
         largest = _largest_kick(experiments, case, kick, step=0.02, share=0.08)
-        found = math.isfinite(largest)
-        members.append(
-            VariantResult(
-                what=case.what,
-                command=_kicked(case, kick).command,
-                outcome="" if found else None,
-                value=largest if found else None,
-                holds=abs(largest - 1.0) <= 0.03 if found else None,
-            )
-        )
+        outcome = "" if math.isfinite(largest) else None
+        members.append(variant_result(_kicked(case, kick), outcome, largest, abs(largest - 1.0) <= 0.03))
     return VariantBand(
         quantity="largest kick that returns, over the analytic one",
         unit="-",
