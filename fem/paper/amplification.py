@@ -6,7 +6,7 @@ import numpy as np
 
 from fem.model.static_checks import period_eq3
 from fem.paper.cases import FOR_MAPS, GRAVITY, HEIGHT, PLATEAU, PLATEAU_PEAK, STACK, WIDTH, PaperCase
-from fem.paper.claims import Finding, at_most, claim, table
+from fem.paper.claims import Evidence, at_most, claim, table
 from fem.paper.experiments import CaseRun, Experiments, VariantBand, variant_result
 from fem.paper.figures import PlottedLine, draw_curves
 
@@ -22,10 +22,11 @@ TOLERANCE = 0.01  #: a factor that near to 1 is 1
     "4.2",
     "With a prescribed base displacement and eta > 1, even for a steady state drive the DAF for "
     "the absolute amplitude of the oscillator remains < 1",
+    bounds="eta above sqrt 2, among the cases that stand",
 )
-def mass_centre(experiments: Experiments) -> Finding:
+def mass_centre(experiments: Experiments) -> Evidence:
     """Rigid stack, mu 0.4/0.2, three peaks, eta from 1 to 7: amplitude of the mass centre over the floor's."""
-    curves, comparisons, cases = [], [], []
+    curves = []
     overturned = np.zeros(RATIOS.size, dtype=int)
     near = math.sqrt(2.0) >= RATIOS
     base = STACK.but(FOR_MAPS, interval=0.002, duration=25.0)
@@ -35,7 +36,7 @@ def mass_centre(experiments: Experiments) -> Finding:
             for ratio in RATIOS
         ]
         runs = [experiments.run(case, also_failed=True) for case in group]
-        cases += [case for case, ratio in zip(group, RATIOS, strict=True) if ratio in (1.2, 2.0)]
+        yield from [case for case, ratio in zip(group, RATIOS, strict=True) if ratio in (1.2, 2.0)]
         overturned += [run.status == "overturned" for run in runs]
         factors = np.array([_factor(run) for run in runs])
         curves.append(PlottedLine(x=RATIOS, y=factors, label=f"{peak:g} m/s²", style="o-"))
@@ -43,43 +44,38 @@ def mass_centre(experiments: Experiments) -> Finding:
             known = factors[chosen & np.isfinite(factors)]
             what = f"{peak:g} m/s²: largest DAF, eta {which}, cases that stand"
             if known.size:
-                comparisons.append(at_most(what, known.max(), 1.0 + TOLERANCE, inside=inside))
+                yield at_most(what, known.max(), 1.0 + TOLERANCE, inside=inside)
     total = len(PEAKS) * RATIOS.size
-    comparisons.append(
-        at_most(f"runs with eta above 1 that overturn, of {total}", overturned.sum(), 0.0, inside=False)
-    )
+    yield at_most(f"runs with eta above 1 that overturn, of {total}", overturned.sum(), 0.0, inside=False)
     eta = np.linspace(1.45, 7.0, 100)
     linear = PlottedLine(x=eta, y=1.0 / (eta**2 - 1.0), label="linear oscillator", style=":")
-    return Finding(
-        comparisons=comparisons,
-        bounds="eta above sqrt 2, among the cases that stand",
-        reading=(
-            f"eta is taken with the paper's Eq. 3. {overturned.sum()} of {total} runs overturn, of them "
-            f"{overturned[near].sum()} of {len(PEAKS) * near.sum()} with eta up to sqrt 2, and "
-            "a displacement factor says nothing of that. For a linear oscillator DAF < 1 needs eta > sqrt 2, not 1. A "
-            "container that only sticks moves with the floor: DAF = 1, not less."
-        ),
-        cases=cases,
-        figures=[
-            draw_curves(
-                "mass-centre",
-                "Displacement amplitude of the mass centre over that of the floor, last three cycles; "
-                "gaps: overturned.",
-                [*curves, linear],
-                x_label="eta = Omega / omega (Eq. 3) [-]",
-                y_label="DAF [-]",
-                y_limits=(0.0, 2.0),
-            )
-        ],
-        band=_band(
-            "DAF of the mass centre at the plateau value, eta = 3.68",
-            [(case, run, _factor(run)) for case, run in _at_plateau(experiments)],
-        ),
+    yield (
+        f"eta is taken with the paper's Eq. 3. {overturned.sum()} of {total} runs overturn, of them "
+        f"{overturned[near].sum()} of {len(PEAKS) * near.sum()} with eta up to sqrt 2, and "
+        "a displacement factor says nothing of that. For a linear oscillator DAF < 1 needs eta > sqrt 2, not 1. A "
+        "container that only sticks moves with the floor: DAF = 1, not less."
+    )
+    yield draw_curves(
+        "mass-centre",
+        "Displacement amplitude of the mass centre over that of the floor, last three cycles; "
+        "gaps: overturned.",
+        [*curves, linear],
+        x_label="eta = Omega / omega (Eq. 3) [-]",
+        y_label="DAF [-]",
+        y_limits=(0.0, 2.0),
+    )
+    yield _band(
+        "DAF of the mass centre at the plateau value, eta = 3.68",
+        [(case, run, _factor(run)) for case, run in _at_plateau(experiments)],
     )
 
 
-@claim("8", "by dynamic effects, there is no amplification that leads to higher horizontal loads")
-def no_amplification(experiments: Experiments) -> Finding:
+@claim(
+    "8",
+    "by dynamic effects, there is no amplification that leads to higher horizontal loads",
+    bounds="a rigid body outside impacts: 95 % of the time",
+)
+def no_amplification(experiments: Experiments) -> Evidence:
     """Horizontal force between floor and stack under the plateau value, over mass times 4.0 m/s²."""
     runs = _at_plateau(experiments)
     experiments.run(runs[0][0])  # the rigid run must not have failed
@@ -87,35 +83,28 @@ def no_amplification(experiments: Experiments) -> Finding:
     rigid, *shell = (load for _, load in loads)
     peak, mean, usual = (max(load[k] for load in shell) for k in range(3))
     of_all = [max(load[k] for _, load in loads) for k in range(2)]
-    return Finding(
-        comparisons=[
-            at_most("rigid: horizontal load over that of the plateau, 95 % of the time", rigid[2], 1.0),
-            at_most("rigid: the same, mean of 50 ms", rigid[1], 1.0, inside=False),
-            at_most("rigid: the same, peaks of impacts", rigid[0], 1.0, inside=False),
-            at_most("shell: 95 % of the time, worst of the band", usual, 1.0, inside=False),
-            at_most("shell: mean of 50 ms, worst of the band", mean, 1.0, inside=False),
-            at_most("shell: peaks of impacts, worst of the band", peak, 1.0, inside=False),
-        ],
-        bounds="a rigid body outside impacts: 95 % of the time",
-        reading=(
-            f"The rigid container is pushed with up to {rigid[2]:.2f} of the plateau load for 95 % of the time. An "
-            f"impact is another matter: its horizontal impulse, spread over 50 ms, is up to {of_all[1]:.2f} of the "
-            f"plateau load, and its peak {of_all[0]:.0f} times that, a number that belongs to the contact and not to "
-            f"the container. A shell rings on after it: one twentieth of the time beyond up to {usual:.2f} of the "
-            "plateau load."
-        ),
-        cases=[case for case, _ in loads[:2]],
-        tables=[
-            table(
-                "Largest horizontal force over M x 4.0 m/s² in 10 s",
-                "container and floor | peaks of impacts | mean of 50 ms | 95 % of the time",
-                [(case.what, *load) for case, load in loads],
-            )
-        ],
-        band=_band(
-            "horizontal load over that of the plateau, 95 % of the time",
-            [(case, run, math.nan if run.status == "failed" else _loads(run)[2]) for case, run in runs],
-        ),
+    yield at_most("rigid: horizontal load over that of the plateau, 95 % of the time", rigid[2], 1.0)
+    yield at_most("rigid: the same, mean of 50 ms", rigid[1], 1.0, inside=False)
+    yield at_most("rigid: the same, peaks of impacts", rigid[0], 1.0, inside=False)
+    yield at_most("shell: 95 % of the time, worst of the band", usual, 1.0, inside=False)
+    yield at_most("shell: mean of 50 ms, worst of the band", mean, 1.0, inside=False)
+    yield at_most("shell: peaks of impacts, worst of the band", peak, 1.0, inside=False)
+    yield (
+        f"The rigid container is pushed with up to {rigid[2]:.2f} of the plateau load for 95 % of the time. An "
+        f"impact is another matter: its horizontal impulse, spread over 50 ms, is up to {of_all[1]:.2f} of the "
+        f"plateau load, and its peak {of_all[0]:.0f} times that, a number that belongs to the contact and not to "
+        f"the container. A shell rings on after it: one twentieth of the time beyond up to {usual:.2f} of the "
+        "plateau load."
+    )
+    yield from [case for case, _ in loads[:2]]
+    yield table(
+        "Largest horizontal force over M x 4.0 m/s² in 10 s",
+        "container and floor | peaks of impacts | mean of 50 ms | 95 % of the time",
+        [(case.what, *load) for case, load in loads],
+    )
+    yield _band(
+        "horizontal load over that of the plateau, 95 % of the time",
+        [(case, run, math.nan if run.status == "failed" else _loads(run)[2]) for case, run in runs],
     )
 
 

@@ -4,10 +4,10 @@ A conclusion is never written down: it follows from comparisons of measured numb
 Rotation > 0 tilts toward +x; SI units, each with its number.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from enum import Enum
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 from fem.paper.cases import PaperCase
 from fem.paper.experiments import Experiments, VariantBand
@@ -152,9 +152,6 @@ def counts_in_words(comparisons: Sequence[Comparison], bounds: str) -> str:
     return text
 
 
-Check = Callable[[Experiments], Finding]
-
-
 @dataclass(frozen=True, kw_only=True)
 class Claim:
     """A sentence, equation or number of the paper that a run or a closed form can check."""
@@ -163,19 +160,42 @@ class Claim:
     section: str
     quote: str
     tried: str  #: how it is checked, in a sentence
-    check: Check
+    check: Callable[[Experiments], Finding]
 
 
-def claim(section: str, quote: str, *, more: str = "") -> Callable[[Check], Claim]:
-    """Decorator: make a claim of the function that checks it.
+#: what the check of a claim yields, in any order; text is the reading
+Evidence = Iterator[Comparison | PaperCase | ClaimTable | ClaimFigure | VariantBand | str]
+Kind = TypeVar("Kind")
+
+
+def claim(
+    section: str, quote: str, *, bounds: str = "", more: str = ""
+) -> Callable[[Callable[[Experiments], Evidence]], Claim]:
+    """Decorator: make a claim of the function that yields the evidence for and against it.
 
     The function gives the claim its name, with dashes, and its docstring says how it is checked; `more` is added
-    to that.
+    to that. `bounds` are those of the comparisons marked `inside`.
     """
 
-    def claimed_by(check: Check) -> Claim:
-        name = check.__name__.replace("_", "-")
-        tried = " ".join([*(check.__doc__ or "").split(), *([more] if more else [])])
+    def claimed_by(function: Callable[[Experiments], Evidence]) -> Claim:
+        def check(experiments: Experiments) -> Finding:
+            found = list(function(experiments))
+
+            def of(kind: type[Kind]) -> list[Kind]:
+                return [one for one in found if isinstance(one, kind)]
+
+            return Finding(
+                comparisons=of(Comparison),
+                reading=" ".join(of(str)),
+                bounds=bounds,
+                cases=of(PaperCase),
+                tables=of(ClaimTable),
+                figures=of(ClaimFigure),
+                band=next(iter(of(VariantBand)), None),
+            )
+
+        name = function.__name__.replace("_", "-")
+        tried = " ".join([*(function.__doc__ or "").split(), *([more] if more else [])])
         return Claim(name=name, section=section, quote=quote, tried=tried, check=check)
 
     return claimed_by

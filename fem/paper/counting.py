@@ -8,7 +8,7 @@ import numpy as np
 
 from fem.figures.heat_map import MapCurve
 from fem.paper.cases import FREQUENCY_PARAMETER, GRAVITY, HALF_WIDTH, UPLIFT, PaperCase
-from fem.paper.claims import ClaimFigure, ClaimTable, Finding, at_least, at_most, claim, table
+from fem.paper.claims import ClaimFigure, ClaimTable, Evidence, at_least, at_most, claim, table
 from fem.paper.criteria import CRITERIA, Contingency, Criterion, paper_rule, predicted_mode, static_rule
 from fem.paper.experiments import Experiments
 from fem.paper.figures import PlottedLine, draw_curves, draw_map
@@ -47,56 +47,48 @@ def _maps(experiments: Experiments) -> list[OutcomeMap]:
     "abstract, 1",
     "the Lateral Force Method is very conservative, when it comes to reversed base motion as with earthquake",
     more=GRIDS,
+    bounds="a rigid container, motion faster than three times p",
 )
-def static_rule_is_conservative(experiments: Experiments) -> Finding:
+def static_rule_is_conservative(experiments: Experiments) -> Evidence:
     """Static rule under the run's own peak against runs."""
     maps = _maps(experiments)
-    comparisons = []
     for one in maps:
         unsafe = one.count(static_rule, sure=True).unconservative
         wrong = f"{one.title}: share of its verdicts 'overturns' that are wrong"
         share = one.standing_share(static_rule)
-        comparisons += [
-            at_most(f"{one.title}: {UNSAFE}", unsafe, 0.0, inside=one.rigid),
-            at_least(wrong, share, 0.5, inside=one.fast and one.rigid),
-        ]
+        yield at_most(f"{one.title}: {UNSAFE}", unsafe, 0.0, inside=one.rigid)
+        yield at_least(wrong, share, 0.5, inside=one.fast and one.rigid)
     stack = maps[0]
     slow, fast = (
         stack.standing_share(static_rule, [one for one in FREQUENCIES if (one > FAST) is wanted])
         for wanted in (False, True)
     )
     rigid = [one.count(static_rule, sure=True) for one in maps if one.rigid]
-    return Finding(
-        comparisons=comparisons,
-        bounds="a rigid container, motion faster than three times p",
-        reading=(
-            "The static rule under the run's own peak is on the unsafe side in "
-            f"{sum(one.unconservative for one in rigid)} of {sum(one.cells for one in rigid)} sure cells of the "
-            f"rigid maps. How conservative it is depends on how fast the floor is against p = "
-            f"{FREQUENCY_PARAMETER:.2f} 1/s: of the motions that it turns over the rigid stack stands "
-            f"{100.0 * slow:.0f} % up to 3 p and {100.0 * fast:.0f} % beyond. See the drawing."
-        ),
-        cases=_witnesses(stack, static_rule),
-        tables=[_table(one) for one in maps],
-        figures=[
-            draw_curves(
-                "static-rule-over-frequency",
-                "Share of the motions that the static rule turns over and the rigid stack stands (peaks from "
-                "g a/c to 12 m/s²).",
-                [
-                    PlottedLine(
-                        x=FREQUENCIES,
-                        y=[stack.standing_share(static_rule, [frequency]) for frequency in FREQUENCIES],
-                        style="o-",
-                    )
-                ],
-                x_label="angular frequency [rad/s]",
-                y_label="share that stands [-]",
-                y_limits=(0.0, 1.05),
-            ),
-            _shape_figure(shape_maps(experiments)[-1]),
-        ],
+    yield (
+        "The static rule under the run's own peak is on the unsafe side in "
+        f"{sum(one.unconservative for one in rigid)} of {sum(one.cells for one in rigid)} sure cells of the "
+        f"rigid maps. How conservative it is depends on how fast the floor is against p = "
+        f"{FREQUENCY_PARAMETER:.2f} 1/s: of the motions that it turns over the rigid stack stands "
+        f"{100.0 * slow:.0f} % up to 3 p and {100.0 * fast:.0f} % beyond. See the drawing."
     )
+    yield from _witnesses(stack, static_rule)
+    yield from [_table(one) for one in maps]
+    yield draw_curves(
+        "static-rule-over-frequency",
+        "Share of the motions that the static rule turns over and the rigid stack stands (peaks from "
+        "g a/c to 12 m/s²).",
+        [
+            PlottedLine(
+                x=FREQUENCIES,
+                y=[stack.standing_share(static_rule, [frequency]) for frequency in FREQUENCIES],
+                style="o-",
+            )
+        ],
+        x_label="angular frequency [rad/s]",
+        y_label="share that stands [-]",
+        y_limits=(0.0, 1.05),
+    )
+    yield _shape_figure(shape_maps(experiments)[-1])
 
 
 @claim(
@@ -104,40 +96,36 @@ def static_rule_is_conservative(experiments: Experiments) -> Finding:
     "limit conditions of sticking, slipping, rocking and overturning mode; A <= a/2",
     more=GRIDS,
 )
-def paper_criteria(experiments: Experiments) -> Finding:
+def paper_criteria(experiments: Experiments) -> Evidence:
     """The paper's criteria and A <= a/2 against the same runs."""
     maps = _maps(experiments)
-    comparisons = []
     for one in maps:
         unsafe = one.count(paper_rule, sure=True).unconservative
         gain = one.count(paper_rule).share_right - one.count(static_rule).share_right
-        comparisons += [
-            at_most(f"{one.title}: {UNSAFE}", unsafe, 0.0),
-            at_least(f"{one.title}: share of right verdicts less that of the static rule", gain, 0.0),
-        ]
+        yield at_most(f"{one.title}: {UNSAFE}", unsafe, 0.0)
+        yield at_least(f"{one.title}: share of right verdicts less that of the static rule", gain, 0.0)
     stack = maps[0]
     modes = Counter((predicted_mode(cell.motion), str(cell.row["outcome"])) for cell in stack.cells)
     right = sum(count for (predicted, found), count in modes.items() if predicted == found)
-    return Finding(
-        comparisons=comparisons,
-        reading=(
-            "On the map of the rigid stack the paper's criteria with A <= a/2 are "
-            f"{_in_words(stack.count(paper_rule))}, the static rule {_in_words(stack.count(static_rule))}. Of the "
-            f"modes of section 5 the criteria name {right} of {modes.total()} right. A criterion bounds what is safe "
-            "only where it is never unconservative."
-        ),
-        cases=_witnesses(stack, paper_rule),
-        tables=[*(_table(one) for one in maps), _mode_table(modes)],
-        figures=[_stack_figure(stack)],
+    yield (
+        "On the map of the rigid stack the paper's criteria with A <= a/2 are "
+        f"{_in_words(stack.count(paper_rule))}, the static rule {_in_words(stack.count(static_rule))}. Of the "
+        f"modes of section 5 the criteria name {right} of {modes.total()} right. A criterion bounds what is safe "
+        "only where it is never unconservative."
     )
+    yield from _witnesses(stack, paper_rule)
+    yield from (_table(one) for one in maps)
+    yield _mode_table(modes)
+    yield _stack_figure(stack)
 
 
 @claim(
     "8",
     "Employing dynamic criteria enables a less conservative statement on global rocking "
     "stability; even more precise findings can be expected by FE time history analysis",
+    bounds="by time history; not by the amplitude A",
 )
-def less_conservative(experiments: Experiments) -> Finding:
+def less_conservative(experiments: Experiments) -> Evidence:
     """The same maps: rule, criteria, rigid runs and runs of the shell."""
     stack, shell = (stack_map(experiments, rigid=rigid) for rigid in (True, False))
     rule, paper = stack.count(static_rule), stack.count(paper_rule)
@@ -148,22 +136,17 @@ def less_conservative(experiments: Experiments) -> Finding:
     fewer = "conservative verdicts of the paper's criteria less those of the static rule"
     on_unsafe_side = "the paper's criteria are on the unsafe side"
     changed = "whose end the deformable shell changes, of those where it is computed"
-    return Finding(
-        comparisons=[
-            at_least(f"motions {standing}", rule.conservative, 1.0),
-            at_most(fewer, paper.conservative - rule.conservative, 0.0),
-            at_most(f"sure cells on which {on_unsafe_side}", unsafe, 0.0, inside=False),
-            at_most(f"cells {changed}", len(differ) / max(len(both), 1), 0.1, inside=False),
-        ],
-        bounds="by time history; not by the amplitude A",
-        reading=(
-            f"Time histories let {rule.conservative} of {rule.cells} motions stand that the static rule "
-            "turns over; the motion must be known for that. The deformable shell ends otherwise than the rigid block "
-            f"in {len(differ)} of {len(both)} cells, {sum(one.sure for one, _ in differ)} of them sure for the rigid "
-            "block."
-        ),
-        cases=[cell.case for _, cell in differ[:3]],
+    yield at_least(f"motions {standing}", rule.conservative, 1.0)
+    yield at_most(fewer, paper.conservative - rule.conservative, 0.0)
+    yield at_most(f"sure cells on which {on_unsafe_side}", unsafe, 0.0, inside=False)
+    yield at_most(f"cells {changed}", len(differ) / max(len(both), 1), 0.1, inside=False)
+    yield (
+        f"Time histories let {rule.conservative} of {rule.cells} motions stand that the static rule "
+        "turns over; the motion must be known for that. The deformable shell ends otherwise than the rigid block "
+        f"in {len(differ)} of {len(both)} cells, {sum(one.sure for one, _ in differ)} of them sure for the rigid "
+        "block."
     )
+    yield from [cell.case for _, cell in differ[:3]]
 
 
 @claim(
@@ -171,33 +154,29 @@ def less_conservative(experiments: Experiments) -> Finding:
     "Depending on the aspect ratio and a variation of friction coefficients parameter confidence "
     "boundaries are identified, within which the structure is safe",
     more=GRIDS,
+    bounds="for a given motion; the boundary is not a single curve where islands lie beyond it",
 )
-def region_of_safety(experiments: Experiments) -> Finding:
+def region_of_safety(experiments: Experiments) -> Evidence:
     """Outcome over slenderness and friction under 4.0 m/s²."""
     maps, shells = (shape_maps(experiments, rigid=rigid) for rigid in (True, False))
-    comparisons = []
     for one in (*maps, *shells):
         changes = f"{one.title}: changes from falling back to standing along c/a"
-        comparisons += [
-            at_least(f"{one.title}: share of cells that stand", _standing_share(one), 0.05, inside=one.rigid),
-            at_most(changes, _re_entries(one), 0.0, inside=False),
-        ]
+        yield at_least(
+            f"{one.title}: share of cells that stand", _standing_share(one), 0.05, inside=one.rigid
+        )
+        yield at_most(changes, _re_entries(one), 0.0, inside=False)
     both = [pair for one, other in zip(maps, shells, strict=True) for pair in pairs(one, other)]
-    return Finding(
-        comparisons=comparisons,
-        bounds="for a given motion; the boundary is not a single curve where islands lie beyond it",
-        reading=(
-            "The region that stands is one of a given motion: it is "
-            f"{', '.join(f'{100.0 * _standing_share(one):.0f} %' for one in maps)} of the cells of the rigid "
-            f"container at {', '.join(f'{one:g}' for one in SHAPE_FREQUENCIES)} rad/s. Along c/a it is left and "
-            f"entered again {sum(_re_entries(one) for one in maps)} times in {len(maps) * len(FRICTION)} rows of "
-            f"cells. The shell ends otherwise than the rigid container in "
-            f"{sum(one.fell != other.fell for one, other in both)} of {len(both)} cells. These "
-            "are outcomes of single motions; regions with a probability: python -m fem ensemble boundary."
-        ),
-        cases=[one.every[-1].case for one in (*maps, *shells[-1:])],
-        figures=[_shape_figure(one) for one in maps[:2]],
+    yield (
+        "The region that stands is one of a given motion: it is "
+        f"{', '.join(f'{100.0 * _standing_share(one):.0f} %' for one in maps)} of the cells of the rigid "
+        f"container at {', '.join(f'{one:g}' for one in SHAPE_FREQUENCIES)} rad/s. Along c/a it is left and "
+        f"entered again {sum(_re_entries(one) for one in maps)} times in {len(maps) * len(FRICTION)} rows of "
+        f"cells. The shell ends otherwise than the rigid container in "
+        f"{sum(one.fell != other.fell for one, other in both)} of {len(both)} cells. These "
+        "are outcomes of single motions; regions with a probability: python -m fem ensemble boundary."
     )
+    yield from [one.every[-1].case for one in (*maps, *shells[-1:])]
+    yield from [_shape_figure(one) for one in maps[:2]]
 
 
 def _standing_share(one: OutcomeMap) -> float:

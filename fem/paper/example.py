@@ -20,15 +20,19 @@ from fem.paper.cases import (
     UPLIFT,
     PaperCase,
 )
-from fem.paper.claims import Finding, at_least, at_most, claim, table
+from fem.paper.claims import Evidence, at_least, at_most, claim, table
 from fem.paper.experiments import Experiments, capped_ratio, stands
 from fem.paper.figures import PlottedLine, draw_curves
 
 SLIDING = 1e-4 * 1.1  # m, what counts as sliding
 
 
-@claim("7, one box", "In this example, the body will just remain in the sticking mode and will not tilt")
-def box_just_sticks(experiments: Experiments) -> Finding:
+@claim(
+    "7, one box",
+    "In this example, the body will just remain in the sticking mode and will not tilt",
+    bounds="under the stated motion, and up to half a per cent below the plateau value with g = 10",
+)
+def box_just_sticks(experiments: Experiments) -> Evidence:
     """Rigid box under the stated motion and the plateau value, g = 10 and 9.81 m/s²."""
     box = BOX.but(RIGID)
     below = [
@@ -51,39 +55,33 @@ def box_just_sticks(experiments: Experiments) -> Finding:
     ]
     cases = [*below, *at_plateau]
     rows = experiments.rows(cases)
-    comparisons = []
     for case, row in zip(cases, rows, strict=True):
         slip, tilts = 1e3 * row["max_slip_m"], row["first_uplift_s"] is not None
-        comparisons += [
-            at_most(f"slip, {case.what}", slip, 1e3 * SLIDING, "mm", inside=case in below),
-            at_most(f"tilts, {case.what}", tilts, 0.0),
-        ]
-    return Finding(
-        comparisons=comparisons,
-        bounds="under the stated motion, and up to half a per cent below the plateau value with g = 10",
-        reading=(
-            f"The box tilts in {sum(row['first_uplift_s'] is not None for row in rows)} of {len(rows)} runs. At the "
-            f"plateau value the utilisation of stiction is {PLATEAU_PEAK / (0.4 * 10.0):.3f} with g = 10, where "
-            f"rounding decides: the run slides by up to {1e3 * rows[3]['max_slip_m']:.1f} mm. With 9.81 it is "
-            f"{PLATEAU_PEAK / (0.4 * GRAVITY):.3f}, and the slip {1e3 * rows[4]['max_slip_m']:.1f} mm."
-        ),
-        cases=cases,
-        band=experiments.band(
-            cases[0].but(duration=10.0),
-            quantity="slip under the stated motion",
-            unit="m",
-            value=lambda row: row["max_slip_m"],
-            criterion="rest",
-            holds=lambda row: row["outcome"] == "rest",
-        ),
+        yield at_most(f"slip, {case.what}", slip, 1e3 * SLIDING, "mm", inside=case in below)
+        yield at_most(f"tilts, {case.what}", tilts, 0.0)
+    yield (
+        f"The box tilts in {sum(row['first_uplift_s'] is not None for row in rows)} of {len(rows)} runs. At the "
+        f"plateau value the utilisation of stiction is {PLATEAU_PEAK / (0.4 * 10.0):.3f} with g = 10, where "
+        f"rounding decides: the run slides by up to {1e3 * rows[3]['max_slip_m']:.1f} mm. With 9.81 it is "
+        f"{PLATEAU_PEAK / (0.4 * GRAVITY):.3f}, and the slip {1e3 * rows[4]['max_slip_m']:.1f} mm."
+    )
+    yield from cases
+    yield experiments.band(
+        cases[0].but(duration=10.0),
+        quantity="slip under the stated motion",
+        unit="m",
+        value=lambda row: row["max_slip_m"],
+        criterion="rest",
+        holds=lambda row: row["outcome"] == "rest",
     )
 
 
 @claim(
     "7, four boxes",
     "In this example, the body will just remain in the sticking mode and will tilt (plateau value, 4.0 m/s²)",
+    bounds="the rigid body",
 )
-def stack_tilts_at_plateau(experiments: Experiments) -> Finding:
+def stack_tilts_at_plateau(experiments: Experiments) -> Evidence:
     """The stack with the floor reaching the plateau value, rigid and shell, g = 10 and 9.81 m/s²."""
     rigid = [
         PLATEAU.but(RIGID, G_TEN, what="rigid stack, plateau value, g = 10"),
@@ -97,7 +95,6 @@ def stack_tilts_at_plateau(experiments: Experiments) -> Finding:
         experiments,
         rigid,
         shell,
-        bounds="the rigid body",
         reading=(
             f"{_outcomes(experiments, [*rigid, *shell])}. With g = 9.81 the static check of sliding "
             f"has a utilisation of {PLATEAU_PEAK / (0.4 * GRAVITY):.3f}; it takes the base to be pushed with m "
@@ -111,7 +108,7 @@ def stack_tilts_at_plateau(experiments: Experiments) -> Finding:
     "7, four boxes",
     "In this example, the body will just remain in the sticking mode and will tilt (stated motion, 2.4 m/s²)",
 )
-def stack_tilts_as_stated(experiments: Experiments) -> Finding:
+def stack_tilts_as_stated(experiments: Experiments) -> Evidence:
     """The stack under 50 mm at 6.928 rad/s, rigid and shell, started moving and with a jerk."""
     jerk = STACK.but(RIGID, {"motion.start": "rest"})
     jerked = jerk.but(what="rigid stack, the floor jerks at t = 0, mu_k = mu_s/2")
@@ -151,31 +148,22 @@ def _tilts_and_sticks(
     *,
     reading: str,
     band_of: PaperCase,
-    bounds: str = "",
-) -> Finding:
+) -> Evidence:
     cases = [*inside, *outside]
-    comparisons, lines = [], []
+    lines = []
     for case, row in zip(cases, experiments.rows(cases), strict=True):
         ratio, slip = row["rotation_ratio"], 1e3 * row["max_slip_m"]
-        comparisons += [
-            at_least(f"rotation ratio, {case.what}", ratio, 0.01, inside=case in inside),
-            at_most(f"slip, {case.what}", slip, 1e3 * SLIDING, "mm", inside=case in inside),
-        ]
+        yield at_least(f"rotation ratio, {case.what}", ratio, 0.01, inside=case in inside)
+        yield at_most(f"slip, {case.what}", slip, 1e3 * SLIDING, "mm", inside=case in inside)
         lines.append((case.what, row["outcome"], ratio, slip, not stands(row)))
-    return Finding(
-        comparisons=comparisons,
-        bounds=bounds,
-        reading=reading,
-        cases=cases,
-        tables=[
-            table("What the stack does", "run | outcome | rotation ratio [-] | slip [mm] | overturned", lines)
-        ],
-        band=experiments.band(
-            band_of,
-            quantity="rotation ratio",
-            criterion="it tilts (0.01 and more) and does not slide",
-            holds=lambda row: row["outcome"] == "rock",
-        ),
+    yield reading
+    yield from cases
+    yield table("What the stack does", "run | outcome | rotation ratio [-] | slip [mm] | overturned", lines)
+    yield experiments.band(
+        band_of,
+        quantity="rotation ratio",
+        criterion="it tilts (0.01 and more) and does not slide",
+        holds=lambda row: row["outcome"] == "rock",
     )
 
 
@@ -183,12 +171,13 @@ def _tilts_and_sticks(
     "7",
     "50 mm is << a/2. Regardless of sticking or slipping the tilting of the body will remain well "
     "within the limit cycle. Thus, Lyapunov stability is given",
+    bounds="at the paper's frequency, where the stack does not move at all",
 )
-def within_the_limit_cycle(experiments: Experiments) -> Finding:
+def within_the_limit_cycle(experiments: Experiments) -> Evidence:
     """50 mm at the paper's frequency and from 4 to 40 rad/s, slipping and sticking: rotation, growth, decay without
     drive."""
     frequencies = [float(f"{w:.4g}") for w in np.geomspace(4.0, 40.0, 25)]
-    curves, comparisons, cases = [], [], []
+    curves = []
     at_paper: list[float] = []
     growths: list[float] = []
     died: list[bool] = []
@@ -204,7 +193,8 @@ def within_the_limit_cycle(experiments: Experiments) -> Finding:
         standing = [ratio if stands(row) else -1.0 for ratio, row in zip(ratios, rows, strict=True)]
         widest = group[int(np.nanargmax(standing))]
         ended = widest.but(cycles=20.0, duration=30.0, what=f"{widest.what}, 20 cycles, then rest")
-        cases += [group[worst], ended]
+        yield group[worst]
+        yield ended
         at_paper.append(float(experiments.row(base)["rotation_ratio"]))
         growths.append(_growth(experiments, widest))
         died.append(bool(experiments.row(ended)["restored"]))
@@ -212,40 +202,31 @@ def within_the_limit_cycle(experiments: Experiments) -> Finding:
         overturned = sum(not stands(row) for row in rows)
         growth = f"{name}: rotation in the last 5 s over that before, widest that stands"
         decay = f"{name}: without drive the motion dies out, widest that stands"
-        comparisons += [
-            at_most(f"{name}: rotation ratio at the paper's 6.928 rad/s", at_paper[-1], 0.5),
-            at_most(f"{name}: largest rotation ratio from 4 to 40 rad/s", ratios[worst], 0.5, inside=False),
-            at_most(f"{name}: frequencies at which it overturns", overturned, 0.0, inside=False),
-            at_most(growth, growths[-1], 1.05, inside=False),
-            at_least(decay, died[-1], 1.0, inside=False),
-        ]
-    return Finding(
-        comparisons=comparisons,
-        bounds="at the paper's frequency, where the stack does not move at all",
-        reading=(
-            f"At 6.928 rad/s 50 mm are {0.05 * ANGULAR_FREQUENCY**2:.2f} m/s² against g a/c = {UPLIFT:.2f} m/s²: the "
-            f"rotation there is {max(at_paper):.2g} of beta. At other frequencies the same 50 mm turn the stack to "
-            f"{max(float(np.nanmax(line.y)) for line in curves):.2f} of beta (1: overturned), which 50 mm against "
-            f"a/2 cannot tell. In its last 5 s the widest motion that stands reaches {max(growths):.2f} of what it "
-            f"reached before, and {sum(died)} of {len(died)} such motions have died out after their drive."
-        ),
-        cases=cases,
-        figures=[
-            draw_curves(
-                "within-the-limit-cycle",
-                "Largest rotation over beta (1: overturned) of the rigid stack under 50 mm, over frequency.",
-                curves,
-                x_label="angular frequency [rad/s]",
-                y_label="rotation ratio [-]",
-                log_x=True,
-            )
-        ],
-        band=experiments.band(
-            STACK.but(duration=10.0),
-            quantity="rotation ratio at the paper's frequency",
-            criterion="at most half of beta",
-            holds=lambda row: stands(row) and row["rotation_ratio"] <= 0.5,
-        ),
+        yield at_most(f"{name}: rotation ratio at the paper's 6.928 rad/s", at_paper[-1], 0.5)
+        yield at_most(f"{name}: largest rotation ratio from 4 to 40 rad/s", ratios[worst], 0.5, inside=False)
+        yield at_most(f"{name}: frequencies at which it overturns", overturned, 0.0, inside=False)
+        yield at_most(growth, growths[-1], 1.05, inside=False)
+        yield at_least(decay, died[-1], 1.0, inside=False)
+    yield (
+        f"At 6.928 rad/s 50 mm are {0.05 * ANGULAR_FREQUENCY**2:.2f} m/s² against g a/c = {UPLIFT:.2f} m/s²: the "
+        f"rotation there is {max(at_paper):.2g} of beta. At other frequencies the same 50 mm turn the stack to "
+        f"{max(float(np.nanmax(line.y)) for line in curves):.2f} of beta (1: overturned), which 50 mm against "
+        f"a/2 cannot tell. In its last 5 s the widest motion that stands reaches {max(growths):.2f} of what it "
+        f"reached before, and {sum(died)} of {len(died)} such motions have died out after their drive."
+    )
+    yield draw_curves(
+        "within-the-limit-cycle",
+        "Largest rotation over beta (1: overturned) of the rigid stack under 50 mm, over frequency.",
+        curves,
+        x_label="angular frequency [rad/s]",
+        y_label="rotation ratio [-]",
+        log_x=True,
+    )
+    yield experiments.band(
+        STACK.but(duration=10.0),
+        quantity="rotation ratio at the paper's frequency",
+        criterion="at most half of beta",
+        holds=lambda row: stands(row) and row["rotation_ratio"] <= 0.5,
     )
 
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from fem.batch.runner import Row
 from fem.model.static_checks import StaticChecks
 from fem.paper.cases import PLATEAU, RIGID
-from fem.paper.claims import ClaimTable, Comparison, Finding, at_least, at_most, claim, equal, table
+from fem.paper.claims import ClaimTable, Comparison, Evidence, at_least, at_most, claim, equal, table
 from fem.paper.experiments import Experiments
 from fem.verification.statics import BOX_HEIGHT, BOX_MASS, WIDTH, seed_checks
 
@@ -53,8 +53,12 @@ def _side_by_side(boxes: int) -> ClaimTable:
     )
 
 
-@claim("7, Eqs. 14-19", "F_lim = 10 kN, M_R = -13,8 kNm, 5 kN, F_b = 10 kN, M_T = 5 kNm, T = 1,98 s")
-def numbers_one_box(experiments: Experiments) -> Finding:
+@claim(
+    "7, Eqs. 14-19",
+    "F_lim = 10 kN, M_R = -13,8 kNm, 5 kN, F_b = 10 kN, M_T = 5 kNm, T = 1,98 s",
+    bounds="g = 10 m/s²",
+)
+def numbers_one_box(experiments: Experiments) -> Evidence:
     """Recomputed by the static rules of the program, with g = 10 and 9.81 m/s²."""
     checks, full = (seed_checks(boxes=1, gravity=gravity) for gravity in (10.0, 9.81))
     density = BOX_MASS / (WIDTH * WIDTH * BOX_HEIGHT)
@@ -67,20 +71,19 @@ def numbers_one_box(experiments: Experiments) -> Finding:
         equal("Eq. 18, tilting moment", checks.code.overturning.demand / 1e3, 5.0, 0.5, "kNm"),
         equal("Eq. 19, period", checks.period_eq3, 1.98, 0.005, "s"),
     )
-    return Finding(
-        comparisons=[*printed, _just_sticks(checks, 10.0), _just_sticks(full, 9.81)],
-        bounds="g = 10 m/s²",
-        reading=(
-            f"{_following(printed)}. The base shear is {checks.code.sliding.utilisation:.3f} of the "
-            f"stiction limit with it and {full.code.sliding.utilisation:.3f} with 9.81, where more than 1 is "
-            '"slides" by the paper\'s own static rule, not "just sticks".'
-        ),
-        tables=[_side_by_side(1)],
+    yield from printed
+    yield _just_sticks(checks, 10.0)
+    yield _just_sticks(full, 9.81)
+    yield (
+        f"{_following(printed)}. The base shear is {checks.code.sliding.utilisation:.3f} of the "
+        f"stiction limit with it and {full.code.sliding.utilisation:.3f} with 9.81, where more than 1 is "
+        '"slides" by the paper\'s own static rule, not "just sticks".'
     )
+    yield _side_by_side(1)
 
 
-@claim("7", "F_lim = 40 kN; M_R = -55,0 kNm; F_b = 40 kN; M_T = 80 kNm; T = 3,30 s")
-def numbers_four_boxes(experiments: Experiments) -> Finding:
+@claim("7", "F_lim = 40 kN; M_R = -55,0 kNm; F_b = 40 kN; M_T = 80 kNm; T = 3,30 s", bounds="g = 10 m/s²")
+def numbers_four_boxes(experiments: Experiments) -> Evidence:
     """Recomputed by the static rules of the program, with g = 10 and 9.81 m/s²."""
     checks, full = (seed_checks(boxes=4, gravity=gravity) for gravity in (10.0, 9.81))
     printed = (
@@ -90,26 +93,23 @@ def numbers_four_boxes(experiments: Experiments) -> Finding:
         equal("tilting moment", checks.code.overturning.demand / 1e3, 80.0, 0.5, "kNm"),
         equal("period", checks.period_eq3, 3.30, 0.005, "s"),
     )
-    return Finding(
-        comparisons=[*printed, _just_sticks(checks, 10.0), _just_sticks(full, 9.81)],
-        bounds="g = 10 m/s²",
-        reading=(
-            f"{_following(printed)}. With 9.81 the utilisation of stiction is "
-            f"{full.code.sliding.utilisation:.3f} and that of tilting {full.code.overturning.utilisation:.3f}; "
-            "beyond 1 the static rule says that the stack does it."
-        ),
-        tables=[_side_by_side(4)],
+    yield from printed
+    yield _just_sticks(checks, 10.0)
+    yield _just_sticks(full, 9.81)
+    yield (
+        f"{_following(printed)}. With 9.81 the utilisation of stiction is "
+        f"{full.code.sliding.utilisation:.3f} and that of tilting {full.code.overturning.utilisation:.3f}; "
+        "beyond 1 the static rule says that the stack does it."
     )
+    yield _side_by_side(4)
 
 
 @claim("7", "a/2 = 600 mm")
-def half_width(experiments: Experiments) -> Finding:
+def half_width(experiments: Experiments) -> Evidence:
     """Half of the width that the paper gives."""
     half = 0.5 * WIDTH * 1e3
-    return Finding(
-        comparisons=[equal("a/2 of a container 1.100 mm wide", half, 600.0, 5.0, "mm")],
-        reading=f"a/2 is {half:.0f} mm; in print it is {600.0 / half - 1.0:.0%} more.",
-    )
+    yield equal("a/2 of a container 1.100 mm wide", half, 600.0, 5.0, "mm")
+    yield f"a/2 is {half:.0f} mm; in print it is {600.0 / half - 1.0:.0%} more."
 
 
 def _ground_displacement(ground: tuple[float, float, float]) -> float:
@@ -118,15 +118,22 @@ def _ground_displacement(ground: tuple[float, float, float]) -> float:
     return 0.025 * 1.6 * 1.5 * control * end * 1e3
 
 
+LONG, SHORT = _ground_displacement(GROUND_D_TYPE_1), _ground_displacement(GROUND_C_TYPE_2)  # mm
+
+
 def _ratios(rows: Sequence[Row]) -> str:
     return ", ".join(f"{row['rotation_ratio']:.2g}" for row in rows)
 
 
-@claim("7", "a harmonic base acceleration of 2,4 m/s² corresponding to ... an amplitude of app. 50 mm")
-def amplitude_50_mm(experiments: Experiments) -> Finding:
+@claim(
+    "7",
+    "a harmonic base acceleration of 2,4 m/s² corresponding to ... an amplitude of app. 50 mm",
+    bounds=f"between {SHORT:.0f} mm and {LONG:.0f} mm, depending on the ground",
+)
+def amplitude_50_mm(experiments: Experiments) -> Evidence:
     """Held against the design ground displacement of the code; the stack run with the amplitudes of both grounds at
     the stated and at the plateau acceleration."""
-    long, short = _ground_displacement(GROUND_D_TYPE_1), _ground_displacement(GROUND_C_TYPE_2)
+    long, short = LONG, SHORT
     cases = [
         PLATEAU.but(
             RIGID,
@@ -139,30 +146,20 @@ def amplitude_50_mm(experiments: Experiments) -> Finding:
     ]
     rows = experiments.rows(cases)
     against = "A against Eq. 3.12 with"
-    return Finding(
-        comparisons=[
-            at_least("A, from below", 50.0, short, "mm"),
-            at_most("A, from above", 50.0, long, "mm"),
-            equal(f"{against} T_C = 0.8 s, T_D = 2 s", 50.0, long, 0.1 * long, "mm", inside=False),
-            equal(f"{against} T_C = 0.25 s, T_D = 1.2 s", 50.0, short, 0.1 * short, "mm", inside=False),
-        ],
-        bounds=f"between {short:.0f} mm and {long:.0f} mm, depending on the ground",
-        reading=(
-            f"EN 1998-1:2004, Eq. 3.12, d_g = 0.025 a_g S T_C T_D, gives {long:.0f} mm with the paper's "
-            f"T_C = 0.8 s (ground D, type 1) and {short:.0f} mm with the row that its S = 1.5 belongs to "
-            "(ground C, type 2, T_C = 0.25 s): S and T_C are of two different grounds. With the smaller, the "
-            "paper's and the larger amplitude the stack turns to "
-            f"{_ratios(rows[::2])} of beta at 2.4 m/s² and to {_ratios(rows[1::2])} at 4.0 m/s²."
-        ),
-        cases=cases,
-        tables=[
-            table(
-                "What the amplitude changes (rigid stack)",
-                "run | outcome | rotation ratio [-]",
-                [
-                    (case.what, row["outcome"], row["rotation_ratio"])
-                    for case, row in zip(cases, rows, strict=True)
-                ],
-            )
-        ],
+    yield at_least("A, from below", 50.0, short, "mm")
+    yield at_most("A, from above", 50.0, long, "mm")
+    yield equal(f"{against} T_C = 0.8 s, T_D = 2 s", 50.0, long, 0.1 * long, "mm", inside=False)
+    yield equal(f"{against} T_C = 0.25 s, T_D = 1.2 s", 50.0, short, 0.1 * short, "mm", inside=False)
+    yield (
+        f"EN 1998-1:2004, Eq. 3.12, d_g = 0.025 a_g S T_C T_D, gives {long:.0f} mm with the paper's "
+        f"T_C = 0.8 s (ground D, type 1) and {short:.0f} mm with the row that its S = 1.5 belongs to "
+        "(ground C, type 2, T_C = 0.25 s): S and T_C are of two different grounds. With the smaller, the "
+        "paper's and the larger amplitude the stack turns to "
+        f"{_ratios(rows[::2])} of beta at 2.4 m/s² and to {_ratios(rows[1::2])} at 4.0 m/s²."
+    )
+    yield from cases
+    yield table(
+        "What the amplitude changes (rigid stack)",
+        "run | outcome | rotation ratio [-]",
+        [(case.what, row["outcome"], row["rotation_ratio"]) for case, row in zip(cases, rows, strict=True)],
     )

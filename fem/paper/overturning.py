@@ -20,7 +20,7 @@ from fem.paper.cases import (
     STACK,
     UPLIFT,
 )
-from fem.paper.claims import ClaimFigure, Finding, at_least, at_most, claim, table
+from fem.paper.claims import ClaimFigure, Evidence, at_least, at_most, claim, table
 from fem.paper.experiments import Experiments, capped_ratio, stands
 from fem.paper.figures import PlottedLine, draw_curves, draw_map
 from fem.paper.maps import FAST, FREQUENCIES, HOLDING, MapCell, OutcomeMap, stack_map
@@ -33,19 +33,19 @@ FRICTIONS = {"mu 0.4/0.2": (0.4, 0.2), "mu 1.0": HOLDING}
     "neither the beginning of an overturning motion nor the loss of stiction necessarily causes "
     "the structure to fall over",
 )
-def beginning_is_restored(experiments: Experiments) -> Finding:
+def beginning_is_restored(experiments: Experiments) -> Evidence:
     """Map of the rigid stack over frequency and peak acceleration, with friction that slips and that holds; ten
     cycles of the plateau value."""
-    comparisons, rows = [], []
+    rows = []
     for name, mu in FRICTIONS.items():
         cells = stack_map(experiments, mu).cells
         tilted = [cell for cell in cells if cell.tilted]
         slid = [cell for cell in cells if cell.row["max_slip_m"] > 1.1e-4]
         back, held = (sum(cell.stood and cell.sure for cell in group) for group in (tilted, slid))
         rows.append((name, len(cells), len(tilted), back, len(slid), held))
-        comparisons.append(at_least(f"{name}: cells that tilt and surely stand", back, 1.0))
+        yield at_least(f"{name}: cells that tilt and surely stand", back, 1.0)
         if mu != HOLDING:
-            comparisons.append(at_least(f"{name}: cells that lose stiction and surely stand", held, 1.0))
+            yield at_least(f"{name}: cells that lose stiction and surely stand", held, 1.0)
     pulse = PLATEAU.but(
         RIGID,
         cycles=10.0,
@@ -54,30 +54,25 @@ def beginning_is_restored(experiments: Experiments) -> Finding:
     )
     restored = bool(experiments.row(pulse)["restored"])
     what = "ten cycles of the plateau value: it tilts and is back on its base"
-    comparisons.append(at_least(what, restored, 1.0))
+    yield at_least(what, restored, 1.0)
     _, _, tilting, returned, sliding, stood = (list(column) for column in zip(*rows, strict=True))
-    return Finding(
-        comparisons=comparisons,
-        reading=(
-            f"Of the motions of the map that tilt the stack, {sum(returned)} of {sum(tilting)} surely do not overturn "
-            f"it; of those that make it slide, {sum(stood)} of {sum(sliding)}. After ten cycles of the plateau value "
-            f"and a floor at rest it is {'back on its base' if restored else 'not back on its base'}. The "
-            "counts are of cells, not of earthquakes."
-        ),
-        cases=[pulse],
-        tables=[
-            table(
-                "Cells of the stack's map",
-                "friction | cells | tilt | .. and surely stand | lose stiction | .. and surely stand",
-                rows,
-            )
-        ],
-        band=experiments.band(
-            pulse.but(SHELL, duration=20.0),
-            quantity="rotation ratio",
-            criterion="it tilts and does not overturn",
-            holds=lambda row: row["first_uplift_s"] is not None and stands(row),
-        ),
+    yield (
+        f"Of the motions of the map that tilt the stack, {sum(returned)} of {sum(tilting)} surely do not overturn "
+        f"it; of those that make it slide, {sum(stood)} of {sum(sliding)}. After ten cycles of the plateau value "
+        f"and a floor at rest it is {'back on its base' if restored else 'not back on its base'}. The "
+        "counts are of cells, not of earthquakes."
+    )
+    yield pulse
+    yield table(
+        "Cells of the stack's map",
+        "friction | cells | tilt | .. and surely stand | lose stiction | .. and surely stand",
+        rows,
+    )
+    yield experiments.band(
+        pulse.but(SHELL, duration=20.0),
+        quantity="rotation ratio",
+        criterion="it tilts and does not overturn",
+        holds=lambda row: row["first_uplift_s"] is not None and stands(row),
     )
 
 
@@ -85,8 +80,10 @@ def beginning_is_restored(experiments: Experiments) -> Finding:
     "1",
     "if tilting starts short before reversal of the ground motion, some bumping will happen, but "
     "the stack will not fall over",
+    bounds="a floor faster than three times p, tilting that begins less than a twelfth of a period "
+    "before it reverses (peak up to 1.15 g a/c)",
 )
-def short_before_reversal(experiments: Experiments) -> Finding:
+def short_before_reversal(experiments: Experiments) -> Evidence:
     """Peaks from 1.01 to 3 g a/c over frequency, stack that cannot slide: time from tilting to reversal, and the
     end."""
     ratios = (1.01, 1.02, 1.04, 1.07, 1.1, 1.15, 1.2, 1.3, 1.4, 1.6, 1.8, 2.0, 2.5, 3.0)
@@ -104,45 +101,35 @@ def short_before_reversal(experiments: Experiments) -> Finding:
         "sure cells that tilt less than a twelfth of a period before reversal and overturn, Omega above 3 p"
     )
     every = "sure cells that tilt at any time before reversal and overturn"
-    return Finding(
-        comparisons=[
-            at_most(short, len(fast), 0.0),
-            at_most("the same at all frequencies", len(late), 0.0, inside=False),
-            at_most(every, sum(cell.sure for cell in fallen), 0.0, inside=False),
-        ],
-        bounds=(
-            "a floor faster than three times p, tilting that begins less than a twelfth of a period "
-            "before it reverses (peak up to 1.15 g a/c)"
-        ),
-        reading=(
-            "The least time before reversal with which the stack is still overturned is "
-            f"{_lead(first) if first else math.nan:.3f} of a period{least} How short is short is a matter of 1/p, the "
-            f"time scale of falling, here {1.0 / FREQUENCY_PARAMETER:.2f} s."
-        ),
-        cases=[first.case] if first else [],
-        figures=[
-            draw_curves(
-                "short-before-reversal",
-                "When the stack begins to tilt, in periods before the floor reverses, and what becomes of it.",
-                [
-                    PlottedLine(
-                        x=[cell.motion.angular_frequency for cell in cells if cell.fell is fell],
-                        y=[_lead(cell) for cell in cells if cell.fell is fell],
-                        label=label,
-                        style=style,
-                    )
-                    for fell, label, style in ((False, "stands", "."), (True, "overturns", "x"))
-                ],
-                x_label="angular frequency [rad/s]",
-                y_label="lead over the period [-]",
+    yield at_most(short, len(fast), 0.0)
+    yield at_most("the same at all frequencies", len(late), 0.0, inside=False)
+    yield at_most(every, sum(cell.sure for cell in fallen), 0.0, inside=False)
+    yield (
+        "The least time before reversal with which the stack is still overturned is "
+        f"{_lead(first) if first else math.nan:.3f} of a period{least} How short is short is a matter of 1/p, the "
+        f"time scale of falling, here {1.0 / FREQUENCY_PARAMETER:.2f} s."
+    )
+    yield from [first.case] if first else []
+    yield draw_curves(
+        "short-before-reversal",
+        "When the stack begins to tilt, in periods before the floor reverses, and what becomes of it.",
+        [
+            PlottedLine(
+                x=[cell.motion.angular_frequency for cell in cells if cell.fell is fell],
+                y=[_lead(cell) for cell in cells if cell.fell is fell],
+                label=label,
+                style=style,
             )
+            for fell, label, style in ((False, "stands", "."), (True, "overturns", "x"))
         ],
-        band=experiments.band(
-            STACK.but(NO_SLIDING, peak=1.1 * UPLIFT, frequency=ANGULAR_FREQUENCY, duration=8.0),
-            quantity="rotation ratio at 1.1 g a/c, 6.928 rad/s",
-            criterion="it stands",
-            holds=stands,
-        ),
+        x_label="angular frequency [rad/s]",
+        y_label="lead over the period [-]",
+    )
+    yield experiments.band(
+        STACK.but(NO_SLIDING, peak=1.1 * UPLIFT, frequency=ANGULAR_FREQUENCY, duration=8.0),
+        quantity="rotation ratio at 1.1 g a/c, 6.928 rad/s",
+        criterion="it stands",
+        holds=stands,
     )
 
 
@@ -153,7 +140,7 @@ def _lead(cell: MapCell) -> float:
 
 
 @claim("5.3", "the condition A <= a/2 is only a conservative description of the falling over limit")
-def half_width_is_conservative(experiments: Experiments) -> Finding:
+def half_width_is_conservative(experiments: Experiments) -> Evidence:
     """The same maps below A = a/2, a scan of the amplitude at the paper's frequency, and the exact first swing."""
     block = experiments.block(STACK)
     threshold = first_swing_threshold(
@@ -180,50 +167,45 @@ def half_width_is_conservative(experiments: Experiments) -> Finding:
         if not stands(row)
     ]
     smallest = min((case.values["motion.amplitude_m"] / HALF_WIDTH for case in falling), default=math.nan)
-    comparisons, witnesses, rows = [], [], []
+    witnesses, rows = [], []
     for name, mu in FRICTIONS.items():
         cells = stack_map(experiments, mu).cells
         below = [cell for cell in cells if cell.motion.amplitude <= HALF_WIDTH]
         against = sorted((cell for cell in below if cell.fell), key=lambda cell: cell.motion.amplitude)
         sure = [cell for cell in against if cell.sure]
         what = f"{name}: sure cells of the map with A <= a/2 that overturn"
-        comparisons.append(at_most(what, len(sure), 0.0))
+        yield at_most(what, len(sure), 0.0)
         least = against[0].motion.amplitude / HALF_WIDTH if against else None
         rows.append((name, len(below), len(against), len(sure), least))
         witnesses += [cell.case for cell in sure[:1]]
     scanned = "smallest A/(a/2) that overturns at 6.928 rad/s, in a scan by 0.02"
-    comparisons += [
-        at_least(scanned, smallest if falling else math.inf, 1.0),
-        at_least("A/(a/2) that overturns in the first swing at 6.928 rad/s, exact block", share, 1.0),
-    ]
+    yield at_least(scanned, smallest if falling else math.inf, 1.0)
+    yield at_least("A/(a/2) that overturns in the first swing at 6.928 rad/s, exact block", share, 1.0)
     first = (falling or scan[-1:])[0]
     witness = first.but(
         amplitude=round(0.45 * HALF_WIDTH, 5), what="stack that cannot slide, A = 0.45 a/2 at 6.928 rad/s"
     )
-    return Finding(
-        comparisons=comparisons,
-        reading=(
-            f"At the paper's frequency an amplitude of {share:.2f} a/2 overturns the stack in the first "
-            "swing, without any impact (exact block); of the runs, impacts included, the smallest that overturns has "
-            f"{smallest:.2f} a/2. What counts is not the amplitude alone but the acceleration "
-            "over g a/c and the frequency over p: in the first swing A Omega²/(g a/c) against sqrt(1 + (Omega/p)²)."
-        ),
-        cases=[first, witness, *witnesses],
-        tables=[
-            table(
-                "Cells of the stack's map with A <= a/2",
-                "friction | cells | overturn | .. and are sure | smallest A/(a/2) that overturns",
-                rows,
-            )
-        ],
-        figures=[_map_figure(stack_map(experiments, HOLDING), block.frequency_parameter)],
-        band=experiments.band(
-            witness.but(SHELL, duration=10.0),
-            quantity=f"rotation ratio at A = {witness.values['motion.amplitude_m'] / HALF_WIDTH:.2f} a/2",
-            value=capped_ratio,
-            criterion="it stands, as A <= a/2 says",
-            holds=stands,
-        ),
+    yield (
+        f"At the paper's frequency an amplitude of {share:.2f} a/2 overturns the stack in the first "
+        "swing, without any impact (exact block); of the runs, impacts included, the smallest that overturns has "
+        f"{smallest:.2f} a/2. What counts is not the amplitude alone but the acceleration "
+        "over g a/c and the frequency over p: in the first swing A Omega²/(g a/c) against sqrt(1 + (Omega/p)²)."
+    )
+    yield first
+    yield witness
+    yield from witnesses
+    yield table(
+        "Cells of the stack's map with A <= a/2",
+        "friction | cells | overturn | .. and are sure | smallest A/(a/2) that overturns",
+        rows,
+    )
+    yield _map_figure(stack_map(experiments, HOLDING), block.frequency_parameter)
+    yield experiments.band(
+        witness.but(SHELL, duration=10.0),
+        quantity=f"rotation ratio at A = {witness.values['motion.amplitude_m'] / HALF_WIDTH:.2f} a/2",
+        value=capped_ratio,
+        criterion="it stands, as A <= a/2 says",
+        holds=stands,
     )
 
 
@@ -246,10 +228,11 @@ def _map_figure(one: OutcomeMap, frequency_parameter: float) -> ClaimFigure:
     "5.3",
     "the acceleration of the center of mass during the first quarter period, leading to phi < "
     "beta for A = a/2",
+    bounds="in the first quarter period; it says nothing of what follows",
 )
-def rotation_at_half_width(experiments: Experiments) -> Finding:
+def rotation_at_half_width(experiments: Experiments) -> Evidence:
     """A = a/2 at six frequencies, stack that cannot slide: rotation in the first quarter period, and the end."""
-    cases, comparisons, rows = [], [], []
+    rows = []
     angle = experiments.block(STACK).slenderness_angle
     for frequency in (2.5, 3.5, 5.0, ANGULAR_FREQUENCY, 9.0, 12.0):
         case = STACK.but(
@@ -265,29 +248,20 @@ def rotation_at_half_width(experiments: Experiments) -> Finding:
         time, rotation = run.history["time_s"], np.abs(run.history["rotation_rad"])
         ratio = float(rotation[time <= 0.5 * math.pi / frequency].max()) / angle
         fell = run.status == "overturned"
-        cases.append(case)
+        yield case
         rows.append((frequency, HALF_WIDTH * frequency**2, ratio, "overturned" if fell else "stands"))
         what = f"rotation in the first quarter period over beta, {frequency:g} rad/s"
-        comparisons += [
-            at_most(what, ratio, 1.0),
-            at_most(f"overturns in the end, {frequency:g} rad/s", fell, 0.0, inside=False),
-        ]
-    return Finding(
-        comparisons=comparisons,
-        bounds="in the first quarter period; it says nothing of what follows",
-        reading=(
-            f"Within a quarter of the first period the rotation reaches {max(row[2] for row in rows):.2f} of beta at "
-            "the most. The stack goes on turning with the speed it has by then; in the end it overturns at "
-            f"{sum(row[3] == 'overturned' for row in rows)} of {len(rows)} frequencies."
-        ),
-        cases=cases,
-        tables=[
-            table(
-                "A = a/2 = 550 mm",
-                "frequency [rad/s] | peak [m/s²] | rotation/beta in the first quarter [-] | in the end",
-                rows,
-            )
-        ],
+        yield at_most(what, ratio, 1.0)
+        yield at_most(f"overturns in the end, {frequency:g} rad/s", fell, 0.0, inside=False)
+    yield (
+        f"Within a quarter of the first period the rotation reaches {max(row[2] for row in rows):.2f} of beta at "
+        "the most. The stack goes on turning with the speed it has by then; in the end it overturns at "
+        f"{sum(row[3] == 'overturned' for row in rows)} of {len(rows)} frequencies."
+    )
+    yield table(
+        "A = a/2 = 550 mm",
+        "frequency [rad/s] | peak [m/s²] | rotation/beta in the first quarter [-] | in the end",
+        rows,
     )
 
 
@@ -296,7 +270,7 @@ def rotation_at_half_width(experiments: Experiments) -> Finding:
     "Overturning: tilting moment does exceed restoring moment; steady state amplitude A > a/2 "
     "(weak condition)",
 )
-def beyond_half_width(experiments: Experiments) -> Finding:
+def beyond_half_width(experiments: Experiments) -> Evidence:
     """The map of the stack that cannot slide, above A = a/2 and g a/c."""
     beyond = [
         cell
@@ -307,27 +281,23 @@ def beyond_half_width(experiments: Experiments) -> Finding:
     sure = [cell for cell in standing if cell.sure]
     below = [cell for cell in sure if cell.motion.peak / UPLIFT < _first_swing(cell)]
     share = 1.0 - len(standing) / len(beyond) if beyond else math.nan
-    return Finding(
-        comparisons=[
-            at_least(
-                "cells with A > a/2 and M_T > M_R that overturn, of all such cells", share, 0.9, inside=False
-            ),
-            at_most("sure cells with A > a/2 and M_T > M_R that stand", len(sure), 0.0),
-        ],
-        reading=(
-            f"Of {len(beyond)} motions with A > a/2 whose tilting moment exceeds the restoring one, "
-            f"{len(beyond) - len(standing)} overturn the stack that cannot slide and {len(standing)} do "
-            f"not, {len(sure)} of them surely ({len(below)} below the exact limit of the first swing). Whether the "
-            "reverse, A <= a/2, protects is another statement."
-        ),
-        cases=[cell.case for cell in [*sure[:2], *beyond[:1]]],
-        band=experiments.band(
-            STACK.but(NO_SLIDING, amplitude=0.66, frequency=2.5, duration=8.0),
-            quantity="rotation ratio at A = 1.2 a/2, 2.5 rad/s (1: overturned)",
-            value=capped_ratio,
-            criterion="it overturns",
-            holds=lambda row: not stands(row),
-        ),
+    yield at_least(
+        "cells with A > a/2 and M_T > M_R that overturn, of all such cells", share, 0.9, inside=False
+    )
+    yield at_most("sure cells with A > a/2 and M_T > M_R that stand", len(sure), 0.0)
+    yield (
+        f"Of {len(beyond)} motions with A > a/2 whose tilting moment exceeds the restoring one, "
+        f"{len(beyond) - len(standing)} overturn the stack that cannot slide and {len(standing)} do "
+        f"not, {len(sure)} of them surely ({len(below)} below the exact limit of the first swing). Whether the "
+        "reverse, A <= a/2, protects is another statement."
+    )
+    yield from [cell.case for cell in [*sure[:2], *beyond[:1]]]
+    yield experiments.band(
+        STACK.but(NO_SLIDING, amplitude=0.66, frequency=2.5, duration=8.0),
+        quantity="rotation ratio at A = 1.2 a/2, 2.5 rad/s (1: overturned)",
+        value=capped_ratio,
+        criterion="it overturns",
+        holds=lambda row: not stands(row),
     )
 
 

@@ -19,7 +19,7 @@ from fem.paper.cases import (
     WIDTH,
     PaperCase,
 )
-from fem.paper.claims import Comparison, Finding, at_least, at_most, claim, equal, table
+from fem.paper.claims import Comparison, Evidence, at_least, at_most, claim, equal, table
 from fem.paper.experiments import Experiments
 from fem.paper.figures import PlottedLine, draw_curves
 
@@ -32,9 +32,9 @@ TURNING = 0.2  #: s, in which a released container shows where it goes
 
 
 @claim("5.1, Eqs. 7, 8", "F_F^S(t) = m a(t) <= G mu_s")
-def stiction_limit(experiments: Experiments) -> Finding:
+def stiction_limit(experiments: Experiments) -> Evidence:
     """Scan of the peak acceleration around mu_s g, for four coefficients of friction, rigid box."""
-    comparisons, cases = [], []
+    comparisons = []
     for mu in (0.2, 0.3, 0.4, 0.5):
         scan = [
             BOX.but(
@@ -49,29 +49,26 @@ def stiction_limit(experiments: Experiments) -> Finding:
         ]
         slides = [row["outcome"] in ("slide", "slide-rock") for row in experiments.rows(scan)]
         comparisons.append(_onset(f"onset of sliding over mu_s g, mu_s = {mu:g}", slides))
-        cases.append(_first(scan, slides))
-    return Finding(
-        comparisons=comparisons,
-        reading=(
-            f"In a scan by {100.0 * (AROUND[1] - AROUND[0]):.1f} % the box begins to slide at {_between(comparisons)} "
-            "of mu_s g."
-        ),
-        cases=cases,
-        band=experiments.band(
-            BOX.but(peak=0.98 * 0.4 * GRAVITY, frequency=ANGULAR_FREQUENCY, duration=5.0),
-            quantity="slip at 0.98 mu_s g",
-            unit="m",
-            value=lambda row: row["max_slip_m"],
-            criterion="it sticks",
-            holds=lambda row: row["outcome"] == "rest",
-        ),
+        yield _first(scan, slides)
+    yield from comparisons
+    yield (
+        f"In a scan by {100.0 * (AROUND[1] - AROUND[0]):.1f} % the box begins to slide at {_between(comparisons)} "
+        "of mu_s g."
+    )
+    yield experiments.band(
+        BOX.but(peak=0.98 * 0.4 * GRAVITY, frequency=ANGULAR_FREQUENCY, duration=5.0),
+        quantity="slip at 0.98 mu_s g",
+        unit="m",
+        value=lambda row: row["max_slip_m"],
+        criterion="it sticks",
+        holds=lambda row: row["outcome"] == "rest",
     )
 
 
 @claim(
     "5.2, Eq. 11", "F_F^k(t) = m a(t) <= G mu_k; compared to stiction, the accelerating base shear is reduced"
 )
-def kinetic_limit(experiments: Experiments) -> Finding:
+def kinetic_limit(experiments: Experiments) -> Evidence:
     """The shear force of a rigid box while it slides under 5.0 m/s², mu 0.4/0.2."""
     case = BOX.but(
         RIGID, frequency=10.0, duration=8.0, interval=0.002, what="box, 50 mm at 10 rad/s: 5.0 m/s²"
@@ -84,47 +81,36 @@ def kinetic_limit(experiments: Experiments) -> Finding:
     acceleration = history["base_acceleration_m_s2"]
     floor = np.abs(acceleration).max()
     shown = time <= 2.0
-    return Finding(
-        comparisons=[
-            at_most("shear force over weight while sliding, 99 % of the samples", while_sliding, 0.2 * 1.005),
-            at_most(
-                "largest acceleration of the sliding box over the floor's",
-                while_sliding * GRAVITY / floor,
-                1.0,
+    yield at_most("shear force over weight while sliding, 99 % of the samples", while_sliding, 0.2 * 1.005)
+    yield at_most(
+        "largest acceleration of the sliding box over the floor's", while_sliding * GRAVITY / floor, 1.0
+    )
+    yield (
+        f"While it slides the box is accelerated by up to {while_sliding * GRAVITY:.2f} m/s², against mu_k g = "
+        f"{0.2 * GRAVITY:.2f} m/s² and {floor:.1f} m/s² of the floor. The acceleration in Eq. 11 is the body's, "
+        "that in Eq. 8 the floor's; the paper writes both a(t)."
+    )
+    yield case
+    yield draw_curves(
+        "kinetic-limit",
+        "Shear force over weight of the box, and what sticking would need.",
+        [
+            PlottedLine(x=time[shown], y=shear[shown], label="shear force / weight"),
+            PlottedLine(
+                x=time[shown], y=-acceleration[shown] / GRAVITY, label="what sticking would need", style="--"
             ),
         ],
-        reading=(
-            f"While it slides the box is accelerated by up to {while_sliding * GRAVITY:.2f} m/s², against mu_k g = "
-            f"{0.2 * GRAVITY:.2f} m/s² and {floor:.1f} m/s² of the floor. The acceleration in Eq. 11 is the body's, "
-            "that in Eq. 8 the floor's; the paper writes both a(t)."
-        ),
-        cases=[case],
-        figures=[
-            draw_curves(
-                "kinetic-limit",
-                "Shear force over weight of the box, and what sticking would need.",
-                [
-                    PlottedLine(x=time[shown], y=shear[shown], label="shear force / weight"),
-                    PlottedLine(
-                        x=time[shown],
-                        y=-acceleration[shown] / GRAVITY,
-                        label="what sticking would need",
-                        style="--",
-                    ),
-                ],
-                x_label="time [s]",
-                y_label="force / weight [-]",
-                levels={"mu_s": 0.4, "mu_k": 0.2},
-            )
-        ],
+        x_label="time [s]",
+        y_label="force / weight [-]",
+        levels={"mu_s": 0.4, "mu_k": 0.2},
     )
 
 
-@claim("5.1, Eqs. 9, 10", "M_T(t) = m a(t) c/2, M_R = -G a/2")
-def uplift_limit(experiments: Experiments) -> Finding:
+@claim("5.1, Eqs. 9, 10", "M_T(t) = m a(t) c/2, M_R = -G a/2", bounds="a base that stands on its two corners")
+def uplift_limit(experiments: Experiments) -> Evidence:
     """Scan of the peak acceleration around g a/c for two, three and four boxes that cannot slide."""
     base = STACK.but(FOR_MAPS, NO_SLIDING)
-    comparisons, cases = [], []
+    comparisons = []
     for boxes, kind in ((2, "corners"), (3, "corners"), (4, "corners"), (4, "flat")):
         limit = GRAVITY * WIDTH / boxes
         shares = AROUND_FLAT if kind == "flat" else AROUND
@@ -142,29 +128,24 @@ def uplift_limit(experiments: Experiments) -> Finding:
         tilts = [row["first_uplift_s"] is not None for row in experiments.rows(scan)]
         what = f"onset of tilting over g a/c, {boxes} boxes on {kind}"
         comparisons.append(_onset(what, tilts, shares, inside=kind == "corners"))
-        cases.append(_first(scan, tilts))
+        yield _first(scan, tilts)
     flat = base.but(support="flat", duration=5.0)
     opening = [flat.but(peak=share * GRAVITY * WIDTH / 12.0, frequency=ANGULAR_FREQUENCY) for share in AROUND]
     opens = [row["first_opening_s"] is not None for row in experiments.rows(opening)]
     third = _onset("first opening of an edge over g a/(3 c), 4 boxes on flat", opens)
-    return Finding(
-        comparisons=[*comparisons, third],
-        bounds="a base that stands on its two corners",
-        reading=(
-            f"On corners the stack begins to turn at {_between(comparisons[:-1])} of g a/c. A flat base on an "
-            f"elastic bed opens at its edge at {third.measured:.2f} of g a/(3 c) already, as a linear pressure "
-            "leaves the middle third, which is no sign of tilting; it turns, about a narrow strip, at "
-            f"{comparisons[-1].measured:.2f} g a/c."
-        ),
-        cases=cases,
-        band=experiments.band(
-            STACK.but(
-                NO_SLIDING, peak=0.97 * GRAVITY * WIDTH / 4.0, frequency=ANGULAR_FREQUENCY, duration=5.0
-            ),
-            quantity="rotation ratio at 0.97 g a/c",
-            criterion="it does not rock (rotation ratio below 0.01)",
-            holds=lambda row: row["rotation_ratio"] < 0.01,
-        ),
+    yield from comparisons
+    yield third
+    yield (
+        f"On corners the stack begins to turn at {_between(comparisons[:-1])} of g a/c. A flat base on an "
+        f"elastic bed opens at its edge at {third.measured:.2f} of g a/(3 c) already, as a linear pressure "
+        "leaves the middle third, which is no sign of tilting; it turns, about a narrow strip, at "
+        f"{comparisons[-1].measured:.2f} g a/c."
+    )
+    yield experiments.band(
+        STACK.but(NO_SLIDING, peak=0.97 * GRAVITY * WIDTH / 4.0, frequency=ANGULAR_FREQUENCY, duration=5.0),
+        quantity="rotation ratio at 0.97 g a/c",
+        criterion="it does not rock (rotation ratio below 0.01)",
+        holds=lambda row: row["rotation_ratio"] < 0.01,
     )
 
 
@@ -173,9 +154,9 @@ def uplift_limit(experiments: Experiments) -> Finding:
     "Assessment of the quasi-static mode is possible only, if the center of gravity ... is "
     "accelerated instead of the base",
 )
-def centre_or_base(experiments: Experiments) -> Finding:
+def centre_or_base(experiments: Experiments) -> Evidence:
     """Shear force of the sticking stack over mass times floor acceleration, rigid and shell."""
-    comparisons, cases = [], []
+    comparisons = []
     for name, model in (("rigid", RIGID), ("reduced", SHELL)):
         case = STACK.but(model, duration=5.0, what=f"stack, {name}, 50 mm at 6.928 rad/s")
         run = experiments.run(case)
@@ -183,16 +164,13 @@ def centre_or_base(experiments: Experiments) -> Finding:
         floor = run.model.container.mesh.mass * np.abs(run.history["base_acceleration_m_s2"]).max()
         what = f"|mean acceleration of the sticking body over the floor's - 1|, {name}"
         comparisons.append(at_least(what, abs(float(shear / floor) - 1.0), 0.05))
-        cases.append(case)
+        yield case
     worst = max(one.measured for one in comparisons)
-    return Finding(
-        comparisons=comparisons,
-        reading=(
-            "As long as the container sticks, its mean acceleration is the floor's within "
-            f"{100.0 * worst:.2g} %. By so much can it matter to the quasi-static limits whether the floor or the "
-            "mass centre is accelerated; the sentence needs a difference that counts, here 5 %."
-        ),
-        cases=cases,
+    yield from comparisons
+    yield (
+        "As long as the container sticks, its mean acceleration is the floor's within "
+        f"{100.0 * worst:.2g} %. By so much can it matter to the quasi-static limits whether the floor or the "
+        "mass centre is accelerated; the sentence needs a difference that counts, here 5 %."
     )
 
 
@@ -200,42 +178,34 @@ def centre_or_base(experiments: Experiments) -> Finding:
     "5.3, Eqs. 12, 13",
     "M_T = m a c/(2 sin alpha) sin(phi + alpha), M_R = -G a/(2 cos alpha) cos(phi + alpha)",
 )
-def moments_of_a_tilted_body(experiments: Experiments) -> Finding:
+def moments_of_a_tilted_body(experiments: Experiments) -> Evidence:
     """Rigid stack released at rest at three rotations on a floor that accelerates 2 % beside their balance."""
-    comparisons, rows, cases = [], [], []
+    rows = []
     block = experiments.block(STACK)
     for share in (0.2, 0.5, 0.8):
         rotation = share * block.slenderness_angle
         balance = holding_acceleration(block, rotation)
         pair = [_released(rotation, factor * balance) for factor in (0.98, 1.02)]
         back, away = (1e3 * _turn(experiments, case) for case in pair)
-        cases += pair
+        yield from pair
         rows.append((share, balance, back, away))
         what = f"turn in {TURNING} s at {share:g} of beta, 2 %"
-        comparisons += [
-            at_most(f"{what} below the balance of Eqs. 12, 13", back, 0.0, "mrad"),
-            at_least(f"{what} above it", away, 0.0, "mrad"),
-        ]
-    return Finding(
-        comparisons=comparisons,
-        reading=(
-            "The moments of Eqs. 12 and 13 balance at a(t) = g cot(phi + alpha). Two per cent below it the stack "
-            f"comes back from {sum(back < 0.0 for _, _, back, _ in rows)} of {len(rows)} rotations, two per cent "
-            f"above it falls from {sum(away > 0.0 for *_, away in rows)}."
-        ),
-        cases=cases,
-        tables=[
-            table(
-                f"Rotation after {TURNING} s less that at the start, released at rest",
-                "phi/beta [-] | balance [m/s²] | 2 % below [mrad] | 2 % above [mrad]",
-                rows,
-            )
-        ],
+        yield at_most(f"{what} below the balance of Eqs. 12, 13", back, 0.0, "mrad")
+        yield at_least(f"{what} above it", away, 0.0, "mrad")
+    yield (
+        "The moments of Eqs. 12 and 13 balance at a(t) = g cot(phi + alpha). Two per cent below it the stack "
+        f"comes back from {sum(back < 0.0 for _, _, back, _ in rows)} of {len(rows)} rotations, two per cent "
+        f"above it falls from {sum(away > 0.0 for *_, away in rows)}."
+    )
+    yield table(
+        f"Rotation after {TURNING} s less that at the start, released at rest",
+        "phi/beta [-] | balance [m/s²] | 2 % below [mrad] | 2 % above [mrad]",
+        rows,
     )
 
 
 @claim("5.3, below Eq. 13", "Note, that the restoring moments is negative for phi > beta")
-def sign_beyond_balance(experiments: Experiments) -> Finding:
+def sign_beyond_balance(experiments: Experiments) -> Evidence:
     """The sign of Eq. 13 as printed, and the stack released at rest beside beta."""
     angle = experiments.block(STACK).slenderness_angle
     alpha = 0.5 * math.pi - angle
@@ -247,18 +217,14 @@ def sign_beyond_balance(experiments: Experiments) -> Finding:
     beyond, before = restoring(1.02 * angle), restoring(0.98 * angle)
     cases = [_released(factor * angle, 0.0) for factor in (1.02, 0.98)]
     falls, returns = (1e3 * _turn(experiments, case) for case in cases)
-    return Finding(
-        comparisons=[
-            at_most("M_R of Eq. 13 at 1.02 beta", beyond, 0.0, "kNm"),
-            at_most("-M_R of Eq. 13 at 0.98 beta", -before, 0.0, "kNm"),
-        ],
-        reading=(
-            f"As printed, Eq. 13 is {before:+.2f} kNm at 0.98 beta and {beyond:+.2f} kNm at 1.02 beta; a moment that "
-            f"restores is negative. Released at rest, the stack turns by {returns:+.2f} mrad in {TURNING} s from 0.98 "
-            f"beta and by {falls:+.2f} mrad from 1.02 beta."
-        ),
-        cases=cases,
+    yield at_most("M_R of Eq. 13 at 1.02 beta", beyond, 0.0, "kNm")
+    yield at_most("-M_R of Eq. 13 at 0.98 beta", -before, 0.0, "kNm")
+    yield (
+        f"As printed, Eq. 13 is {before:+.2f} kNm at 0.98 beta and {beyond:+.2f} kNm at 1.02 beta; a moment that "
+        f"restores is negative. Released at rest, the stack turns by {returns:+.2f} mrad in {TURNING} s from 0.98 "
+        f"beta and by {falls:+.2f} mrad from 1.02 beta."
     )
+    yield from cases
 
 
 def _released(rotation: float, acceleration: float) -> PaperCase:

@@ -8,7 +8,7 @@ from contact.reference.closed_forms_rocking import quarter_period
 from contact.reference.rigid_block import RigidBlock
 from fem.model.static_checks import period_eq2, period_eq3
 from fem.paper.cases import BOX, GRAVITY, HEIGHT, NO_SLIDING, RIGID, SHELL, STACK, WIDTH, PaperCase
-from fem.paper.claims import Finding, at_least, at_most, claim, equal, table
+from fem.paper.claims import Evidence, at_least, at_most, claim, equal, table
 from fem.paper.experiments import Experiments, VariantBand, stands, variant_result
 from fem.paper.figures import PlottedLine, draw_curves
 
@@ -48,8 +48,12 @@ def _eq_2(block: RigidBlock, share: float) -> float:
     )
 
 
-@claim("4.2, Eq. 2", "T = 8 sqrt(phi_0 r²/(a g)) ... a mathematical pendulum rather than a physical pendulum")
-def eq_2(experiments: Experiments) -> Finding:
+@claim(
+    "4.2, Eq. 2",
+    "T = 8 sqrt(phi_0 r²/(a g)) ... a mathematical pendulum rather than a physical pendulum",
+    bounds="a point mass, rotations up to 0.1 beta",
+)
+def eq_2(experiments: Experiments) -> Evidence:
     """Rigid stack released at twelve rotations; four times the time to its first impact; the exact point mass."""
     block, cases, periods = _periods(experiments, "stack")
     point = RigidBlock(
@@ -58,34 +62,30 @@ def eq_2(experiments: Experiments) -> Finding:
         gravity=block.gravity,
         inertia_ratio=POINT_MASS,
     )
-    comparisons = []
     for share in (0.05, 0.1, 0.2, 0.5, 0.9):
         exact = 4.0 * quarter_period(point, share * block.slenderness_angle)
         what = f"Eq. 2 over the exact period of a point mass, phi_0 = {share:g} beta"
-        comparisons.append(equal(what, _eq_2(block, share) / exact, 1.0, 0.05, inside=share <= 0.1))
+        yield equal(what, _eq_2(block, share) / exact, 1.0, 0.05, inside=share <= 0.1)
     for share in (0.05, 0.5, 0.9):
         what = f"Eq. 2 over the period of the stack's run, phi_0 = {share:g} beta"
-        comparisons.append(equal(what, _eq_2(block, share) / periods[share], 1.0, 0.05, inside=False))
+        yield equal(what, _eq_2(block, share) / periods[share], 1.0, 0.05, inside=False)
     small = _eq_2(block, RELEASES[0]) / periods[RELEASES[0]]
-    return Finding(
-        comparisons=comparisons,
-        bounds="a point mass, rotations up to 0.1 beta",
-        reading=(
-            f"At {RELEASES[0]:g} beta Eq. 2 gives {small:.3f} of the stack's period. A point mass without rotational "
-            f"inertia, which the paper remarks on, would have sqrt(3/4) = {math.sqrt(0.75):.3f} of it at small "
-            "rotation. Towards beta the period of either grows without bound, and Eq. 2 does not."
-        ),
-        cases=cases,
+    yield (
+        f"At {RELEASES[0]:g} beta Eq. 2 gives {small:.3f} of the stack's period. A point mass without rotational "
+        f"inertia, which the paper remarks on, would have sqrt(3/4) = {math.sqrt(0.75):.3f} of it at small "
+        "rotation. Towards beta the period of either grows without bound, and Eq. 2 does not."
     )
+    yield from cases
 
 
 @claim(
     "4.2, Eq. 3",
     "T = 2 pi sqrt(4 r/(3 g)) ... seems to be a better representation for our engineering problem",
+    bounds="as the period of a hanging bar; as that of rocking near phi_0 = 0.6 beta alone",
 )
-def eq_3(experiments: Experiments) -> Finding:
+def eq_3(experiments: Experiments) -> Evidence:
     """The same runs, of stack and box, against Eqs. 2 and 3."""
-    tables, lines, cases, comparisons, met = [], [], [], [], []
+    tables, lines, met = [], [], []
     far_2: list[float] = []
     far_3: list[float] = []
     for name in BODIES:
@@ -93,11 +93,11 @@ def eq_3(experiments: Experiments) -> Finding:
         third = period_eq3(radius=block.radius, gravity=block.gravity)
         exact = [4.0 * quarter_period(block, share * block.slenderness_angle) for share in RELEASES]
         second = [_eq_2(block, share) for share in RELEASES]
-        cases += released_ones[::3]
+        yield from released_ones[::3]
         met.append(f"{float(np.interp(third, exact, RELEASES)):.2f} beta ({name})")
         for share in (0.1, 0.3, 0.6, 0.9):
             what = f"{name}: Eq. 3 over the period of the run, phi_0 = {share:g} beta"
-            comparisons.append(equal(what, third / periods[share], 1.0, 0.1, inside=share == 0.6))
+            yield equal(what, third / periods[share], 1.0, 0.1, inside=share == 0.6)
         far_2 += [abs(math.log(two / run)) for two, run in zip(second, periods.values(), strict=True)]
         far_3 += [abs(math.log(third / run)) for run in periods.values()]
         lines += [
@@ -121,32 +121,23 @@ def eq_3(experiments: Experiments) -> Finding:
     bar = 2.0 * math.pi * math.sqrt(2.0 * length / (3.0 * GRAVITY))
     of_bar = "Eq. 3 over the period of a hanging bar of length 2 r, 2 pi sqrt(2 L/(3 g))"
     median = "median distance from the runs' periods, Eq. 3 over Eq. 2"
-    comparisons += [
-        equal(of_bar, period_eq3(radius=0.5 * length, gravity=GRAVITY) / bar, 1.0, 1e-9),
-        at_most(median, typical_3 / typical_2, 1.0, inside=False),
-    ]
-    return Finding(
-        comparisons=comparisons,
-        bounds="as the period of a hanging bar; as that of rocking near phi_0 = 0.6 beta alone",
-        reading=(
-            "A rocking block has no natural period: from nothing at small rotation its period grows "
-            "beyond every bound at beta. Eq. 3, 2 pi/p, meets the exact block's at "
-            f"{' and '.join(met)}. The median distance of "
-            f"Eq. 3 from the runs is {100.0 * typical_3:.0f} %, that of Eq. 2 {100.0 * typical_2:.0f} %."
-        ),
-        cases=cases,
-        tables=tables,
-        figures=[
-            draw_curves(
-                "periods",
-                "Period of free rocking over the rotation of release: runs, exact block, Eqs. 2 and 3.",
-                lines,
-                x_label="initial rotation over the slenderness angle [-]",
-                y_label="period [s]",
-            )
-        ],
-        band=_band_of_periods(experiments),
+    yield equal(of_bar, period_eq3(radius=0.5 * length, gravity=GRAVITY) / bar, 1.0, 1e-9)
+    yield at_most(median, typical_3 / typical_2, 1.0, inside=False)
+    yield (
+        "A rocking block has no natural period: from nothing at small rotation its period grows "
+        "beyond every bound at beta. Eq. 3, 2 pi/p, meets the exact block's at "
+        f"{' and '.join(met)}. The median distance of "
+        f"Eq. 3 from the runs is {100.0 * typical_3:.0f} %, that of Eq. 2 {100.0 * typical_2:.0f} %."
     )
+    yield from tables
+    yield draw_curves(
+        "periods",
+        "Period of free rocking over the rotation of release: runs, exact block, Eqs. 2 and 3.",
+        lines,
+        x_label="initial rotation over the slenderness angle [-]",
+        y_label="period [s]",
+    )
+    yield _band_of_periods(experiments)
 
 
 def _band_of_periods(experiments: Experiments) -> VariantBand:
@@ -168,31 +159,27 @@ def _band_of_periods(experiments: Experiments) -> VariantBand:
 @claim(
     "4.2, Eq. 4",
     "the rocking period of bodies with practical dimensions is T >= 2 s ... smaller than the plateau value",
+    bounds="rotations of 0.7 beta and more",
 )
-def control_periods(experiments: Experiments) -> Finding:
+def control_periods(experiments: Experiments) -> Evidence:
     """The same runs against 2 s, and Eq. 4 with their periods."""
-    comparisons, cases, ranges = [], [], []
+    ranges = []
     for name in ("box", "stack"):
         _, released_ones, periods = _periods(experiments, name)
         reached = next((f"{share:g} beta" for share, period in periods.items() if period >= 2.0), "none")
         low, high = min(periods.values()), max(periods.values())
         ranges.append(f"from {low:.2f} s to {high:.2f} s ({name}; 2 s and more from {reached} on)")
-        cases += released_ones[1::4]
+        yield from released_ones[1::4]
         for share in (0.05, 0.1, 0.3, 0.5, 0.7, 0.9):
             what = f"{name}: period of the run, phi_0 = {share:g} beta"
-            comparisons.append(at_least(what, periods[share], 2.0, "s", inside=share >= 0.7))
+            yield at_least(what, periods[share], 2.0, "s", inside=share >= 0.7)
         for share in (0.1, 0.9):
             what = f"{name}: T_C/T of Eq. 4, phi_0 = {share:g} beta"
-            comparisons.append(at_most(what, CONTROL_PERIOD / periods[share], 0.4, inside=share >= 0.7))
-    return Finding(
-        comparisons=comparisons,
-        bounds="rotations of 0.7 beta and more",
-        reading=(
-            f"From {RELEASES[0]:g} to {RELEASES[-1]:g} beta the period goes {'; '.join(ranges)}. As long as it is "
-            f"shorter than T_C = {CONTROL_PERIOD:g} s the container is on the plateau. That T_C belongs to ground D of "
-            "EN 1998-1 Table 3.2, the paper's S = 1.5 to another ground."
-        ),
-        cases=cases,
+            yield at_most(what, CONTROL_PERIOD / periods[share], 0.4, inside=share >= 0.7)
+    yield (
+        f"From {RELEASES[0]:g} to {RELEASES[-1]:g} beta the period goes {'; '.join(ranges)}. As long as it is "
+        f"shorter than T_C = {CONTROL_PERIOD:g} s the container is on the plateau. That T_C belongs to ground D of "
+        "EN 1998-1 Table 3.2, the paper's S = 1.5 to another ground."
     )
 
 
@@ -200,15 +187,15 @@ def control_periods(experiments: Experiments) -> Finding:
     "2, Lyapunov stability, Klotter",
     "semi-stable ... perturbations to the outside are divergent while perturbations to the inside are stable",
 )
-def semi_stable_orbit(experiments: Experiments) -> Finding:
+def semi_stable_orbit(experiments: Experiments) -> Evidence:
     """Kicks at rest scanned around the analytic limit, and release beside beta; box and stack, rigid and shell."""
-    comparisons, kicked, parted, cases = [], [], [], []
+    kicked, parted, cases = [], [], []
     for name, base in BODIES.items():
         block = experiments.block(base)
         kick = _analytic_kick(block)
         kicked.append(_largest_kick(experiments, base.but(RIGID, FREE), kick, step=0.0025, share=0.01))
         what = f"{name}, rigid: largest kick that returns over p sqrt(2 (1 - cos beta)) = {kick:.4f} rad/s"
-        comparisons.append(equal(what, kicked[-1], 1.0, 0.005))
+        yield equal(what, kicked[-1], 1.0, 0.005)
         for kind, model in (("rigid", RIGID), ("reduced", SHELL)):
             pair = [
                 base.but(
@@ -227,7 +214,7 @@ def semi_stable_orbit(experiments: Experiments) -> Finding:
                 at_least(f"{name}, {kind}: released at 0.98 beta it stands", stands(inner), 1.0),
                 at_least(f"{name}, {kind}: released at 1.02 beta it falls", not stands(outer), 1.0),
             ]
-            comparisons += beside
+            yield from beside
             parted += [one.holds for one in beside]
     lines = []
     for case in cases[:2]:
@@ -236,27 +223,22 @@ def semi_stable_orbit(experiments: Experiments) -> Finding:
         rotation, velocity = history["rotation_rad"][shown], history["angular_velocity_rad_s"][shown]
         lines.append(PlottedLine(x=rotation, y=velocity, label=case.what))
     band = _band_of_kicks(experiments)
-    return Finding(
-        comparisons=comparisons,
-        reading=(
-            "The orbit through rest at beta parts the motions that come back from those that fall: of "
-            f"{len(parted)} releases beside it {sum(parted)} ended so. The largest kick that "
-            f"returns is {' and '.join(f'{one:.4f}' for one in kicked)} of the analytic one for the rigid "
-            f"stack and box; for the stack over deformation, contact and support it lies between {band.low:.2f} and "
-            f"{band.high:.2f} of it (scanned by 0.02)."
-        ),
-        cases=cases,
-        figures=[
-            draw_curves(
-                "semi-stable-orbit",
-                "Phase portrait of the rigid stack released 2 % inside and outside of beta.",
-                lines,
-                x_label="rotation [rad]",
-                y_label="angular velocity [rad/s]",
-            )
-        ],
-        band=band,
+    yield (
+        "The orbit through rest at beta parts the motions that come back from those that fall: of "
+        f"{len(parted)} releases beside it {sum(parted)} ended so. The largest kick that "
+        f"returns is {' and '.join(f'{one:.4f}' for one in kicked)} of the analytic one for the rigid "
+        f"stack and box; for the stack over deformation, contact and support it lies between {band.low:.2f} and "
+        f"{band.high:.2f} of it (scanned by 0.02)."
     )
+    yield from cases
+    yield draw_curves(
+        "semi-stable-orbit",
+        "Phase portrait of the rigid stack released 2 % inside and outside of beta.",
+        lines,
+        x_label="rotation [rad]",
+        y_label="angular velocity [rad/s]",
+    )
+    yield band
 
 
 def _analytic_kick(block: RigidBlock) -> float:

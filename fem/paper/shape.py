@@ -25,7 +25,7 @@ from fem.paper.cases import (
     WIDTH,
     PaperCase,
 )
-from fem.paper.claims import Finding, at_most, claim, equal, table
+from fem.paper.claims import Evidence, at_most, claim, equal, table
 from fem.paper.experiments import Experiments
 from fem.paper.figures import PlottedLine, draw_curves
 from fem.run.recorder import Recorder
@@ -52,8 +52,12 @@ def _block(ratio: float) -> RigidBlock:
     )
 
 
-@claim("3", "Thus, the findings do also hold for a vertical cylindrical body instead of a prism")
-def cylinder(experiments: Experiments) -> Finding:
+@claim(
+    "3",
+    "Thus, the findings do also hold for a vertical cylindrical body instead of a prism",
+    bounds="motion in one plane, homogeneous body",
+)
+def cylinder(experiments: Experiments) -> Evidence:
     """Inertia in the plane of motion: closed forms, analytic blocks, and the rigid model with the cylinder's
     inertia."""
     prism, solid, wall = (
@@ -69,49 +73,42 @@ def cylinder(experiments: Experiments) -> Finding:
     box = [inertia_ratio(cylinder=one, height=1.0) for one in (False, True)]
     square = 1.0 - (1.0 - math.cos(2.0 * math.atan2(HALF_WIDTH, 0.5))) / np.array(box)
     first, runs = "acceleration that overturns in the first swing", run_cylinder / run_prism
-    return Finding(
-        comparisons=[
-            equal("frequency parameter p, cylinder over prism", p, 1.0, 0.01),
-            equal("Housner's restitution, cylinder over prism", e, 1.0, 0.01),
-            equal("acceleration of tilting, g a/c, cylinder over prism", tilting, 1.0, 0.01),
-            equal(f"{first}, cylinder over prism", swings[1] / swings[0], 1.0, 0.01),
-            equal(
-                "largest rotation of the first two swings at the plateau value, run of the cylinder over "
-                "run of the prism",
-                runs,
-                1.0,
-                0.02,
-            ),
-            equal("Housner's restitution of one box, cylinder less prism", square[1] - square[0], 0.0, 0.05),
-        ],
-        bounds="motion in one plane, homogeneous body",
-        reading=(
-            f"A slender cylinder of the same width and height has I_O/(M R²) = {solid.inertia_ratio:.4f} "
-            f"in place of 4/3: p changes by {100.0 * (p - 1.0):+.2f} %, e "
-            f"by {100.0 * (e - 1.0):+.2f} %, and the largest rotation in the runs by "
-            f"{100.0 * (runs - 1.0):+.2f} %. This is motion in the plane. A cylinder does not "
-            "stay in it: it can roll on its rim, which no model of this program knows. The case file knows prisms "
-            "alone: the run is one of the rigid model with the cylinder's inertia put in its place, not "
-            "repeatable from the command line; the other figures are of the analytic block."
-        ),
-        cases=[case],
-        tables=[
-            table(
-                "In the plane of motion, 1.1 m wide, 4.0 m high",
-                "body | I_O/(M R²) [-] | p [1/s] | e [-] | largest rotation/beta at the plateau value [-] "
-                "| first-swing peak at 6.928 rad/s [m/s²]",
-                [
-                    (
-                        name,
-                        body.inertia_ratio,
-                        body.frequency_parameter,
-                        body.housner_restitution,
-                        _largest_at_plateau(body),
-                        swing,
-                    )
-                    for name, body, swing in zip(names, (prism, solid, wall), swings, strict=True)
-                ],
+    yield equal("frequency parameter p, cylinder over prism", p, 1.0, 0.01)
+    yield equal("Housner's restitution, cylinder over prism", e, 1.0, 0.01)
+    yield equal("acceleration of tilting, g a/c, cylinder over prism", tilting, 1.0, 0.01)
+    yield equal(f"{first}, cylinder over prism", swings[1] / swings[0], 1.0, 0.01)
+    yield equal(
+        "largest rotation of the first two swings at the plateau value, run of the cylinder over "
+        "run of the prism",
+        runs,
+        1.0,
+        0.02,
+    )
+    yield equal("Housner's restitution of one box, cylinder less prism", square[1] - square[0], 0.0, 0.05)
+    yield (
+        f"A slender cylinder of the same width and height has I_O/(M R²) = {solid.inertia_ratio:.4f} "
+        f"in place of 4/3: p changes by {100.0 * (p - 1.0):+.2f} %, e "
+        f"by {100.0 * (e - 1.0):+.2f} %, and the largest rotation in the runs by "
+        f"{100.0 * (runs - 1.0):+.2f} %. This is motion in the plane. A cylinder does not "
+        "stay in it: it can roll on its rim, which no model of this program knows. The case file knows prisms "
+        "alone: the run is one of the rigid model with the cylinder's inertia put in its place, not "
+        "repeatable from the command line; the other figures are of the analytic block."
+    )
+    yield case
+    yield table(
+        "In the plane of motion, 1.1 m wide, 4.0 m high",
+        "body | I_O/(M R²) [-] | p [1/s] | e [-] | largest rotation/beta at the plateau value [-] "
+        "| first-swing peak at 6.928 rad/s [m/s²]",
+        [
+            (
+                name,
+                body.inertia_ratio,
+                body.frequency_parameter,
+                body.housner_restitution,
+                _largest_at_plateau(body),
+                swing,
             )
+            for name, body, swing in zip(names, (prism, solid, wall), swings, strict=True)
         ],
     )
 
@@ -157,8 +154,12 @@ def _runs(experiments: Experiments, ratio: float) -> tuple[float, float, PaperCa
     return found[0], found[1], case
 
 
-@claim("3", "body and surface are rigid; the stack remains rigid, whipping is excluded")
-def rigid_assumption(experiments: Experiments) -> Finding:
+@claim(
+    "3",
+    "body and surface are rigid; the stack remains rigid, whipping is excluded",
+    bounds="whether the stack stands at the plateau value; not how it moves",
+)
+def rigid_assumption(experiments: Experiments) -> Evidence:
     """The plateau value with the rigid block, the shell of 8 mm and solid steel, with mu_k of 50 and 100 %."""
     base = PLATEAU.but(duration=10.0)
     rigid = base.but(RIGID, what="stack, rigid, plateau value")
@@ -177,41 +178,31 @@ def rigid_assumption(experiments: Experiments) -> Finding:
     regime = "another regime than the rigid block, shell"
     over = "rotation ratio, shell over rigid"
     histories = {"rigid": experiments.run(rigid).history, "shell": experiments.run(shell).history}
-    return Finding(
-        comparisons=[
-            at_most("stands or falls as the rigid block does, shell", "overturned" in outcomes[:2], 0.0),
-            at_most(f"{regime}, mu 0.4/0.2", outcomes[1] != outcomes[0], 0.0, inside=False),
-            at_most(f"{regime}, mu 0.4/0.4", outcomes[4] != outcomes[3], 0.0, inside=False),
-            equal(f"{over}, mu 0.4/0.4", ratios[4] / ratios[3], 1.0, 0.1, inside=False),
-            equal(f"{over}, mu 0.4/0.2", ratios[1] / ratios[0], 1.0, 0.1, inside=False),
-        ],
-        bounds="whether the stack stands at the plateau value; not how it moves",
-        reading=(
-            f"With mu 0.4/0.2 the rigid block {_verb(outcomes[0])} to {ratios[0]:.3f} of beta. The shell "
-            f"{_verb(outcomes[1])} to {ratios[1]:.3f} with mu 0.4/0.2, and {_verb(outcomes[4])} to {ratios[4]:.3f} "
-            "with mu_k = mu_s; solid steel "
-            f"{_verb(outcomes[2])} to {ratios[2]:.3f}. What deformation can change is what an impact leaves: it "
-            "sets the shell ringing, and with its ringing the normal force and the grip."
-        ),
-        cases=cases,
-        figures=[
-            draw_curves(
-                "rigid-assumption",
-                "Rotation at the plateau value, mu 0.4/0.2: rigid block and shell of 8 mm.",
-                [
-                    PlottedLine(x=one["time_s"], y=one["rotation_rad"], label=name)
-                    for name, one in histories.items()
-                ],
-                x_label="time [s]",
-                y_label="rotation [rad]",
-            )
-        ],
-        band=experiments.band(
-            base,
-            quantity="rotation ratio at the plateau value",
-            criterion="the outcome of the rigid block",
-            holds=lambda row: row["outcome"] == outcomes[0],
-        ),
+    yield at_most("stands or falls as the rigid block does, shell", "overturned" in outcomes[:2], 0.0)
+    yield at_most(f"{regime}, mu 0.4/0.2", outcomes[1] != outcomes[0], 0.0, inside=False)
+    yield at_most(f"{regime}, mu 0.4/0.4", outcomes[4] != outcomes[3], 0.0, inside=False)
+    yield equal(f"{over}, mu 0.4/0.4", ratios[4] / ratios[3], 1.0, 0.1, inside=False)
+    yield equal(f"{over}, mu 0.4/0.2", ratios[1] / ratios[0], 1.0, 0.1, inside=False)
+    yield (
+        f"With mu 0.4/0.2 the rigid block {_verb(outcomes[0])} to {ratios[0]:.3f} of beta. The shell "
+        f"{_verb(outcomes[1])} to {ratios[1]:.3f} with mu 0.4/0.2, and {_verb(outcomes[4])} to {ratios[4]:.3f} "
+        "with mu_k = mu_s; solid steel "
+        f"{_verb(outcomes[2])} to {ratios[2]:.3f}. What deformation can change is what an impact leaves: it "
+        "sets the shell ringing, and with its ringing the normal force and the grip."
+    )
+    yield from cases
+    yield draw_curves(
+        "rigid-assumption",
+        "Rotation at the plateau value, mu 0.4/0.2: rigid block and shell of 8 mm.",
+        [PlottedLine(x=one["time_s"], y=one["rotation_rad"], label=name) for name, one in histories.items()],
+        x_label="time [s]",
+        y_label="rotation [rad]",
+    )
+    yield experiments.band(
+        base,
+        quantity="rotation ratio at the plateau value",
+        criterion="the outcome of the rigid block",
+        holds=lambda row: row["outcome"] == outcomes[0],
     )
 
 
@@ -220,37 +211,34 @@ def _verb(outcome: str) -> str:
     return words.get(outcome, "overturns")
 
 
-@claim("3", "either gapping between the boxes is counterbalanced by the self-weight or the boxes are bolted")
-def gaps_between_boxes(experiments: Experiments) -> Finding:
+@claim(
+    "3",
+    "either gapping between the boxes is counterbalanced by the self-weight or the boxes are bolted",
+    bounds="as long as the stack rests; a rocking one needs its bolts",
+)
+def gaps_between_boxes(experiments: Experiments) -> Evidence:
     """Forces in the joints of the stack, rigid and shell, at rest and rocking."""
-    comparisons, rows, cases = [], [], []
+    rows = []
     for base, name in ((STACK, "stated motion"), (PLATEAU, "plateau value")):
         for kind, model in (("rigid", RIGID), ("reduced", SHELL)):
             case = base.but(model, duration=10.0, interval=0.002, what=f"stack, {kind}, {name}")
-            cases.append(case)
+            yield case
             tension, opened, slid = _joints(experiments, case)
             what = f"largest tension at an edge of any joint, {kind}, {name}"
-            comparisons.append(at_most(what, tension, 0.0, "kN", inside=base is STACK))
+            yield at_most(what, tension, 0.0, "kN", inside=base is STACK)
             rows.append((f"{kind}, {name}", tension, opened, slid))
-    return Finding(
-        comparisons=comparisons,
-        bounds="as long as the stack rests; a rocking one needs its bolts",
-        reading=(
-            "What the bolts of the joints carry: "
-            + "; ".join(
-                f"{run}: {tension:.1f} kN at an edge, would open without bolts: {opened}, would slide: {slid}"
-                for run, tension, opened, slid in rows
-            )
-            + ". The tension of a rocking shell is that of a collision at an impact, and depends on the contact."
-        ),
-        cases=cases,
-        tables=[
-            table(
-                "Joints from the floor up; faces rigid, friction as on the floor",
-                "run | largest tension [kN] | would open | would slide",
-                rows,
-            )
-        ],
+    yield (
+        "What the bolts of the joints carry: "
+        + "; ".join(
+            f"{run}: {tension:.1f} kN at an edge, would open without bolts: {opened}, would slide: {slid}"
+            for run, tension, opened, slid in rows
+        )
+        + ". The tension of a rocking shell is that of a collision at an impact, and depends on the contact."
+    )
+    yield table(
+        "Joints from the floor up; faces rigid, friction as on the floor",
+        "run | largest tension [kN] | would open | would slide",
+        rows,
     )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from fem.batch.runner import Row
 from fem.paper.cases import FOR_MAPS, HEIGHT, NO_SLIDING, PLATEAU, RIGID, STACK, WIDTH
-from fem.paper.claims import Comparison, Finding, at_most, claim, table
+from fem.paper.claims import Comparison, Evidence, at_most, claim, table
 from fem.paper.experiments import Experiments, VariantBand, capped_ratio
 from fem.paper.figures import PlottedLine, draw_curves
 from fem.paper.maps import HOLDING, MapCell, pairs, stack_map
@@ -20,13 +20,14 @@ LARGER = 1.05  #: a rotation that much larger counts as larger
     "8",
     "Slipping is not affected by the number of boxes in the stack, only by the base acceleration "
     "and the coefficient of friction",
+    bounds="as long as no stack lifts from the floor",
 )
-def number_of_boxes(experiments: Experiments) -> Finding:
+def number_of_boxes(experiments: Experiments) -> Evidence:
     """One to six boxes under the same floor, two pairs of friction, three peaks."""
     stacks = (1, 2, 3, 4, 6)
     flat: list[Comparison] = []
     every: list[Comparison] = []
-    comparisons, lines, cases = [], [], []
+    lines = []
     for static, kinetic in ((0.2, 0.1), (0.4, 0.2)):
         for peak in (2.5, 5.0, 8.0):
             title = f"mu {static:g}/{kinetic:g}, {peak:g} m/s²"
@@ -54,30 +55,24 @@ def number_of_boxes(experiments: Experiments) -> Finding:
             if len(on_floor) < len(rows):
                 every.append(at_most(f"{what}: all of them", _spread(rows), 0.02, inside=False))
                 found.append(every[-1])
-            comparisons += found
-            cases += [group[0], group[-1]]
+            yield from found
+            yield group[0]
+            yield group[-1]
             lines += [
                 (title, boxes, row["outcome"], 1e3 * row["slip_travel_m"], row["rotation_ratio"])
                 for boxes, row in zip(stacks, rows, strict=True)
             ]
-    return Finding(
-        comparisons=comparisons,
-        bounds="as long as no stack lifts from the floor",
-        reading=(
-            f"The paths of stacks that stay flat differ by up to {_largest(flat):.2%}, those of all "
-            f"by up to {_largest(every):.0%}: a higher stack lifts earlier (g a/c against mu_s g), "
-            "and what rocks slides otherwise."
-        ),
-        cases=cases,
-        tables=[
-            table(
-                "Path over the floor in 10 s, 10 rad/s, rigid",
-                "case | boxes | outcome | path [mm] | rotation ratio [-]",
-                lines,
-            )
-        ],
-        band=_band_of_paths(experiments),
+    yield (
+        f"The paths of stacks that stay flat differ by up to {_largest(flat):.2%}, those of all "
+        f"by up to {_largest(every):.0%}: a higher stack lifts earlier (g a/c against mu_s g), "
+        "and what rocks slides otherwise."
     )
+    yield table(
+        "Path over the floor in 10 s, 10 rad/s, rigid",
+        "case | boxes | outcome | path [mm] | rotation ratio [-]",
+        lines,
+    )
+    yield _band_of_paths(experiments)
 
 
 def _spread(rows: Sequence[Row]) -> float:
@@ -102,14 +97,18 @@ def _band_of_paths(experiments: Experiments) -> VariantBand:
     )
 
 
-@claim("8", "According to the above findings slipping leads to increased overall stability")
-def slipping_stabilises(experiments: Experiments) -> Finding:
+@claim(
+    "8",
+    "According to the above findings slipping leads to increased overall stability",
+    bounds=f"mu_s below a/c = {WIDTH_OVER_HEIGHT:.3f}: the stack slides before it could tilt",
+)
+def slipping_stabilises(experiments: Experiments) -> Evidence:
     """Maps of the rigid stack over frequency and peak acceleration with five frictions, against friction that
     holds."""
     holding = stack_map(experiments, HOLDING)
     fixed = experiments.row(PLATEAU.but(RIGID, NO_SLIDING, duration=10.0))["rotation_ratio"]
     low_cells: list[MapCell] = []
-    comparisons, lines, worse = [], [], []
+    lines, worse = [], []
     for static, kinetic in ((0.2, 0.1), (0.25, 0.125), (0.3, 0.15), (0.4, 0.2), (0.4, 0.4)):
         slipping = stack_map(experiments, (static, kinetic), perturbed=static in (0.25, 0.4))
         slid = [pair for pair in pairs(holding, slipping) if pair[1].row["max_slip_m"] > 1e-3]
@@ -123,37 +122,29 @@ def slipping_stabilises(experiments: Experiments) -> Finding:
         name = f"mu {static:g}/{kinetic:g}"
         share = len(more) / len(slid) if slid else np.nan
         turning = f"{name}: share of slipping cells that turn more than without slipping"
-        comparisons += [
-            at_most(f"{name}: sure cells that fall only because they slip", len(sure), 0.0, inside=inside),
-            at_most(turning, share, 0.0, inside=inside),
-        ]
+        yield at_most(f"{name}: sure cells that fall only because they slip", len(sure), 0.0, inside=inside)
+        yield at_most(turning, share, 0.0, inside=inside)
         lines.append((name, len(slid), len(saved), len(lost), len(sure), len(more)))
         worse += [other.case for _, other in (sure or more)[:2]]
     _, cells, saved_by, lost_by, surely, further = (list(column) for column in zip(*lines, strict=True))
-    return Finding(
-        comparisons=comparisons,
-        bounds=f"mu_s below a/c = {WIDTH_OVER_HEIGHT:.3f}: the stack slides before it could tilt",
-        reading=(
-            f"Of {sum(cells)} motions that make the stack slip, over all frictions, slipping saves "
-            f"{sum(saved_by)} from overturning and overturns {sum(lost_by)} that would have stood ({sum(surely)} of "
-            f"them surely); {sum(further)} turn further than without slipping, which changes when the container is "
-            f"set down. With mu_s below a/c the stack lifts from the floor in {sum(c.tilted for c in low_cells)} of "
-            f"{len(low_cells)} cells."
-        ),
-        cases=worse,
-        tables=[
-            table(
-                f"Cells of {len(holding.every)} that slip more than 1 mm, against friction that holds (1.0)",
-                "friction | slip | saved by slipping | lost by slipping | .. of them sure | turn more by slipping",
-                lines,
-            )
-        ],
-        band=experiments.band(
-            PLATEAU.but(duration=10.0),
-            quantity="rotation ratio at the plateau value",
-            criterion=f"it slides and turns less than the rigid block that cannot slide ({fixed:.3f})",
-            holds=lambda row: row["outcome"] == "slide-rock" and row["rotation_ratio"] < fixed,
-        ),
+    yield (
+        f"Of {sum(cells)} motions that make the stack slip, over all frictions, slipping saves "
+        f"{sum(saved_by)} from overturning and overturns {sum(lost_by)} that would have stood ({sum(surely)} of "
+        f"them surely); {sum(further)} turn further than without slipping, which changes when the container is "
+        f"set down. With mu_s below a/c the stack lifts from the floor in {sum(c.tilted for c in low_cells)} of "
+        f"{len(low_cells)} cells."
+    )
+    yield from worse
+    yield table(
+        f"Cells of {len(holding.every)} that slip more than 1 mm, against friction that holds (1.0)",
+        "friction | slip | saved by slipping | lost by slipping | .. of them sure | turn more by slipping",
+        lines,
+    )
+    yield experiments.band(
+        PLATEAU.but(duration=10.0),
+        quantity="rotation ratio at the plateau value",
+        criterion=f"it slides and turns less than the rigid block that cannot slide ({fixed:.3f})",
+        holds=lambda row: row["outcome"] == "slide-rock" and row["rotation_ratio"] < fixed,
     )
 
 
@@ -168,11 +159,12 @@ def _turns_more(held: MapCell, slid: MapCell) -> bool:
     "5.2",
     "the body is less accelerated, leading to a smaller rotation phi if tilting. With the same "
     "displacement amplitude A, the motion of the body becomes less critical",
+    bounds=f"mu_s below a/c = {WIDTH_OVER_HEIGHT:.3f}",
 )
-def same_amplitude(experiments: Experiments) -> Finding:
+def same_amplitude(experiments: Experiments) -> Evidence:
     """Amplitudes from 50 to 200 mm at the paper's frequency with four frictions, rigid stack."""
     amplitudes = np.array([round(0.05 + 0.01 * n, 3) for n in range(16)])  # m
-    curves, cases, comparisons = {}, [], []
+    curves = {}
     for static, kinetic in ((1.0, 1.0), (0.4, 0.2), (0.3, 0.15), (0.25, 0.125)):
         name = f"mu {static:g}/{kinetic:g}"
         group = [
@@ -187,15 +179,13 @@ def same_amplitude(experiments: Experiments) -> Finding:
             for one in amplitudes
         ]
         curves[name] = np.array([capped_ratio(row) for row in experiments.rows(group, also_failed=True)])
-        cases.append(group[-1])
+        yield group[-1]
         if static < 1.0:
-            comparisons.append(
-                at_most(
-                    f"{name}: largest excess of its rotation ratio over that without slipping",
-                    np.nanmax(curves[name] - curves["mu 1/1"]),
-                    0.05,
-                    inside=static < WIDTH_OVER_HEIGHT,
-                )
+            yield at_most(
+                f"{name}: largest excess of its rotation ratio over that without slipping",
+                np.nanmax(curves[name] - curves["mu 1/1"]),
+                0.05,
+                inside=static < WIDTH_OVER_HEIGHT,
             )
     held = curves["mu 1/1"]
     at_100 = held[amplitudes == 0.1].item()
@@ -204,33 +194,26 @@ def same_amplitude(experiments: Experiments) -> Finding:
         for name, values in curves.items()
         if name != "mu 1/1"
     )
-    return Finding(
-        comparisons=comparisons,
-        bounds=f"mu_s below a/c = {WIDTH_OVER_HEIGHT:.3f}",
-        reading=(
-            "Of the amplitudes tried the stack turns further than with friction that holds (1.0) at "
-            f"{further}, of {amplitudes.size} each. It overturns at {np.sum(held >= 1.0)} with friction that "
-            f"holds and at {np.sum(curves['mu 0.4/0.2'] >= 1.0)} with 0.4/0.2. With mu 0.25/0.125, below "
-            f"a/c, its largest rotation is {curves['mu 0.25/0.125'].max():.2g} of beta."
-        ),
-        cases=cases,
-        figures=[
-            draw_curves(
-                "same-amplitude",
-                "Largest rotation over the slenderness angle (1: overturned) over the floor's amplitude "
-                "at 6.928 rad/s; rigid stack.",
-                [
-                    PlottedLine(x=1e3 * amplitudes, y=values, label=name, style="o-")
-                    for name, values in curves.items()
-                ],
-                x_label="amplitude A [mm]",
-                y_label="rotation ratio [-]",
-            )
+    yield (
+        "Of the amplitudes tried the stack turns further than with friction that holds (1.0) at "
+        f"{further}, of {amplitudes.size} each. It overturns at {np.sum(held >= 1.0)} with friction that "
+        f"holds and at {np.sum(curves['mu 0.4/0.2'] >= 1.0)} with 0.4/0.2. With mu 0.25/0.125, below "
+        f"a/c, its largest rotation is {curves['mu 0.25/0.125'].max():.2g} of beta."
+    )
+    yield draw_curves(
+        "same-amplitude",
+        "Largest rotation over the slenderness angle (1: overturned) over the floor's amplitude "
+        "at 6.928 rad/s; rigid stack.",
+        [
+            PlottedLine(x=1e3 * amplitudes, y=values, label=name, style="o-")
+            for name, values in curves.items()
         ],
-        band=experiments.band(
-            STACK.but(amplitude=0.1, duration=8.0),
-            quantity="rotation ratio at 100 mm, mu 0.4/0.2",
-            criterion=f"no more than the rigid stack that cannot slide ({at_100:.3f})",
-            holds=lambda row: row["rotation_ratio"] <= at_100 * LARGER,
-        ),
+        x_label="amplitude A [mm]",
+        y_label="rotation ratio [-]",
+    )
+    yield experiments.band(
+        STACK.but(amplitude=0.1, duration=8.0),
+        quantity="rotation ratio at 100 mm, mu 0.4/0.2",
+        criterion=f"no more than the rigid stack that cannot slide ({at_100:.3f})",
+        holds=lambda row: row["rotation_ratio"] <= at_100 * LARGER,
     )
