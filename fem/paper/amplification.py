@@ -52,7 +52,7 @@ def mass_centre(experiments: Experiments) -> Evidence:
     yield (
         f"eta is taken with the paper's Eq. 3. {overturned.sum()} of {total} runs overturn, of them "
         f"{overturned[near].sum()} of {len(PEAKS) * near.sum()} with eta up to sqrt 2, and "
-        "a displacement factor says nothing of that. For a linear oscillator DAF < 1 needs eta > sqrt 2, not 1. A "
+        "a displacement factor does not show that. A linear oscillator needs eta > sqrt 2, not 1, for DAF < 1. A "
         "container that only sticks moves with the floor: DAF = 1, not less."
     )
     yield draw_curves(
@@ -90,11 +90,11 @@ def no_amplification(experiments: Experiments) -> Evidence:
     yield at_most("shell: mean of 50 ms, worst of the band", mean, 1.0, inside=False)
     yield at_most("shell: peaks of impacts, worst of the band", peak, 1.0, inside=False)
     yield (
-        f"The rigid container is pushed with up to {rigid[2]:.2f} of the plateau load for 95 % of the time. An "
-        f"impact is another matter: its horizontal impulse, spread over 50 ms, is up to {of_all[1]:.2f} of the "
-        f"plateau load, and its peak {of_all[0]:.0f} times that, a number that belongs to the contact and not to "
-        f"the container. A shell rings on after it: one twentieth of the time beyond up to {usual:.2f} of the "
-        "plateau load."
+        f"For 95 % of the time the load on the rigid container is at most {rigid[2]:.2f} of the plateau load. Impacts "
+        f"differ: the horizontal impulse of an impact, spread over 50 ms, is up to {of_all[1]:.2f} of the plateau "
+        f"load. Its peak is up to {of_all[0]:.0f} times the plateau load, which is a property of the contact and not "
+        "of the container. A shell vibrates after an impact: for one twentieth of the time its load exceeds up to "
+        f"{usual:.2f} of the plateau load."
     )
     yield from [case for case, _ in loads[:2]]
     yield table(

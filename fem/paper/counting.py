@@ -67,9 +67,9 @@ def static_rule_is_conservative(experiments: Experiments) -> Evidence:
     yield (
         "The static rule under the run's own peak is on the unsafe side in "
         f"{sum(one.unconservative for one in rigid)} of {sum(one.cells for one in rigid)} sure cells of the "
-        f"rigid maps. How conservative it is depends on how fast the floor is against p = "
-        f"{FREQUENCY_PARAMETER:.2f} 1/s: of the motions that it turns over the rigid stack stands "
-        f"{100.0 * slow:.0f} % up to 3 p and {100.0 * fast:.0f} % beyond. See the drawing."
+        f"rigid maps. How conservative it is depends on the frequency of the floor over p = {FREQUENCY_PARAMETER:.2f} "
+        f"1/s: of the motions for which it predicts overturning, the rigid stack stands in {100.0 * slow:.0f} % up to "
+        f"3 p and in {100.0 * fast:.0f} % above 3 p. See the figure."
     )
     yield from _witnesses(stack, static_rule)
     yield from [_table(one) for one in maps]
@@ -110,8 +110,8 @@ def paper_criteria(experiments: Experiments) -> Evidence:
     yield (
         "On the map of the rigid stack the paper's criteria with A <= a/2 are "
         f"{_in_words(stack.count(paper_rule))}, the static rule {_in_words(stack.count(static_rule))}. Of the "
-        f"modes of section 5 the criteria name {right} of {modes.total()} right. A criterion bounds what is safe "
-        "only where it is never unconservative."
+        f"modes of section 5 the criteria predict {right} of {modes.total()} correctly. A criterion is a bound on the "
+        "safe side only where it is never unconservative."
     )
     yield from _witnesses(stack, paper_rule)
     yield from (_table(one) for one in maps)
@@ -141,10 +141,10 @@ def less_conservative(experiments: Experiments) -> Evidence:
     yield at_most(f"sure cells on which {on_unsafe_side}", unsafe, 0.0, inside=False)
     yield at_most(f"cells {changed}", len(differ) / max(len(both), 1), 0.1, inside=False)
     yield (
-        f"Time histories let {rule.conservative} of {rule.cells} motions stand that the static rule "
-        "turns over; the motion must be known for that. The deformable shell ends otherwise than the rigid block "
-        f"in {len(differ)} of {len(both)} cells, {sum(one.sure for one, _ in differ)} of them sure for the rigid "
-        "block."
+        f"In {rule.conservative} of {rule.cells} motions the static rule predicts overturning and the time history "
+        "shows that the stack stands; this requires that the motion is known. The outcome of the deformable shell "
+        f"differs from that of the rigid block in {len(differ)} of {len(both)} cells, "
+        f"{sum(one.sure for one, _ in differ)} of them sure for the rigid block."
     )
     yield from [cell.case for _, cell in differ[:3]]
 
@@ -167,13 +167,13 @@ def region_of_safety(experiments: Experiments) -> Evidence:
         yield at_most(changes, _re_entries(one), 0.0, inside=False)
     both = [pair for one, other in zip(maps, shells, strict=True) for pair in pairs(one, other)]
     yield (
-        "The region that stands is one of a given motion: it is "
+        "The safe region depends on the motion: it is "
         f"{', '.join(f'{100.0 * _standing_share(one):.0f} %' for one in maps)} of the cells of the rigid "
         f"container at {', '.join(f'{one:g}' for one in SHAPE_FREQUENCIES)} rad/s. Along c/a it is left and "
-        f"entered again {sum(_re_entries(one) for one in maps)} times in {len(maps) * len(FRICTION)} rows of "
-        f"cells. The shell ends otherwise than the rigid container in "
+        f"re-entered {sum(_re_entries(one) for one in maps)} times in {len(maps) * len(FRICTION)} rows of "
+        f"cells. The outcome of the shell differs from that of the rigid container in "
         f"{sum(one.fell != other.fell for one, other in both)} of {len(both)} cells. These "
-        "are outcomes of single motions; regions with a probability: python -m fem ensemble boundary."
+        "are outcomes of single motions; for regions with a probability, see python -m fem ensemble boundary."
     )
     yield from [one.every[-1].case for one in (*maps, *shells[-1:])]
     yield from [_shape_figure(one) for one in maps[:2]]

@@ -97,8 +97,8 @@ def stack_tilts_at_plateau(experiments: Experiments) -> Evidence:
         shell,
         reading=(
             f"{_outcomes(experiments, [*rigid, *shell])}. With g = 9.81 the static check of sliding "
-            f"has a utilisation of {PLATEAU_PEAK / (0.4 * GRAVITY):.3f}; it takes the base to be pushed with m "
-            'a(t), which holds only until the stack rocks. "Will tilt" is not "falls": see the column overturned.'
+            f"has a utilisation of {PLATEAU_PEAK / (0.4 * GRAVITY):.3f}; it assumes a base shear of m a(t), which "
+            'holds only until the stack rocks. "Will tilt" is not "falls": see the column overturned.'
         ),
         band_of=PLATEAU.but(duration=10.0),
     )
@@ -123,10 +123,10 @@ def stack_tilts_as_stated(experiments: Experiments) -> Evidence:
         cases,
         reading=(
             f"The motion that the paper states reaches {STATED_PEAK:g} m/s², against g a/c = {UPLIFT:.2f} m/s²; the "
-            f"80 kNm are those of the plateau value, an amplified response. {_outcomes(experiments, cases)}. Where "
-            "the container does not move with the "
-            f"floor at t = 0, the floor starts with a jerk of {0.05 * ANGULAR_FREQUENCY:.2f} m/s, and what follows "
-            f"belongs to that jerk; with mu_k = 0.2 instead: {_outcomes(experiments, [jerked])}."
+            f"80 kNm are those of the plateau value, an amplified response. {_outcomes(experiments, cases)}. If the "
+            "container does not move with the "
+            f"floor at t = 0, the floor starts with a velocity step of {0.05 * ANGULAR_FREQUENCY:.2f} m/s, which "
+            f"causes the motion that follows; with mu_k = 0.2 instead: {_outcomes(experiments, [jerked])}."
         ),
         band_of=STACK.but(duration=10.0),
     )
@@ -210,9 +210,9 @@ def within_the_limit_cycle(experiments: Experiments) -> Evidence:
     yield (
         f"At 6.928 rad/s 50 mm are {0.05 * ANGULAR_FREQUENCY**2:.2f} m/s² against g a/c = {UPLIFT:.2f} m/s²: the "
         f"rotation there is {max(at_paper):.2g} of beta. At other frequencies the same 50 mm turn the stack to "
-        f"{max(float(np.nanmax(line.y)) for line in curves):.2f} of beta (1: overturned), which 50 mm against "
-        f"a/2 cannot tell. In its last 5 s the widest motion that stands reaches {max(growths):.2f} of what it "
-        f"reached before, and {sum(died)} of {len(died)} such motions have died out after their drive."
+        f"{max(float(np.nanmax(line.y)) for line in curves):.2f} of beta (1: overturned), which the ratio of "
+        f"50 mm to a/2 does not show. In the last 5 s the largest motion that stands reaches {max(growths):.2f} of "
+        f"its rotation before, and {sum(died)} of {len(died)} such motions die out after the drive ends."
     )
     yield draw_curves(
         "within-the-limit-cycle",

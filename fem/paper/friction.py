@@ -40,9 +40,9 @@ def halt_at_extremes(experiments: Experiments) -> Evidence:
     )
     yield at_most("the same, all peaks from stiction on", max(lags), 30.0, "°", inside=False)
     yield (
-        f"The slip of the exact slider ends up to {strong:.0f}° of phase beside the extreme points of the floor "
-        f"where mu_k g is at most a quarter of its peak, and up to {max(lags):.0f}° beside them over all peaks: "
-        "it ends where body and floor are equally fast, and the body has the speed that friction gave it."
+        f"The slip of the exact slider ends within {strong:.0f}° of phase of the extreme points of the floor where "
+        f"mu_k g is at most a quarter of the peak, and within {max(lags):.0f}° for all peaks: it ends when body and "
+        "floor have the same velocity, and the velocity of the body is that which friction gave it."
     )
     yield BOX.but(RIGID, peak=4.5, frequency=frequency, duration=5.0, what="box, 4.5 m/s² at 10 rad/s")
     yield draw_curves(
@@ -93,8 +93,8 @@ def reversal(experiments: Experiments) -> Evidence:
     yield (
         "With mu_s = 0.4 in place of 0.2 at every reversal, and mu_k = 0.2 in both, "
         f"{sum((row[2] == 'overturned') != (row[3] == 'overturned') for row in rows)} of {len(rows)} motions "
-        f"stand or fall otherwise, and {sum(row[2] != row[3] for row in rows)} end in another mode: what starts "
-        f"a motion from rest is mu_s. The path of the box changes by up to {largest:.0%}."
+        f"change between standing and overturning, and {sum(row[2] != row[3] for row in rows)} change their mode, "
+        f"because mu_s starts a motion from rest. The path of the box changes by up to {largest:.0%}."
     )
     yield table(
         "Stick-slip at the reversals: mu_s = 0.2 and 0.4, mu_k = 0.2",
@@ -147,14 +147,14 @@ def friction_ratio(experiments: Experiments) -> Evidence:
     yield equal("largest slip of a box, 100 % over 50 %", full / half, 1.0, 0.1, inside=False)
     yield (
         f"The largest slip of a box under 5.0 m/s² is {1e3 * half:.0f} mm at 50 %, {1e3 * most:.0f} mm at 92 % "
-        f"and {1e3 * full:.0f} mm at 100 %. The rigid stack ends "
-        f"otherwise in {rows[0][2]} and {rows[1][2]} of its {rows[0][1]} cells, {rows[0][3]} and "
-        f"{rows[1][3]} of them surely. So much hangs on a choice that the paper calls arbitrary."
+        f"and {1e3 * full:.0f} mm at 100 %. The outcome of the rigid stack "
+        f"changes in {rows[0][2]} and {rows[1][2]} of its {rows[0][1]} cells, {rows[0][3]} and "
+        f"{rows[1][3]} of them sure. The paper calls this choice arbitrary."
     )
     yield from boxes
     yield table(
-        "Cells of the stack's map that end otherwise than with mu_k = 50 % of mu_s = 0.4",
-        "mu_k over mu_s | cells | end otherwise | .. and are sure",
+        "Cells of the stack's map whose outcome differs from that with mu_k = 50 % of mu_s = 0.4",
+        "mu_k over mu_s | cells | another outcome | .. and sure",
         rows,
     )
     yield experiments.band(

@@ -49,12 +49,12 @@ UNTRIED = (
     Untried(
         section="3",
         quote="For simplicity ... the seismic action is assumed to be a harmonic ground motion",
-        reason='An assumption, not a statement; recorded motions are another study (motion.kind = "table").',
+        reason='An assumption, not a claim; recorded motions are another study (motion.kind = "table").',
     ),
     Untried(
         section="3",
         quote="the asperity of both contact surfaces being represented by constant coefficients",
-        reason="An assumption; what the coefficients change is tried under sliding.",
+        reason="An assumption; the effect of the coefficients is checked under sliding.",
     ),
     Untried(
         section="4.1",
@@ -62,7 +62,7 @@ UNTRIED = (
         reason=(
             "A statement on the literature. Westermo and Udwadia (1983) give the sliding oscillator on a "
             "reversing floor in closed form; rocking and sliding together have criteria of initiation "
-            "(Shenton 1996), no more."
+            "(Shenton 1996), not more."
         ),
     ),
     Untried(

@@ -99,7 +99,7 @@ def numbers_four_boxes(experiments: Experiments) -> Evidence:
     yield (
         f"{_following(printed)}. With 9.81 the utilisation of stiction is "
         f"{full.code.sliding.utilisation:.3f} and that of tilting {full.code.overturning.utilisation:.3f}; "
-        "beyond 1 the static rule says that the stack does it."
+        "above 1 the static rule predicts sliding, or tilting."
     )
     yield _side_by_side(4)
 
@@ -131,7 +131,7 @@ def _ratios(rows: Sequence[Row]) -> str:
     bounds=f"between {SHORT:.0f} mm and {LONG:.0f} mm, depending on the ground",
 )
 def amplitude_50_mm(experiments: Experiments) -> Evidence:
-    """Held against the design ground displacement of the code; the stack run with the amplitudes of both grounds at
+    """Compared with the design ground displacement of the code; the stack runs with the amplitudes of both grounds at
     the stated and at the plateau acceleration."""
     long, short = LONG, SHORT
     cases = [
@@ -153,13 +153,13 @@ def amplitude_50_mm(experiments: Experiments) -> Evidence:
     yield (
         f"EN 1998-1:2004, Eq. 3.12, d_g = 0.025 a_g S T_C T_D, gives {long:.0f} mm with the paper's "
         f"T_C = 0.8 s (ground D, type 1) and {short:.0f} mm with the row that its S = 1.5 belongs to "
-        "(ground C, type 2, T_C = 0.25 s): S and T_C are of two different grounds. With the smaller, the "
-        "paper's and the larger amplitude the stack turns to "
-        f"{_ratios(rows[::2])} of beta at 2.4 m/s² and to {_ratios(rows[1::2])} at 4.0 m/s²."
+        "(ground C, type 2, T_C = 0.25 s): S and T_C belong to two different grounds. With the smaller, "
+        "the paper's and the larger amplitude the stack rotates by "
+        f"{_ratios(rows[::2])} of beta at 2.4 m/s² and by {_ratios(rows[1::2])} at 4.0 m/s²."
     )
     yield from cases
     yield table(
-        "What the amplitude changes (rigid stack)",
+        "Effect of the amplitude (rigid stack)",
         "run | outcome | rotation ratio [-]",
         [(case.what, row["outcome"], row["rotation_ratio"]) for case, row in zip(cases, rows, strict=True)],
     )

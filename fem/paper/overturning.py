@@ -57,7 +57,7 @@ def beginning_is_restored(experiments: Experiments) -> Evidence:
     yield at_least(what, restored, 1.0)
     _, _, tilting, returned, sliding, stood = (list(column) for column in zip(*rows, strict=True))
     yield (
-        f"Of the motions of the map that tilt the stack, {sum(returned)} of {sum(tilting)} surely do not overturn "
+        f"Of the motions of the map that tilt the stack, {sum(returned)} of {sum(tilting)} are sure not to overturn "
         f"it; of those that make it slide, {sum(stood)} of {sum(sliding)}. After ten cycles of the plateau value "
         f"and a floor at rest it is {'back on its base' if restored else 'not back on its base'}. The "
         "counts are of cells, not of earthquakes."
@@ -105,14 +105,14 @@ def short_before_reversal(experiments: Experiments) -> Evidence:
     yield at_most("the same at all frequencies", len(late), 0.0, inside=False)
     yield at_most(every, sum(cell.sure for cell in fallen), 0.0, inside=False)
     yield (
-        "The least time before reversal with which the stack is still overturned is "
-        f"{_lead(first) if first else math.nan:.3f} of a period{least} How short is short is a matter of 1/p, the "
+        "The shortest time from tilting to reversal with which the stack overturns is "
+        f'{_lead(first) if first else math.nan:.3f} of a period{least} The scale for "short" is 1/p, the '
         f"time scale of falling, here {1.0 / FREQUENCY_PARAMETER:.2f} s."
     )
     yield from [first.case] if first else []
     yield draw_curves(
         "short-before-reversal",
-        "When the stack begins to tilt, in periods before the floor reverses, and what becomes of it.",
+        "When the stack begins to tilt, in periods before the floor reverses, and its outcome.",
         [
             PlottedLine(
                 x=[cell.motion.angular_frequency for cell in cells if cell.fell is fell],
@@ -188,7 +188,7 @@ def half_width_is_conservative(experiments: Experiments) -> Evidence:
     yield (
         f"At the paper's frequency an amplitude of {share:.2f} a/2 overturns the stack in the first "
         "swing, without any impact (exact block); of the runs, impacts included, the smallest that overturns has "
-        f"{smallest:.2f} a/2. What counts is not the amplitude alone but the acceleration "
+        f"{smallest:.2f} a/2. The outcome depends not on the amplitude alone but on the acceleration "
         "over g a/c and the frequency over p: in the first swing A Omega²/(g a/c) against sqrt(1 + (Omega/p)²)."
     )
     yield first
@@ -255,7 +255,7 @@ def rotation_at_half_width(experiments: Experiments) -> Evidence:
         yield at_most(f"overturns in the end, {frequency:g} rad/s", fell, 0.0, inside=False)
     yield (
         f"Within a quarter of the first period the rotation reaches {max(row[2] for row in rows):.2f} of beta at "
-        "the most. The stack goes on turning with the speed it has by then; in the end it overturns at "
+        "most. The stack then continues to rotate with the velocity it has; in the end it overturns at "
         f"{sum(row[3] == 'overturned' for row in rows)} of {len(rows)} frequencies."
     )
     yield table(
@@ -288,8 +288,8 @@ def beyond_half_width(experiments: Experiments) -> Evidence:
     yield (
         f"Of {len(beyond)} motions with A > a/2 whose tilting moment exceeds the restoring one, "
         f"{len(beyond) - len(standing)} overturn the stack that cannot slide and {len(standing)} do "
-        f"not, {len(sure)} of them surely ({len(below)} below the exact limit of the first swing). Whether the "
-        "reverse, A <= a/2, protects is another statement."
+        f"not, {len(sure)} of them sure ({len(below)} below the exact limit of the first swing). Whether the "
+        "reverse, A <= a/2, is safe is another claim."
     )
     yield from [cell.case for cell in [*sure[:2], *beyond[:1]]]
     yield experiments.band(

@@ -93,11 +93,11 @@ def kinetic_limit(experiments: Experiments) -> Evidence:
     yield case
     yield draw_curves(
         "kinetic-limit",
-        "Shear force over weight of the box, and what sticking would need.",
+        "Shear force over weight of the box, and the force that sticking would require.",
         [
             PlottedLine(x=time[shown], y=shear[shown], label="shear force / weight"),
             PlottedLine(
-                x=time[shown], y=-acceleration[shown] / GRAVITY, label="what sticking would need", style="--"
+                x=time[shown], y=-acceleration[shown] / GRAVITY, label="required for sticking", style="--"
             ),
         ],
         x_label="time [s]",
@@ -137,8 +137,8 @@ def uplift_limit(experiments: Experiments) -> Evidence:
     yield third
     yield (
         f"On corners the stack begins to turn at {_between(comparisons[:-1])} of g a/c. A flat base on an "
-        f"elastic bed opens at its edge at {third.measured:.2f} of g a/(3 c) already, as a linear pressure "
-        "leaves the middle third, which is no sign of tilting; it turns, about a narrow strip, at "
+        f"elastic bed opens at its edge at {third.measured:.2f} of g a/(3 c) already, when the resultant of the linear "
+        "pressure leaves the middle third; this is not tilting. It tilts, about a narrow strip, at "
         f"{comparisons[-1].measured:.2f} g a/c."
     )
     yield experiments.band(
@@ -169,8 +169,8 @@ def centre_or_base(experiments: Experiments) -> Evidence:
     yield from comparisons
     yield (
         "As long as the container sticks, its mean acceleration is the floor's within "
-        f"{100.0 * worst:.2g} %. By so much can it matter to the quasi-static limits whether the floor or the "
-        "mass centre is accelerated; the sentence needs a difference that counts, here 5 %."
+        f"{100.0 * worst:.2g} %. The quasi-static limits change by no more than that if the mass centre is "
+        "accelerated instead of the floor; the claim needs a relevant difference, here 5 %."
     )
 
 

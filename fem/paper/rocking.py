@@ -124,8 +124,8 @@ def eq_3(experiments: Experiments) -> Evidence:
     yield equal(of_bar, period_eq3(radius=0.5 * length, gravity=GRAVITY) / bar, 1.0, 1e-9)
     yield at_most(median, typical_3 / typical_2, 1.0, inside=False)
     yield (
-        "A rocking block has no natural period: from nothing at small rotation its period grows "
-        "beyond every bound at beta. Eq. 3, 2 pi/p, meets the exact block's at "
+        "A rocking block has no natural period: its period is zero at small rotation and grows without bound "
+        "towards beta. Eq. 3, 2 pi/p, equals the period of the exact block at "
         f"{' and '.join(met)}. The median distance of "
         f"Eq. 3 from the runs is {100.0 * typical_3:.0f} %, that of Eq. 2 {100.0 * typical_2:.0f} %."
     )
@@ -177,7 +177,7 @@ def control_periods(experiments: Experiments) -> Evidence:
             what = f"{name}: T_C/T of Eq. 4, phi_0 = {share:g} beta"
             yield at_most(what, CONTROL_PERIOD / periods[share], 0.4, inside=share >= 0.7)
     yield (
-        f"From {RELEASES[0]:g} to {RELEASES[-1]:g} beta the period goes {'; '.join(ranges)}. As long as it is "
+        f"From {RELEASES[0]:g} to {RELEASES[-1]:g} beta the period ranges {'; '.join(ranges)}. As long as it is "
         f"shorter than T_C = {CONTROL_PERIOD:g} s the container is on the plateau. That T_C belongs to ground D of "
         "EN 1998-1 Table 3.2, the paper's S = 1.5 to another ground."
     )
@@ -224,8 +224,8 @@ def semi_stable_orbit(experiments: Experiments) -> Evidence:
         lines.append(PlottedLine(x=rotation, y=velocity, label=case.what))
     band = _band_of_kicks(experiments)
     yield (
-        "The orbit through rest at beta parts the motions that come back from those that fall: of "
-        f"{len(parted)} releases beside it {sum(parted)} ended so. The largest kick that "
+        "The orbit through rest at beta separates the motions that return from those that overturn: of "
+        f"{len(parted)} releases on either side {sum(parted)} ended so. The largest kick that "
         f"returns is {' and '.join(f'{one:.4f}' for one in kicked)} of the analytic one for the rigid "
         f"stack and box; for the stack over deformation, contact and support it lies between {band.low:.2f} and "
         f"{band.high:.2f} of it (scanned by 0.02)."

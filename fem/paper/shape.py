@@ -90,9 +90,9 @@ def cylinder(experiments: Experiments) -> Evidence:
         f"in place of 4/3: p changes by {100.0 * (p - 1.0):+.2f} %, e "
         f"by {100.0 * (e - 1.0):+.2f} %, and the largest rotation in the runs by "
         f"{100.0 * (runs - 1.0):+.2f} %. This is motion in the plane. A cylinder does not "
-        "stay in it: it can roll on its rim, which no model of this program knows. The case file knows prisms "
-        "alone: the run is one of the rigid model with the cylinder's inertia put in its place, not "
-        "repeatable from the command line; the other figures are of the analytic block."
+        "stay in it: it can roll on its rim, which no model of this program describes. A case file describes "
+        "prisms only: the run is that of the rigid model with the inertia of the cylinder, and cannot be repeated "
+        "from the command line; the other numbers are those of the analytic block."
     )
     yield case
     yield table(
@@ -187,8 +187,8 @@ def rigid_assumption(experiments: Experiments) -> Evidence:
         f"With mu 0.4/0.2 the rigid block {_verb(outcomes[0])} to {ratios[0]:.3f} of beta. The shell "
         f"{_verb(outcomes[1])} to {ratios[1]:.3f} with mu 0.4/0.2, and {_verb(outcomes[4])} to {ratios[4]:.3f} "
         "with mu_k = mu_s; solid steel "
-        f"{_verb(outcomes[2])} to {ratios[2]:.3f}. What deformation can change is what an impact leaves: it "
-        "sets the shell ringing, and with its ringing the normal force and the grip."
+        f"{_verb(outcomes[2])} to {ratios[2]:.3f}. Deformation matters after an impact: the "
+        "shell vibrates, and with it the normal force and the friction."
     )
     yield from cases
     yield draw_curves(
@@ -228,12 +228,12 @@ def gaps_between_boxes(experiments: Experiments) -> Evidence:
             yield at_most(what, tension, 0.0, "kN", inside=base is STACK)
             rows.append((f"{kind}, {name}", tension, opened, slid))
     yield (
-        "What the bolts of the joints carry: "
+        "Demands on the bolts of the joints: "
         + "; ".join(
             f"{run}: {tension:.1f} kN at an edge, would open without bolts: {opened}, would slide: {slid}"
             for run, tension, opened, slid in rows
         )
-        + ". The tension of a rocking shell is that of a collision at an impact, and depends on the contact."
+        + ". The tension of a rocking shell is that of an impact, and depends on the contact."
     )
     yield table(
         "Joints from the floor up; faces rigid, friction as on the floor",

@@ -65,7 +65,7 @@ def number_of_boxes(experiments: Experiments) -> Evidence:
     yield (
         f"The paths of stacks that stay flat differ by up to {_largest(flat):.2%}, those of all "
         f"by up to {_largest(every):.0%}: a higher stack lifts earlier (g a/c against mu_s g), "
-        "and what rocks slides otherwise."
+        "and a rocking stack slides differently."
     )
     yield table(
         "Path over the floor in 10 s, 10 rad/s, rigid",
@@ -130,8 +130,8 @@ def slipping_stabilises(experiments: Experiments) -> Evidence:
     yield (
         f"Of {sum(cells)} motions that make the stack slip, over all frictions, slipping saves "
         f"{sum(saved_by)} from overturning and overturns {sum(lost_by)} that would have stood ({sum(surely)} of "
-        f"them surely); {sum(further)} turn further than without slipping, which changes when the container is "
-        f"set down. With mu_s below a/c the stack lifts from the floor in {sum(c.tilted for c in low_cells)} of "
+        f"them sure); {sum(further)} rotate further than without slipping, which changes the times of the impacts. "
+        f"With mu_s below a/c the stack lifts from the floor in {sum(c.tilted for c in low_cells)} of "
         f"{len(low_cells)} cells."
     )
     yield from worse
@@ -195,8 +195,8 @@ def same_amplitude(experiments: Experiments) -> Evidence:
         if name != "mu 1/1"
     )
     yield (
-        "Of the amplitudes tried the stack turns further than with friction that holds (1.0) at "
-        f"{further}, of {amplitudes.size} each. It overturns at {np.sum(held >= 1.0)} with friction that "
+        "The stack rotates further than with friction that holds (1.0) at "
+        f"{further}, of {amplitudes.size} amplitudes each. It overturns at {np.sum(held >= 1.0)} with friction that "
         f"holds and at {np.sum(curves['mu 0.4/0.2'] >= 1.0)} with 0.4/0.2. With mu 0.25/0.125, below "
         f"a/c, its largest rotation is {curves['mu 0.25/0.125'].max():.2g} of beta."
     )
