@@ -13,7 +13,8 @@ from typing import Any
 from contact.reference.rigid_block import RigidBlock
 from fem.assessment.rigid_check import block_of
 from fem.batch.case_maker import CaseMaker
-from fem.batch.runner import Row, Shelf, run_cases
+from fem.batch.container_cache import ContainerCache
+from fem.batch.runner import Row, run_cases
 from fem.case.case import Case
 from fem.model.model import Model, build_model
 from fem.model.support import normal_penalty
@@ -146,7 +147,7 @@ class Experiments:
         stop: Callable[[], bool] = lambda: False,
     ) -> None:
         self._jobs, self._progress, self._stop = jobs, progress, stop
-        self._shelf = Shelf()
+        self._containers = ContainerCache()
         self._makers: dict[str, CaseMaker] = {}
         self._rows: dict[Any, Row] = {}
         self._runs: dict[Any, CaseRun] = {}
@@ -214,7 +215,7 @@ class Experiments:
     def model(self, wanted: PaperCase) -> Model:
         """The model of a case, at t = 0."""
         case = self.case(wanted)
-        return build_model(case, self._shelf.container_of(case))
+        return build_model(case, self._containers.container_of(case))
 
     def block(self, wanted: PaperCase) -> RigidBlock:
         """The analytic block with the mass and geometry of a case."""
@@ -224,7 +225,7 @@ class Experiments:
         """The rigid container and the shell: on corners of three penalties and two dampings, on feet, flat."""
         shell = wanted.but(SHELL)
         case = self.case(shell)
-        auto = normal_penalty(case, self._shelf.container_of(case).mesh)
+        auto = normal_penalty(case, self._containers.container_of(case).mesh)
         corners = [
             shell.but(
                 {

@@ -7,14 +7,14 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fem.figures.heat_map import MapCurve, Panel, draw_heat_map
-from fem.figures.style import GREY, STATE_COLOURS, VERMILLION, WIDTH, house_style, svg_of
+from fem.figures.style import GREY, WIDTH, house_style, svg_of
 from fem.paper.claims import ClaimFigure
 from fem.paper.maps import OutcomeMap
 from fem.runtime.arrays import FloatArray
+from fem.sweep.maps import OUTCOME_COLOURS
 
 #: distinguishable without colour vision (Okabe and Ito) and dark enough on white
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#7a4d9f", "#333333", "#b8860b")
-OUTCOME_COLOURS = {**STATE_COLOURS, "failed": VERMILLION}  # as on every other map
 HEIGHT = 3.3  #: [inch]
 
 
