@@ -132,8 +132,9 @@ def draw_heat_map(
             figure.colorbar(image, ax=places[: len(panels)], label=bar, pad=0.02, aspect=30)
         handles = _legend(panels, colours if isinstance(colours, Mapping) else {})
         handles += places[0].get_legend_handles_labels()[0]
-        if handles:
-            figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 7))
+        if handles:  # names of curves are long
+            columns = 4 if any(panel.curves for panel in panels) else 7
+            figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), columns))
     return figure
 
 

@@ -54,7 +54,8 @@ def draw_curves(
         if y_limits is not None:
             axes.set_ylim(*y_limits)
         if any(line.label for line in lines):
-            axes.legend()
+            figure.legend(loc="outside lower center", ncols=4)
+        axes.margins(x=0.02)
     return ClaimFigure(name=name, caption=caption, svg=svg_of(figure))
 
 
