@@ -133,8 +133,8 @@ def draw_heat_map(
         handles = _legend(panels, colours if isinstance(colours, Mapping) else {})
         handles += places[0].get_legend_handles_labels()[0]
         if handles:  # names of curves are long
-            columns = 4 if any(panel.curves for panel in panels) else 7
-            figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), columns))
+            most = 4 if any(panel.curves for panel in panels) else 7
+            figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), most))
     return figure
 
 
