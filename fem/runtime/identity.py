@@ -19,7 +19,7 @@ def versions() -> dict[str, str]:
 
 @cache
 def program_identity() -> dict[str, str]:
-    """Versions, machine and digest of sources and shipped files: a run resumes to the same bits only where they are equal."""
+    """Versions, machine, digest of sources and shipped files: runs resume only where they are the same."""
     digest = hashlib.sha256()
     root = Path(__file__).parents[2]
     files = (path for package in PACKAGES for path in (root / package).rglob("*"))
