@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from fem.results.folder import read_result
+from fem.results.kinds import read_result
 
 COARSE = ("solver.model=full", "solver.element_size_m=0.5")
 

@@ -1,10 +1,9 @@
-"""Fields of a run for ParaView, pyvista and meshio: one VTU a frame, and a PVD that lists them by time.
+"""Fields of a run for ParaView, pyvista and meshio: one VTU file a frame, and a PVD file that lists them by time.
 
-The elevation lies in the x-y plane of the viewer: points and vectors are (x, z, 0), since a vector of two
-components aborts ParaView's Warp By Vector. Points stand where the container stood, unstressed, on the floor
-as it was at t = 0. Displacement includes the floor's motion: warping by it shows the container where it is.
-Numbers are single precision, compressed. A frame is written beside its place and renamed before the PVD,
-replaced in the same way, names it: the series is valid at every moment.
+The elevation is in the x-y plane of the viewer: points and vectors are (x, z, 0), since a vector of two components
+aborts ParaView's Warp By Vector. Points are those of the unstressed container on the floor at t = 0. Displacement
+includes the floor's motion: warping by it shows the container where it is. Numbers are single precision, compressed.
+A frame is complete before the list, replaced in one step, names it: the series is valid at every moment.
 """
 
 import os
@@ -42,7 +41,7 @@ class FieldWriter:
         points: reference positions of the nodes (x, z), shape (n, 2) [m].
         cells: nodes of each cell in the order of VTK, shape (m, 4) or (m, 9).
         region: kind of each cell, shape (m,).
-        kept_times: times of the frames of an interrupted run that stay [s]; other old frames are removed.
+        kept_times: times of the frames of an interrupted run that are kept [s]; other old frames are removed.
 
     Raises:
         ValueError: shapes that do not fit.
@@ -80,11 +79,11 @@ class FieldWriter:
 
     @property
     def times(self) -> tuple[float, ...]:
-        """Times of the frames so far [s]: what a checkpoint needs to go on from here."""
+        """Times of the frames so far [s], for a checkpoint."""
         return tuple(self._times)
 
     def sync(self) -> None:
-        """Bring the frames written since the last time to the disk."""
+        """Bring the frames written since the last call to the disk."""
         while self._synced < len(self._times):
             with open(self.folder / frame_name(self._synced), "rb") as file:
                 os.fsync(file.fileno())
@@ -178,7 +177,7 @@ class Fields:
     files: tuple[Path, ...]  #: of the frames, in order
 
     def __repr__(self) -> str:
-        """One line: what a notebook shows."""
+        """One line, for a notebook."""
         span = f" from {self.times[0]:g} to {self.times[-1]:g} s" if len(self) else ""
         return f"<fields: {len(self)} frames{span}>"
 
@@ -225,7 +224,7 @@ class Fields:
 
 
 def open_fields(folder: Path) -> Fields:
-    """The frames in the folder `fields` of a run, of one that still goes on too.
+    """The frames in the folder `fields` of a run, finished or not.
 
     Raises:
         ValueError: a series that is damaged or names a file outside the folder.

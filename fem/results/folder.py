@@ -5,8 +5,6 @@ One JSON file marks the folder; it holds the status and the hash of what was ask
 replaced whole, one process writes at a time, and only files of the result's kind are ever removed.
 """
 
-import json
-import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -19,13 +17,11 @@ from fem.results.archive import read_archive, write_archive
 from fem.results.disk import require_room
 from fem.results.errors import OTHER_FOLDER, FolderError, writing_into
 from fem.results.files import remove_files, to_json, write_atomically
-from fem.results.kinds import RUN, ResultKind
+from fem.results.kinds import ResultKind, read_result
 from fem.results.lock import FolderLock, locked_folder
 from fem.runtime.identity import program_identity, versions
 
 REMEDY = f"{OTHER_FOLDER}, or overwrite it with --force"
-#: ends of the names of numbers in the result of a run
-MEASURED = re.compile(r"_(m|m2|m3|s|s2|N|Nm|J|Pa|Hz|rad|ratio)$")
 
 
 def program_of_results() -> dict[str, Any]:
@@ -201,47 +197,6 @@ def find_result(path: Path, kind: ResultKind, request: str, *, force: bool = Fal
     if found[kind.request] != request:
         raise FolderError(f"{path} holds the results of another {kind.asked}; {REMEDY}")
     return found
-
-
-def read_result(path: Path, kind: ResultKind = RUN) -> dict[str, Any]:
-    """The content of a marking file, `run.json` by default.
-
-    Raises:
-        FolderError: there is none, or it is damaged.
-    """
-    again = "compute it again with --force"
-    try:
-        result = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise FolderError(
-            f"{path}: cannot be read ({error.strerror}); is this the folder of {kind.article} {kind.name}?"
-        ) from None
-    except ValueError:
-        result = None
-    if not isinstance(result, dict) or not isinstance(result.get(kind.request), str):
-        raise FolderError(f"{path}: damaged, or not the result of {kind.article} {kind.name}; {again}")
-    wrong = _not_a_number(result) if kind is RUN else None
-    if wrong is not None:
-        raise FolderError(f"{path}: damaged, {wrong} is not a number; {again}")
-    return result
-
-
-def _not_a_number(content: Any) -> str | None:
-    """The first key that is named after a unit or a ratio and holds something else, or None."""
-    if isinstance(content, list):
-        return next((wrong for wrong in map(_not_a_number, content) if wrong is not None), None)
-    if not isinstance(content, dict):
-        return None
-    for key, value in content.items():
-        values = value if isinstance(value, list) else [value]
-        if MEASURED.search(key) and not all(
-            one is None or isinstance(one, int | float | dict) for one in values
-        ):
-            return str(key)
-        wrong = _not_a_number(value)
-        if wrong is not None:
-            return wrong
-    return None
 
 
 def _names_in(path: Path) -> list[str]:

@@ -1,14 +1,13 @@
 """The history of a run: one row a sample on an exact time grid, as a table in memory and as CSV.
 
-SI units, named in the columns; x positive to the right, z up, rotation positive toward +x, forces on the
-container. Numbers are written so that reading them gives the same bits (shortest exact decimal form). The
-file grows by whole lines and is readable while the run goes on. A kill -9 amid a write may leave the first part of
-what was to be written, for the system writes page by page: then the last line has no end, and is nobody's sample.
-`read_history` leaves it out, a run that is gone on with cuts it off; any other reader has to drop what follows the
-last line end. A stack has three columns more for every joint between its boxes (`fem.model.joints`), counted from
-the floor
-up, behind these. A run that was compared with the rigid block (`fem.assessment.rigid_check`) has the block's
-rotation as its last column, nan where it is not followed.
+SI units, named in the columns; x positive to the right, z up, rotation positive toward +x, forces on the container.
+Numbers are written so that reading them gives the same bits (shortest exact decimal form).
+
+The file grows by whole lines and can be read during the run. The system writes page by page, so a kill -9 during a
+write may leave the last line without its end: `read_history` leaves it out, a resumed run cuts it off, and any other
+reader must drop what follows the last line end. A stack has three further columns for every joint between its boxes
+(`fem.model.joints`), counted from the floor up. A run that was compared with the rigid block
+(`fem.assessment.rigid_check`) has the block's rotation as its last column, nan where it is not followed.
 """
 
 import contextlib
@@ -26,7 +25,7 @@ from fem.results.files import write_atomically
 from fem.runtime.arrays import FloatArray
 
 #: Columns of `history.csv`, in a stack followed by those of its joints; `mode` is a word, all others are numbers.
-#: The last four are sums since the start: work of the floor on the container, and where energy went.
+#: The last four are sums since the start: work of the floor on the container, and energy dissipated.
 HISTORY_COLUMNS = (
     "time_s",
     "base_displacement_m",
@@ -54,19 +53,19 @@ MODE = HISTORY_COLUMNS.index("mode")  #: column of the word
 NUMBERS = len(HISTORY_COLUMNS) - 1
 #: Columns of one joint.
 JOINT_COLUMNS = ("joint_{}_normal_N", "joint_{}_shear_N", "joint_{}_moment_Nm")
-#: Rotation of the analytic rigid block under the same floor.
+#: Rotation of the analytic rigid block under the same floor motion.
 ANALYTIC_COLUMN = "analytic_rotation_rad"
 
 
 def history_columns(joints: int = 0, *, analytic: bool = False) -> tuple[str, ...]:
-    """Columns of the history of a container with so many joints, compared with the rigid block or not."""
+    """Columns of the history of a container with this number of joints, compared with the rigid block or not."""
     of_joints = (name.format(joint) for joint in range(1, joints + 1) for name in JOINT_COLUMNS)
     return HISTORY_COLUMNS + tuple(of_joints) + ((ANALYTIC_COLUMN,) if analytic else ())
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class History:
-    """Samples of a run, in the order of `history_columns` without the word.
+    """Samples of a run, in the order of `history_columns` without `mode`.
 
     Raises:
         ValueError: arrays whose shapes do not fit the columns or each other.
@@ -90,7 +89,7 @@ class History:
 
     @property
     def analytic(self) -> bool:
-        """The rotation of the rigid block stands in the last column."""
+        """Whether the last column is the rotation of the rigid block."""
         return (self.values.shape[1] - NUMBERS) % len(JOINT_COLUMNS) == 1
 
     @property
@@ -102,7 +101,7 @@ class History:
         return len(self.modes)
 
     def __repr__(self) -> str:
-        """One line: what a notebook shows."""
+        """One line, for a notebook."""
         return f"<history: {len(self)} samples of {', '.join(self.numbers)}>"
 
     def __getitem__(self, column: str) -> FloatArray:
@@ -116,16 +115,16 @@ class History:
 class HistoryWriter:
     """Appends samples to a history file; a context manager.
 
-    The lines of one `append` are one write to the file, with nothing held back. When the disk is full, what went
-    through of them is cut off again before the error is passed on.
+    The lines of one `append` are written at once. When the disk is full, those that were written are cut off again
+    before the error is raised.
 
     Args:
-        path: the file; made anew, unless `position` is given.
-        position: where an interrupted run had come to (`position` of its writer); what follows is cut off.
+        path: the file; replaced unless `position` is given.
+        position: length of the file to resume from (`position` of its writer); what follows is cut off.
         joints: between the boxes of the container, for the header.
 
     Raises:
-        ValueError: a position beyond the end of the file, which then is not that run's.
+        ValueError: a position beyond the end of the file.
         OSError: the file cannot be made or written.
     """
 
@@ -137,7 +136,7 @@ class HistoryWriter:
             write_atomically(path, header)
             position = len(header)
         if not path.is_file() or path.stat().st_size < position:
-            raise ValueError(f"{path}: the history ends before byte {position}, where the run is to go on")
+            raise ValueError(f"{path}: the history ends before byte {position}, where the run is to resume")
         self._file = open(path, "r+b", buffering=0)  # noqa: SIM115
         self._position = position
         self._file.truncate(position)
@@ -146,7 +145,7 @@ class HistoryWriter:
 
     @property
     def position(self) -> int:
-        """Bytes of the whole lines written so far: what a checkpoint needs to go on from here."""
+        """Bytes of the whole lines written so far, for a checkpoint."""
         return self._position
 
     @property
@@ -155,7 +154,7 @@ class HistoryWriter:
         return self._digest.hexdigest()
 
     def sync(self) -> None:
-        """Bring what was written to the disk."""
+        """Bring the file to the disk."""
         os.fsync(self._file.fileno())
 
     def append(self, rows: FloatArray, modes: Sequence[str]) -> None:
@@ -184,7 +183,7 @@ class HistoryWriter:
             while done < len(data):
                 done += self._file.write(data[done:])
         except OSError as error:
-            with contextlib.suppress(OSError):  # the first error is the one to tell
+            with contextlib.suppress(OSError):  # the first error is the one to report
                 os.ftruncate(self._file.fileno(), self._position)
                 self._file.seek(self._position)
             raise OSError(error.errno, error.strerror, str(self.path)) from None
@@ -193,7 +192,7 @@ class HistoryWriter:
 
 
 def read_history(path: Path) -> History:
-    """Read a history file, that of a running or killed run too: a last line without its end is left out.
+    """Read a history file, also of a running or killed run: a last line without its end is left out.
 
     Raises:
         ValueError: other columns than `history_columns`, or a line that does not hold them (named).
@@ -218,10 +217,10 @@ def read_history(path: Path) -> History:
 
 
 def add_analytic_rotation(path: Path, rotation: FloatArray) -> None:
-    """Put the rigid block's rotation beside the run's, as the last column of a finished history.
+    """Add the rigid block's rotation to a finished history, as its last column.
 
     Args:
-        path: the file, replaced whole; a column of that name is replaced.
+        path: the file; a column of that name is replaced.
         rotation: at each sample, shape (n_samples,) [rad]; nan where the block is not followed.
 
     Raises:
@@ -244,7 +243,7 @@ def _whole_lines(path: Path) -> list[str]:
 
 
 def _require_columns(values: FloatArray, modes: Sequence[str]) -> None:
-    """Refuse numbers whose rows or columns are not those of a history."""
+    """Refuse numbers whose shape is not that of a history."""
     rows, columns = values.shape
     if rows != len(modes) or columns < NUMBERS or (columns - NUMBERS) % len(JOINT_COLUMNS) > 1:
         raise ValueError(

@@ -1,6 +1,15 @@
 """The kinds of results that have a folder: the file that marks each, and the files that each may replace."""
 
+import json
+import re
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from fem.results.errors import FolderError
+
+#: ends of the names of numbers in the result of a run
+MEASURED = re.compile(r"_(m|m2|m3|s|s2|N|Nm|J|Pa|Hz|rad|ratio)$")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,3 +96,44 @@ VERIFICATION = ResultKind(
     own=(),
 )
 KINDS = (RUN, SWEEP, ENSEMBLE, RESPONSE, PAPER, VERIFICATION)
+
+
+def read_result(path: Path, kind: ResultKind = RUN) -> dict[str, Any]:
+    """The content of a marking file, `run.json` by default.
+
+    Raises:
+        FolderError: there is none, or it is damaged.
+    """
+    again = "compute it again with --force"
+    try:
+        result = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise FolderError(
+            f"{path}: cannot be read ({error.strerror}); is this the folder of {kind.article} {kind.name}?"
+        ) from None
+    except ValueError:
+        result = None
+    if not isinstance(result, dict) or not isinstance(result.get(kind.request), str):
+        raise FolderError(f"{path}: damaged, or not the result of {kind.article} {kind.name}; {again}")
+    wrong = _not_a_number(result) if kind is RUN else None
+    if wrong is not None:
+        raise FolderError(f"{path}: damaged, {wrong} is not a number; {again}")
+    return result
+
+
+def _not_a_number(content: Any) -> str | None:
+    """The first key that is named after a unit or a ratio and holds something else, or None."""
+    if isinstance(content, list):
+        return next((wrong for wrong in map(_not_a_number, content) if wrong is not None), None)
+    if not isinstance(content, dict):
+        return None
+    for key, value in content.items():
+        values = value if isinstance(value, list) else [value]
+        if MEASURED.search(key) and not all(
+            one is None or isinstance(one, int | float | dict) for one in values
+        ):
+            return str(key)
+        wrong = _not_a_number(value)
+        if wrong is not None:
+            return wrong
+    return None

@@ -1,8 +1,7 @@
 """A run opened for reading: its result, case, history and fields, for a notebook, a figure or a report.
 
-Only what is asked for is read, and kept: `run.json` at once, the case and the history on first use, a field
-frame when it is taken. A run that still goes on, or was cut off, opens too, with what it has. SI units; x to
-the right, z up, rotation > 0 toward +x.
+Only what is asked for is read: `run.json` at once, the case and the history on first use, a frame of the fields each
+time. An unfinished run opens as well, with the files it has. SI units; x to the right, z up, rotation > 0 toward +x.
 """
 
 import importlib
@@ -16,9 +15,8 @@ import numpy as np
 from fem.case.case import Case, load_case
 from fem.results.errors import FolderError
 from fem.results.fields import Fields, Frame, open_fields
-from fem.results.folder import read_result
 from fem.results.history import History, read_history
-from fem.results.kinds import KINDS, RUN
+from fem.results.kinds import KINDS, RUN, read_result
 from fem.results.run_files import RunFiles
 from fem.results.run_result import RunResult
 from fem.runtime.arrays import FloatArray
@@ -29,28 +27,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class OpenedRun:
-    """The folder of a run, read as it is asked.
+    """The folder of a run, read when it is asked for.
 
-    Every property raises FolderError, naming the file and the way out, where that file is missing or damaged.
+    Every property raises FolderError, with the file and the way out, if that file is missing or damaged.
     """
 
     place: RunFiles
     result: dict[str, Any]  #: as in `run.json`
 
     def __repr__(self) -> str:
-        """One line: what a notebook shows."""
+        """One line, for a notebook."""
         outcome = (self.result.get("verdict") or {}).get("outcome")
-        told = f", {outcome}" if outcome else ""
-        return f"<run {self.name!r} in {str(self.folder)!r}: {self.status}{told}>"
+        suffix = f", {outcome}" if outcome else ""
+        return f"<run {self.name!r} in {str(self.folder)!r}: {self.status}{suffix}>"
 
     @property
     def folder(self) -> Path:
-        """Where it lies."""
+        """Its path."""
         return self.place.path
 
     @property
     def name(self) -> str:
-        """Of the case."""
+        """Name of the case."""
         return str(self.result.get("case") or self.folder.name)
 
     @property
@@ -68,7 +66,7 @@ class OpenedRun:
 
     @property
     def slenderness_angle(self) -> float:
-        """Beyond which it falls if left alone [rad]."""
+        """Slenderness angle: beyond it the container falls if left alone [rad]."""
         try:
             return float(self.result["static"]["slenderness_angle_rad"])
         except (KeyError, TypeError):
@@ -76,7 +74,7 @@ class OpenedRun:
 
     @cached_property
     def case(self) -> Case:
-        """With every default and "auto" replaced."""
+        """The case with every default and "auto" replaced."""
         if not self.place.resolved.is_file():
             raise FolderError(f"{self.place.resolved}: missing; run the case again")
         try:
@@ -143,7 +141,7 @@ class OpenedRun:
 
         `run.grid(1.5).warp_by_vector("displacement_m").plot(scalars="von_mises_Pa", cpos="xy")`
         """
-        # pyvista takes a second to import; only who asks for a grid waits for it.
+        # pyvista takes a second to import; only a caller who asks for a grid waits for it.
         grid: UnstructuredGrid = importlib.import_module("fem.results.grid").grid_of(self.frame(time))
         return grid
 
@@ -152,10 +150,10 @@ def open_run(folder: str | Path) -> OpenedRun:
     """Open the folder of a run.
 
     Args:
-        folder: that holds `run.json`; the path of `run.json` itself will do, and `~` is one's home.
+        folder: that holds `run.json`, or the path of `run.json` itself; `~` is the home folder.
 
     Raises:
-        FolderError: no run is there, or its `run.json` is damaged.
+        FolderError: it holds no run, or its `run.json` is damaged.
     """
     path = Path(folder).expanduser()
     path = path.parent if path.name == "run.json" else path

@@ -3,8 +3,7 @@
 from fem.results.errors import FolderError, OutputError
 from fem.results.errors import writing_into as naming_what_cannot_be_written
 from fem.results.files import to_json, write_atomically
-from fem.results.folder import read_result
-from fem.results.kinds import RUN
+from fem.results.kinds import RUN, read_result
 from fem.results.run_files import RunFiles as RunFolder
 from fem.results.run_files import copy_data_files
 

@@ -16,8 +16,7 @@ from fem.batch.axes import Axis, shape_of
 from fem.batch.log import fields_of, read_lines
 from fem.batch.runner import SCALARS
 from fem.results.errors import FolderError
-from fem.results.folder import read_result
-from fem.results.kinds import SWEEP
+from fem.results.kinds import SWEEP, read_result
 
 #: columns behind the values of axes and derived keys in every row
 FOUND = ("status", *SCALARS, "reason", "wall_s")

@@ -8,7 +8,7 @@ from fem.__main__ import main
 from fem.assessment.verdict import verdict_of
 from fem.case.case import Case, load_case
 from fem.model.model import Model, build_model
-from fem.results.folder import read_result
+from fem.results.kinds import read_result
 from fem.results.run_result import Band, BandMember, Verdict
 from fem.run import band
 from fem.run.band import band_of, summed_up, wants_band

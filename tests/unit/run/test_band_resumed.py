@@ -15,7 +15,7 @@ from interrupted_runs import COARSE, one_slice, same
 import fem.run.simulation
 from fem.__main__ import main
 from fem.results.archive import write_archive
-from fem.results.folder import read_result
+from fem.results.kinds import read_result
 from fem.run import band
 from fem.run.band_checkpoint import BandCheckpoint
 from fem.runtime.identity import program_identity

@@ -15,8 +15,8 @@ from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.__main__ import main
 from fem.case.case import load_case
-from fem.results.folder import read_result
 from fem.results.history import History, read_history
+from fem.results.kinds import read_result
 from fem.run.run import Run, RunOptions, run_case
 from fem.runtime.progress import SilentReporter
 

@@ -18,8 +18,8 @@ import fem.run.checkpoint
 from fem.__main__ import main
 from fem.results.archive import read_archive, write_archive
 from fem.results.fields import open_fields
-from fem.results.folder import read_result
 from fem.results.history import read_history
+from fem.results.kinds import read_result
 from fem.results.lock import LOCK_NAME, OWNER_NAME, locked_folder
 from fem.runtime.progress import ScreenReporter
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from fem.results.folder import read_result
 from fem.results.history import read_history
+from fem.results.kinds import read_result
 
 LONG = (
     "solver.model=full",

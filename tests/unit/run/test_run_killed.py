@@ -12,8 +12,8 @@ import pytest
 from interrupted_runs import same
 
 from fem.results.fields import open_fields
-from fem.results.folder import read_result
 from fem.results.history import read_history
+from fem.results.kinds import read_result
 
 #: the command line, with a checkpoint after every slice
 PROMPT = """

@@ -9,7 +9,7 @@ import pytest
 from interrupted_runs import same
 
 from fem.__main__ import main
-from fem.results.folder import read_result
+from fem.results.kinds import read_result
 from fem.run import setup_cache
 from fem.solid import reduction
 
