@@ -126,7 +126,7 @@ class _Printed(float):
 Numbers = dict[str, _Printed | str]
 
 
-def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Line]]]:
+def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[SheetLine]]]:
     """The calculation in groups: title and lines; the case is resolved."""
     numbers = _numbers(static, case)
     height = [HEIGHT] if case.container.mesh_file is None else []
@@ -198,7 +198,7 @@ def _action(action: ActionCheck) -> Numbers:
     }
 
 
-def _utilisations(action: ActionCheck, numbers: Numbers, force: str) -> list[Line]:
+def _utilisations(action: ActionCheck, numbers: Numbers, force: str) -> list[SheetLine]:
     """Sliding, where there is friction, and overturning; `force` is the symbol of the base shear."""
     lines = []
     if math.isfinite(action.sliding.utilisation):
@@ -208,8 +208,8 @@ def _utilisations(action: ActionCheck, numbers: Numbers, force: str) -> list[Lin
     return [*lines, _line(row, numbers, "stands" if action.overturning.passed else "overturns")]
 
 
-def _line(row: SheetRow, numbers: Numbers, verdict: str = "") -> Line:
-    return Line(
+def _line(row: SheetRow, numbers: Numbers, verdict: str = "") -> SheetLine:
+    return SheetLine(
         name=row.name.format(**numbers),
         formula=Markup(SYMBOL.sub(_symbol, row.formula)),  # our own text, never a user's
         numbers=row.numbers.format(**numbers),
