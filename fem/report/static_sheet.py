@@ -98,7 +98,7 @@ RESTITUTION = SheetRow(
 
 
 @dataclass(frozen=True, kw_only=True)
-class Line:
+class SheetLine:
     """One step of the calculation with its numbers, for a page."""
 
     name: str
