@@ -72,15 +72,13 @@ def bootstrap_fits(
     if independent:
         shares = np.divide(counts.sum(axis=1), totals, out=np.zeros(len(totals)), where=totals > 0.0)
         drawn = generator.binomial(totals.astype(int), shares, size=(BOOTSTRAPS, len(totals))).astype(float)
-        weights = totals
     else:
         picked = generator.integers(counts.shape[1], size=(BOOTSTRAPS, *counts.shape))
         levels = np.arange(len(totals))[:, None]
         # Replicates lack the draws that failed; a resampled one counts as if it lacked the average number.
         share = np.divide(counts, sizes, out=np.zeros_like(counts), where=sizes > 0.0)
         drawn = share[levels, picked].mean(axis=2) * totals
-        weights = totals
-    slopes, intercepts, sound = _probit(np.log(strengths), drawn, weights)
+    slopes, intercepts, sound = _probit(np.log(strengths), drawn, totals)
     return np.exp(-intercepts[sound] / slopes[sound]), 1.0 / slopes[sound]
 
 

@@ -7,7 +7,6 @@ that nor on the number of cores.
 import hashlib
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -40,15 +39,6 @@ DRAWS = "draws.csv"
 BYTES_OF_A_DRAW, BYTES_OF_A_NUMBER, BYTES_OF_A_POINT, BYTES_BESIDE = 45, 20, 1000, 500_000
 WORDS = {STOOD: "stood", OVERTURNED: "overturned", FAILED: "failed"}
 CODES = {word: code for code, word in WORDS.items()}
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class EnsembleResult:
-    """Result of an ensemble."""
-
-    status: str  #: completed | interrupted | failed: no draw has an outcome
-    result: dict[str, Any]  #: as in ensemble.json
-    points: tuple[PointResult, ...]
 
 
 class DrawRows:
@@ -100,8 +90,11 @@ def run_ensemble(
     force: bool = False,
     resume: bool = False,
     reporter: Reporter | None = None,
-) -> EnsembleResult:
+) -> dict[str, Any]:
     """Compute an ensemble into a folder; a finished one of the same request is not computed again.
+
+    Returns:
+        The content of `ensemble.json`.
 
     Raises:
         CaseError, FolderError: bad input.
@@ -116,7 +109,7 @@ def run_ensemble(
     ):
         if place.finished and place.found:
             reporter.message(f"{folder} holds this ensemble already; --force computes it again")
-            return EnsembleResult(status="completed", result=place.found, points=())
+            return place.found
         if place.resuming:
             place.require_same_program()
         place.require_room(required_disk(ensemble), "the ensemble", "take fewer draws")
@@ -136,7 +129,7 @@ def run_ensemble(
         return _finish(ensemble, place, draws)
 
 
-def _finish(ensemble: Ensemble, place: ResultFolder, draws: DrawRows) -> EnsembleResult:
+def _finish(ensemble: Ensemble, place: ResultFolder, draws: DrawRows) -> dict[str, Any]:
     """Count what there is, and write it."""
     complete = (draws.codes != MISSING).all(axis=1)
     points = [count_point(ensemble, int(k), draws.codes[k]) for k in np.flatnonzero(complete)]
@@ -152,7 +145,7 @@ def _finish(ensemble: Ensemble, place: ResultFolder, draws: DrawRows) -> Ensembl
             place.write_text(f"figures/{name}.svg", svg)
     result = result_of(ensemble, points, fragility, status)
     place.write_result(result)
-    return EnsembleResult(status=status, result=result, points=tuple(points))
+    return result
 
 
 def required_disk(ensemble: Ensemble) -> float:

@@ -14,7 +14,6 @@ import numpy as np
 from contact.motion.kernel import floor_motion
 from contact.stepping.body import ANGULAR_VELOCITY, ROTATION, VELOCITY_X
 from contact.stepping.integrator import FAILED, OVERTURNED, REACHED, advance_compiled
-from contact.stepping.observables import NEVER
 from contact.stepping.state import ROW_ANGULAR_VELOCITY, ROW_ROTATION, ROW_SLIP
 from fem.assessment.verdict import audit
 from fem.response.model import DrivenModel, section_times, with_sections
@@ -47,7 +46,6 @@ class Orbit:
     sections: FloatArray  #: (n, 4), see `SECTION_COLUMNS`
     extremes: FloatArray  #: (n, 6), see `EXTREME_COLUMNS`
     portrait: FloatArray  #: (n_samples, 2) rotation [rad] and angular velocity [rad/s] over the last periods
-    overturned_at: float | None = None  #: since the first of these periods began [s]
     reason: str | None = None  #: why it failed
 
 
@@ -120,13 +118,11 @@ def follow_periods(
     else:
         reason = reason or audit(driven.model)
         status = "failed" if reason else status
-    fallen = float(track.overturned_at)
     return driven, Orbit(
         status=status,
         sections=np.array(sections).reshape(-1, len(SECTION_COLUMNS)),
         extremes=np.array(extremes).reshape(-1, len(EXTREME_COLUMNS)),
         portrait=np.concatenate(portraits) if portraits else np.zeros((0, 2)),
-        overturned_at=fallen if fallen < NEVER else None,
         reason=reason,
     )
 

@@ -45,11 +45,8 @@ class Perturbation(CaseTable):
         default=0.5, description="rotation ratio above which a standing cell counts as near"
     )
 
-    def members(self, case: Case) -> list[dict[str, Any]]:
+    def members(self, case: Case) -> Iterator[dict[str, Any]]:
         """The keys that each copy of a case changes."""
-        return list(self._members(case))
-
-    def _members(self, case: Case) -> Iterator[dict[str, Any]]:
         for factor in (1.0 - self.amplitude_share, 1.0 + self.amplitude_share):
             scaled = _scaled_motion(case, factor)
             if scaled and factor != 1.0:
