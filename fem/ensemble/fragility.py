@@ -1,9 +1,6 @@
 """The fragility curve: probability of overturning over the strength of the motion, and a lognormal fit.
 
-p(a) = Phi(ln(a/median)/deviation), by maximum binomial likelihood of the counts: probit regression on ln a. The band
-is that of a bootstrap. A lognormal curve always rises; rocking need not: a stronger motion may leave standing what a
-weaker one overturned. So the counts with their intervals come first; the levels that the fit misses and the levels at
-which the counts fall are reported beside it.
+p(a) = Phi(ln(a/median)/deviation), by maximum binomial likelihood of the counts: probit regression on ln a.
 """
 
 from dataclasses import dataclass

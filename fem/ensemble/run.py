@@ -56,14 +56,8 @@ class DrawRows:
         replicate = draw.number // (self._ensemble.draws // self._ensemble.replicates)
         ratio = row["rotation_ratio"]
         known = ratio is not None and np.isfinite(ratio)
-        return (
-            draw.cell,
-            draw.number,
-            replicate,
-            *draw.values,
-            WORDS[code_of(row)],
-            ratio if known else None,
-        )
+        found = WORDS[code_of(row)], ratio if known else None
+        return draw.cell, draw.number, replicate, *draw.values, *found
 
     def note(self, line: str) -> None:
         """Add a line of the log."""

@@ -1,8 +1,4 @@
-"""What two sweeps over the same frequencies show: coexisting motions, jumps, drop-outs.
-
-Two motions at one frequency differ if one overturned and the other did not, if one is at rest and the other not, or if
-their largest rotations or slip strokes are further apart than they vary within their own windows.
-"""
+"""What two sweeps over the same frequencies show: coexisting motions, jumps, drop-outs."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass

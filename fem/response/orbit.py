@@ -1,8 +1,6 @@
 """The motion, period by period: a section at the end of each, and the extremes within it.
 
-A section is taken at the floor's turning point at +A, at the exact instant: the stepping ends a step there. Its
-coordinates are the rotation, the angular velocity, the velocity of the mass centre against the floor and what the
-container slid in the period. The distance walked is no coordinate: the floor is the same everywhere.
+The stepping ends a step at each section, the floor's turning point at +A.
 """
 
 import math
@@ -84,18 +82,18 @@ def follow_periods(
             break
         _, floor_velocity, _ = floor_motion(run.motion, end)
         pose, slip = run.old.pose, float(clock.slip)
-        rotation, sliding = samples[:, ROW_ROTATION], samples[:, ROW_SLIP]
+        rotation = np.append(samples[:, ROW_ROTATION], pose[ROTATION])
+        sliding = np.append(samples[:, ROW_SLIP], slip)
         sections.append(
             [pose[ROTATION], pose[ANGULAR_VELOCITY], pose[VELOCITY_X] - floor_velocity, slip - slipped]
         )
-        low, high = min(float(sliding.min()), slip), max(float(sliding.max()), slip)
         extremes.append(
             [
                 float(track.max_rotation),
-                min(float(rotation.min()), float(pose[ROTATION])),
-                max(float(rotation.max()), float(pose[ROTATION])),
+                rotation.min(),
+                rotation.max(),
                 float(track.max_rocking),
-                high - low,
+                np.ptp(sliding),
                 int(track.impacts) - impacts,
             ]
         )

@@ -1,9 +1,4 @@
-"""The long-time motion, judged from sections once a period, with the figures that decide.
-
-- rest: within the limits of a verdict nothing turns and nothing slides;
-- periodic, of period n T: each section equals the one n periods before, within a tolerance, over the whole window;
-- not settled: no such n, and the distance of sections decreases with time;
-- not periodic: no such n up to the largest tried, and no decrease.
+"""The long-time motion, judged from sections once a period, with the figures that decide; the README defines them.
 
 Sections are compared in units of the slenderness angle, of that times the frequency parameter, of the floor's peak
 velocity and of its amplitude.

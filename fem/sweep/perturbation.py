@@ -1,9 +1,4 @@
-"""Sensitivity of a cell: copies of it with motion, friction and contact changed a little.
-
-Each copy changes one thing: the amplitude of the floor by some per cent up and down, both coefficients of friction up
-and down, the phase of a harmonic floor earlier and later, the damping ratio of the contact to each of the values given.
-A cell is unsure if a copy stands where the cell overturns, overturns where it stands, or fails.
-"""
+"""Sensitivity of a cell: copies of it that each change one thing of motion, friction or contact a little."""
 
 import math
 from collections.abc import Iterator

@@ -1,8 +1,4 @@
-"""The perturbed copies of a sweep's cells: which cells have them, and what they show.
-
-Cells near a change of outcome are copied (see `neighbours`), then the neighbours of every unsure cell, until no
-unsure cell has a neighbour without copies.
-"""
+"""The perturbed copies of a sweep's cells: which cells have them, and what they show."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -85,16 +81,10 @@ def band_rows(
 
 
 def perturb_cells(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> PerturbedRows | None:
-    """Perturb the cells near a change of outcome, then the neighbours of those that are unsure.
-
-    Args:
-        runner: runs the copies.
-        sweep: whose cells.
-        cells: their rows, all of them.
-        log: of the copies; those of an earlier attempt are not computed again.
+    """Perturb the cells near a change of outcome, then the neighbours of those that are unsure, until there are none.
 
     Returns:
-        The copies; None where none are wanted.
+        The copies, those that the log held already included; None where none are wanted.
     """
     chosen = sweep.perturbation.cells
     if chosen == "none" or (chosen == "auto" and sweep.base.solver.model == "full"):

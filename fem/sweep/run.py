@@ -55,13 +55,10 @@ def run_sweep(
     """Compute a sweep into a folder; a finished one is not computed again.
 
     Args:
-        sweep: what is asked.
-        folder: of the results.
         jobs: cores to use; all by default. The table does not depend on it.
         workers_of: who computes so many cases of a model, in place of this machine's cores.
         resume: continue with the rows that are there.
         force: overwrite earlier results; also lifts the limit on the number of cells.
-        reporter: of the progress.
 
     Returns:
         The content of `sweep.json`.
