@@ -64,18 +64,6 @@ def test_derived_keys_follow_axes_defaults_and_one_another(sweep_of):
     assert values["initial.velocity_m_s"] == pytest.approx(1.6 + 0.2)
 
 
-def test_a_default_that_follows_an_axis_is_the_cells_own(sweep_of):
-    head = 'case = "sliding"\n[set]\n"solver.model" = "rigid"\n'
-    sweep = sweep_of(
-        '[axes]\n"container.width_m" = [1.0, 1.5]\n[derived]\n"initial.velocity_m_s" = "container.depth_m"\n',
-        head,
-    )
-    given = "depth_m" in sweep.base.container.model_fields_set
-    assert sweep.values(sweep.point(1))["initial.velocity_m_s"] == (
-        sweep.base.container.depth_m if given else 1.5
-    )
-
-
 @pytest.mark.parametrize(
     ("body", "words"),
     [

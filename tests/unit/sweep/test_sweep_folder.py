@@ -4,6 +4,7 @@ import errno
 import json
 import os
 import random
+import shutil
 import subprocess
 import sys
 import time
@@ -17,6 +18,7 @@ from fem.__main__ import main
 from fem.batch.log import RowLog
 from fem.case.validation import CaseError
 from fem.results.errors import FolderError, OutputError
+from fem.runtime.progress import SilentReporter
 from fem.sweep.file import load_sweep
 from fem.sweep.run import check_size, run_sweep
 from fem.sweep.table import open_sweep
@@ -210,3 +212,17 @@ def test_a_disk_that_fills_up_is_named_with_the_way_out(small, tmp_path, monkeyp
     assert run_sweep(small, folder, resume=True)["status"] == "completed"
     run_sweep(small, tmp_path / "alone")
     assert rows_without_wall(folder) == rows_without_wall(tmp_path / "alone")
+
+
+def test_a_folder_that_another_took_is_left_alone(small, tmp_path):
+    folder = tmp_path / "out"
+
+    class Taking(SilentReporter):
+        def tell(self, line):
+            shutil.rmtree(folder)
+            folder.mkdir()
+            (folder / "sweep.json").write_text("another's")
+
+    with pytest.raises(OutputError, match="emptied or taken by another"):
+        run_sweep(small, folder, reporter=Taking())
+    assert (folder / "sweep.json").read_text() == "another's"

@@ -66,7 +66,7 @@ def test_a_cell_stands_where_its_axes_say():
     assert image[1, 3] == pytest.approx(table["rotation_ratio"][cell])
 
 
-def test_failed_cells_have_a_colour_of_their_own():
+def test_failed_cells_have_their_own_colour():
     figure = sweep_map(table_of(FREQUENCY, PEAK), "outcome", MapChoice())
     assert "failed" in [text.get_text() for text in figure.legends[0].get_texts()]
 
