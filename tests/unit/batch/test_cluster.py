@@ -1,4 +1,4 @@
-"""A sweep on a dask cluster: the same table as on this machine; a scheduler that does not answer is reported at once."""
+"""A sweep on a dask cluster: the same table as here; a scheduler that does not answer is reported at once."""
 
 import socket
 import time

@@ -206,9 +206,9 @@ def test_a_disk_that_fills_up_is_named_with_the_way_out(small, tmp_path, monkeyp
         patch.setattr(RowLog, "append", filling)
         with pytest.raises(
             OutputError, match=r"out: cannot be written \(No space left.*--resume continues"
-        ) as told:
+        ) as error:
             run_sweep(small, folder, jobs=1)
-    assert told.value.exit_code == 3
+    assert error.value.exit_code == 3
     assert run_sweep(small, folder, resume=True)["status"] == "completed"
     run_sweep(small, tmp_path / "alone")
     assert rows_without_wall(folder) == rows_without_wall(tmp_path / "alone")
