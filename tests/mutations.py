@@ -20,7 +20,7 @@ class Mutation:
 ELASTICITY = (
     "unit/solid/test_elasticity.py",
     "unit/solid/test_assembly.py",
-    "verification/test_elasticity_patch.py",
+    "verification/test_elements.py",
 )
 MODAL = ("unit/contact/test_modal_body.py",)
 LAWS = ("unit/contact/test_contact_laws.py", "unit/contact/test_contact_solver.py")
@@ -241,20 +241,20 @@ MUTATIONS = (
         file="fem/solid/nodal_kernels.py",
         old="body.turned[2 * i + 1] = cosine * x - sine * z, sine * x + cosine * z",
         new="body.turned[2 * i + 1] = x, z",
-        tests=("verification/test_elasticity_convergence.py", "-k", "turns_far"),
+        tests=("validation/test_verification_checks.py", "-k", "large"),
     ),
     Mutation(
         name="the code's plateau without its 2.5",
         file="fem/model/static_checks.py",
         old="soil_factor * 2.5 / behaviour_factor",
         new="soil_factor / behaviour_factor",
-        tests=("unit/model/test_static_checks.py", "validation/test_seed_paper_numbers.py"),
+        tests=("unit/model/test_static_checks.py", "validation/test_paper_numbers.py"),
     ),
     Mutation(
         name="an audit that lets the scheme win energy",
         file="fem/assessment/verdict.py",
         old="if won > GAIN_LIMIT * reference:",
         new="if won > 1e9 * GAIN_LIMIT * reference:",
-        tests=("validation/test_verify_ladder.py", "-k", "ledger"),
+        tests=("validation/test_verification_checks.py", "-k", "audit"),
     ),
 )

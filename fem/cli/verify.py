@@ -1,9 +1,9 @@
-"""`verify`: climb the verification ladder and say which rows hold."""
+"""`verify`: compute the verification checks and compare every row with its reference."""
 
 import importlib
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
@@ -17,7 +17,7 @@ FOLDER = Path("outputs") / "verify"
 def verify(
     *,
     quick: Annotated[bool, flag("Leave out what takes long: two minutes.")] = False,
-    room: Annotated[tuple[str, ...], flag("Only this room; may be repeated.")] = (),
+    room: Annotated[tuple[str, ...], flag("Only this topic; may be repeated.")] = (),
     out: Annotated[Path, Parameter(help="Folder of verify.json and verify.html.")] = FOLDER,
     as_json: AsJson = False,
     quiet: Quiet = False,
@@ -26,30 +26,24 @@ def verify(
 
     Ends with 3 if one row fails. The table goes to verify.json as well, and with plots to verify.html.
     """
-    ladder = importlib.import_module("fem.verification.suite")
+    suite = importlib.import_module("fem.verification.suite")
     pages = importlib.import_module("fem.verification.page")
-    unknown = [name for name in room if name not in ladder.ROOMS]
-    if unknown:
-        raise ladder.UnknownRoomError(unknown[0])
-    total = len(ladder.chosen_checks(quick=quick, rooms=room))
-    done = 0
+    suite.chosen_checks(quick=quick, topics=room)  # refuses an unknown topic before a folder is made
 
-    def tell(name: str, check: str) -> None:
-        nonlocal done
-        done += 1
+    def report(number: int, count: int, check: Any) -> None:
         if not quiet:
-            print(f"[{done}/{total}] {name}: {check}", file=sys.stderr, flush=True)
+            print(f"[{number}/{count}] {check.topic}: {check.title}", file=sys.stderr, flush=True)
 
     with naming_what_cannot_be_written(out, "ask again, or elsewhere with --out DIR"):
         out.mkdir(parents=True, exist_ok=True)
-    found = ladder.climb(quick=quick, rooms=room, before=lambda name, check: tell(name, check.name))
-    document = to_json(found.to_dict())
+    result = suite.run_suite(quick=quick, topics=room, before=report)
+    document = to_json(result.to_dict())
     with naming_what_cannot_be_written(out, "ask again, or elsewhere with --out DIR"):
         write_atomically(out / "verify.json", document)
-        write_atomically(out / "verify.html", pages.page(found))
+        write_atomically(out / "verify.html", pages.page(result))
     if as_json:
         print(document.rstrip())
     else:
-        print("\n".join(pages.table_lines(found)))
+        print("\n".join(pages.table_lines(result)))
         print(f"{out / 'verify.html'} shows the convergence plots")
-    return 0 if found.failures == 0 else FAILED
+    return 0 if result.failures == 0 else FAILED

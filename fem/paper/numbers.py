@@ -11,7 +11,7 @@ from fem.model.static_checks import StaticChecks
 from fem.paper.cases import PLATEAU
 from fem.paper.claims import Comparison, Finding, Statement, Table
 from fem.paper.experiments import RIGID, Laboratory, Row
-from fem.verification.statics import BOX_HEIGHT, BOX_MASS, WIDTH, seed_checks
+from fem.verification.statics import BOX_HEIGHT, BOX_MASS, WIDTH, paper_checks
 
 #: EN 1998-1:2004, Tables 3.2 and 3.3: S, T_C and T_D of the rows that the paper mixes
 GROUND_D_TYPE_1 = (1.35, 0.8, 2.0)
@@ -40,7 +40,7 @@ def _following(printed: Sequence[Comparison]) -> str:
 def _side_by_side(boxes: int) -> Table:
     columns = []
     for gravity in (10.0, 9.81):
-        checks = seed_checks(boxes=boxes, gravity=gravity)
+        checks = paper_checks(boxes=boxes, gravity=gravity)
         columns.append(
             (
                 checks.sliding_limit_static / 1e3,
@@ -76,7 +76,7 @@ def _side_by_side(boxes: int) -> Table:
 
 def one_box(laboratory: Laboratory) -> Finding:
     """Eqs. (14) to (19), and the density."""
-    checks, honest = (seed_checks(boxes=1, gravity=gravity) for gravity in (10.0, 9.81))
+    checks, honest = (paper_checks(boxes=1, gravity=gravity) for gravity in (10.0, 9.81))
     density = BOX_MASS / (WIDTH * WIDTH * BOX_HEIGHT)
     printed = (
         _printed("virtual density", density, 2066.0, "kg/m³", 0.5),
@@ -105,7 +105,7 @@ def one_box(laboratory: Laboratory) -> Finding:
 
 def four_boxes(laboratory: Laboratory) -> Finding:
     """The numbers of the stack."""
-    checks, honest = (seed_checks(boxes=4, gravity=gravity) for gravity in (10.0, 9.81))
+    checks, honest = (paper_checks(boxes=4, gravity=gravity) for gravity in (10.0, 9.81))
     printed = (
         _printed("stiction limit", checks.sliding_limit_static / 1e3, 40.0, "kN", 0.5),
         _printed("restoring moment", checks.restoring_moment / 1e3, 55.0, "kNm", 0.05),

@@ -1,1 +1,1 @@
-"""Verification checks: every number the program rests on beside its reference. No run depends on them."""
+"""Verification checks: the program's numbers beside their references; nothing that computes a run imports them."""

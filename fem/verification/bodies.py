@@ -1,12 +1,11 @@
-"""A bare body in the stepper: free in the air or before a wall, steps of one size, no case around it.
+"""A bare body in the stepper: free in the air or in front of a wall, with steps of one size and no case.
 
-For what no case can say: a single oscillator, a body with a source term, a bar. The stepping, the contact and the
+For what no case file can express: an oscillator, a body with a source term, a bar. Stepping, contact and energy
 ledger are those of every run.
 """
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
@@ -18,7 +17,7 @@ from contact.stepping import modal_body
 from contact.stepping.body import State, make_state
 from contact.stepping.integrator import REACHED
 from contact.stepping.modal_body import ModalBody
-from contact.stepping.scheme import Scheme, generalised_alpha, newmark
+from contact.stepping.scheme import Scheme, generalised_alpha
 from contact.stepping.state import Run, make_run, make_samples
 from fem.model.model import build_model
 from fem.runtime.arrays import FloatArray
@@ -29,20 +28,19 @@ from fem.verification.runs import STACK, with_steps_of
 
 
 class SteppingError(ArithmeticError):
-    """The stepper gave up."""
+    """The stepper did not converge."""
 
 
 @dataclass(eq=False)
 class Flight:
-    """A body under way; `advance` moves it on in steps of one size."""
+    """A body in motion; `advance` steps it in steps of one size."""
 
-    body: Any
+    body: ModalBody | FullBody
     run: Run
     step: float  #: [s]
     first_energy: float  #: kinetic and strain at t = 0 [J]
-    _times: list[float] = field(default_factory=list)
-    _normal: list[float] = field(default_factory=list)
-    _energy: list[float] = field(default_factory=list)
+    times: list[float] = field(default_factory=list)  #: of `normal_force` [s]
+    normal_force: list[float] = field(default_factory=list)  #: of the floor, after every step [N]
 
     @property
     def state(self) -> State:
@@ -55,7 +53,7 @@ class Flight:
         return float(self.run.clock[0].time)
 
     def advance(self, until: float, *, trace: bool = False) -> "Flight":
-        """Step to `until` [s]; with `trace`, note floor force and energy after every step.
+        """Step to `until` [s]; with `trace`, record the floor's force after every step.
 
         Raises:
             SteppingError: an iteration did not converge.
@@ -66,22 +64,15 @@ class Flight:
                 raise SteppingError(f"t = {self.time:.6g} s: no convergence at the step {self.step:.3g} s")
             self.run.clock[0].samples_drained = self.run.clock[0].samples
             if trace:
-                self._times.append(self.time)
-                self._normal.append(float(self.state.force[:, 1].sum()))
-                self._energy.append(float(self.state.energy.sum()))
+                self.times.append(self.time)
+                self.normal_force.append(float(self.state.force[:, 1].sum()))
         return self
-
-    def trace(self, name: str) -> tuple[FloatArray, FloatArray]:
-        """Times [s] and what was noted of `normal_force` [N] or `energy` [J]."""
-        noted = {"normal_force": self._normal, "energy": self._energy}[name]
-        return np.array(self._times), np.array(noted)
 
 
 def free_run(
     body: ModalBody | FullBody,
     *,
     step: float,
-    radius: float | None = 0.5,
     scheme: Scheme | None = None,
     velocity: FloatArray | None = None,
     modal_position: FloatArray | None = None,
@@ -93,26 +84,31 @@ def free_run(
 
     Args:
         step: [s].
-        radius: spectral radius of generalised-alpha; None: the trapezoidal rule.
-        scheme: in place of it.
+        scheme: of time stepping; None: generalised-alpha, spectral radius 0.5.
         velocity: of the coordinates at t = 0; None: at rest.
         modal_position: amplitudes of a modal body's modes at t = 0; None: undeformed.
         height: above its place on the floor at t = 0 [m].
-        springs: (n,) contact springs, without damping and friction [N/m]; None: none to speak of.
-        until: an instant that a step ends on [s].
+        springs: (n,) contact springs, without damping and friction [N/m]; None: negligible ones.
+        until: an instant at which a step ends [s].
     """
     full = isinstance(body, FullBody)
     coordinates = body.coordinates if isinstance(body, FullBody) else 3 + body.stiffness.size
     points = len(body.base) if isinstance(body, FullBody) else len(body.point)
     old, new = (make_state(coordinates, points, 0) for _ in range(2))
+    x, z = body.centroid if isinstance(body, FullBody) else body.rest
+    stance = Stance(
+        centre=(float(x), float(z) + height),
+        rotation=0.0,
+        velocity=(0.0, 0.0),
+        angular_velocity=0.0,
+        force=np.zeros((points, 2)),
+    )
     if isinstance(body, FullBody):
-        nodes = len(body.elements.nodes)
-        nothing = StaticResponse(
-            displacement=np.zeros((2 * points, nodes, 2)), compliance=np.zeros((2 * points, 2 * points))
-        )
-        body.place(old, _in_place(body.centroid, height, points), nothing, 0.0)
+        unstrained = np.zeros((2 * points, len(body.elements.nodes), 2))
+        compliance = np.zeros((2 * points, 2 * points))
+        body.place(old, stance, StaticResponse(displacement=unstrained, compliance=compliance), 0.0)
     else:
-        modal_body.place(body, old, _in_place(body.rest, height, points), 0.0)
+        modal_body.place(body, old, stance, 0.0)
     if velocity is not None:
         old.velocity[:] = np.ravel(velocity)
     if modal_position is not None:
@@ -121,12 +117,9 @@ def free_run(
         body.start(old, 0.0)
     else:
         modal_body.start(body, old, 0.0)
-    if scheme is None:
-        scheme = newmark(0.25, 0.5) if radius is None else generalised_alpha(radius)
-    stiffness = np.full(points, 1.0) if springs is None else springs
     run = make_run(
-        scheme=scheme,
-        contact=_contact(stiffness, body.mass),
+        scheme=generalised_alpha(0.5) if scheme is None else scheme,
+        contact=_contact(np.full(points, 1.0) if springs is None else springs, body.mass),
         motion=as_floor_motion(UNIFORM, (0.0, 0.0, 0.0)),
         breaks=np.full(1, until),
         control=with_steps_of(build_model(STACK), step).run.control._replace(
@@ -146,14 +139,10 @@ def free_run(
     return Flight(body=body, run=run, step=step, first_energy=float(old.energy[:2].sum()))
 
 
-def _in_place(centre: FloatArray, height: float, points: int) -> Stance:
-    return Stance(
-        centre=(float(centre[0]), float(centre[1]) + height),
-        rotation=0.0,
-        velocity=(0.0, 0.0),
-        angular_velocity=0.0,
-        force=np.zeros((points, 2)),
-    )
+def full_body(elements: FiniteElements, *, gravity: float = 1e-3, damping: float = 0.0) -> FullBody:
+    """A body of these elements on the ends of its base, nearly without weight."""
+    ends, no_monitors = elements.base_nodes[[0, -1]], elements.base_nodes[:0]
+    return FullBody(elements, ends, no_monitors, gravity=gravity, damping=damping)
 
 
 def _contact(springs: FloatArray, mass: float) -> Contact:
@@ -168,11 +157,4 @@ def _contact(springs: FloatArray, mass: float) -> Contact:
         regularisation_velocity=1e-3,
         force_scale=mass,
         resolution=1e-15,
-    )
-
-
-def body_of(elements: FiniteElements) -> FullBody:
-    """A free body of these elements, undamped and nearly without weight."""
-    return FullBody(
-        elements, elements.base_nodes[[0, -1]], elements.base_nodes[:0], gravity=1e-3, damping=0.0
     )

@@ -1,9 +1,9 @@
-"""Manufactured solutions: static and dynamic, at finite strain and rotation; sources from the textbook's law.
+"""Manufactured solutions, static and dynamic, at finite strain and rotation; sources from the textbook law.
 
 Roache, Verification and Validation in Computational Science and Engineering (1998), chapter 3. The source in space
-is written here from St. Venant-Kirchhoff's law of plane stress, by differences of its own stress; nothing of the
-elements is used. The source of the moving body is exact in space (its internal forces are the elements' own), so
-that its error is of the time stepping alone.
+follows from St. Venant-Kirchhoff's law of plane stress, by differences of its stress; it uses nothing of the
+elements. The source of the moving body is exact in space (its internal forces are those of the elements), so its
+error is that of the time stepping alone.
 """
 
 import math
@@ -17,13 +17,15 @@ from contact.stepping.body import State
 from contact.stepping.scheme import Scheme, generalised_alpha
 from fem.runtime.arrays import FloatArray
 from fem.solid import nodal_kernels as nodal_body
-from fem.solid.assembly import assemble
+from fem.solid.assembly import FiniteElements, assemble
 from fem.solid.nodal_body import FullBody
 from fem.verification.bodies import Flight, free_run
 from fem.verification.meshes import PlainMesh, mapped_mesh
 
 E, NU, THICKNESS, DENSITY = 5.0, 0.3, 0.4, 2.0
 HEIGHT = 10.0  #: of the moving bodies above the floor [m]
+H = 1e-3  #: of central differences [m, s]
+OFFSETS = (-2, -1, 0, 1, 2)  #: of central differences of fourth order, in H
 
 
 class NewtonError(ArithmeticError):
@@ -31,7 +33,7 @@ class NewtonError(ArithmeticError):
 
 
 def turned_and_strained(x: FloatArray, z: FloatArray, turn: float, strain: float) -> FloatArray:
-    """Displacement (2, ...): turned by `turn` [rad], with strains of `strain` times some per cent."""
+    """Displacement (2, ...): rotated by `turn` [rad], with strains of `strain` times a few per cent."""
     cosine, sine = math.cos(turn) - 1.0, math.sin(turn)
     return np.array(
         [
@@ -69,15 +71,23 @@ def textbook_stress(x: FloatArray, z: FloatArray, turn: float, strain: float) ->
 
 def static_source(x: FloatArray, z: FloatArray, turn: float, strain: float) -> FloatArray:
     """Load per area of elevation, -t Div P, by differences of fourth order (2, ...)."""
-    h = 1e-3
-    along = [textbook_stress(x + k * h, z, turn, strain)[:, 0] for k in (-2, -1, 1, 2)]
-    up = [textbook_stress(x, z + k * h, turn, strain)[:, 1] for k in (-2, -1, 1, 2)]
-    terms = [(d[0] - 8.0 * d[1] + 8.0 * d[2] - d[3]) / (12.0 * h) for d in (along, up)]
-    return -THICKNESS * (terms[0] + terms[1])
+    along = [textbook_stress(x + k * H, z, turn, strain)[:, 0] for k in OFFSETS]
+    up = [textbook_stress(x, z + k * H, turn, strain)[:, 1] for k in OFFSETS]
+    return -THICKNESS * (first_difference(along) / (12.0 * H) + first_difference(up) / (12.0 * H))
+
+
+def first_difference(values: list[FloatArray]) -> FloatArray:
+    """12 H times the first derivative, from the values at `OFFSETS`."""
+    return values[0] - 8.0 * values[1] + 8.0 * values[3] - values[4]
+
+
+def second_difference(values: list[FloatArray]) -> FloatArray:
+    """12 H^2 times the second derivative, from the values at `OFFSETS`."""
+    return -values[0] + 16.0 * values[1] - 30.0 * values[2] + 16.0 * values[3] - values[4]
 
 
 def static_error(order: int, cells: int) -> float:
-    """L2 error of the displacement of a curved block, its boundary held where the solution has it."""
+    """L2 error of the displacement of a curved block, its boundary held at the exact solution."""
     elements = assemble(curved_block(cells), youngs_modulus=E, poisson_ratio=NU, order=order)
     turn, strain = 0.4, 1.0
     x, z = elements.nodes.T
@@ -97,22 +107,19 @@ def static_error(order: int, cells: int) -> float:
 class DrivenBody(FullBody):
     """A full body under a source that makes a given motion exact.
 
-    The source is part of its internal forces, which the stepper averages over a step as it does all forces.
+    The source is part of its internal forces, which the stepper averages over a step like all forces.
     """
 
     compiled = False
 
-    def drive(self, flight: Flight) -> None:
-        """Tell the time by this flight from now on."""
-        self._flight = flight
+    def __init__(self, elements: FiniteElements, *, damping: float = 0.0) -> None:
+        ends, no_monitors = elements.base_nodes[[0, -1]], elements.base_nodes[:0]
+        super().__init__(elements, ends, no_monitors, gravity=1e-3, damping=damping)
 
-    def predict(self, scheme: Scheme, step: float, old: State, new: State) -> None:
-        """See `contact.stepping.body.predict`; the source is then that of the step's end."""
-        super().predict(scheme, step, old, new)
-        self.nodal.source[:] = self.source(self._flight.time + step)
-
-    def place_at_start(self, state: State) -> None:
-        """Write position, velocity and acceleration of the motion at t = 0."""
+    def fly(self, scheme: Scheme, step: float, end: float) -> Flight:
+        """Step the body along its motion to `end` [s]."""
+        self._flight = flight = free_run(self, step=step, scheme=scheme, until=end)
+        state = flight.state
         position, velocity, acceleration = self.motion(0.0)
         state.position[:], state.velocity[:] = position.ravel(), velocity.ravel()
         self.nodal.turn[:] = nodal_body.fit(self.nodal, state.position)[2:]
@@ -120,16 +127,18 @@ class DrivenBody(FullBody):
         self.evaluate(state)
         self.start(state, 0.0)
         state.acceleration[:] = acceleration.ravel()
+        return flight.advance(end)
+
+    def predict(self, scheme: Scheme, step: float, old: State, new: State) -> None:
+        """See `contact.stepping.body.predict`; the source is then that of the step's end."""
+        super().predict(scheme, step, old, new)
+        self.nodal.source[:] = self.source(self._flight.time + step)
 
     def motion(self, time: float) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Positions, velocities and accelerations of the nodes, each (n, 2)."""
-        h = 1e-3
-        places = [self._place(time + k * h) for k in (-2, -1, 0, 1, 2)]
-        velocity = (places[0] - 8.0 * places[1] + 8.0 * places[3] - places[4]) / (12.0 * h)
-        acceleration = (-places[0] + 16.0 * places[1] - 30.0 * places[2] + 16.0 * places[3] - places[4]) / (
-            12.0 * h * h
-        )
-        return places[2], velocity, acceleration
+        places = [self._place(time + k * H) for k in OFFSETS]
+        velocity, acceleration = first_difference(places), second_difference(places)
+        return places[2], velocity / (12.0 * H), acceleration / (12.0 * H * H)
 
     @property
     def weight(self) -> FloatArray:
@@ -166,18 +175,13 @@ class ContinuumBody(DrivenBody):
     def source(self, time: float) -> FloatArray:
         """Consistent nodal forces of the textbook's source, and the weight."""
         turn, strain = turn_and_strain(time)
-        h = 1e-3
 
         def inertia(x: FloatArray, z: FloatArray) -> FloatArray:
             moved = []
-            for k in (-2, -1, 0, 1, 2):
-                angle, size = turn_and_strain(time + k * h)
-                rise = np.array([0.3 * (time + k * h), 2.0 * (time + k * h) ** 2]).reshape(
-                    2, *(1,) * np.ndim(x)
-                )
-                moved.append(turned_and_strained(x, z, angle, size) + rise)
-            second = -moved[0] + 16.0 * moved[1] - 30.0 * moved[2] + 16.0 * moved[3] - moved[4]
-            return DENSITY * THICKNESS * second / (12.0 * h * h)
+            for t in (time + k * H for k in OFFSETS):
+                rise = np.array([0.3 * t, 2.0 * t**2]).reshape(2, *(1,) * np.ndim(x))
+                moved.append(turned_and_strained(x, z, *turn_and_strain(t)) + rise)
+            return DENSITY * THICKNESS * second_difference(moved) / (12.0 * H * H)
 
         load = self.elements.area_load(lambda x, z: static_source(x, z, turn, strain) + inertia(x, z))
         for axis, place, sign in ((0, 0.0, -1.0), (0, 1.0, 1.0), (1, 0.0, -1.0), (1, 1.0, 1.0)):
@@ -203,28 +207,25 @@ def turn_and_strain(time: float) -> tuple[float, float]:
 
 def moving_body_error(scheme: Scheme, step: float, end: float = 0.5) -> float:
     """Largest error of a node at the end of the motion, exact in space, over the size of the body."""
-    mesh = mapped_mesh(3, 3, lambda s, t: (s, t), thickness=THICKNESS, density=DENSITY)
-    elements = assemble(mesh, youngs_modulus=E, poisson_ratio=NU, order=1)
-    body = SemiDiscreteBody(
-        elements, elements.base_nodes[[0, -1]], elements.base_nodes[:0], gravity=1e-3, damping=0.02
-    )
-    flight = _driven(body, scheme, step, end)
-    exact = body.motion(flight.time)[0]
-    return float(np.abs(flight.state.position.reshape(-1, 2) - exact).max())
+    body = SemiDiscreteBody(unit_square(3, 1), damping=0.02)
+    flight = body.fly(scheme, step, end)
+    return float(np.abs(flight.state.position.reshape(-1, 2) - body.motion(flight.time)[0]).max())
 
 
 def dynamic_error(order: int, cells: int, step: float, end: float = 0.3) -> float:
     """L2 error of the displacement at the end of the motion of the continuum."""
-    mesh = mapped_mesh(cells, cells, lambda s, t: (s, t), thickness=THICKNESS, density=DENSITY)
-    elements = assemble(mesh, youngs_modulus=E, poisson_ratio=NU, order=order)
-    body = ContinuumBody(
-        elements, elements.base_nodes[[0, -1]], elements.base_nodes[:0], gravity=1e-3, damping=0.0
-    )
-    flight = _driven(body, generalised_alpha(0.5), step, end)
+    elements = unit_square(cells, order)
+    flight = ContinuumBody(elements).fly(generalised_alpha(0.5), step, end)
     displacement = flight.state.position.reshape(-1, 2) - elements.nodes
     turn, strain = turn_and_strain(flight.time)
     rise = np.array([0.3 * flight.time, HEIGHT + 2.0 * flight.time**2])
     return elements.l2_distance(displacement - rise, lambda x, z: turned_and_strained(x, z, turn, strain))
+
+
+def unit_square(cells: int, order: int) -> FiniteElements:
+    """The moving body: `cells` x `cells` elements."""
+    mesh = mapped_mesh(cells, cells, lambda s, t: (s, t), thickness=THICKNESS, density=DENSITY)
+    return assemble(mesh, youngs_modulus=E, poisson_ratio=NU, order=order)
 
 
 def curved_block(cells: int) -> PlainMesh:
@@ -236,10 +237,3 @@ def curved_block(cells: int) -> PlainMesh:
         return x, z
 
     return mapped_mesh(cells, cells, place, thickness=THICKNESS)
-
-
-def _driven(body: DrivenBody, scheme: Scheme, step: float, end: float) -> Flight:
-    flight = free_run(body, step=step, scheme=scheme, until=end)
-    body.place_at_start(flight.state)
-    body.drive(flight)
-    return flight.advance(end)

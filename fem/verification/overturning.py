@@ -1,14 +1,15 @@
-"""Overturning in the first swing, and which motion begins: where the runs change from one outcome to another.
+"""Overturning in the first swing, and which motion begins: where the outcome of the runs changes.
 
-Thresholds are bracketed by runs and bisected; overturning with an impact before it does not count, for there
-safe islands lie above the threshold. Housner (1963), Makris and Roussos (2000), Zhang and Makris (2001); initiation
-of motion by Shenton (1996).
+Thresholds are bracketed by runs and bisected. Overturning after an impact does not count, since outcomes above that
+threshold alternate. Housner (1963), Makris and Roussos (2000), Zhang and Makris (2001); initiation of motion by
+Shenton (1996).
 """
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from collections import Counter
+from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 
@@ -26,115 +27,129 @@ from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import first_swing_threshold
 from fem.model.container import Container, discretise
 from fem.model.model import build_model
-from fem.verification.rows import Check, Row, count_row
-from fem.verification.runs import GRAVITY, SOLID, STACK, Finished, finish, run, with_motion
+from fem.verification.rows import Row, analytic, check, computed
+from fem.verification.runs import GRAVITY, STACK, STIFF_SOLID, Keys, bisected, finish, pulse, run, with_motion
 
 BLOCK = RigidBlock.homogeneous(width=1.1, height=4.0)
 RATE, UPLIFT = BLOCK.frequency_parameter, BLOCK.uplift_acceleration
-#: a floor that holds the corner whatever comes
-ROUGH = {"contact.mu_static": 5.0, "solver.duration_s": 12.0, "output.history_s": 0.05}
-MODELS: dict[str, tuple[dict[str, Any], float]] = {
-    "rigid": ({}, 0.01),
-    "stiff solid, 20 modes": (SOLID | {"container.youngs_modulus_Pa": 2.1e12}, 0.02),
-}
+#: the corner does not slide under any motion
+ROUGH: Keys = {"contact.mu_static": 5.0, "solver.duration_s": 12.0, "output.history_s": 0.05}
+#: name -> keys, tolerance
+MODELS: dict[str, tuple[Keys, float]] = {"rigid": ({}, 0.01), "stiff solid, 20 modes": (STIFF_SOLID, 0.02)}
 LEAST_POINTS = 75  #: of the grid of first motions
 RESOLUTION = 5e-4  #: of a threshold found by bisection
-
-Keys = Callable[[float], Mapping[str, Any]]
-
-
-def sine_of(frequency_ratio: float) -> Keys:
-    """Keys of a harmonic floor of a peak acceleration, Omega = frequency_ratio x p."""
-    return lambda peak: {
-        "motion.kind": "harmonic",
-        "motion.peak_acceleration_m_s2": peak,
-        "motion.angular_frequency_rad_s": frequency_ratio * RATE,
-    }
+SPAN = 0.06  #: of the bracket around the expected threshold
+PEAK = "peak acceleration over g tan al above which it overturns without impact"
 
 
-def pulse_of(shape: str, length: float) -> Keys:
-    """Keys of a pulse of a peak acceleration."""
-    return lambda peak: {
-        "motion.kind": "pulse",
-        "motion.shape": shape,
-        "motion.peak_acceleration_m_s2": peak,
-        "motion.pulse_s": length,
-    }
+@check("overturning", "initiation of motion")
+def initiation() -> Iterator[Row]:
+    """First motion of a resting block on an accelerating floor, over a grid of parameters."""
+    seen: Counter[str] = Counter()
+    wrong: list[str] = []
+    containers: dict[float, Container] = {}
+    for lam, ratio, mu_static, mu_kinetic in initiation_grid():
+        expected = initiation_mode(
+            acceleration_ratio=ratio, slenderness=lam, mu_static=mu_static, mu_kinetic=mu_kinetic
+        ).value
+        found = first_motion(lam, ratio, mu_static, mu_kinetic, containers)
+        seen[expected] += 1
+        if found != expected:
+            wrong.append(f"c/a {lam}, {ratio} g, mu {mu_static}/{mu_kinetic}: {found}, not {expected}")
+    counts = ", ".join(f"{count} {mode}" for mode, count in sorted(seen.items()))
+    note = (
+        "the floor's acceleration grows over 50 ms if it is below that of uplift, else it is sudden: a jump makes the "
+        "shear on the springs overshoot by a quarter, and a block that rests by statics may slide"
+    )
+    yield analytic(
+        f"rigid blocks on a grid of {seen.total()} points ({counts})",
+        "number of first motions that differ from the prediction",
+        len(wrong) + max(0, LEAST_POINTS - seen.total()),
+        source="Shenton 1996, extended to mu_k below mu_s",
+        absolute=0.0,
+        note="; ".join([note, *wrong[:4]]),
+    )
 
 
-def sustained_sine() -> list[Row]:
-    """A harmonic floor that goes on: slender sqrt(1 + w^2), and the stack's own exact values."""
-    rows = []
+@check("overturning", "overturning by a harmonic floor")
+def sustained_sine() -> Iterator[Row]:
+    """A harmonic floor without end: slender sqrt(1 + w^2), and the stack's own exact values."""
     for w, exact in ((1.0, 1.41347), (6.0, 6.21218)):
-        slender = sustained_sine_threshold_slender(w)
-        rows += _threshold_rows(
-            f"harmonic floor, w = {w:g}", sine_of(w), exact, f"event-driven block; slender {slender:.5f}"
-        )
-    return rows
+        source = f"event-driven block; slender {sustained_sine_threshold_slender(w):.5f}"
+        for name, (values, tolerance) in MODELS.items():
+            found = threshold(partial(sine, w=w), exact * UPLIFT, values) / UPLIFT
+            case = f"{name}: harmonic floor, w = {w:g}"
+            yield computed(case, PEAK, found, exact, source=source, relative=tolerance)
 
 
-def pulses() -> list[Row]:
+@check("overturning", "overturning by pulses")
+def pulses() -> Iterator[Row]:
     """Half a sine and a whole one."""
-    rows = []
-    for shape, w, form in (
-        ("half-sine", 3.0, half_sine_threshold_slender),
-        ("sine", 3.0, one_sine_threshold_slender),
+    w = 3.0
+    for shape, angle, slender, acceleration in (
+        ("half-sine", math.pi, half_sine_threshold_slender(w), half_sine_pulse),
+        ("sine", 2.0 * math.pi, one_sine_threshold_slender(w), one_sine_pulse),
     ):
-        length = (math.pi if shape == "half-sine" else 2.0 * math.pi) / (w * RATE)
-        slender = form(w)
-        exact = first_swing_threshold(
-            BLOCK,
-            _floor_of(shape, length),
-            low=0.9 * slender * UPLIFT,
-            high=1.15 * slender * UPLIFT,
-            duration=20.0,
-            relative_tolerance=1e-6,
+        length = angle / (w * RATE)
+        exact = (
+            first_swing_threshold(
+                BLOCK,
+                toward_minus_x(acceleration, length),
+                low=0.9 * slender * UPLIFT,
+                high=1.15 * slender * UPLIFT,
+                duration=20.0,
+                relative_tolerance=1e-6,
+            )
+            / UPLIFT
         )
         source = f"event-driven block; slender {slender:.5f}"
-        rows += _threshold_rows(f"{shape} pulse, w = {w:g}", pulse_of(shape, length), exact / UPLIFT, source)
-    return rows
+        for name, (values, tolerance) in MODELS.items():
+            keys = partial(pulse, length=length, shape=shape)
+            found = threshold(keys, exact * UPLIFT, values) / UPLIFT
+            case = f"{name}: {shape} pulse, w = {w:g}"
+            yield computed(case, PEAK, found, exact, source=source, relative=tolerance)
 
 
-def rectangular() -> list[Row]:
+@check("overturning", "overturning by a rectangular pulse")
+def rectangular() -> Iterator[Row]:
     """Shortest rectangular pulse of twice the uplift acceleration that overturns."""
     exact = rectangular_pulse_duration(BLOCK, 2.0 * UPLIFT)
-    rows = []
+    compared = "shortest length that overturns without impact [s]"
+    source = "work of the pulse = g R (1 - cos al); exact quadrature"
     for name, (values, tolerance) in MODELS.items():
-        found = bisected(lambda length: pulse_of("rectangular", length)(2.0 * UPLIFT), exact, values)
-        rows.append(
-            Row(
-                case=f"{name}: rectangular pulse of 2 g tan al",
-                compared="shortest that overturns without impact [s]",
-                value=found,
-                reference=exact,
-                kind="analytic",
-                source="work of the pulse = g R (1 - cos al); exact quadrature",
-                tolerance=tolerance,
-                relative=True,
-            )
-        )
-    return rows
+        found = threshold(lambda length: pulse(2.0 * UPLIFT, length), exact, values)
+        case = f"{name}: rectangular pulse of 2 g tan al"
+        yield analytic(case, compared, found, exact, source=source, relative=tolerance)
 
 
-def velocity_step() -> list[Row]:
-    """Sudden floor velocity that overturns; here the container gets it, against the floor."""
+@check("overturning", "overturning by a velocity step")
+def velocity_step() -> Iterator[Row]:
+    """Sudden floor velocity that overturns; here the container gets it, relative to the floor."""
     exact = velocity_step_threshold(BLOCK)
-    rows = []
+    compared = "least velocity that overturns without impact [m/s]"
+    source = "kinetic energy of the kick = M g R (1 - cos al)"
     for name, (values, tolerance) in MODELS.items():
-        found = bisected(lambda speed: {"motion.kind": "none", "initial.velocity_m_s": -speed}, exact, values)
-        rows.append(
-            Row(
-                case=f"{name}: floor suddenly at a velocity",
-                compared="least velocity that overturns without impact [m/s]",
-                value=found,
-                reference=exact,
-                kind="analytic",
-                source="kinetic energy of the kick = M g R (1 - cos al)",
-                tolerance=tolerance,
-                relative=True,
-            )
+        found = threshold(
+            lambda speed: {"motion.kind": "none", "initial.velocity_m_s": -speed}, exact, values
         )
-    return rows
+        case = f"{name}: sudden floor velocity"
+        yield analytic(case, compared, found, exact, source=source, relative=tolerance)
+
+
+def sine(peak: float, w: float) -> Keys:
+    """Keys of a harmonic floor of a peak acceleration [m/s2], Omega = w p."""
+    return {
+        "motion.kind": "harmonic",
+        "motion.peak_acceleration_m_s2": peak,
+        "motion.angular_frequency_rad_s": w * RATE,
+    }
+
+
+def toward_minus_x(
+    acceleration: Callable[..., FloorAcceleration], length: float
+) -> Callable[[float], FloorAcceleration]:
+    """A pulse of a length [s] by its peak, which tilts the block toward +x [m/s2]."""
+    return lambda peak: acceleration(peak=-peak, duration=length)
 
 
 def initiation_grid() -> Iterator[tuple[float, float, float, float]]:
@@ -150,37 +165,6 @@ def initiation_grid() -> Iterator[tuple[float, float, float, float]]:
             boundaries.append((ratio, mu_static))
         if all(abs(value / limit - 1.0) > 0.05 for value, limit in boundaries):
             yield lam, ratio, mu_static, mu_kinetic
-
-
-def initiation() -> list[Row]:
-    """First motion of a resting block on an accelerating floor, all over a grid."""
-    seen: dict[str, int] = {}
-    wrong: list[str] = []
-    containers: dict[float, Container] = {}
-    for lam, ratio, mu_static, mu_kinetic in initiation_grid():
-        expected = initiation_mode(
-            acceleration_ratio=ratio, slenderness=lam, mu_static=mu_static, mu_kinetic=mu_kinetic
-        ).value
-        found = first_motion(lam, ratio, mu_static, mu_kinetic, containers)
-        seen[expected] = seen.get(expected, 0) + 1
-        if found != expected:
-            wrong.append(f"c/a {lam}, {ratio} g, mu {mu_static}/{mu_kinetic}: {found}, not {expected}")
-    points = sum(seen.values())
-    counts = ", ".join(f"{count} {mode}" for mode, count in sorted(seen.items()))
-    note = (
-        "below the acceleration of uplift it grows over 50 ms, above it comes at once: a jump makes the shear on "
-        "springs overshoot by a quarter, and what rests by statics may then slide"
-    )
-    return [
-        count_row(
-            case=f"rigid blocks on a grid of {points} points ({counts})",
-            compared="first motions that are not as predicted",
-            wrong=len(wrong) + max(0, LEAST_POINTS - points),
-            kind="analytic",
-            source="Shenton 1996, extended to mu_k below mu_s",
-            note="; ".join([note, *wrong[:4]]),
-        )
-    ]
 
 
 def first_motion(
@@ -225,52 +209,12 @@ def growing_then_steady(acceleration: float, growth: float) -> FloorMotion:
     return as_floor_motion(PIECEWISE, breaks=knots, coefficients=coefficients)
 
 
-def bisected(keys: Keys, expected: float, values: Mapping[str, Any], span: float = 0.06) -> float:
+def threshold(keys: Callable[[float], Keys], expected: float, values: Keys) -> float:
     """Least parameter that overturns the stack without an impact, near `expected`; nan if it is not near."""
-    low, high = expected * (1.0 - span), expected * (1.0 + span)
-    container = discretise(STACK.with_values({**ROUGH, **values}))
+    container = discretise(STACK.with_values(ROUGH | values))
 
     def overturns(parameter: float) -> bool:
-        return falls_at_once(run(STACK, {**ROUGH, **values, **keys(parameter)}, container))
+        done = run(STACK, ROUGH | values | keys(parameter), container)
+        return done.status == "overturned" and int(done.track.impacts) == 0
 
-    if overturns(low) or not overturns(high):
-        return math.nan
-    while high - low > RESOLUTION * high:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if overturns(middle) else (middle, high)
-    return 0.5 * (low + high)
-
-
-def falls_at_once(done: Finished) -> bool:
-    """Whether it overturned without an impact."""
-    return done.status == "overturned" and int(done.track.impacts) == 0
-
-
-def _threshold_rows(case: str, keys: Keys, exact: float, source: str) -> list[Row]:
-    return [
-        Row(
-            case=f"{name}: {case}",
-            compared="peak acceleration over g tan al from which it overturns without impact",
-            value=bisected(keys, exact * UPLIFT, values) / UPLIFT,
-            reference=exact,
-            kind="computed",
-            source=source,
-            tolerance=tolerance,
-            relative=True,
-        )
-        for name, (values, tolerance) in MODELS.items()
-    ]
-
-
-def _floor_of(shape: str, length: float) -> Callable[[float], FloorAcceleration]:
-    pulse = half_sine_pulse if shape == "half-sine" else one_sine_pulse
-    return lambda peak: pulse(peak=-peak, duration=length)
-
-
-CHECKS = (
-    Check(name="initiation of motion", rows=initiation),
-    Check(name="overturning by a harmonic floor", rows=sustained_sine),
-    Check(name="overturning by pulses", rows=pulses),
-    Check(name="overturning by a rectangular pulse", rows=rectangular),
-    Check(name="overturning by a velocity step", rows=velocity_step),
-)
+    return bisected(overturns, expected * (1.0 - SPAN), expected * (1.0 + SPAN), resolution=RESOLUTION)

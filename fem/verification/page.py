@@ -16,48 +16,42 @@ from fem.html.units import ABSENT, short, typeset
 from fem.runtime.arrays import FloatArray
 from fem.runtime.identity import versions
 from fem.verification.rows import Convergence, Row
-from fem.verification.suite import Ladder, Rung
+from fem.verification.suite import ComputedCheck, SuiteResult
 
 LEAST_SIX = 1e-3  #: smaller values are errors, and printed with three figures
 HEADING = f"{'value':>13} {'reference':>12}  {'kind':<9} {'error':>9} {'tolerance':>9}  order"
 
 
-def table_lines(ladder: Ladder) -> list[str]:
-    """The table for a terminal, one line a row, and what it came to."""
-    lines, room = [], ""
-    for rung in ladder.rungs:
-        if rung.room != room:
-            room = rung.room
-            lines += ["", room.upper().ljust(76) + HEADING]
-        lines.append(f"  {rung.check}  ({rung.seconds:.1f} s)")
-        for row in rung.rows:
+def table_lines(result: SuiteResult) -> list[str]:
+    """The table for a terminal, one line a row, and the number of failures."""
+    lines, topic = [], ""
+    for check in result.checks:
+        if check.topic != topic:
+            topic = check.topic
+            lines += ["", topic.upper().ljust(76) + HEADING]
+        lines.append(f"  {check.title}  ({check.seconds:.1f} s)")
+        for row in check.rows:
             lines += _row_lines(row)
-    verdict = "all pass" if ladder.failures == 0 else f"{ladder.failures} FAIL"
-    return [*lines, "", f"{ladder.count} rows in {ladder.seconds:.0f} s: {verdict}"]
+    verdict = "all pass" if result.failures == 0 else f"{result.failures} FAIL"
+    return [*lines, "", f"{result.count} rows in {result.seconds:.0f} s: {verdict}"]
 
 
-def page(ladder: Ladder) -> str:
+def page(result: SuiteResult) -> str:
     """The page: every row with its source, and a plot of every convergence."""
-    rooms: dict[str, list[Rung]] = {}
-    for rung in ladder.rungs:
-        rooms.setdefault(rung.room, []).append(rung)
-    plots = {
-        room: [
-            (f"{row.case}: {row.compared}", convergence_plot(row.convergence, f"{room}-{i}-{k}"))
-            for i, rung in enumerate(rungs)
-            for k, row in enumerate(rung.rows)
-            if row.convergence is not None
-        ]
-        for room, rungs in rooms.items()
-    }
+    topics: dict[str, list[ComputedCheck]] = {}
+    for check in result.checks:
+        topics.setdefault(check.topic, []).append(check)
     return render_page(
         "verify.html.j2",
-        ladder=ladder,
+        result=result,
         versions=", ".join(f"{name} {version}" for name, version in versions().items()),
         today=dt.date.today().isoformat(),
-        rooms=rooms.items(),
-        sums={room: _sum_of([row for rung in rungs for row in rung.rows]) for room, rungs in rooms.items()},
-        plots=plots,
+        topics=topics.items(),
+        sums={
+            topic: _sum_of([row for check in checks for row in check.rows])
+            for topic, checks in topics.items()
+        },
+        plots={topic: _plots(topic, checks) for topic, checks in topics.items()},
         number=lambda value: short(value, figures=6 if abs(value) >= LEAST_SIX else 3),
         typeset=typeset,
         error=_error,
@@ -72,7 +66,7 @@ def convergence_plot(convergence: Convergence, prefix: str = "plot") -> Markup:
     `prefix` keeps the ids of plots in one page apart.
     """
     sizes, errors = np.array(convergence.sizes), np.array(convergence.errors)
-    # The text stays text: small, and the same bytes again.
+    # Text stays text: a small file, and the same bytes every time.
     with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "unanchored", "font.size": 9}):
         figure = Figure(figsize=(3.6, 2.7), layout="constrained")
         axes = figure.add_subplot()
@@ -91,8 +85,18 @@ def convergence_plot(convergence: Convergence, prefix: str = "plot") -> Markup:
     return svg_element(stream.getvalue(), label=label, prefix=prefix)
 
 
+def _plots(topic: str, checks: Sequence[ComputedCheck]) -> list[tuple[str, Markup]]:
+    """Caption and plot of every convergence of a topic."""
+    return [
+        (f"{row.case}: {row.compared}", convergence_plot(row.convergence, f"{topic}-{i}-{k}"))
+        for i, check in enumerate(checks)
+        for k, row in enumerate(check.rows)
+        if row.convergence is not None
+    ]
+
+
 def _sum_of(rows: Sequence[Row]) -> dict[str, Any]:
-    """What the rows of a room come to, for the overview of the page."""
+    """Summary of the rows of a topic, for the overview of the page."""
     used = [row.error / row.tolerance for row in rows if row.tolerance]
     return {
         "rows": len(rows),
@@ -103,7 +107,7 @@ def _sum_of(rows: Sequence[Row]) -> dict[str, Any]:
 
 
 def _labels(sizes: FloatArray) -> list[str]:
-    """What the refinements are called on a logarithmic axis; none where it would cover the one before."""
+    """Labels of the refinements on a logarithmic axis; empty where one would cover the one before."""
     labels, last = {}, -math.inf
     for size in np.sort(sizes):
         if math.log(size) - last > 0.1 * math.log(sizes.max() / sizes.min()):

@@ -1,14 +1,15 @@
-"""One row of the verification table: what is compared with what, how near it must come, and whether it does.
+"""Rows of the verification table: a value, its reference, and how near the value must be.
 
-The reference is `analytic` (a closed form, or a statement such as symmetry), `printed` (by somebody else) or
-`computed` (by code that shares nothing with what is checked: an event-driven integration, a converged limit). A
-row is judged by its error against its tolerance, by its observed order of convergence, or by both.
+A reference is `analytic` (a closed form, or a statement such as symmetry), `printed` (in the literature) or
+`computed` (by code that shares nothing with what is checked, or as a converged limit). A row passes if its error is
+within its tolerance and its observed order of convergence is the expected one, as far as either is given.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from functools import partial
+from typing import Any, Literal, SupportsFloat
 
 import numpy as np
 
@@ -17,7 +18,7 @@ Kind = Literal["analytic", "printed", "computed"]
 
 @dataclass(frozen=True, kw_only=True)
 class Convergence:
-    """Errors against what was refined, and the order at which they are to fall."""
+    """Errors over a refinement, and the order at which they must fall."""
 
     against: str  #: what was refined, with its unit
     sizes: tuple[float, ...]  #: of the refinement, all positive
@@ -28,16 +29,40 @@ class Convergence:
 
     @property
     def observed(self) -> float:
-        """Slope of log(error) over log(size), least squares; nan where an error is not positive."""
+        """Slope of log(error) over log(size), least squares; nan if an error is not positive."""
         if not min(self.errors) > 0.0:
             return math.nan
         return float(np.polyfit(np.log(self.sizes), np.log(self.errors), 1)[0])
+
+    @property
+    def finest(self) -> float:
+        """The error at the smallest size."""
+        return self.errors[int(np.argmin(self.sizes))]
 
     @property
     def passed(self) -> bool:
         """Whether the observed order is the expected one."""
         difference = self.observed - self.expected
         return difference >= -self.tolerance and (self.at_least or difference <= self.tolerance)
+
+
+def convergence(
+    against: str,
+    errors: Mapping[float, SupportsFloat],
+    *,
+    order: float,
+    within: float,
+    at_least: bool = False,
+) -> Convergence:
+    """Errors by size, and the order that they must have `within` a tolerance."""
+    return Convergence(
+        against=against,
+        sizes=tuple(float(size) for size in errors),
+        errors=tuple(float(error) for error in errors.values()),
+        expected=order,
+        tolerance=within,
+        at_least=at_least,
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,84 +88,76 @@ class Row:
 
     @property
     def passed(self) -> bool:
-        """Within the tolerance and of the expected order, as far as either is asked for."""
+        """Whether error and order are as required."""
         if self.tolerance is not None and not self.error <= self.tolerance:  # nan does not pass
             return False
         return self.convergence is None or self.convergence.passed
 
     def to_dict(self) -> dict[str, Any]:
-        """Everything as plain data; what is not a finite number becomes None."""
+        """Everything as plain data; a number that is not finite becomes None."""
         document = asdict(self) | {"error": self.error, "passed": self.passed}
         if self.convergence is not None:
             document["convergence"]["observed"] = self.convergence.observed
         return {key: _plain(value) for key, value in document.items()}
 
 
-@dataclass(frozen=True, kw_only=True)
-class Check:
-    """Rows that are computed together, named after the statement they prove."""
-
-    name: str
-    rows: Callable[[], list[Row]]
-    quick: bool = True  #: part of the quick ladder
-
-
-def count_row(*, case: str, compared: str, wrong: int, kind: Kind, source: str, note: str = "") -> Row:
-    """A row of a statement that is true or false many times over: how often it was false."""
-    return Row(
-        case=case,
-        compared=compared,
-        value=float(wrong),
-        reference=0.0,
-        kind=kind,
-        source=source,
-        tolerance=0.0,
-        note=note,
-    )
-
-
-def order_row(
-    *,
+def row(
+    kind: Kind,
     case: str,
     compared: str,
-    convergence: Convergence,
-    kind: Kind,
+    value: SupportsFloat | None = None,
+    reference: SupportsFloat = 0.0,
+    *,
     source: str,
-    tolerance: float | None = None,
+    absolute: float | None = None,
+    relative: float | None = None,
+    convergence: Convergence | None = None,
     note: str = "",
 ) -> Row:
-    """A row of errors that must vanish at an order; its value is the error at the finest."""
-    finest = convergence.errors[int(np.argmin(convergence.sizes))]
+    """A row with an `absolute` or a `relative` tolerance, an order of convergence, or both.
+
+    The reference of a difference is zero; the value of a convergence, if not given, is its finest error.
+    """
+    if value is None:
+        value = math.nan if convergence is None else convergence.finest
     return Row(
         case=case,
         compared=compared,
-        value=finest,
-        reference=0.0,
+        value=float(value),
+        reference=float(reference),
         kind=kind,
         source=source,
-        tolerance=tolerance,
+        tolerance=absolute if relative is None else relative,
+        relative=relative is not None,
         convergence=convergence,
         note=note,
     )
 
 
+analytic = partial(row, "analytic")
+printed = partial(row, "printed")
+computed = partial(row, "computed")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Check:
+    """Rows that are computed together; the title is the statement that they prove."""
+
+    topic: str
+    title: str
+    rows: Callable[[], Iterable[Row]]
+    quick: bool = True  #: computed with `--quick` as well
+
+
+def check(topic: str, title: str, *, quick: bool = True) -> Callable[[Callable[[], Iterator[Row]]], Check]:
+    """Make a check of a generator of rows; `fem.verification.suite` collects the checks of a module."""
+    return lambda rows: Check(topic=topic, title=title, rows=rows, quick=quick)
+
+
 def failed_row(check: Check, error: Exception) -> Row:
     """The row of a check that could not be computed."""
-    return Row(
-        case=check.name,
-        compared="computed at all",
-        value=math.nan,
-        reference=0.0,
-        kind="analytic",
-        source="",
-        tolerance=0.0,
-        note=f"{type(error).__name__}: {error}",
-    )
-
-
-def as_floats(values: Sequence[float]) -> tuple[float, ...]:
-    """Plain floats, for tuples that end in JSON."""
-    return tuple(float(value) for value in values)
+    reason = f"{type(error).__name__}: {error}"
+    return analytic(check.title, "computed at all", math.nan, source="", absolute=0.0, note=reason)
 
 
 def _plain(value: Any) -> Any:

@@ -1,10 +1,11 @@
-"""Runs for the verification ladder: a homogeneous block on two corners, changed key by key.
+"""Runs for the verification checks: a homogeneous block on two corners, with keys changed.
 
-Everything goes the way of a user's run - case, mesh, model, stepping, audit - but for what the case file cannot
-say: a container above the floor, a floor with a motion of its own, steps of one size.
+They take the way of a user's run (case, mesh, model, stepping, audit), except for what a case file cannot express:
+a container above the floor, a floor with any motion, steps of one size.
 """
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -14,7 +15,7 @@ from contact.interface.equilibrium import Stance
 from contact.motion.kernel import FloorMotion, floor_motion
 from contact.reference.rigid_block import RigidBlock
 from contact.stepping import modal_body
-from contact.stepping.body import State
+from contact.stepping.modal_body import ModalBody
 from fem.assessment.verdict import outcome_of
 from fem.case.case import Case, read_case
 from fem.model.container import Container
@@ -22,9 +23,9 @@ from fem.model.model import Model, build_model
 from fem.results.history import History
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
-from fem.solid.nodal_body import FullBody
 
 GRAVITY = 9.81
+Keys = dict[str, Any]  #: dotted keys of a case and their values
 
 #: The homogeneous stack: 1.1 x 4.0 m, 10 t, on two corners; rigid, no fields.
 STACK = read_case(
@@ -51,17 +52,40 @@ STACK = read_case(
     name="stack",
 )
 BOX = STACK.with_values({"container.height_m": 1.0, "container.weight_N": 24525.0})
-#: what makes the stack an elastic solid with 20 modes
-SOLID = {"solver.model": "reduced", "solver.order": 2, "solver.element_size_m": 0.2}
+#: makes the stack an elastic solid with 20 modes
+SOLID: Keys = {"solver.model": "reduced", "solver.order": 2, "solver.element_size_m": 0.2}
+#: stiff enough on its floor to count as rigid: f1/f_c = 16
+STIFF_SOLID = SOLID | {"container.youngs_modulus_Pa": 2.1e12}
+#: of the paper
+FRICTION: Keys = {"contact.mu_static": 0.4, "contact.mu_kinetic": 0.2}
+
+
+def harmonic(amplitude: float, omega: float) -> Keys:
+    """Keys of a floor A sin(Omega t), in m and rad/s."""
+    return {
+        "motion.kind": "harmonic",
+        "motion.amplitude_m": amplitude,
+        "motion.angular_frequency_rad_s": omega,
+    }
+
+
+def pulse(peak: float, length: float, shape: str = "rectangular") -> Keys:
+    """Keys of a pulse of the floor's acceleration, in m/s2 and s."""
+    return {
+        "motion.kind": "pulse",
+        "motion.shape": shape,
+        "motion.peak_acceleration_m_s2": peak,
+        "motion.pulse_s": length,
+    }
 
 
 class RunFailedError(ArithmeticError):
-    """A run of the ladder did not reach its end."""
+    """A run of a verification check failed."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Finished:
-    """A run that came to its end."""
+    """A run that reached its end."""
 
     model: Model
     history: History
@@ -69,7 +93,7 @@ class Finished:
 
     @property
     def track(self) -> Any:
-        """What the run is judged by, see `contact.stepping.observables.OBSERVABLES`."""
+        """Extremes and events of the run, see `contact.stepping.observables.OBSERVABLES`."""
         return self.model.run.track[0]
 
     @property
@@ -79,15 +103,23 @@ class Finished:
 
     @property
     def block(self) -> RigidBlock:
-        """The rigid block of the same mass, for the references."""
-        return rigid_block(self.model)
+        """The analytic block with the mass, centroid and inertia of the mesh."""
+        mesh = self.model.container.mesh
+        half, height = 0.5 * mesh.width, mesh.centroid[1]
+        square = half**2 + height**2
+        return RigidBlock(
+            half_width=half,
+            centroid_height=height,
+            gravity=self.model.case.gravity_m_s2,
+            inertia_ratio=1.0 + mesh.inertia / (mesh.mass * square),
+        )
 
 
 def run(case: Case, values: Mapping[str, Any] | None = None, container: Container | None = None) -> Finished:
     """Compute a case with some keys changed.
 
     Raises:
-        RunFailedError: the run failed or its ledger did not stand.
+        RunFailedError: the run failed, or its energy balance error is too large.
     """
     return finish(build_model(case.with_values(values) if values else case, container))
 
@@ -105,21 +137,18 @@ def finish(model: Model) -> Finished:
     return Finished(model=model, history=recorder.history(), status=ending.status)
 
 
-def rigid_block(model: Model) -> RigidBlock:
-    """The analytic block with the mass, centroid and inertia of the model's mesh."""
-    mesh = model.container.mesh
-    half, height = 0.5 * mesh.width, mesh.centroid[1]
-    square = half**2 + height**2
-    return RigidBlock(
-        half_width=half,
-        centroid_height=height,
-        gravity=model.case.gravity_m_s2,
-        inertia_ratio=1.0 + mesh.inertia / (mesh.mass * square),
-    )
+def bisected(happens: Callable[[float], bool], low: float, high: float, *, resolution: float) -> float:
+    """Least parameter at which something happens, to a share of it; nan if that is not within the bracket."""
+    if happens(low) or not happens(high):
+        return math.nan
+    while high - low > resolution * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if happens(middle) else (middle, high)
+    return 0.5 * (low + high)
 
 
 def with_steps_of(model: Model, step: float) -> Model:
-    """The model with every step of one size [s], whatever its ledger says."""
+    """The model with every step of one size [s], whatever its energy balance."""
     loose = model.run.control._replace(
         largest_step=step,
         smallest_step=step,
@@ -131,45 +160,38 @@ def with_steps_of(model: Model, step: float) -> Model:
 
 
 def with_motion(model: Model, motion: FloorMotion, breaks: tuple[float, ...] = ()) -> Model:
-    """The model on another floor, with which the container moves at t = 0.
+    """A rigid or reduced model on another floor, with which the container moves at t = 0.
 
     `breaks` are the instants at which the floor's acceleration jumps [s].
     """
     state = model.run.old
     before, speed_before, _ = model.run.floor[0]
     floor, speed, acceleration = floor_motion(motion, 0.0)
-    along = slice(None, None, 2) if isinstance(model.body, FullBody) else slice(0, 1)
-    state.position[along] += floor - before
-    state.velocity[along] += speed - speed_before
+    state.position[0] += floor - before
+    state.velocity[0] += speed - speed_before
     model.run.floor[:] = floor, speed, acceleration
-    _start(model, state, floor)
+    modal_body.start(_modal(model), state, floor)
     ends = np.array([*breaks, model.case.solver.duration_s, np.inf])
     return replace(model, run=model.run._replace(motion=motion, breaks=ends))
 
 
-def lifted(model: Model, height: float, speed: float = 0.0) -> Model:
-    """The model with its container `height` [m] above the floor, unstrained, falling at `speed` [m/s]."""
-    state, body, mesh = model.run.old, model.body, model.container.mesh
+def lifted(model: Model, height: float, speed: float) -> Model:
+    """A rigid or reduced model `height` [m] above the floor, unstrained, falling at `speed` [m/s]."""
+    state, (x, z) = model.run.old, model.container.mesh.centroid
+    state.force[:] = 0.0
+    state.stick[:] = 0.0
     stance = Stance(
-        centre=(mesh.centroid[0], mesh.centroid[1] + height),
+        centre=(x, z + height),
         rotation=0.0,
         velocity=(0.0, -speed),
         angular_velocity=0.0,
-        force=np.zeros_like(state.force),
+        force=state.force.copy(),
     )
-    state.force[:] = 0.0
-    state.stick[:] = 0.0
-    if isinstance(body, FullBody):
-        body.place(state, stance, model.container.response, 0.0)
-    else:
-        modal_body.place(body, state, stance, 0.0)
-    _start(model, state, float(model.run.floor[0, 0]))
+    modal_body.place(_modal(model), state, stance, 0.0)
+    modal_body.start(_modal(model), state, float(model.run.floor[0, 0]))
     return model
 
 
-def _start(model: Model, state: State, floor: float) -> None:
-    """Everything that follows from the coordinates, and the acceleration that goes with them."""
-    if isinstance(model.body, FullBody):
-        model.body.start(state, floor)
-    else:
-        modal_body.start(model.body, state, floor)
+def _modal(model: Model) -> ModalBody:
+    assert isinstance(model.body, ModalBody)  # the checks lift and move no full model
+    return model.body

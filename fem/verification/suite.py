@@ -1,6 +1,6 @@
-"""The ladder: every room of checks, climbed from the elements up to the limits of the whole.
+"""The verification suite: all checks by topic, from the elements to the limits of whole models.
 
-A check that cannot be computed is a row that fails, with its reason; the others go on.
+A check that cannot be computed gives a row that fails, with the reason; the others are still computed.
 """
 
 import difflib
@@ -13,8 +13,6 @@ from fem.runtime.identity import versions
 from fem.verification import (
     contact_laws,
     elasticity,
-    friction,
-    invariance,
     limits,
     overturning,
     restitution,
@@ -26,50 +24,56 @@ from fem.verification import (
 from fem.verification.rows import Check, Row, failed_row
 from fem.verification.runs import STACK, run
 
-ROOMS: dict[str, tuple[Check, ...]] = {
-    "statics": statics.CHECKS,
-    "elasticity": elasticity.CHECKS,
-    "time": time_stepping.CHECKS + invariance.CHECKS,
-    "contact": contact_laws.CHECKS,
-    "sliding": friction.CHECKS + sliding.CHECKS,
-    "rocking": rocking.CHECKS,
-    "restitution": restitution.CHECKS,
-    "overturning": overturning.CHECKS,
-    "limits": limits.CHECKS,
-}
+MODULES = (
+    statics,
+    elasticity,
+    time_stepping,
+    contact_laws,
+    sliding,
+    rocking,
+    restitution,
+    overturning,
+    limits,
+)
+CHECKS = tuple(check for module in MODULES for check in vars(module).values() if isinstance(check, Check))
 
 
-class UnknownRoomError(ValueError):
-    """There is no such room."""
+class UnknownTopicError(ValueError):
+    """There is no such topic."""
 
-    def __init__(self, name: str) -> None:
-        near = difflib.get_close_matches(name, ROOMS, n=1)
+    def __init__(self, name: str, known: Sequence[str]) -> None:
+        near = difflib.get_close_matches(name, known, n=1)
         hint = f"; did you mean {near[0]!r}?" if near else ""
-        super().__init__(f"no room {name!r}{hint} (known: {', '.join(ROOMS)})")
+        super().__init__(f"unknown topic {name!r}{hint} (known: {', '.join(known)})")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rung:
-    """A check that was computed."""
+class ComputedCheck:
+    """A check with its rows."""
 
-    room: str
-    check: str
+    topic: str
+    title: str
     rows: tuple[Row, ...]
     seconds: float
 
+    @property
+    def names(self) -> dict[str, str]:
+        """Its place in the suite, for JSON; `room` is the former name of `topic`."""
+        return {"room": self.topic, "topic": self.topic, "check": self.title}
+
 
 @dataclass(frozen=True, kw_only=True)
-class Ladder:
-    """Everything that was computed, and what it came to."""
+class SuiteResult:
+    """Result of the suite, or of a part of it."""
 
     quick: bool
-    rungs: tuple[Rung, ...]
+    checks: tuple[ComputedCheck, ...]
     seconds: float
 
     @property
-    def rows(self) -> Iterator[tuple[Rung, Row]]:
-        """Every row with its check, from the first to the last."""
-        return ((rung, row) for rung in self.rungs for row in rung.rows)
+    def rows(self) -> Iterator[tuple[ComputedCheck, Row]]:
+        """Every row with its check, in order."""
+        return ((check, row) for check in self.checks for row in check.rows)
 
     @property
     def failures(self) -> int:
@@ -79,17 +83,16 @@ class Ladder:
     @property
     def count(self) -> int:
         """Number of rows."""
-        return sum(len(rung.rows) for rung in self.rungs)
+        return sum(len(check.rows) for check in self.checks)
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain data, for JSON."""
         return {
             "quick": self.quick,
             "passed": self.failures == 0,
-            "rows": [{"room": rung.room, "check": rung.check, **row.to_dict()} for rung, row in self.rows],
+            "rows": [{**check.names, **row.to_dict()} for check, row in self.rows],
             "checks": [
-                {"room": rung.room, "check": rung.check, "rows": len(rung.rows), "seconds": rung.seconds}
-                for rung in self.rungs
+                {**check.names, "rows": len(check.rows), "seconds": check.seconds} for check in self.checks
             ],
             "count": self.count,
             "failures": self.failures,
@@ -98,36 +101,47 @@ class Ladder:
         }
 
 
-def chosen_checks(*, quick: bool, rooms: Sequence[str] = ()) -> list[tuple[str, Check]]:
-    """Checks of the quick or the whole ladder, of some rooms or of all, in order."""
-    return [
-        (room, check)
-        for room, checks in ROOMS.items()
-        for check in checks
-        if (not rooms or room in rooms) and (check.quick or not quick)
-    ]
+def chosen_checks(*, quick: bool, topics: Sequence[str] = ()) -> list[Check]:
+    """Checks of some topics, or of all, in order; the quick ones or all.
 
-
-def climb(
-    *, quick: bool, rooms: Sequence[str] = (), before: Callable[[str, Check], None] = lambda room, check: None
-) -> Ladder:
-    """Compute the checks one after the other; `before` is told of each.
-
-    The stepping kernels are compiled first, outside the clock.
+    Raises:
+        UnknownTopicError: a topic is not one of the suite's.
     """
+    known = list(dict.fromkeys(check.topic for check in CHECKS))
+    for name in topics:
+        if name not in known:
+            raise UnknownTopicError(name, known)
+    wanted = topics or known
+    return [check for check in CHECKS if check.topic in wanted and (check.quick or not quick)]
+
+
+def run_suite(
+    *,
+    quick: bool,
+    topics: Sequence[str] = (),
+    before: Callable[[int, int, Check], None] = lambda number, count, check: None,
+) -> SuiteResult:
+    """Compute the chosen checks one after the other; `before` each, call with its number and their count.
+
+    The stepping kernels are compiled first, outside the measured time.
+
+    Raises:
+        UnknownTopicError: as for `chosen_checks`.
+    """
+    checks = chosen_checks(quick=quick, topics=topics)
     run(STACK, {"solver.duration_s": 0.01})
     began = time.perf_counter()
-    rungs = []
-    for room, check in chosen_checks(quick=quick, rooms=rooms):
-        before(room, check)
-        rungs.append(_rung(room, check))
-    return Ladder(quick=quick, rungs=tuple(rungs), seconds=time.perf_counter() - began)
+    results = []
+    for number, check in enumerate(checks, start=1):
+        before(number, len(checks), check)
+        results.append(_compute(check))
+    return SuiteResult(quick=quick, checks=tuple(results), seconds=time.perf_counter() - began)
 
 
-def _rung(room: str, check: Check) -> Rung:
+def _compute(check: Check) -> ComputedCheck:
     began = time.perf_counter()
     try:
-        rows = check.rows()
+        rows = tuple(check.rows())
     except (ArithmeticError, ValueError, RuntimeError, LookupError) as error:
-        rows = [failed_row(check, error)]
-    return Rung(room=room, check=check.name, rows=tuple(rows), seconds=time.perf_counter() - began)
+        rows = (failed_row(check, error),)
+    return ComputedCheck(topic=check.topic, title=check.title, rows=rows, seconds=time.perf_counter() - began)

@@ -1,30 +1,198 @@
-"""The time stepping: orders, spectral radius, period error, closure of the energy ledger.
+"""The time stepping: orders, spectral radius, period error, energy closure, and invariance of the motion.
 
-Newmark (1959); Chung and Hulbert, J. Appl. Mech. 60 (1993) 371. Where theory is quoted it is evaluated here from
-the published equations, not from the stepper.
+Newmark (1959); Chung and Hulbert, J. Appl. Mech. 60 (1993) 371. Theory is evaluated here from the published
+equations, not from the stepper. The motion must not depend on a spin, a mirror image, scales or a constant velocity
+added to the floor.
 """
 
 import math
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
+from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from contact.stepping.scheme import Scheme, generalised_alpha, newmark
 from fem.model.model import build_model
 from fem.runtime.arrays import FloatArray
-from fem.verification.bodies import Flight, free_run
+from fem.solid.assembly import FiniteElements, assemble
+from fem.verification.bodies import Flight, free_run, full_body
 from fem.verification.manufactured import moving_body_error
-from fem.verification.rows import Check, Convergence, Row, as_floats, order_row
-from fem.verification.runs import SOLID, STACK, finish, with_steps_of
+from fem.verification.meshes import graded_block
+from fem.verification.rows import Row, analytic, check, convergence
+from fem.verification.runs import (
+    SOLID,
+    STACK,
+    Finished,
+    Keys,
+    finish,
+    harmonic,
+    run,
+    with_motion,
+    with_steps_of,
+)
 
+TRAPEZOIDAL = "trapezoidal rule"
 SCHEMES = {
     "generalised-alpha 0": generalised_alpha(0.0),
     "generalised-alpha 0.5": generalised_alpha(0.5),
     "generalised-alpha 0.8": generalised_alpha(0.8),
-    "trapezoidal rule": newmark(0.25, 0.5),
+    TRAPEZOIDAL: newmark(0.25, 0.5),
 }
 CHUNG_HULBERT = "Chung and Hulbert 1993"
+OMEGA, DAMPING = 2.0 * math.pi, 0.05  #: of the oscillator
+SPIN = 20.0  #: of a block thrown into the air [rad/s]
+#: rocks, slides and strikes for 5 s
+VIOLENT = harmonic(0.1, 8.0) | {"contact.mu_static": 0.3, "solver.duration_s": 5.0}
+
+
+@check("time", "order on a linear oscillator")
+def linear_order() -> Iterator[Row]:
+    """Order 2 on a damped oscillator, in position and velocity."""
+    end = 1.3
+    for name, scheme in SCHEMES.items():
+        errors = {end / count: oscillator_error(scheme, end / count, end) for count in (40, 80, 160, 320)}
+        orders = convergence("step/period", errors, order=2.0, within=0.1)
+        yield analytic(
+            f"damped oscillator, {name}",
+            "error after 1.3 periods over the amplitude",
+            source="exact solution",
+            absolute=2e-3,
+            convergence=orders,
+        )
+
+
+@check("time", "order at large rotation")
+def large_rotation_order() -> Iterator[Row]:
+    """Order 2 on a body that rotates by more than a radian while strained, with a manufactured source."""
+    for name in ("generalised-alpha 0.5", TRAPEZOIDAL):
+        errors = {0.5 / n: moving_body_error(SCHEMES[name], 0.5 / n) for n in (20, 40, 80, 160)}
+        orders = convergence("step [s]", errors, order=2.0, within=0.1)
+        yield analytic(
+            f"full model, manufactured motion through 1.4 rad, {name}",
+            "error of the nodes at 0.5 s over the size of the body",
+            source="manufactured solution, exact in space",
+            absolute=1e-3,
+            convergence=orders,
+        )
+
+
+@check("time", "spectral radius")
+def spectral_radii() -> Iterator[Row]:
+    """Largest eigenvalue of a step at (almost) infinite frequency, from steps of the stepper."""
+    note = "three equal eigenvalues meet at infinity: at 1e5 they differ by a cube root of rounding"
+    compared = "spectral radius at omega h = 1e5"
+    for radius in (0.0, 0.5, 0.8, 1.0):
+        found = np.abs(np.linalg.eigvals(amplification(generalised_alpha(radius), 1e5))).max()
+        case = f"generalised-alpha {radius}"
+        yield analytic(case, compared, found, radius, source=CHUNG_HULBERT, absolute=0.02, note=note)
+
+
+@check("time", "period error")
+def period_errors() -> Iterator[Row]:
+    """Elongation of the period at omega h = 0.3, from the eigenvalues of a step."""
+    compared = "elongation of the period at omega h = 0.3"
+    for name, scheme in SCHEMES.items():
+        found = elongation(amplification(scheme, 0.3), 0.3)
+        exact, source = elongation(published_amplification(scheme, 0.3), 0.3), CHUNG_HULBERT
+        if name == TRAPEZOIDAL:
+            exact, source = 0.15 / math.atan(0.15) - 1.0, "omega h/(2 arctan(omega h/2)) - 1"
+        yield analytic(name, compared, found, exact, source=source, relative=1e-6)
+
+
+@check("time", "energy closure")
+def energy_closure() -> Iterator[Row]:
+    """The energy balance closes with the square of the step if nothing opens, slides or strikes."""
+    vibrating = {"initial.velocity_m_s": 1e-3, "contact.damping_ratio": 0.0, "solver.duration_s": 0.1}
+    kinetic = 0.5 * 1e4 * 1e-6
+    models: dict[str, Keys] = {"rigid stack": {}, "solid stack, 20 modes": SOLID}
+    for name, values in models.items():
+        errors: dict[float, float] = {}
+        for step in (2e-4, 1e-4, 5e-5, 2.5e-5):
+            model = build_model(STACK.with_values(values | vibrating))
+            clock = finish(with_steps_of(model, step)).model.run.clock[0]
+            errors[step] = max(-float(clock.least_imbalance), float(clock.most_imbalance)) / kinetic
+        orders = convergence("step [s]", errors, order=2.0, within=0.15, at_least=True)
+        yield analytic(
+            f"{name} vibrating on closed springs, generalised-alpha 0.5",
+            "largest energy balance error over the first kinetic energy",
+            source="energy balance; the scheme's own dissipation is of order 3",
+            convergence=orders,
+        )
+
+
+@check("time", "spin")
+def spin() -> Iterator[Row]:
+    """A block thrown spinning: it keeps its angular momentum, and rotates evenly if it is stiff."""
+    turn = 2.0 * math.pi / SPIN
+    errors = {turn / count: spinning(1e8, turn / count)[0] for count in (200, 400, 800)}
+    orders = convergence("step [s]", errors, order=2.0, within=0.2)
+    yield analytic(
+        "block of E = 1e8 Pa thrown at 20 rad/s, full model, generalised-alpha 1",
+        "angular momentum, largest relative change in one revolution",
+        source="no external moment",
+        absolute=1e-4,
+        convergence=orders,
+    )
+    yield analytic(
+        "block of E = 1e9 Pa thrown at 20 rad/s, full model, generalised-alpha 1",
+        "rotation missing after one revolution [rad]",
+        spinning(1e9, turn / 800)[1],
+        source="even rotation",
+        absolute=2e-3,
+        note="the spin stretches the block and its inertia grows: 0.008 rad at a tenth of the stiffness",
+    )
+
+
+@check("time", "mirror symmetry")
+def mirror() -> Iterator[Row]:
+    """The floor's motion mirrored: the container's motion mirrored."""
+    models: dict[str, Keys] = {"rigid stack": {}, "solid stack, 20 modes": SOLID}
+    note = "sin(Omega t + pi) is -sin(Omega t) except for rounding"
+    for name, values in models.items():
+        one, other = (run(STACK, VIOLENT | values | {"motion.phase_rad": phase}) for phase in (0.0, math.pi))
+        case = f"{name}, slide-rocking for 5 s, floor mirrored"
+        yield same_rotation(case, one, -other.history["rotation_rad"], source="symmetry", note=note)
+
+
+@check("time", "scaling")
+def scaling() -> Iterator[Row]:
+    """Lengths times four, times times two: the same rotation."""
+    scaled = {
+        "container.width_m": 4.4,
+        "container.height_m": 16.0,
+        "container.depth_m": 4.4,
+        "container.weight_N": 64.0 * 98100.0,
+        "motion.amplitude_m": 0.4,
+        "motion.angular_frequency_rad_s": 4.0,
+        "solver.duration_s": 10.0,
+        "solver.element_size_m": 4.0,
+        "output.history_s": 0.01,
+    }
+    one, other = run(STACK, VIOLENT), run(STACK, VIOLENT | scaled)
+    case = "rigid stack, slide-rocking for 5 s, lengths x 4 and times x 2"
+    yield same_rotation(case, one, other.history["rotation_rad"], source="dimensional analysis")
+
+
+@check("time", "Galilean invariance")
+def galilei() -> Iterator[Row]:
+    """A constant velocity of 3 m/s added to the floor and the container: the same relative motion."""
+    still, travelling = (
+        finish(
+            with_motion(
+                with_steps_of(build_model(STACK.with_values(VIOLENT | {"solver.duration_s": 2.0})), 2e-5),
+                *stepped_floor(drift),
+            )
+        )
+        for drift in (0.0, 3.0)
+    )
+    yield same_rotation(
+        "rigid stack, rocking for 2 s on a floor with 3 m/s added",
+        still,
+        travelling.history["rotation_rad"],
+        source="Galilean invariance",
+        note="fixed steps: the step control uses the work of the base, which is not invariant",
+    )
 
 
 def oscillator(omega: float, damping_ratio: float) -> ModalBody:
@@ -42,140 +210,17 @@ def oscillator(omega: float, damping_ratio: float) -> ModalBody:
     )
 
 
-def linear_order() -> list[Row]:
-    """Order 2 on a damped oscillator, in position and velocity."""
-    omega, damping, end = 2.0 * math.pi, 0.05, 1.3
-    rows = []
-    for name, scheme in SCHEMES.items():
-        steps = [end / count for count in (40, 80, 160, 320)]
-        errors = []
-        for step in steps:
-            flight = free_run(
-                oscillator(omega, damping), step=step, scheme=scheme, modal_position=np.ones(1), until=end
-            )
-            flight.advance(end)
-            errors.append(_oscillator_error(flight, omega, damping))
-        rows.append(
-            order_row(
-                case=f"damped oscillator, {name}",
-                compared="error after 1.3 periods over the amplitude",
-                convergence=Convergence(
-                    against="step/period",
-                    sizes=as_floats(steps),
-                    errors=as_floats(errors),
-                    expected=2.0,
-                    tolerance=0.1,
-                ),
-                kind="analytic",
-                source="exact solution",
-                tolerance=2e-3,
-            )
-        )
-    return rows
-
-
-def large_rotation_order() -> list[Row]:
-    """Order 2 on a body that turns by more than a radian while it is strained, with a manufactured source."""
-    rows = []
-    for name in ("generalised-alpha 0.5", "trapezoidal rule"):
-        steps = [0.5 / count for count in (20, 40, 80, 160)]
-        errors = [moving_body_error(SCHEMES[name], step) for step in steps]
-        rows.append(
-            order_row(
-                case=f"full model, manufactured motion through 1.4 rad, {name}",
-                compared="error of the nodes at 0.5 s over the size of the body",
-                convergence=Convergence(
-                    against="step [s]",
-                    sizes=as_floats(steps),
-                    errors=as_floats(errors),
-                    expected=2.0,
-                    tolerance=0.1,
-                ),
-                kind="analytic",
-                source="manufactured solution, exact in space",
-                tolerance=1e-3,
-            )
-        )
-    return rows
-
-
-def spectral_radii() -> list[Row]:
-    """Largest eigenvalue of a step at (almost) infinite frequency, from steps of the stepper itself."""
-    rows = []
-    for radius in (0.0, 0.5, 0.8, 1.0):
-        matrix = amplification(generalised_alpha(radius), 1e5)
-        rows.append(
-            Row(
-                case=f"generalised-alpha {radius}",
-                compared="spectral radius at omega h = 1e5",
-                value=float(np.abs(np.linalg.eigvals(matrix)).max()),
-                reference=radius,
-                kind="analytic",
-                source=CHUNG_HULBERT,
-                tolerance=0.02,
-                note="three equal eigenvalues meet at infinity: at 1e5 they are a cube root of rounding apart",
-            )
-        )
-    return rows
-
-
-def period_errors() -> list[Row]:
-    """Elongation of the period at omega h = 0.3, from the eigenvalues of a step."""
-    rows = []
-    for name, scheme in SCHEMES.items():
-        found, exact = (
-            0.3 / abs(np.angle(_principal(np.linalg.eigvals(matrix)))) - 1.0
-            for matrix in (amplification(scheme, 0.3), published_amplification(scheme, 0.3))
-        )
-        if name == "trapezoidal rule":
-            exact = np.float64(0.15 / math.atan(0.15) - 1.0)
-        rows.append(
-            Row(
-                case=name,
-                compared="elongation of the period at omega h = 0.3",
-                value=float(found),
-                reference=float(exact),
-                kind="analytic",
-                source="omega h/(2 arctan(omega h/2)) - 1" if name == "trapezoidal rule" else CHUNG_HULBERT,
-                tolerance=1e-6,
-                relative=True,
-            )
-        )
-    return rows
-
-
-def energy_closure() -> list[Row]:
-    """The ledger closes with the square of the step where nothing opens, slides or strikes."""
-    rows = []
-    for name, values in (("rigid stack", {}), ("solid stack, 20 modes", SOLID)):
-        steps, errors = [2e-4, 1e-4, 5e-5, 2.5e-5], []
-        for step in steps:
-            case = STACK.with_values(
-                values
-                | {"initial.velocity_m_s": 1e-3, "contact.damping_ratio": 0.0, "solver.duration_s": 0.1}
-            )
-            model = with_steps_of(build_model(case), step)
-            done = finish(model)
-            clock = done.model.run.clock[0]
-            errors.append(max(-float(clock.least_imbalance), float(clock.most_imbalance)))
-        kinetic = 0.5 * 1e4 * 1e-6
-        rows.append(
-            order_row(
-                case=f"{name} trembling on closed springs, generalised-alpha 0.5",
-                compared="largest imbalance of the ledger over the first kinetic energy",
-                convergence=Convergence(
-                    against="step [s]",
-                    sizes=as_floats(steps),
-                    errors=as_floats([error / kinetic for error in errors]),
-                    expected=2.0,
-                    tolerance=0.15,
-                    at_least=True,
-                ),
-                kind="analytic",
-                source="energy balance; the scheme's own dissipation is of order 3",
-            )
-        )
-    return rows
+def oscillator_error(scheme: Scheme, step: float, end: float) -> float:
+    """Error of position and velocity over the amplitude after a time, from an amplitude of one."""
+    flight = free_run(
+        oscillator(OMEGA, DAMPING), step=step, scheme=scheme, modal_position=np.ones(1), until=end
+    ).advance(end)
+    t, rate, decay = flight.time, OMEGA * math.sqrt(1.0 - DAMPING**2), DAMPING * OMEGA
+    envelope = math.exp(-decay * t)
+    position = envelope * (math.cos(rate * t) + decay / rate * math.sin(rate * t))
+    velocity = -envelope * OMEGA**2 / rate * math.sin(rate * t)
+    state = flight.state
+    return math.hypot(float(state.position[3]) - position, (float(state.velocity[3]) - velocity) / OMEGA)
 
 
 def amplification(scheme: Scheme, sampled_frequency: float) -> FloatArray:
@@ -201,24 +246,54 @@ def published_amplification(scheme: Scheme, sampled_frequency: float) -> FloatAr
     return np.linalg.solve(new, old)
 
 
-def _principal(values: Any) -> complex:
-    return complex(values[np.argmax(np.imag(values))])
+def elongation(matrix: FloatArray, sampled_frequency: float) -> float:
+    """Elongation of the period by the oscillating eigenvalue of a step's matrix [-]."""
+    values = np.linalg.eigvals(matrix)
+    return float(sampled_frequency / abs(np.angle(values[np.argmax(np.imag(values))])) - 1.0)
 
 
-def _oscillator_error(flight: Flight, omega: float, damping: float) -> float:
-    rate = omega * math.sqrt(1.0 - damping**2)
-    t, decay = flight.time, damping * omega
-    envelope = math.exp(-decay * t)
-    position = envelope * (math.cos(rate * t) + decay / rate * math.sin(rate * t))
-    velocity = -envelope * omega**2 / rate * math.sin(rate * t)
-    state = flight.state
-    return math.hypot(float(state.position[3]) - position, (float(state.velocity[3]) - velocity) / omega)
+def spinning(youngs_modulus: float, step: float) -> tuple[float, float]:
+    """Largest relative change of the angular momentum in one revolution, and |rotation| at its end [rad]."""
+    elements = assemble(graded_block(), youngs_modulus=youngs_modulus, poisson_ratio=0.3, order=1)
+    body = full_body(elements)
+    arm = elements.nodes - body.centroid
+    flight = free_run(
+        body,
+        step=step,
+        scheme=generalised_alpha(1.0),
+        velocity=SPIN * np.column_stack([arm[:, 1], -arm[:, 0]]),
+        height=5.0,
+    )
+    first, change = angular_momentum(flight, elements), 0.0
+    for share in np.arange(1, 41) / 40:
+        flight.advance(float(share) * 2.0 * math.pi / SPIN)
+        change = max(change, abs(angular_momentum(flight, elements) / first - 1.0))
+    return change, abs(float(flight.state.pose[0]))
 
 
-CHECKS = (
-    Check(name="order on a linear oscillator", rows=linear_order),
-    Check(name="order at large rotation", rows=large_rotation_order),
-    Check(name="spectral radius", rows=spectral_radii),
-    Check(name="period error", rows=period_errors),
-    Check(name="energy closure", rows=energy_closure),
-)
+def angular_momentum(flight: Flight, elements: FiniteElements) -> float:
+    """About the mass centre, positive toward +x [kg m2/s]."""
+    position, velocity = (array.reshape(-1, 2) for array in (flight.state.position, flight.state.velocity))
+    momentum, arm = elements.mass @ velocity, position - flight.state.pose[2:4]
+    return float(np.sum(arm[:, 1] * momentum[:, 0] - arm[:, 0] * momentum[:, 1]))
+
+
+def stepped_floor(drift: float) -> tuple[FloorMotion, tuple[float, ...]]:
+    """Accelerations of +4, -4 and +4 m/s2 for 0.25, 0.5 and 0.25 s, with a constant velocity added [m/s]."""
+    knots = (0.0, 0.25, 0.75, 1.0)
+    rows, displacement, velocity = [[0.0, drift, 0.0, 0.0]], 0.0, drift
+    for acceleration, length in zip((4.0, -4.0, 4.0, 0.0), (0.25, 0.5, 0.25, 0.0), strict=True):
+        rows.append([displacement, velocity, acceleration, 0.0])
+        displacement += length * (velocity + 0.5 * length * acceleration)
+        velocity += length * acceleration
+    motion = as_floor_motion(PIECEWISE, breaks=np.array(knots), coefficients=np.array(rows))
+    return motion, knots[1:]
+
+
+def same_rotation(case: str, done: Finished, other: FloatArray, *, source: str, note: str = "") -> Row:
+    """The row of a rotation that must equal that of a run at every sample."""
+    rotation, angle = done.history["rotation_rad"], done.block.slenderness_angle
+    count = min(rotation.size, other.size)
+    compared = f"rotation, largest difference over al (largest rotation {np.abs(rotation).max() / angle:.2f})"
+    found = np.abs(rotation[:count] - other[:count]).max() / angle
+    return analytic(case, compared, found, source=source, absolute=1e-6, note=note)

@@ -1,19 +1,18 @@
-"""Contact damping ratio against apparent restitution of slender blocks: makes
+"""Contact damping ratio against apparent restitution of slender blocks: computes
 fem/model/data/contact_damping_restitution.csv.
 
     python tests/benchmarks/calibrate_contact_damping.py
 
 A homogeneous block is released at rest from half its slenderness angle. Its apparent restitution is the square
 root of the ratio of the potential energies above rest at the turning points after and before the first impact:
-for a rigid block on two corners and an impact without bounce, Housner's. Friction is ample. Each row is run
+for a rigid block on two corners and an impact without bounce, Housner's. Friction is ample. Each row is computed
 with the rigid model at the default penalty and at three times it, and with the elastic solid so stiff that its
-first frequency is fifteen times the contact frequency, or as near as the largest Young's modulus comes. Only
-runs that pass their own energy audit count; a value whose run does not is left empty, and the script ends with
-an error where that happens to the rigid model. About two minutes on one core.
+first frequency is fifteen times the contact frequency, or as near as the largest Young's modulus allows. The value of
+a run that fails its energy audit is left empty, and the script ends with an error if that is a run of the rigid
+model. About two minutes on one core.
 """
 
 import csv
-import io
 import math
 import sys
 from itertools import product
@@ -36,42 +35,24 @@ STIFFEST = 1e13  #: largest Young's modulus of a case [Pa]
 STIFFER = 3.0  #: penalty of the sensitivity column over the default
 TARGET = Path(__file__).parents[2] / "fem" / "model" / "data" / "contact_damping_restitution.csv"
 
-COLUMNS = (
-    "support",
-    "foot_over_width",
-    "height_over_width",
-    "contact_damping_ratio",
-    "housner",
-    "rigid",
-    "rigid_stiffer_contact",
-    "solid",
-    "solid_frequency_ratio",
-)
-CASE = """
+CASE = read_case("""
 schema = 1
 title = "calibration"
 [container]
-width_m = {width!r}
-height_m = {height!r}
+width_m = 1.1
+height_m = 1.1
 density_kg_m3 = 2066.0
 section = "solid"
-[support]
-kind = "{kind}"
-foot_m = {foot!r}
 [contact]
 mu_static = 2.0
 [motion]
 kind = "none"
-[initial]
-rotation_rad = {rotation!r}
 [solver]
-model = "{model}"
-duration_s = {duration!r}
 step_s = 1e-4
 [output]
 history_s = 0.1
 fields_s = 0.0
-"""
+""")
 HEADER = """\
 # Apparent restitution of homogeneous blocks, by contact damping ratio c/(2 sqrt(k m)), support and slenderness.
 # Made by tests/benchmarks/calibrate_contact_damping.py; all values computed by this program (no measurement).
@@ -84,23 +65,21 @@ HEADER = """\
 
 def case_of(kind: str, foot: float, slenderness: float, model: str) -> Case:
     """A block of that height over width, released from half its slenderness angle."""
-    angle = math.atan(1.0 / slenderness)
     radius = 0.5 * WIDTH * math.hypot(1.0, slenderness)
-    duration = 5.0 / math.sqrt(0.75 * 9.81 / radius)  # the second peak comes after 2 to 3.5 times 1/p
-    text = CASE.format(
-        width=WIDTH,
-        height=slenderness * WIDTH,
-        kind=kind,
-        foot=foot * WIDTH if kind == "feet" else 0.15,
-        rotation=0.5 * angle,
-        model=model,
-        duration=duration,
-    )
-    return read_case(text)
+    values = {
+        "container.height_m": slenderness * WIDTH,
+        "support.kind": kind,
+        "support.foot_m": foot * WIDTH if kind == "feet" else 0.15,
+        "initial.rotation_rad": 0.5 * math.atan(1.0 / slenderness),
+        "solver.model": model,
+        # the second peak comes after 2 to 3.5 times 1/p
+        "solver.duration_s": 5.0 / math.sqrt(0.75 * 9.81 / radius),
+    }
+    return CASE.with_values(values)
 
 
 def restitution(model: Model) -> float | None:
-    """Of the first impact by the peaks around it; None where the run fails its audit."""
+    """Of the first impact by the peaks around it; None if the run fails its audit."""
     if simulate(model, Recorder(model)).status != "completed":
         return None
     value = float(model.run.track[0].restitution_by_peaks)
@@ -117,7 +96,7 @@ def on_floor(case: Case, container: Container, damping_ratio: float, penalty_fac
 
 
 def stiff_solid(kind: str, foot: float, slenderness: float) -> tuple[Case, Container, float]:
-    """The elastic block, stiff enough that f1/f_c is STIFFNESS_RATIO, if it may be; and what f1/f_c is."""
+    """The elastic block, stiff enough that f1/f_c is STIFFNESS_RATIO if possible; and its f1/f_c."""
     case = case_of(kind, foot, slenderness, "reduced")
     model = build_model(case)
     given = case.container.youngs_modulus_Pa
@@ -142,26 +121,30 @@ def rows_of(kind: str, foot: float, slenderness: float) -> list[dict[str, str]]:
             "rigid_stiffer_contact": restitution(on_floor(rigid_case, rigid, damping_ratio, STIFFER)),
             "solid": restitution(on_floor(solid_case, solid, damping_ratio)),
         }
-        row = {"support": kind, "foot_over_width": f"{foot:g}", "height_over_width": f"{slenderness:g}"}
-        row["contact_damping_ratio"] = f"{damping_ratio:g}"
-        row |= {name: "" if value is None else f"{value:.4f}" for name, value in values.items()}
-        rows.append(row | {"solid_frequency_ratio": f"{ratio:.1f}"})
+        rows.append(
+            {
+                "support": kind,
+                "foot_over_width": f"{foot:g}",
+                "height_over_width": f"{slenderness:g}",
+                "contact_damping_ratio": f"{damping_ratio:g}",
+                **{name: "" if value is None else f"{value:.4f}" for name, value in values.items()},
+                "solid_frequency_ratio": f"{ratio:.1f}",
+            }
+        )
     return rows
 
 
 def main() -> int:
-    """Make the table; 1 if the rigid model left a gap in it."""
+    """Compute the table; 1 if a value of the rigid model is missing."""
     rows = []
     for (kind, foot), slenderness in product(SUPPORTS, HEIGHTS):
         rows += rows_of(kind, foot, slenderness)
         print(*rows[-1].values(), sep="\t", flush=True)
-    text = io.StringIO()
-    text.write(HEADER)
-    table = csv.DictWriter(text, COLUMNS, lineterminator="\n")
-    table.writeheader()
-    table.writerows(rows)
-    TARGET.parent.mkdir(exist_ok=True)
-    TARGET.write_text(text.getvalue(), encoding="utf-8")
+    with TARGET.open("w", encoding="utf-8", newline="") as file:
+        file.write(HEADER)
+        table = csv.DictWriter(file, rows[0], lineterminator="\n")
+        table.writeheader()
+        table.writerows(rows)
     gaps = [row for row in rows if not row["rigid"]]
     for row in gaps:
         print("no value:", *row.values(), file=sys.stderr)

@@ -1,9 +1,9 @@
-"""Outcome maps of the stack: what they cost on one core and on two, with and without perturbed copies.
+"""Cost of outcome maps of the stack on one core and on two, with and without perturbed copies.
 
 `rigid`: 100 x 100 cells over frequency and peak acceleration, 20 s each; `reduced` (20 modes, corners): 50 x 50. The
-settings are those of the shipped sweep `outcome_map`. Wall time, since it is cores that are compared, with CPU time
-beside it, which other work on the machine touches less; kernels are compiled and loaded before the clock starts.
-`--quick` takes a ninth of the cells, `--rigid` leaves the reduced model out.
+settings are those of the shipped sweep `outcome_map`. Wall time, since cores are compared, with CPU time beside it,
+which other work on the machine affects less; compilation is not included. `--quick` computes a ninth of the
+cells, `--rigid` leaves out the reduced model.
 """
 
 import sys
@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from measuring import Figure, report
+from measuring import Figure, at_most, report
 
 from fem.batch.axes import read_axis
 from fem.batch.runner import run_cases
@@ -44,7 +44,7 @@ def map_of(model: str, cells: int, *, band: bool) -> Sweep:
 
 
 def seconds(sweep: Sweep, jobs: int) -> tuple[float, float, dict[str, Any]]:
-    """Wall and CPU time of a whole sweep into a folder, and what it found."""
+    """Wall and CPU time of a whole sweep into a folder, and its result."""
     with tempfile.TemporaryDirectory() as folder:
         began = time.perf_counter(), time.process_time()
         info = run_sweep(sweep, Path(folder) / "map", jobs=jobs)
@@ -59,33 +59,21 @@ def figures_of(model: str, cells: int, limit: float, *, share: float) -> list[Fi
     run_cases([plain.case(0), plain.case(plain.count - 1)], jobs=2)  # compiled and loaded
     one, cpu, _ = seconds(plain, 1)
     two, both, info = seconds(plain, 2)
-    name = f"{model}, {cells} x {cells} cells"
-    failed = info["outcomes"].get("failed", 0)
-    found = ", ".join(f"{word} {count}" for word, count in info["outcomes"].items())
     banded, cpu_banded, whole = seconds(map_of(model, cells, band=True), 2)
+    name, outcomes = f"{model}, {cells} x {cells} cells", info["outcomes"]
+    found = ", ".join(f"{word} {count}" for word, count in outcomes.items())
+    speedup = f"{one / two:.2f} ({one:.1f} s, CPU {cpu:.1f} s on one)"
+    perturbed = f"{whole['perturbed']} cells perturbed, {whole['unsure']} unsure"
     return [
-        Figure(
-            f"{name}, two cores",
-            f"{two:.1f} s (CPU {both:.1f} s)",
-            f"<= {share * limit:.0f} s",
-            two <= share * limit,
-        ),
-        Figure(
-            f"{name}: one core over two",
-            f"{one / two:.2f} ({one:.1f} s, CPU {cpu:.1f} s on one)",
-            f">= {SPEEDUP:g}",
-            one / two >= SPEEDUP,
-        ),
-        Figure(f"{name}: outcomes", found, "none failed", failed == 0),
-        Figure(
-            f"{name}, two cores, with its band",
-            f"{banded:.1f} s (CPU {cpu_banded:.1f} s); {whole['perturbed']} cells perturbed, {whole['unsure']} unsure",
-        ),
+        at_most(f"{name}, two cores [s]", two, share * limit, ".1f", details=f" (CPU {both:.1f} s)"),
+        Figure(f"{name}: one core over two", speedup, f">= {SPEEDUP:g}", one / two >= SPEEDUP),
+        Figure(f"{name}: outcomes", found, "none failed", outcomes.get("failed", 0) == 0),
+        Figure(f"{name}, two cores, with its band", f"{banded:.1f} s (CPU {cpu_banded:.1f} s); {perturbed}"),
     ]
 
 
 def cost_of_a_cell() -> Figure:
-    """From a cell's number to what is stepped."""
+    """Time to build the model of a cell."""
     sweep = map_of("rigid", RIGID_CELLS, band=False)
     container = discretise(sweep.case(0))
     equilibrium = find_equilibrium(sweep.case(0), container)  # shared: only the motion differs
@@ -94,8 +82,7 @@ def cost_of_a_cell() -> Figure:
         began = time.process_time()
         build_model(sweep.case(cell), container, equilibrium)
         times.append(time.process_time() - began)
-    typical = 1e3 * float(np.median(times))
-    return Figure("from a cell's number to its model", f"{typical:.2f} ms", "< 1 ms", typical < 1.0)
+    return at_most("from a cell's number to its model [ms]", 1e3 * float(np.median(times)), 1.0)
 
 
 def main() -> int:

@@ -1,9 +1,9 @@
-"""What figures, fields and films of a run cost.
+"""Cost of the figures, fields and films of a run.
 
 Figures of a run of 20 s in less than 5 s, a film of 100 frames in less than 60 s with software rendering, and the
-fields of a `full` run in less than 5 % of its time. Figures are measured in CPU time, on one thread; fields by
-making and writing the frames of a run once more, beside the CPU time of its own stepping, since two whole runs differ
-by more than that from one another.
+fields of a `full` run in less than 5 % of its time. Figures are measured in CPU time, on one thread. For the fields,
+the frames of a run are made and written once more and compared with the CPU time of its stepping, since two whole
+runs differ by more than that.
 """
 
 import sys
@@ -11,7 +11,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from measuring import Figure, cpu_seconds, median_of, report
+from measuring import Figure, at_most, cpu_seconds, median_of, report
 
 import fem
 from fem.case.case import load_case
@@ -37,34 +37,25 @@ def run_of(folder: Path, name: str, *overrides: str) -> OpenedRun:
 
 
 def figures_of_a_long_run(folder: Path) -> Figure:
-    """CPU time, the median; matplotlib is loaded already."""
+    """CPU time, the median; matplotlib is already loaded."""
     run = run_of(folder, "seed_stack_plateau", "output.fields_s=0")
     container = discretise(run.case)
-    write_figures(run, container)  # fonts are looked for once
+    write_figures(run, container)  # loads the fonts
     cost = median_of(REPEATS, lambda: cpu_seconds(lambda: write_figures(fem.open_run(folder), container)))
     size = sum(path.stat().st_size for path in run.place.figures.iterdir())
-    return Figure(
-        f"figures of {len(run.history)} samples, CPU s ({size / 1e3:.0f} kB)",
-        f"{cost:.2f}",
-        f"< {FIGURES:g}",
-        cost < FIGURES,
-    )
+    return at_most(f"figures of {len(run.history)} samples, CPU s ({size / 1e3:.0f} kB)", cost, FIGURES)
 
 
 def film(folder: Path) -> Figure:
     """Wall and CPU time of a film of the stack, rocking."""
     if (reason := probe_rendering()) is not None:
-        return Figure(f"film of {FRAMES} frames", f"not here: {reason}")
+        return Figure(f"film of {FRAMES} frames", f"not possible: {reason}")
     run = run_of(folder, "rocking", f"solver.duration_s={0.05 * (FRAMES - 1)}", "output.fields_s=0.05")
     began, cpu = time.perf_counter(), time.process_time()
     path = write_movie(run)
     wall, cpu = time.perf_counter() - began, time.process_time() - cpu
-    return Figure(
-        f"film of {len(run.fields)} frames, s ({path.stat().st_size / 1e6:.1f} MB, CPU {cpu:.0f} s)",
-        f"{wall:.1f}",
-        f"< {FILM:g}",
-        wall < FILM,
-    )
+    what = f"film of {len(run.fields)} frames, s ({path.stat().st_size / 1e6:.1f} MB, CPU {cpu:.0f} s)"
+    return at_most(what, wall, FILM, ".1f")
 
 
 def write_again(frames: list[Frame], recovery: Recovery, folder: Path) -> None:
@@ -91,25 +82,14 @@ def fields_of_a_full_run(folder: Path) -> Figure:
     again = folder / "again"
     cost = median_of(REPEATS, lambda: cpu_seconds(lambda: write_again(frames, recovery, again)))
     stepping = run.result["numerics"]["stepping_cpu_s"]
-    share = cost / stepping
-    return Figure(
-        f"fields of a full run: {len(frames)} frames in {cost:.2f} s, stepping {stepping:.1f} s, share",
-        f"{share:.3f}",
-        f"< {FIELDS:g}",
-        share < FIELDS,
-    )
+    what = f"fields of a full run: {len(frames)} frames in {cost:.2f} s, stepping {stepping:.1f} s, share"
+    return at_most(what, cost / stepping, FIELDS, ".3f")
 
 
 def main() -> int:
     with tempfile.TemporaryDirectory() as place:
-        return report(
-            "pictures and fields",
-            [
-                figures_of_a_long_run(Path(place) / "figures"),
-                film(Path(place) / "film"),
-                fields_of_a_full_run(Path(place) / "fields"),
-            ],
-        )
+        parts = {"figures": figures_of_a_long_run, "film": film, "fields": fields_of_a_full_run}
+        return report("pictures and fields", [part(Path(place) / name) for name, part in parts.items()])
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
-"""How long the program takes to answer: help, check, and a run when the kernels are compiled already.
+"""Start-up time: help, check, and a run whose kernels are already compiled.
 
-Wall time of whole processes, medians. The start of a run is measured on the default case cut to 5 ms of motion,
-without fields; a fresh folder for the compiled kernels shows what the first run after an installation adds.
+Median wall time of whole processes. The start of a run is that of the default case with 5 ms of motion, without
+fields; a new folder for the compiled kernels shows the first run after an installation.
 """
 
 import os
@@ -11,7 +11,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from measuring import Figure, median_of, report
+from measuring import Figure, at_most, median_of, report
 
 REPEATS = 5
 HELP, CHECK, START = 0.5, 1.0, 3.0  # s
@@ -38,16 +38,12 @@ def main() -> int:
         first = wall_seconds(*short, environment={"NUMBA_CACHE_DIR": str(folder / "kernels")})
         wall_seconds(*short)
         wall_seconds("check")
-        measured = (
-            ("--help", median_of(REPEATS, lambda: wall_seconds("--help")), HELP),
-            ("check", median_of(REPEATS, lambda: wall_seconds("check")), CHECK),
-            ("run, kernels compiled", median_of(REPEATS, lambda: wall_seconds(*short)), START),
-        )
-    figures = [
-        Figure(f"{what} [s]", f"{seconds:.2f}", f"<= {limit:g}", seconds <= limit)
-        for what, seconds, limit in measured
-    ]
-    figures.append(Figure("run, nothing compiled yet [s]", f"{first:.1f}", "for information"))
+        figures = [
+            at_most("--help [s]", median_of(REPEATS, lambda: wall_seconds("--help")), HELP),
+            at_most("check [s]", median_of(REPEATS, lambda: wall_seconds("check")), CHECK),
+            at_most("run, kernels compiled [s]", median_of(REPEATS, lambda: wall_seconds(*short)), START),
+            Figure("run, kernels not compiled [s]", f"{first:.1f}", "for information"),
+        ]
     return report("start-up, wall time of whole processes", figures)
 
 

@@ -1,4 +1,4 @@
-"""The verification table: a row that is off fails, whatever the way it is off; the command says so."""
+"""The verification table: a row with any kind of error fails, and the command says so."""
 
 import errno
 import json
@@ -9,36 +9,21 @@ import pytest
 
 import fem.results.run_folder
 from fem.__main__ import main
-from fem.verification import suite as ladder
+from fem.verification import suite
 from fem.verification.page import convergence_plot, page, table_lines
-from fem.verification.rows import Check, Convergence, Row, count_row, order_row
+from fem.verification.rows import analytic, check, convergence
+from fem.verification.suite import run_suite
 
 
-def row(value, *, tolerance=0.01, relative=False, reference=2.0, convergence=None):
-    return Row(
-        case="a case",
-        compared="a quantity <b> [m]",
-        value=value,
-        reference=reference,
-        kind="analytic",
-        source="somebody",
-        tolerance=tolerance,
-        relative=relative,
-        convergence=convergence,
-        note="a note",
-    )
+def row(value, *, tolerance=0.01, reference=2.0, **optional):
+    within = {"relative" if optional.pop("relative", False) else "absolute": tolerance}
+    text = "a quantity <b> [m]"
+    return analytic("a case", text, value, reference, source="somebody", note="a note", **within, **optional)
 
 
-def falling(errors, *, expected=2.0, at_least=False):
-    sizes = tuple(0.1 / 2**k for k in range(len(errors)))
-    return Convergence(
-        against="h [m]",
-        sizes=sizes,
-        errors=tuple(errors),
-        expected=expected,
-        tolerance=0.1,
-        at_least=at_least,
-    )
+def falling(errors, *, at_least=False):
+    by_size = {0.1 / 2**k: error for k, error in enumerate(errors)}
+    return convergence("h [m]", by_size, order=2.0, within=0.1, at_least=at_least)
 
 
 def test_a_row_passes_within_its_tolerance_and_not_beyond():
@@ -51,7 +36,7 @@ def test_a_row_passes_within_its_tolerance_and_not_beyond():
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_a_number_that_is_none_fails(value):
+def test_a_value_that_is_not_finite_fails(value):
     assert not row(value).passed
     assert not row(value, relative=True).passed
     assert row(value).to_dict()["value"] is None
@@ -72,48 +57,41 @@ def test_a_row_with_an_order_needs_both():
     assert row(2.0, convergence=good).passed
     assert not row(2.0, convergence=bad).passed
     assert not row(3.0, convergence=good).passed
-    assert order_row(case="", compared="", convergence=good, kind="analytic", source="").passed
-    assert order_row(case="", compared="", convergence=good, kind="analytic", source="").value == 1e-2 / 16
-
-
-def test_one_wrong_answer_of_many_fails():
-    rows = [count_row(case="", compared="", wrong=wrong, kind="analytic", source="") for wrong in (0, 1)]
-    assert [one.passed for one in rows] == [True, False]
+    assert row(good.finest, reference=0.0, tolerance=None, convergence=good).passed
+    assert good.finest == 1e-2 / 16
 
 
 def broken():
+    yield row(2.0)
     raise ArithmeticError("no equilibrium")
 
 
 @pytest.fixture
-def small_ladder(monkeypatch):
-    """Two rooms: one that holds, one that does not and cannot be computed."""
-    good = Check(name="good", rows=lambda: [row(2.0, convergence=falling([1e-2 / 4**k for k in range(3)]))])
-    off = Check(name="off", rows=lambda: [row(2.5), row(2.0)], quick=False)
-    monkeypatch.setattr(
-        ladder, "ROOMS", {"cellar": (good,), "attic": (off, Check(name="broken", rows=broken, quick=False))}
-    )
-    monkeypatch.setattr(ladder, "run", lambda *arguments: None)
+def small_suite(monkeypatch):
+    """Two topics: one that passes, one with a row that fails and a check that cannot be computed."""
+    good = check("cellar", "good")(lambda: [row(2.0, convergence=falling([1e-2 / 4**k for k in range(3)]))])
+    off = check("attic", "off", quick=False)(lambda: [row(2.5), row(2.0)])
+    monkeypatch.setattr(suite, "CHECKS", (good, off, check("attic", "broken", quick=False)(broken)))
 
 
-def test_a_check_that_cannot_be_computed_is_a_row_that_fails(small_ladder):
-    found = ladder.climb(quick=False)
+def test_a_check_that_cannot_be_computed_is_a_row_that_fails(small_suite):
+    found = run_suite(quick=False)
     assert (found.count, found.failures) == (4, 2)
     last = list(found.rows)[-1][1]
     assert not last.passed
     assert "no equilibrium" in last.note
 
 
-def test_the_terminal_names_what_fails(small_ladder):
-    lines = table_lines(ladder.climb(quick=False))
+def test_the_terminal_names_what_fails(small_suite):
+    lines = table_lines(run_suite(quick=False))
     assert sum("FAIL" in line for line in lines) == 3
     assert lines[-1].endswith("2 FAIL")
     assert any("no equilibrium" in line for line in lines)
-    assert table_lines(ladder.climb(quick=True))[-1].endswith("all pass")
+    assert table_lines(run_suite(quick=True))[-1].endswith("all pass")
 
 
-def test_the_page_needs_nothing_from_elsewhere(small_ladder):
-    text = page(ladder.climb(quick=False))
+def test_the_page_needs_nothing_from_elsewhere(small_suite):
+    text = page(run_suite(quick=False))
     assert text.count("<svg") == 1
     assert "a quantity &lt;b&gt; [m]" in text
     assert "src=" not in text
@@ -123,26 +101,27 @@ def test_the_page_needs_nothing_from_elsewhere(small_ladder):
 
 
 def test_a_plot_is_the_same_bytes_again():
-    convergence = falling([1e-2, 3e-3, 6e-4])
-    assert convergence_plot(convergence) == convergence_plot(convergence)
+    errors = falling([1e-2, 3e-3, 6e-4])
+    assert convergence_plot(errors) == convergence_plot(errors)
 
 
 @pytest.mark.parametrize(("options", "code"), [(["--quick"], 0), ([], 3), (["--room", "cellar"], 0)])
-def test_the_command_ends_with_3_if_a_row_fails(small_ladder, tmp_path, capsys, options, code):
+def test_the_command_ends_with_3_if_a_row_fails(small_suite, tmp_path, capsys, options, code):
     assert main(["verify", *options, "--out", str(tmp_path), "--json"]) == code
     document = json.loads(capsys.readouterr().out)
     assert document == json.loads((tmp_path / "verify.json").read_text())
     assert document["passed"] is (code == 0)
+    assert all(row["room"] == row["topic"] for row in document["rows"] + document["checks"])
     assert (tmp_path / "verify.html").stat().st_size > 1000
 
 
-def test_an_unknown_room_is_bad_input(small_ladder, tmp_path, capsys):
+def test_an_unknown_topic_is_bad_input(small_suite, tmp_path, capsys):
     assert main(["verify", "--room", "celar", "--out", str(tmp_path)]) == 2
     assert "did you mean 'cellar'" in capsys.readouterr().err
 
 
-def test_a_place_that_cannot_be_written_is_told_and_no_half_table_is_left(
-    small_ladder, tmp_path, capsys, monkeypatch
+def test_a_place_that_cannot_be_written_is_named_and_no_partial_table_is_left(
+    small_suite, tmp_path, capsys, monkeypatch
 ):
     (tmp_path / "file").write_text("")
     assert main(["verify", "--out", str(tmp_path / "file"), "-q"]) == 2
