@@ -44,6 +44,7 @@ from fem.report.variation_table import VariationTable, variations_meanwhile
 from fem.results.errors import FolderError
 from fem.results.fields import Fields
 from fem.results.history import History
+from fem.results.kinds import RUN
 from fem.results.reader import OpenedRun
 from fem.results.run_result import RigidCheckResult, Verdict
 from fem.solid.modes import FEW, elastic_mode_table, elastic_modes
@@ -51,7 +52,6 @@ from fem.solid.modes import FEW, elastic_mode_table, elastic_modes
 COLOURS = 64  #: of the stress scale in the animation
 #: figures beside the animation, in the order of reading; the others have their own sections
 MOTION = ("rotation", "slip", "base_motion", "uplift", "forces", "phase_portrait", "energy")
-FINISHED = ("completed", "overturned")
 
 
 def run_report(
@@ -87,7 +87,7 @@ def run_report(
             message=message,
             stop=stop,
         )
-        if run.status in FINISHED
+        if run.status in RUN.finished
         else nullcontext(lambda: None)
     )
     with varying as variations:
@@ -168,7 +168,7 @@ def rigid_check(run: OpenedRun, model: Model, history: History) -> RigidCheckRes
     result = run.typed_result
     if result.rigid_check is not None:
         return result.rigid_check
-    if run.status not in FINISHED or result.verdict is None or len(history) < 2:
+    if run.status not in RUN.finished or result.verdict is None or len(history) < 2:
         return None
     try:
         return check_against_rigid_block(model, history, result.verdict).result
@@ -193,7 +193,7 @@ def _history(run: OpenedRun, message: Callable[[str], None]) -> History:
     try:
         return run.history
     except FolderError as error:
-        if run.status in FINISHED:
+        if run.status in RUN.finished:
             raise
         message(f"{error}; the report is made without it")
         return History.empty()
@@ -209,7 +209,7 @@ def _fields(run: OpenedRun, message: Callable[[str], None]) -> Fields | None:
 
 def _standing(status: str, verdict: Verdict) -> str:
     """How the verdict is coloured: what the run found, never whether that is safe."""
-    if status not in FINISHED:
+    if status not in RUN.finished:
         return "open"
     if verdict.outcome == "overturned":
         return "fell"

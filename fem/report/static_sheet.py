@@ -27,7 +27,7 @@ PAPER = "Knoedel and Hrabowski"
 SYMBOL = re.compile(r"\b(arctan|tan|cos)\b|([A-Za-zα-ορ-ωΩ])(?:_([A-Za-z]+))?")
 
 
-class Row(NamedTuple):
+class SheetRow(NamedTuple):
     """One step of the calculation, with places for the numbers, which `_Printed` formats."""
 
     name: str
@@ -39,43 +39,43 @@ class Row(NamedTuple):
 
 
 WEIGHT = (
-    Row("weight with fill", "G = n G_box", "{n:s4} × {G_box:s6}", "G", "kN", "n = {boxes}"),
-    Row("mass", "m = G/g", "{G} / {g:s4}", "m", "t"),
+    SheetRow("weight with fill", "G = n G_box", "{n:s4} × {G_box:s6}", "G", "kN", "n = {boxes}"),
+    SheetRow("mass", "m = G/g", "{G} / {g:s4}", "m", "t"),
 )
-HEIGHT = Row(
+HEIGHT = SheetRow(
     *("height of the mass centre", "z_c = (n − 1) c/2 + z_box", "({n:s4} − 1) × {c:s4} / 2 + {z_box:s4}"),
     *("z_c", "m", "c, height of a box; the last, of the mass centre in it"),
 )
-ANGLE = Row(
+ANGLE = SheetRow(
     *("slenderness angle, from the vertical", "α = arctan(a/2/z_c)", "arctan({a:s4} / 2 / {z_c})", "α", "°"),
     f"a, width of the base; 90° minus the α of {PAPER}",
 )
-AMPLITUDE = Row(
+AMPLITUDE = SheetRow(
     *("largest floor acceleration of this run", "a_max = A Ω²", "{A:5} × {Ω:5}²"),
     *("a_max", "m/s²", "x = A sin(Ωt + φ)"),
 )
-SHEAR = Row("base shear", "F = m a_max", "{m} × {a_max}", "F", "kN")
-PLATEAU = Row(
+SHEAR = SheetRow("base shear", "F = m a_max", "{m} × {a_max}", "F", "kN")
+PLATEAU = SheetRow(
     *("base shear on the plateau, q = {q:s4}", "F_b = m γ_I a_gR S 2.5/q"),
     *("{m} × {γ_I:s4} × {a_gR:s4} × {S:s4} × 2.5 / {q:s4}", "F", "kN"),
     "EN 1998-1:2004, 4.3.3.2.2 (1)P, Eq. (4.5), with 3.2.2.5 (4)P, Eq. (3.14), λ = 1",
 )
-SLIDING = Row(
+SLIDING = SheetRow(
     *("utilisation, sliding", "F/(μ_s G)", "{F} / ({μ_s:s4} × {G})", "sliding", ""),
     f"{CLAUSE_SLIDING}; capacity {{F_limit}} kN",
 )
-OVERTURNING = Row(
+OVERTURNING = SheetRow(
     *("utilisation, overturning", "F z_c/(G a/2)", "{F} × {z_c} / ({G} × {a:s4} / 2)", "overturning", ""),
     f"{CLAUSE_OVERTURNING}; {{M}} kNm against {{M_limit}} kNm",
 )
-PERIOD = Row(
+PERIOD = SheetRow(
     *("rocking period, against the limit of the method", "T = 2π √(4 R/(3 g))"),
     *("2 × π × √(4 × {R} / (3 × {g:s4}))", "T", "s"),
     f"{PAPER}, Eq. (3); limit min(4 <i>T</i><sub>C</sub>, {LIMIT_PERIOD:.1f} s) with <i>T</i><sub>C</sub> = "
     f"{{T_C:s4}} s, {CLAUSE_APPLICABLE} a), Eq. (4.4)",
 )
 MASS = (
-    Row(
+    SheetRow(
         "floor acceleration of uplift",
         "a_up = g tan α",
         "{g:s4} × tan({α:5}°)",
@@ -83,14 +83,14 @@ MASS = (
         "m/s²",
         "West (1885)",
     ),
-    Row("corner to mass centre", "R = √((a/2)² + z_c²)", "√(({a:s4} / 2)² + {z_c}²)", "R", "m"),
-    Row(
+    SheetRow("corner to mass centre", "R = √((a/2)² + z_c²)", "√(({a:s4} / 2)² + {z_c}²)", "R", "m"),
+    SheetRow(
         *("inertia about a corner", "I_O = I + m R²", "{I:5} + {m:5} × {R:5}²", "I_O", "t m²"),
         "I, about the mass centre, from the mesh",
     ),
-    Row("frequency parameter", "p = √(G R/I_O)", "√({G} × {R} / {I_O})", "p", "1/s", "Housner (1963)"),
+    SheetRow("frequency parameter", "p = √(G R/I_O)", "√({G} × {R} / {I_O})", "p", "1/s", "Housner (1963)"),
 )
-RESTITUTION = Row(
+RESTITUTION = SheetRow(
     *("Housner's restitution", "e = 1 − m R²/I_O (1 − cos 2α)"),
     *("1 − {m:5} × {R:5}² / {I_O:5} × (1 − cos(2 × {α:5}°))", "e", ""),
     "Housner (1963), plastic impact of a rigid block on a corner",
@@ -98,7 +98,7 @@ RESTITUTION = Row(
 
 
 @dataclass(frozen=True, kw_only=True)
-class Line:
+class SheetLine:
     """One step of the calculation with its numbers, for a page."""
 
     name: str
@@ -126,7 +126,7 @@ class _Printed(float):
 Numbers = dict[str, _Printed | str]
 
 
-def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Line]]]:
+def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[SheetLine]]]:
     """The calculation in groups: title and lines; the case is resolved."""
     numbers = _numbers(static, case)
     height = [HEIGHT] if case.container.mesh_file is None else []
@@ -198,7 +198,7 @@ def _action(action: ActionCheck) -> Numbers:
     }
 
 
-def _utilisations(action: ActionCheck, numbers: Numbers, force: str) -> list[Line]:
+def _utilisations(action: ActionCheck, numbers: Numbers, force: str) -> list[SheetLine]:
     """Sliding, where there is friction, and overturning; `force` is the symbol of the base shear."""
     lines = []
     if math.isfinite(action.sliding.utilisation):
@@ -208,8 +208,8 @@ def _utilisations(action: ActionCheck, numbers: Numbers, force: str) -> list[Lin
     return [*lines, _line(row, numbers, "stands" if action.overturning.passed else "overturns")]
 
 
-def _line(row: Row, numbers: Numbers, verdict: str = "") -> Line:
-    return Line(
+def _line(row: SheetRow, numbers: Numbers, verdict: str = "") -> SheetLine:
+    return SheetLine(
         name=row.name.format(**numbers),
         formula=Markup(SYMBOL.sub(_symbol, row.formula)),  # our own text, never a user's
         numbers=row.numbers.format(**numbers),

@@ -137,17 +137,12 @@ def variation_table(
     missing = [index for index in by_importance(variations) if rows[index] is None]
     if missing and (kept is None or every):
         message("computing variations of the run")
-        until = math.inf if every else time.monotonic() + AFFORDED_S
         if price is None:  # no run of this model yet
-            first = missing.pop(0)
-            began = time.monotonic()
+            first, began = missing.pop(0), time.monotonic()
             (rows[first],) = _computed(base, [variations[first]], stop)
             price = time.monotonic() - began
-        found = _computed(
-            base,
-            [variations[index] for index in missing],
-            lambda: stop() or time.monotonic() + (price or 0.0) > until,
-        )
+        limit = None if every else max(AFFORDED_S - price, 0.0)
+        found = _computed(base, [variations[index] for index in missing], stop, limit)
         for index, row in zip(missing, found, strict=True):
             rows[index] = row
         if stop():
@@ -218,9 +213,9 @@ def _row(status: str, reason: str | None, found: Verdict | BandMember) -> Variat
 
 
 def _computed(
-    base: Case, variations: Sequence[Variation], stop: Callable[[], bool]
+    base: Case, variations: Sequence[Variation], stop: Callable[[], bool], time_limit_s: float | None = None
 ) -> list[VariationRow | None]:
-    """Rows of variations that need no samples; None for those that were stopped before their turn."""
+    """Rows of variations, without samples; None for those that were not started in time."""
     rows: list[VariationRow | None] = [None] * len(variations)
     cases: dict[int, Case] = {}
     for index, one in enumerate(variations):
@@ -229,7 +224,8 @@ def _computed(
             cases[index] = base.with_values(values)
         except ValueError as problem:  # beyond the limits of a case
             rows[index] = VariationRow(status="failed", reason=_first_line(str(problem)))
-    for index, row in zip(cases, run_cases(list(cases.values()), stop=stop), strict=True):
+    found = run_cases(list(cases.values()), stop=stop, time_limit_s=time_limit_s)
+    for index, row in zip(cases, found, strict=True):
         if row["status"] in ("completed", "overturned"):
             rows[index] = VariationRow.from_json(row | {"reason": None})
         elif row["status"] == "failed":
