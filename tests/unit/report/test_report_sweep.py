@@ -106,7 +106,7 @@ def test_the_command_of_a_cell_repeats_it(folder):
     assert data["derived"] == [{"key": "contact.mu_kinetic", "values": [0.1, 0.2, 0.1, 0.2, 0.1, 0.2]}]
 
 
-def test_a_failed_cell_is_told_with_its_reason_and_counted_as_no_outcome(folder):
+def test_a_failed_cell_is_listed_with_its_reason_and_counted_as_no_outcome(folder):
     page = sweep_report(folder)
     assert "1 no outcome: failed" in page
     assert "cell 5: no &lt;b&gt;balance" in page
