@@ -11,7 +11,7 @@ import pytest
 from fem.__main__ import main
 from fem.report import sweep_page
 from fem.report.sweep_page import axis_label, map_data, sweep_report
-from fem.results.run_folder import FolderError
+from fem.results.errors import FolderError
 from fem.sweep.table import BAND, FOUND, WIDTH, open_sweep
 
 SPEED, MU = "motion.peak_acceleration_m_s2", "contact.mu_static"
