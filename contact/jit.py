@@ -9,7 +9,7 @@ import hashlib
 import os
 import tempfile
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -45,16 +45,21 @@ def cache_folder(sources: tuple[Path, ...] = ()) -> Path:
     return folder
 
 
-def compiled(function: Callable[..., Any], *, inline: bool = False, sources: tuple[Path, ...] = ()) -> Any:
-    """Compile a function of numbers, arrays and named tuples on first call; keep the machine code.
+def compiled(
+    function: Callable[..., Any] | None = None, *, inline: bool = False, sources: tuple[Path, ...] = ()
+) -> Any:
+    """Decorator: compile a function of numbers, arrays and named tuples on first call, and cache the machine code.
 
-    `inline` asks LLVM to put the function into its caller whatever its size: the tuples of arrays that the
-    kernels live on are dear to hand over. `sources` are files outside this package whose functions it calls.
+    The plain function stays available as `.py_func`. `inline` asks LLVM to put the function into its caller whatever
+    its size, because passing the tuples of arrays that the kernels use is expensive. `sources` are files outside this
+    package whose functions it calls.
 
-    The kernels own no memory: numba's runtime, which would count references at every call, is left out, and
-    so none may allocate an array. They run without the interpreter's lock. Division by zero follows IEEE (as
-    in numpy); no fast-math, so that a run is the same bytes again.
+    The kernels own no memory: numba's runtime, which would count references at every call, is left out, so no kernel
+    may allocate an array. They run without the interpreter's lock. Division by zero follows IEEE (as in numpy). There
+    is no fast-math, so that repeated runs give identical bytes.
     """
+    if function is None:
+        return partial(compiled, inline=inline, sources=sources)
     options: dict[str, Any] = {"cache": True, "error_model": "numpy", "nogil": True, "_nrt": False}
     before = getattr(config, "CACHE_DIR")  # noqa: B009 - numba sets its options at run time
     setattr(config, "CACHE_DIR", str(cache_folder(sources)))  # noqa: B010

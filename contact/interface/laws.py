@@ -17,7 +17,8 @@ ELASTIC_STICK = 0  #: code of the friction law regularised in displacement
 REGULARISED = 1  #: code of the friction law regularised in velocity
 
 
-def _normal_force(
+@compiled(inline=True)
+def normal_force(
     penetration: float, rate: float, stiffness: float, damping: float, step: float
 ) -> tuple[float, float, float]:
     """Normal force [N] with its derivatives by penetration [N/m] and by rate [N s/m].
@@ -43,10 +44,8 @@ def _normal_force(
     return slope * penetration, slope, 0.0
 
 
-normal_force = compiled(_normal_force, inline=True)
-
-
-def _stick_friction(trial: float, limit: float) -> tuple[float, float, float]:
+@compiled(inline=True)
+def stick_friction(trial: float, limit: float) -> tuple[float, float, float]:
     """Return mapping: tangential force [N], and its derivatives by trial force and by limit [-].
 
     Args:
@@ -60,12 +59,8 @@ def _stick_friction(trial: float, limit: float) -> tuple[float, float, float]:
     return trial, 1.0, 0.0
 
 
-stick_friction = compiled(_stick_friction, inline=True)
-
-
-def _relaxed_stick(
-    stick: float, force: float, stiffness: float, relaxation_time: float, step: float
-) -> float:
+@compiled
+def relaxed_stick(stick: float, force: float, stiffness: float, relaxation_time: float, step: float) -> float:
     """Elongation [m] of a Kelvin-Voigt element after one step under a constant force.
 
     The slider holds the element at the limit force while it slides: k s + c s' = F, c/k the relaxation
@@ -77,10 +72,8 @@ def _relaxed_stick(
     return rest + (stick - rest) * math.exp(-step / relaxation_time)
 
 
-relaxed_stick = compiled(_relaxed_stick)
-
-
-def _regularised_friction(
+@compiled
+def regularised_friction(
     normal: float,
     slip_velocity: float,
     mu_static: float,
@@ -101,10 +94,8 @@ def _regularised_friction(
     return -normal * mu * sway, -mu * sway, -normal * (mu_slope * sway + mu * sway_slope)
 
 
-regularised_friction = compiled(_regularised_friction)
-
-
-def _weakened_mu(mu_static: float, mu_kinetic: float, weakening: float, slid: float) -> float:
+@compiled
+def weakened_mu(mu_static: float, mu_kinetic: float, weakening: float, slid: float) -> float:
     """Coefficient of friction after sliding `slid` [m] since the support broke loose.
 
     Linear from static to kinetic over the slip distance `weakening` [m]; 0: at once (the seed's law).
@@ -112,6 +103,3 @@ def _weakened_mu(mu_static: float, mu_kinetic: float, weakening: float, slid: fl
     if slid >= weakening:
         return mu_kinetic
     return mu_static + (mu_kinetic - mu_static) * slid / weakening
-
-
-weakened_mu = compiled(_weakened_mu)

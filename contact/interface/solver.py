@@ -90,7 +90,8 @@ def make_workspace(points: int) -> Workspace:
     )
 
 
-def _evaluate_laws(
+@compiled(inline=True)
+def evaluate_laws(
     contact: Contact,
     step: float,
     velocity_slope: float,
@@ -148,10 +149,8 @@ def _evaluate_laws(
             work.slope[i, 1] = by_normal * work.slope[i, 2]
 
 
-evaluate_laws = compiled(_evaluate_laws, inline=True)
-
-
-def _add_turned(compliance: FloatArray, cosine: float, sine: float, share: float, out: FloatArray) -> None:
+@compiled(inline=True)
+def add_turned(compliance: FloatArray, cosine: float, sine: float, share: float, out: FloatArray) -> None:
     """Add `share` R C R^T of every 2 x 2 block of a compliance (2 n, 2 n), R = [[cos, sin], [-sin, cos]]."""
     for i in range(compliance.shape[0] // 2):
         for j in range(compliance.shape[1] // 2):
@@ -165,10 +164,8 @@ def _add_turned(compliance: FloatArray, cosine: float, sine: float, share: float
             out[2 * i + 1, 2 * j + 1] += share * (-bx * sine + bz * cosine)
 
 
-add_turned = compiled(_add_turned, inline=True)
-
-
-def _move_points(velocity_slope: float, force: FloatArray, work: Workspace) -> None:
+@compiled(inline=True)
+def move_points(velocity_slope: float, force: FloatArray, work: Workspace) -> None:
     """Points and velocities that follow from contact forces, by the condensed compliance."""
     n = force.shape[0]
     for i in range(n):
@@ -182,10 +179,8 @@ def _move_points(velocity_slope: float, force: FloatArray, work: Workspace) -> N
             work.velocity[i, k] = work.free_velocity[i, k] + velocity_slope * moved
 
 
-move_points = compiled(_move_points, inline=True)
-
-
-def _factor_dense(size: int, matrix: FloatArray, pivot: IntArray) -> bool:
+@compiled(inline=True)
+def factor_dense(size: int, matrix: FloatArray, pivot: IntArray) -> bool:
     """LU decomposition with row pivoting of the leading size x size block, in place; False if singular."""
     for k in range(size):
         chosen, largest = k, abs(matrix[k, k])
@@ -207,10 +202,8 @@ def _factor_dense(size: int, matrix: FloatArray, pivot: IntArray) -> bool:
     return True
 
 
-factor_dense = compiled(_factor_dense, inline=True)
-
-
-def _substitute_dense(size: int, factors: FloatArray, pivot: IntArray, vector: FloatArray) -> None:
+@compiled(inline=True)
+def substitute_dense(size: int, factors: FloatArray, pivot: IntArray, vector: FloatArray) -> None:
     """Solve with the factors of `factor_dense`, in place."""
     for k in range(size):
         if pivot[k] != k:
@@ -227,10 +220,8 @@ def _substitute_dense(size: int, factors: FloatArray, pivot: IntArray, vector: F
         vector[k] = total / factors[k, k]
 
 
-substitute_dense = compiled(_substitute_dense, inline=True)
-
-
-def _factor_is_current(step: float, work: Workspace) -> bool:
+@compiled(inline=True)
+def factor_is_current(step: float, work: Workspace) -> bool:
     """The factors at hand belong to these tangents and this step: good enough to iterate with.
 
     The compliance has turned with the body since; a Newton step with slightly old factors gains fewer digits.
@@ -244,10 +235,8 @@ def _factor_is_current(step: float, work: Workspace) -> bool:
     return True
 
 
-factor_is_current = compiled(_factor_is_current, inline=True)
-
-
-def _factor_tangent(step: float, work: Workspace) -> bool:
+@compiled(inline=True)
+def factor_tangent(step: float, work: Workspace) -> bool:
     """Factor 1 + D G over the points whose law has a tangent, and note what for."""
     count = 0
     for i in range(work.force.shape[0]):
@@ -276,10 +265,8 @@ def _factor_tangent(step: float, work: Workspace) -> bool:
     return True
 
 
-factor_tangent = compiled(_factor_tangent, inline=True)
-
-
-def _newton_change(work: Workspace) -> None:
+@compiled(inline=True)
+def newton_change(work: Workspace) -> None:
     """Change of the contact forces (1 + D G) df = law - f, with the factors at hand.
 
     A point without tangent carries nothing from now on; what it carried so far moves the others.
@@ -313,10 +300,8 @@ def _newton_change(work: Workspace) -> None:
         work.change[2 * i], work.change[2 * i + 1] = work.solution[2 * a], work.solution[2 * a + 1]
 
 
-newton_change = compiled(_newton_change, inline=True)
-
-
-def _start_from_places(
+@compiled(inline=True)
+def start_from_places(
     contact: Contact, velocity_slope: float, mu: float, start: FloatArray, work: Workspace
 ) -> bool:
     """Put points that the floor held at the beginning of the step back there: the first place to linearise at.
@@ -345,20 +330,16 @@ def _start_from_places(
     return placed
 
 
-start_from_places = compiled(_start_from_places, inline=True)
-
-
-def _carry_laws(work: Workspace) -> None:
+@compiled(inline=True)
+def carry_laws(work: Workspace) -> None:
     """Carry the laws' forces along their tangents to where the points were before they were put back."""
     for i in range(work.force.shape[0]):
         work.law[i, 0] += work.slope[i, 0] * work.trial[i, 0] + work.slope[i, 1] * work.trial[i, 1]
         work.law[i, 1] += work.slope[i, 2] * work.trial[i, 1]
 
 
-carry_laws = compiled(_carry_laws, inline=True)
-
-
-def _solve_contact(
+@compiled(inline=True)
+def solve_contact(
     contact: Contact,
     step: float,
     velocity_slope: float,
@@ -421,6 +402,3 @@ def _solve_contact(
                 break
             share *= 0.5
     return -1
-
-
-solve_contact = compiled(_solve_contact, inline=True)

@@ -3,9 +3,8 @@
 from contact.jit import compiled
 
 
-def _hermite(
-    share: float, step: float, value: float, rate: float, value_new: float, rate_new: float
-) -> float:
+@compiled
+def hermite(share: float, step: float, value: float, rate: float, value_new: float, rate_new: float) -> float:
     """Cubic through values and rates at both ends of a step, at `share` of it."""
     s = share
     return (
@@ -14,6 +13,3 @@ def _hermite(
         + s * s * (3.0 - 2.0 * s) * value_new
         - s * s * (1.0 - s) * step * rate_new
     )
-
-
-hermite = compiled(_hermite)

@@ -241,7 +241,8 @@ def _padded(arrays: Sequence[FloatArray], value: float) -> FloatArray:
     return out
 
 
-def _load_row(rows: Rows, k: int, scratch: Scratch) -> None:
+@compiled
+def load_row(rows: Rows, k: int, scratch: Scratch) -> None:
     """Put the initial state of a row where its thread works, and forget the row before."""
     work, body = scratch.work, scratch.body
     copy_vector(scratch.old.numbers, rows.state[k])
@@ -253,10 +254,8 @@ def _load_row(rows: Rows, k: int, scratch: Scratch) -> None:
     body.cached_step[body.cached_step.size - 1] = 0.0
 
 
-load_row = compiled(_load_row)
-
-
-def _keep_slip(run: Run, until: float, kept: FloatArray) -> None:
+@compiled
+def keep_slip(run: Run, until: float, kept: FloatArray) -> None:
     """Enter the slip of the new samples up to a time into a ring (n_k,)."""
     clock, samples = run.clock[0], run.history
     for i in range(clock.samples - clock.samples_gone):
@@ -265,10 +264,8 @@ def _keep_slip(run: Run, until: float, kept: FloatArray) -> None:
             kept[index % kept.size] = samples.columns[i, ROW_SLIP]
 
 
-keep_slip = compiled(_keep_slip)
-
-
-def _keep_most_strained(run: Run, strain: FloatArray, strained: FloatArray) -> None:
+@compiled
+def keep_most_strained(run: Run, strain: FloatArray, strained: FloatArray) -> None:
     """Keep the most strained of the new samples: (n_s,) and (n_s, n_d), the least strained makes room."""
     clock, samples = run.clock[0], run.history
     count = clock.samples - clock.samples_gone
@@ -289,10 +286,8 @@ def _keep_most_strained(run: Run, strain: FloatArray, strained: FloatArray) -> N
         samples.columns[best, ROW_STRAIN] = -1.0  # taken
 
 
-keep_most_strained = compiled(_keep_most_strained)
-
-
-def _advance_in_slices(
+@compiled
+def advance_in_slices(
     body: ModalBody, run: Run, rows: Rows, out: Outcomes, k: int, ahead: float, until: float
 ) -> int:
     """Step row k to `until`, looking at its samples every `ahead` [s]."""
@@ -311,10 +306,8 @@ def _advance_in_slices(
     return REACHED
 
 
-advance_in_slices = compiled(_advance_in_slices)
-
-
-def _advance_rows(
+@compiled
+def advance_rows(
     scheme: Scheme, rows: Rows, scratch: Scratch, out: Outcomes, ahead: float, first: int, last: int
 ) -> None:
     """Step the rows first .. last - 1 one after the other."""
@@ -407,7 +400,8 @@ def _advance_rows(
                     out.residual[k] = residual
 
 
-def _follow_aftermath(scratch: Scratch, run: Run, rows: Rows, out: Outcomes, k: int) -> int:
+@compiled
+def follow_aftermath(scratch: Scratch, run: Run, rows: Rows, out: Outcomes, k: int) -> int:
     """Leave the floor alone until the container falls or is back below its slenderness angle."""
     clock = run.clock[0]
     until = rows.duration[k] + rows.aftermath[k]
@@ -444,8 +438,5 @@ def _follow_aftermath(scratch: Scratch, run: Run, rows: Rows, out: Outcomes, k: 
             return status
     return REACHED
 
-
-follow_aftermath = compiled(_follow_aftermath)
-advance_rows = compiled(_advance_rows)
 
 __all__ = ["CONTACT_NUMBERS", "TRACK", "Outcomes", "Rows", "Sampling", "pack_rows", "run_rows"]

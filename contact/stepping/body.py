@@ -9,13 +9,17 @@ are methods of the body. The stepper is written once, against these functions.
 """
 
 import math
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
+from numba.extending import overload
 
 from contact.arrays import FloatArray
 from contact.interface.solver import Workspace
 from contact.stepping.scheme import Scheme
+
+Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
 #: rows of `State.pose`
 ROTATION, ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, VELOCITY_X, VELOCITY_Z = 0, 1, 2, 3, 4, 5
@@ -67,6 +71,24 @@ def make_state(coordinates: int, points: int, monitors: int) -> State:
         end = begin + math.prod(shape)
         fields[name], begin = numbers[begin:end].reshape(shape), end
     return State(**fields, monitor=np.zeros((monitors, 4)), numbers=numbers)
+
+
+def implements(
+    operation: Callable[..., Any], *bodies: type, inline: bool = False
+) -> Callable[[Kernel], Kernel]:
+    """Decorator: compiled callers of `operation` use this function when the body is of one of these classes.
+
+    `inline` asks LLVM to put it into its callers, as in `contact.jit.compiled`.
+    """
+
+    def register(implementation: Kernel) -> Kernel:
+        def choose(body: Any, *arguments: Any) -> Kernel | None:
+            return implementation if getattr(body, "instance_class", None) in bodies else None
+
+        overload(operation, strict=False, jit_options={"forceinline": inline})(choose)
+        return implementation
+
+    return register
 
 
 def predict(body: Any, scheme: Scheme, step: float, old: State, new: State) -> None:

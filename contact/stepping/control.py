@@ -44,7 +44,8 @@ def _rests_beside(state: State, other: int, point: int, width: float) -> bool:
     return near and state.point[other, 1] < 0.0
 
 
-def _closing_time(control: Control, state: State, horizon: float) -> float:
+@compiled(inline=True)
+def closing_time(control: Control, state: State, horizon: float) -> float:
     """Time until a base point touches the floor with more than the closing speed [s], or the horizon.
 
     By its present velocity and acceleration; 0 for a point that has touched just now. A point beside one that is
@@ -65,10 +66,8 @@ def _closing_time(control: Control, state: State, horizon: float) -> float:
     return first
 
 
-closing_time = compiled(_closing_time, inline=True)
-
-
-def _switching_time(clock: Any, horizon: float) -> float:
+@compiled(inline=True)
+def switching_time(clock: Any, horizon: float) -> float:
     """Time until the stuck support reaches its limit, or the sliding one comes to a halt [s], or the horizon."""
     if clock.sliding == 0:
         left, rate = 1.0 - clock.utilisation, clock.utilisation_rate
@@ -79,10 +78,8 @@ def _switching_time(clock: Any, horizon: float) -> float:
     return left / rate if rate * horizon > left > 0.0 else horizon
 
 
-switching_time = compiled(_switching_time, inline=True)
-
-
-def _next_step(run: Run) -> float:
+@compiled(inline=True)
+def next_step(run: Run) -> float:
     """The next step [s]: the ladder's at the present level, unless something is due before.
 
     A gap about to close: the step ends where it closes, and the next one, on which the dashpot works, is small.
@@ -113,10 +110,8 @@ def _next_step(run: Run) -> float:
     return step
 
 
-next_step = compiled(_next_step, inline=True)
-
-
-def _allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
+@compiled(inline=True)
+def allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
     """Energy that the step attempted may lose or win [J].
 
     A share of what it dissipates, and of what was dissipated shortly before: while an impact rings down, the
@@ -144,10 +139,8 @@ def _allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
     return allowed
 
 
-allowed_imbalance = compiled(_allowed_imbalance, inline=True)
-
-
-def _room_of_ledger(run: Run, step: float) -> float:
+@compiled(inline=True)
+def room_of_ledger(run: Run, step: float) -> float:
     """Imbalance that the ledger as a whole has room for in the step attempted [J]; infinite far from its limits.
 
     What one step may lose or win adds up: a share of what it dissipates may be much against the energy to overturn, as
@@ -169,10 +162,8 @@ def _room_of_ledger(run: Run, step: float) -> float:
     return max(ROOM_SHARE * (aim - used), LEAST_ROOM * control.reference_energy * least)
 
 
-room_of_ledger = compiled(_room_of_ledger, inline=True)
-
-
-def _change_level(level: int, used: float, not_held: bool) -> int:
+@compiled
+def change_level(level: int, used: float, not_held: bool) -> int:
     """Level of the next step, when the last one used that share of the imbalance allowed to it.
 
     The imbalance of a step is of third order: half the step has an eighth of it. Shortly after a rejection
@@ -193,24 +184,17 @@ def _change_level(level: int, used: float, not_held: bool) -> int:
     return level
 
 
-change_level = compiled(_change_level)
-
-
-def _ladder_level(largest_step: float, step: float) -> int:
+@compiled
+def ladder_level(largest_step: float, step: float) -> int:
     """Level of the largest step of the ladder that is not above `step`."""
     return max(0, int(np.ceil(STEPS_PER_OCTAVE * np.log2(largest_step / step) - 1e-9)))
 
 
-ladder_level = compiled(_ladder_level)
-
-
-def _ladder_step(largest_step: float, level: int) -> float:
+@compiled(inline=True)
+def ladder_step(largest_step: float, level: int) -> float:
     """Step of that level of the ladder; as a product, for a power costs as much as the contact of a corner."""
     octave = level // STEPS_PER_OCTAVE
     return math.ldexp(largest_step * OCTAVE[level - octave * STEPS_PER_OCTAVE], -octave)
-
-
-ladder_step = compiled(_ladder_step, inline=True)
 
 
 def most_attempts(control: Control, time: float) -> int:

@@ -47,7 +47,8 @@ OVERTURNING_ROTATION = 0.5 * np.pi
 LYING_DOWN = 2e-3
 
 
-def _note_step(run: Run, step: float, slip_step: float, slip_velocity: float, every: bool) -> None:
+@compiled(inline=True)
+def note_step(run: Run, step: float, slip_step: float, slip_velocity: float, every: bool) -> None:
     """Friction's state and the record of the run, from the step about to be accepted."""
     clock = run.clock[0]
     clock.slid = clock.slid + abs(slip_step) if clock.sliding == 1 or every else 0.0
@@ -76,10 +77,8 @@ def _note_step(run: Run, step: float, slip_step: float, slip_velocity: float, ev
     )
 
 
-note_step = compiled(_note_step, inline=True)
-
-
-def _close_step(run: Run, step: float, slip_step: float, iterations: int) -> None:
+@compiled(inline=True)
+def close_step(run: Run, step: float, slip_step: float, iterations: int) -> None:
     """Make the step the state of the run, and enter it in the ledger."""
     clock = run.clock[0]
     for row in range(LEDGER_ROWS):
@@ -96,9 +95,6 @@ def _close_step(run: Run, step: float, slip_step: float, iterations: int) -> Non
     copy_state(run.old, run.new)
     for k in range(3):
         run.floor[0, k] = run.floor[1, k]
-
-
-close_step = compiled(_close_step, inline=True)
 
 
 @register_jitable(forceinline=True)

@@ -21,7 +21,8 @@ GAIN_LIMIT = 1e-4
 LOSS_LIMIT, LOSS_SHARE_LIMIT = 1e-3, 1e-2
 
 
-def _spring_energy(contact: Contact, point: FloatArray, stick: FloatArray) -> float:
+@compiled
+def spring_energy(contact: Contact, point: FloatArray, stick: FloatArray) -> float:
     """Energy stored in the contact springs [J]: points (n, 2) relative to the floor, sticks (n,)."""
     energy = 0.0
     for i in range(point.shape[0]):
@@ -31,10 +32,8 @@ def _spring_energy(contact: Contact, point: FloatArray, stick: FloatArray) -> fl
     return energy
 
 
-spring_energy = compiled(_spring_energy)
-
-
-def _contact_losses(
+@compiled(inline=True)
+def contact_losses(
     contact: Contact,
     point: FloatArray,
     point_new: FloatArray,
@@ -64,6 +63,3 @@ def _contact_losses(
         damping += dashpot * (stick_new[i] - stick[i])
         friction -= 0.5 * (force[i, 0] + force_new[i, 0]) * slip[i]
     return friction, damping
-
-
-contact_losses = compiled(_contact_losses, inline=True)

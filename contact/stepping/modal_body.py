@@ -11,11 +11,10 @@ Compiled for the stepper; see `contact.stepping.body` for what each function owe
 """
 
 import math
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba.extending import overload, register_jitable
+from numba.extending import register_jitable
 
 from contact.arrays import FloatArray, IntArray
 from contact.interface.equilibrium import Stance
@@ -33,6 +32,7 @@ from contact.stepping.body import (
     VELOCITY_X,
     VELOCITY_Z,
     State,
+    implements,
 )
 from contact.stepping.scheme import Scheme
 
@@ -123,6 +123,9 @@ class BlockOnCorners(ModalBody):
     """
 
 
+MODAL = (ModalBody, BlockOnCorners)
+
+
 def with_own_scratch(body: ModalBody) -> ModalBody:
     """The same body with scratch arrays of its own and no monitored points: for a thread of a batch.
 
@@ -142,7 +145,9 @@ def with_own_scratch(body: ModalBody) -> ModalBody:
     return BlockOnCorners(*own) if small else own
 
 
-def _predict(body: ModalBody, scheme: Scheme, step: float, old: State, new: State) -> None:
+@implements(interface.predict, *MODAL, inline=True)
+def predict(body: ModalBody, scheme: Scheme, step: float, old: State, new: State) -> None:
+    """Coordinates after `step`, for the last acceleration."""
     for j in range(old.position.size):
         new.position[j] = old.position[j] + step * (old.velocity[j] + 0.5 * step * old.acceleration[j])
         new.velocity[j] = old.velocity[j] + step * old.acceleration[j]
@@ -154,7 +159,8 @@ def _predict(body: ModalBody, scheme: Scheme, step: float, old: State, new: Stat
     new.acceleration[2] += change
 
 
-def _effective_slot(body: ModalBody, scheme: Scheme, step: float) -> int:
+@compiled
+def effective_slot(body: ModalBody, scheme: Scheme, step: float) -> int:
     """Where the inverse effective masses and the elastic compliance of this step size lie; made if missing."""
     if body.cached_step[body.recent[0]] == step:
         return body.recent[0]
@@ -188,10 +194,8 @@ def _effective_slot(body: ModalBody, scheme: Scheme, step: float) -> int:
     return slot
 
 
-effective_slot = compiled(_effective_slot)
-
-
-def _place_points(
+@compiled(inline=True)
+def place_points(
     body: ModalBody,
     state: State,
     work: Workspace,
@@ -221,10 +225,8 @@ def _place_points(
         work.free_velocity[i, 1] = state.velocity[1] - body.arm[i, 0] * rate - sine * u + cosine * w
 
 
-place_points = compiled(_place_points, inline=True)
-
-
-def _release(
+@implements(interface.release, *MODAL, inline=True)
+def release(
     body: ModalBody,
     scheme: Scheme,
     step: float,
@@ -234,6 +236,7 @@ def _release(
     floor: float,
     floor_velocity: float,
 ) -> None:
+    """Base points at the end of the step without contact force, and their compliance."""
     m = body.stiffness.size
     n = body.point.shape[0]
     slot = effective_slot(body, scheme, step)
@@ -277,7 +280,8 @@ def _release(
         add_turned(body.elastic_compliance[slot], cosine, sine, now, work.compliance)
 
 
-def _gather_force(
+@compiled(inline=True)
+def gather_force(
     body: ModalBody, force: FloatArray, rotation: float, arm: FloatArray, out: FloatArray
 ) -> None:
     """Generalised contact force J^T f into `out`."""
@@ -298,10 +302,9 @@ def _gather_force(
                 out[3 + k] += body.shape[i, 0, k] * along + body.shape[i, 1, k] * across
 
 
-gather_force = compiled(_gather_force, inline=True)
-
-
-def _respond(body: ModalBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
+@implements(interface.respond, *MODAL, inline=True)
+def respond(body: ModalBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
+    """Apply `work.force` to the iterate; returns the remaining error over its tolerance."""
     m = body.stiffness.size
     now = 1.0 - scheme.alpha_f
     gather_force(body, work.force, new.position[2], body.arm, new.external)
@@ -321,7 +324,10 @@ def _respond(body: ModalBody, scheme: Scheme, step: float, old: State, new: Stat
     return turned * (0.5 * turned * reach) / body.tolerance
 
 
-def _complete(body: ModalBody, new: State, floor: float) -> None:
+@compiled
+@implements(interface.complete, *MODAL, inline=True)
+def complete(body: ModalBody, new: State, floor: float) -> None:
+    """Internal forces, base points, pose and energy at the converged coordinates."""
     m = body.stiffness.size
     position, velocity = new.position, new.velocity
     cosine, sine = math.cos(position[2]), math.sin(position[2])
@@ -350,7 +356,9 @@ def _complete(body: ModalBody, new: State, floor: float) -> None:
     new.pose[VELOCITY_X], new.pose[VELOCITY_Z] = velocity[0], velocity[1]
 
 
-def _observe(body: ModalBody, new: State, floor: float) -> None:
+@implements(interface.observe, *MODAL, inline=True)
+def observe(body: ModalBody, new: State, floor: float) -> None:
+    """Displacement and velocity of the monitored points."""
     m = body.stiffness.size
     position, velocity = new.position, new.velocity
     cosine, sine = math.cos(position[2]), math.sin(position[2])
@@ -370,18 +378,21 @@ def _observe(body: ModalBody, new: State, floor: float) -> None:
         new.monitor[i, 3] = velocity[1] - arm_x * rate - sine * u + cosine * w
 
 
-def _shift_velocity(body: ModalBody, state: State, velocity: float) -> None:
+@implements(interface.shift_velocity, *MODAL, inline=True)
+def shift_velocity(body: ModalBody, state: State, velocity: float) -> None:
+    """Subtract the velocity of a new frame along x."""
     state.velocity[0] -= velocity
 
 
-complete_modal = compiled(_complete)
-
-
-def _any_sizes(body: ModalBody, run: Any) -> bool:
+@implements(interface.sizes_hold, ModalBody, inline=True)
+def any_sizes(body: ModalBody, run: Any) -> bool:
+    """Compiled for arrays of any size."""
     return True
 
 
-def _prepared(body: ModalBody, step: float) -> bool:
+@implements(interface.prepared, *MODAL, inline=True)
+def prepared(body: ModalBody, step: float) -> bool:
+    """A modal body can take a step of any size."""
     return True
 
 
@@ -400,7 +411,8 @@ def _state_of_block_on_corners(state: State) -> bool:
     return bool(state.point.shape[1] == 2 and state.force.shape[1] == 2 and state.descent.shape[1] == 2)
 
 
-def _sizes_of_block_on_corners(body: ModalBody, run: Any) -> bool:
+@implements(interface.sizes_hold, BlockOnCorners, inline=True)
+def sizes_of_block_on_corners(body: ModalBody, run: Any) -> bool:
     """Each comparison with a constant is one that the compiler relies on from there on: it unrolls the loops."""
     work = run.work
     if body.point.shape[0] != 2 or body.stiffness.size != 0 or run.control.base_points != 2:
@@ -428,29 +440,7 @@ def place(body: ModalBody, state: State, stance: Stance, floor_velocity: float) 
 
 def start(body: ModalBody, state: State, floor: float) -> None:
     """What follows from the coordinates and contact forces in `state`, and the acceleration they give."""
-    complete_modal(body, state, floor)
+    complete(body, state, floor)
     gather_force(body, state.force, state.position[2], body.arm, state.external)
     masses = np.concatenate([[body.mass, body.mass, body.inertia], np.ones(body.stiffness.size)])
     state.acceleration[:] = (state.external - state.internal) / masses
-
-
-def _compile_for(
-    classes: tuple[type, ...], function: Callable[..., Any], implementation: Callable[..., Any]
-) -> None:
-    """Let compiled callers of `function` use `implementation` when the body is of one of these classes."""
-
-    def choose(body: Any, *arguments: Any) -> Callable[..., Any] | None:
-        return implementation if getattr(body, "instance_class", None) in classes else None
-
-    overload(function, strict=False, jit_options={"forceinline": True})(choose)
-
-
-_compile_for((ModalBody, BlockOnCorners), interface.predict, _predict)
-_compile_for((ModalBody, BlockOnCorners), interface.release, _release)
-_compile_for((ModalBody, BlockOnCorners), interface.respond, _respond)
-_compile_for((ModalBody, BlockOnCorners), interface.complete, _complete)
-_compile_for((ModalBody, BlockOnCorners), interface.observe, _observe)
-_compile_for((ModalBody, BlockOnCorners), interface.shift_velocity, _shift_velocity)
-_compile_for((ModalBody, BlockOnCorners), interface.prepared, _prepared)
-_compile_for((ModalBody,), interface.sizes_hold, _any_sizes)
-_compile_for((BlockOnCorners,), interface.sizes_hold, _sizes_of_block_on_corners)

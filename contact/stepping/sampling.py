@@ -38,7 +38,8 @@ from contact.stepping.state import (
 SAME_INSTANT = 1e-12  #: difference of two times, over their size, that is rounding
 
 
-def _write_columns(
+@compiled(inline=True)
+def write_columns(
     run: Run, row: FloatArray, force: FloatArray, time: float, s: float, step: float, slip_step: float
 ) -> None:
     """One row of a history at the share `s` of the step; `force` (n, 2) is that of this instant."""
@@ -62,10 +63,8 @@ def _write_columns(
         row[ROW_BASE_WORK + k] = run.ledger[k] + s * run.change[k]
 
 
-write_columns = compiled(_write_columns, inline=True)
-
-
-def _watch_contents(run: Run, s: float, interval: float) -> None:
+@compiled(inline=True)
+def watch_contents(run: Run, s: float, interval: float) -> None:
     """Largest mean acceleration of the monitored contents over an interval of the history.
 
     The instantaneous one means nothing under a dashpot that acts at a point: it grows without bound as the step
@@ -84,10 +83,8 @@ def _watch_contents(run: Run, s: float, interval: float) -> None:
         watched[i, 0], watched[i, 1] = x, z
 
 
-watch_contents = compiled(_watch_contents, inline=True)
-
-
-def _write_coordinates(samples: Samples, at: int, old: State, new: State, s: float, step: float) -> None:
+@compiled(inline=True)
+def write_coordinates(samples: Samples, at: int, old: State, new: State, s: float, step: float) -> None:
     """Coordinates of the body and their rates at the share `s` of the step, where they are kept."""
     for j in range(samples.position.shape[1]):
         samples.position[at, j] = hermite(
@@ -95,9 +92,6 @@ def _write_coordinates(samples: Samples, at: int, old: State, new: State, s: flo
         )
     for j in range(samples.velocity.shape[1]):
         samples.velocity[at, j] = (1.0 - s) * old.velocity[j] + s * new.velocity[j]
-
-
-write_coordinates = compiled(_write_coordinates, inline=True)
 
 
 @register_jitable(forceinline=True)

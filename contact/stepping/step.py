@@ -29,24 +29,23 @@ from contact.stepping.state import Run
 ITERATION_LIMIT = 12  #: of free motion, contact, response within one step
 
 
-def _copy_vector(target: FloatArray, source: FloatArray) -> None:
+@compiled(inline=True)
+def copy_vector(target: FloatArray, source: FloatArray) -> None:
+    """Copy a vector in place."""
     for i in range(target.size):
         target[i] = source[i]
 
 
-copy_vector = compiled(_copy_vector, inline=True)
-
-
-def _copy_rows(target: FloatArray, source: FloatArray) -> None:
+@compiled(inline=True)
+def copy_rows(target: FloatArray, source: FloatArray) -> None:
+    """Copy a matrix in place."""
     for i in range(target.shape[0]):
         for k in range(target.shape[1]):
             target[i, k] = source[i, k]
 
 
-copy_rows = compiled(_copy_rows, inline=True)
-
-
-def _rebase_acceleration(scheme: Scheme, old: State, shortened: float) -> None:
+@compiled(inline=True)
+def rebase_acceleration(scheme: Scheme, old: State, shortened: float) -> None:
     """Shift the scheme's acceleration to the lag that belongs to a step shorter by `shortened` [s].
 
     The averaged equation puts it (alpha_f - alpha_m) steps before the end of its step. Left as it is when the
@@ -58,10 +57,8 @@ def _rebase_acceleration(scheme: Scheme, old: State, shortened: float) -> None:
             old.acceleration[j] += shift * old.jerk[j]
 
 
-rebase_acceleration = compiled(_rebase_acceleration, inline=True)
-
-
-def _note_rates(step: float, old: State, new: State, work: Workspace) -> None:
+@compiled(inline=True)
+def note_rates(step: float, old: State, new: State, work: Workspace) -> None:
     """Velocities of the base points and rates of change over the step, for the step control."""
     per_second = 1.0 / step
     for i in range(new.descent.shape[0]):
@@ -69,9 +66,6 @@ def _note_rates(step: float, old: State, new: State, work: Workspace) -> None:
         new.descent[i, 1] = (new.descent[i, 0] - old.descent[i, 0]) * per_second
     for j in range(new.jerk.size):
         new.jerk[j] = (new.acceleration[j] - old.acceleration[j]) * per_second
-
-
-note_rates = compiled(_note_rates, inline=True)
 
 
 @register_jitable(forceinline=True)
@@ -100,7 +94,8 @@ def attempt(body: Any, run: Run, step: float, mu: float) -> int:
     return -1
 
 
-def _slide(run: Run, step: float) -> tuple[bool, float, float]:
+@compiled(inline=True)
+def slide(run: Run, step: float) -> tuple[bool, float, float]:
     """Sliding of the base points and elongation of their springs after a converged step.
 
     Returns whether every loaded point slides, all in one direction, the force-weighted sliding [m], and the
@@ -145,10 +140,8 @@ def _slide(run: Run, step: float) -> tuple[bool, float, float]:
     return every, weighted / total, velocity / total
 
 
-slide = compiled(_slide, inline=True)
-
-
-def _account(run: Run) -> float:
+@compiled(inline=True)
+def account(run: Run) -> float:
     """What the step attempted adds to the ledger, into `run.change`; returns what it dissipated [J]."""
     old, new, change = run.old, run.new, run.change
     shear = 0.0
@@ -173,11 +166,7 @@ def _account(run: Run) -> float:
     return friction + damping + material
 
 
-account = compiled(_account, inline=True)
-
-
-def _copy_state(old: State, new: State) -> None:
+@compiled(inline=True)
+def copy_state(old: State, new: State) -> None:
+    """Copy all of a state but its monitored points."""
     copy_vector(old.numbers, new.numbers)
-
-
-copy_state = compiled(_copy_state, inline=True)

@@ -59,7 +59,7 @@ class Announcer(event.Listener):
 
 def kernel_name(compilation: event.Event) -> str:
     """Of the function that is compiled."""
-    return str(compilation.data["dispatcher"].py_func.__name__).lstrip("_")
+    return str(compilation.data["dispatcher"].py_func.__name__)
 
 
 @contextmanager

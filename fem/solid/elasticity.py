@@ -107,7 +107,8 @@ def first_stress(gradient: FloatArray, lame: LamePair) -> FloatArray:
     return np.array([[pxx, pxz], [pzx, pzz]])
 
 
-def _element_forces(
+@compiled(sources=SOURCES)
+def element_forces(
     cells: IntArray,
     gradient: FloatArray,
     weights: FloatArray,
@@ -157,9 +158,6 @@ def _element_forces(
             out[node, 0] += local[1, b, 0]
             out[node, 1] += local[1, b, 1]
     return energy
-
-
-element_forces = compiled(_element_forces, sources=SOURCES)
 
 
 def first_stress_tangent(gradient: FloatArray, lame: LamePair) -> FloatArray:

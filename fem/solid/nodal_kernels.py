@@ -8,11 +8,8 @@ of a node in turn; positions are absolute.
 """
 
 import math
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
-
-from numba.extending import overload, register_jitable
 
 import fem.solid.elasticity
 from contact.interface.solver import Workspace, add_turned
@@ -29,6 +26,7 @@ from contact.stepping.body import (
     VELOCITY_X,
     VELOCITY_Z,
     State,
+    implements,
 )
 from contact.stepping.integrator import advance, leave_alone
 from contact.stepping.scheme import Scheme
@@ -89,7 +87,8 @@ class NodalBody(NamedTuple):
     known: IntArray  #: (2,) the residual belongs to the iterate; residuals so far
 
 
-def _fit(body: NodalBody, position: FloatArray) -> tuple[float, float, float, float]:
+@compiled(sources=SOURCES)
+def fit(body: NodalBody, position: FloatArray) -> tuple[float, float, float, float]:
     """Mass centre x, z [m], cosine and sine of the mass-weighted best-fit rotation of positions (2 n,)."""
     x, z, along, across = 0.0, 0.0, 0.0, 0.0
     for i in range(body.nodal_mass.size):
@@ -101,10 +100,8 @@ def _fit(body: NodalBody, position: FloatArray) -> tuple[float, float, float, fl
     return x / body.mass, z / body.mass, along / size, across / size
 
 
-fit = compiled(_fit, sources=SOURCES)
-
-
-def _forces(body: NodalBody, position: FloatArray, velocity: FloatArray) -> None:
+@compiled(sources=SOURCES)
+def forces(body: NodalBody, position: FloatArray, velocity: FloatArray) -> None:
     """Internal and damping forces and the strain energy at positions and velocities (2 n,)."""
     cosine, sine = body.turn[0], body.turn[1]
     n = body.nodal_mass.size
@@ -138,10 +135,8 @@ def _forces(body: NodalBody, position: FloatArray, velocity: FloatArray) -> None
     body.known[1] += 1
 
 
-forces = compiled(_forces, sources=SOURCES)
-
-
-def _unbalanced(body: NodalBody, scheme: Scheme, old: State, new: State) -> None:
+@compiled(sources=SOURCES)
+def unbalanced(body: NodalBody, scheme: Scheme, old: State, new: State) -> None:
     """Inertia plus internal minus external forces of the step, without its new contact forces."""
     now, before = 1.0 - scheme.alpha_f, scheme.alpha_f
     forces(body, new.position, new.velocity)
@@ -160,10 +155,8 @@ def _unbalanced(body: NodalBody, scheme: Scheme, old: State, new: State) -> None
     body.known[0] = 1
 
 
-unbalanced = compiled(_unbalanced, sources=SOURCES)
-
-
-def _slot_of(body: NodalBody, step: float) -> int:
+@compiled(sources=SOURCES)
+def slot_of(body: NodalBody, step: float) -> int:
     """Where the factors of this step size lie; -1: nowhere."""
     for slot in range(body.cached_step.size - 1):
         if body.cached_step[slot] == step:
@@ -171,10 +164,8 @@ def _slot_of(body: NodalBody, step: float) -> int:
     return -1
 
 
-slot_of = compiled(_slot_of, sources=SOURCES)
-
-
-def _substitute(body: NodalBody, slot: int) -> None:
+@compiled(sources=SOURCES)
+def substitute(body: NodalBody, slot: int) -> None:
     """Solve with the factors in the slot, in place of `body.permuted`."""
     vector, starts, rows = body.permuted, body.lower_starts[slot], body.lower_rows[slot]
     values, pivots = body.lower[slot], body.inverse_pivot[slot]
@@ -189,14 +180,17 @@ def _substitute(body: NodalBody, slot: int) -> None:
         vector[j] = total
 
 
-substitute = compiled(_substitute, sources=SOURCES)
-
-
-def _prepared(body: NodalBody, step: float) -> bool:
+@compiled(sources=SOURCES)
+@implements(interface.prepared, NodalBody)
+def prepared(body: NodalBody, step: float) -> bool:
+    """The factors of this step size are at hand."""
     return slot_of(body, step) >= 0
 
 
-def _predict(body: NodalBody, scheme: Scheme, step: float, old: State, new: State) -> None:
+@compiled(sources=SOURCES)
+@implements(interface.predict, NodalBody)
+def predict(body: NodalBody, scheme: Scheme, step: float, old: State, new: State) -> None:
+    """Coordinates after `step`, for the last acceleration."""
     for j in range(old.position.size):
         new.position[j] = old.position[j] + step * (old.velocity[j] + 0.5 * step * old.acceleration[j])
         new.velocity[j] = old.velocity[j] + step * old.acceleration[j]
@@ -205,7 +199,9 @@ def _predict(body: NodalBody, scheme: Scheme, step: float, old: State, new: Stat
     body.known[0] = 0
 
 
-def _release(
+@compiled(sources=SOURCES)
+@implements(interface.release, NodalBody)
+def release(
     body: NodalBody,
     scheme: Scheme,
     step: float,
@@ -215,6 +211,7 @@ def _release(
     floor: float,
     floor_velocity: float,
 ) -> None:
+    """Base points at the end of the step without contact force, and their compliance."""
     slot = slot_of(body, step)
     if body.known[0] == 0:
         unbalanced(body, scheme, old, new)
@@ -240,7 +237,10 @@ def _release(
     add_turned(body.base_compliance[slot], cosine, sine, 1.0 - scheme.alpha_f, work.compliance)
 
 
-def _respond(body: NodalBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
+@compiled(sources=SOURCES)
+@implements(interface.respond, NodalBody)
+def respond(body: NodalBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
+    """Apply `work.force` to the iterate; returns the remaining error over its tolerance."""
     slot = slot_of(body, step)
     now = 1.0 - scheme.alpha_f
     cosine, sine = body.turn[0], body.turn[1]
@@ -278,7 +278,10 @@ def _respond(body: NodalBody, scheme: Scheme, step: float, old: State, new: Stat
     return largest / body.tolerance
 
 
-def _complete(body: NodalBody, new: State, floor: float) -> None:
+@compiled(sources=SOURCES)
+@implements(interface.complete, NodalBody)
+def complete(body: NodalBody, new: State, floor: float) -> None:
+    """Internal forces, base points, pose and energy at the converged coordinates."""
     position, velocity = new.position, new.velocity
     for i in range(body.nodal_mass.size):
         for c in range(2):
@@ -310,7 +313,10 @@ def _complete(body: NodalBody, new: State, floor: float) -> None:
     new.energy[POTENTIAL] = body.mass * body.gravity * centre_z
 
 
-def _observe(body: NodalBody, new: State, floor: float) -> None:
+@compiled(sources=SOURCES)
+@implements(interface.observe, NodalBody)
+def observe(body: NodalBody, new: State, floor: float) -> None:
+    """Displacement and velocity of the monitored points."""
     for a in range(body.watched.size):
         i = body.watched[a]
         for c in range(2):
@@ -319,35 +325,19 @@ def _observe(body: NodalBody, new: State, floor: float) -> None:
         new.monitor[a, 0] -= floor
 
 
-def _shift_velocity(body: NodalBody, state: State, velocity: float) -> None:
+@compiled(sources=SOURCES)
+@implements(interface.shift_velocity, NodalBody)
+def shift_velocity(body: NodalBody, state: State, velocity: float) -> None:
+    """Subtract the velocity of a new frame along x."""
     for i in range(body.nodal_mass.size):
         state.velocity[2 * i] -= velocity
 
 
-@register_jitable
-def _any_sizes(body: NodalBody, run: Any) -> bool:
+@implements(interface.sizes_hold, NodalBody)
+def any_sizes(body: NodalBody, run: Any) -> bool:
+    """Compiled for arrays of any size."""
     return True
 
-
-def _compile(function: Callable[..., Any], implementation: Callable[..., Any]) -> Any:
-    """Let compiled callers of `function` use `implementation` when the body is a `NodalBody`; compiled by itself."""
-    own = compiled(implementation, sources=SOURCES)
-
-    def choose(body: Any, *arguments: Any) -> Callable[..., Any] | None:
-        return implementation if getattr(body, "instance_class", None) is NodalBody else None
-
-    overload(function, strict=False)(choose)
-    return own
-
-
-predict = _compile(interface.predict, _predict)
-release = _compile(interface.release, _release)
-respond = _compile(interface.respond, _respond)
-complete = _compile(interface.complete, _complete)
-observe = _compile(interface.observe, _observe)
-shift_velocity = _compile(interface.shift_velocity, _shift_velocity)
-prepared = _compile(interface.prepared, _prepared)
-_compile(interface.sizes_hold, _any_sizes)
 
 advance_nodal = compiled(advance, sources=SOURCES)
 leave_nodal_alone = compiled(leave_alone, sources=SOURCES)

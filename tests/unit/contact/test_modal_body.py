@@ -12,12 +12,12 @@ from contact.interface.solver import Workspace, make_workspace
 from contact.stepping.body import KINETIC, POTENTIAL, STRAIN, State, make_state
 from contact.stepping.modal_body import (
     ModalBody,
-    _complete,
-    _gather_force,
-    _observe,
-    _predict,
-    _release,
-    _respond,
+    complete,
+    gather_force,
+    observe,
+    predict,
+    release,
+    respond,
 )
 from contact.stepping.modal_body import make_modal_body as build
 from contact.stepping.scheme import Scheme, generalised_alpha, newmark
@@ -55,7 +55,7 @@ def make_moving_state(body: ModalBody, rotation: float, *, seed: int = 1, speed:
     state.position[:3] = 0.2, 2.1, rotation
     state.position[3:] = 1e-4 * math.sqrt(MASS) * draw.normal(size=body.stiffness.size)
     state.velocity[:] = speed * draw.normal(size=3 + body.stiffness.size)
-    _complete(body, state, 0.0)
+    complete(body, state, 0.0)
     return state
 
 
@@ -80,7 +80,7 @@ def jacobian_by_differences(body: ModalBody, position: np.ndarray) -> np.ndarray
 def test_base_points_are_where_the_kinematics_put_them(rotation):
     body = make_body()
     state = make_moving_state(body, rotation)
-    _complete(body, state, 0.05)
+    complete(body, state, 0.05)
     assert state.point == pytest.approx(points_at(body, state.position) - np.array([0.05, 0.0]), abs=1e-15)
 
 
@@ -88,7 +88,7 @@ def test_a_positive_rotation_moves_the_top_toward_positive_x():
     body = make_body(0)
     state = make_state(3, 3, 2)
     state.position[:] = 0.0, 2.0, 0.1
-    _observe(body, state, 0.0)
+    observe(body, state, 0.0)
     assert state.monitor[0, 0] == pytest.approx(2.0 * math.sin(0.1) - 0.55 * (math.cos(0.1) - 1.0), rel=1e-12)
 
 
@@ -98,7 +98,7 @@ def test_contact_forces_act_by_the_transposed_jacobian(rotation):
     state = make_moving_state(body, rotation)
     force = np.random.default_rng(3).normal(size=(3, 2)) * 1e4
     generalised = np.zeros(7)
-    _gather_force(body, force, rotation, body.arm, generalised)
+    gather_force(body, force, rotation, body.arm, generalised)
     expected = np.einsum("ia,iaj->j", force, jacobian_by_differences(body, state.position))
     assert generalised == pytest.approx(expected, rel=1e-7, abs=1e-4)
 
@@ -109,7 +109,7 @@ def test_rigid_motion_causes_no_internal_force(rotation):
     state = make_moving_state(body, rotation)
     state.position[3:] = 0.0
     state.velocity[3:] = 0.0
-    _complete(body, state, 0.0)
+    complete(body, state, 0.0)
     assert state.internal == pytest.approx([0.0, MASS * GRAVITY, 0.0, 0.0, 0.0, 0.0, 0.0], abs=0.0)
     assert not state.damping.any()
     assert state.energy[STRAIN] == 0.0
@@ -137,7 +137,7 @@ def test_internal_forces_are_the_slope_of_the_strain_energy_and_damping_takes_en
         for sign in (1.0, -1.0):
             moved = make_moving_state(body, 0.3)
             moved.position[j] += sign * 1e-4
-            _complete(body, moved, 0.0)
+            complete(body, moved, 0.0)
             energies.append(moved.energy[STRAIN])
         slope = (energies[0] - energies[1]) / 2e-4
         assert state.internal[j] - state.damping[j] == pytest.approx(slope, rel=1e-8)
@@ -146,13 +146,13 @@ def test_internal_forces_are_the_slope_of_the_strain_energy_and_damping_takes_en
 def test_monitored_velocities_are_the_rates_of_monitored_displacements():
     body = make_body()
     state = make_moving_state(body, 0.3)
-    _observe(body, state, 0.0)
+    observe(body, state, 0.0)
     velocity = state.monitor[:, 2:].copy()
     displacements = []
     for sign in (1.0, -1.0):
         moved = make_moving_state(body, 0.3)
         moved.position[:] += sign * 1e-6 * state.velocity
-        _observe(body, moved, 0.0)
+        observe(body, moved, 0.0)
         displacements.append(moved.monitor[:, :2].copy())
     assert velocity == pytest.approx((displacements[0] - displacements[1]) / 2e-6, rel=1e-7)
 
@@ -162,13 +162,13 @@ def take(
 ) -> tuple[State, Workspace, float]:
     """One step under given contact forces: predict, then release and respond so many times."""
     new, work = make_state(old.position.size, 3, 2), make_workspace(3)
-    _predict(body, scheme, STEP, old, new)
+    predict(body, scheme, STEP, old, new)
     work.force[:] = force
     error = math.inf
     for _ in range(iterations):
-        _release(body, scheme, STEP, old, new, work, 0.03, 0.2)
-        error = _respond(body, scheme, STEP, old, new, work)
-    _complete(body, new, 0.03)
+        release(body, scheme, STEP, old, new, work, 0.03, 0.2)
+        error = respond(body, scheme, STEP, old, new, work)
+    complete(body, new, 0.03)
     return new, work, error
 
 
@@ -215,11 +215,11 @@ def test_what_one_linearisation_leaves_out_is_what_respond_reports():
 def test_a_converged_step_balances_the_averaged_equation_of_motion(scheme):
     body = make_body()
     old = make_moving_state(body, 0.4)
-    _gather_force(body, 0.3 * FORCE, 0.4, body.arm, old.external)
+    gather_force(body, 0.3 * FORCE, 0.4, body.arm, old.external)
     old.acceleration[:] = np.random.default_rng(5).normal(size=7)
     new, work, _ = take(body, scheme, old, FORCE, iterations=4)
     masses = np.array([MASS, MASS, INERTIA, 1.0, 1.0, 1.0, 1.0])
-    _gather_force(body, work.force, new.position[2], body.arm, new.external)
+    gather_force(body, work.force, new.position[2], body.arm, new.external)
     mean = (1.0 - scheme.alpha_m) * new.acceleration + scheme.alpha_m * old.acceleration
     inside = (1.0 - scheme.alpha_f) * new.internal + scheme.alpha_f * old.internal
     outside = (1.0 - scheme.alpha_f) * new.external + scheme.alpha_f * old.external
@@ -252,8 +252,8 @@ def test_the_compliance_follows_a_change_of_step():
     scheme = SCHEMES["newmark"]
     found = []
     for step in (1e-3, 2e-4, 1e-3):
-        _predict(body, scheme, step, old, new)
-        _release(body, scheme, step, old, new, work, 0.0, 0.0)
+        predict(body, scheme, step, old, new)
+        release(body, scheme, step, old, new, work, 0.0, 0.0)
         found.append(work.compliance.copy())
     assert found[0] == pytest.approx(found[2], rel=1e-3)
     # inertia alone: beta h^2/m; with modes besides it lies between the two limits
