@@ -127,13 +127,8 @@ MODAL = (ModalBody, BlockOnCorners)
 
 
 def with_own_scratch(body: ModalBody) -> ModalBody:
-    """The same body with scratch arrays of its own and no monitored points: for a thread of a batch.
-
-    A rigid body on two points comes back as `BlockOnCorners`.
-    """
+    """The same body with scratch arrays of its own; a rigid body on two points becomes a `BlockOnCorners`."""
     own = body._replace(
-        monitor=np.zeros((0, 2)),
-        monitor_shape=np.zeros((0, 2, body.stiffness.size)),
         cached_step=np.append(np.full(STEP_SLOTS, -1.0), 0.0),
         recent=np.zeros(1, dtype=np.int64),
         inverse=np.zeros_like(body.inverse),

@@ -6,7 +6,7 @@ status "failed" and the reason; it never has an outcome.
 
 import threading
 import time
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from functools import partial
 from operator import itemgetter
@@ -14,10 +14,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from contact.stepping.batch import Outcomes, Sampling, pack_rows, run_rows
-from contact.stepping.body import ROTATION
 from contact.stepping.integrator import FAILED as STEPPING_FAILED
 from contact.stepping.modal_body import ModalBody
+from contact.stepping.outcome import KeptSamples, run_to_end
 from fem.assessment.verdict import audit, end_of_drive, verdict_from, verdict_of
 from fem.batch.workers import LocalWorkers, Pool, hand_out
 from fem.case.case import Case
@@ -26,7 +25,7 @@ from fem.model.equilibrium import stands_like
 from fem.model.model import Model, build_model
 from fem.model.recovery import Recovery, recovery_of
 from fem.run.recorder import Recorder
-from fem.run.simulation import AFTERMATH, SLICE_REDUCED, simulate, stepping_failure
+from fem.run.simulation import AFTERMATH, simulate, stepping_failure
 from fem.runtime.threads import cores
 
 #: scalars of a verdict, as columns; None where a case does not have them
@@ -143,24 +142,15 @@ def run_items(
 
 
 def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row]:
-    """Run the cases of some items: one after the other, or those of one compiled container in one call."""
+    """Run the cases of some items, one after the other."""
     began = time.perf_counter()
     prepared: list[Model | Row] = []
     for item in items:
         before = prepared[-1] if prepared and isinstance(prepared[-1], Model) else None
         prepared.append(_prepare(make, item, before))
-    rows: list[Row | None] = [one if isinstance(one, dict) else None for one in prepared]
     models = {k: one for k, one in enumerate(prepared) if isinstance(one, Model)}
-    for group in _of_one_body(models):
-        try:
-            found = run_models([models[k] for k in group])
-        except (ValueError, ArithmeticError, RuntimeError) as error:  # one that spoils the others goes alone
-            found = [_row_without_outcome("failed", str(error))]
-            if len(group) > 1:
-                found = [run_chunk(make, [items[k]])[0] for k in group]
-        for k, row in zip(group, found, strict=True):
-            rows[k] = row
-    return _with_wall([row for row in rows if row is not None], models, time.perf_counter() - began)
+    rows = [run_model(one) if isinstance(one, Model) else one for one in prepared]
+    return _with_wall(rows, models, time.perf_counter() - began)
 
 
 def _prepare(make: Callable[[ItemT], Case], item: ItemT, before: Model | None) -> Model | Row:
@@ -179,63 +169,45 @@ def _prepare(make: Callable[[ItemT], Case], item: ItemT, before: Model | None) -
         return _row_without_outcome("failed", str(error))
 
 
-def _of_one_body(models: Mapping[int, Model]) -> Iterable[list[int]]:
-    """Groups of models that differ in floor, motion and start alone."""
-    groups: dict[Hashable, list[int]] = {}
-    for k, model in models.items():
-        assert isinstance(model.body, ModalBody)
-        key = (id(model.container), model.body.tolerance, model.run.scheme)
-        groups.setdefault(key, []).append(k)
-    return groups.values()
+def run_model(model: Model) -> Row:
+    """Step a rigid or reduced model to its end, in place; its row."""
+    assert isinstance(model.body, ModalBody)
+    run, duration, until = model.run, model.case.solver.duration_s, end_of_drive(model)
+    try:
+        status, kept = run_to_end(
+            model.body,
+            run,
+            duration,
+            aftermath=AFTERMATH / run.control.frequency_parameter,
+            slip_until=until,
+            cycle=min(model.case.motion.period, duration),
+            strained=model.case.solver.model == "reduced",
+        )
+        return _row_of(model, status, kept, until)
+    except (ValueError, ArithmeticError, RuntimeError) as error:
+        return _row_without_outcome("failed", str(error))
 
 
-def run_models(models: Sequence[Model]) -> list[Row]:
-    """Step compiled models of one body to their ends in one call."""
-    body = models[0].body
-    assert isinstance(body, ModalBody)
-    elastic = models[0].case.solver.model == "reduced"
-    ends = [end_of_drive(model) for model in models]
-    rows = pack_rows(
-        [model.run for model in models],
-        [model.case.solver.duration_s for model in models],
-        [AFTERMATH / model.run.control.frequency_parameter for model in models],
-        slip_until=ends,
-    )
-    periods = [min(model.case.motion.period, model.case.solver.duration_s) for model in models]
-    outcomes = run_rows(
-        body,
-        models[0].run.scheme,
-        rows,
-        np.concatenate([model.run.track for model in models]),
-        sampling=Sampling(cycle=max(periods), strained=elastic, slice=SLICE_REDUCED),
-    )
-    return [_row_of(model, outcomes, k, ends[k]) for k, model in enumerate(models)]
-
-
-def _row_of(model: Model, outcomes: Outcomes, k: int, until: float) -> Row:
-    """The row of a model, from what the batch found of it."""
-    run = model.run
-    run.track[0], run.clock[0] = outcomes.track[k], outcomes.clock[k]
-    run.ledger[:], run.old.pose[ROTATION] = outcomes.ledger[k], outcomes.rotation[k]
-    count, interval = int(run.clock[0].samples), run.history.interval
-    kept = outcomes.slip[k]
+def _row_of(model: Model, status: int, kept: KeptSamples, until: float) -> Row:
+    """The row of a model that was stepped to its end."""
+    run, interval = model.run, model.run.history.interval
+    count = int(run.clock[0].samples)
     last = min(count - 1, int((until + 1e-9) / interval))
-    numbers = np.arange(max(0, last + 1 - kept.size), last + 1)
+    numbers = np.arange(max(0, last + 1 - kept.slip.size), last + 1)
     stress = None
-    if outcomes.strain.shape[1]:
-        positions = outcomes.strained[k, outcomes.strain[k] >= 0.0]
+    if kept.strain.size:
+        positions = kept.position[kept.strain >= 0.0]
         stress = _SHELF.recovery_of(model).largest_von_mises(positions)
     end = (count - 1) * interval if count else None
-    verdict = verdict_from(model, end, numbers * interval, kept[numbers % kept.size], stress)
-    if outcomes.status[k] == STEPPING_FAILED:
-        return _row_without_outcome(
-            "failed", stepping_failure(model, float(outcomes.residual[k]))
-        ) | _figures(verdict)
-    error = audit(model)
+    verdict = verdict_from(model, end, numbers * interval, kept.slip[numbers % kept.slip.size], stress)
+    if status == STEPPING_FAILED:
+        error: str | None = stepping_failure(model, float(np.abs(run.work.law - run.work.force).max()))
+    else:
+        error = audit(model)
     if error is not None:
         return _row_without_outcome("failed", error) | _figures(verdict)
-    status = "overturned" if verdict["outcome"] == "overturned" else "completed"
-    return _row_without_outcome(status, None) | _figures(verdict) | {"outcome": verdict["outcome"]}
+    ended = "overturned" if verdict["outcome"] == "overturned" else "completed"
+    return _row_without_outcome(ended, None) | _figures(verdict) | {"outcome": verdict["outcome"]}
 
 
 def _figures(verdict: Mapping[str, Any]) -> Row:

@@ -80,7 +80,7 @@ class Laboratory:
 
     def warm_up(self, tell: Callable[[str], None]) -> None:
         """Have the kernels of rigid container and shell compiled and loaded before a statement's clock starts."""
-        if not is_compiled("advance_rows"):
+        if not is_compiled("advance_in_slices"):
             tell("compiling the stepping kernels, once after installation: some minutes")
         for model in ("rigid", "reduced"):
             values = {"solver.model": model, "solver.duration_s": 0.01, "output.history_s": 0.01}

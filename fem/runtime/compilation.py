@@ -12,7 +12,7 @@ from numba.core import event
 
 COMPILING = "numba:compile"
 #: kernels that hold the whole stepping; all others take seconds at most
-LONG = frozenset({"advance", "advance_rows"})
+LONG = frozenset({"advance", "advance_in_slices"})
 
 
 class CompilationClock(event.Listener):

@@ -5,8 +5,8 @@ import pytest
 
 import contact.stepping.control
 import fem.model.required_memory
-from contact.stepping.batch import pack_rows, run_rows
-from contact.stepping.integrator import FAILED, REACHED
+from contact.stepping.integrator import FAILED
+from contact.stepping.outcome import run_to_end
 from fem.case.case import CaseError, load_case
 from fem.model.container import discretise
 from fem.model.model import build_model
@@ -82,36 +82,33 @@ def test_no_step_is_longer_than_the_samples_in_memory_reach():
     assert model.run.history.mode.size < 2000
 
 
-def test_a_run_without_headway_fails_and_says_so(monkeypatch):
+@pytest.fixture
+def few_attempts(monkeypatch):
     monkeypatch.setattr(contact.stepping.control, "ATTEMPTS_SPARE", 50.0)
     monkeypatch.setattr(contact.stepping.control, "ATTEMPTS_OF_ROCKING", 1.0)
     monkeypatch.setattr(contact.stepping.control, "ATTEMPTS_OF_STEP", 0.1)
+
+
+def test_a_run_without_headway_fails_and_says_so(few_attempts):
     _, ending = finished(rigid())
     assert ending.status == "failed"
     assert ending.error is not None and "no headway after" in ending.error
 
 
-def test_a_row_of_a_batch_without_headway_is_a_failed_one():
+def test_a_run_for_its_outcome_without_headway_fails(few_attempts):
     model = build_model(rigid(solver__duration_s=2.0))
-    rows = pack_rows([model.run] * 2, [2.0, 2.0], [20.0, 20.0])
-    limits = rows.attempt_limit.copy()
-    limits[1] = 30
-    outcomes = run_rows(
-        model.body, model.run.scheme, rows._replace(attempt_limit=limits), [model.run.track[0]] * 2
-    )
-    assert outcomes.status.tolist() == [REACHED, FAILED]
-    assert outcomes.clock["time"][1] < 2.0 <= outcomes.clock["time"][0]
+    assert run_to_end(model.body, model.run, 2.0).status == FAILED
+    assert model.run.clock[0].time < 2.0
 
 
-def test_a_row_of_a_batch_that_left_the_numbers_says_so():
-    """A step of 1e-163 s, over whose square the inertia is no number; the residual then is none either."""
+def test_a_run_for_its_outcome_that_is_no_longer_finite_says_so():
+    """A step of 1e-163 s, over whose square the inertia is not finite; neither is the residual then."""
     model = build_model(rigid(solver__duration_s=1.0))
-    rows = pack_rows([model.run], [1.0], [20.0])
-    first = np.array([[1e-163, np.inf]])
-    outcomes = run_rows(model.body, model.run.scheme, rows._replace(breaks=first), [model.run.track[0]])
-    assert outcomes.status.tolist() == [FAILED]
-    assert not np.isfinite(outcomes.residual[0])
-    assert "grew beyond all numbers" in stepping_failure(model, float(outcomes.residual[0]))
+    outcome = run_to_end(model.body, model.run._replace(breaks=np.array([1e-163, np.inf])), 1.0)
+    assert outcome.status == FAILED
+    residual = float(np.abs(model.run.work.law - model.run.work.force).max())
+    assert not np.isfinite(residual)
+    assert "grew beyond all numbers" in stepping_failure(model, residual)
 
 
 def test_a_container_too_large_for_the_memory_is_refused_before_it_is_taken(monkeypatch):

@@ -1,0 +1,55 @@
+"""A run for its outcome alone: the same bytes as slice by slice with samples."""
+
+import numpy as np
+import pytest
+
+from contact.stepping.integrator import OVERTURNED, REACHED, advance_compiled
+from contact.stepping.outcome import run_to_end
+from fem.case.case import load_case
+from fem.model.container import discretise
+from fem.model.model import build_model
+
+DURATION = 2.5
+MOTIONS = (
+    ({"motion.peak_acceleration_m_s2": 4.0, "motion.angular_frequency_rad_s": 6.928}, REACHED),
+    (
+        {
+            "motion.peak_acceleration_m_s2": 8.0,
+            "motion.angular_frequency_rad_s": 2.0,
+            "contact.mu_static": 0.9,
+        },
+        OVERTURNED,
+    ),
+    ({"motion.peak_acceleration_m_s2": 4.0, "contact.mu_static": 0.3}, REACHED),
+    ({"contact.damping_ratio": 0.5, "contact.normal_penalty_Pa_m": 2e9}, REACHED),
+    ({"motion.start": "rest"}, REACHED),
+)
+
+
+@pytest.fixture(scope="module")
+def model_of():
+    overrides = ["solver.model=rigid", "output.fields_s=0", f"solver.duration_s={DURATION}"]
+    case = load_case("seed_stack_plateau", [*overrides, "contact.mu_kinetic=0.2"])
+    container = discretise(case)
+    return lambda values: build_model(case.with_values(values), container)
+
+
+def step_in_slices(model):
+    while model.run.clock[0].time < DURATION:
+        status = advance_compiled(model.body, model.run, DURATION)
+        model.run.clock[0].samples_gone = model.run.clock[0].samples
+        if status != REACHED:
+            return status
+    return REACHED
+
+
+@pytest.mark.parametrize(("values", "status"), MOTIONS)
+def test_an_outcome_is_that_of_the_run(model_of, values, status):
+    found, expected = model_of(values), model_of(values)
+    assert run_to_end(found.body, found.run, DURATION).status == step_in_slices(expected) == status
+    assert found.run.old.numbers.tobytes() == expected.run.old.numbers.tobytes()
+    assert found.run.ledger.tobytes() == expected.run.ledger.tobytes()
+    for name in found.run.track.dtype.names:
+        assert np.array_equal(found.run.track[name], expected.run.track[name], equal_nan=True), name
+    for name in ("steps", "rejected", "time"):
+        assert found.run.clock[name][0] == expected.run.clock[name][0]
