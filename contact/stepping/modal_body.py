@@ -131,10 +131,10 @@ def with_own_scratch(body: ModalBody) -> ModalBody:
     own = body._replace(
         cached_step=np.append(np.full(STEP_SLOTS, -1.0), 0.0),
         recent=np.zeros(1, dtype=np.int64),
-        inverse=np.zeros_like(body.inverse),
-        elastic_compliance=np.zeros_like(body.elastic_compliance),
-        arm=np.zeros_like(body.arm),
-        free_change=np.zeros_like(body.free_change),
+        inverse=np.empty_like(body.inverse),
+        elastic_compliance=np.empty_like(body.elastic_compliance),
+        arm=np.empty_like(body.arm),
+        free_change=np.empty_like(body.free_change),
     )
     small = body.stiffness.size == 0 and body.point.shape[0] == 2
     return BlockOnCorners(*own) if small else own

@@ -77,11 +77,13 @@ def run_to_end(
         strain=np.full(room, -1.0),
         position=np.zeros((room, coordinates)),
     )
-    followed = samples._replace(position=samples.position[:, :coordinates], velocity=samples.velocity[:, :0])
-    run = run._replace(history=followed)
+    run = run._replace(
+        history=samples._replace(position=samples.position[:, :coordinates], velocity=samples.velocity[:, :0]),
+        frames=run.frames._replace(interval=math.inf),
+    )
     ahead = SLICE if samples.columns.shape[1] > 0 else math.inf
     status = advance_in_slices(own, run, kept, ahead, duration, False)
-    if status == REACHED and is_undecided(run):
+    if status == REACHED and is_undecided.py_func(run):
         displacement, velocity, _ = floor_motion(run.motion, clock["time"])
         leave_alone_compiled(own, run, velocity)
         still = as_floor_motion(UNIFORM, (float(clock["time"]), displacement, 0.0))
@@ -110,7 +112,7 @@ def advance_in_slices(
         if run.history.columns.shape[1] > 0:
             keep_slip(run, kept)
             keep_most_strained(run, kept)
-            clock.samples_gone = clock.samples
+        clock.samples_gone = clock.samples
         if status != REACHED or (undecided_only and not is_undecided(run)):
             return status
         if clock.time < until and clock.steps + clock.rejected >= clock.attempt_limit:
