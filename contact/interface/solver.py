@@ -301,7 +301,7 @@ def newton_change(work: Workspace) -> None:
 
 
 @compiled(inline=True)
-def start_from_places(
+def return_held_points(
     contact: Contact, velocity_slope: float, mu: float, start: FloatArray, work: Workspace
 ) -> bool:
     """Put points that the floor held at the beginning of the step back there: the first place to linearise at.
@@ -331,7 +331,7 @@ def start_from_places(
 
 
 @compiled(inline=True)
-def carry_laws(work: Workspace) -> None:
+def extrapolate_laws(work: Workspace) -> None:
     """Carry the laws' forces along their tangents to where the points were before they were put back."""
     for i in range(work.force.shape[0]):
         work.law[i, 0] += work.slope[i, 0] * work.trial[i, 0] + work.slope[i, 1] * work.trial[i, 1]
@@ -362,10 +362,10 @@ def solve_contact(
     before = np.inf
     for iteration in range(NEWTON_LIMIT):
         move_points(velocity_slope, work.force, work)
-        placed = iteration == 0 and start_from_places(contact, velocity_slope, mu, start, work)
+        placed = iteration == 0 and return_held_points(contact, velocity_slope, mu, start, work)
         evaluate_laws(contact, step, velocity_slope, mu, start, stick, work)
         if placed:
-            carry_laws(work)
+            extrapolate_laws(work)
         residual, largest, stiffest = 0.0, contact.force_scale, 0.0
         for i in range(n):
             stiffest = max(stiffest, work.slope[i, 0], work.slope[i, 2])

@@ -2,7 +2,7 @@
 
 A body has coordinates (their number and meaning are its own affair), base points that may touch the floor, and
 some operations, each a function here that hands over to the body: `predict`, `release`, `respond`, `complete`,
-`observe`, `shift_velocity`, and the two questions `prepared` and `sizes_hold`. `contact.stepping.modal_body`
+`observe`, `shift_velocity`, and the two questions `prepared` and `sizes_match`. `contact.stepping.modal_body`
 compiles them for a
 floating frame with elastic modes, `fem.solid.nodal_kernels` for the nodes of a mesh; called by the interpreter they
 are methods of the body. The stepper is written once, against these functions.
@@ -138,6 +138,6 @@ def prepared(body: Any, step: float) -> bool:
     return bool(body.prepared(step))
 
 
-def sizes_hold(body: Any, run: Any) -> bool:
+def sizes_match(body: Any, run: Any) -> bool:
     """The arrays of the run have the sizes that the body was compiled for; true where it takes any."""
     return True

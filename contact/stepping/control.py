@@ -28,9 +28,9 @@ OCTAVE = tuple(2.0 ** (-level / STEPS_PER_OCTAVE) for level in range(STEPS_PER_O
 NEIGHBOUR = 0.25  #: base points nearer than this, over the width, close as one
 #: the ledger as a whole keeps below these shares of what may be won and lost in the end, for which it holds the steps
 #: small from that share of them on ..
-GAIN_AIM, LOSS_AIM, NEAR_AIM = 0.3, 0.9, 0.4
+GAIN_AIM, LOSS_AIM, AIM_SHARE = 0.3, 0.9, 0.4
 #: .. by the share of what is left that one step may use, and of what any step may have that it may use always
-ROOM_SHARE, LEAST_ROOM = 0.1, 1e-4
+REMAINDER_SHARE, LEAST_ALLOWANCE = 0.1, 1e-4
 #: a run that tries more steps than so many each 1/p, and each largest step, makes no headway
 ATTEMPTS_OF_ROCKING, ATTEMPTS_OF_STEP, ATTEMPTS_SPARE = 1e6, 100.0, 1e6
 
@@ -86,20 +86,20 @@ def next_step(run: Run) -> float:
     An instant that a step must end on: the step ends there.
     """
     clock, control = run.clock[0], run.control
-    step = ladder_step(control.largest_step, clock.level)
+    step = step_of_level(control.largest_step, clock.level)
     if step > control.closing_step:
         due = max(closing_time(control, run.old, step), control.closing_step)
         if (
             due < step
         ):  # on the ladder, just short of it: a new step size is dear to a body that factors a matrix
-            due_level = ladder_level(control.largest_step, due)
-            step = ladder_step(control.largest_step, due_level)
+            due_level = step_level(control.largest_step, due)
+            step = step_of_level(control.largest_step, due_level)
             if due == control.closing_step:
                 clock.level = due_level
     if step > control.event_step:
         due = max(switching_time(clock, step), control.event_step)
         if due < step:
-            step = ladder_step(control.largest_step, ladder_level(control.largest_step, due))
+            step = step_of_level(control.largest_step, step_level(control.largest_step, due))
     while run.breaks[clock.next_break] <= clock.time:
         clock.next_break += 1
     left = run.breaks[clock.next_break] - clock.time
@@ -122,7 +122,7 @@ def allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
     control, old, new = run.control, run.old, run.new
     allowed = control.reference_energy * (control.energy_floor + control.energy_rate * step)
     allowed += control.energy_share * abs(dissipated)
-    allowed += control.trail_share * run.clock[0].trail * step / control.trail_time
+    allowed += control.recent_share * run.clock[0].recent_dissipation * step / control.recent_time
     closing, closing_beside = False, False
     for i in range(new.point.shape[0]):
         if old.point[i, 1] >= 0.0 and new.point[i, 1] < 0.0:
@@ -140,11 +140,11 @@ def allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
 
 
 @compiled(inline=True)
-def room_of_ledger(run: Run, step: float) -> float:
+def ledger_allowance(run: Run, step: float) -> float:
     """Imbalance that the ledger as a whole has room for in the step attempted [J]; infinite far from its limits.
 
     What one step may lose or win adds up: a share of what it dissipates may be much against the energy to overturn, as
-    when a low container slides far. From `NEAR_AIM` on a step may use a share of what is left only, so that the
+    when a low container slides far. From `AIM_SHARE` on a step may use a share of what is left only, so that the
     ledger comes to rest where it aims. What is left to a step always lies above its rounding, and would take 1e5 of
     them to reach the limit. A gain is worse than a loss: it drives what it should only follow.
     """
@@ -156,10 +156,10 @@ def room_of_ledger(run: Run, step: float) -> float:
         dissipated += change[FRICTION] + change[CONTACT_DAMPING] + change[MATERIAL_DAMPING]
         aim = LOSS_AIM * max(LOSS_LIMIT * control.reference_energy, LOSS_SHARE_LIMIT * dissipated)
         used = ledger[IMBALANCE]
-    if used + abs(change[IMBALANCE]) < NEAR_AIM * aim:
+    if used + abs(change[IMBALANCE]) < AIM_SHARE * aim:
         return np.inf
     least = control.energy_floor + control.energy_rate * step
-    return max(ROOM_SHARE * (aim - used), LEAST_ROOM * control.reference_energy * least)
+    return max(REMAINDER_SHARE * (aim - used), LEAST_ALLOWANCE * control.reference_energy * least)
 
 
 @compiled
@@ -185,13 +185,13 @@ def change_level(level: int, used: float, not_held: bool) -> int:
 
 
 @compiled
-def ladder_level(largest_step: float, step: float) -> int:
+def step_level(largest_step: float, step: float) -> int:
     """Level of the largest step of the ladder that is not above `step`."""
     return max(0, int(np.ceil(STEPS_PER_OCTAVE * np.log2(largest_step / step) - 1e-9)))
 
 
 @compiled(inline=True)
-def ladder_step(largest_step: float, level: int) -> float:
+def step_of_level(largest_step: float, level: int) -> float:
     """Step of that level of the ladder; as a product, for a power costs as much as the contact of a corner."""
     octave = level // STEPS_PER_OCTAVE
     return math.ldexp(largest_step * OCTAVE[level - octave * STEPS_PER_OCTAVE], -octave)

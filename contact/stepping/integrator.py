@@ -19,18 +19,18 @@ from numba.extending import register_jitable
 from contact.interface.laws import weakened_mu
 from contact.interface.solver import Contact
 from contact.jit import compiled
-from contact.stepping.body import ROTATION, complete, prepared, shift_velocity, sizes_hold
+from contact.stepping.body import ROTATION, complete, prepared, shift_velocity, sizes_match
 from contact.stepping.control import (
     STEPS_PER_OCTAVE,
     allowed_imbalance,
     change_level,
-    ladder_level,
+    ledger_allowance,
     next_step,
-    room_of_ledger,
+    step_level,
 )
 from contact.stepping.ledger import CONTACT_DAMPING, FRICTION, IMBALANCE, MATERIAL_DAMPING
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
-from contact.stepping.observables import FALLEN, NEVER, follow
+from contact.stepping.observables import FALLEN, NEVER, update_observables
 from contact.stepping.sampling import sample
 from contact.stepping.state import Run
 from contact.stepping.step import account, attempt, copy_state, slide
@@ -44,14 +44,14 @@ FADING = 0.8  #: of the memory for the imbalance, a step
 REACHED, OVERTURNED, FAILED, UNPREPARED = 0, 1, 2, 3
 OVERTURNING_ROTATION = 0.5 * np.pi
 #: a container that is to lie on its side counts as overturned so much before: there its side meets the floor [rad]
-LYING_DOWN = 2e-3
+LYING_MARGIN = 2e-3
 
 
 @compiled(inline=True)
-def note_step(run: Run, step: float, slip_step: float, slip_velocity: float, every: bool) -> None:
+def update_records(run: Run, step: float, slip_step: float, slip_velocity: float, every: bool) -> None:
     """Friction's state and the record of the run, from the step about to be accepted."""
     clock = run.clock[0]
-    clock.slid = clock.slid + abs(slip_step) if clock.sliding == 1 or every else 0.0
+    clock.slip_since_break = clock.slip_since_break + abs(slip_step) if clock.sliding == 1 or every else 0.0
     clock.sliding = 1 if every else 0
     tangential, normal = 0.0, 0.0
     for i in range(run.new.force.shape[0]):
@@ -63,7 +63,7 @@ def note_step(run: Run, step: float, slip_step: float, slip_velocity: float, eve
     clock.utilisation = utilisation
     clock.slip_acceleration = (slip_velocity - clock.slip_velocity) / step
     clock.slip_velocity = slip_velocity
-    follow(
+    update_observables(
         run.track[0],
         run.control,
         run.old,
@@ -101,11 +101,11 @@ def close_step(run: Run, step: float, slip_step: float, iterations: int) -> None
 def _accept(
     body: Any, run: Run, step: float, slip_step: float, slip_velocity: float, every: bool, iterations: int
 ) -> None:
-    """Make the step attempted the state of the run; samples, ledger and record follow."""
+    """Make the step attempted the state of the run; samples, ledger and record update_observables."""
     clock = run.clock[0]
-    note_step(run, step, slip_step, slip_velocity, every)
-    clock.samples = sample(body, run, run.history, clock.samples, clock.samples_gone, step, slip_step)
-    clock.frames = sample(body, run, run.frames, clock.frames, clock.frames_gone, step, slip_step)
+    update_records(run, step, slip_step, slip_velocity, every)
+    clock.samples = sample(body, run, run.history, clock.samples, clock.samples_drained, step, slip_step)
+    clock.frames = sample(body, run, run.frames, clock.frames, clock.frames_drained, step, slip_step)
     close_step(run, step, slip_step, iterations)
 
 
@@ -120,13 +120,13 @@ def _is_full(run: Run) -> bool:
     """No room for the samples of another largest step."""
     ahead = run.control.largest_step
     clock = run.clock[0]
-    room = run.history.mode.size - (clock.samples - clock.samples_gone)
-    room_of_frames = run.frames.mode.size - (clock.frames - clock.frames_gone)
+    room = run.history.mode.size - (clock.samples - clock.samples_drained)
+    room_of_frames = run.frames.mode.size - (clock.frames - clock.frames_drained)
     return (room - 1) * run.history.interval < ahead or (room_of_frames - 1) * run.frames.interval < ahead
 
 
 @register_jitable(forceinline=True)
-def leave_alone(body: Any, run: Run, floor_velocity: float) -> None:
+def enter_floor_frame(body: Any, run: Run, floor_velocity: float) -> None:
     """Go over to the frame in which the floor, undriven from now on, stands still (Galilei): no kick, no journey.
 
     Args:
@@ -152,19 +152,19 @@ def advance(body: Any, run: Run, until: float) -> int:
     Returns:
         REACHED, OVERTURNED (90 degrees, where `control.stop_when_overturned`), FAILED: no convergence at
         the smallest step, the last good state stands in `run.old`; or UNPREPARED: the body needs something made for
-        steps of `clock.due_step`, after which the call is repeated.
+        steps of `clock.unprepared_step`, after which the call is repeated.
     """
     control, clock, track = run.control, run.clock[0], run.track[0]
-    if not sizes_hold(body, run):
+    if not sizes_match(body, run):
         return FAILED
     while clock.time < until and clock.steps + clock.rejected < clock.attempt_limit and not _is_full(run):
         step = next_step(run)
         if not prepared(body, step):
-            clock.due_step = step
+            clock.unprepared_step = step
             return UNPREPARED
         mu = run.contact.mu_static
         if clock.sliding == 1:
-            mu = _kinetic_friction(run.contact, clock.slid)
+            mu = _kinetic_friction(run.contact, clock.slip_since_break)
         iterations, every, slip_step, slip_velocity = 0, False, 0.0, 0.0
         for _ in range(WEAKENING_LIMIT):  # friction that falls with the slip of this very step
             iterations = attempt(body, run, step, mu)
@@ -173,7 +173,7 @@ def advance(body: Any, run: Run, until: float) -> int:
             every, slip_step, slip_velocity = slide(run, step)
             if clock.sliding == 0 or run.contact.weakening <= 0.0:
                 break
-            weakened = _kinetic_friction(run.contact, clock.slid + abs(slip_step))
+            weakened = _kinetic_friction(run.contact, clock.slip_since_break + abs(slip_step))
             if abs(weakened - mu) <= WEAKENING_TOLERANCE:
                 break
             mu = weakened
@@ -186,7 +186,7 @@ def advance(body: Any, run: Run, until: float) -> int:
             continue
         dissipated = account(run)
         allowed = allowed_imbalance(run, step, dissipated)
-        allowed = min(allowed, room_of_ledger(run, step))
+        allowed = min(allowed, ledger_allowance(run, step))
         used = abs(run.change[IMBALANCE]) / allowed
         switches = (clock.sliding == 1) != every and run.contact.mu_static > 0.0
         if switches and step > 1.01 * control.event_step:
@@ -194,21 +194,23 @@ def advance(body: Any, run: Run, until: float) -> int:
         if used > 1.0 and step > control.smallest_step:
             clock.rejected += 1
             clock.level = change_level(clock.level, used, False)
-            clock.held = HELD_STEPS
+            clock.growth_hold = HELD_STEPS
             continue
         if switches:  # what follows has the time scale of the contact again
-            clock.level = max(clock.level, ladder_level(control.largest_step, control.event_step))
-        late = step / control.trail_time
-        clock.trail = clock.trail / (1.0 + late * (1.0 + 0.5 * late)) + max(dissipated, 0.0)
+            clock.level = max(clock.level, step_level(control.largest_step, control.event_step))
+        late = step / control.recent_time
+        clock.recent_dissipation = clock.recent_dissipation / (1.0 + late * (1.0 + 0.5 * late)) + max(
+            dissipated, 0.0
+        )
         _accept(body, run, step, slip_step, slip_velocity, every, iterations)
         # One step's imbalance may vanish by chance while it changes sign: look at three.
-        recent = max(min(used, 1.0), FADING * clock.used)
-        level = change_level(clock.level, recent, clock.held == 0)
+        recent = max(min(used, 1.0), FADING * clock.allowance_used)
+        level = change_level(clock.level, recent, clock.growth_hold == 0)
         if level < clock.level or step > control.smallest_step:
             clock.level = level
-        clock.used = recent
-        clock.held = max(clock.held - 1, 0)
-        fallen = OVERTURNING_ROTATION if control.stop_when_overturned else OVERTURNING_ROTATION - LYING_DOWN
+        clock.allowance_used = recent
+        clock.growth_hold = max(clock.growth_hold - 1, 0)
+        fallen = OVERTURNING_ROTATION if control.stop_when_overturned else OVERTURNING_ROTATION - LYING_MARGIN
         if abs(run.old.pose[ROTATION]) >= fallen and track.overturned_at == NEVER:
             track.overturned_at = clock.time
             track.mode = FALLEN
@@ -219,4 +221,4 @@ def advance(body: Any, run: Run, until: float) -> int:
 
 
 advance_compiled = compiled(advance)
-leave_alone_compiled = compiled(leave_alone)
+enter_floor_frame_compiled = compiled(enter_floor_frame)

@@ -118,7 +118,7 @@ def make_modal_body(
 class BlockOnCorners(ModalBody):
     """A rigid body on two contact points: the same fields under a type of its own.
 
-    For it the stepper is compiled with all sizes known (`sizes_hold`): loops over two points and three coordinates
+    For it the stepper is compiled with all sizes known (`sizes_match`): loops over two points and three coordinates
     are unrolled, which halves the time of a step and changes no bit of it.
     """
 
@@ -379,7 +379,7 @@ def shift_velocity(body: ModalBody, state: State, velocity: float) -> None:
     state.velocity[0] -= velocity
 
 
-@implements(interface.sizes_hold, ModalBody, inline=True)
+@implements(interface.sizes_match, ModalBody, inline=True)
 def any_sizes(body: ModalBody, run: Any) -> bool:
     """Compiled for arrays of any size."""
     return True
@@ -406,7 +406,7 @@ def _state_of_block_on_corners(state: State) -> bool:
     return bool(state.point.shape[1] == 2 and state.force.shape[1] == 2 and state.descent.shape[1] == 2)
 
 
-@implements(interface.sizes_hold, BlockOnCorners, inline=True)
+@implements(interface.sizes_match, BlockOnCorners, inline=True)
 def sizes_of_block_on_corners(body: ModalBody, run: Any) -> bool:
     """Each comparison with a constant is one that the compiler relies on from there on: it unrolls the loops."""
     work = run.work

@@ -33,7 +33,7 @@ ROCKING = 0.01
 #: modes of motion as stored in a history, and as bits in `modes`
 REST, SLIDE, ROCK, SLIDE_ROCK, FALLEN = 0, 1, 2, 3, 4
 
-TRACK = np.dtype(
+OBSERVABLES = np.dtype(
     [
         ("max_rotation", "f8"),
         ("max_rocking", "f8"),  # largest rotation while a side carries nothing
@@ -45,7 +45,7 @@ TRACK = np.dtype(
         ("peak_corner_force", "f8"),  # the instantaneous one
         ("left_force", "f8"),  # at the end of the last step
         ("right_force", "f8"),
-        ("pressed", "f8"),  # how long the impulses have been gathered
+        ("impulse_time", "f8"),  # how long the impulses have been gathered
         ("left_impulse", "f8"),
         ("right_impulse", "f8"),
         ("max_top_displacement", "f8"),
@@ -63,13 +63,13 @@ TRACK = np.dtype(
         ("right_gap", "f8"),
         ("peak_energy", "f8"),  # potential energy above rest at the last turning point
         ("restitution_by_peaks", "f8"),
-        ("turning", "f8"),  # angular acceleration over the last step
-        ("drift", "f8"),  # what a rigid block's angular velocity has changed by since the first impact
-        ("watched", "f8"),  # how long the angular velocity has been averaged since
+        ("angular_acceleration", "f8"),  # angular acceleration over the last step
+        ("rigid_gain", "f8"),  # what a rigid block's angular velocity has changed by since the first impact
+        ("averaging_time", "f8"),  # how long the angular velocity has been averaged since
         ("mean_velocity", "f8"),
         ("velocity_before", "f8"),  # angular velocity just before the first impact
         (
-            "pivot_waiting",
+            "new_pivot",
             "i8",
         ),  # the corner that was the pivot at the first impact: -1 left, +1 right, 0 none
         ("restitution_by_velocity", "f8"),
@@ -78,9 +78,9 @@ TRACK = np.dtype(
 )
 
 
-def make_track() -> Any:
-    """A fresh record array (1,) of TRACK: nothing has happened yet."""
-    track = np.zeros(1, TRACK).view(np.recarray)
+def make_observables() -> Any:
+    """A fresh record array (1,) of OBSERVABLES: nothing has happened yet."""
+    track = np.zeros(1, OBSERVABLES).view(np.recarray)
     for name in ("first_opening", "first_uplift", "overturned_at", "first_impact"):
         track[name] = NEVER
     for name in ("restitution_by_peaks", "restitution_by_velocity", "peak_energy", "velocity_before"):
@@ -88,7 +88,7 @@ def make_track() -> Any:
     return track
 
 
-def begin(track: Any, control: Any, state: State) -> None:
+def record_start(track: Any, control: Any, state: State) -> None:
     """Note the initial state: a container may start tilted, with a side already open."""
     n = control.base_points
     gap, x = state.point[:n, 1], state.point[:n, 0]
@@ -122,7 +122,7 @@ def begin(track: Any, control: Any, state: State) -> None:
 
 
 @register_jitable(forceinline=True)
-def follow(
+def update_observables(
     track: Any,
     control: Any,
     old: State,
@@ -137,7 +137,7 @@ def follow(
     """Update the record with the accepted step from `old` to `new`.
 
     Args:
-        track: record of TRACK.
+        track: record of OBSERVABLES.
         control: the stepping's `Control`: sizes and constants of the container.
         old, new: states at both ends of the step.
         time: at its end [s]; step: its length [s].
@@ -176,11 +176,11 @@ def follow(
     track.right_impulse += 0.5 * step * (track.right_force + right_force)
     track.left_force, track.right_force = left_force, right_force
     track.peak_corner_force = max(track.peak_corner_force, max(left_force, right_force))
-    track.pressed += step
-    if track.pressed >= FORCE_WINDOW / control.frequency_parameter:
-        mean = max(track.left_impulse, track.right_impulse) / track.pressed
+    track.impulse_time += step
+    if track.impulse_time >= FORCE_WINDOW / control.frequency_parameter:
+        mean = max(track.left_impulse, track.right_impulse) / track.impulse_time
         track.max_corner_force = max(track.max_corner_force, mean)
-        track.left_impulse, track.right_impulse, track.pressed = 0.0, 0.0, 0.0
+        track.left_impulse, track.right_impulse, track.impulse_time = 0.0, 0.0, 0.0
     if left_open + right_open == 1 and time < track.first_uplift:
         track.first_uplift = time
     open_side = left_open + right_open > 0
@@ -192,13 +192,13 @@ def follow(
         track.mode = FALLEN
     track.modes |= 1 << track.mode
     track.left_open, track.right_open = left_open, right_open
-    struck = _find_impact(track, control, old, new, step)
-    _follow_restitution(track, control, old, new, time, step, struck, floor_acceleration)
-    track.turning = (new.pose[ANGULAR_VELOCITY] - old.pose[ANGULAR_VELOCITY]) / step
+    struck = find_impact(track, control, old, new, step)
+    follow_restitution(track, control, old, new, time, step, struck, floor_acceleration)
+    track.angular_acceleration = (new.pose[ANGULAR_VELOCITY] - old.pose[ANGULAR_VELOCITY]) / step
 
 
 @register_jitable(forceinline=True)
-def _find_impact(track: Any, control: Any, old: State, new: State, step: float) -> int:
+def find_impact(track: Any, control: Any, old: State, new: State, step: float) -> int:
     """The corner that a counted impact struck in this step: -1 left, +1 right, 0 none."""
     last = control.base_points - 1
     counts = IMPACT_GAP * control.width * control.slenderness_angle
@@ -222,7 +222,7 @@ def _find_impact(track: Any, control: Any, old: State, new: State, step: float) 
 
 
 @register_jitable(forceinline=True)
-def _follow_restitution(
+def follow_restitution(
     track: Any,
     control: Any,
     old: State,
@@ -242,22 +242,24 @@ def _follow_restitution(
         corner = 0 if struck < 0 else control.base_points - 1
         gap, depth = old.point[corner, 1], -new.point[corner, 1]
         track.first_impact = time
-        track.velocity_before = old.pose[ANGULAR_VELOCITY] + track.turning * step * gap / (gap + depth)
-        track.pivot_waiting = -struck
-    elif track.pivot_waiting != 0:
-        corner = control.base_points - 1 if track.pivot_waiting > 0 else 0
-        lean = -track.pivot_waiting * control.slenderness_angle - new.pose[ROTATION]
+        track.velocity_before = old.pose[ANGULAR_VELOCITY] + track.angular_acceleration * step * gap / (
+            gap + depth
+        )
+        track.new_pivot = -struck
+    elif track.new_pivot != 0:
+        corner = control.base_points - 1 if track.new_pivot > 0 else 0
+        lean = -track.new_pivot * control.slenderness_angle - new.pose[ROTATION]
         pull = math.sin(lean) + floor_acceleration / control.gravity * math.cos(lean)
-        track.drift -= step * control.frequency_parameter**2 * pull
+        track.rigid_gain -= step * control.frequency_parameter**2 * pull
         if new.point[corner, 1] > IMPACT_GAP * control.width * control.slenderness_angle:
-            track.mean_velocity += step * (velocity - track.drift)
-            track.watched += step
-        if struck != 0 or track.watched >= AVERAGED / control.frequency_parameter:
-            if track.watched >= 0.5 * AVERAGED / control.frequency_parameter:
-                ratio = track.mean_velocity / (track.watched * track.velocity_before)
+            track.mean_velocity += step * (velocity - track.rigid_gain)
+            track.averaging_time += step
+        if struck != 0 or track.averaging_time >= AVERAGED / control.frequency_parameter:
+            if track.averaging_time >= 0.5 * AVERAGED / control.frequency_parameter:
+                ratio = track.mean_velocity / (track.averaging_time * track.velocity_before)
                 if ratio > 0.0:  # else it did not go over to the new pivot: there is no such ratio
                     track.restitution_by_velocity = ratio
-            track.pivot_waiting = 0
+            track.new_pivot = 0
     turned = old.pose[ANGULAR_VELOCITY] * velocity < 0.0 or old.pose[ANGULAR_VELOCITY] == 0.0
     aside = abs(new.pose[ROTATION]) > ROCKING * control.slenderness_angle
     if turned and aside and track.left_open + track.right_open == 1:

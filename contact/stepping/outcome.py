@@ -21,7 +21,7 @@ from contact.stepping.integrator import (
     OVERTURNED,
     REACHED,
     advance_compiled,
-    leave_alone_compiled,
+    enter_floor_frame_compiled,
 )
 from contact.stepping.modal_body import ModalBody, with_own_scratch
 from contact.stepping.state import ROW_SLIP, ROW_STRAIN, Run
@@ -78,14 +78,16 @@ def run_to_end(
         position=np.zeros((room, coordinates)),
     )
     run = run._replace(
-        history=samples._replace(position=samples.position[:, :coordinates], velocity=samples.velocity[:, :0]),
+        history=samples._replace(
+            position=samples.position[:, :coordinates], velocity=samples.velocity[:, :0]
+        ),
         frames=run.frames._replace(interval=math.inf),
     )
     ahead = SLICE if samples.columns.shape[1] > 0 else math.inf
     status = advance_in_slices(own, run, kept, ahead, duration, False)
     if status == REACHED and is_undecided.py_func(run):
         displacement, velocity, _ = floor_motion(run.motion, clock["time"])
-        leave_alone_compiled(own, run, velocity)
+        enter_floor_frame_compiled(own, run, velocity)
         still = as_floor_motion(UNIFORM, (float(clock["time"]), displacement, 0.0))
         run = run._replace(motion=still, breaks=np.full(1, np.inf))
         status = advance_in_slices(own, run, kept, AFTERMATH_SLICE, duration + aftermath, True)
@@ -112,7 +114,7 @@ def advance_in_slices(
         if run.history.columns.shape[1] > 0:
             keep_slip(run, kept)
             keep_most_strained(run, kept)
-        clock.samples_gone = clock.samples
+        clock.samples_drained = clock.samples
         if status != REACHED or (undecided_only and not is_undecided(run)):
             return status
         if clock.time < until and clock.steps + clock.rejected >= clock.attempt_limit:
@@ -124,8 +126,8 @@ def advance_in_slices(
 def keep_slip(run: Run, kept: KeptSamples) -> None:
     """Write the slip of the new samples into the ring."""
     clock, samples = run.clock[0], run.history
-    for i in range(clock.samples - clock.samples_gone):
-        index = clock.samples_gone + i
+    for i in range(clock.samples - clock.samples_drained):
+        index = clock.samples_drained + i
         if index * samples.interval <= kept.slip_until + 1e-9:
             kept.slip[index % kept.slip.size] = samples.columns[i, ROW_SLIP]
 
@@ -134,7 +136,7 @@ def keep_slip(run: Run, kept: KeptSamples) -> None:
 def keep_most_strained(run: Run, kept: KeptSamples) -> None:
     """Keep the most strained of the new samples, each in place of the least strained one kept."""
     clock, samples = run.clock[0], run.history
-    count = clock.samples - clock.samples_gone
+    count = clock.samples - clock.samples_drained
     for _ in range(min(count, MOST_STRAINED) if kept.strain.size > 0 else 0):
         best = 0
         for i in range(count):

@@ -64,13 +64,13 @@ def write_columns(
 
 
 @compiled(inline=True)
-def watch_contents(run: Run, s: float, interval: float) -> None:
+def follow_contents(run: Run, s: float, interval: float) -> None:
     """Largest mean acceleration of the monitored contents over an interval of the history.
 
     The instantaneous one means nothing under a dashpot that acts at a point: it grows without bound as the step
     falls. What an accelerometer of the history's band would show does not.
     """
-    old, new, watched = run.old.monitor, run.new.monitor, run.watched
+    old, new, watched = run.old.monitor, run.new.monitor, run.monitor_velocity
     for i in range(watched.shape[0]):
         x = (1.0 - s) * old[i, 2] + s * new[i, 2]
         z = (1.0 - s) * old[i, 3] + s * new[i, 3]
@@ -122,6 +122,6 @@ def sample(
                 observe(body, old, run.floor[0, 0])
                 observe(body, new, run.floor[1, 0])
                 observed = True
-            watch_contents(run, s, samples.interval if written > 0 else np.inf)
+            follow_contents(run, s, samples.interval if written > 0 else np.inf)
         written += 1
     return written

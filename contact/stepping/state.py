@@ -13,7 +13,7 @@ from contact.interface.solver import Contact, Workspace
 from contact.motion.kernel import FloorMotion, floor_motion
 from contact.stepping.body import State
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
-from contact.stepping.observables import NEVER, make_track
+from contact.stepping.observables import NEVER, make_observables
 from contact.stepping.scheme import Scheme
 
 UNLIMITED = 2**62
@@ -52,8 +52,8 @@ class Control(NamedTuple):
     energy_rate: float  #: imbalance allowed per second, over the reference energy [1/s]
     energy_floor: float  #: imbalance allowed in any step, over the reference energy [-]
     energy_share: float  #: imbalance allowed over what a step dissipates [-]
-    trail_share: float  #: imbalance allowed over what was dissipated shortly before [-]
-    trail_time: float  #: how long that counts [s]
+    recent_share: float  #: imbalance allowed over what was dissipated shortly before [-]
+    recent_time: float  #: how long that counts [s]
     closing_share: (
         float  #: imbalance allowed when a gap closes, over the kinetic energy relative to the floor [-]
     )
@@ -68,37 +68,43 @@ class Control(NamedTuple):
     base_points: int  #: of the contact points, so many first ones make up the base
 
 
-CLOCK = np.dtype(
+#: what changes from step to step besides the state; `Run.clock` is one of these
+STEP_RECORD = np.dtype(
     [
         ("time", "f8"),
-        ("level", "i8"),
+        # friction
         ("sliding", "i8"),  # 1 while every loaded point slides: kinetic friction
-        ("slid", "f8"),  # since the support broke loose
+        ("slip_since_break", "f8"),  # path since the support broke loose
         ("slip", "f8"),  # force-weighted sliding of the container, signed
+        ("slip_velocity", "f8"),  # force-weighted
+        ("slip_acceleration", "f8"),
+        ("utilisation", "f8"),  # support's tangential force over mu_s times its normal force
+        ("utilisation_rate", "f8"),
+        # step control
+        ("level", "i8"),  # of the step size, see `contact.stepping.control`
+        ("allowance_used", "f8"),  # recent imbalance over the allowed one
+        ("recent_dissipation", "f8"),  # fading sum [J]
+        ("growth_hold", "i8"),  # accepted steps until the step may grow freely again
+        ("lag_step", "f8"),  # step that the lag of the old acceleration belongs to
+        ("unprepared_step", "f8"),  # step that the body was not prepared for
+        ("next_break", "i8"),
+        ("attempt_limit", "i8"),  # of steps, accepted and rejected, at which `advance` returns
+        # counts
         ("steps", "i8"),
         ("rejected", "i8"),
         ("failed", "i8"),  # of these: iterations that did not converge
         ("iterations", "i8"),
         ("contact_iterations", "i8"),
         ("smallest_step", "f8"),
-        ("utilisation", "f8"),  # support's tangential force over mu_s times its normal force
-        ("utilisation_rate", "f8"),
-        ("slip_velocity", "f8"),  # force-weighted
-        ("slip_acceleration", "f8"),
-        ("used", "f8"),  # share of the imbalance allowed, lately
-        ("trail", "f8"),  # dissipated shortly before [J]
-        ("held", "i8"),  # accepted steps until the step may grow freely again
-        ("basis_step", "f8"),  # that the old acceleration's lag belongs to
-        ("due_step", "f8"),  # that the body was not prepared for
+        # samples
         ("samples", "i8"),  # of the history, so far
-        ("samples_gone", "i8"),  # of these no longer in the arrays
+        ("samples_drained", "i8"),  # of these no longer in the arrays
         ("frames", "i8"),
-        ("frames_gone", "i8"),
-        ("next_break", "i8"),
+        ("frames_drained", "i8"),
+        # ledger, up to overturning
         ("least_imbalance", "f8"),
         ("most_imbalance", "f8"),
         ("dissipated", "f8"),  # when these were taken
-        ("attempt_limit", "i8"),  # of steps, accepted and rejected, at which `advance` returns
     ],
     align=True,
 )
@@ -144,9 +150,9 @@ class Run(NamedTuple):
     slip: FloatArray  #: (n,) sliding of the points in the step attempted [m]
     change: FloatArray  #: (5,) what the step attempted adds to the ledger [J]
     ledger: FloatArray  #: (5,) [J]
-    clock: Any  #: (1,) of CLOCK
-    track: Any  #: (1,) of tracking.TRACK
-    watched: FloatArray  #: (n_m, 2) velocities of the monitored points at the last sample [m/s]
+    clock: Any  #: (1,) of STEP_RECORD
+    track: Any  #: (1,) of tracking.OBSERVABLES
+    monitor_velocity: FloatArray  #: (n_m, 2) velocities of the monitored points at the last sample [m/s]
     history: Samples
     frames: Samples
 
@@ -166,7 +172,7 @@ def make_run(
 ) -> Run:
     """Put a run together at t = 0; `old` holds the initial state, completed."""
     n = old.point.shape[0]
-    clock = np.zeros(1, CLOCK).view(np.recarray)
+    clock = np.zeros(1, STEP_RECORD).view(np.recarray)
     clock["smallest_step"] = NEVER
     clock["attempt_limit"] = UNLIMITED
     return Run(
@@ -183,8 +189,8 @@ def make_run(
         change=np.zeros(LEDGER_ROWS),
         ledger=np.zeros(LEDGER_ROWS),
         clock=clock,
-        track=make_track(),
-        watched=np.zeros((old.monitor.shape[0], 2)),
+        track=make_observables(),
+        monitor_velocity=np.zeros((old.monitor.shape[0], 2)),
         history=history,
         frames=frames,
     )

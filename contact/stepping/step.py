@@ -58,7 +58,7 @@ def rebase_acceleration(scheme: Scheme, old: State, shortened: float) -> None:
 
 
 @compiled(inline=True)
-def note_rates(step: float, old: State, new: State, work: Workspace) -> None:
+def store_rates(step: float, old: State, new: State, work: Workspace) -> None:
     """Velocities of the base points and rates of change over the step, for the step control."""
     per_second = 1.0 / step
     for i in range(new.descent.shape[0]):
@@ -76,8 +76,8 @@ def attempt(body: Any, run: Run, step: float, mu: float) -> int:
     floor, floor_velocity, floor_acceleration = floor_motion(run.motion, clock.time + step)
     run.floor[1, 0], run.floor[1, 1], run.floor[1, 2] = floor, floor_velocity, floor_acceleration
     slope = scheme.newmark_gamma / (scheme.newmark_beta * step)
-    rebase_acceleration(scheme, old, clock.basis_step - step)
-    clock.basis_step = step
+    rebase_acceleration(scheme, old, clock.lag_step - step)
+    clock.lag_step = step
     predict(body, scheme, step, old, new)
     copy_rows(work.force, old.force)
     for iteration in range(ITERATION_LIMIT):
@@ -88,7 +88,7 @@ def attempt(body: Any, run: Run, step: float, mu: float) -> int:
         clock.contact_iterations += solved
         if respond(body, scheme, step, old, new, work) <= 1.0:
             copy_rows(new.force, work.force)
-            note_rates(step, old, new, work)
+            store_rates(step, old, new, work)
             complete(body, new, floor)
             return iteration + 1
     return -1

@@ -30,7 +30,7 @@ SLIDING = 1e-4  #: slip over the width that counts as sliding
 
 
 def record_of(model: Model) -> SimpleNamespace:
-    """The run's record (`observables.TRACK`) as plain numbers, which are read a hundred times faster."""
+    """The run's record (`observables.OBSERVABLES`) as plain numbers, which are read a hundred times faster."""
     track = model.run.track
     return SimpleNamespace(**dict(zip(track.dtype.names, track[0].item(), strict=True)))
 

@@ -18,7 +18,7 @@ from contact.motion.kernel import floor_motion
 from contact.stepping import modal_body
 from contact.stepping.body import State, make_state
 from contact.stepping.modal_body import ModalBody
-from contact.stepping.observables import begin
+from contact.stepping.observables import record_start
 from contact.stepping.state import Run, make_run, make_samples
 from fem.case.case import Case
 from fem.model.container import Container, discretise
@@ -129,7 +129,7 @@ def build_model(case: Case, container: Container | None = None, footing: Footing
             velocity=coordinates if fields > 0.0 else 0,
         ),
     )
-    begin(run.track[0], control, old)
+    record_start(run.track[0], control, old)
     return Model(case=case, container=container, footing=footing, motion=motion, static=static, run=run)
 
 

@@ -49,7 +49,7 @@ class Record:
 
     @property
     def track(self) -> Any:
-        """Extremes and events, see `contact.stepping.observables.TRACK`."""
+        """Extremes and events, see `contact.stepping.observables.OBSERVABLES`."""
         return self.model.run.track[0]
 
 

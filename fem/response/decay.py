@@ -42,7 +42,7 @@ def follow_decay(case: Case, container: Container, driven: DrivenModel) -> Decay
     while clock.time < PATIENCE / control.frequency_parameter:
         track.max_rotation, travelled = 0.0, float(track.slip_travel)
         code = advance_compiled(stopped.body, run, float(clock.time) + look)
-        clock.samples_gone = clock.samples
+        clock.samples_drained = clock.samples
         largest = max(largest, float(track.max_rotation))
         if code == OVERTURNED:
             return Decay(fate="overturns", time=float(track.overturned_at), largest_rotation=largest)

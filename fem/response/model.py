@@ -16,7 +16,7 @@ import numpy as np
 
 from contact.motion.kernel import HARMONIC, UNIFORM, FloorMotion, as_floor_motion, floor_motion
 from contact.stepping.body import CENTRE_X
-from contact.stepping.control import ladder_level, ladder_step
+from contact.stepping.control import step_level, step_of_level
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.state import Run, make_samples
 from fem.case.case import Case
@@ -28,16 +28,16 @@ SAMPLES_PER_PERIOD = 128
 #: of the step control and of friction: what goes on from one motion to the next
 CARRIED = (
     "sliding",
-    "slid",
+    "slip_since_break",
     "slip",
     "utilisation",
     "utilisation_rate",
     "slip_velocity",
     "slip_acceleration",
-    "used",
-    "trail",
-    "held",
-    "basis_step",
+    "allowance_used",
+    "recent_dissipation",
+    "growth_hold",
+    "lag_step",
 )
 
 
@@ -115,8 +115,8 @@ def carry_state(before: Run, after: Run) -> None:
     after.old.pose[CENTRE_X] += shift
     for name in CARRIED:
         after.clock[name] = before.clock[name]
-    step = ladder_step(before.control.largest_step, int(before.clock.level[0]))
-    after.clock.level = ladder_level(after.control.largest_step, min(step, after.control.largest_step))
+    step = step_of_level(before.control.largest_step, int(before.clock.level[0]))
+    after.clock.level = step_level(after.control.largest_step, min(step, after.control.largest_step))
     after.track[:] = before.track
 
 
@@ -132,7 +132,7 @@ def with_sections(driven: DrivenModel, count: int) -> DrivenModel:
     as exact in the last period as in the first.
     """
     clock = driven.run.clock
-    clock.time, clock.samples, clock.samples_gone, clock.next_break = 0.0, 0, 0, 0
+    clock.time, clock.samples, clock.samples_drained, clock.next_break = 0.0, 0, 0, 0
     breaks = np.append(section_times(driven.period, count), np.inf)
     return replace(driven, run=driven.run._replace(breaks=breaks))
 

@@ -143,8 +143,8 @@ def _step_to(driven: DrivenModel, end: float) -> tuple[int, FloatArray]:
     taken = []
     while True:
         code = advance_compiled(driven.body, run, end)
-        count = int(clock.samples - clock.samples_gone)
+        count = int(clock.samples - clock.samples_drained)
         taken.append(run.history.columns[:count].copy())
-        clock.samples_gone = clock.samples
+        clock.samples_drained = clock.samples
         if code != REACHED or clock.time >= end or math.isinf(end):
             return code, np.concatenate(taken)

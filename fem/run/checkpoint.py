@@ -145,8 +145,8 @@ def _waiting(run: Run, clock: NDArray[Any]) -> Arrays:
     """The samples of a run that no file has yet, as many as this clock says."""
     found: Arrays = {}
     for name, samples, so_far, gone in (
-        ("history", run.history, "samples", "samples_gone"),
-        ("frames", run.frames, "frames", "frames_gone"),
+        ("history", run.history, "samples", "samples_drained"),
+        ("frames", run.frames, "frames", "frames_drained"),
     ):
         count = int(clock[so_far][0] - clock[gone][0])
         parts = samples._asdict().items()

@@ -147,7 +147,7 @@ class Recorder:
 
     def _drain_history(self, run: Run) -> None:
         clock, samples = run.clock[0], run.history
-        first, count = int(clock.samples_gone), int(clock.samples - clock.samples_gone)
+        first, count = int(clock.samples_drained), int(clock.samples - clock.samples_drained)
         if count == 0:
             return
         times: FloatArray = np.arange(first, first + count, dtype=np.float64) * samples.interval
@@ -166,7 +166,7 @@ class Recorder:
         self._modes += modes
         if self._history_sink is not None:
             self._history_sink(rows, modes)
-        clock.samples_gone = clock.samples
+        clock.samples_drained = clock.samples
 
     def _forces_in_joints(self, samples: Samples, first: int, count: int) -> FloatArray:
         """Of new samples (count, 3 J): means since the sample before; the first of a run has its own acceleration."""
@@ -186,7 +186,7 @@ class Recorder:
 
     def _drain_frames(self, run: Run) -> None:
         clock, samples = run.clock[0], run.frames
-        first, count = int(clock.frames_gone), int(clock.frames - clock.frames_gone)
+        first, count = int(clock.frames_drained), int(clock.frames - clock.frames_drained)
         if self._recovery is not None and samples.position.shape[1] > 0:
             for k in range(count):
                 time = (first + k) * samples.interval
@@ -198,7 +198,7 @@ class Recorder:
                     pressure[self._model.container.nodes] = samples.force[k, :, 1] / self._area
                     floor, _, _ = floor_motion(run.motion, time)
                     self._frame_sink(float(as_written(np.array(time))), frame, pressure, floor)
-        clock.frames_gone = clock.frames
+        clock.frames_drained = clock.frames
 
 
 def as_written(times: FloatArray) -> FloatArray:

@@ -22,14 +22,14 @@ from scipy.sparse import csr_array
 from contact.interface.equilibrium import Stance
 from contact.interface.solver import Workspace
 from contact.stepping.body import State
-from contact.stepping.integrator import UNPREPARED, advance, advance_compiled, leave_alone_compiled
+from contact.stepping.integrator import UNPREPARED, advance, advance_compiled, enter_floor_frame_compiled
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.scheme import Scheme
 from contact.stepping.state import Run
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid import nodal_kernels as nodal_body
 from fem.solid.assembly import FiniteElements
-from fem.solid.nodal_kernels import NodalBody, advance_nodal, leave_nodal_alone
+from fem.solid.nodal_kernels import NodalBody, advance_nodal, enter_floor_frame_nodal
 from fem.solid.reduction import StaticResponse
 
 #: residual of a step at which its iteration stops, over the weight; the next iterate would have its square
@@ -152,8 +152,8 @@ class FullBody:
         """See `contact.stepping.body.prepared`."""
         return bool(nodal_body.prepared(self.nodal, step))
 
-    def sizes_hold(self, run: Run) -> bool:
-        """See `contact.stepping.body.sizes_hold`."""
+    def sizes_match(self, run: Run) -> bool:
+        """See `contact.stepping.body.sizes_match`."""
         return True
 
     def predict(self, scheme: Scheme, step: float, old: State, new: State) -> None:
@@ -209,15 +209,15 @@ def advance_body(body: ModalBody | FullBody, run: Run, until: float) -> int:
         code = int(advance_nodal(body.nodal, run, until) if body.compiled else advance(body, run, until))
         if code != UNPREPARED:
             return code
-        body.prepare(run.scheme, float(run.clock[0].due_step))
+        body.prepare(run.scheme, float(run.clock[0].unprepared_step))
 
 
 def leave_body_alone(body: ModalBody | FullBody, run: Run, floor_velocity: float) -> None:
-    """`contact.stepping.integrator.leave_alone` for any body."""
+    """`contact.stepping.integrator.enter_floor_frame` for any body."""
     if isinstance(body, ModalBody):
-        leave_alone_compiled(body, run, floor_velocity)
+        enter_floor_frame_compiled(body, run, floor_velocity)
     else:
-        leave_nodal_alone(body.nodal, run, floor_velocity)
+        enter_floor_frame_nodal(body.nodal, run, floor_velocity)
 
 
 def _rounding(elements: FiniteElements) -> float:

@@ -28,7 +28,7 @@ from contact.stepping.body import (
     State,
     implements,
 )
-from contact.stepping.integrator import advance, leave_alone
+from contact.stepping.integrator import advance, enter_floor_frame
 from contact.stepping.scheme import Scheme
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.elasticity import element_forces
@@ -333,11 +333,11 @@ def shift_velocity(body: NodalBody, state: State, velocity: float) -> None:
         state.velocity[2 * i] -= velocity
 
 
-@implements(interface.sizes_hold, NodalBody)
+@implements(interface.sizes_match, NodalBody)
 def any_sizes(body: NodalBody, run: Any) -> bool:
     """Compiled for arrays of any size."""
     return True
 
 
 advance_nodal = compiled(advance, sources=SOURCES)
-leave_nodal_alone = compiled(leave_alone, sources=SOURCES)
+enter_floor_frame_nodal = compiled(enter_floor_frame, sources=SOURCES)

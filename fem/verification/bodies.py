@@ -62,7 +62,7 @@ class Flight:
             stop = self.time + 0.5 * self.step if trace else until * (1.0 - 1e-12)
             if advance_body(self.body, self.run, stop) != REACHED:
                 raise SteppingError(f"t = {self.time:.6g} s: no convergence at the step {self.step:.3g} s")
-            self.run.clock[0].samples_gone = self.run.clock[0].samples
+            self.run.clock[0].samples_drained = self.run.clock[0].samples
             if trace:
                 self.times.append(self.time)
                 self.normal_force.append(float(self.state.force[:, 1].sum()))

@@ -93,7 +93,7 @@ class Finished:
 
     @property
     def track(self) -> Any:
-        """Extremes and events of the run, see `contact.stepping.observables.TRACK`."""
+        """Extremes and events of the run, see `contact.stepping.observables.OBSERVABLES`."""
         return self.model.run.track[0]
 
     @property

@@ -231,7 +231,7 @@ def amplification(scheme: Scheme, sampled_frequency: float) -> FloatArray:
         state = flight.state
         state.position[3], state.velocity[3], state.acceleration[3] = unit
         state.internal[3] = sampled_frequency**2 * unit[0]
-        flight.run.clock[0].basis_step = 1.0
+        flight.run.clock[0].lag_step = 1.0
         flight.advance(1.0)
         columns.append([state.position[3], state.velocity[3], state.acceleration[3]])
     return np.array(columns).T

@@ -143,7 +143,7 @@ def test_the_shipped_case_of_a_sliding_box():
     case = load_case("sliding").with_values({"solver.model": "rigid", "output.fields_s": 0.0})
     run = build_model(case)
     while run.run.clock[0].time < 10.0:  # it pauses when its samples want to be taken away
-        run.run.clock[0].samples_gone = run.run.clock[0].samples
+        run.run.clock[0].samples_drained = run.run.clock[0].samples
         assert advance_compiled(run.body, run.run, 10.0) == 0
     assert float(run.run.track[0].max_slip) == pytest.approx(EXACT[1], abs=HALF_PERCENT)
 

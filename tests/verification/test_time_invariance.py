@@ -158,7 +158,7 @@ def test_a_thrown_elastic_container_spins_without_strain_that_rotation_would_fak
     clock = model.run.clock[0]
     while clock.time < until:
         assert advance_body(body, model.run._replace(control=loose), until) == 0
-        clock.samples_gone, clock.frames_gone = clock.samples, clock.frames
+        clock.samples_drained, clock.frames_drained = clock.samples, clock.frames
     time = float(model.run.clock[0].time)
     found = model.run.old
     radius = np.hypot(*arm.T).max()

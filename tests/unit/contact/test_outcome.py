@@ -37,7 +37,7 @@ def model_of():
 def step_in_slices(model):
     while model.run.clock[0].time < DURATION:
         status = advance_compiled(model.body, model.run, DURATION)
-        model.run.clock[0].samples_gone = model.run.clock[0].samples
+        model.run.clock[0].samples_drained = model.run.clock[0].samples
         if status != REACHED:
             return status
     return REACHED

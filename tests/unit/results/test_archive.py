@@ -9,7 +9,7 @@ import zipfile
 import numpy as np
 import pytest
 
-from contact.stepping.state import CLOCK
+from contact.stepping.state import STEP_RECORD
 from fem.results import archive as checkpoint
 from fem.results.archive import ABOUT, CheckpointError, read_checkpoint, write_checkpoint
 
@@ -18,7 +18,7 @@ OWN = {"case_hash": "ours", "program": PROGRAM}
 
 
 def arrays():
-    clock = np.zeros(1, CLOCK)
+    clock = np.zeros(1, STEP_RECORD)
     clock["time"], clock["steps"] = 0.1 + 0.2, 7
     return {
         "old.position": np.array([0.1, -0.0, np.nan, np.inf, 5e-324]),
