@@ -26,8 +26,7 @@ from contact.stepping.integrator import (
 from contact.stepping.modal_body import ModalBody, with_own_scratch
 from contact.stepping.state import ROW_SLIP, ROW_STRAIN, Run
 
-SLICE = 0.25  #: the stepping goes so far before it looks at its samples [s]
-MOST_STRAINED = 4  #: samples kept of each slice
+SLICE, MOST_STRAINED = 0.25, 4  #: so many of the most strained samples are kept of each slice [s]
 
 
 class KeptSamples(NamedTuple):
@@ -83,7 +82,7 @@ def run_to_end(
         ),
         frames=run.frames._replace(interval=math.inf),
     )
-    ahead = SLICE if samples.columns.shape[1] > 0 else math.inf
+    ahead = SLICE if strained else math.inf  # without slices the stepping returns where the samples are full
     status = advance_in_slices(own, run, kept, ahead, duration, False)
     if status == REACHED and is_undecided.py_func(run):
         displacement, velocity, _ = floor_motion(run.motion, clock["time"])
@@ -107,7 +106,7 @@ def is_undecided(run: Run) -> bool:
 def advance_in_slices(
     body: ModalBody, run: Run, kept: KeptSamples, ahead: float, until: float, undecided_only: bool
 ) -> int:
-    """Step to `until`, looking at the samples every `ahead` [s]; `undecided_only`: stop once the outcome is decided."""
+    """Step to `until`, looking at the samples every `ahead` [s] at least; `undecided_only`: only until it is decided."""
     clock = run.clock[0]
     while clock.time < until:
         status = advance_compiled(body, run, min(clock.time + ahead, until))
