@@ -106,7 +106,7 @@ def is_undecided(run: Run) -> bool:
 def advance_in_slices(
     body: ModalBody, run: Run, kept: KeptSamples, ahead: float, until: float, undecided_only: bool
 ) -> int:
-    """Step to `until`, looking at the samples every `ahead` [s] at least; `undecided_only`: only until it is decided."""
+    """Step to `until`, looking at the samples every `ahead` [s] or sooner; `undecided_only`: until it is decided."""
     clock = run.clock[0]
     while clock.time < until:
         status = advance_compiled(body, run, min(clock.time + ahead, until))
