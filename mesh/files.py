@@ -1,4 +1,4 @@
-"""Meshes from files and to files; the only door to meshio in this package.
+"""Meshes from files; the only module of this package that imports meshio.
 
 Read are Gmsh (.msh, 2.2 to 4.1), VTU, legacy VTK and Abaqus (.inp) meshes of quadrilaterals in a plane:
 x in the first column, z in the second (the third the same everywhere), or z in the third (the second the
@@ -25,7 +25,7 @@ from mesh.quality import require_positions, require_quality
 from mesh.region import Region
 from mesh.tags import CellTags, cell_regions
 from mesh.tiling import TOLERANCE, place_on_floor, require_tiling
-from mesh.untrusted import FORMATS, bounded_memory, format_list, require_harmless
+from mesh.untrusted import FORMATS, bounded_memory, require_harmless
 
 #: Cell types with four corners first, and the points and lines that may lie about a mesh of them.
 QUADS = ("quad", "quad8", "quad9")
@@ -60,47 +60,6 @@ def read_container_mesh(path: Path | str, geometry: ContainerGeometry, fill: Mas
         return _container(_parse(path), geometry, fill)
     except MeshError as error:
         raise type(error)(f"mesh file {path}: {error}") from error
-
-
-def write_container_mesh(path: Path | str, mesh: ContainerMesh) -> None:
-    """Write a mesh with its regions, in the format of the suffix; `read_container_mesh` reads it back.
-
-    x and z go to the first two columns. VTU and VTK also get thickness [m] and areal density [kg/m2] of
-    the cells.
-
-    Raises:
-        MeshError: a suffix that names no known format.
-    """
-    path = Path(path)
-    points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
-    present = [region for region in Region if (mesh.region == region).any()]
-    written = meshio.Mesh(points, [("quad", mesh.quads)])
-    match path.suffix.lower():
-        case ".msh":
-            # Physical groups count from 1; 0 means none.
-            written.field_data = {region.name.lower(): np.array([region + 1, 2]) for region in present}
-            written.cell_data = {
-                "gmsh:physical": [mesh.region + 1],
-                "gmsh:geometrical": [mesh.region + 1],
-            }
-            meshio.gmsh.write(path, written, fmt_version="2.2", binary=False, float_fmt=".17g")
-        case ".inp":
-            written.cell_sets = {
-                region.name.lower(): [np.flatnonzero(mesh.region == region)] for region in present
-            }
-            meshio.abaqus.write(path, written)
-        case ".vtu" | ".vtk":
-            written.cell_data = {
-                "region": [mesh.region],
-                "thickness": [mesh.thickness],
-                "areal_density": [mesh.areal_density],
-            }
-            if path.suffix.lower() == ".vtu":
-                meshio.vtu.write(path, written, compression=None)
-            else:
-                meshio.vtk.write(path, written)
-        case _:
-            raise MeshError(f"mesh file {path}: format {path.suffix} is not written; {format_list()}")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""Overturning in the first swing: when a rigid block falls before any impact.
+"""How a resting rigid block begins to move, and when it overturns in its first swing, before any impact.
 
 `acceleration_ratio` a is the peak floor acceleration over g al (slender) or g tan al, `frequency_ratio` w is
 Omega/p. The slender forms follow from the growing part of phi'' = phi - 1 + a sin(w tau + psi), phi the
@@ -15,7 +15,34 @@ from collections.abc import Callable
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from contact.reference.planar_motion import PlanarMode
 from contact.reference.rigid_block import RigidBlock
+
+
+def rocking_friction(acceleration_ratio: float, slenderness: float) -> float:
+    """Friction coefficient a resting block needs to begin to rock without sliding [-].
+
+    Shenton (1996), J. Engng Mech. ASCE 122: [(lam^2 + 4) A + 3 lam]/[(4 lam^2 + 1) + 3 lam A]. Homogeneous
+    rectangle, at the instant of uplift (A >= 1/lam; it is 1/lam there); later instants may need more.
+    """
+    lam, ratio = slenderness, acceleration_ratio
+    return ((lam**2 + 4.0) * ratio + 3.0 * lam) / ((4.0 * lam**2 + 1.0) + 3.0 * lam * ratio)
+
+
+def initiation_mode(
+    *, acceleration_ratio: float, slenderness: float, mu_static: float, mu_kinetic: float
+) -> PlanarMode:
+    """First motion of a resting homogeneous block under a suddenly applied floor acceleration.
+
+    Shenton (1996), extended to mu_kinetic below mu_static: a block that cannot rock without sliding
+    slides on its base if mu_kinetic < 1/lam, since sliding friction is then too weak to tilt it.
+    """
+    upright = acceleration_ratio <= 1.0 / slenderness
+    if upright:
+        return PlanarMode.REST if acceleration_ratio <= mu_static else PlanarMode.SLIDE
+    if mu_static >= rocking_friction(acceleration_ratio, slenderness):
+        return PlanarMode.ROCK
+    return PlanarMode.SLIDE if mu_kinetic < 1.0 / slenderness else PlanarMode.SLIDE_ROCK
 
 
 def sustained_sine_threshold_slender(frequency_ratio: float) -> float:
@@ -45,17 +72,6 @@ def one_sine_threshold_slender(frequency_ratio: float) -> float:
     return _threshold(
         frequency_ratio, lambda a, psi, w: a * (math.cos(psi) - math.exp(-(2.0 * math.pi - psi) / w))
     )
-
-
-def rectangular_pulse_duration_slender(block: RigidBlock, peak: float) -> float:
-    """Shortest rectangular pulse of an acceleration that overturns [s].
-
-    ln(k/(k - 1))/p with k = a/(g al): Housner (1963), cosh(p t) = 1 + 1/(2 k (k - 1)). Slender block, k > 1.
-    """
-    ratio = abs(peak) / (block.gravity * block.slenderness_angle)
-    if not ratio > 1.0:
-        raise ValueError(f"rectangular pulse: {peak} m/s2 does not lift the block; it needs more than g al")
-    return math.log(ratio / (ratio - 1.0)) / block.frequency_parameter
 
 
 def rectangular_pulse_duration(block: RigidBlock, peak: float) -> float:
@@ -94,11 +110,6 @@ def velocity_step_threshold(block: RigidBlock) -> float:
     kick_per_velocity = block.centroid_height / (block.inertia_ratio * block.radius**2)
     inertia = block.inertia_ratio * block.radius**2
     return math.sqrt(2.0 * block.overturning_energy / inertia) / kick_per_velocity
-
-
-def velocity_step_threshold_slender(block: RigidBlock) -> float:
-    """al sqrt((I_O/(M R^2)) g R) [m/s]: Housner (1963); slender block."""
-    return block.slenderness_angle * math.sqrt(block.inertia_ratio * block.gravity * block.radius)
 
 
 def _threshold(frequency_ratio: float, growth: Callable[[float, float, float], float]) -> float:

@@ -1,4 +1,4 @@
-"""Closed forms for a rigid block that rocks without sliding: periods, decay, impact, steady orbit.
+"""Closed forms for a rigid block that rocks without sliding, or lands flat: periods, decay, impact, steady orbit.
 
 Exact forms hold at any rotation below the slenderness angle; `slender` ones for sin al ~ al and rotations of
 that order, their error being O(al^2). All assume plastic impacts at the corners and no sliding.
@@ -31,12 +31,6 @@ def quarter_period(block: RigidBlock, rotation: float) -> float:
     return float(integral[0]) / block.frequency_parameter
 
 
-def quarter_period_slender(block: RigidBlock, rotation: float) -> float:
-    """arccosh(1/(1 - theta0/al))/p [s]: Housner (1963); slender block."""
-    _below_slenderness(block, rotation)
-    return math.acosh(1.0 / (1.0 - abs(rotation) / block.slenderness_angle)) / block.frequency_parameter
-
-
 def peak_after_impacts(block: RigidBlock, rotation: float, impacts: int, restitution: float) -> float:
     """|rotation| at the turning point after so many impacts of free rocking from rest at `rotation` [rad].
 
@@ -52,36 +46,6 @@ def peak_after_impacts(block: RigidBlock, rotation: float, impacts: int, restitu
     sine, leading = math.sin(angle), math.cos(angle) + share
     root = math.sqrt(sine**2 - 4.0 * leading * share)
     return 2.0 * math.atan(2.0 * share / (sine + root))
-
-
-def peak_after_impacts_slender(block: RigidBlock, rotation: float, impacts: int, restitution: float) -> float:
-    """al (1 - sqrt(1 - e^(2n) [1 - (1 - theta0/al)^2])) [rad]: Housner (1963); slender block."""
-    _below_slenderness(block, rotation)
-    ratio = abs(rotation) / block.slenderness_angle
-    share = restitution ** (2 * impacts) * ratio * (2.0 - ratio)
-    return block.slenderness_angle * share / (1.0 + math.sqrt(1.0 - share))
-
-
-def impact_time(block: RigidBlock, rotation: float, number: int, restitution: float) -> float:
-    """Time of an impact (1: the first) of free rocking from rest at `rotation` [s].
-
-    The quarter period of the release and twice that of every peak since; exact, 0 < |rotation| < al.
-    """
-    if number < 1:
-        raise ValueError(f"impact_time: impacts are numbered from 1, got {number}")
-    peaks = (peak_after_impacts(block, rotation, n, restitution) for n in range(1, number))
-    return quarter_period(block, rotation) + 2.0 * sum(quarter_period(block, peak) for peak in peaks)
-
-
-def impact_speed(block: RigidBlock, rotation: float) -> float:
-    """|angular velocity| just before the impact that follows release at `rotation` [rad/s].
-
-    p sqrt(2 [cos(al - theta0) - cos al]): conservation of energy, exact, 0 < |rotation| < al.
-    """
-    _below_slenderness(block, rotation)
-    start = abs(rotation)
-    fall = 4.0 * math.sin(0.5 * start) * math.sin(block.slenderness_angle - 0.5 * start)
-    return block.frequency_parameter * math.sqrt(fall)
 
 
 def impact_friction_need(block: RigidBlock) -> float:
@@ -107,15 +71,6 @@ def holding_acceleration(block: RigidBlock, rotation: float) -> float:
     at rotation 0 the acceleration of uplift (West's formula, quoted by Milne 1885).
     """
     return block.gravity * math.tan(block.slenderness_angle - abs(rotation))
-
-
-def kick_angular_velocity(block: RigidBlock, floor_velocity: float) -> float:
-    """Angular velocity just after the floor has jumped to a velocity [rad/s].
-
-    -(M H/I_O) v: the moment of the impulse about the corner that remains; the block tilts against the
-    floor's motion. Exact if the corner does not slide.
-    """
-    return -floor_velocity * block.centroid_height / (block.inertia_ratio * block.radius**2)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -192,3 +147,34 @@ def _below_slenderness(block: RigidBlock, rotation: float) -> None:
             f"free rocking: |rotation| must lie above 0 and below the slenderness angle "
             f"{block.slenderness_angle:.6g} rad, got {rotation} rad"
         )
+
+
+def damped_drop_restitution(damping_ratio: float) -> float:
+    """Ratio of rebound to approach speed on a spring with a dashpot that never pull [-].
+
+    Contact ends where k x + c v = 0, not where the spring is straight again:
+    e = exp(-2 zeta arccos(zeta)/sqrt(1 - zeta^2)), for zeta > 1 with arccosh and sqrt(zeta^2 - 1), at 1
+    exp(-2). The same as exp(-zeta/s (pi - atan2(2 zeta s, 1 - 2 zeta^2))), s = sqrt(1 - zeta^2): Schwager
+    and Poschel, Granular Matter 9 (2007). Gravity is neglected: approach speed far above g sqrt(m/k).
+
+    Args:
+        damping_ratio: zeta = c/(2 sqrt(k m)) with the whole bed's k and c [-].
+    """
+    if not damping_ratio >= 0.0:
+        raise ValueError(f"damped drop: damping_ratio must not be negative, got {damping_ratio}")
+    if abs(damping_ratio - 1.0) < 1e-8:  # here arccos(zeta)/sqrt(1 - zeta^2) = 1 + O(1 - zeta), but 0/0
+        return math.exp(-2.0 * damping_ratio)
+    if damping_ratio < 1.0:
+        angle = math.acos(damping_ratio) / math.sqrt(1.0 - damping_ratio**2)
+    else:
+        angle = math.acosh(damping_ratio) / math.sqrt(damping_ratio**2 - 1.0)
+    return math.exp(-2.0 * damping_ratio * angle)
+
+
+def drop_force(*, mass: float, stiffness: float, speed: float, gravity: float) -> float:
+    """Largest floor force when a mass lands at a speed on an undamped bed: m g + sqrt((m g)^2 + k m v^2) [N].
+
+    Energy; the bed's whole stiffness [N/m], contact not yet loaded at landing.
+    """
+    weight = mass * gravity
+    return weight + math.sqrt(weight**2 + stiffness * mass * speed**2)

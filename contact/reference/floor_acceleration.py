@@ -5,11 +5,9 @@ acceleration is all they need; the velocity at the start enters as the initial s
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-
-import numpy as np
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,23 +108,6 @@ def one_sine_pulse(*, peak: float, duration: float, delay: float = 0.0) -> Floor
         duration=duration,
         delay=delay,
         longest_step=0.125 * duration,
-    )
-
-
-def sampled_floor(times: Sequence[float], accelerations: Sequence[float]) -> FloorAcceleration:
-    """Straight lines between samples of the acceleration [s], [m/s2]; zero outside the times given."""
-    time, value = np.asarray(times, dtype=float), np.asarray(accelerations, dtype=float)
-    if time.ndim != 1 or time.size < 2 or time.shape != value.shape:
-        raise ValueError(
-            "sampled floor: needs as many accelerations as times, at least two of each, "
-            f"got {time.size} times and {value.size} accelerations"
-        )
-    if not (np.isfinite(time).all() and np.isfinite(value).all()):
-        raise ValueError("sampled floor: times and accelerations must be finite")
-    return FloorAcceleration(
-        function=lambda t: float(np.interp(t, time, value, left=0.0, right=0.0)),
-        break_times=tuple(time.tolist()),
-        longest_step=math.inf,
     )
 
 

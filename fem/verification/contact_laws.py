@@ -13,7 +13,7 @@ import numpy as np
 from contact.interface.equilibrium import standing
 from contact.interface.support import choose_support
 from contact.motion.kernel import PIECEWISE, as_floor_motion
-from contact.reference.closed_forms_drop import damped_drop_restitution, drop_force
+from contact.reference.closed_forms_rocking import damped_drop_restitution, drop_force
 from contact.stepping.body import VELOCITY_Z
 from contact.stepping.scheme import generalised_alpha, newmark
 from fem.assessment.verdict import audit

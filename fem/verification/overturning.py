@@ -14,11 +14,12 @@ from functools import partial
 import numpy as np
 
 from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion
-from contact.reference.closed_forms_initiation import initiation_mode, rocking_friction
 from contact.reference.closed_forms_overturning import (
     half_sine_threshold_slender,
+    initiation_mode,
     one_sine_threshold_slender,
     rectangular_pulse_duration,
+    rocking_friction,
     sustained_sine_threshold_slender,
     velocity_step_threshold,
 )

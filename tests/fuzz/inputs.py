@@ -15,6 +15,7 @@ from typing import Any, Literal, get_args, get_origin
 
 import numpy as np
 from hypothesis import strategies as st
+from mesh_writer import write_container_mesh
 from pydantic.fields import FieldInfo
 
 from fem.case.files import CASES
@@ -24,7 +25,6 @@ from fem.case.tables import TABLES, Heading
 from fem.case.toml import toml_value
 from fem.case.validation import known_keys, quantity_of
 from mesh.container import build_container_mesh
-from mesh.files import write_container_mesh
 from mesh.fill import MassFill
 from mesh.geometry import ContainerGeometry, Section
 from mesh.untrusted import FORMATS

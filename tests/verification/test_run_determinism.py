@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mesh_writer import write_container_mesh
 
 from fem.__main__ import main
 from fem.case.case import load_case
@@ -16,7 +17,6 @@ from fem.model.geometry import build_container
 from fem.model.model import Model, build_model
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
-from mesh.files import write_container_mesh
 
 FULL = ("solver.model=full", "solver.element_size_m=0.5")
 #: 28 contact nodes, dense products large enough for a BLAS to share them among threads

@@ -17,13 +17,6 @@ SCHEMES = {
     "rho 0.8": generalised_alpha(0.8),
 }
 SHAPE = np.array([[[1.0], [0.5]], [[-1.0], [0.5]]]) / 100.0
-RINGING = {
-    "shape": SHAPE,
-    "frequencies": np.array([90.0]),
-    "damping_ratios": np.array([0.02]),
-    "amplitudes": np.array([0.05]),
-    "rates": np.array([1.0]),
-}
 
 
 def largest_imbalance(run: Rig) -> float:
@@ -57,23 +50,6 @@ def bouncing(scheme: Scheme, step: float, damping_ratio: float, turning: float =
 def test_the_ledger_closes_to_second_order_on_closed_springs(scheme, damping_ratio):
     steps = 8e-4 / 2.0 ** np.arange(4)
     errors = [largest_imbalance(bouncing(scheme, h, damping_ratio)) for h in steps]
-    assert observed_order(steps, errors) >= 1.9
-
-
-@pytest.mark.parametrize("scheme", SCHEMES.values(), ids=SCHEMES)
-@pytest.mark.parametrize("damping_ratio", [0.0, 0.1])
-def test_the_ledger_closes_to_second_order_on_a_ringing_mode(scheme, damping_ratio):
-    def ringing(step: float) -> Rig:
-        block = Block(gravity=0.0)
-        stance = replace(block.standing(), centre=(0.0, 10.0), force=np.zeros((2, 2)))
-        mode = RINGING | {"damping_ratios": np.array([damping_ratio])}
-        run = rig(
-            block, stance=stance, scheme=scheme, largest_step=step, fixed_step=True, sampled=1e3, **mode
-        )
-        return run.advance(0.25)
-
-    steps = 1.25e-4 / 2.0 ** np.arange(4)
-    errors = [largest_imbalance(ringing(h)) for h in steps]
     assert observed_order(steps, errors) >= 1.9
 
 

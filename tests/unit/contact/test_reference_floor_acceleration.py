@@ -7,7 +7,6 @@ from contact.reference.floor_acceleration import (
     half_sine_pulse,
     one_sine_pulse,
     rectangular_pulse,
-    sampled_floor,
     sine_floor,
 )
 
@@ -43,15 +42,6 @@ def test_pulses_have_the_shape_of_their_name():
     assert half.just_after(0.7) == one.just_after(0.7) == 0.0
 
 
-def test_samples_are_joined_by_straight_lines_and_zero_outside():
-    floor = sampled_floor([0.5, 1.0, 2.0], [1.0, 3.0, -1.0])
-    assert floor.just_after(0.2) == 0.0
-    assert floor.just_after(0.5) == pytest.approx(1.0)
-    assert floor.just_after(0.75) == pytest.approx(2.0)
-    assert floor.just_after(1.5) == pytest.approx(1.0)
-    assert floor.just_after(2.0) == 0.0
-
-
 def test_nonsense_is_refused():
     with pytest.raises(ValueError, match="increase"):
         FloorAcceleration(function=math.sin, break_times=(1.0, 1.0), longest_step=0.1)
@@ -63,7 +53,3 @@ def test_nonsense_is_refused():
         rectangular_pulse(peak=1.0, duration=0.0)
     with pytest.raises(ValueError, match="angular_frequency"):
         sine_floor(amplitude=1.0, angular_frequency=0.0)
-    with pytest.raises(ValueError, match="as many"):
-        sampled_floor([0.0, 1.0], [1.0])
-    with pytest.raises(ValueError, match="finite"):
-        sampled_floor([0.0, 1.0], [1.0, math.nan])

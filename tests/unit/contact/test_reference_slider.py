@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from contact.reference.floor_acceleration import rectangular_pulse, sampled_floor, sine_floor, still_floor
+from contact.reference.floor_acceleration import FloorAcceleration, rectangular_pulse, sine_floor, still_floor
 from contact.reference.sliding import RigidSlider, simulate_sliding
 
 GRAVITY = 9.81
@@ -65,7 +65,12 @@ def test_friction_heat_is_what_the_floor_puts_in():
 
 
 def test_intervals_fill_the_time_and_strokes_add_up():
-    floor = sampled_floor(np.arange(0.0, 3.0, 0.02), 9.0 * np.sin(1.3 * np.arange(150) ** 1.2))
+    times, values = np.arange(0.0, 3.0, 0.02), 9.0 * np.sin(1.3 * np.arange(150) ** 1.2)
+    floor = FloorAcceleration(
+        function=lambda t: float(np.interp(t, times, values, right=0.0)),
+        break_times=tuple(times.tolist()),
+        longest_step=math.inf,
+    )
     motion = simulate_sliding(HALF, floor, duration=4.0)
     ends = [interval.end for interval in motion.intervals]
     starts = [interval.start for interval in motion.intervals]

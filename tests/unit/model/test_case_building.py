@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from mesh_writer import write_container_mesh
 
 from contact.motion.base_motion import HarmonicMotion, NoMotion, PulseMotion, TableMotion
 from fem.case.case import CaseError, load_case, read_case
@@ -11,7 +12,6 @@ from fem.model.geometry import base_positions, build_container, node_count
 from fem.model.motion import build_motion
 from fem.model.support import build_support, normal_penalty
 from mesh.errors import MeshError
-from mesh.files import write_container_mesh
 
 
 @pytest.mark.parametrize("name", CASES.names)
