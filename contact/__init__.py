@@ -1,1 +1,1 @@
-"""What happens at the floor and in time: base motion, contact laws, stepping, ledger, rocking block."""
+"""Floor motion, contact laws, time stepping with an energy ledger, references. It knows no mesh and no case."""

@@ -1,8 +1,8 @@
 """Compilation of the stepping kernels, cached per version of their source.
 
-numba's own cache looks only at the file of the outermost function, so a change of a law in a
-neighbouring file would go unnoticed and old physics would be run. Here the cache folder carries a
-digest of every source of this package, and of those that a kernel from elsewhere names: another source, another folder.
+numba's own cache checks only the file of the outermost function, so a change of a law in another file would go
+unnoticed and outdated machine code would run. Here the name of the cache folder contains a digest of every source of
+this package and of the sources named for a kernel from elsewhere.
 """
 
 import hashlib
@@ -70,7 +70,7 @@ def compiled(
 
 
 def is_compiled(name: str, sources: tuple[Path, ...] = ()) -> bool:
-    """True if machine code of the function of that name lies in the cache (no compilation ahead)."""
+    """True if the cache has machine code of the function of that name, so that it need not be compiled."""
     return any(
         f".{name}-" in entry.name or entry.name.startswith(f"{name}-")
         for entry in cache_folder(sources).rglob("*.nbc")

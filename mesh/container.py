@@ -1,4 +1,4 @@
-"""The mesh of a container: where its material is, how thick and how heavy.
+"""The mesh of a container, with thickness and density of its cells.
 
 x to the right, z up; the base stands on z = 0 and is centred on x = 0. Cells are bilinear quadrilaterals,
 counter-clockwise; bolted boxes share the nodes between them. A mesh built here puts its lines on the
@@ -19,10 +19,10 @@ from mesh.grid import Segments, column_segments, require_affordable, row_segment
 from mesh.quality import require_quality
 from mesh.region import Region
 
-#: Points nearer to z = 0 than this share of the height stand on the floor.
+#: Points nearer to z = 0 than this share of the height are on the floor.
 FLOOR_SHARE = 1e-9
 
-#: How far the base line that ends a foot may lie from the foot asked for, as a share of the foot.
+#: Largest distance of the mesh line at the end of a foot from the given foot, as a share of the foot.
 FOOT_SHARE = 0.125
 
 
@@ -118,13 +118,13 @@ class ContainerMesh:
         return on_floor[np.argsort(self.points[on_floor, 0])]
 
     def foot_widths(self, foot: float) -> tuple[float, float]:
-        """Widths of the left and the right foot that this mesh offers for a foot of `foot` [m].
+        """Widths of the left and the right foot in this mesh for a given foot [m].
 
-        Each ends at the base point nearest to `foot` from its corner: the base nodes, of elements of any
-        order, that are no further from the corner than this carry the foot.
+        Each foot ends at the base point nearest to `foot` from its corner; it includes all base nodes up to there, for
+        elements of any order.
 
         Raises:
-            MeshError: no base point within an eighth of `foot` of where it should end.
+            MeshError: no base point within an eighth of `foot` of its end.
         """
         base = self.points[self.base_points, 0]
         left = _nearest_line(base - base[0], foot)
@@ -150,7 +150,7 @@ def build_container_mesh(
     Args:
         geometry: outer dimensions and section.
         fill: mass and centroid height of one box; every box is the same.
-        element_size: length of the cells between walls, as near as whole cells allow [m].
+        element_size: length of the cells between walls, rounded to whole cells [m].
         foot: width of a foot at each corner, for mesh lines at its edge [m]; see `ContainerMesh.foot_widths`.
 
     Raises:

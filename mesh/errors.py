@@ -1,9 +1,9 @@
-"""What the mesh package refuses: one family of errors, all of them ValueErrors with a way out."""
+"""Errors of the mesh package, all of them ValueErrors."""
 
 
 class MeshError(ValueError):
-    """A container, a fill, a mesh or a mesh file that cannot be what it claims to be."""
+    """An invalid container, fill, mesh or mesh file."""
 
 
 class MeshQualityError(MeshError):
-    """A mesh with a cell too distorted to carry a finite element; the message gives the worst cell."""
+    """A mesh with a cell too distorted for a finite element; the message gives the worst cell."""

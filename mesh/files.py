@@ -27,11 +27,11 @@ from mesh.tags import CellTags, cell_regions
 from mesh.tiling import TOLERANCE, place_on_floor, require_tiling
 from mesh.untrusted import FORMATS, bounded_memory, require_harmless
 
-#: Cell types with four corners first, and the points and lines that may lie about a mesh of them.
+#: Cell types with four corners first, and types of points and lines that are ignored.
 QUADS = ("quad", "quad8", "quad9")
 BYSTANDERS = ("vertex", "line", "line3")
 
-#: How far a mid-side node may lie from the middle of its side, as a share of the side.
+#: Largest distance of a mid-side node from the middle of its side, as a share of the side.
 STRAIGHT_SHARE = 1e-3
 
 _READERS = {
@@ -45,9 +45,9 @@ _READERS = {
 def read_container_mesh(path: Path | str, geometry: ContainerGeometry, fill: MassFill) -> ContainerMesh:
     """Mesh of a container from a file, placed on the floor and filled.
 
-    Cells must carry the regions wall, sheet and fill (shell; sheet may be absent) or solid (`mesh.tags` says
-    how). The box they tile must be the geometry's, all boxes, to 1e-6. What the walls of each box do
-    not weigh is laid on its fill cells as in `mesh.fill`; fill cells beyond the level come back as sheet.
+    Cells must be tagged with the regions wall, sheet and fill (shell; sheet may be absent) or solid, see
+    `mesh.tags`. They must tile the boxes of the geometry to 1e-6. The mass of each box less that of its walls is
+    distributed over its fill cells as in `mesh.fill`; fill cells above the level become sheet.
 
     Raises:
         MeshError: a file that is refused or not readable, other cells than quadrilaterals, tags or dimensions
@@ -64,7 +64,7 @@ def read_container_mesh(path: Path | str, geometry: ContainerGeometry, fill: Mas
 
 @dataclass(frozen=True, kw_only=True)
 class _Raw:
-    """What a file holds, in plain arrays; nothing is checked yet but types."""
+    """Contents of a file in plain arrays; only types are checked yet."""
 
     points: FloatArray  #: (n, 2 or 3) [m]
     quads: IntArray  #: (m, 4)
@@ -72,7 +72,7 @@ class _Raw:
 
 
 def _parse(path: Path) -> _Raw:
-    """The file's numbers; whatever a reader complains of becomes one MeshError."""
+    """Parse the file; every error of a reader becomes a MeshError."""
     chatter = io.StringIO()
     suffix = path.suffix.lower()
     try:
@@ -85,7 +85,7 @@ def _parse(path: Path) -> _Raw:
         return _raw(raw)
     except MeshError:
         raise
-    # Parsers of broken files fail in every way there is, and one of them leaves by SystemExit.
+    # Parsers of damaged files raise any exception, one of them SystemExit.
     except (Exception, SystemExit) as error:
         reason = " ".join(f"{type(error).__name__} {error}".split())[:200]
         raise MeshError(f"not readable as {FORMATS[suffix]} ({reason}); is it complete?") from error
@@ -148,7 +148,7 @@ def _container(raw: _Raw, geometry: ContainerGeometry, fill: MassFill) -> Contai
 
 
 def _memberships(raw: meshio.Mesh, chosen: list[int]) -> dict[str, npt.NDArray[np.bool_]]:
-    """Named sets of the file as one flag a quadrilateral."""
+    """Named sets of the file, as one flag per quadrilateral."""
     sets = {}
     for name, members in raw.cell_sets.items():
         if name.startswith("gmsh:") or len(members) != len(raw.cells):

@@ -1,11 +1,10 @@
-"""Mass of a box: what the steel weighs, and where the fill lies.
+"""Mass of a box: its steel and its fill.
 
-The fill is mass without stiffness. In a shell it fills the room between the sheets homogeneously, from
-the floor up to a level; or, where the centroid asked for lies above that of the full room, from the
-lid down to a level (then read it as fill hung high, not as a liquid). The cells that the level cuts carry
-the share of the fill below it, spread over the cell, so every cell has one areal density [kg per m2 of
-elevation] and the mesh, not a formula, meets mass and centroid. In a solid the density is
-linear in height. Heights are in the box, from its floor. Statics of composite areas; no other source.
+The fill is mass without stiffness. In a shell it fills the space between the sheets homogeneously, from the floor up
+to a level; or, if the given centroid is higher than that of the full space, from the lid down to a level. A cell cut by
+the level carries the share of the fill below the level, spread over the cell. So every cell has one areal density
+[kg per m2 of elevation], and the cells together have the given mass and centroid. In a solid the density is linear in
+height. Heights are measured from the floor of the box. Statics of composite areas.
 """
 
 import math
@@ -19,13 +18,13 @@ from mesh.errors import MeshError
 from mesh.geometry import ContainerGeometry, Section
 from mesh.region import Region
 
-#: Relative size below which a mass is rounding and not fill.
+#: Relative mass below which the fill counts as zero.
 ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True)
 class MassFill:
-    """What one box weighs with its fill, and how high its centroid lies.
+    """Mass and centroid height of one box with its fill.
 
     Raises MeshError for a value that is not positive and finite.
     """
@@ -43,7 +42,7 @@ class MassFill:
 
 @dataclass(frozen=True, kw_only=True)
 class BoxCells:
-    """The cells of one box, as far as mass is concerned; heights above the box's floor."""
+    """The cells of one box; heights above the floor of the box."""
 
     region: IntArray  #: (m,) values of Region; FILL marks the cells that may carry fill
     area: FloatArray  #: (m,) [m2]

@@ -1,7 +1,7 @@
-"""Mesh lines of a structured container: where columns and rows begin and end.
+"""Mesh lines of a structured container.
 
-Lines always stand on the faces of the walls and at the edges of the feet; between them the spacing is
-even and as near to the element size as whole cells allow.
+There are always lines at the faces of the walls and at the edges of the feet; between them the spacing is even and as
+near to the element size as whole cells permit.
 """
 
 import math
@@ -13,7 +13,7 @@ from mesh.cells import FloatArray
 from mesh.errors import MeshError
 from mesh.geometry import ContainerGeometry
 
-#: More cells than this are refused before memory is taken for them.
+#: Meshes with more cells are refused before memory is allocated.
 MOST_CELLS = 2_000_000
 
 #: A foot line nearer than this share of the wall (or of a cell, at the middle) is moved onto the other
@@ -63,8 +63,8 @@ def row_segments(geometry: ContainerGeometry, element_size: float) -> Segments:
 def foot_line(geometry: ContainerGeometry, element_size: float, foot: float) -> float:
     """Distance from each corner of the mesh line that ends the foot [m].
 
-    It is `foot`, unless a face of the wall or the middle of the base lies so near that the column
-    between them would be a sliver (`MERGE_SHARE`): then it is that line.
+    It is `foot`, unless a face of the wall or the middle of the base is so near that the column between them
+    would be too thin (`MERGE_SHARE`): then it is that line.
 
     Raises:
         MeshError: a foot that is not positive, wider than half the base, or narrower than a thousandth of it.

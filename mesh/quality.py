@@ -1,9 +1,9 @@
-"""Whether a cell is fit to carry a finite element.
+"""Quality of the cells for finite elements.
 
 The scaled Jacobian of a quadrilateral is the smallest over its corners of the cross product of the two
 edges that meet there, divided by their lengths: the sine of the corner angle, negative for a corner that
-points inwards. The division by the edge lengths takes the anisotropy out, so a rectangle scores 1 however
-thin it is, and the ring of a container may be as thin as its steel. Knupp, SIAM J. Sci. Comput. 22 (2000);
+points inwards. The division by the edge lengths removes the anisotropy: a rectangle has 1 at any aspect
+ratio, so the ring of a container may be as thin as its steel. Knupp, SIAM J. Sci. Comput. 22 (2000);
 Verdict library (Sandia SAND2007-1751), quad scaled Jacobian.
 """
 
@@ -15,10 +15,10 @@ from mesh.errors import MeshError, MeshQualityError
 #: Smallest scaled Jacobian accepted by default: corner angles between 11.5 and 168.5 degrees.
 LEAST_SCALED_JACOBIAN = 0.2
 
-#: Positions beyond this are no container's [m]; their squares and cubes still are numbers.
+#: Larger positions are refused [m]; squares and cubes of smaller ones are finite.
 FARTHEST = 1e9
 
-#: Smallest edge of a cell over its longest that is still an edge and not a collapsed one.
+#: Smallest edge of a cell over its longest; a shorter edge is collapsed.
 LEAST_EDGE_RATIO = 1e-9
 
 

@@ -1,10 +1,10 @@
-"""Which region every cell of a mesh file belongs to, by name and never by guess.
+"""The region of every cell of a mesh file, from the names in the file.
 
-Files name groups of cells in different ways; looked for, in this order, are named sets of cells (Gmsh 4
-physical groups, Abaqus element sets), Gmsh physical groups by number and name, an integer field
-`region` with the numbers of `Region`, one 0/1 field a region (`wall`, `sheet`, ...), and one integer
-field named after all of them, such as `wall-sheet-fill`, which is what meshio makes of sets in VTU and
-VTK. The first that knows a region decides. Every cell must then be in exactly one region.
+Files name groups of cells in different ways. They are searched in this order: named sets of cells (Gmsh 4 physical
+groups, Abaqus element sets), Gmsh physical groups by number and name, an integer field `region` with the numbers of
+`Region`, one 0/1 field a region (`wall`, `sheet`, ...), and one integer field with a joined name such as
+`wall-sheet-fill`, which meshio makes of sets in VTU and VTK. The first one with a known region is used; every cell must
+then be in exactly one region.
 """
 
 import difflib
@@ -24,7 +24,7 @@ BoolArray = npt.NDArray[np.bool_]
 
 @dataclass(frozen=True, kw_only=True)
 class CellTags:
-    """What a file says of its `count` quadrilaterals, one value a cell in each array."""
+    """Tags of the `count` quadrilaterals of a file, one value per cell in each array."""
 
     count: int
     sets: Mapping[str, BoolArray]  #: membership of named sets
@@ -36,12 +36,12 @@ def cell_regions(tags: CellTags, allowed: tuple[Region, ...]) -> IntArray:
     """Region (m,) of every cell.
 
     Args:
-        tags: names and fields as found in the file.
-        allowed: regions that the section of the container can have.
+        tags: names and fields of the file.
+        allowed: regions of this section of container.
 
     Raises:
-        MeshError: no tag that names a region; a region the section cannot have; cells in none or in several
-            regions. The message lists what was found.
+        MeshError: no tag with the name of a region; a region that the section does not have; cells in no or several
+            regions. The message lists the tags found.
     """
     found: dict[str, BoolArray] = {}
     for source in (_from_sets, _from_physical_groups, _from_region_field, _from_flags, _from_joined_field):

@@ -1,7 +1,7 @@
-"""Whether cells tile the elevation of a container: no gap, no crack, no overlap, no hanging point.
+"""Check that cells tile the elevation of a container: no gap, crack, overlap or hanging point.
 
-In a mesh without cracks every edge inside belongs to two cells, and the edges that belong to one lie on
-the sides of the box; then, by Green's theorem, areas that add up to the box leave no room for an overlap.
+In a mesh without cracks every inner edge belongs to two cells, and the edges of only one cell are on the sides of
+the box. Then, by Green's theorem, there is no overlap if the areas add up to the area of the box.
 """
 
 import numpy as np
@@ -14,10 +14,10 @@ TOLERANCE = 1e-6
 
 
 def place_on_floor(points: FloatArray, width: float, height: float) -> FloatArray:
-    """Points (n, 2) shifted to stand on z = 0, centred on x = 0; those on a side put exactly there [m].
+    """Points (n, 2) shifted to z = 0 and centred on x = 0; points on a side are moved exactly onto it [m].
 
     Raises:
-        MeshError: the points do not fill a box of `width` and `height`; the message gives both.
+        MeshError: the points do not fill a box of `width` and `height`.
     """
     low, high = points.min(axis=0), points.max(axis=0)
     size = np.array([width, height])
@@ -37,7 +37,7 @@ def require_tiling(points: FloatArray, quads: IntArray, width: float, height: fl
     """Refuse counter-clockwise cells that do not tile the box placed by `place_on_floor`.
 
     Raises:
-        MeshError: an edge of more than two cells, an edge inside of only one, areas that do not add up.
+        MeshError: an edge of more than two cells, an inner edge of only one, areas that do not add up.
     """
     edges = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
     pairs, counts = np.unique(edges, axis=0, return_counts=True)
@@ -53,7 +53,7 @@ def require_tiling(points: FloatArray, quads: IntArray, width: float, height: fl
             on_side |= (start[:, axis] == side) & (stop[:, axis] == side)
     if not on_side.all():
         raise MeshError(
-            f"the edge {_where(points, free[np.argmin(on_side)])} lies inside the container but belongs to "
+            f"the edge {_where(points, free[np.argmin(on_side)])} is inside the container but belongs to "
             f"one cell only ({int(np.sum(~on_side))} such edges): merge coincident points, remove hanging "
             "ones, close gaps"
         )

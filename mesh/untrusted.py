@@ -1,8 +1,8 @@
-"""What a mesh file is looked through for before a parser sees it.
+"""Checks of a mesh file before it is parsed.
 
-A mesh file is data from anywhere. Only formats that hold plain numbers are read (no pickles, no HDF5 with
-links to other files), and what would let a small file take much memory, or read another file, is refused.
-What slips through meets a limit on the memory of the process while the file is parsed (Linux only).
+A mesh file may come from anywhere. Only formats with plain numbers are read (no pickles, no HDF5 with links to other
+files). Contents that would make a small file allocate much memory, or read another file, are refused. In addition, the
+memory of the process is limited while the file is parsed (Linux only).
 """
 
 import contextlib
@@ -18,7 +18,7 @@ try:
 except ImportError:  # Windows has no such limits
     resource = None  # type: ignore[assignment]
 
-#: Suffixes of the formats read and written, with their names.
+#: Suffixes of the formats read, with their names.
 FORMATS = {".msh": "Gmsh", ".vtu": "VTU", ".vtk": "legacy VTK", ".inp": "Abaqus"}
 
 #: Largest file read [bytes]; two million cells in ASCII take about this much.
@@ -30,7 +30,7 @@ MOST_COMPRESSED_BYTES = 4_000_000
 #: Largest count or label in a header: cells of a few blocks with their points.
 MOST_ENTRIES = 10 * MOST_CELLS
 
-#: Address space a parser may add: so much, and so many times the size of the file [bytes, -].
+#: Address space that a parser may add: constant part, and multiple of the size of the file [bytes, -].
 SPARE_BYTES = 1_000_000_000
 SPARE_PER_BYTE = 50
 
@@ -41,8 +41,8 @@ def require_harmless(path: Path) -> None:
     """Refuse a mesh file by its suffix, size and headers.
 
     Raises:
-        MeshError: not a file, a format that is not read, larger than `MOST_BYTES`, or with
-            contents that would take much more memory than the file or name another file.
+        MeshError: not a file, an unknown format, larger than `MOST_BYTES`, or with contents that would take much
+            more memory than the file or name another file.
     """
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
@@ -64,8 +64,8 @@ def require_harmless(path: Path) -> None:
 def bounded_memory(path: Path) -> Iterator[None]:
     """Limit what parsing a file may allocate; beyond it the parser sees a MemoryError.
 
-    The limit is the process's, so no other thread should be allocating much meanwhile. Without /proc there
-    is none.
+    The limit applies to the process, so other threads should not allocate much meanwhile. Without /proc there is no
+    limit.
     """
     if resource is None or not _MEMORY_IN_PAGES.exists():
         yield

@@ -1,1 +1,1 @@
-"""Contact at the base: laws at a point, springs of a base, the condensed Newton iteration. It knows no time step."""
+"""Contact at the base: force laws, springs of a base, Newton iteration, equilibrium. It knows no time step."""

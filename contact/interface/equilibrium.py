@@ -1,7 +1,7 @@
-"""How a container stands before the motion begins: settled under gravity, or tilted on one corner.
+"""Equilibrium before the motion begins: settled under gravity, or tilted on one corner.
 
-Both stances need only the rigid body, the contact springs and the elastic compliance seen from the base
-points (inertia relief: gravity is a uniform field and by itself strains a free body not at all).
+Both need only the rigid body, the contact springs and the elastic compliance at the base points (inertia relief:
+gravity is a uniform field and does not strain a free body).
 """
 
 import math
@@ -11,17 +11,17 @@ import numpy as np
 
 from contact.arrays import FloatArray
 
-#: force, over the weight, below which a point of the settled base may as well be open
+#: contact force over the weight below which a point of the settled base counts as open
 ROUNDING = 1e-12
 
 
 class SettlingError(ArithmeticError):
-    """The container finds no equilibrium on its supporting points."""
+    """The container has no equilibrium on its supporting points."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Stance:
-    """Rigid pose, its velocity, and the contact forces that go with it; n base points."""
+    """Initial rigid pose, velocity and contact forces; n base points."""
 
     centre: tuple[float, float]  #: mass centre, x and z above the floor [m]
     rotation: float  #: [rad]
@@ -30,24 +30,24 @@ class Stance:
     force: FloatArray  #: (n, 2) tangential and normal [N]
 
     def turning(self, angular_velocity: float, point: FloatArray) -> "Stance":
-        """The same, turning about the right corner for a rate > 0, about the left one for < 0 [rad/s].
+        """The same stance with an angular velocity [rad/s]: > 0 about the right corner, < 0 about the left corner.
 
-        `point` (n, 2) are the base points relative to the mass centre, by rising x.
+        `point`: base points relative to the mass centre, sorted by x, shape (n, 2) [m].
         """
         arm = point[-1] if angular_velocity > 0.0 else point[0]
         velocity = (-angular_velocity * float(arm[1]), angular_velocity * float(arm[0]))
         return replace(self, velocity=velocity, angular_velocity=angular_velocity)
 
     def sliding(self, velocity: float) -> "Stance":
-        """The same, moving along the floor besides [m/s]."""
+        """The same stance with an additional velocity along the floor [m/s]."""
         return replace(self, velocity=(self.velocity[0] + velocity, self.velocity[1]))
 
     def moved(self, distance: float) -> "Stance":
-        """The same, farther along x [m]."""
+        """The same stance shifted along x [m]."""
         return replace(self, centre=(self.centre[0] + distance, self.centre[1]))
 
     def with_points(self, count: int) -> "Stance":
-        """The same with `count` contact points; the added ones carry nothing."""
+        """The same stance with `count` contact points; the added points carry no force."""
         force = np.zeros((count, 2))
         force[: len(self.force)] = self.force
         return replace(self, force=force)
@@ -61,7 +61,7 @@ def standing(
     compliance: FloatArray,
     normal_stiffness: FloatArray,
 ) -> Stance:
-    """Rest under gravity on unilateral springs; friction has not been called upon.
+    """Rest under gravity on unilateral springs, without friction forces.
 
     Args:
         weight: [N]; centroid: of the undeformed container, x from its middle, z above the base [m].
@@ -70,7 +70,7 @@ def standing(
         normal_stiffness: (n,) [N/m].
 
     Raises:
-        SettlingError: the weight is not between the points that carry.
+        SettlingError: the weight acts outside the supporting points.
     """
     n = point.shape[0]
     vertical = compliance[1::2, 1::2]
@@ -78,7 +78,7 @@ def standing(
     for _ in range(2 * n + 2):
         chosen = np.flatnonzero(carrying)
         m = chosen.size
-        # Unknown: normal forces, rise of the centroid above its place in the undeformed container, rotation.
+        # Unknowns: normal forces, rise of the centroid above its place in the undeformed container, rotation.
         system = np.zeros((m + 2, m + 2))
         system[:m, :m] = vertical[np.ix_(chosen, chosen)] + np.diag(1.0 / normal_stiffness[chosen])
         system[:m, m] = 1.0
@@ -94,7 +94,7 @@ def standing(
         normal = np.zeros(n)
         normal[chosen] = solution[:m]
         gap = point[:, 1] + centroid[1] + solution[m] - solution[m + 1] * point[:, 0] + vertical @ normal
-        # A point may just touch: within rounding it counts as what it was, or it would change sides for ever.
+        # A point that just touches keeps its state within rounding; it would otherwise change state for ever.
         wrong = np.where(carrying, normal < -ROUNDING * weight, gap < -ROUNDING * weight / normal_stiffness)
         if not wrong.any():
             force = np.column_stack([np.zeros(n), np.maximum(normal, 0.0)])
@@ -106,7 +106,7 @@ def standing(
                 force=force,
             )
         carrying ^= wrong
-    raise SettlingError("the weight of the container does not stand between its supporting points")
+    raise SettlingError("the weight of the container acts outside its supporting points")
 
 
 def tilted(
@@ -122,15 +122,15 @@ def tilted(
     normal_stiffness: FloatArray,
     mu_static: float,
 ) -> Stance:
-    """Turned about one corner, which carries what keeps it from accelerating; right corner for rotation > 0.
+    """Tilted about one corner, with the force that keeps this corner from accelerating; right corner for rotation > 0.
 
     Args:
         rotation: not 0 [rad]; angular_velocity: about that corner [rad/s].
         mass, inertia: [kg, kg m2]; gravity: [m/s2].
-        point: (n, 2) base points relative to the mass centre, by rising x [m].
-        corner_x: where that corner stands on the floor [m].
+        point: (n, 2) base points relative to the mass centre, sorted by x [m].
+        corner_x: position of that corner on the floor [m].
         compliance: (2n, 2n) elastic compliance in the body's frame, inertia relief [m/N].
-        normal_stiffness: (n,) [N/m]; mu_static: bounds the friction asked of the corner.
+        normal_stiffness: (n,) [N/m]; mu_static: limits the friction at the corner.
 
     Raises:
         SettlingError: the corner would have to pull.
@@ -146,17 +146,15 @@ def tilted(
     force = np.linalg.solve(jacobian @ inverse @ jacobian.T, -free)
     if force[1] <= 0.0:
         raise SettlingError(
-            f"the corner would have to pull: angular velocity {angular_velocity} rad/s throws the container "
-            "off the floor"
+            f"the corner would have to pull: at an angular velocity of {angular_velocity} rad/s the container "
+            "leaves the floor"
         )
     force[0] = np.clip(force[0], -mu_static * force[1], mu_static * force[1])
     forces = np.zeros_like(point)
     forces[corner] = force
     turn = np.array([[cosine, sine], [-sine, cosine]])
     own = compliance[2 * corner : 2 * corner + 2, 2 * corner : 2 * corner + 2]
-    strained = (
-        arm + turn @ own @ turn.T @ force
-    )  # where the corner is once the force has strained the container
+    strained = arm + turn @ own @ turn.T @ force  # position of the corner after elastic deformation
     return Stance(
         centre=(corner_x - strained[0], -force[1] / normal_stiffness[corner] - strained[1]),
         rotation=rotation,

@@ -49,7 +49,7 @@ def stick_friction(trial: float, limit: float) -> tuple[float, float, float]:
     """Return mapping: tangential force [N], and its derivatives by trial force and by limit [-].
 
     Args:
-        trial: force on the container if the point stuck [N].
+        trial: force on the container if the point sticks [N].
         limit: mu N >= 0 [N].
     """
     if trial > limit:
@@ -63,7 +63,7 @@ def stick_friction(trial: float, limit: float) -> tuple[float, float, float]:
 def relaxed_stick(stick: float, force: float, stiffness: float, relaxation_time: float, step: float) -> float:
     """Elongation [m] of a Kelvin-Voigt element after one step under a constant force.
 
-    The slider holds the element at the limit force while it slides: k s + c s' = F, c/k the relaxation
+    While it slides, the slider keeps the element at the limit force: k s + c s' = F, c/k the relaxation
     time, integrated exactly, so that large steps end at s = F/k.
     """
     rest = force / stiffness
@@ -98,7 +98,7 @@ def regularised_friction(
 def weakened_mu(mu_static: float, mu_kinetic: float, weakening: float, slid: float) -> float:
     """Coefficient of friction after sliding `slid` [m] since the support broke loose.
 
-    Linear from static to kinetic over the slip distance `weakening` [m]; 0: at once (the seed's law).
+    Linear from static to kinetic over the slip distance `weakening` [m]; 0: at once.
     """
     if slid >= weakening:
         return mu_kinetic

@@ -1,9 +1,9 @@
-"""The default penalty: as soft as the answer allows, for a soft contact lets the steps be long.
+"""The default penalty: as soft as accuracy allows, because a soft contact permits long steps.
 
 It is a numerical choice, not the stiffness of concrete. For two corners the static penetration, and with it
-the tilt of a stand on one corner, must be small against the motion. A base of many points fails earlier: near
-uplift the whole weight stands on a narrow strip at the edge, the bed opens from the other side, softens, and
-may resonate with the drive far below uplift. So there the tilt near uplift is limited.
+the tilt when standing on one corner, must be small compared with the motion. A base of many points needs more: near
+uplift the whole weight is on a narrow strip at the edge, the bed opens from the other side, softens, and
+may resonate with the drive far below uplift. Therefore the tilt near uplift is limited.
 """
 
 import math
@@ -12,7 +12,7 @@ PENETRATION_OVER_HEIGHT = 1e-5
 PENETRATION_OVER_SWING = 6e-5  #: over width times slenderness angle
 NEAR_UPLIFT = 0.9  #: share of the restoring moment at which the tilt of a wide base is limited
 TILT_OVER_SLENDERNESS = 1e-3
-STIFFEST = 3.0  #: times E/h: beyond it the contact, not the container, sets the time step
+STIFFEST = 3.0  #: times E/h: above it the contact, not the container, determines the time step
 
 
 def choose_normal_penalty(

@@ -1,10 +1,10 @@
 """The contact of a body's base points with the floor, condensed to those points and solved implicitly.
 
-Within one step the body answers a contact force by a displacement of its base points: y = free + G f,
-with G the effective compliance (one over mass/(beta h^2) + stiffness, seen from the points). With the laws
-f = law(y) this is a small, non-smooth system, unsymmetric because of friction; it is solved by a
-semismooth Newton method (exact after finitely many steps, the laws being piecewise linear) with line
-search. Wriggers (2006) sec. 9.5; Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353.
+Within one step contact forces f displace the base points by y = free + G f, with G the effective compliance
+(inverse of mass/(beta h^2) + stiffness, condensed to the points). With the laws f = law(y) this is a small, non-smooth
+system, unsymmetric because of friction. It is solved by a semismooth Newton method with line search (exact after
+finitely many iterations, because the laws are piecewise linear).
+Wriggers (2006) sec. 9.5; Alart and Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353.
 
 Arrays: points (n, 2) with columns x [m] and z [m], both relative to the floor, z > 0 open; forces (n, 2) on
 the container with columns tangential (along +x) and normal (> 0 in compression) [N].
@@ -18,19 +18,19 @@ from contact.arrays import FloatArray, IntArray
 from contact.interface.laws import ELASTIC_STICK, normal_force, regularised_friction, stick_friction
 from contact.jit import compiled
 
-FULL_STEPS = 1  #: Newton steps taken whole before the line search begins; a friction problem cycles soon
+FULL_STEPS = 1  #: full Newton steps before the line search begins; problems with friction tend to cycle
 NEWTON_LIMIT = 40
-WORTH_KEEPING = 5  #: active points from which an old factorisation is tried before a new one is made
-#: residual force at which the contact counts as solved, over the largest force present
+WORTH_KEEPING = 5  #: active points from which an old factorisation is reused before a new one is computed
+#: residual force over the largest force at which the contact problem is solved
 FORCE_TOLERANCE = 1e-11
 
 
-#: tangential force over its limit from which a point counts as sliding
+#: tangential force over its limit above which a point counts as sliding
 SLIDING = 1.0 - 1e-6
 
 
 class Contact(NamedTuple):
-    """What the floor is made of: constants of one run, shapes (n,) over the base points."""
+    """Properties of the contact with the floor: constants of one run, n base points."""
 
     normal_stiffness: FloatArray  #: [N/m]
     tangential_stiffness: FloatArray  #: [N/m]
@@ -40,30 +40,32 @@ class Contact(NamedTuple):
     weakening: float  #: slip over which static falls to kinetic friction [m]
     friction: int  #: ELASTIC_STICK or REGULARISED
     regularisation_velocity: float  #: [m/s]
-    force_scale: float  #: weight of the container [N], the measure of "no force"
-    resolution: float  #: rounding of a base point's position [m]: times slope, the finest force to be had
+    force_scale: float  #: weight of the container [N], the scale of negligible forces
+    resolution: (
+        float  #: rounding of a base point's position [m]; times the slope, the smallest resolvable force
+    )
 
 
 class Workspace(NamedTuple):
     """Arrays of one contact problem, shapes in terms of the n base points."""
 
-    free: FloatArray  #: (n, 2) where the points would go without contact force [m]
-    free_velocity: FloatArray  #: (n, 2) and how fast, relative to the floor [m/s]
+    free: FloatArray  #: (n, 2) positions of the points without contact force [m]
+    free_velocity: FloatArray  #: (n, 2) and their velocities, relative to the floor [m/s]
     compliance: FloatArray  #: (2 n, 2 n) G [m/N], x and z of a point in turn
     point: FloatArray  #: (n, 2) [m]
     velocity: FloatArray  #: (n, 2) [m/s]
     force: FloatArray  #: (n, 2) [N]
-    law: FloatArray  #: (n, 2) force that the laws give at `point` [N]
+    law: FloatArray  #: (n, 2) force of the laws at `point` [N]
     slope: FloatArray  #: (n, 3) minus its derivatives: tangential by x, tangential by z, normal by z [N/m]
     matrix: FloatArray  #: (2 n, 2 n) factors of the tangent over the active points
     change: FloatArray  #: (2 n,)
     solution: FloatArray  #: (2 n,)
-    pivot: IntArray  #: (2 n,) of the factors in `matrix`
-    factored_slope: FloatArray  #: (n, 3) tangents that they belong to
-    factored_step: FloatArray  #: (1,) and the step; < 0: none
-    factored_count: IntArray  #: (1,) and how many points
+    pivot: IntArray  #: (2 n,) pivots of `matrix`
+    factored_slope: FloatArray  #: (n, 3) tangents for which `matrix` was factored
+    factored_step: FloatArray  #: (1,) and step size; < 0: none [s]
+    factored_count: IntArray  #: (1,) and number of active points
     trial: FloatArray  #: (n, 2)
-    active: IntArray  #: (n,) points that have a tangent, leading `factored_count`
+    active: IntArray  #: (n,) active points, the first `factored_count` entries
 
 
 def make_workspace(points: int) -> Workspace:
@@ -106,7 +108,8 @@ def evaluate_laws(
         contact: the floor.
         step: the time step [s].
         velocity_slope: derivative of an end velocity by an end position, gamma/(beta h) [1/s].
-        mu: coefficient of friction in force.
+        mu: coefficient of friction of the elastic-stick law in this step; the regularised law depends on the
+            slip velocity instead, between the two coefficients in `contact`.
         start: (n, 2) points at the beginning of the step, relative to the floor [m].
         stick: (n,) elongation of the stuck tangential springs at the beginning of the step [m].
         work: point and velocity are read, law and slope are written.
@@ -129,7 +132,7 @@ def evaluate_laws(
             stiffness = contact.tangential_stiffness[i]
             trial = -stiffness * contact.relaxation_time * work.velocity[i, 0]
             trial_slope = stiffness * contact.relaxation_time * velocity_slope
-            if start[i, 1] < 0.0:  # closed at the beginning: the spring is stretched over the whole step
+            if start[i, 1] < 0.0:  # closed at the beginning: the spring acts over the whole step
                 trial -= stiffness * (stick[i] + work.point[i, 0] - start[i, 0])
                 trial_slope += stiffness
             force, by_trial, by_limit = stick_friction(trial, mu * normal)
@@ -222,9 +225,9 @@ def substitute_dense(size: int, factors: FloatArray, pivot: IntArray, vector: Fl
 
 @compiled(inline=True)
 def factor_is_current(step: float, work: Workspace) -> bool:
-    """The factors at hand belong to these tangents and this step: good enough to iterate with.
+    """Whether the factors were computed for these tangents and this step size.
 
-    The compliance has turned with the body since; a Newton step with slightly old factors gains fewer digits.
+    The compliance has turned with the body since then; such a Newton step converges more slowly, but it converges.
     """
     if work.factored_step[0] != step or work.factored_count[0] < WORTH_KEEPING:
         return False
@@ -237,7 +240,7 @@ def factor_is_current(step: float, work: Workspace) -> bool:
 
 @compiled(inline=True)
 def factor_tangent(step: float, work: Workspace) -> bool:
-    """Factor 1 + D G over the points whose law has a tangent, and note what for."""
+    """Factor 1 + D G over the points whose law has a tangent, and store for which tangents and step."""
     count = 0
     for i in range(work.force.shape[0]):
         if work.slope[i, 2] != 0.0:
@@ -267,9 +270,9 @@ def factor_tangent(step: float, work: Workspace) -> bool:
 
 @compiled(inline=True)
 def newton_change(work: Workspace) -> None:
-    """Change of the contact forces (1 + D G) df = law - f, with the factors at hand.
+    """Change of the contact forces (1 + D G) df = law - f, with the present factors.
 
-    A point without tangent carries nothing from now on; what it carried so far moves the others.
+    A point without tangent loses its force; the change acts on the other points.
     """
     n = work.force.shape[0]
     count = work.factored_count[0]
@@ -304,12 +307,12 @@ def newton_change(work: Workspace) -> None:
 def return_held_points(
     contact: Contact, velocity_slope: float, mu: float, start: FloatArray, work: Workspace
 ) -> bool:
-    """Put points that the floor held at the beginning of the step back there: the first place to linearise at.
+    """Move points that were held by the floor back to where they were before the step, to linearise there first.
 
-    `work.force` is a guess from before the step. Its error is magnified by compliance times stiffness in the places
-    that follow from it, an error of the place by as much in the force: beyond one, the place is the better guess.
-    A gap, or a spring that slides, has no stiffness: there the force is. `work.trial` takes how far each was put back;
-    returns whether any was.
+    `work.force` is a guess from before the step. In the positions that follow from it, its error is multiplied by
+    compliance times stiffness: where this exceeds one, the old position is the better guess. An open point or a
+    sliding spring has no stiffness, so there the force is the better guess. Writes the shifts to `work.trial` and
+    returns whether any point was moved.
     """
     placed = False
     magnified = 1.0 + contact.relaxation_time * velocity_slope
@@ -332,7 +335,7 @@ def return_held_points(
 
 @compiled(inline=True)
 def extrapolate_laws(work: Workspace) -> None:
-    """Carry the laws' forces along their tangents to where the points were before they were put back."""
+    """Extrapolate the forces of the laws along their tangents to the points before `return_held_points`."""
     for i in range(work.force.shape[0]):
         work.law[i, 0] += work.slope[i, 0] * work.trial[i, 0] + work.slope[i, 1] * work.trial[i, 1]
         work.law[i, 1] += work.slope[i, 2] * work.trial[i, 1]
@@ -352,8 +355,8 @@ def solve_contact(
 
     Args:
         contact, step, velocity_slope, mu, start, stick: as in `evaluate_laws`.
-        work: free, free_velocity and compliance are read; force is the first guess and the result; point
-            and velocity are those that go with it.
+        work: free, free_velocity and compliance are inputs; force is the first guess and the result; point
+            and velocity are the corresponding positions and velocities.
 
     Returns:
         Number of Newton iterations, or -1 if they did not converge.
@@ -374,7 +377,7 @@ def solve_contact(
                 largest = max(largest, abs(work.force[i, k]))
         if not placed and residual <= FORCE_TOLERANCE * largest + contact.resolution * stiffest:
             return iteration
-        # Old factors serve as long as they serve well: an unchanged contact is the rule, not the exception.
+        # Keep old factors while they converge well: usually the contact has not changed.
         if not factor_is_current(step, work) or residual > 0.1 * before:
             if not factor_tangent(step, work):
                 return -1

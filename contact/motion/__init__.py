@@ -1,1 +1,1 @@
-"""What the floor does: base motions and their compiled form. It knows neither contact nor a container."""
+"""Floor motions and their compiled form. It knows neither contact nor a container."""

@@ -1,10 +1,8 @@
-"""Base motion: what the floor does, as the user means it.
+"""Base motion: harmonic motion, pulses, no motion; tables of recorded motion are in `contact.motion.table`.
 
-The floor moves along x, positive toward +x; SI units. Every motion gives its `compiled` data, from which the
-one compiled `floor_motion` takes displacement, velocity and acceleration, and tells a stepper where to be
-careful: `break_times` (the acceleration jumps or its formula changes) and `time_scale`. The largest floor
-acceleration, the only one a static rule may be compared with, is `peak_acceleration`, a magnitude. Tables of
-recorded motion stand in `contact.motion.table`.
+The floor moves along x, positive toward +x; SI units. `compiled` gives the data for `floor_motion`; `break_times` (the
+acceleration jumps or its formula changes) and `time_scale` are for the step control. `peak_acceleration` is a
+magnitude, for the static checks.
 """
 
 import math
@@ -42,8 +40,8 @@ __all__ = [
 PulseShape = Literal["rectangular", "half-sine", "sine"]
 PULSE_KINDS: dict[str, int] = {"rectangular": RECTANGULAR, "half-sine": HALF_SINE, "sine": SINE}
 
-# The taper's own acceleration lifts the peak above A Omega^2 by about 57/(2 pi n)^3 for n cycles of ramp, a
-# quarter of a cycle from the plateau (1.2 at n = 1); so the search may stop a few cycles into the ramp.
+# The taper raises the peak above A Omega^2 by about 57/(2 pi n)^3 for n cycles of ramp, a quarter of a cycle from the
+# plateau (1.2 at n = 1), so the search may stop a few cycles into the ramp.
 SEARCHED_CYCLES = 8.0
 SAMPLES_PER_CYCLE = 512
 
@@ -82,11 +80,11 @@ class HarmonicMotion:
 
     The taper is a quintic window (C2) on the displacement; velocity and acceleration are its exact
     derivatives. With `cycles`, the drive ends at the first instant of zero velocity of A sin(Omega t + phase)
-    after so many cycles, and the floor stays there (tapered: at zero displacement). Without, it goes on; a
+    after so many cycles, and the floor stays there (tapered: at zero displacement). Otherwise it continues; a
     taper then ends at `duration`.
 
     Raises:
-        ValueError: a number out of range, or ramps that leave no room for the full amplitude.
+        ValueError: a number out of range, or ramps too long to reach the full amplitude.
     """
 
     amplitude: float  #: A [m]
@@ -111,10 +109,10 @@ class HarmonicMotion:
             raise ValueError(f"harmonic ramp must not be negative, got {self.ramp_cycles} cycles")
         if self.cycles is not None and not 0.0 < self.cycles < math.inf:
             raise ValueError(f"harmonic motion must last for more than 0 cycles, got {self.cycles}")
-        if 2.0 * self.ramp > self.end_time * (1.0 + 1e-12):  # ramps that just meet are meant to
+        if 2.0 * self.ramp > self.end_time * (1.0 + 1e-12):  # ramps may just meet
             raise ValueError(
                 f"two ramps of {self.ramp_cycles} cycles ({self.ramp:.6g} s each) do not fit into a drive of "
-                f"{self.end_time:.6g} s: it would not reach its amplitude; shorten the ramps or drive longer"
+                f"{self.end_time:.6g} s: it would not reach its amplitude; use shorter ramps or a longer drive"
             )
 
     @property
@@ -158,7 +156,7 @@ class HarmonicMotion:
         return floor_history(self.compiled(), times)
 
 
-@lru_cache(maxsize=256)  # the cells of a map differ in the amplitude first
+@lru_cache(maxsize=256)  # the cells of a map often differ in amplitude only
 def _peak_of_unit(motion: HarmonicMotion) -> float:
     """Largest |acceleration| of a motion of amplitude 1 m [m/s2]."""
     end = min(motion.end_time, motion.duration)
@@ -166,7 +164,7 @@ def _peak_of_unit(motion: HarmonicMotion) -> float:
     plateau = (motion.ramp, min(motion.end_time - motion.ramp, motion.duration))
     floor = full if plateau[1] - plateau[0] >= 0.5 * motion.time_scale else 0.0
     if floor == full and motion.ramp == 0.0:
-        return full  # nothing lifts it above its own amplitude
+        return full
     reach = SEARCHED_CYCLES * motion.time_scale
     spans = (
         (plateau[0] - reach, plateau[0] + motion.time_scale),
@@ -176,11 +174,11 @@ def _peak_of_unit(motion: HarmonicMotion) -> float:
 
 
 def _peak_between(motion: HarmonicMotion, low: float, high: float) -> float:
-    """Largest |acceleration| in [low, high) by sampling, then by closing in on the largest sample."""
+    """Largest |acceleration| in [low, high): sampled, then refined around the largest sample."""
     if high <= low:
         return 0.0
     count = int(SAMPLES_PER_CYCLE * (high - low) / motion.time_scale) + 9
-    # Just short of the end: at `end_time` itself the floor already stands.
+    # Just before the end: at `end_time` itself the floor is at rest.
     times, peak = np.linspace(low, np.nextafter(high, 0.0), count), 0.0
     for _ in range(6):
         sizes = np.abs(motion.evaluate(times)[2])

@@ -1,9 +1,8 @@
-"""The floor's displacement, velocity and acceleration at one instant: the one compiled function all share.
+"""Displacement, velocity and acceleration of the floor at one instant, as a compiled function.
 
 Displacement is absolute and positive toward +x [m]; velocity [m/s] and acceleration [m/s2] are its exact
-derivatives, never differences. Where the acceleration jumps, the value after the jump is given. The motion is
-data (`FloorMotion`), so that a compiled stepper takes any kind without being compiled again; the classes that
-make these data, and say what they mean, stand in `contact.motion.base_motion`.
+derivatives. At a jump of the acceleration the value after the jump is given. The motion is data (`FloorMotion`), so
+that compiled stepping handles every kind; the classes of `contact.motion.base_motion` make these data.
 """
 
 import math
@@ -20,7 +19,7 @@ UNIFORM, HARMONIC, RECTANGULAR, HALF_SINE, SINE, PIECEWISE = 0, 1, 2, 3, 4, 5
 
 
 class FloorMotion(NamedTuple):
-    """A base motion as numbers and arrays that numba understands.
+    """A base motion as numbers and arrays for compiled code.
 
     `kind` chooses the formula and the meaning of `parameters`:
 
@@ -73,7 +72,7 @@ def _harmonic(parameters: FloatArray, time: float) -> tuple[float, float, float]
 @compiled
 def _pulse(kind: int, parameters: FloatArray, time: float) -> tuple[float, float, float]:
     peak, length, delay = parameters
-    # The end is compared as delay + length, to the last bit the instant that `PulseMotion.break_times` gives.
+    # The end is compared as delay + length, exactly the instant of `PulseMotion.break_times`.
     during = time < delay + length
     inside = min(max(time - delay, 0.0), length)
     if kind == RECTANGULAR:
@@ -135,7 +134,7 @@ def as_floor_motion(
     breaks: FloatArray | None = None,
     coefficients: FloatArray | None = None,
 ) -> FloorMotion:
-    """Pack a motion with the array types the compiled functions were compiled for (contiguous float64)."""
+    """Make a motion with the array types of the compiled functions (contiguous float64)."""
     return FloorMotion(
         kind,
         np.array(parameters, dtype=np.float64),

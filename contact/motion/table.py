@@ -1,10 +1,10 @@
 """Base motion from samples: an accelerogram, or displacements of the floor.
 
 Between samples the acceleration is linear, so velocity and displacement are its exact integrals (a quadratic
-and a cubic) and no integration rule adds a drift of its own. Outside the table the acceleration is zero. An
+and a cubic) and no integration rule adds a drift. Outside the table the acceleration is zero. An
 acceleration table starts at rest: displacement and velocity are zero up to its first time. A displacement
 table is read as the natural cubic spline through its samples, whose acceleration is linear between them too
-and zero at both ends; before and after, the floor goes on with the velocity it has there.
+and zero at both ends; before and after, the floor keeps its velocity.
 """
 
 import math
@@ -17,7 +17,7 @@ from scipy.linalg import solve_banded
 from contact.arrays import FloatArray
 from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion, floor_history
 
-# A period is drawn well by about ten samples: what the table can tell of the motion is not faster than that.
+# About ten samples resolve a period; faster motion is not in the table.
 SPACINGS_PER_PERIOD = 10.0
 
 
@@ -25,10 +25,9 @@ SPACINGS_PER_PERIOD = 10.0
 class TableMotion:
     """Samples of the floor's acceleration or displacement at increasing times.
 
-    `baseline` takes from an acceleration table what makes it drift: `mean`, its mean over time, so that the
-    floor ends at rest; `linear`, the straight line fitted by least squares over the whole time (to the
-    interpolated acceleration, not to the samples), so that it ends at rest where it began: the two moments
-    which that fit makes zero are the final velocity and displacement.
+    `baseline` removes the drift of an acceleration table: `mean` subtracts its mean over time, so that the floor ends
+    at rest; `linear` subtracts the straight line fitted by least squares (to the interpolated acceleration, not to the
+    samples), so that the floor ends at rest where it began: the fit makes final velocity and displacement zero.
 
     Raises:
         ValueError: fewer than two samples, lengths that differ, times or values that are not finite, times
@@ -41,7 +40,7 @@ class TableMotion:
     baseline: Literal["none", "mean", "linear"] = "none"
 
     def __post_init__(self) -> None:
-        # Own copies: the caller's arrays may change, and the compiled data must not.
+        # Copies: the caller's arrays may change, the compiled data must not.
         times, values = (np.array(a, dtype=np.float64) for a in (self.times, self.values))
         object.__setattr__(self, "times", times)
         object.__setattr__(self, "values", values)
@@ -77,7 +76,7 @@ class TableMotion:
 
     @property
     def time_scale(self) -> float:
-        """Shortest period that such samples draw well: ten times their median spacing [s]."""
+        """Shortest period that the samples resolve: ten times their median spacing [s]."""
         return SPACINGS_PER_PERIOD * float(np.median(np.diff(self.times)))
 
     def compiled(self) -> FloorMotion:
@@ -106,7 +105,7 @@ class TableMotion:
 def _spline_accelerations(times: FloatArray, displacements: FloatArray) -> FloatArray:
     """Second derivative of the natural cubic spline at its samples (n,) [m/s2]: velocity has no jump there.
 
-    Solved here, since scipy.interpolate takes as long to load as all else that a run needs of scipy.
+    Solved here, because loading scipy.interpolate takes as long as loading all else that a run needs of scipy.
     """
     a = np.zeros(times.size)
     steps = np.diff(times)
@@ -150,7 +149,7 @@ def _summed(increments: FloatArray) -> FloatArray:
 
 
 def _baseline(times: FloatArray, a: FloatArray, kind: str) -> FloatArray:
-    """The part of a piecewise linear acceleration to take away, at its samples, shape (n,) [m/s2].
+    """Baseline to subtract from a piecewise linear acceleration, at its samples, shape (n,) [m/s2].
 
     Least squares over time of the linear interpolant: with s in [-1, 1] over the table, the fit is
     m_0/2 + 3 m_1/2 s, where m_0 and m_1 are the exact integrals of a and a s (Legendre polynomials).

@@ -1,8 +1,7 @@
 """Motion tables from text files: two columns, time [s] and value, separated by commas, semicolons or blanks.
 
-`#` begins a comment; one header line may come first. A unit written in the header must be the unit asked
-for: a table in g read as m/s2 is the kind of slip that no plot shows. The file is data, never code, and its
-size is checked before it is read.
+`#` starts a comment; the first line may be a header. A unit in the header must be the unit that the case gives,
+because a table in g that is read as m/s2 is hard to notice. The size of the file is checked before it is read.
 """
 
 import math
@@ -17,16 +16,18 @@ from contact.motion.table import TableMotion
 
 Unit = Literal["m/s2", "g", "m"]
 
-STANDARD_GRAVITY = 9.80665  #: [m/s2]; a record in g means this one (ISO 80000-3), whatever the case's gravity
+STANDARD_GRAVITY = (
+    9.80665  #: [m/s2] of a record in g (ISO 80000-3); does not depend on the gravity of the case
+)
 LARGEST_FILE = 64 * 2**20  #: [bytes]: three million samples and more
 
-# What a unit measures, and how much of SI it is.
+# Quantity of each unit, and its factor to SI.
 UNITS: dict[str, tuple[str, float]] = {
     "m/s2": ("acceleration", 1.0),
     "g": ("acceleration", STANDARD_GRAVITY),
     "m": ("displacement", 1.0),
 }
-# Spellings met in headers. The last group is recognised only to be refused.
+# Spellings in headers. The last group is recognised only to be refused.
 SPELLINGS: dict[str, str] = {
     **dict.fromkeys(
         ("m/s2", "m/s^2", "m/s**2", "m/s²", "m/sec2", "m/sec^2", "m_s2", "m s-2", "m s^-2"), "m/s2"
@@ -52,7 +53,7 @@ SPELLINGS: dict[str, str] = {
         )
     },
 }
-LARGEST_NUMBER = 1e12  #: of seconds or of any unit: beyond, the motion's integrals lose all meaning
+LARGEST_NUMBER = 1e12  #: of seconds or of any unit: above it the integrals of the motion are meaningless
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?", re.ASCII)
 
 
@@ -92,12 +93,12 @@ def read_motion_table(
 def _text(path: Path) -> str:
     if not path.is_file():
         raise ValueError(
-            f"motion table {path} does not exist or is not a file; it is looked for beside the case file"
+            f"motion table {path} does not exist or is not a file; paths start at the folder of the case file"
         )
     size = path.stat().st_size
     if size > LARGEST_FILE:
         raise ValueError(
-            f"{path.name}: {size / 2**20:.0f} MB exceed the {LARGEST_FILE >> 20} MB a motion table may have"
+            f"{path.name}: the file has {size / 2**20:.0f} MB; a motion table may have {LARGEST_FILE >> 20} MB"
         )
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -148,10 +149,10 @@ def _number(field: str, place: str) -> float:
 
 
 def _check_header(content: str, place: str, unit: Unit) -> None:
-    """Refuse a header whose unit, in brackets or after the last underscore, is not seconds and `unit`."""
+    """Refuse a header whose units, in brackets or after the underscore, are not seconds and `unit`."""
     fields = _fields(content)
     if len(fields) != 2:
-        # "time (s) acc (g)" splits at its blanks; only the units matter: there must be two of them or none.
+        # "time (s) acc (g)" splits at its blanks; only its units matter: two of them or none.
         fields = [f"[{text}]" for text in re.findall(r"[\[(]([^\])]*)[\])]", content)]
         if len(fields) not in (0, 2):
             raise ValueError(
@@ -161,13 +162,13 @@ def _check_header(content: str, place: str, unit: Unit) -> None:
         found = _unit_of(field)
         if found is not None and found != wanted:
             raise ValueError(
-                f"{place}: the header gives {found!r} where {wanted!r} is asked for ({field[:40]!r}); "
+                f"{place}: the header gives {found!r}, but the case gives {wanted!r} ({field[:40]!r}); "
                 f"set the unit or convert the column"
             )
 
 
 def _unit_of(field: str) -> str | None:
-    """The unit in a column's name, None where it has none that is known to be a unit."""
+    """The unit in the name of a column; None if there is no known unit."""
     bracketed = re.search(r"[\[(]([^\])]*)[\])]", field)
     spelled = bracketed.group(1) if bracketed else field.partition("_")[2]
     spelled = spelled.strip()
@@ -175,5 +176,5 @@ def _unit_of(field: str) -> str | None:
         return "s"
     if spelled in ("ms", "min", "us"):
         return spelled
-    # "G" and "M" are written for g and m; "Mm" never is.
+    # "G" and "M" are used for g and m; "Mm" is not.
     return SPELLINGS.get(spelled) or SPELLINGS.get(spelled.lower())

@@ -1,1 +1,1 @@
-"""References to check against: event-driven blocks and closed forms. They share no code with the other packages."""
+"""Analytic references: event-driven blocks and closed forms. They share no code with the other packages."""

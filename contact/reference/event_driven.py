@@ -1,7 +1,7 @@
 """Event-driven integration: smooth motion between the instants at which its equations change.
 
 A regime (resting, rocking about a corner, sliding) has a rate and guards. A guard is a margin that is
-positive while the regime lasts; the motion is followed until the first margin falls below zero, and the
+positive while the regime lasts. The motion is integrated until the first margin falls below zero, and the
 instant is found to rounding on the interpolant of the step. Between two events and between two breaks of the
 floor acceleration the right-hand side is smooth, so that the eighth-order Runge-Kutta formula of Dormand
 and Prince (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.5) keeps its order.
@@ -25,16 +25,16 @@ Margin = Callable[[FloatArray, float], float]  #: state, floor acceleration -> p
 Interpolant = Callable[[float | FloatArray], FloatArray]  #: time -> state, times in the last axis
 
 RELATIVE_TOLERANCE = 1e-12
-SAMPLES_PER_STEP = 8  #: sub-intervals of a step in which a margin is looked at
+SAMPLES_PER_STEP = 8  #: sub-intervals of a step at which margins are evaluated
 
 
 class EventError(RuntimeError):
-    """The event-driven integration could not go on."""
+    """The event-driven integration failed."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Guard:
-    """What ends a regime."""
+    """Condition that ends a regime."""
 
     name: str
     margin: Margin

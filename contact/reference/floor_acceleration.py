@@ -1,7 +1,7 @@
-"""Floor accelerations for the analytic references, with the instants where they jump or bend.
+"""Floor accelerations for the analytic references, with the instants of jumps and kinks.
 
-An acceleration is positive toward +x. The references work in the frame of the floor, so the
-acceleration is all they need; the velocity at the start enters as the initial slip velocity of the block.
+Positive toward +x. The references use the frame of the floor, so they need the acceleration only; the velocity at the
+start is the initial slip velocity of the block.
 """
 
 import math
@@ -12,12 +12,12 @@ from itertools import pairwise
 
 @dataclass(frozen=True, kw_only=True)
 class FloorSegment:
-    """A stretch of time without a break inside; at its ends the acceleration is the one-sided limit."""
+    """An interval without a break inside; at its ends the acceleration is the one-sided limit."""
 
     start: float  #: [s]
     end: float  #: [s]
-    first: float  #: earliest time at which the acceleration is asked for [s]
-    last: float  #: latest time at which the acceleration is asked for [s]
+    first: float  #: earliest time at which the function is evaluated [s]
+    last: float  #: latest time at which the function is evaluated [s]
     function: Callable[[float], float]
 
     def acceleration(self, time: float) -> float:
@@ -34,8 +34,8 @@ class FloorAcceleration:
     """
 
     function: Callable[[float], float]  #: time [s] -> acceleration, positive toward +x [m/s2]
-    break_times: tuple[float, ...] = ()  #: increasing instants where it jumps or bends [s]
-    longest_step: float  #: at which it is looked at: an eighth of a period, inf where it is straight [s]
+    break_times: tuple[float, ...] = ()  #: increasing instants of jumps and kinks [s]
+    longest_step: float  #: an eighth of a period; inf if piecewise linear [s]
 
     def __post_init__(self) -> None:
         if not all(math.isfinite(t) for t in self.break_times):
@@ -47,11 +47,11 @@ class FloorAcceleration:
             raise ValueError(f"floor acceleration: longest_step must be positive, got {self.longest_step} s")
 
     def segments(self, start: float, end: float) -> Iterator[FloorSegment]:
-        """The stretches between breaks that fill start to end [s]."""
+        """The intervals between breaks from start to end [s]."""
         inner = [t for t in self.break_times if start < t < end]
         breaks = set(self.break_times)
         for left, right in pairwise([start, *inner, end]):
-            # a few rounding errors inside, so that a pulse written as `start <= t < end` shows its own side
+            # a few rounding errors inside, so that a pulse given as `start <= t < end` is evaluated on the right side
             nudge = 1e-14 * max(abs(left), abs(right), right - left)
             first = left + nudge if left in breaks else left
             last = right - nudge if right in breaks else right

@@ -2,7 +2,7 @@
 
 Event-driven: in each state the equations of `contact.reference.planar_equations` are integrated to 1e-12 until the
 contact changes (slip begins or ends, a corner meets the floor, the base lifts). Rotation and slip are
-positive toward +x. Free flight is found and reported, not followed.
+positive toward +x. Free flight is detected and reported, but not integrated.
 Shenton and Jones, J. Engng Mech. ASCE 117 (1991), parts I and II; Shenton, Criteria for initiation of slide,
 rock, and slide-rock rigid-body modes, ibid. 122 (1996).
 """
@@ -51,7 +51,7 @@ class PlanarBlock:
         return self.mu_kinetic * self.body.centroid_height <= self.body.half_width
 
     def select(self, values: FloatArray, side: int, acceleration: float) -> PlanarState:
-        """The state in which a block with given position and velocities goes on.
+        """The next state of a block with given position and velocities.
 
         Args:
             values: slip, slip velocity, tilt, tilt rate.
@@ -68,7 +68,7 @@ class PlanarBlock:
             return self._on_corner(values, direction, direction, acceleration)
         if self.rest_margin(acceleration) >= 0.0:
             return PlanarState(mode=PlanarMode.REST)
-        pushed = -int(np.sign(acceleration))  # the way the floor leaves the block behind
+        pushed = -int(np.sign(acceleration))  # against the acceleration of the floor
         if abs(acceleration) > self.body.uplift_acceleration:
             rocking = self._on_corner(values, pushed, 0, acceleration)
             if rocking.mode is PlanarMode.ROCK or not self.slides_flat:
@@ -76,12 +76,12 @@ class PlanarBlock:
         return PlanarState(mode=PlanarMode.SLIDE, direction=pushed)
 
     def rest_margin(self, acceleration: float) -> float:
-        """Floor acceleration by which rest on the whole base is still possible [m/s2]."""
+        """Margin of the floor acceleration for rest on the whole base [m/s2]."""
         limit = min(self.mu_static * self.body.gravity, self.body.uplift_acceleration)
         return limit - abs(acceleration)
 
     def stick_margin(self, contact: CornerContact) -> float:
-        """Friction that a corner which does not slide could still take, per mass [m/s2]."""
+        """Margin of friction at a sticking corner, per mass [m/s2]."""
         return self.mu_static * contact.normal - abs(contact.friction)
 
     def contact(self, state: PlanarState, values: FloatArray, acceleration: float) -> CornerContact:
@@ -122,7 +122,7 @@ def simulate_planar_block(
     slip_velocity: float = 0.0,
     rest_energy: float = 1e-10,
 ) -> PlanarMotion:
-    """Follow the block until it has overturned, left the model, or the duration is over.
+    """Integrate until the block has overturned, left the model, or the duration is over.
 
     Args:
         duration: [s].

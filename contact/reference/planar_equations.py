@@ -34,7 +34,7 @@ def centroidal_ratio(block: RigidBlock) -> float:
 def rock(
     block: RigidBlock, side: int, tilt: float, tilt_rate: float, floor_acceleration: float
 ) -> CornerContact:
-    """The corner does not slide: friction is what it must be.
+    """The corner does not slide; friction follows from the equations of motion.
 
     Shenton and Jones (1991), rock mode; equals the rocking equation of `contact.reference.rocking`.
     """
@@ -112,8 +112,8 @@ def corner_impact(
     impulse acts at the new corner and brings it to rest if the friction impulse this takes is within mu
     times the normal one: mu_static if the block did not slide before, mu_kinetic if it did. Else friction
     is mu_kinetic times the normal impulse, against the sliding after the impact; so no impact gains energy.
-    If the old corner would then be pushed into the floor, both corners take impulses and the base lies
-    down. None: no consistent impulses exist and the motion is outside the model.
+    If the old corner would then move into the floor, both corners take impulses and the block comes to rest
+    on its base. None: no consistent impulses exist and the motion is outside the model.
     """
     height, half_width = block.centroid_height, block.half_width
     ratio = centroidal_ratio(block)
@@ -162,7 +162,7 @@ def corner_impact(
 def _lying_down(
     block: RigidBlock, side: int, slip_velocity: float, tilt_rate: float, *, limit: float, mu_kinetic: float
 ) -> CornerImpact | None:
-    """Both corners take impulses, the rotation ends; None if one of them would have to pull."""
+    """Impulses at both corners that end the rotation; None if one of them would have to pull."""
     height, half_width = block.centroid_height, block.half_width
     horizontal = slip_velocity + side * height * tilt_rate  # of the centroid, before
     normal_impulse = -half_width * tilt_rate

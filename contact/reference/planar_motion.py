@@ -1,4 +1,4 @@
-"""What a planar block did: its modes, changes of state, impacts, and samples of its motion.
+"""Result of a planar block: modes, changes of state, impacts, and samples of its motion.
 
 Rotation and slip are positive toward +x; slip is that of the loaded corners over the floor, so that rocking
 alone does not slip.
@@ -14,7 +14,7 @@ from contact.reference.event_driven import Piece, sample
 
 
 class PlanarMode(Enum):
-    """What a planar block does at an instant, or why it is not followed further."""
+    """Mode of a planar block at an instant, or the reason for which the integration ends."""
 
     REST, SLIDE, ROCK, SLIDE_ROCK = "rest", "slide", "rock", "slide-rock"
     OVERTURNED = "overturned"
@@ -23,7 +23,7 @@ class PlanarMode(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class PlanarState:
-    """A mode with the corner it turns about and the way it slides."""
+    """A mode with its corner and direction of sliding."""
 
     mode: PlanarMode
     side: int = 0  #: +1 right corner, -1 left, 0 the base lies on the floor
@@ -53,7 +53,7 @@ class PlanarImpact:
 
 @dataclass(frozen=True, kw_only=True)
 class PlanarMotion:
-    """What a planar block did."""
+    """Motion of a planar block."""
 
     transitions: tuple[PlanarTransition, ...]
     impacts: tuple[PlanarImpact, ...]
@@ -70,7 +70,7 @@ class PlanarMotion:
 
     @property
     def outcome(self) -> PlanarMode:
-        """Overturned or outside the model where it ended so, else what it did at most."""
+        """Overturned or outside the model if it ended so, else the most general mode."""
         last = self.transitions[-1].state.mode
         if last in (PlanarMode.OVERTURNED, PlanarMode.OUTSIDE):
             return last

@@ -1,6 +1,6 @@
 """The rigid body of the analytic references: a block that stands on two corners of a rigid floor.
 
-Everything is per unit mass: a rigid block on a rigid floor moves the same whatever it weighs.
+Everything is per unit mass: the motion of a rigid block on a rigid floor does not depend on its mass.
 Rotation is positive where it tilts the block toward +x, about the right corner.
 Housner, The behavior of inverted pendulum structures during earthquakes, BSSA 53 (1963).
 """
@@ -19,7 +19,7 @@ class RigidBlock:
 
     Raises:
         ValueError: a length or gravity that is not positive and finite, or an inertia about the corner
-            that is not larger than mass times radius squared (it would leave none about the centroid).
+            that is not larger than mass times radius squared.
     """
 
     half_width: float  #: B, from the centroid to a corner along x [m]
@@ -63,9 +63,9 @@ class RigidBlock:
         """Ratio of angular velocities at a plastic impact on the new corner [-].
 
         Housner (1963): e = 1 - (M R^2/I_O)(1 - cos 2 al). Angular momentum about the new corner is
-        kept, and the old corner leaves the floor without impulse. Below about 0.5 the assumption that
-        the whole impulse acts at a corner is not credible; a negative value says that the block cannot
-        rock on and comes to lie on its base.
+        conserved, and the old corner leaves the floor without impulse. Below about 0.5 the assumption that
+        the whole impulse acts at a corner is not credible; with a negative value the block cannot continue
+        to rock and comes to rest on its base.
         """
         return 1.0 - (1.0 - math.cos(2.0 * self.slenderness_angle)) / self.inertia_ratio
 

@@ -38,7 +38,7 @@ class RigidSlider:
 
 @dataclass(frozen=True, kw_only=True)
 class SlipInterval:
-    """A stretch of time in which the body sticks, or slides one way."""
+    """An interval in which the body sticks, or slides in one direction."""
 
     start: float  #: [s]
     end: float  #: [s]
@@ -48,7 +48,7 @@ class SlipInterval:
 
 @dataclass(frozen=True, kw_only=True)
 class SlidingMotion:
-    """What a slider did."""
+    """Motion of a slider."""
 
     intervals: tuple[SlipInterval, ...]
     end: float  #: [s]
@@ -91,7 +91,7 @@ class SlidingMotion:
 def simulate_sliding(
     slider: RigidSlider, floor: FloorAcceleration, *, duration: float, slip_velocity: float = 0.0
 ) -> SlidingMotion:
-    """Follow a slider that starts at slip 0 with the given slip velocity.
+    """Integrate the motion of a slider that starts at slip 0 with the given slip velocity.
 
     Args:
         duration: [s].
@@ -133,7 +133,7 @@ def simulate_sliding(
             direction = -int(np.sign(floor.just_after(time)))
         else:
             state = np.array([state[0], 0.0])
-            direction = 0  # the rest looks at once whether it holds
+            direction = 0  # the next interval checks at once whether it sticks
     else:
         raise EventError(f"t = {time:.6g} s: {MAX_EVENTS} changes between sticking and sliding")
     return SlidingMotion(intervals=tuple(intervals), end=time, pieces=tuple(pieces))
@@ -147,7 +147,7 @@ def check_friction(mu_static: float, mu_kinetic: float) -> None:
     if mu_kinetic > mu_static:
         raise ValueError(
             f"mu_kinetic must not exceed mu_static, got {mu_kinetic} > {mu_static}; "
-            "a body that needs more to keep sliding than to start would neither stick nor slide"
+            "otherwise a body could neither stick nor slide"
         )
 
 

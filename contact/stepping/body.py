@@ -1,11 +1,10 @@
-"""What the stepper needs of a body, and no more.
+"""The interface between the time stepping and a body.
 
-A body has coordinates (their number and meaning are its own affair), base points that may touch the floor, and
-some operations, each a function here that hands over to the body: `predict`, `release`, `respond`, `complete`,
-`observe`, `shift_velocity`, and the two questions `prepared` and `sizes_match`. `contact.stepping.modal_body`
-compiles them for a
-floating frame with elastic modes, `fem.solid.nodal_kernels` for the nodes of a mesh; called by the interpreter they
-are methods of the body. The stepper is written once, against these functions.
+A body has coordinates, whose number and meaning only the body knows, and base points that may touch the floor. The
+stepping calls the functions of this module: `predict`, `release`, `respond`, `complete`, `observe`, `shift_velocity`,
+`prepared` and `sizes_match`. In compiled code they are those of `contact.stepping.modal_body` (a floating frame with
+elastic modes) or of `fem.solid.nodal_kernels` (the nodes of a mesh), see `implements`. In Python they call the method
+of the body with the same name.
 """
 
 import math
@@ -32,10 +31,10 @@ class State(NamedTuple):
 
     position: FloatArray  #: (n_d,) coordinates of the body
     velocity: FloatArray  #: (n_d,)
-    acceleration: FloatArray  #: (n_d,) of the scheme: it lags by (alpha_f - alpha_m) times the step
-    jerk: FloatArray  #: (n_d,) its change over the last step, per second
+    acceleration: FloatArray  #: (n_d,) of the scheme; it lags by (alpha_f - alpha_m) times the step
+    jerk: FloatArray  #: (n_d,) change of the acceleration over the last step, per second
     internal: FloatArray  #: (n_d,) internal forces with gravity and damping
-    damping: FloatArray  #: (n_d,) of these the material damping
+    damping: FloatArray  #: (n_d,) material damping only
     external: FloatArray  #: (n_d,) contact forces
     point: FloatArray  #: (n, 2) base points relative to the floor [m]
     force: FloatArray  #: (n, 2) contact forces on the container, tangential and normal [N]
@@ -44,11 +43,11 @@ class State(NamedTuple):
     pose: FloatArray  #: (6,) best-fit rotation, its rate, mass centre and its velocity (absolute)
     energy: FloatArray  #: (3,) kinetic, strain, gravity potential [J]
     monitor: FloatArray  #: (n_m, 4) monitored points: displacement relative to the floor [m], velocity [m/s]
-    numbers: FloatArray  #: all of it but the monitored points: the other fields look into it
+    numbers: FloatArray  #: all but the monitored points; the fields above are views of it
 
 
 def make_state(coordinates: int, points: int, monitors: int) -> State:
-    """Allocate a state of so many coordinates, base points and monitored points."""
+    """Allocate a state for these numbers of coordinates, base points and monitored points."""
     vector, pairs = (coordinates,), (points, 2)
     shapes = {
         "position": vector,
@@ -92,7 +91,7 @@ def implements(
 
 
 def predict(body: Any, scheme: Scheme, step: float, old: State, new: State) -> None:
-    """Write into `new` the coordinates that the old acceleration leads to after `step` [s]."""
+    """Write to `new` the coordinates after `step` [s] that follow from the old acceleration."""
     body.predict(scheme, step, old, new)
 
 
@@ -106,7 +105,7 @@ def release(
     floor: float,
     floor_velocity: float,
 ) -> None:
-    """From the iterate in `new`, where the base points would go without contact force, and the compliance.
+    """Base points without contact force, and their compliance, from the iterate in `new`.
 
     Writes `work.free`, `work.free_velocity` (relative to the floor) and `work.compliance`.
     """
@@ -119,25 +118,25 @@ def respond(body: Any, scheme: Scheme, step: float, old: State, new: State, work
 
 
 def complete(body: Any, new: State, floor: float) -> None:
-    """Fill in what follows from the converged coordinates: internal forces, base points, pose, energy."""
+    """Compute internal forces, base points, pose and energy from the converged coordinates."""
     body.complete(new, floor)
 
 
 def observe(body: Any, state: State, floor: float) -> None:
-    """Fill in displacement and velocity of the monitored points; asked for at samples only."""
+    """Compute displacement and velocity of the monitored points; called for samples only."""
     body.observe(state, floor)
 
 
 def shift_velocity(body: Any, state: State, velocity: float) -> None:
-    """Take the velocity of a new frame along x off that of every coordinate."""
+    """Change to a frame that moves with this velocity along x [m/s]."""
     body.shift_velocity(state, velocity)
 
 
 def prepared(body: Any, step: float) -> bool:
-    """The body can take a step of this size [s]; false asks whoever steps it to make what it needs, and to go on."""
+    """Whether the body can take a step of this size [s]; if not, the caller prepares it and continues."""
     return bool(body.prepared(step))
 
 
 def sizes_match(body: Any, run: Any) -> bool:
-    """The arrays of the run have the sizes that the body was compiled for; true where it takes any."""
+    """Whether the arrays of the run have the sizes for which the body was compiled."""
     return True

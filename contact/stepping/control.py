@@ -1,7 +1,7 @@
-"""How large the next step is, and how much energy it may lose or win.
+"""Size of the next step, and its energy error tolerance.
 
-Steps are a ladder h = largest / 2^(level/3). A step ends where a gap closes or a motion breaks; what closes, breaks
-loose or comes to a halt is met with small steps; beyond that the energy ledger decides.
+Step sizes are h = largest / 2^(level/3). A step ends where a gap closes or the floor motion has a break. Closing, the
+onset of sliding and the end of sliding get small steps. Otherwise the energy balance error decides.
 """
 
 import math
@@ -23,21 +23,20 @@ from contact.stepping.ledger import (
 )
 from contact.stepping.state import Control, Run
 
-STEPS_PER_OCTAVE = 3  #: of the ladder of step sizes
-OCTAVE = tuple(2.0 ** (-level / STEPS_PER_OCTAVE) for level in range(STEPS_PER_OCTAVE))  #: its first steps
-NEIGHBOUR = 0.25  #: base points nearer than this, over the width, close as one
-#: the ledger as a whole keeps below these shares of what may be won and lost in the end, for which it holds the steps
-#: small from that share of them on ..
+STEPS_PER_OCTAVE = 3  #: sizes per factor of two
+OCTAVE = tuple(2.0 ** (-level / STEPS_PER_OCTAVE) for level in range(STEPS_PER_OCTAVE))  #: the first of them
+NEIGHBOUR = 0.25  #: base points nearer than this, over the width, close together
+#: the whole ledger aims at these shares of the final limits of gain and loss; above `AIM_SHARE` of the aim, one step ..
 GAIN_AIM, LOSS_AIM, AIM_SHARE = 0.3, 0.9, 0.4
-#: .. by the share of what is left that one step may use, and of what any step may have that it may use always
+#: .. may use this share of the remainder, and always this share of the allowance of any step
 REMAINDER_SHARE, LEAST_ALLOWANCE = 0.1, 1e-4
-#: a run that tries more steps than so many each 1/p, and each largest step, makes no headway
+#: a run that tries more steps than this per 1/p, and per largest step, makes no progress
 ATTEMPTS_OF_ROCKING, ATTEMPTS_OF_STEP, ATTEMPTS_SPARE = 1e6, 100.0, 1e6
 
 
 @register_jitable(forceinline=True)
 def _rests_beside(state: State, other: int, point: int, width: float) -> bool:
-    """Another base point, if there is one, is closed and near."""
+    """Whether the other base point exists, is closed and near."""
     if other < 0 or other >= state.point.shape[0]:
         return False
     near = abs(state.point[other, 0] - state.point[point, 0]) < NEIGHBOUR * width
@@ -48,8 +47,8 @@ def _rests_beside(state: State, other: int, point: int, width: float) -> bool:
 def closing_time(control: Control, state: State, horizon: float) -> float:
     """Time until a base point touches the floor with more than the closing speed [s], or the horizon.
 
-    By its present velocity and acceleration; 0 for a point that has touched just now. A point beside one that is
-    closed (a wide base zips up) brings no mass of its own and is left to the ledger.
+    Extrapolated from velocity and acceleration; 0 for a point that has just touched. A point beside a closed one (a
+    wide base closes point by point) adds no mass of its own and is left to the ledger.
     """
     first = horizon
     n = state.point.shape[0]
@@ -68,7 +67,7 @@ def closing_time(control: Control, state: State, horizon: float) -> float:
 
 @compiled(inline=True)
 def switching_time(clock: Any, horizon: float) -> float:
-    """Time until the stuck support reaches its limit, or the sliding one comes to a halt [s], or the horizon."""
+    """Time until the sticking support reaches its limit or the sliding support stops [s], at most the horizon."""
     if clock.sliding == 0:
         left, rate = 1.0 - clock.utilisation, clock.utilisation_rate
     else:
@@ -80,18 +79,16 @@ def switching_time(clock: Any, horizon: float) -> float:
 
 @compiled(inline=True)
 def next_step(run: Run) -> float:
-    """The next step [s]: the ladder's at the present level, unless something is due before.
+    """The next step [s]: that of the present level, or shorter.
 
-    A gap about to close: the step ends where it closes, and the next one, on which the dashpot works, is small.
-    An instant that a step must end on: the step ends there.
+    If a gap is about to close, the step ends where it closes, and the next one, in which the dashpot acts, is small. A
+    step also ends at each instant of `run.breaks`.
     """
     clock, control = run.clock[0], run.control
     step = step_of_level(control.largest_step, clock.level)
     if step > control.closing_step:
         due = max(closing_time(control, run.old, step), control.closing_step)
-        if (
-            due < step
-        ):  # on the ladder, just short of it: a new step size is dear to a body that factors a matrix
+        if due < step:  # use a size of the sequence: a body that factors a matrix needs few different sizes
             due_level = step_level(control.largest_step, due)
             step = step_of_level(control.largest_step, due_level)
             if due == control.closing_step:
@@ -112,12 +109,11 @@ def next_step(run: Run) -> float:
 
 @compiled(inline=True)
 def allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
-    """Energy that the step attempted may lose or win [J].
+    """Allowed energy error of the attempted step [J].
 
-    A share of what it dissipates, and of what was dissipated shortly before: while an impact rings down, the
-    ringing is resolved as well as the impact deserves.
-    A first touch switches a dashpot on: what the scheme loses there falls with the step itself only, so it is held
-    against the energy that meets the floor.
+    It includes a share of the dissipation of this step and of the recent dissipation, so that the ringing after an
+    impact is resolved in proportion to the impact. A first touch switches a dashpot on: the error there is of first
+    order in the step, so it is compared with the energy that meets the floor.
     """
     control, old, new = run.control, run.old, run.new
     allowed = control.reference_energy * (control.energy_floor + control.energy_rate * step)
@@ -131,7 +127,7 @@ def allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
             )
             closing = closing or not beside
             closing_beside = closing_beside or beside
-    if closing or closing_beside:  # a base that zips up shares the allowance among its points
+    if closing or closing_beside:  # a base that closes point by point shares the allowance
         floor_velocity = run.floor[0, 1]
         relative = floor_velocity * (0.5 * floor_velocity - old.pose[VELOCITY_X])
         share = control.closing_share if closing else control.closing_share / control.base_points
@@ -141,12 +137,12 @@ def allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
 
 @compiled(inline=True)
 def ledger_allowance(run: Run, step: float) -> float:
-    """Imbalance that the ledger as a whole has room for in the step attempted [J]; infinite far from its limits.
+    """Allowed imbalance of the attempted step in view of the whole ledger [J]; infinite far from its limits.
 
-    What one step may lose or win adds up: a share of what it dissipates may be much against the energy to overturn, as
-    when a low container slides far. From `AIM_SHARE` on a step may use a share of what is left only, so that the
-    ledger comes to rest where it aims. What is left to a step always lies above its rounding, and would take 1e5 of
-    them to reach the limit. A gain is worse than a loss: it drives what it should only follow.
+    Errors of single steps add up: a share of the dissipation may be large compared with the energy to overturn, for
+    example when a low container slides far. Above `AIM_SHARE` of the aim a step may use only a share of the remainder,
+    so that the ledger converges to its aim. The allowance stays above rounding; 1e5 such steps would reach the limit.
+    A gain is worse than a loss, because it drives the motion.
     """
     control, ledger, change = run.control, run.ledger, run.change
     if change[IMBALANCE] < 0.0:
@@ -164,10 +160,10 @@ def ledger_allowance(run: Run, step: float) -> float:
 
 @compiled
 def change_level(level: int, used: float, not_held: bool) -> int:
-    """Level of the next step, when the last one used that share of the imbalance allowed to it.
+    """Level of the next step, given the used share of the allowed imbalance.
 
     The imbalance of a step is of third order: half the step has an eighth of it. Shortly after a rejection
-    (`not_held` false) the step grows only where almost nothing was lost.
+    (`not_held` false) the step grows only if almost nothing was used.
     """
     if used > 8.0:
         return level + 2 * STEPS_PER_OCTAVE
@@ -186,18 +182,18 @@ def change_level(level: int, used: float, not_held: bool) -> int:
 
 @compiled
 def step_level(largest_step: float, step: float) -> int:
-    """Level of the largest step of the ladder that is not above `step`."""
+    """Level of the largest step size that is not above `step`."""
     return max(0, int(np.ceil(STEPS_PER_OCTAVE * np.log2(largest_step / step) - 1e-9)))
 
 
 @compiled(inline=True)
 def step_of_level(largest_step: float, level: int) -> float:
-    """Step of that level of the ladder; as a product, for a power costs as much as the contact of a corner."""
+    """Step size of a level; a product, because a power costs as much as the contact of a corner."""
     octave = level // STEPS_PER_OCTAVE
     return math.ldexp(largest_step * OCTAVE[level - octave * STEPS_PER_OCTAVE], -octave)
 
 
 def most_attempts(control: Control, time: float) -> int:
-    """Steps, accepted and rejected, that a run may have tried in `time` [s]; beyond, it is stuck."""
+    """Largest number of attempted steps of a run in `time` [s]; above it, the run makes no progress."""
     rate = max(ATTEMPTS_OF_ROCKING * control.frequency_parameter, ATTEMPTS_OF_STEP / control.largest_step)
     return int(ATTEMPTS_SPARE + rate * time)

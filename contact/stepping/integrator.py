@@ -1,14 +1,12 @@
 """Adaptive time stepping of one body on a moving floor.
 
-A step is tried (`contact.stepping.step`) and redone smaller when an iteration fails, when the support breaks loose
-late in a
-large step, or when the energy ledger shows that the step lost or won more than its share; the next one is as large as
-`contact.stepping.control` says.
+A step is tried (`contact.stepping.step`) and repeated with a smaller size if an iteration fails, if the support starts
+to slide in a large step, or if its energy error exceeds the tolerance. `contact.stepping.control` chooses the next
+size.
 
-`advance` is written once. `advance_compiled` steps a `ModalBody`, `fem.solid.nodal_body.advance_full` a
-finite-element body;
-`advance` itself, as plain Python, any object with the methods of `contact.stepping.body`. All call the same compiled
-laws, contact solver and ledger.
+`advance` is written once: `advance_compiled` steps a `ModalBody`, `fem.solid.nodal_kernels.advance_nodal` a
+finite-element body, and `advance` itself, in Python, any object with the methods of `contact.stepping.body`. All use
+the same compiled laws, contact solver and ledger.
 """
 
 from typing import Any
@@ -35,21 +33,21 @@ from contact.stepping.sampling import sample
 from contact.stepping.state import Run
 from contact.stepping.step import account, attempt, copy_state, slide
 
-WEAKENING_LIMIT = 8  #: repetitions of a step for friction that falls with its slip
+WEAKENING_LIMIT = 8  #: repetitions of a step for friction that weakens with its slip
 WEAKENING_TOLERANCE = 1e-9  #: change of the coefficient at which they end
 HELD_STEPS = 6  #: after a rejection
-FADING = 0.8  #: of the memory for the imbalance, a step
+FADING = 0.8  #: of the remembered imbalance, per step
 
 #: what `advance` returns
 REACHED, OVERTURNED, FAILED, UNPREPARED = 0, 1, 2, 3
 OVERTURNING_ROTATION = 0.5 * np.pi
-#: a container that is to lie on its side counts as overturned so much before: there its side meets the floor [rad]
+#: without stop at overturning, it counts this much earlier, where the side of the container meets the floor [rad]
 LYING_MARGIN = 2e-3
 
 
 @compiled(inline=True)
 def update_records(run: Run, step: float, slip_step: float, slip_velocity: float, every: bool) -> None:
-    """Friction's state and the record of the run, from the step about to be accepted."""
+    """Update friction state and observables from the step about to be accepted."""
     clock = run.clock[0]
     clock.slip_since_break = clock.slip_since_break + abs(slip_step) if clock.sliding == 1 or every else 0.0
     clock.sliding = 1 if every else 0
@@ -79,11 +77,11 @@ def update_records(run: Run, step: float, slip_step: float, slip_velocity: float
 
 @compiled(inline=True)
 def close_step(run: Run, step: float, slip_step: float, iterations: int) -> None:
-    """Make the step the state of the run, and enter it in the ledger."""
+    """Make the step the state of the run and add its terms to the ledger."""
     clock = run.clock[0]
     for row in range(LEDGER_ROWS):
         run.ledger[row] += run.change[row]
-    if run.track[0].overturned_at == NEVER:  # how it slams down afterwards is not the question
+    if run.track[0].overturned_at == NEVER:  # the impact after overturning does not matter
         clock.least_imbalance = min(clock.least_imbalance, run.ledger[IMBALANCE])
         clock.most_imbalance = max(clock.most_imbalance, run.ledger[IMBALANCE])
         clock.dissipated = run.ledger[FRICTION] + run.ledger[CONTACT_DAMPING] + run.ledger[MATERIAL_DAMPING]
@@ -111,13 +109,13 @@ def _accept(
 
 @register_jitable(forceinline=True)
 def _kinetic_friction(contact: Contact, slid: float) -> float:
-    """Coefficient of friction of a support that slides, `slid` [m] since it broke loose."""
+    """Coefficient of friction of a sliding support after a path of `slid` [m]."""
     return weakened_mu(contact.mu_static, contact.mu_kinetic, contact.weakening, slid)
 
 
 @register_jitable(forceinline=True)
 def _is_full(run: Run) -> bool:
-    """No room for the samples of another largest step."""
+    """Whether the sample arrays cannot hold another largest step."""
     ahead = run.control.largest_step
     clock = run.clock[0]
     room = run.history.mode.size - (clock.samples - clock.samples_drained)
@@ -127,11 +125,11 @@ def _is_full(run: Run) -> bool:
 
 @register_jitable(forceinline=True)
 def enter_floor_frame(body: Any, run: Run, floor_velocity: float) -> None:
-    """Go over to the frame in which the floor, undriven from now on, stands still (Galilei): no kick, no journey.
+    """Change to the frame of the floor at the end of its motion: the floor is at rest there, without an impulse.
 
     Args:
-        body: what is stepped; run: at the end of its motion, whose `floor` rows are brought to rest.
-        floor_velocity: that it had [m/s].
+        body: the body; run: at the end of the floor motion.
+        floor_velocity: at this instant [m/s].
     """
     shift_velocity(body, run.old, floor_velocity)
     complete(body, run.old, run.floor[0, 0])
@@ -140,19 +138,18 @@ def enter_floor_frame(body: Any, run: Run, floor_velocity: float) -> None:
     run.clock[0].next_break = 0
 
 
-AFTERMATH_SLICE = 0.05  #: how often a container left alone is looked at [s]
+AFTERMATH_SLICE = 0.05  #: interval of the checks after the end of the floor motion [s]
 
 
 def advance(body: Any, run: Run, until: float) -> int:
-    """Step the body to the time `until` [s] or, as no step is cut for it, just beyond; changes `run` in place.
+    """Step the body to the time `until` [s] or just beyond (no step is shortened for it); changes `run` in place.
 
-    It also returns when the arrays of samples are full, so that no sample is lost, and at `clock.attempt_limit`, so
-    that whoever called can look up.
+    It also returns when the sample arrays are full, so that no sample is lost, and at `clock.attempt_limit`.
 
     Returns:
-        REACHED, OVERTURNED (90 degrees, where `control.stop_when_overturned`), FAILED: no convergence at
-        the smallest step, the last good state stands in `run.old`; or UNPREPARED: the body needs something made for
-        steps of `clock.unprepared_step`, after which the call is repeated.
+        REACHED; OVERTURNED (90 degrees, with `control.stop_when_overturned`); FAILED: no convergence at the smallest
+        step, `run.old` is the last good state; or UNPREPARED: prepare the body for steps of `clock.unprepared_step`
+        and call again.
     """
     control, clock, track = run.control, run.clock[0], run.track[0]
     if not sizes_match(body, run):
@@ -166,7 +163,7 @@ def advance(body: Any, run: Run, until: float) -> int:
         if clock.sliding == 1:
             mu = _kinetic_friction(run.contact, clock.slip_since_break)
         iterations, every, slip_step, slip_velocity = 0, False, 0.0, 0.0
-        for _ in range(WEAKENING_LIMIT):  # friction that falls with the slip of this very step
+        for _ in range(WEAKENING_LIMIT):  # friction that weakens with the slip of this step
             iterations = attempt(body, run, step, mu)
             if iterations < 0:
                 break
@@ -196,14 +193,14 @@ def advance(body: Any, run: Run, until: float) -> int:
             clock.level = change_level(clock.level, used, False)
             clock.growth_hold = HELD_STEPS
             continue
-        if switches:  # what follows has the time scale of the contact again
+        if switches:  # the time scale of the contact matters again
             clock.level = max(clock.level, step_level(control.largest_step, control.event_step))
         late = step / control.recent_time
         clock.recent_dissipation = clock.recent_dissipation / (1.0 + late * (1.0 + 0.5 * late)) + max(
             dissipated, 0.0
         )
         _accept(body, run, step, slip_step, slip_velocity, every, iterations)
-        # One step's imbalance may vanish by chance while it changes sign: look at three.
+        # The imbalance of one step may vanish by chance while it changes sign: remember the last steps.
         recent = max(min(used, 1.0), FADING * clock.allowance_used)
         level = change_level(clock.level, recent, clock.growth_hold == 0)
         if level < clock.level or step > control.smallest_step:

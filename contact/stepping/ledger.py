@@ -1,10 +1,10 @@
-"""The energy ledger: where the energy of the container goes, and what the time stepping itself lost or won.
+"""The energy ledger: energy terms of the container, and the energy error of the time stepping.
 
     change of (kinetic + strain + gravity + contact springs)
         = base work - friction - contact damping - material damping - imbalance
 
-Each term on the right but the last is integrated on its own, by the trapezoidal rule over forces and
-motions of both ends of a step; the imbalance is what then remains: > 0 lost, < 0 won by the scheme.
+Each term on the right but the last is integrated independently, by the trapezoidal rule over forces and motions at
+both ends of a step. The imbalance is the remainder: > 0 numerical loss, < 0 numerical gain.
 """
 
 from contact.arrays import FloatArray
@@ -15,9 +15,9 @@ from contact.jit import compiled
 BASE_WORK, FRICTION, CONTACT_DAMPING, MATERIAL_DAMPING, IMBALANCE = 0, 1, 2, 3, 4
 ROWS = 5
 
-#: how far a ledger may be open in the end, whatever a step may lose: over the energy to overturn, what may be won ..
+#: limits of the final imbalance over the energy to overturn: gain ..
 GAIN_LIMIT = 1e-4
-#: .. and lost, or over what was dissipated, if that is more
+#: .. and loss; or loss over the dissipation, if that is larger
 LOSS_LIMIT, LOSS_SHARE_LIMIT = 1e-3, 1e-2
 
 

@@ -7,7 +7,7 @@ motions, so the mass matrix is diag(m, m, I, 1, ..). Terms of the order (rotatio
 stretching, change of inertia with q - are dropped. Shabana, Dynamics of Multibody Systems, ch. 5;
 Canavin and Likins, J. Spacecraft 14 (1977) 724.
 
-Compiled for the stepper; see `contact.stepping.body` for what each function owes it.
+Compiled for the stepping; `contact.stepping.body` defines the functions.
 """
 
 import math
@@ -36,7 +36,7 @@ from contact.stepping.body import (
 )
 from contact.stepping.scheme import Scheme
 
-STEP_SLOTS = 16  #: step sizes whose effective compliance is kept
+STEP_SLOTS = 16  #: number of step sizes whose effective compliance is cached
 
 
 class ModalBody(NamedTuple):
@@ -53,9 +53,9 @@ class ModalBody(NamedTuple):
     stiffness: FloatArray  #: (m,) squares of the angular frequencies [1/s2]
     damping: FloatArray  #: (m,) damping over mass, 2 zeta omega [1/s]
     tolerance: float  #: error of a base point at which an iteration stops [m]
-    #: scratch, rewritten by the stepper: for each of so many step sizes ..
+    #: scratch of the stepping, for each cached step size ..
     cached_step: FloatArray  #: (slots + 1,) the step [s]; last, the slot to use next
-    recent: IntArray  #: (1,) the slot asked for last
+    recent: IntArray  #: (1,) the slot used last
     inverse: FloatArray  #: (slots, 3 + m) inverse effective masses
     elastic_compliance: FloatArray  #: (slots, 2 n, 2 n) effective compliance of the modes, body's frame [m/N]
     arm: FloatArray  #: (n, 2) base points relative to the mass centre, turned
@@ -76,7 +76,7 @@ def make_modal_body(
     monitor_shape: FloatArray | None = None,
     tolerance: float,
 ) -> ModalBody:
-    """Put a body together; without modes it is rigid.
+    """Make a body; without modes it is rigid.
 
     Args:
         mass: [kg]; inertia: about the mass centre [kg m2]; gravity: [m/s2].
@@ -116,10 +116,10 @@ def make_modal_body(
 
 
 class BlockOnCorners(ModalBody):
-    """A rigid body on two contact points: the same fields under a type of its own.
+    """A rigid body on two contact points: the same fields, but a separate type.
 
-    For it the stepper is compiled with all sizes known (`sizes_match`): loops over two points and three coordinates
-    are unrolled, which halves the time of a step and changes no bit of it.
+    For this type the stepping is compiled with known array sizes (`sizes_match`): loops over two points and three
+    coordinates are unrolled, which halves the time of a step with identical results.
     """
 
 
@@ -147,7 +147,7 @@ def predict(body: ModalBody, scheme: Scheme, step: float, old: State, new: State
         new.position[j] = old.position[j] + step * (old.velocity[j] + 0.5 * step * old.acceleration[j])
         new.velocity[j] = old.velocity[j] + step * old.acceleration[j]
         new.acceleration[j] = old.acceleration[j]
-    # The rotation alone enters nonlinearly: the nearer it is guessed, the fewer iterations.
+    # Only the rotation is nonlinear: a better guess saves iterations.
     change = step * old.jerk[2]
     new.position[2] += scheme.newmark_beta * step * step * change
     new.velocity[2] += scheme.newmark_gamma * step * change
@@ -156,7 +156,7 @@ def predict(body: ModalBody, scheme: Scheme, step: float, old: State, new: State
 
 @compiled
 def effective_slot(body: ModalBody, scheme: Scheme, step: float) -> int:
-    """Where the inverse effective masses and the elastic compliance of this step size lie; made if missing."""
+    """Slot of the inverse effective masses and the elastic compliance for this step size; computed if missing."""
     if body.cached_step[body.recent[0]] == step:
         return body.recent[0]
     slots = body.cached_step.size - 1
@@ -164,7 +164,7 @@ def effective_slot(body: ModalBody, scheme: Scheme, step: float) -> int:
         if body.cached_step[slot] == step:
             body.recent[0] = slot
             return slot
-    slot = int(body.cached_step[slots])  # the oldest makes room
+    slot = int(body.cached_step[slots])  # replaces the oldest
     body.cached_step[slots] = (slot + 1) % slots
     body.cached_step[slot], body.recent[0] = step, slot
     m = body.stiffness.size
@@ -314,7 +314,7 @@ def respond(body: ModalBody, scheme: Scheme, step: float, old: State, new: State
         new.acceleration[j] += by_acceleration * change
         if j == 2:
             turned = abs(change)
-    # The points were moved along the tangent of their circles: what the linearisation left out.
+    # The points were moved along the tangents of their circles: error of this linearisation.
     reach = abs(body.arm[0, 0]) + abs(body.arm[0, 1])
     return turned * (0.5 * turned * reach) / body.tolerance
 
@@ -408,7 +408,7 @@ def _state_of_block_on_corners(state: State) -> bool:
 
 @implements(interface.sizes_match, BlockOnCorners, inline=True)
 def sizes_of_block_on_corners(body: ModalBody, run: Any) -> bool:
-    """Each comparison with a constant is one that the compiler relies on from there on: it unrolls the loops."""
+    """From each comparison with a constant the compiler infers a size, and unrolls the loops."""
     work = run.work
     if body.point.shape[0] != 2 or body.stiffness.size != 0 or run.control.base_points != 2:
         return False
@@ -434,7 +434,7 @@ def place(body: ModalBody, state: State, stance: Stance, floor_velocity: float) 
 
 
 def start(body: ModalBody, state: State, floor: float) -> None:
-    """What follows from the coordinates and contact forces in `state`, and the acceleration they give."""
+    """Complete the initial state from its coordinates and contact forces, with the acceleration."""
     complete(body, state, floor)
     gather_force(body, state.force, state.position[2], body.arm, state.external)
     masses = np.concatenate([[body.mass, body.mass, body.inertia], np.ones(body.stiffness.size)])

@@ -1,9 +1,9 @@
-"""What a run is judged by, followed step by step: extremes, events, impacts, restitution.
+"""Observables of a run, updated at every step: extremes, events, impacts, restitution.
 
-A side carries nothing, and the body turns about the other, when only the outer part of the base at the other
-side touches: a flat base on an elastic bed opens from one edge long before. The corners are the first and the
-last base point. An impact counts when a corner closes whose gap had exceeded a thousandth of width times
-slenderness angle while the other was the pivot.
+A side is open, and the body turns about the other one, when only the outer part of the base at the other side is in
+contact: a flat base on an elastic bed opens at one edge long before that. The corners are the first and the last
+base point. An impact counts if a corner closes whose gap had exceeded a thousandth of width times slenderness angle
+while the other corner was the pivot.
 """
 
 import math
@@ -17,17 +17,17 @@ from contact.stepping.body import ANGULAR_VELOCITY, POTENTIAL, ROTATION, State
 
 NEVER = math.inf  #: time of an event that has not happened
 
-#: a gap that counts as an opening of the base, over the width
+#: gap of an open base, over the width
 OPENING = 1e-9
 #: gap whose closing counts as an impact, over width times slenderness angle
 IMPACT_GAP = 1e-3
-#: the angular velocity after an impact is averaged over this time, over 1/p: it rings
+#: averaging time of the angular velocity after an impact, which rings, over 1/p
 AVERAGED = 0.1
-#: corner forces are averaged over this time, over 1/p: under a dashpot the instantaneous one means nothing
+#: averaging time of corner forces, over 1/p: dashpots make the instantaneous force meaningless
 FORCE_WINDOW = 0.01
-#: a side is open when nothing but this outer part of the base, over its width, carries: the body turns about it
+#: outer part of the base about which the body turns when the rest is open, over the width
 PIVOT = 0.15
-#: rotation ratio above which an open side is called rocking
+#: rotation ratio above which motion with an open side is rocking
 ROCKING = 0.01
 
 #: modes of motion as stored in a history, and as bits in `modes`
@@ -41,11 +41,11 @@ OBSERVABLES = np.dtype(
         ("slip_travel", "f8"),
         ("max_uplift", "f8"),
         ("max_penetration", "f8"),
-        ("max_corner_force", "f8"),  # mean over a short while
+        ("max_corner_force", "f8"),  # mean over a short time
         ("peak_corner_force", "f8"),  # the instantaneous one
         ("left_force", "f8"),  # at the end of the last step
         ("right_force", "f8"),
-        ("impulse_time", "f8"),  # how long the impulses have been gathered
+        ("impulse_time", "f8"),  # over which the impulses were integrated
         ("left_impulse", "f8"),
         ("right_impulse", "f8"),
         ("max_top_displacement", "f8"),
@@ -59,13 +59,13 @@ OBSERVABLES = np.dtype(
         ("mode", "i8"),
         ("left_open", "i8"),  # 1 while the left side carries nothing
         ("right_open", "i8"),
-        ("left_gap", "f8"),  # largest gap of that corner since it opened with the other as pivot
+        ("left_gap", "f8"),  # largest gap of this corner since it opened with the other as pivot
         ("right_gap", "f8"),
         ("peak_energy", "f8"),  # potential energy above rest at the last turning point
         ("restitution_by_peaks", "f8"),
         ("angular_acceleration", "f8"),  # angular acceleration over the last step
-        ("rigid_gain", "f8"),  # what a rigid block's angular velocity has changed by since the first impact
-        ("averaging_time", "f8"),  # how long the angular velocity has been averaged since
+        ("rigid_gain", "f8"),  # change of a rigid block's angular velocity since the first impact
+        ("averaging_time", "f8"),  # over which the angular velocity has been averaged
         ("mean_velocity", "f8"),
         ("velocity_before", "f8"),  # angular velocity just before the first impact
         (
@@ -79,7 +79,7 @@ OBSERVABLES = np.dtype(
 
 
 def make_observables() -> Any:
-    """A fresh record array (1,) of OBSERVABLES: nothing has happened yet."""
+    """A record array (1,) of OBSERVABLES at the start."""
     track = np.zeros(1, OBSERVABLES).view(np.recarray)
     for name in ("first_opening", "first_uplift", "overturned_at", "first_impact"):
         track[name] = NEVER
@@ -89,7 +89,7 @@ def make_observables() -> Any:
 
 
 def record_start(track: Any, control: Any, state: State) -> None:
-    """Note the initial state: a container may start tilted, with a side already open."""
+    """Record the initial state: a container may start tilted, with an open side."""
     n = control.base_points
     gap, x = state.point[:n, 1], state.point[:n, 0]
     closed = gap <= 0.0
@@ -117,7 +117,7 @@ def record_start(track: Any, control: Any, state: State) -> None:
         begun["first_opening"] = 0.0
     if left_open + right_open == 1:
         begun |= {"first_uplift": 0.0, "max_rocking": rotation}
-    for name, value in begun.items():  # by item: attributes of a record are looked up ten times as slowly
+    for name, value in begun.items():  # by item: attribute access of a record takes ten times as long
         track[name] = value
 
 
@@ -134,11 +134,11 @@ def update_observables(
     slip_step: float,
     floor_acceleration: float,
 ) -> None:
-    """Update the record with the accepted step from `old` to `new`.
+    """Update the observables with the accepted step from `old` to `new`.
 
     Args:
         track: record of OBSERVABLES.
-        control: the stepping's `Control`: sizes and constants of the container.
+        control: the stepping's `Control`: constants of the container.
         old, new: states at both ends of the step.
         time: at its end [s]; step: its length [s].
         sliding: every loaded point slides.
@@ -149,7 +149,7 @@ def update_observables(
     rotation = new.pose[ROTATION]
     track.max_rotation = max(track.max_rotation, abs(rotation))
     before, after = old.pose[ANGULAR_VELOCITY], new.pose[ANGULAR_VELOCITY]
-    if before * after < 0.0:  # it turned round within the step, where a sample may lie
+    if before * after < 0.0:  # it turned round within the step
         share = before / (before - after)
         peak = hermite(share, step, old.pose[ROTATION], before, rotation, after)
         track.max_rotation = max(track.max_rotation, abs(peak))
@@ -199,7 +199,7 @@ def update_observables(
 
 @register_jitable(forceinline=True)
 def find_impact(track: Any, control: Any, old: State, new: State, step: float) -> int:
-    """The corner that a counted impact struck in this step: -1 left, +1 right, 0 none."""
+    """Corner of a counted impact in this step: -1 left, +1 right, 0 none."""
     last = control.base_points - 1
     counts = IMPACT_GAP * control.width * control.slenderness_angle
     left, right = new.point[0, 1], new.point[last, 1]
@@ -232,10 +232,10 @@ def follow_restitution(
     struck: int,
     floor_acceleration: float,
 ) -> None:
-    """Ratio of angular velocities over the first impact, and of the heights of the peaks around it.
+    """Restitution of the first impact, from angular velocities and from the heights of the peaks around it.
 
-    The impact takes a moment and leaves ringing behind. So the velocity after it is the mean over a while of the
-    angular velocity less what a rigid block rocking about the new pivot would have gained since the impact.
+    The impact has a duration and causes ringing. So the velocity after it is a mean over `AVERAGED`, after subtracting
+    the change that a rigid block rocking about the new pivot would have had since the impact.
     """
     velocity = new.pose[ANGULAR_VELOCITY]
     if struck != 0 and track.impacts == 1:
@@ -257,7 +257,7 @@ def follow_restitution(
         if struck != 0 or track.averaging_time >= AVERAGED / control.frequency_parameter:
             if track.averaging_time >= 0.5 * AVERAGED / control.frequency_parameter:
                 ratio = track.mean_velocity / (track.averaging_time * track.velocity_before)
-                if ratio > 0.0:  # else it did not go over to the new pivot: there is no such ratio
+                if ratio > 0.0:  # otherwise it did not change to the new pivot, and there is no ratio
                     track.restitution_by_velocity = ratio
             track.new_pivot = 0
     turned = old.pose[ANGULAR_VELOCITY] * velocity < 0.0 or old.pose[ANGULAR_VELOCITY] == 0.0

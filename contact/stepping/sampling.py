@@ -1,4 +1,4 @@
-"""Samples of a run on an exact grid of times, taken within the step just accepted."""
+"""Samples of a run on an exact grid of times, interpolated within the accepted step."""
 
 from typing import Any
 
@@ -42,7 +42,7 @@ SAME_INSTANT = 1e-12  #: difference of two times, over their size, that is round
 def write_columns(
     run: Run, row: FloatArray, force: FloatArray, time: float, s: float, step: float, slip_step: float
 ) -> None:
-    """One row of a history at the share `s` of the step; `force` (n, 2) is that of this instant."""
+    """One row of a history at the share `s` of the step; `force` (n, 2) is the contact force at this instant."""
     old, new = run.old, run.new
     a, b = old.pose, new.pose
     floor, _, _ = floor_motion(run.motion, time)
@@ -67,8 +67,8 @@ def write_columns(
 def follow_contents(run: Run, s: float, interval: float) -> None:
     """Largest mean acceleration of the monitored contents over an interval of the history.
 
-    The instantaneous one means nothing under a dashpot that acts at a point: it grows without bound as the step
-    falls. What an accelerometer of the history's band would show does not.
+    The instantaneous acceleration under a dashpot at a point grows without bound as the step decreases; the mean over
+    a sampling interval, which an accelerometer would record, does not.
     """
     old, new, watched = run.old.monitor, run.new.monitor, run.monitor_velocity
     for i in range(watched.shape[0]):
@@ -85,7 +85,7 @@ def follow_contents(run: Run, s: float, interval: float) -> None:
 
 @compiled(inline=True)
 def write_coordinates(samples: Samples, at: int, old: State, new: State, s: float, step: float) -> None:
-    """Coordinates of the body and their rates at the share `s` of the step, where they are kept."""
+    """Coordinates and their rates at the share `s` of the step, where the samples keep them."""
     for j in range(samples.position.shape[1]):
         samples.position[at, j] = hermite(
             s, step, old.position[j], old.velocity[j], new.position[j], new.velocity[j]
@@ -98,10 +98,10 @@ def write_coordinates(samples: Samples, at: int, old: State, new: State, s: floa
 def sample(
     body: Any, run: Run, samples: Samples, written: int, origin: int, step: float, slip_step: float
 ) -> int:
-    """Write the samples that fall into the step just attempted, from the old time up to and with the new one.
+    """Write the samples from the old time up to and including the new time; returns the number of samples so far.
 
-    `written` samples exist so far, the first `origin` of them are no longer in the arrays; returns how many exist now.
-    Positions by cubics through both ends' positions and velocities, everything else linear.
+    `written` samples exist before, and the first `origin` of them are no longer in the arrays. Positions are
+    interpolated by cubics through positions and velocities of both ends, all else linearly.
     """
     old, new, clock = run.old, run.new, run.clock[0]
     observed, end = False, clock.time + step

@@ -1,6 +1,6 @@
-"""What a run consists of besides its body: constants of the stepping, state, record and samples, as plain arrays.
+"""Data of a run besides its body: constants of the stepping, state, records and samples, as plain arrays.
 
-Compiled code and Python read the same tuples; what changes, changes in place.
+Compiled code and Python use the same tuples; variable data change in place.
 """
 
 from typing import Any, NamedTuple
@@ -41,21 +41,21 @@ ROW_COLUMNS = 16
 
 
 class Control(NamedTuple):
-    """Limits of the stepping: constants of one run."""
+    """Constants of the step control and the container."""
 
     largest_step: float  #: [s]
     smallest_step: float  #: [s]
-    event_step: float  #: largest step in which the support may break loose [s]
-    closing_step: float  #: largest step that may begin at the first touch of a point [s]
-    closing_speed: float  #: slower closings are left to the energy ledger [m/s]
-    reference_energy: float  #: what it takes to overturn the container [J]
+    event_step: float  #: largest step in which the support may start to slide [s]
+    closing_step: float  #: largest step from the first touch of a point on [s]
+    closing_speed: float  #: slower closings are left to the energy balance [m/s]
+    reference_energy: float  #: energy to overturn the container [J]
     energy_rate: float  #: imbalance allowed per second, over the reference energy [1/s]
     energy_floor: float  #: imbalance allowed in any step, over the reference energy [-]
-    energy_share: float  #: imbalance allowed over what a step dissipates [-]
-    recent_share: float  #: imbalance allowed over what was dissipated shortly before [-]
-    recent_time: float  #: how long that counts [s]
+    energy_share: float  #: imbalance allowed over the dissipation of the step [-]
+    recent_share: float  #: imbalance allowed over the recent dissipation [-]
+    recent_time: float  #: decay time of the recent dissipation [s]
     closing_share: (
-        float  #: imbalance allowed when a gap closes, over the kinetic energy relative to the floor [-]
+        float  #: imbalance allowed when a gap closes, over the kinetic energy against the floor [-]
     )
     mass: float  #: [kg]
     gravity: float  #: [m/s2]
@@ -64,8 +64,8 @@ class Control(NamedTuple):
     slenderness_angle: float  #: [rad]
     width: float  #: [m]
     stop_when_overturned: bool
-    top_monitors: int  #: of the monitored points, so many first ones lie at the top
-    base_points: int  #: of the contact points, so many first ones make up the base
+    top_monitors: int  #: number of monitored points at the top; they come first
+    base_points: int  #: number of contact points of the base; they come first
 
 
 #: what changes from step to step besides the state; `Run.clock` is one of these
@@ -111,7 +111,7 @@ STEP_RECORD = np.dtype(
 
 
 class Samples(NamedTuple):
-    """What is kept on an exact grid of times, as much of it as the arrays hold: n_s samples."""
+    """Samples on an exact grid of times, at most as many as the arrays hold: n_s."""
 
     interval: float  #: [s]
     columns: FloatArray  #: (n_s, 16 or 0) of a history, see ROW_...
@@ -124,7 +124,7 @@ class Samples(NamedTuple):
 def make_samples(
     interval: float, count: int, points: int, *, columns: bool = False, position: int = 0, velocity: int = 0
 ) -> Samples:
-    """Room for `count` samples; `position` and `velocity` say how many coordinates are kept."""
+    """Allocate `count` samples; `position` and `velocity`: number of coordinates to keep."""
     return Samples(
         interval=float(interval),
         columns=np.zeros((count, ROW_COLUMNS if columns else 0)),
@@ -136,22 +136,22 @@ def make_samples(
 
 
 class Run(NamedTuple):
-    """Everything a run consists of besides the body: constants, and what changes in place."""
+    """All data of a run besides the body; variable data change in place."""
 
     scheme: Scheme
     contact: Contact
     motion: FloorMotion
-    breaks: FloatArray  #: instants at which a step must end [s], rising, the last one infinite
+    breaks: FloatArray  #: instants at which a step must end [s], sorted, the last one infinite
     control: Control
     old: State
     new: State
     work: Workspace
     floor: FloatArray  #: (2, 3) displacement, velocity, acceleration of the floor before and after the step
-    slip: FloatArray  #: (n,) sliding of the points in the step attempted [m]
-    change: FloatArray  #: (5,) what the step attempted adds to the ledger [J]
+    slip: FloatArray  #: (n,) sliding of the points in the attempted step [m]
+    change: FloatArray  #: (5,) contribution of the attempted step to the ledger [J]
     ledger: FloatArray  #: (5,) [J]
     clock: Any  #: (1,) of STEP_RECORD
-    track: Any  #: (1,) of tracking.OBSERVABLES
+    track: Any  #: (1,) of `observables.OBSERVABLES`
     monitor_velocity: FloatArray  #: (n_m, 2) velocities of the monitored points at the last sample [m/s]
     history: Samples
     frames: Samples
@@ -170,7 +170,7 @@ def make_run(
     history: Samples,
     frames: Samples,
 ) -> Run:
-    """Put a run together at t = 0; `old` holds the initial state, completed."""
+    """Assemble a run at t = 0; `old` is the initial state, completed."""
     n = old.point.shape[0]
     clock = np.zeros(1, STEP_RECORD).view(np.recarray)
     clock["smallest_step"] = NEVER

@@ -1,7 +1,8 @@
-"""One step of one body, tried: predict, then free motion -> contact forces -> response until the points stand where the
-forces were computed; how the base slid in it, and what it adds to the energy ledger.
+"""One attempted step of one body.
 
-Whether it is accepted is the matter of `contact.stepping.integrator`.
+Predict the coordinates, then iterate free motion, contact forces and response of the body until the base points are
+where the forces were computed. Then the sliding of the base and the terms of the energy ledger follow.
+`contact.stepping.integrator` decides whether to accept the step.
 """
 
 from typing import Any
@@ -46,10 +47,10 @@ def copy_rows(target: FloatArray, source: FloatArray) -> None:
 
 @compiled(inline=True)
 def rebase_acceleration(scheme: Scheme, old: State, shortened: float) -> None:
-    """Shift the scheme's acceleration to the lag that belongs to a step shorter by `shortened` [s].
+    """Shift the acceleration of the scheme to the lag of a step that is shorter by `shortened` [s].
 
-    The averaged equation puts it (alpha_f - alpha_m) steps before the end of its step. Left as it is when the
-    step changes, it would cost the scheme its second order.
+    The averaged equation places it (alpha_f - alpha_m) steps before the end of its step. Without the shift, a change of
+    the step would reduce the scheme to first order.
     """
     shift = (scheme.alpha_f - scheme.alpha_m) * shortened
     if shift != 0.0:
@@ -70,7 +71,7 @@ def store_rates(step: float, old: State, new: State, work: Workspace) -> None:
 
 @register_jitable(forceinline=True)
 def attempt(body: Any, run: Run, step: float, mu: float) -> int:
-    """Try one step; the result stands in `run.new`. Returns the iterations taken, or -1."""
+    """Try one step and write the result to `run.new`; returns the number of iterations, or -1."""
     old, new, work, scheme = run.old, run.new, run.work, run.scheme
     clock = run.clock[0]
     floor, floor_velocity, floor_acceleration = floor_motion(run.motion, clock.time + step)
@@ -107,7 +108,7 @@ def slide(run: Run, step: float) -> tuple[bool, float, float]:
         normal, tangential = new.force[i, 1], new.force[i, 0]
         moved = new.point[i, 0] - old.point[i, 0]
         stick = old.stick[i]
-        if old.point[i, 1] >= 0.0:  # open at the beginning: only the closed part of the step slides
+        if old.point[i, 1] >= 0.0:  # open at the beginning: it slides in the closed part of the step only
             below = max(0.0, -new.point[i, 1])
             moved *= below / (below + old.point[i, 1]) if below > 0.0 else 0.0
         run.slip[i] = 0.0
@@ -135,14 +136,14 @@ def slide(run: Run, step: float) -> tuple[bool, float, float]:
             elif work.slope[i, 0] != 0.0 or direction * work.law[i, 0] < 0.0:
                 every = False
             direction = work.law[i, 0]
-    if total <= 0.0:  # in flight nothing tells sticking from sliding: as before
+    if total <= 0.0:  # in flight: sliding or sticking as before
         return run.clock[0].sliding == 1, 0.0, 0.0
     return every, weighted / total, velocity / total
 
 
 @compiled(inline=True)
 def account(run: Run) -> float:
-    """What the step attempted adds to the ledger, into `run.change`; returns what it dissipated [J]."""
+    """Write the ledger terms of the attempted step to `run.change`; returns its dissipation [J]."""
     old, new, change = run.old, run.new, run.change
     shear = 0.0
     for i in range(new.force.shape[0]):
