@@ -7,7 +7,6 @@ from numba.extending import register_jitable
 
 from contact.arrays import FloatArray
 from contact.jit import compiled
-from contact.motion.interpolation import hermite
 from contact.motion.kernel import floor_motion
 from contact.stepping.body import (
     ANGULAR_VELOCITY,
@@ -20,6 +19,7 @@ from contact.stepping.body import (
     observe,
 )
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
+from contact.stepping.scheme import hermite
 from contact.stepping.state import (
     ROW_ANGULAR_VELOCITY,
     ROW_BASE_WORK,

@@ -34,7 +34,7 @@ FLOOR = ("motion.amplitude_m=0.05", "motion.angular_frequency_rad_s=6.93", "moti
 
 
 def throughput(case: Case) -> tuple[float, str]:
-    """Runs per second of one core, and what a run does."""
+    """Runs per second of one core, and details of a run."""
     container = build_model(case).container
 
     def fresh() -> list[Model]:
