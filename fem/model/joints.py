@@ -148,12 +148,11 @@ def joints_of(model: Model, heights: FloatArray | None = None) -> Joints | None:
         heights: (J,) of mesh lines taken for joints; those between the boxes, if not given [m].
     """
     container = model.container
-    mesh, elements, basis = container.mesh, container.elements, container.basis
+    mesh, elements, shapes = container.mesh, container.elements, container.basis.shapes
     box = model.case.container
     lines = box.height_m * np.arange(1.0, box.boxes) if heights is None else np.asarray(heights, dtype=float)
     if lines.size == 0:
         return None
-    shapes = np.zeros((0, *elements.nodes.shape)) if basis is None else basis.shapes
     layers = _layers(elements, mesh, np.append(lines, np.inf))
     arm = elements.nodes - np.asarray(mesh.centroid)
     spin = np.column_stack([arm[:, 1], -arm[:, 0]])  # velocities of a unit rotation

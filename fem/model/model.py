@@ -66,10 +66,9 @@ class Model:
     @property
     def frequencies(self) -> FloatArray:
         """Elastic frequencies of the model's modes [Hz]: all of `reduced`, the first of `full`, none of `rigid`."""
-        if self.container.basis is not None:
-            return self.container.basis.angular_frequencies / (2.0 * np.pi)
-        first = self.container.first
-        return np.array([first / (2.0 * np.pi)]) if math.isfinite(first) else np.zeros(0)
+        container = self.container
+        full = np.array([container.first]) if self.case.solver.model == "full" else np.zeros(0)
+        return np.append(container.basis.angular_frequencies, full) / (2.0 * np.pi)
 
 
 def build_model(

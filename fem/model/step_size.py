@@ -108,12 +108,10 @@ def _struck_mass(case: Case, container: Container) -> float:
     """
     mesh, corner = container.mesh, container.nodes[0]
     if case.solver.model == "full":
-        return float((container.elements.mass @ np.ones(len(container.elements.nodes)))[corner])
+        return float(container.elements.nodal_mass[corner])
     arm = container.elements.nodes[corner, 0] - mesh.centroid[0]
-    inverse = 1.0 / mesh.mass + arm * arm / mesh.inertia
-    if container.basis is not None:
-        inverse += float(np.sum(container.basis.shapes[:, corner, 1] ** 2))
-    return 1.0 / inverse
+    elastic = float(np.sum(container.basis.shapes[:, corner, 1] ** 2))
+    return 1.0 / (1.0 / mesh.mass + arm * arm / mesh.inertia + elastic)
 
 
 def control_of(
@@ -167,12 +165,11 @@ def scheme_of(case: Case, container: Container, penalty: float, control: Control
     Raises:
         CaseError: a Newmark run without averaging that would gain energy.
     """
-    solver, elements = case.solver, container.elements
+    solver = case.solver
     if solver.scheme == "generalised-alpha":
         return generalised_alpha(solver.spectral_radius)
-    nodal = elements.mass @ np.ones(len(elements.nodes))
     stiff = penalty * solver.element_size_m / case.container.youngs_modulus_Pa
-    rate = math.sqrt(float(np.max(contact.normal_stiffness / nodal[container.nodes])))
+    rate = math.sqrt(float(np.max(contact.normal_stiffness / container.elements.nodal_mass[container.nodes])))
     if stiff > STIFF_CONTACT and control.largest_step * rate > LARGE_CONTACT_STEP:
         raise CaseError(
             "[solver] scheme = 'newmark' gains energy at impacts here: normal_penalty_Pa_m x element_size_m / "
