@@ -1,4 +1,4 @@
-"""Runs per second and core of the `rigid` model, with the accuracy of the same settings.
+"""Runs per second and core of the `rigid` model, at a setting whose accuracy is measured beside it.
 
 20 s of a homogeneous stack, and of a box, on a floor x = 0.05 m sin(6.93 t) that starts with a jerk, many runs
 for their outcome alone, on one thread. Accuracy: free rocking of the stack from half its slenderness angle with the
@@ -12,7 +12,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from measuring import Figure, at_most, cpu_seconds, median_of, report, stepped
+from measuring import Figure, cpu_seconds, median_of, report, stepped
 
 from contact.reference.closed_forms_rocking import peak_after_impacts, quarter_period
 from contact.reference.rigid_block import RigidBlock
@@ -27,14 +27,14 @@ DURATION = 20.0  # s
 STACK_RATE, BOX_RATE = 500.0, 100.0  # runs per second and core
 ACCURACY, COUNT = 0.02, 6
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
-#: settings of maps; the penalty is that of the stack and of the box
+#: as maps would be computed; the penalty is the one chosen for the stack and for the box
 SETTING = ("solver.energy_tolerance=10", "solver.step_s=0.024", "contact.normal_penalty_Pa_m=1.2e9")
 JERK = ("solver.model=rigid", "container.section=solid", "contact.mu_static=0.4", "contact.mu_kinetic=0.4")
 FLOOR = ("motion.amplitude_m=0.05", "motion.angular_frequency_rad_s=6.93", "motion.start=rest")
 
 
 def throughput(case: Case) -> tuple[float, str]:
-    """Runs per second of one core, and what a run does."""
+    """Runs per second of one core, and details of a run."""
     container = build_model(case).container
 
     def fresh() -> list[Model]:
@@ -87,30 +87,34 @@ def accuracy() -> list[Figure]:
     ratios = peaks[1:] / peaks[:-1]
     halves = np.diff(zeros)
     exact_halves = np.array([2.0 * quarter_period(STACK, peak) for peak in exact[1:]])
-    figures = []
+    rows = []
     for what, found, wanted in (
         ("ratios of successive peaks", ratios[:COUNT], (exact[1:] / exact[:-1])[: len(ratios)]),
         ("half periods [s]", halves[:COUNT], exact_halves),
     ):
-        error, name = (
-            float(np.abs(found / wanted - 1.0).max()),
-            f"free rocking of the stack, {len(found)} {what}",
+        error = float(np.abs(found / wanted - 1.0).max())
+        rows.append(
+            Figure(
+                f"free rocking of the stack, {len(found)} {what}: largest error",
+                f"{100.0 * error:.2f} % (penalty {penalty:.3g} Pa/m)",
+                f"<= {100.0 * ACCURACY:g} %",
+                error <= ACCURACY,
+            )
         )
-        details = f" (penalty {penalty:.3g} Pa/m)"
-        figures.append(at_most(f"{name}: largest relative error", error, ACCURACY, ".4f", details=details))
-    return figures
+    return rows
 
 
 def main() -> int:
     figures = []
     for name, limit in (("seed_stack", STACK_RATE), ("seed_box", BOX_RATE)):
         rate, what = throughput(load_case(name, [*JERK, *FLOOR, *SETTING, f"solver.duration_s={DURATION}"]))
-        figures += [
-            Figure(f"{name}: runs per second and core", f"{rate:.0f}", f">= {limit:g}", rate >= limit),
-            Figure(f"{name}: one run", what),
-        ]
-    title = f"rigid model, 20 s on a floor that starts with a jerk; {', '.join(SETTING)}"
-    return report(title, figures + accuracy())
+        figures.append(
+            Figure(f"{name}: runs per second and core", f"{rate:.0f}", f">= {limit:g}", rate >= limit)
+        )
+        figures.append(Figure(f"{name}: one run", what))
+    return report(
+        f"rigid model, 20 s on a floor that starts with a jerk; {', '.join(SETTING)}", figures + accuracy()
+    )
 
 
 if __name__ == "__main__":
