@@ -1,7 +1,6 @@
 """From a case to the model that is stepped: container, equilibrium on the floor, base motion, limits, initial state.
 
-Every "auto" is decided here and in the functions called here, once and for every kind of model; `full`, `reduced` and
-`rigid` differ in the body alone.
+The models `full`, `reduced` and `rigid` differ in the body alone.
 """
 
 import math
@@ -77,7 +76,6 @@ def build_model(
     """Discretise a case, settle it on its floor and write its initial state.
 
     Args:
-        case: what to build.
         container: of the case, where it is built already.
         equilibrium: of that container, where `same_equilibrium` allows its reuse.
 
