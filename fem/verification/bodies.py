@@ -13,7 +13,7 @@ from contact.interface.equilibrium import Stance
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.solver import Contact, make_workspace
 from contact.motion.kernel import UNIFORM, as_floor_motion
-from contact.stepping import modal_body
+from contact.stepping import modal_kernels
 from contact.stepping.body import State, make_state
 from contact.stepping.integrator import REACHED
 from contact.stepping.modal_body import ModalBody
@@ -108,7 +108,7 @@ def free_run(
         compliance = np.zeros((2 * points, 2 * points))
         body.place(old, stance, StaticResponse(displacement=unstrained, compliance=compliance), 0.0)
     else:
-        modal_body.place(body, old, stance, 0.0)
+        modal_kernels.place(body, old, stance, 0.0)
     if velocity is not None:
         old.velocity[:] = np.ravel(velocity)
     if modal_position is not None:
@@ -116,7 +116,7 @@ def free_run(
     if isinstance(body, FullBody):
         body.start(old, 0.0)
     else:
-        modal_body.start(body, old, 0.0)
+        modal_kernels.start(body, old, 0.0)
     run = make_run(
         scheme=generalised_alpha(0.5) if scheme is None else scheme,
         contact=_contact(np.full(points, 1.0) if springs is None else springs, body.mass),
