@@ -10,12 +10,11 @@ import math
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse.linalg import spsolve
 
 from contact.stepping.body import State
 from contact.stepping.scheme import Scheme, generalised_alpha
-from fem.runtime.arrays import FloatArray
+from fem.runtime.arrays import BoolArray, FloatArray
 from fem.solid import nodal_kernels as nodal_body
 from fem.solid.assembly import FiniteElements, assemble
 from fem.solid.nodal_body import FullBody
@@ -191,7 +190,7 @@ class ContinuumBody(DrivenBody):
         return load + self.weight
 
 
-def _on_face(axis: int, place: float, x: FloatArray, z: FloatArray) -> NDArray[np.bool_]:
+def _on_face(axis: int, place: float, x: FloatArray, z: FloatArray) -> BoolArray:
     return np.asarray(np.abs((x, z)[axis] - place) < 1e-9)
 
 

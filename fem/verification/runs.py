@@ -16,6 +16,7 @@ from contact.motion.kernel import FloorMotion, floor_motion
 from contact.reference.rigid_block import RigidBlock
 from contact.stepping import modal_body
 from contact.stepping.modal_body import ModalBody
+from fem.assessment.rigid_check import block_of
 from fem.assessment.verdict import outcome_of
 from fem.case.case import Case, read_case
 from fem.model.container import Container
@@ -104,15 +105,7 @@ class Finished:
     @property
     def block(self) -> RigidBlock:
         """The analytic block with the mass, centroid and inertia of the mesh."""
-        mesh = self.model.container.mesh
-        half, height = 0.5 * mesh.width, mesh.centroid[1]
-        square = half**2 + height**2
-        return RigidBlock(
-            half_width=half,
-            centroid_height=height,
-            gravity=self.model.case.gravity_m_s2,
-            inertia_ratio=1.0 + mesh.inertia / (mesh.mass * square),
-        )
+        return block_of(self.model)
 
 
 def run(case: Case, values: Mapping[str, Any] | None = None, container: Container | None = None) -> Finished:
@@ -149,13 +142,8 @@ def bisected(happens: Callable[[float], bool], low: float, high: float, *, resol
 
 def with_steps_of(model: Model, step: float) -> Model:
     """The model with every step of one size [s], whatever its energy balance."""
-    loose = model.run.control._replace(
-        largest_step=step,
-        smallest_step=step,
-        event_step=step,
-        closing_step=step,
-        energy_rate=1e30,
-    )
+    sizes = dict.fromkeys(("largest_step", "smallest_step", "event_step", "closing_step"), step)
+    loose = model.run.control._replace(**sizes, energy_rate=1e30)
     return replace(model, run=model.run._replace(control=loose))
 
 
