@@ -142,8 +142,13 @@ def bisected(happens: Callable[[float], bool], low: float, high: float, *, resol
 
 def with_steps_of(model: Model, step: float) -> Model:
     """The model with every step of one size [s], whatever its energy balance."""
-    sizes = dict.fromkeys(("largest_step", "smallest_step", "event_step", "closing_step"), step)
-    loose = model.run.control._replace(**sizes, energy_rate=1e30)
+    loose = model.run.control._replace(
+        largest_step=step,
+        smallest_step=step,
+        event_step=step,
+        closing_step=step,
+        energy_rate=1e30,
+    )
     return replace(model, run=model.run._replace(control=loose))
 
 
