@@ -98,7 +98,7 @@ def _text(path: Path) -> str:
     size = path.stat().st_size
     if size > LARGEST_FILE:
         raise ValueError(
-            f"{path.name}: the file has {size / 2**20:.0f} MB; a motion table may have {LARGEST_FILE >> 20} MB"
+            f"{path.name}: {size} bytes; a motion table may have at most {LARGEST_FILE >> 20} MB"
         )
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -162,7 +162,7 @@ def _check_header(content: str, place: str, unit: Unit) -> None:
         found = _unit_of(field)
         if found is not None and found != wanted:
             raise ValueError(
-                f"{place}: the header gives {found!r}, but the case gives {wanted!r} ({field[:40]!r}); "
+                f"{place}: the header gives {found!r}, but {wanted!r} is needed ({field[:40]!r}); "
                 f"set the unit or convert the column"
             )
 

@@ -30,7 +30,7 @@ from contact.stepping.ledger import CONTACT_DAMPING, FRICTION, IMBALANCE, MATERI
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.observables import FALLEN, NEVER, update_observables
 from contact.stepping.sampling import sample
-from contact.stepping.state import Run
+from contact.stepping.state import RunState
 from contact.stepping.step import account, attempt, copy_state, slide
 
 WEAKENING_LIMIT = 8  #: repetitions of a step for friction that weakens with its slip
@@ -46,7 +46,7 @@ LYING_MARGIN = 2e-3
 
 
 @compiled(inline=True)
-def update_records(run: Run, step: float, slip_step: float, slip_velocity: float, every: bool) -> None:
+def update_records(run: RunState, step: float, slip_step: float, slip_velocity: float, every: bool) -> None:
     """Update friction state and observables from the step about to be accepted."""
     clock = run.clock[0]
     clock.slip_since_break = clock.slip_since_break + abs(slip_step) if clock.sliding == 1 or every else 0.0
@@ -76,7 +76,7 @@ def update_records(run: Run, step: float, slip_step: float, slip_velocity: float
 
 
 @compiled(inline=True)
-def close_step(run: Run, step: float, slip_step: float, iterations: int) -> None:
+def close_step(run: RunState, step: float, slip_step: float, iterations: int) -> None:
     """Make the step the state of the run and add its terms to the ledger."""
     clock = run.clock[0]
     for row in range(LEDGER_ROWS):
@@ -97,7 +97,13 @@ def close_step(run: Run, step: float, slip_step: float, iterations: int) -> None
 
 @register_jitable(forceinline=True)
 def _accept(
-    body: Any, run: Run, step: float, slip_step: float, slip_velocity: float, every: bool, iterations: int
+    body: Any,
+    run: RunState,
+    step: float,
+    slip_step: float,
+    slip_velocity: float,
+    every: bool,
+    iterations: int,
 ) -> None:
     """Make the step attempted the state of the run; samples, ledger and record update_observables."""
     clock = run.clock[0]
@@ -114,7 +120,7 @@ def _kinetic_friction(contact: Contact, slid: float) -> float:
 
 
 @register_jitable(forceinline=True)
-def _is_full(run: Run) -> bool:
+def _is_full(run: RunState) -> bool:
     """Whether the sample arrays cannot hold another largest step."""
     ahead = run.control.largest_step
     clock = run.clock[0]
@@ -124,7 +130,7 @@ def _is_full(run: Run) -> bool:
 
 
 @register_jitable(forceinline=True)
-def enter_floor_frame(body: Any, run: Run, floor_velocity: float) -> None:
+def enter_floor_frame(body: Any, run: RunState, floor_velocity: float) -> None:
     """Change to the frame of the floor at the end of its motion: the floor is at rest there, without an impulse.
 
     Args:
@@ -141,7 +147,7 @@ def enter_floor_frame(body: Any, run: Run, floor_velocity: float) -> None:
 AFTERMATH_SLICE = 0.05  #: interval of the checks after the end of the floor motion [s]
 
 
-def advance(body: Any, run: Run, until: float) -> int:
+def advance(body: Any, run: RunState, until: float) -> int:
     """Step the body to the time `until` [s] or just beyond (no step is shortened for it); changes `run` in place.
 
     It also returns when the sample arrays are full, so that no sample is lost, and at `clock.attempt_limit`.

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from numba.extending import register_jitable
 
-from contact.motion.interpolation import hermite
 from contact.stepping.body import ANGULAR_VELOCITY, POTENTIAL, ROTATION, State
+from contact.stepping.scheme import hermite
 
 NEVER = math.inf  #: time of an event that has not happened
 

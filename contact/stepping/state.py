@@ -18,7 +18,7 @@ from contact.stepping.scheme import Scheme
 
 UNLIMITED = 2**62
 
-#: columns of `Run.rows`
+#: columns of `RunState.rows`
 (
     ROW_ROTATION,
     ROW_ANGULAR_VELOCITY,
@@ -68,7 +68,7 @@ class Control(NamedTuple):
     base_points: int  #: number of contact points of the base; they come first
 
 
-#: what changes from step to step besides the state; `Run.clock` is one of these
+#: what changes from step to step besides the state; `RunState.clock` is one of these
 STEP_RECORD = np.dtype(
     [
         ("time", "f8"),
@@ -135,7 +135,7 @@ def make_samples(
     )
 
 
-class Run(NamedTuple):
+class RunState(NamedTuple):
     """All data of a run besides the body; variable data change in place."""
 
     scheme: Scheme
@@ -169,13 +169,13 @@ def make_run(
     work: Workspace,
     history: Samples,
     frames: Samples,
-) -> Run:
+) -> RunState:
     """Assemble a run at t = 0; `old` is the initial state, completed."""
     n = old.point.shape[0]
     clock = np.zeros(1, STEP_RECORD).view(np.recarray)
     clock["smallest_step"] = NEVER
     clock["attempt_limit"] = UNLIMITED
-    return Run(
+    return RunState(
         scheme=scheme,
         contact=contact,
         motion=motion,

@@ -16,7 +16,7 @@ from fem.html.page import require_drawing
 from fem.model.container import Container
 from fem.results.files import to_json, write_atomically
 from fem.results.reader import OpenedRun
-from fem.results.run_folder import RunFolder
+from fem.results.run_files import RunFiles
 from fem.runtime.identity import program_identity
 
 
@@ -66,7 +66,7 @@ def _draw(run: OpenedRun, container: Container) -> list[Drawing]:
     return drawings
 
 
-def _cached(place: RunFolder) -> list[Drawing] | None:
+def _cached(place: RunFiles) -> list[Drawing] | None:
     """The drawings in a folder; None if one is missing, changed or out of date."""
     try:
         metadata = json.loads(place.drawn.read_text(encoding="utf-8"))
@@ -84,7 +84,7 @@ def _cached(place: RunFolder) -> list[Drawing] | None:
         return None
 
 
-def _identity(place: RunFolder) -> dict[str, Any]:
+def _identity(place: RunFiles) -> dict[str, Any]:
     """Identity of the program and digests of the files from which the figures are drawn."""
     files = (place.result, place.resolved, place.history, place.rigid_check)
     return {"program": program_identity(), "drawn_from": {path.name: _digest(path) for path in files}}
@@ -95,7 +95,7 @@ def _metadata(drawing: Drawing) -> dict[str, Any]:
     return asdict(drawing) | {"svg": hashlib.sha256(drawing.svg.encode()).hexdigest()}
 
 
-def _svg(place: RunFolder, name: str) -> Path:
+def _svg(place: RunFiles, name: str) -> Path:
     return place.figures / f"{name}.svg"
 
 

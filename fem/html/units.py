@@ -61,7 +61,7 @@ def rotation_ratio(value: float | None) -> str:
 
 
 def typeset(text: str) -> str:
-    """A line made for a terminal as it stands in a page: true minus signs, powers of ten, m/s²."""
+    """A line of the summary for a page: true minus signs, powers of ten, m/s²."""
     text = text.replace("m/s2", "m/s²")
     text = re.sub(r"(?<![\w.)-])-(?=\d)", "−", text)
     return re.sub(

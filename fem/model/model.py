@@ -20,7 +20,7 @@ from contact.stepping.body import State, make_state
 from contact.stepping.ledger import spring_energy
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.observables import record_start
-from contact.stepping.state import Run, make_run, make_samples
+from contact.stepping.state import RunState, make_run, make_samples
 from fem.case.case import Case
 from fem.model.container import Container, discretise
 from fem.model.equilibrium import Equilibrium, find_equilibrium
@@ -46,7 +46,7 @@ class Model:
     equilibrium: Equilibrium
     motion: BaseMotion
     static: StaticChecks
-    run: Run
+    run: RunState
 
     @property
     def penalty(self) -> float:

@@ -24,7 +24,7 @@ from contact.stepping.body import State
 from contact.stepping.integrator import UNPREPARED, advance, advance_compiled, enter_floor_frame_compiled
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.scheme import Scheme
-from contact.stepping.state import Run
+from contact.stepping.state import RunState
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid import nodal_kernels
 from fem.solid.assembly import FiniteElements
@@ -147,7 +147,7 @@ class FullBody:
         """See `contact.stepping.body.prepared`."""
         return bool(nodal_kernels.prepared(self.nodal, step))
 
-    def sizes_match(self, run: Run) -> bool:
+    def sizes_match(self, run: RunState) -> bool:
         """See `contact.stepping.body.sizes_match`."""
         return True
 
@@ -199,7 +199,7 @@ def full_model_memory(nodes: int) -> float:
     return FACTOR_MEMORY + BYTES_OF_A_NODE * nodes
 
 
-def advance_body(body: ModalBody | FullBody, run: Run, until: float) -> int:
+def advance_body(body: ModalBody | FullBody, run: RunState, until: float) -> int:
     """`contact.stepping.integrator.advance` for any body, compiled; factors of the full model are made where they
     are missing.
     """
@@ -212,7 +212,7 @@ def advance_body(body: ModalBody | FullBody, run: Run, until: float) -> int:
         body.prepare(run.scheme, float(run.clock[0].unprepared_step))
 
 
-def leave_body_alone(body: ModalBody | FullBody, run: Run, floor_velocity: float) -> None:
+def leave_body_alone(body: ModalBody | FullBody, run: RunState, floor_velocity: float) -> None:
     """`contact.stepping.integrator.enter_floor_frame` for any body."""
     if isinstance(body, ModalBody):
         enter_floor_frame_compiled(body, run, floor_velocity)

@@ -18,7 +18,7 @@ from contact.stepping.body import State, make_state
 from contact.stepping.integrator import REACHED
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.scheme import Scheme
-from contact.stepping.state import Run, make_run, make_samples
+from contact.stepping.state import RunState, make_run, make_samples
 from fem.model.model import build_model
 from fem.runtime.arrays import FloatArray
 from fem.solid.assembly import FiniteElements
@@ -36,7 +36,7 @@ class Flight:
     """A body in motion; `advance` steps it in steps of one size."""
 
     body: ModalBody | FullBody
-    run: Run
+    run: RunState
     step: float  #: [s]
     first_energy: float  #: kinetic and strain at t = 0 [J]
     times: list[float] = field(default_factory=list)  #: of `normal_force` [s]

@@ -268,14 +268,6 @@ def test_slopes_are_minus_the_derivatives_of_the_laws(friction):
     assert compared >= 60  # of 240
 
 
-def test_an_untouched_floor_gives_no_force():
-    problem = random_problem(3, 4)
-    problem.free[:, 1] = np.abs(problem.free[:, 1]) + 1e-3
-    count, work = problem.attempt()
-    assert count == 0
-    assert not work.force.any()
-
-
 def test_factors_of_an_earlier_step_give_the_same_forces():
     """A wide base keeps its factors while nothing switches; the compliance has turned a little since."""
     kept_factors = 0

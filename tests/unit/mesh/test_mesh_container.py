@@ -99,12 +99,6 @@ def test_ring_of_every_box_has_the_thickness_of_the_wall_and_the_depth_of_the_co
     assert mesh.areal_density[wall] == pytest.approx(np.full(wall.sum(), 7850.0 * 1.2), rel=1e-15)
 
 
-def test_solid_is_as_thick_as_it_is_deep():
-    mesh = block()
-    assert (mesh.region == Region.SOLID).all()
-    assert (mesh.thickness == 1.1).all()
-
-
 def test_base_points_run_from_corner_to_corner():
     mesh = build_container_mesh(STACK, FILL, element_size=0.1)
     base = mesh.points[mesh.base_points]
@@ -133,11 +127,6 @@ def test_a_foot_without_a_mesh_line_is_refused_with_the_nearest():
     mesh = build_container_mesh(STACK, FILL, element_size=0.5)
     with pytest.raises(MeshError, match=r"no base point ends a foot of 0.15 m: the nearest is 0.008 m"):
         mesh.foot_widths(0.15)
-
-
-def test_width_and_height_are_those_of_the_container():
-    mesh = build_container_mesh(STACK, FILL, element_size=0.1)
-    assert (mesh.width, mesh.height) == pytest.approx((1.1, 4.0), rel=1e-15)
 
 
 def test_arrays_are_read_only_and_owned():

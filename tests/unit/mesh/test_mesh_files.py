@@ -318,7 +318,7 @@ def test_cracks_hanging_points_overlaps_and_holes_are_refused(tmp_path):
     neighbour = int(np.flatnonzero((cracked == inner).any(axis=1))[0])
     cracked[neighbour] = np.where(cracked[neighbour] == inner, len(points), cracked[neighbour])
     write(tmp_path / "crack.vtu", mesh, points=np.vstack([points, points[inner]]), cells=[("quad", cracked)])
-    with pytest.raises(MeshError, match=r"lies inside the container but belongs to one cell only"):
+    with pytest.raises(MeshError, match=r"is inside the container but belongs to one cell only"):
         read_container_mesh(tmp_path / "crack.vtu", BLOCK, FILL)
 
     kept = np.delete(np.arange(len(mesh.quads)), 10)

@@ -56,10 +56,6 @@ def test_default_shell_has_one_cell_through_the_wall_and_eleven_between():
     assert row_segments(shell(), 0.1).counts == (1, round(0.984 / 0.1), 1)
 
 
-def test_thick_walls_are_divided_too():
-    assert column_segments(shell(wall=0.3), 0.1).counts == (3, 5, 3)
-
-
 def test_lines_stand_on_walls_and_feet_and_are_symmetric():
     lines = column_segments(shell(), 0.1, foot=0.15).lines()
     for place in (0.008, 0.15, 1.1 - 0.15, 1.1 - 0.008, 1.1):

@@ -6,9 +6,8 @@ import pytest
 import fem.model.validity
 from fem.assessment.verdict import audit
 from fem.case.case import CaseError, load_case
-from fem.cli.check import chosen_numerics
+from fem.cli.check import preview_of
 from fem.model.container import discretise
-from fem.model.geometry import build_container
 from fem.model.model import build_model
 from fem.model.validity import LEAST_STRETCH, required_memory, runs_in_memory
 from fem.run.recorder import Recorder
@@ -27,7 +26,7 @@ def test_contact_springs_into_which_the_container_sinks_are_refused_by_check_and
     with pytest.raises(CaseError, match=reason):
         build_model(case)
     with pytest.raises(CaseError, match=reason):
-        chosen_numerics(case, build_container(case))
+        preview_of(case).numerics
 
 
 def test_a_corner_whose_spring_would_throw_the_container_is_refused():
