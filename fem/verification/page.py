@@ -73,6 +73,7 @@ def convergence_plot(convergence: Convergence, prefix: str = "plot") -> Markup:
         axes.loglog(sizes, guide, "--", color="#999999", label=f"order {convergence.expected:g}")
         axes.set_xticks(sizes, _labels(sizes), rotation=30)
         axes.set_xticks([], minor=True)
+        axes.margins(0.05)
         axes.grid(visible=True, which="both", linewidth=0.3)
         axes.legend(frameon=False)
     label = f"error over {convergence.against}, observed order {convergence.observed:.2f}"
