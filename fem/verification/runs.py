@@ -16,6 +16,7 @@ from contact.motion.kernel import FloorMotion, floor_motion
 from contact.reference.rigid_block import RigidBlock
 from contact.stepping import modal_kernels
 from contact.stepping.modal_body import ModalBody
+from fem.assessment.rigid_check import block_of
 from fem.assessment.verdict import outcome_of
 from fem.case.case import Case, read_case
 from fem.model.container import Container
@@ -104,15 +105,7 @@ class Finished:
     @property
     def block(self) -> RigidBlock:
         """The analytic block with the mass, centroid and inertia of the mesh."""
-        mesh = self.model.container.mesh
-        half, height = 0.5 * mesh.width, mesh.centroid[1]
-        square = half**2 + height**2
-        return RigidBlock(
-            half_width=half,
-            centroid_height=height,
-            gravity=self.model.case.gravity_m_s2,
-            inertia_ratio=1.0 + mesh.inertia / (mesh.mass * square),
-        )
+        return block_of(self.model)
 
 
 def run(case: Case, values: Mapping[str, Any] | None = None, container: Container | None = None) -> Finished:
