@@ -18,9 +18,10 @@ from contact.motion.kernel import PIECEWISE, UNIFORM, FloatArray, FloorMotion, a
 from contact.stepping.body import make_state
 from contact.stepping.control import most_attempts
 from contact.stepping.integrator import advance_compiled
-from contact.stepping.modal_body import ModalBody, make_modal_body, place, start
+from contact.stepping.modal_body import ModalBody, make_modal_body
+from contact.stepping.modal_kernels import place, start
 from contact.stepping.scheme import Scheme, generalised_alpha
-from contact.stepping.state import ROW_ROTATION, ROW_SLIP, Control, Run, make_run, make_samples
+from contact.stepping.state import ROW_ROTATION, ROW_SLIP, Control, RunState, make_run, make_samples
 
 GRAVITY = 9.81
 LOOSE = 1e30  #: a tolerance that never cuts a step
@@ -111,7 +112,7 @@ class Rig:
 
     block: Block
     body: ModalBody
-    run: Run
+    run: RunState
 
     def advance(self, until: float) -> "Rig":
         """Step to `until` [s] or, as no step is cut for it, just beyond."""

@@ -15,7 +15,7 @@ from fem.case.files import CASES, DEFAULT_CASE
 from fem.render.opengl import MEND_PICTURES, probe_rendering
 
 ROOT = Path(__file__).parents[1]
-PAGES = [ROOT / "README.md", *sorted(ROOT.glob("*/README.md"))]
+PAGES = [ROOT / "README.md", *sorted(ROOT.glob("*/README.md")), *sorted(ROOT.glob("fem/*/README.md"))]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 LINES = [
     line
@@ -26,7 +26,7 @@ TOUR = [line for line in LINES if line.startswith("python -m fem ")]
 #: appended to a command of the tour: the same command, less to compute
 SHORT = {
     "run": ("--set", "solver.duration_s=0.1", "--set", "output.fields_s=0.05", "--no-band"),
-    "verify": ("--room", "limits"),
+    "verify": ("--topic", "limits"),
     "study": ("--only", "half-width"),
 }
 

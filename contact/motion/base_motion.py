@@ -22,20 +22,8 @@ from contact.motion.kernel import (
     FloorMotion,
     as_floor_motion,
     floor_history,
-    floor_motion,
 )
 from contact.motion.table import TableMotion
-
-__all__ = [
-    "BaseMotion",
-    "FloorMotion",
-    "HarmonicMotion",
-    "NoMotion",
-    "PulseMotion",
-    "TableMotion",
-    "floor_history",
-    "floor_motion",
-]
 
 PulseShape = Literal["rectangular", "half-sine", "sine"]
 PULSE_KINDS: dict[str, int] = {"rectangular": RECTANGULAR, "half-sine": HALF_SINE, "sine": SINE}

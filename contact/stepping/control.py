@@ -21,7 +21,7 @@ from contact.stepping.ledger import (
     LOSS_SHARE_LIMIT,
     MATERIAL_DAMPING,
 )
-from contact.stepping.state import Control, Run
+from contact.stepping.state import Control, RunState
 
 STEPS_PER_OCTAVE = 3  #: sizes per factor of two
 OCTAVE = tuple(2.0 ** (-level / STEPS_PER_OCTAVE) for level in range(STEPS_PER_OCTAVE))  #: the first of them
@@ -78,7 +78,7 @@ def switching_time(clock: Any, horizon: float) -> float:
 
 
 @compiled(inline=True)
-def next_step(run: Run) -> float:
+def next_step(run: RunState) -> float:
     """The next step [s]: that of the present level, or shorter.
 
     If a gap is about to close, the step ends where it closes, and the next one, in which the dashpot acts, is small. A
@@ -108,7 +108,7 @@ def next_step(run: Run) -> float:
 
 
 @compiled(inline=True)
-def allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
+def allowed_imbalance(run: RunState, step: float, dissipated: float) -> float:
     """Allowed energy error of the attempted step [J].
 
     It includes a share of the dissipation of this step and of the recent dissipation, so that the ringing after an
@@ -136,7 +136,7 @@ def allowed_imbalance(run: Run, step: float, dissipated: float) -> float:
 
 
 @compiled(inline=True)
-def ledger_allowance(run: Run, step: float) -> float:
+def ledger_allowance(run: RunState, step: float) -> float:
     """Allowed imbalance of the attempted step in view of the whole ledger [J]; infinite far from its limits.
 
     Errors of single steps add up: a share of the dissipation may be large compared with the energy to overturn, for

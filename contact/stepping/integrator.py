@@ -17,6 +17,7 @@ from numba.extending import register_jitable
 from contact.interface.laws import weakened_mu
 from contact.interface.solver import Contact
 from contact.jit import compiled
+from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
 from contact.stepping.body import ROTATION, complete, prepared, shift_velocity, sizes_match
 from contact.stepping.control import (
     STEPS_PER_OCTAVE,
@@ -30,7 +31,7 @@ from contact.stepping.ledger import CONTACT_DAMPING, FRICTION, IMBALANCE, MATERI
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.observables import FALLEN, NEVER, update_observables
 from contact.stepping.sampling import sample
-from contact.stepping.state import Run
+from contact.stepping.state import RunState
 from contact.stepping.step import account, attempt, copy_state, slide
 
 WEAKENING_LIMIT = 8  #: repetitions of a step for friction that weakens with its slip
@@ -43,10 +44,11 @@ REACHED, OVERTURNED, FAILED, UNPREPARED = 0, 1, 2, 3
 OVERTURNING_ROTATION = 0.5 * np.pi
 #: without stop at overturning, it counts this much earlier, where the side of the container meets the floor [rad]
 LYING_MARGIN = 2e-3
+AFTERMATH_SLICE = 0.05  #: interval of the checks after the end of the floor motion [s]
 
 
 @compiled(inline=True)
-def update_records(run: Run, step: float, slip_step: float, slip_velocity: float, every: bool) -> None:
+def update_records(run: RunState, step: float, slip_step: float, slip_velocity: float, every: bool) -> None:
     """Update friction state and observables from the step about to be accepted."""
     clock = run.clock[0]
     clock.slip_since_break = clock.slip_since_break + abs(slip_step) if clock.sliding == 1 or every else 0.0
@@ -76,7 +78,7 @@ def update_records(run: Run, step: float, slip_step: float, slip_velocity: float
 
 
 @compiled(inline=True)
-def close_step(run: Run, step: float, slip_step: float, iterations: int) -> None:
+def close_step(run: RunState, step: float, slip_step: float, iterations: int) -> None:
     """Make the step the state of the run and add its terms to the ledger."""
     clock = run.clock[0]
     for row in range(LEDGER_ROWS):
@@ -96,25 +98,13 @@ def close_step(run: Run, step: float, slip_step: float, iterations: int) -> None
 
 
 @register_jitable(forceinline=True)
-def _accept(
-    body: Any, run: Run, step: float, slip_step: float, slip_velocity: float, every: bool, iterations: int
-) -> None:
-    """Make the step attempted the state of the run; samples, ledger and record update_observables."""
-    clock = run.clock[0]
-    update_records(run, step, slip_step, slip_velocity, every)
-    clock.samples = sample(body, run, run.history, clock.samples, clock.samples_drained, step, slip_step)
-    clock.frames = sample(body, run, run.frames, clock.frames, clock.frames_drained, step, slip_step)
-    close_step(run, step, slip_step, iterations)
-
-
-@register_jitable(forceinline=True)
 def _kinetic_friction(contact: Contact, slid: float) -> float:
     """Coefficient of friction of a sliding support after a path of `slid` [m]."""
     return weakened_mu(contact.mu_static, contact.mu_kinetic, contact.weakening, slid)
 
 
 @register_jitable(forceinline=True)
-def _is_full(run: Run) -> bool:
+def _is_full(run: RunState) -> bool:
     """Whether the sample arrays cannot hold another largest step."""
     ahead = run.control.largest_step
     clock = run.clock[0]
@@ -124,12 +114,10 @@ def _is_full(run: Run) -> bool:
 
 
 @register_jitable(forceinline=True)
-def enter_floor_frame(body: Any, run: Run, floor_velocity: float) -> None:
-    """Change to the frame of the floor at the end of its motion: the floor is at rest there, without an impulse.
+def enter_floor_frame(body: Any, run: RunState, floor_velocity: float) -> None:
+    """Change to the frame of the floor at the end of its motion, where its velocity is `floor_velocity` [m/s].
 
-    Args:
-        body: the body; run: at the end of the floor motion.
-        floor_velocity: at this instant [m/s].
+    The floor is at rest in this frame; the container gets no impulse.
     """
     shift_velocity(body, run.old, floor_velocity)
     complete(body, run.old, run.floor[0, 0])
@@ -138,10 +126,7 @@ def enter_floor_frame(body: Any, run: Run, floor_velocity: float) -> None:
     run.clock[0].next_break = 0
 
 
-AFTERMATH_SLICE = 0.05  #: interval of the checks after the end of the floor motion [s]
-
-
-def advance(body: Any, run: Run, until: float) -> int:
+def advance(body: Any, run: RunState, until: float) -> int:
     """Step the body to the time `until` [s] or just beyond (no step is shortened for it); changes `run` in place.
 
     It also returns when the sample arrays are full, so that no sample is lost, and at `clock.attempt_limit`.
@@ -199,7 +184,10 @@ def advance(body: Any, run: Run, until: float) -> int:
         clock.recent_dissipation = clock.recent_dissipation / (1.0 + late * (1.0 + 0.5 * late)) + max(
             dissipated, 0.0
         )
-        _accept(body, run, step, slip_step, slip_velocity, every, iterations)
+        update_records(run, step, slip_step, slip_velocity, every)
+        clock.samples = sample(body, run, run.history, clock.samples, clock.samples_drained, step, slip_step)
+        clock.frames = sample(body, run, run.frames, clock.frames, clock.frames_drained, step, slip_step)
+        close_step(run, step, slip_step, iterations)
         # The imbalance of one step may vanish by chance while it changes sign: remember the last steps.
         recent = max(min(used, 1.0), FADING * clock.allowance_used)
         level = change_level(clock.level, recent, clock.growth_hold == 0)

@@ -24,7 +24,7 @@ from contact.stepping.integrator import (
     enter_floor_frame_compiled,
 )
 from contact.stepping.modal_body import ModalBody, with_own_scratch
-from contact.stepping.state import ROW_SLIP, ROW_STRAIN, Run
+from contact.stepping.state import ROW_SLIP, ROW_STRAIN, RunState
 
 SLICE, MOST_STRAINED = 0.25, 4  #: so many of the most strained samples are kept of each slice [s]
 
@@ -47,7 +47,7 @@ class Outcome(NamedTuple):
 
 def run_to_end(
     body: ModalBody,
-    run: Run,
+    run: RunState,
     duration: float,
     *,
     aftermath: float = 0.0,
@@ -96,7 +96,7 @@ def run_to_end(
 
 
 @compiled
-def is_undecided(run: Run) -> bool:
+def is_undecided(run: RunState) -> bool:
     """The container is beyond its slenderness angle and has not overturned yet."""
     beyond = abs(run.old.pose[ROTATION]) > run.control.slenderness_angle
     return beyond and not run.track[0].overturned_at < np.inf
@@ -104,7 +104,7 @@ def is_undecided(run: Run) -> bool:
 
 @compiled
 def advance_in_slices(
-    body: ModalBody, run: Run, kept: KeptSamples, ahead: float, until: float, undecided_only: bool
+    body: ModalBody, run: RunState, kept: KeptSamples, ahead: float, until: float, undecided_only: bool
 ) -> int:
     """Step to `until`, looking at the samples every `ahead` [s] or sooner; `undecided_only`: until it is decided."""
     clock = run.clock[0]
@@ -122,7 +122,7 @@ def advance_in_slices(
 
 
 @compiled
-def keep_slip(run: Run, kept: KeptSamples) -> None:
+def keep_slip(run: RunState, kept: KeptSamples) -> None:
     """Write the slip of the new samples into the ring."""
     clock, samples = run.clock[0], run.history
     for i in range(clock.samples - clock.samples_drained):
@@ -132,7 +132,7 @@ def keep_slip(run: Run, kept: KeptSamples) -> None:
 
 
 @compiled
-def keep_most_strained(run: Run, kept: KeptSamples) -> None:
+def keep_most_strained(run: RunState, kept: KeptSamples) -> None:
     """Keep the most strained of the new samples, each in place of the least strained one kept."""
     clock, samples = run.clock[0], run.history
     count = clock.samples - clock.samples_drained

@@ -7,7 +7,6 @@ from numba.extending import register_jitable
 
 from contact.arrays import FloatArray
 from contact.jit import compiled
-from contact.motion.interpolation import hermite
 from contact.motion.kernel import floor_motion
 from contact.stepping.body import (
     ANGULAR_VELOCITY,
@@ -20,6 +19,7 @@ from contact.stepping.body import (
     observe,
 )
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
+from contact.stepping.scheme import hermite
 from contact.stepping.state import (
     ROW_ANGULAR_VELOCITY,
     ROW_BASE_WORK,
@@ -31,7 +31,7 @@ from contact.stepping.state import (
     ROW_SHEAR,
     ROW_SLIP,
     ROW_UPLIFT,
-    Run,
+    RunState,
     Samples,
 )
 
@@ -40,7 +40,7 @@ SAME_INSTANT = 1e-12  #: difference of two times, over their size, that is round
 
 @compiled(inline=True)
 def write_columns(
-    run: Run, row: FloatArray, force: FloatArray, time: float, s: float, step: float, slip_step: float
+    run: RunState, row: FloatArray, force: FloatArray, time: float, s: float, step: float, slip_step: float
 ) -> None:
     """One row of a history at the share `s` of the step; `force` (n, 2) is the contact force at this instant."""
     old, new = run.old, run.new
@@ -64,7 +64,7 @@ def write_columns(
 
 
 @compiled(inline=True)
-def follow_contents(run: Run, s: float, interval: float) -> None:
+def follow_contents(run: RunState, s: float, interval: float) -> None:
     """Largest mean acceleration of the monitored contents over an interval of the history.
 
     The instantaneous acceleration under a dashpot at a point grows without bound as the step decreases; the mean over
@@ -96,7 +96,7 @@ def write_coordinates(samples: Samples, at: int, old: State, new: State, s: floa
 
 @register_jitable(forceinline=True)
 def sample(
-    body: Any, run: Run, samples: Samples, written: int, origin: int, step: float, slip_step: float
+    body: Any, run: RunState, samples: Samples, written: int, origin: int, step: float, slip_step: float
 ) -> int:
     """Write the samples from the old time up to and including the new time; returns the number of samples so far.
 

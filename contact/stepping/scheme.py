@@ -1,4 +1,4 @@
-"""The Newmark family with generalised-alpha averaging.
+"""The Newmark family with generalised-alpha averaging, and interpolation within a step.
 
     u1 = u + h v + h^2 [(1/2 - beta) a + beta a1],   v1 = v + h [(1 - gamma) a + gamma a1]
     M [(1 - alpha_m) a1 + alpha_m a] + (1 - alpha_f) f(u1, v1) + alpha_f f(u, v) = 0
@@ -8,6 +8,8 @@ with f the sum of internal minus external forces. Newmark (1959); Chung and Hulb
 """
 
 from typing import NamedTuple
+
+from contact.jit import compiled
 
 
 class Scheme(NamedTuple):
@@ -48,3 +50,15 @@ def newmark(newmark_beta: float, newmark_gamma: float) -> Scheme:
             f"newmark_beta and newmark_gamma must satisfy 2 beta >= gamma >= 1/2, got {newmark_beta}, {newmark_gamma}"
         )
     return Scheme(newmark_beta=newmark_beta, newmark_gamma=newmark_gamma, alpha_m=0.0, alpha_f=0.0)
+
+
+@compiled
+def hermite(share: float, step: float, value: float, rate: float, value_new: float, rate_new: float) -> float:
+    """Cubic through values and rates at both ends of a step, at `share` of it."""
+    s = share
+    return (
+        (1.0 + 2.0 * s) * (1.0 - s) ** 2 * value
+        + s * (1.0 - s) ** 2 * step * rate
+        + s * s * (3.0 - 2.0 * s) * value_new
+        - s * s * (1.0 - s) * step * rate_new
+    )

@@ -18,7 +18,7 @@ from contact.stepping.scheme import Scheme
 
 UNLIMITED = 2**62
 
-#: columns of `Run.rows`
+#: columns of `RunState.rows`
 (
     ROW_ROTATION,
     ROW_ANGULAR_VELOCITY,
@@ -54,9 +54,7 @@ class Control(NamedTuple):
     energy_share: float  #: imbalance allowed over the dissipation of the step [-]
     recent_share: float  #: imbalance allowed over the recent dissipation [-]
     recent_time: float  #: decay time of the recent dissipation [s]
-    closing_share: (
-        float  #: imbalance allowed when a gap closes, over the kinetic energy against the floor [-]
-    )
+    closing_share: float  #: imbalance allowed as a gap closes, over the kinetic energy against the floor [-]
     mass: float  #: [kg]
     gravity: float  #: [m/s2]
     frequency_parameter: float  #: of rocking [1/s]
@@ -68,7 +66,7 @@ class Control(NamedTuple):
     base_points: int  #: number of contact points of the base; they come first
 
 
-#: what changes from step to step besides the state; `Run.clock` is one of these
+#: what changes from step to step besides the state; `RunState.clock` is one of these
 STEP_RECORD = np.dtype(
     [
         ("time", "f8"),
@@ -135,7 +133,7 @@ def make_samples(
     )
 
 
-class Run(NamedTuple):
+class RunState(NamedTuple):
     """All data of a run besides the body; variable data change in place."""
 
     scheme: Scheme
@@ -169,13 +167,13 @@ def make_run(
     work: Workspace,
     history: Samples,
     frames: Samples,
-) -> Run:
+) -> RunState:
     """Assemble a run at t = 0; `old` is the initial state, completed."""
     n = old.point.shape[0]
     clock = np.zeros(1, STEP_RECORD).view(np.recarray)
     clock["smallest_step"] = NEVER
     clock["attempt_limit"] = UNLIMITED
-    return Run(
+    return RunState(
         scheme=scheme,
         contact=contact,
         motion=motion,

@@ -25,16 +25,9 @@ from contact.stepping.ledger import (
     spring_energy,
 )
 from contact.stepping.scheme import Scheme
-from contact.stepping.state import Run
+from contact.stepping.state import RunState
 
 ITERATION_LIMIT = 12  #: of free motion, contact, response within one step
-
-
-@compiled(inline=True)
-def copy_vector(target: FloatArray, source: FloatArray) -> None:
-    """Copy a vector in place."""
-    for i in range(target.size):
-        target[i] = source[i]
 
 
 @compiled(inline=True)
@@ -70,7 +63,7 @@ def store_rates(step: float, old: State, new: State, work: Workspace) -> None:
 
 
 @register_jitable(forceinline=True)
-def attempt(body: Any, run: Run, step: float, mu: float) -> int:
+def attempt(body: Any, run: RunState, step: float, mu: float) -> int:
     """Try one step and write the result to `run.new`; returns the number of iterations, or -1."""
     old, new, work, scheme = run.old, run.new, run.work, run.scheme
     clock = run.clock[0]
@@ -96,7 +89,7 @@ def attempt(body: Any, run: Run, step: float, mu: float) -> int:
 
 
 @compiled(inline=True)
-def slide(run: Run, step: float) -> tuple[bool, float, float]:
+def slide(run: RunState, step: float) -> tuple[bool, float, float]:
     """Sliding of the base points and elongation of their springs after a converged step.
 
     Returns whether every loaded point slides, all in one direction, the force-weighted sliding [m], and the
@@ -142,7 +135,7 @@ def slide(run: Run, step: float) -> tuple[bool, float, float]:
 
 
 @compiled(inline=True)
-def account(run: Run) -> float:
+def account(run: RunState) -> float:
     """Write the ledger terms of the attempted step to `run.change`; returns its dissipation [J]."""
     old, new, change = run.old, run.new, run.change
     shear = 0.0
@@ -169,5 +162,6 @@ def account(run: Run) -> float:
 
 @compiled(inline=True)
 def copy_state(old: State, new: State) -> None:
-    """Copy all of a state but its monitored points."""
-    copy_vector(old.numbers, new.numbers)
+    """Copy `new` to `old`, all but the monitored points."""
+    for i in range(old.numbers.size):
+        old.numbers[i] = new.numbers[i]

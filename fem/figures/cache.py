@@ -16,19 +16,12 @@ from fem.html.page import require_drawing
 from fem.model.container import Container
 from fem.results.files import to_json, write_atomically
 from fem.results.reader import OpenedRun
-from fem.results.run_folder import RunFolder
+from fem.results.run_files import RunFiles
 from fem.runtime.identity import program_identity
 
 
 def write_figures(run: OpenedRun, container: Container) -> list[Path]:
-    """Draw all figures of a run into its folder `figures`, as SVG.
-
-    Args:
-        run: finished or not.
-        container: of its case.
-
-    Returns:
-        The files of the figures.
+    """Draw all figures of a run into its folder `figures`, as SVG; returns the files.
 
     Raises:
         FolderError: the history is missing or damaged.
@@ -47,10 +40,6 @@ def write_figures(run: OpenedRun, container: Container) -> list[Path]:
 def drawings_of(run: OpenedRun, container: Container) -> dict[str, Drawing]:
     """Figures of a run by name, in the order of reading: from the cache, or else drawn.
 
-    Args:
-        run: finished or not.
-        container: of its case.
-
     Raises:
         FolderError: the history is missing or damaged.
     """
@@ -66,7 +55,7 @@ def _draw(run: OpenedRun, container: Container) -> list[Drawing]:
     return drawings
 
 
-def _cached(place: RunFolder) -> list[Drawing] | None:
+def _cached(place: RunFiles) -> list[Drawing] | None:
     """The drawings in a folder; None if one is missing, changed or out of date."""
     try:
         metadata = json.loads(place.drawn.read_text(encoding="utf-8"))
@@ -84,7 +73,7 @@ def _cached(place: RunFolder) -> list[Drawing] | None:
         return None
 
 
-def _identity(place: RunFolder) -> dict[str, Any]:
+def _identity(place: RunFiles) -> dict[str, Any]:
     """Identity of the program and digests of the files from which the figures are drawn."""
     files = (place.result, place.resolved, place.history, place.rigid_check)
     return {"program": program_identity(), "drawn_from": {path.name: _digest(path) for path in files}}
@@ -95,7 +84,7 @@ def _metadata(drawing: Drawing) -> dict[str, Any]:
     return asdict(drawing) | {"svg": hashlib.sha256(drawing.svg.encode()).hexdigest()}
 
 
-def _svg(place: RunFolder, name: str) -> Path:
+def _svg(place: RunFiles, name: str) -> Path:
     return place.figures / f"{name}.svg"
 
 

@@ -13,7 +13,7 @@ from contact.motion.kernel import HARMONIC, UNIFORM, FloorMotion, as_floor_motio
 from contact.stepping.body import CENTRE_X
 from contact.stepping.control import step_level, step_of_level
 from contact.stepping.modal_body import ModalBody
-from contact.stepping.state import Run, make_samples
+from contact.stepping.state import RunState, make_samples
 from fem.case.case import Case
 from fem.model.container import Container
 from fem.model.model import Model, build_model
@@ -42,7 +42,7 @@ class DrivenModel:
 
     model: Model  #: its `run` is the one below
     body: ModalBody
-    run: Run
+    run: RunState
     period: float  #: of the drive [s]
 
 
@@ -100,7 +100,7 @@ def stop_drive(case: Case, container: Container, before: DrivenModel) -> DrivenM
     return driven
 
 
-def carry_state(before: Run, after: Run) -> None:
+def carry_state(before: RunState, after: RunState) -> None:
     """Start `after` from the state of `before`, moved along x to where its floor is at t = 0."""
     for target, source in zip(after.old, before.old, strict=True):
         target[:] = source

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from contact.interface.solver import Workspace
 from contact.stepping.body import State
-from contact.stepping.state import Run
+from contact.stepping.state import RunState
 from fem.model.model import Model
 from fem.results.archive import CheckpointError, read_checkpoint, write_archive
 from fem.run.recorder import Recorder
@@ -28,7 +28,7 @@ from fem.solid.nodal_body import FullBody
 
 #: wall time between checkpoints [s]; the stepping pauses every five seconds or so, and writing frames takes time, too
 CHECKPOINT_S = 15.0
-#: parts of `contact.stepping.state.Run` that do not change, and those of which a part is stored
+#: parts of `contact.stepping.state.RunState` that do not change, and those of which a part is stored
 CONSTANT = frozenset({"scheme", "contact", "motion", "breaks", "control"})
 SAMPLES = frozenset({"history", "frames"})
 RECORDED, BODY = "recorder.", "body."
@@ -146,7 +146,7 @@ def _changing(model: Model) -> Arrays:
     return found
 
 
-def _waiting(run: Run, clock: NDArray[Any]) -> Arrays:
+def _waiting(run: RunState, clock: NDArray[Any]) -> Arrays:
     """The samples of a run that are in no file yet, as many as this clock says."""
     found: Arrays = {}
     for name, samples, so_far, gone in (

@@ -27,7 +27,7 @@ from contact.stepping.state import (
     ROW_SLIP,
     ROW_STRAIN,
     ROW_UPLIFT,
-    Run,
+    RunState,
     Samples,
 )
 from fem.assessment.verdict import MODE_NAMES
@@ -107,7 +107,7 @@ class Recorder:
             rotation = initial.pose[ROTATION : ROTATION + 1]
             self.joint_motion = joints.motion(initial.position[None], initial.velocity[None], rotation)[0]
 
-    def drain(self, run: Run) -> None:
+    def drain(self, run: RunState) -> None:
         """Empty the run's arrays of samples."""
         self._drain_history(run)
         self._drain_frames(run)
@@ -145,7 +145,7 @@ class Recorder:
     def _columns(self) -> int:
         return NUMBERS + self._joint_forces.size
 
-    def _drain_history(self, run: Run) -> None:
+    def _drain_history(self, run: RunState) -> None:
         clock, samples = run.clock[0], run.history
         first, count = int(clock.samples_drained), int(clock.samples - clock.samples_drained)
         if count == 0:
@@ -184,7 +184,7 @@ class Recorder:
     def _note_stress(self, stress: float) -> None:
         self.largest_von_mises = max(self.largest_von_mises or 0.0, stress)
 
-    def _drain_frames(self, run: Run) -> None:
+    def _drain_frames(self, run: RunState) -> None:
         clock, samples = run.clock[0], run.frames
         first, count = int(clock.frames_drained), int(clock.frames - clock.frames_drained)
         if self._recovery is not None and samples.position.shape[1] > 0:

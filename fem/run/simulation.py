@@ -20,7 +20,7 @@ from contact.motion.kernel import UNIFORM, as_floor_motion, floor_motion
 from contact.stepping.body import ROTATION
 from contact.stepping.control import most_attempts
 from contact.stepping.integrator import AFTERMATH_SLICE, FAILED, OVERTURNED, REACHED
-from contact.stepping.state import Run
+from contact.stepping.state import RunState
 from fem.assessment.verdict import MODE_NAMES, audit, rotation_ratio
 from fem.model.model import Model
 from fem.run.recorder import Recorder
@@ -142,7 +142,7 @@ def simulate(
     return Ending(status=status, stepping_cpu_s=progress.stepping_cpu_s)
 
 
-def _advance(model: Model, run: Run, progress: Progress, pace: Pace) -> tuple[int, Progress]:
+def _advance(model: Model, run: RunState, progress: Progress, pace: Pace) -> tuple[int, Progress]:
     """Step to the end of the slice or to the next pause; returns the code of `advance` and the progress."""
     assert progress.slice is not None  # for the type checker
     until, most = progress.slice
@@ -161,7 +161,7 @@ def _advance(model: Model, run: Run, progress: Progress, pace: Pace) -> tuple[in
     )
 
 
-def _attempts(run: Run) -> int:
+def _attempts(run: RunState) -> int:
     """Attempted steps so far, accepted and rejected."""
     return int(run.clock[0].steps + run.clock[0].rejected)
 
@@ -181,7 +181,7 @@ def _end_of_aftermath(model: Model) -> float:
     return model.case.solver.duration_s + AFTERMATH / model.run.control.frequency_parameter
 
 
-def _leave_alone(model: Model, run: Run, recorder: Recorder) -> tuple[float, float]:
+def _leave_alone(model: Model, run: RunState, recorder: Recorder) -> tuple[float, float]:
     """Change to the frame of the floor, which stands still from now on; returns time [s] and place of the floor [m]."""
     since = float(run.clock[0].time)
     displacement, velocity, _ = floor_motion(run.motion, since)
@@ -190,7 +190,7 @@ def _leave_alone(model: Model, run: Run, recorder: Recorder) -> tuple[float, flo
     return since, float(displacement)
 
 
-def _on_resting_floor(run: Run, undriven: tuple[float, float]) -> Run:
+def _on_resting_floor(run: RunState, undriven: tuple[float, float]) -> RunState:
     """The run on a floor that stands still, from this time on and at this place."""
     still = as_floor_motion(UNIFORM, (*undriven, 0.0))
     return run._replace(motion=still, breaks=np.full(1, np.inf))

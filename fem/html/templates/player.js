@@ -61,7 +61,7 @@
     return box;
   };
   const boxes = { ground: extents(false), floor: extents(true) };
-  const unit = 0.17 * Math.max(run.height, run.width);  // length of an arrow that stands for the weight
+  const unit = 0.17 * Math.max(run.height, run.width);  // length of the arrow of a force as large as the weight
   const below = 1.95 * unit;
 
   // ---- drawing ----------------------------------------------------------------------------------------------

@@ -162,7 +162,7 @@ def test_a_rotation_ratio_has_three_figures(ratio, text):
         ),
     ],
 )
-def test_outcome_is_told_in_one_sentence(result, sentence):
+def test_the_outcome_is_one_sentence(result, sentence):
     assert outcome_sentence(result) == sentence
 
 
@@ -308,7 +308,7 @@ def test_solid_blocks_are_not_measured_against_the_yield_strength_of_a_steel_she
     assert warnings_for(result, case("container.section=solid")) == []
 
 
-def test_a_container_too_soft_for_the_linear_model_is_told():
+def test_a_container_too_soft_for_the_linear_model_raises_a_warning():
     soft = ("container.section=solid", "container.youngs_modulus_Pa=1e7")
     (warning,) = warnings_for(changed(verdict__max_von_mises_Pa=1.2e5), case(*soft))
     assert "strain reached 1.2 %" in warning and 'solver.model = "full"' in warning
@@ -317,13 +317,13 @@ def test_a_container_too_soft_for_the_linear_model_is_told():
     assert warnings_for(changed(verdict__max_von_mises_Pa=1.2e5), full) == []
 
 
-def test_a_contact_that_creeps_under_the_weight_is_told():
+def test_a_contact_that_creeps_under_the_weight_raises_a_warning():
     """2 zeta sqrt(m/(k/2)) = 2 sqrt(2) zeta/(2 pi f_c), against 1/p."""
     result = changed(numerics__contact_frequency_Hz=50.0, static__frequency_parameter_1_s=2.0)
     assert not any("relaxes" in text for text in warnings_for(result, CASE))  # zeta = 2: 18 ms
     creeping = case("contact.damping_ratio=20")
-    (told,) = [text for text in warnings_for(result, creeping) if "relaxes" in text]
-    assert "in 0.18 s" in told and "1/p = 0.5 s" in told
+    (warning,) = [text for text in warnings_for(result, creeping) if "relaxes" in text]
+    assert "in 0.18 s" in warning and "1/p = 0.5 s" in warning
 
 
 @pytest.mark.parametrize("result", [RunResult(status="failed"), RunResult(status="running")])

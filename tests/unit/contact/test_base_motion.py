@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from contact.motion.base_motion import HarmonicMotion, NoMotion, PulseMotion, floor_motion
+from contact.motion.base_motion import HarmonicMotion, NoMotion, PulseMotion
+from contact.motion.kernel import floor_motion
 
 OMEGA = 6.928
 PERIOD = 2.0 * math.pi / OMEGA
@@ -74,14 +75,6 @@ def test_tapered_harmonic_starts_and_ends_at_rest_and_is_the_full_sine_between()
     assert motion.evaluate(times)[0] == pytest.approx(0.05 * np.sin(OMEGA * times), abs=1e-15)
 
 
-def test_half_way_up_the_ramp_the_amplitude_is_half():
-    # The quintic window is odd about its middle: one half at u = 1/2, with slope 15/8.
-    motion = tapered(phase=math.pi / 2)
-    x, v, _ = motion.evaluate(np.array([PERIOD]))[:, 0]
-    assert x == pytest.approx(0.5 * 0.05, rel=1e-12)
-    assert v == pytest.approx(15.0 / 8.0 / (2 * PERIOD) * 0.05, rel=1e-12)
-
-
 @pytest.mark.parametrize(
     ("phase", "cycles", "quarters"),
     [
@@ -134,14 +127,6 @@ def test_peak_acceleration_of_a_long_drive_is_amplitude_times_frequency_squared(
     assert tapered(ramp_cycles=0.0).peak_acceleration == pytest.approx(0.05 * OMEGA**2, rel=1e-12)
 
 
-def test_a_long_ramp_lifts_the_peak_by_the_curvature_of_its_window():
-    # Near its top the window is 1 - 10 s^3, and w - w"/Omega^2 reaches 1 + 40 sqrt 2/(2 pi n)^3.
-    phases = np.linspace(0.0, math.pi, 30)
-    peak = max(tapered(ramp_cycles=9.0, phase=phase).peak_acceleration for phase in phases)
-    estimate = 40.0 * math.sqrt(2.0) / (18.0 * math.pi) ** 3
-    assert peak / (0.05 * OMEGA**2) - 1.0 == pytest.approx(estimate, rel=0.15)
-
-
 def test_peak_acceleration_of_a_drive_cut_short_is_what_the_floor_reached():
     motion = tapered(ramp_cycles=0.0, duration=0.1 * PERIOD)
     assert motion.peak_acceleration == pytest.approx(0.05 * OMEGA**2 * math.sin(0.2 * math.pi), rel=1e-9)
@@ -154,10 +139,6 @@ def test_peak_acceleration_includes_what_a_steep_ramp_adds(ramp_cycles, phase):
     dense = np.abs(motion.evaluate(np.linspace(0.0, 20.0, 2_000_001))[2]).max()
     assert motion.peak_acceleration == pytest.approx(dense, rel=1e-8)
     assert motion.peak_acceleration >= dense * (1.0 - 1e-13)
-
-
-def test_a_ramp_of_half_a_cycle_is_harsher_than_the_drive():
-    assert tapered(ramp_cycles=0.5).peak_acceleration > 1.5 * 0.05 * OMEGA**2
 
 
 @pytest.mark.parametrize(
@@ -174,12 +155,6 @@ def test_pulse_leaves_the_floor_with_the_velocity_reached(shape, velocity, displ
     assert x == pytest.approx([0.0, 0.0, x_end, x_end + 2.0 * v_end], abs=1e-14)
     assert a[2] == a[3] == 0.0
     assert motion.peak_acceleration == 3.0 and motion.time_scale == 0.8
-
-
-def test_pulse_reaches_its_peak_where_its_shape_says():
-    for shape, fraction in (("half-sine", 0.5), ("sine", 0.25)):
-        motion = PulseMotion(shape=shape, acceleration=-3.0, pulse=0.8, delay=0.5)
-        assert motion.evaluate(np.array([0.5 + 0.8 * fraction]))[2, 0] == pytest.approx(-3.0, rel=1e-12)
 
 
 def test_no_motion_is_rest():

@@ -46,13 +46,6 @@ def test_floor_is_at_rest_before_the_table_and_coasts_after_it():
     assert later[:2] == pytest.approx([end[0] + 3.0 * end[1], end[1]], rel=1e-14)
 
 
-def test_constant_acceleration_gives_the_parabola():
-    motion = TableMotion(times=np.array([0.0, 1.0, 4.0]), values=np.array([2.0, 2.0, 2.0]))
-    x, v, a = motion.evaluate(np.array([3.0]))[:, 0]
-    assert (x, v, a) == pytest.approx((9.0, 6.0, 2.0), rel=1e-14)
-    assert motion.break_times == pytest.approx([4.0])
-
-
 def test_samples_of_a_sine_converge_to_the_sine_with_order_two():
     # x = A sin(Omega t) from rest at t = 0 in the frame that starts with its velocity: subtract A Omega t.
     errors = []
@@ -74,18 +67,6 @@ def test_linear_baseline_brings_the_floor_to_rest_where_it_began():
     drifting = VALUES + 0.3 - 0.2 * TIMES
     x, v, _ = TableMotion(times=TIMES, values=drifting, baseline="linear").evaluate(TIMES[-1:])[:, 0]
     assert [x, v] == pytest.approx([0.0, 0.0], abs=1e-12)
-
-
-def test_linear_baseline_removes_a_straight_line_and_keeps_what_is_orthogonal_to_it():
-    line = TableMotion(times=TIMES, values=1.5 - 0.7 * TIMES, baseline="linear")
-    assert line.peak_acceleration == pytest.approx(0.0, abs=1e-12)
-    twice = TableMotion(
-        times=TIMES,
-        values=TableMotion(times=TIMES, values=VALUES, baseline="linear").accelerations,
-        baseline="linear",
-    )
-    once = TableMotion(times=TIMES, values=VALUES, baseline="linear")
-    assert twice.accelerations == pytest.approx(once.accelerations, abs=1e-12)
 
 
 def test_linear_baseline_is_the_least_squares_line():
@@ -113,16 +94,6 @@ def test_displacement_table_passes_through_its_samples_and_is_smooth():
     assert right == pytest.approx(left, rel=1e-6, abs=1e-6)  # no jump, in acceleration either (natural ends)
 
 
-def test_displacement_table_of_a_straight_line_moves_at_constant_velocity_everywhere():
-    # The only cubic without curvature at both ends is a straight line.
-    motion = TableMotion(times=TIMES, values=0.2 - 0.1 * TIMES, quantity="displacement")
-    times = np.array([0.0, 0.5, 4.4, 12.0])  # before, within and after
-    x, v, a = motion.evaluate(times)
-    assert x == pytest.approx(0.2 - 0.1 * times, rel=1e-12)
-    assert v == pytest.approx([-0.1] * 4, rel=1e-12)
-    assert a == pytest.approx([0.0] * 4, abs=1e-10)
-
-
 @pytest.mark.parametrize("count", [2, 3, 40])
 def test_a_displacement_table_is_the_natural_spline(count):
     times, values = TIMES[:count], VALUES[:count]
@@ -140,10 +111,6 @@ def test_displacement_samples_of_a_sine_give_its_acceleration():
     inner = np.linspace(0.01, 1.7, 77)
     assert motion.evaluate(inner)[2] == pytest.approx(-2.45 * np.sin(7.0 * inner), abs=1e-3)
     assert motion.peak_acceleration == pytest.approx(2.45, rel=1e-3)
-
-
-def test_time_scale_is_ten_spacings():
-    assert TableMotion(times=np.arange(0.0, 1.0, 0.01), values=np.zeros(100)).time_scale == pytest.approx(0.1)
 
 
 def test_table_keeps_its_own_copy_of_the_samples():

@@ -17,8 +17,8 @@ from fem.render.caption import caption
 from fem.render.movie import select_frames, write_movie
 from fem.render.picture import Scene, time_of_largest_rotation, write_picture
 from fem.render.scene import View, summarise_frames
+from fem.results.errors import FolderError
 from fem.results.fields import FieldError, FieldWriter
-from fem.results.run_folder import FolderError
 from fem.run.run import RunOptions, run_case
 
 SMALL = ("output.figures=false", "solver.element_size_m=0.5", "solver.elastic_modes=4")

@@ -112,7 +112,7 @@ def test_variations_that_take_long_are_named_and_computed_when_asked_for(folder,
     assert again == short  # not computed behind one's back by a second report
     full = variation_table(run.case, kept, result=run.typed_result, every=True)
     assert full.left_out == ()
-    # A run that nobody has computed before comes to the same rows.
+    # A run without known rows gets the same ones.
     bare = without_band(run)
     fresh = variation_table(run.case, tmp_path / "other.json", result=bare, every=True)
     assert [line.row for line in fresh.lines] == [line.row for line in full.lines]

@@ -11,7 +11,7 @@ import pytest
 from fem.__main__ import main
 from fem.report import sweep_page
 from fem.report.sweep_page import axis_label, map_data, sweep_report
-from fem.results.run_folder import FolderError
+from fem.results.errors import FolderError
 from fem.sweep.table import BAND, FOUND, WIDTH, open_sweep
 
 SPEED, MU = "motion.peak_acceleration_m_s2", "contact.mu_static"
@@ -106,7 +106,7 @@ def test_the_command_of_a_cell_repeats_it(folder):
     assert data["derived"] == [{"key": "contact.mu_kinetic", "values": [0.1, 0.2, 0.1, 0.2, 0.1, 0.2]}]
 
 
-def test_a_failed_cell_is_told_with_its_reason_and_counted_as_no_outcome(folder):
+def test_a_failed_cell_is_listed_with_its_reason_and_counted_as_no_outcome(folder):
     page = sweep_report(folder)
     assert "1 no outcome: failed" in page
     assert "cell 5: no &lt;b&gt;balance" in page

@@ -7,7 +7,7 @@ import os
 
 import pytest
 
-import fem.results.run_folder
+import fem.results.files
 from fem.__main__ import main
 from fem.verification import suite
 from fem.verification.page import convergence_plot, page, table_lines
@@ -130,7 +130,7 @@ def test_a_place_that_cannot_be_written_is_named_and_no_partial_table_is_left(
     def no_room(*_):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(fem.results.run_folder.os, "fsync", no_room)
+    monkeypatch.setattr(fem.results.files.os, "fsync", no_room)
     assert main(["verify", "--out", str(tmp_path / "v"), "-q"]) == 3
     message = capsys.readouterr().err
     assert "verify.json: cannot be written (No space left on device)" in message and "--out DIR" in message
