@@ -1,7 +1,7 @@
 """Figure cache: the figures of a run in its folder, SVG files and `drawn.json` with their metadata.
 
-Drawing the figures takes longer than all the rest of a report, so a report reuses them. It does so only if the
-metadata match: drawn by the same program from the same results, and not changed since. Otherwise it draws them again.
+Drawing takes longer than all the rest of a report, so a report reuses the figures if the metadata match: drawn by the
+same program from the same results, and not changed since.
 """
 
 import hashlib

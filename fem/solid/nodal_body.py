@@ -1,13 +1,8 @@
 """The full model: every node free to move, total Lagrangian, without assembling a tangent.
 
-In the frame that turns with the container the Newmark matrix M/(beta h^2) + K is constant, because M, the same for x
-and z, commutes with the rotation. It is factored once for each step size (SuperLU). The residual is exact for finite
-rotation and St. Venant-Kirchhoff elasticity, and each iteration is one rotated back-substitution. The matrix leaves out
-the geometric stiffness, of the order of the strain; this only costs iterations. The contact is condensed to the base
-points and solved by the same compiled functions as for the reduced container.
-
-Coordinates are the absolute positions of the nodes, x and z in turn. Damping is proportional to the stiffness and acts
-in the turned frame, so that it does not damp the rocking itself. `fem.solid.nodal_kernels` holds the compiled step.
+The method: README.md of this folder. The contact is condensed to the base points and solved by the same compiled
+functions as for the reduced container. Coordinates are the absolute positions of the nodes, x and z in turn.
+`fem.solid.nodal_kernels` holds the compiled step.
 """
 
 import math

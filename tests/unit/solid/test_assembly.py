@@ -196,14 +196,6 @@ def test_area_load_has_the_resultant_and_moment_of_the_field(order):
     assert load[:, 0] @ elements.nodes[:, 1] == pytest.approx(3.0 * 2.0 * 8.0 / 3.0, rel=1e-13)
 
 
-@ORDERS
-def test_l2_distance_of_a_linear_field_is_exact(order):
-    elements = assemble(distorted_mesh(width=2.0, height=1.0), order=order, **STEEL)
-    distance = elements.l2_distance(elements.nodes @ np.diag([1.0, 0.0]), lambda x, z: (0.0 * x, 2.0))
-    # integral of x^2 + 4 over [-1, 1] x [0, 1]
-    assert distance == pytest.approx(np.sqrt(2.0 / 3.0 + 8.0), rel=1e-13)
-
-
 def test_nodal_stress_of_pure_bending_is_exact_for_quadratic_cells():
     # u = (k x z, -k (x^2 + nu z^2)/2) has sigma_xx = E k z and nothing else, to first order in k.
     elements = assemble(quad_mesh(np.linspace(0, 2, 5), np.linspace(-0.5, 0.5, 3)), order=2, **STEEL)
