@@ -158,17 +158,6 @@ def test_a_container_set_turning_turns_about_the_corner_it_turns_toward(rate, co
     assert state.velocity[2] == rate
 
 
-def test_stances_are_moved_pushed_and_padded_without_touching_the_rest():
-    stance, _ = settle(3)
-    changed = stance.moved(0.3).sliding(-0.2).with_points(5)
-    assert changed.centre == (stance.centre[0] + 0.3, stance.centre[1])
-    assert changed.velocity == (-0.2, 0.0)
-    assert np.array_equal(changed.force[:3], stance.force)
-    assert changed.force.shape == (5, 2)
-    assert not changed.force[3:].any()
-    assert stance.force.shape == (3, 2)
-
-
 def test_a_strained_corner_stands_as_deep_as_its_force_asks():
     # The elastic corner gives way under its force; the centre is lowered by as much, so that it does not hover.
     soft = np.diag([1e-9, 2e-9, 1e-9, 2e-9])

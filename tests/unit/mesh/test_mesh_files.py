@@ -13,7 +13,7 @@ from mesh_writer import write_container_mesh
 
 from mesh.cells import signed_areas
 from mesh.container import ContainerMesh, build_container_mesh
-from mesh.errors import MeshError, MeshQualityError
+from mesh.errors import MeshError
 from mesh.files import read_container_mesh
 from mesh.fill import MassFill
 from mesh.geometry import ContainerGeometry, Section
@@ -272,12 +272,6 @@ def test_a_shell_of_walls_and_sheets_only_has_nowhere_to_put_the_fill(tmp_path):
         read_container_mesh(tmp_path / "mesh.vtu", STACK, FILL)
 
 
-def test_section_and_tags_must_agree(tmp_path):
-    write_container_mesh(tmp_path / "shell.vtu", stack())
-    with pytest.raises(MeshError, match=r"tagged wall, fill do not belong to this section \(solid\)"):
-        read_container_mesh(tmp_path / "shell.vtu", BLOCK, FILL)
-
-
 @pytest.mark.parametrize("kind", ["triangle", "triangle6", "hexahedron"])
 def test_other_cells_are_refused_by_name(tmp_path, kind):
     mesh = stack()
@@ -339,25 +333,6 @@ def test_two_separate_layers_are_refused_as_overlap(tmp_path):
     write(tmp_path / "mesh.vtu", mesh, points=points, cells=[("quad", quads)], region=np.tile(mesh.region, 2))
     with pytest.raises(MeshError, match=r"cover 4.4 m2 of an elevation of 2.2 m2: they overlap"):
         read_container_mesh(tmp_path / "mesh.vtu", BLOCK, FILL)
-
-
-def test_distorted_cells_of_a_file_are_refused_with_their_figures(tmp_path):
-    mesh = build_container_mesh(BLOCK, FILL, element_size=0.25)
-    points = np.column_stack([mesh.points, 0 * mesh.points[:, 0]])
-    inner = int(np.flatnonzero((np.abs(mesh.points[:, 0]) < 0.5) & (mesh.points[:, 1] == 1.0))[0])
-    points[inner, :2] += 0.3
-    write(tmp_path / "mesh.vtu", mesh, points=points)
-    with pytest.raises(MeshQualityError, match=r"cell \d+ at x = .*scaled Jacobian .*corner angles"):
-        read_container_mesh(tmp_path / "mesh.vtu", BLOCK, FILL)
-
-
-def test_positions_that_are_no_numbers_are_refused(tmp_path):
-    mesh = stack()
-    points = np.column_stack([mesh.points, 0 * mesh.points[:, 0]])
-    points[5, 1] = np.nan
-    write(tmp_path / "mesh.vtu", mesh, points=points)
-    with pytest.raises(MeshError, match="point 5 has no finite position"):
-        read_container_mesh(tmp_path / "mesh.vtu", STACK, FILL)
 
 
 class Bomb:
