@@ -7,7 +7,7 @@ import pytest
 
 from mesh.errors import MeshError
 from mesh.geometry import ContainerGeometry, Section
-from mesh.grid import MOST_CELLS, column_segments, foot_line, require_affordable, row_segments
+from mesh.grid import column_segments, foot_line, row_segments
 
 SHELL = {"width": 1.1, "height": 1.0, "depth": 1.1, "wall": 0.008}
 
@@ -92,12 +92,3 @@ def test_element_size_must_be_positive_and_finite(size):
 def test_an_absurd_element_size_is_refused_with_its_number(size):
     with pytest.raises(MeshError, match=r"would cut 0.008 m into (8e\+06|8e\+297|inf) cells"):
         column_segments(shell(), size)
-
-
-def test_more_cells_than_allowed_are_refused_with_their_number():
-    geometry = shell(boxes=50)
-    columns, rows = column_segments(geometry, 0.004), row_segments(geometry, 0.004)
-    cells = columns.count * rows.count * 50
-    assert cells > MOST_CELLS
-    with pytest.raises(MeshError, match=r"3437500 cells \(275 columns, 250 rows a box, 50 boxes\)"):
-        require_affordable(geometry, columns, rows)
