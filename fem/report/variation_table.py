@@ -207,18 +207,14 @@ def _computed(
             values = {**one.values, "output.history_s": NO_SAMPLES_S, "output.fields_s": 0.0}
             cases[index] = base.with_values(values)
         except ValueError as problem:  # beyond the limits of a case
-            rows[index] = VariationRow(status="failed", reason=_first_line(str(problem)))
+            rows[index] = VariationRow(status="failed", reason=str(problem).partition("\n")[0])
     found = run_cases(list(cases.values()), stop=stop, time_limit_s=time_limit_s)
     for index, row in zip(cases, found, strict=True):
         if row["status"] in ("completed", "overturned"):
             rows[index] = VariationRow.from_json(row | {"reason": None})
         elif row["status"] == "failed":
-            rows[index] = VariationRow(status="failed", reason=_first_line(str(row["reason"])))
+            rows[index] = VariationRow(status="failed", reason=str(row["reason"]).partition("\n")[0])
     return rows
-
-
-def _first_line(text: str) -> str:
-    return text.partition("\n")[0]
 
 
 def _kept(path: Path, mark: Mapping[str, Any]) -> tuple[list[VariationRow | None], float | None] | None:
