@@ -135,7 +135,7 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
     clock = run.clock[0]
     mass, stiffness = container.mesh.mass, model.base_stiffness
     # Rayleigh and Ritz: the modes of the free container come first, then the attachment modes of its contact points.
-    elastic = model.case.solver.elastic_modes if container.basis is not None else 1
+    elastic = model.case.solver.elastic_modes if model.case.solver.model == "reduced" else 1
     return Numerics(
         unknowns=int(run.old.position.size),
         contact_nodes=int(container.support.index.size),

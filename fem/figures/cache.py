@@ -21,14 +21,7 @@ from fem.runtime.identity import program_identity
 
 
 def write_figures(run: OpenedRun, container: Container) -> list[Path]:
-    """Draw all figures of a run into its folder `figures`, as SVG.
-
-    Args:
-        run: finished or not.
-        container: of its case.
-
-    Returns:
-        The files of the figures.
+    """Draw all figures of a run into its folder `figures`, as SVG; returns the files.
 
     Raises:
         FolderError: the history is missing or damaged.
@@ -46,10 +39,6 @@ def write_figures(run: OpenedRun, container: Container) -> list[Path]:
 
 def drawings_of(run: OpenedRun, container: Container) -> dict[str, Drawing]:
     """Figures of a run by name, in the order of reading: from the cache, or else drawn.
-
-    Args:
-        run: finished or not.
-        container: of its case.
 
     Raises:
         FolderError: the history is missing or damaged.

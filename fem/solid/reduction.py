@@ -12,12 +12,12 @@ from functools import partial
 
 import numpy as np
 import scipy.linalg
-import scipy.sparse.linalg
 from scipy.sparse import csc_array
+from scipy.sparse.linalg import SuperLU
 
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.array_cache import ArrayCache, blocks, no_cache
-from fem.solid.assembly import FiniteElements
+from fem.solid.assembly import FiniteElements, factorised
 from fem.solid.modes import elastic_modes, rigid_modes
 
 #: relative mass below which an attachment mode, less its projection on the others, is rounding noise
@@ -59,13 +59,8 @@ def static_response(elements: FiniteElements, base: IntArray, cache: ArrayCache 
     dofs = (2 * np.asarray(base)[:, None] + np.arange(2)).ravel()
 
     @functools.cache
-    def factor() -> scipy.sparse.linalg.SuperLU:
-        return scipy.sparse.linalg.splu(
-            elements.stiffness[:, free][free].tocsc(),
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
+    def factor() -> SuperLU:
+        return factorised(elements.stiffness[:, free][free])
 
     def responses_to(loaded: IntArray) -> FloatArray:
         loads = -rigid_momentum @ rigid[:, loaded]
@@ -116,13 +111,13 @@ def reduced_basis(
 def _products(rows: FloatArray, matrix: csc_array, cache: ArrayCache, name: str) -> FloatArray:
     """rows matrix rows^T, symmetric to the bit."""
     found = np.empty((len(rows), len(rows)))
+
+    def product(some: slice) -> FloatArray:
+        return np.asarray((rows[some] @ matrix) @ rows.T)
+
     for block in blocks(len(rows), _affordable(rows)):
-        cache(f"{name} {block.start}", found[block], partial(_product, rows[block], matrix, rows))
+        cache(f"{name} {block.start}", found[block], partial(product, block))
     return 0.5 * (found + found.T)
-
-
-def _product(some: FloatArray, matrix: csc_array, rows: FloatArray) -> FloatArray:
-    return np.asarray((some @ matrix) @ rows.T)
 
 
 def _combine(
