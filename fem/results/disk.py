@@ -1,31 +1,8 @@
-"""Room on the disk: results that would not fit are refused before anything is computed."""
+"""Room on the disk, and sizes in words."""
 
 import shutil
 from collections.abc import Sequence
 from pathlib import Path
-
-from fem.results.errors import OTHER_FOLDER, FolderError
-
-
-def require_room(folder: Path, size: float, what: str, way_out: str, replaced: Sequence[str] = ()) -> None:
-    """Refuse results that the file system of their folder cannot hold.
-
-    Args:
-        folder: of the results; may not exist yet.
-        size: of the results [bytes].
-        what: is to be computed, and what of it needs the room; way_out: other than another folder.
-        replaced: patterns of the files in the folder that the results replace; they make room.
-
-    Raises:
-        FolderError: with the room needed and the room there is.
-    """
-    free = free_disk(folder, replaced)
-    if free is None or size <= free:
-        return
-    raise FolderError(
-        f"{folder}: {what} would write about {in_units(size)}, and there is room for {in_units(free)}; {way_out}, or "
-        + OTHER_FOLDER
-    )
 
 
 def free_disk(folder: Path, replaced: Sequence[str] = ()) -> float | None:

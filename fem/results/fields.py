@@ -44,7 +44,6 @@ class FieldWriter:
         kept_times: times of the frames of an interrupted run that are kept [s]; other old frames are removed.
 
     Raises:
-        ValueError: shapes that do not fit.
         OSError: the folder or a file cannot be written.
     """
 
@@ -57,12 +56,6 @@ class FieldWriter:
         region: IntArray,
         kept_times: Sequence[float] = (),
     ) -> None:
-        if points.ndim != 2 or points.shape[1] != 2:
-            raise ValueError(f"fields: points must have shape (n, 2), got {points.shape}")
-        if cells.ndim != 2 or cells.shape[1] not in CELL_TYPES or region.shape != cells.shape[:1]:
-            raise ValueError(
-                f"fields: cells {cells.shape} with regions {region.shape}; (m, 4 or 9) and (m,) needed"
-            )
         folder.mkdir(parents=True, exist_ok=True)
         self.folder = folder
         self._points = _padded(points)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from fem.results.archive import read_archive, write_archive
-from fem.results.disk import require_room
+from fem.results.disk import free_disk, in_units
 from fem.results.errors import OTHER_FOLDER, FolderError, writing_into
 from fem.results.files import remove_files, to_json, write_atomically
 from fem.results.kinds import ResultKind, read_result
@@ -36,9 +36,7 @@ class ResultFolder:
     path: Path
     kind: ResultKind
     lock: FolderLock
-    found: (
-        dict[str, Any] | None
-    )  #: an earlier result of the same request; None if there is none, or with --force
+    found: dict[str, Any] | None  #: an earlier result of the same request, unless --force is given
     resume: bool  #: --resume was given
 
     @property
@@ -110,8 +108,21 @@ class ResultFolder:
         remove_files(self.path, patterns)
 
     def require_room(self, size: float, what: str, way_out: str) -> None:
-        """Refuse a result of about so many bytes that the disk cannot hold; raises FolderError."""
-        require_room(self.path, size, what, way_out, self.kind.own)
+        """Refuse a result that the disk cannot hold, counting the files that it replaces.
+
+        Args:
+            size: of the result [bytes].
+            what: is to be computed; way_out: other than another folder.
+
+        Raises:
+            FolderError: with the room needed and the room there is.
+        """
+        free = free_disk(self.path, self.kind.own)
+        if free is not None and size > free:
+            raise FolderError(
+                f"{self.path}: {what} would write about {in_units(size)}, and there is room for {in_units(free)}; "
+                f"{way_out}, or {OTHER_FOLDER}"
+            )
 
     def require_same_program(self) -> None:
         """Refuse to continue with what another version of the program computed.

@@ -3,11 +3,9 @@
 SI units, named in the columns; x positive to the right, z up, rotation positive toward +x, forces on the container.
 Numbers are written so that reading them gives the same bits (shortest exact decimal form).
 
-The file grows by whole lines and can be read during the run. The system writes page by page, so a kill -9 during a
-write may leave the last line without its end: `read_history` leaves it out, a resumed run cuts it off, and any other
-reader must drop what follows the last line end. A stack has three further columns for every joint between its boxes
-(`fem.model.joints`), counted from the floor up. A run that was compared with the rigid block
-(`fem.assessment.rigid_check`) has the block's rotation as its last column, nan where it is not followed.
+A stack has three further columns for every joint between its boxes (`fem.model.joints`), counted from the floor up.
+A run that was compared with the rigid block (`fem.assessment.rigid_check`) has the block's rotation as its last
+column, nan where it is not followed. A kill during a write may leave the last line without its end.
 """
 
 import contextlib
@@ -16,7 +14,6 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 import numpy as np
@@ -65,17 +62,10 @@ def history_columns(joints: int = 0, *, analytic: bool = False) -> tuple[str, ..
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class History:
-    """Samples of a run, in the order of `history_columns` without `mode`.
-
-    Raises:
-        ValueError: arrays whose shapes do not fit the columns or each other.
-    """
+    """Samples of a run, in the order of `history_columns` without `mode`."""
 
     values: FloatArray  #: shape (n_samples, 20 + 3 joints (+ 1)), units as in the columns' names
     modes: tuple[str, ...]  #: state of motion at each sample, length n_samples
-
-    def __post_init__(self) -> None:
-        _require_columns(self.values, self.modes)
 
     @classmethod
     def empty(cls) -> Self:
@@ -88,14 +78,11 @@ class History:
         return (self.values.shape[1] - NUMBERS) // len(JOINT_COLUMNS)
 
     @property
-    def analytic(self) -> bool:
-        """Whether the last column is the rotation of the rigid block."""
-        return (self.values.shape[1] - NUMBERS) % len(JOINT_COLUMNS) == 1
-
-    @property
     def numbers(self) -> tuple[str, ...]:
         """Names of the columns of numbers, in the order of `values`."""
-        return tuple(name for name in history_columns(self.joints, analytic=self.analytic) if name != "mode")
+        columns = len(HISTORY_COLUMNS) + self.joints * len(JOINT_COLUMNS)
+        analytic = self.values.shape[1] == columns
+        return tuple(name for name in history_columns(self.joints, analytic=analytic) if name != "mode")
 
     def __len__(self) -> int:
         return len(self.modes)
@@ -159,7 +146,6 @@ class HistoryWriter:
 
     def append(self, rows: FloatArray, modes: Sequence[str]) -> None:
         """Write samples: rows of numbers, shape (n, 20 + 3 joints), and their modes, length n."""
-        _require_columns(rows, modes)
         for row, mode in zip(rows.tolist(), modes, strict=True):
             words = [repr(number) for number in row]
             self._write(",".join([*words[:MODE], mode, *words[MODE:]]) + "\n")
@@ -171,9 +157,7 @@ class HistoryWriter:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def _write(self, text: str) -> None:
@@ -240,13 +224,3 @@ def add_analytic_rotation(path: Path, rotation: FloatArray) -> None:
 def _whole_lines(path: Path) -> list[str]:
     text = path.read_text(encoding="utf-8")
     return text[: text.rfind("\n") + 1].splitlines()
-
-
-def _require_columns(values: FloatArray, modes: Sequence[str]) -> None:
-    """Refuse numbers whose shape is not that of a history."""
-    rows, columns = values.shape
-    if rows != len(modes) or columns < NUMBERS or (columns - NUMBERS) % len(JOINT_COLUMNS) > 1:
-        raise ValueError(
-            f"history: {values.shape} numbers for {len(modes)} modes; {NUMBERS} columns are needed, "
-            f"{len(JOINT_COLUMNS)} for each joint, and one for the rigid block"
-        )

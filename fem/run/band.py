@@ -15,8 +15,7 @@ from itertools import count, product
 
 from fem.assessment.verdict import MODE_NAMES, verdict_of
 from fem.case.case import Case
-from fem.model.container import Container
-from fem.model.model import build_model
+from fem.model.model import Model, build_model
 from fem.model.validity import runs_in_memory
 from fem.results.run_result import Band, BandMember, Verdict
 from fem.run.band_checkpoint import BandCheckpoint
@@ -46,20 +45,12 @@ def wants_band(asked: bool | None, case: Case, verdict: Verdict) -> bool:
 
 
 def band_of(
-    case: Case,
-    container: Container,
-    *,
-    penalty: float,
-    verdict: Verdict,
-    stop: Callable[[], bool] = lambda: False,
-    checkpoint: BandCheckpoint | None = None,
+    model: Model, verdict: Verdict, *, stop: Callable[[], bool], checkpoint: BandCheckpoint
 ) -> Band | None:
     """Compute the members of a band side by side and sum them up.
 
     Args:
-        case: of the run.
-        container: of the run; its mesh and modes serve every member.
-        penalty: of the run [Pa/m].
+        model: of the run; the mesh and modes of its container serve every member.
         verdict: of the run, which is itself a member.
         stop: called in pauses; true ends the band.
         checkpoint: of the band, to resume from.
@@ -70,10 +61,9 @@ def band_of(
     Raises:
         OSError: a checkpoint could not be written; the other members have stopped then.
     """
-    own = (penalty, case.contact.damping_ratio)
+    own = (model.penalty, model.case.contact.damping_ratio)
     others = _other_contacts(*own)
-    stored = checkpoint.read_members() if checkpoint is not None else []
-    found = {(member.normal_penalty_Pa_m, member.damping_ratio): member for member in stored}
+    found = {(one.normal_penalty_Pa_m, one.damping_ratio): one for one in checkpoint.read_members()}
     one_at_a_time, broken = threading.Lock(), threading.Event()
 
     def halted() -> bool:
@@ -85,20 +75,19 @@ def band_of(
         if halted():
             return _without_outcome(contact, "interrupted")
         try:
-            member = _run_member(case, container, number, contact, halted, checkpoint)
+            member = _run_member(model, number, contact, halted, checkpoint)
             with one_at_a_time:
                 if member.status != "interrupted":
                     found[contact] = member
-                    if checkpoint is not None:
-                        checkpoint.write_members(number, list(found.values()))
+                    checkpoint.write_members(number, list(found.values()))
         except BaseException:
             broken.set()  # stops the other members
             raise
         return member
 
     workers = min(cores(), len(others))
-    if case.solver.model == "full":
-        workers = runs_in_memory(workers, full_model_memory(len(container.elements.nodes)))
+    if model.case.solver.model == "full":
+        workers = runs_in_memory(workers, full_model_memory(len(model.container.elements.nodes)))
     with ThreadPoolExecutor(max_workers=workers) as pool:
         members = list(pool.map(member_of, count(1), others))
     if any(member.status == "interrupted" for member in members):
@@ -145,16 +134,11 @@ def _other_contacts(penalty: float, damping_ratio: float) -> list[Contact]:
 
 
 def _run_member(
-    case: Case,
-    container: Container,
-    number: int,
-    contact: Contact,
-    stop: Callable[[], bool],
-    checkpoint: BandCheckpoint | None,
+    run: Model, number: int, contact: Contact, stop: Callable[[], bool], checkpoint: BandCheckpoint
 ) -> BandMember:
     """One member; a problem of any kind is its error, never an outcome."""
     try:
-        changed = case.with_values(
+        case = run.case.with_values(
             {
                 "contact.normal_penalty_Pa_m": contact[0],
                 "contact.damping_ratio": contact[1],
@@ -162,18 +146,12 @@ def _run_member(
                 "output.fields_s": 0.0,
             }
         )
-        model = build_model(changed, container)
+        model = build_model(case, run.container)
         recorder = Recorder(model)
-        save, progress = None, None
-        if checkpoint is not None:
-            save, state = checkpoint.open_member(number, model, recorder)
-            progress = state.progress
+        save, progress = checkpoint.open_member(number, model, recorder)
         ending = simulate(model, recorder, stop=stop, save=save, progress=progress)
-    except (
-        ValueError,
-        ArithmeticError,
-        RuntimeError,
-    ) as problem:  # bad input, no equilibrium, a singular matrix
+    # bad input, no equilibrium, a singular matrix
+    except (ValueError, ArithmeticError, RuntimeError) as problem:
         return _without_outcome(contact, "failed", str(problem))
     if ending.status not in ("completed", "overturned"):
         return _without_outcome(contact, ending.status, ending.error)

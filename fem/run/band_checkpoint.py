@@ -19,6 +19,7 @@ from fem.results.run_files import RunFiles
 from fem.results.run_result import BandMember
 from fem.run.checkpoint import CheckpointWriter, SavedState, read_state
 from fem.run.recorder import Recorder
+from fem.run.simulation import Progress
 from fem.runtime.identity import program_identity
 from fem.runtime.progress import Reporter
 
@@ -65,10 +66,8 @@ class BandCheckpoint:
         self._folder.write_text(self._files.band.name, to_json(page))
         self._files.member_checkpoint(number).unlink(missing_ok=True)
 
-    def open_member(
-        self, number: int, model: Model, recorder: Recorder
-    ) -> tuple[CheckpointWriter, SavedState]:
-        """Put a member where its checkpoint says; returns what writes the next one, and the state.
+    def open_member(self, number: int, model: Model, recorder: Recorder) -> tuple[CheckpointWriter, Progress]:
+        """Put a member where its checkpoint says; returns what writes the next one, and the progress.
 
         Raises:
             OSError: the folder of checkpoints cannot be made.
@@ -83,7 +82,7 @@ class BandCheckpoint:
                 )
         state.restore(model, recorder)
         path.parent.mkdir(exist_ok=True)
-        return CheckpointWriter(path, model, recorder, case_hash=request, notes=self._notes), state
+        return CheckpointWriter(path, model, recorder, case_hash=request, notes=self._notes), state.progress
 
     def _notes(self) -> dict[str, Any]:
         self._folder.check()

@@ -22,7 +22,7 @@ from contact.stepping.state import RunState
 from fem.model.model import Model
 from fem.results.archive import CheckpointError, read_checkpoint, write_archive
 from fem.run.recorder import Recorder
-from fem.run.simulation import Progress
+from fem.run.simulation import BEGINNING, Progress
 from fem.runtime.identity import program_identity
 from fem.solid.nodal_body import FullBody
 
@@ -40,7 +40,7 @@ Arrays = dict[str, NDArray[Any]]
 class SavedState:
     """A simulation as a checkpoint holds it."""
 
-    progress: Progress = field(default_factory=Progress)
+    progress: Progress = BEGINNING
     arrays: Arrays = field(default_factory=dict)  #: as `state_of` names them; empty: t = 0
     notes: Mapping[str, Any] = field(default_factory=dict)  #: stored with them
 

@@ -53,14 +53,8 @@ def add_checks(
         result = replace(result, rigid_check=_rigid_check(model, folder, verdict))
     if lacks_band(result, model.case, wanted) and not stop():
         reporter.message("band: repeating the run over contact stiffness and damping")
-        band = band_of(
-            model.case,
-            model.container,
-            penalty=model.penalty,
-            verdict=verdict,
-            stop=stop,
-            checkpoint=BandCheckpoint(folder, case_hash=str(result.case_hash), reporter=reporter),
-        )
+        checkpoint = BandCheckpoint(folder, case_hash=str(result.case_hash), reporter=reporter)
+        band = band_of(model, verdict, stop=stop, checkpoint=checkpoint)
         if band is not None:
             result = replace(result, verdict=replace(verdict, band=band))
     return result

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 
@@ -21,38 +21,41 @@ from fem.results.history import HistoryWriter, read_history
 from fem.results.run_files import RunFiles
 from fem.run.checkpoint import SavedState, misfit, read_state
 from fem.run.recorder import Recorder
+from fem.runtime.arrays import FloatArray
 from fem.runtime.compilation import compilation_time
 
 
-@dataclass(frozen=True, kw_only=True)
-class Spent:
-    """Times that a run has taken so far, over all its resumptions."""
+class Spent(TypedDict):
+    """Times that a run has taken, over all its resumptions [s]."""
 
-    wall_s: float = 0.0
-    cpu_s: float = 0.0
-    compile_s: float = 0.0  #: of the wall time, the compilation of kernels
+    wall_s: float
+    cpu_s: float
+    compile_s: float  #: of the wall time, the compilation of kernels
+
+
+NOTHING_SPENT = Spent(wall_s=0.0, cpu_s=0.0, compile_s=0.0)
 
 
 class Stopwatch:
-    """Counts what a run takes, from its making on."""
+    """Counts the times that a run takes."""
 
     def __init__(self) -> None:
-        self.before = Spent()  #: by the run before it was interrupted
-        self._began = self._readings()
+        self.before = NOTHING_SPENT  #: before the run was interrupted
+        self._began = _readings()
 
     def spent(self) -> Spent:
         """What the run has taken in all."""
-        now, before = self._readings(), self.before
-        wall_s, cpu_s, compile_s = (after - began for after, began in zip(now, self._began, strict=True))
+        before = self.before
+        wall_s, cpu_s, compile_s = (_readings() - self._began).tolist()
         return Spent(
-            wall_s=before.wall_s + wall_s,
-            cpu_s=before.cpu_s + cpu_s,
-            compile_s=before.compile_s + compile_s,
+            wall_s=before["wall_s"] + wall_s,
+            cpu_s=before["cpu_s"] + cpu_s,
+            compile_s=before["compile_s"] + compile_s,
         )
 
-    @staticmethod
-    def _readings() -> tuple[float, float, float]:
-        return time.perf_counter(), time.process_time(), compilation_time()
+
+def _readings() -> FloatArray:
+    return np.array([time.perf_counter(), time.process_time(), compilation_time()])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -62,7 +65,7 @@ class Start:
     state: SavedState = field(default_factory=SavedState)
     history_bytes: int | None = None  #: of the history that stay; None: it is new
     frames_s: tuple[float, ...] = ()  #: times of the frames that stay
-    spent: Spent = field(default_factory=Spent)
+    spent: Spent = field(default_factory=lambda: NOTHING_SPENT)
 
     @property
     def is_resumed(self) -> bool:
@@ -85,7 +88,8 @@ def read_start(files: RunFiles, model: Model, case_hash: str) -> Start:
         notes = state.notes
         length, digest = int(notes["history"]["bytes"]), str(notes["history"]["sha256"])
         frames_s = tuple(float(instant) for instant in notes["frames_s"])
-        spent = Spent(**{name: float(notes["spent"][name]) for name in ("wall_s", "cpu_s", "compile_s")})
+        wall_s, cpu_s, compile_s = (float(notes["spent"][name]) for name in Spent.__annotations__)
+        spent = Spent(wall_s=wall_s, cpu_s=cpu_s, compile_s=compile_s)
     except (KeyError, TypeError, ValueError) as error:
         raise misfit(path, f"its notes cannot be read ({error!r})") from None
     if _digest_of_first(files.history, length) != digest:
@@ -135,7 +139,7 @@ def open_output(files: RunFiles, model: Model, start: Start) -> Iterator[RunOutp
         recorder = Recorder(model, recovery_of(model), history.append, fields.write if fields else None)
         if start.is_resumed:
             start.state.restore(model, recorder)
-            recorder.go_on(read_history(files.history))
+            recorder.resume(read_history(files.history))
         yield RunOutput(recorder=recorder, history=history, fields=fields)
 
 

@@ -9,27 +9,9 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from contact.motion.kernel import floor_history, floor_motion
+from contact.stepping import state as stepper
 from contact.stepping.body import ROTATION, State
-from contact.stepping.state import (
-    ROW_ANGULAR_VELOCITY,
-    ROW_BASE_WORK,
-    ROW_CENTRE_X,
-    ROW_CENTRE_Z,
-    ROW_CONTACT_DAMPING,
-    ROW_FRICTION,
-    ROW_IMBALANCE,
-    ROW_KINETIC,
-    ROW_MATERIAL_DAMPING,
-    ROW_NORMAL,
-    ROW_POTENTIAL,
-    ROW_ROTATION,
-    ROW_SHEAR,
-    ROW_SLIP,
-    ROW_STRAIN,
-    ROW_UPLIFT,
-    RunState,
-    Samples,
-)
+from contact.stepping.state import RunState, Samples
 from fem.assessment.verdict import MODE_NAMES
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model
@@ -39,22 +21,22 @@ from fem.runtime.arrays import FloatArray
 
 #: the stepper's columns in the order of a history's, behind time and base motion
 ORDER = (
-    ROW_ROTATION,
-    ROW_ANGULAR_VELOCITY,
-    ROW_SLIP,
-    ROW_UPLIFT,
-    ROW_CENTRE_X,
-    ROW_CENTRE_Z,
-    ROW_NORMAL,
-    ROW_SHEAR,
-    ROW_KINETIC,
-    ROW_STRAIN,
-    ROW_POTENTIAL,
-    ROW_IMBALANCE,
-    ROW_BASE_WORK,
-    ROW_FRICTION,
-    ROW_CONTACT_DAMPING,
-    ROW_MATERIAL_DAMPING,
+    stepper.ROW_ROTATION,
+    stepper.ROW_ANGULAR_VELOCITY,
+    stepper.ROW_SLIP,
+    stepper.ROW_UPLIFT,
+    stepper.ROW_CENTRE_X,
+    stepper.ROW_CENTRE_Z,
+    stepper.ROW_NORMAL,
+    stepper.ROW_SHEAR,
+    stepper.ROW_KINETIC,
+    stepper.ROW_STRAIN,
+    stepper.ROW_POTENTIAL,
+    stepper.ROW_IMBALANCE,
+    stepper.ROW_BASE_WORK,
+    stepper.ROW_FRICTION,
+    stepper.ROW_CONTACT_DAMPING,
+    stepper.ROW_MATERIAL_DAMPING,
 )
 
 #: samples searched for the largest stress each time: those of the largest strain energy
@@ -90,7 +72,8 @@ class Recorder:
         self._frame_sink = frame_sink
         self._rows: list[FloatArray] = []
         self._modes: list[str] = []
-        self._area = _contact_areas(model)
+        #: tributary area of each contact node (n_c,) [m2]
+        self._area = model.run.contact.normal_stiffness / model.penalty
         self.largest_von_mises: float | None = None  #: over frames and the most strained samples, if any [Pa]
         #: of the joints at the last sample (J, 8), see `fem.model.joints`; the next forces follow from its change
         self.joint_motion = np.zeros((0, 0))
@@ -114,8 +97,8 @@ class Recorder:
 
     def history(self) -> History:
         """Everything sampled so far."""
-        values = np.concatenate(self._rows) if self._rows else np.zeros((0, self._columns))
-        return History(values=values, modes=tuple(self._modes))
+        empty = np.zeros((0, NUMBERS + self._joint_forces.size))
+        return History(values=np.concatenate([empty, *self._rows]), modes=tuple(self._modes))
 
     def memory(self) -> dict[str, FloatArray]:
         """State of the recorder on which the next samples depend, by name."""
@@ -132,18 +115,14 @@ class Recorder:
         self.largest_von_mises = float(stress[0]) if stress.size else None
         self.joint_motion, self._joint_forces = memory["joint_motion"], memory["joint_forces"]
 
-    def go_on(self, history: History) -> None:
-        """Take the samples of the run before it was interrupted."""
+    def resume(self, history: History) -> None:
+        """Begin with the samples of the run before it was interrupted."""
         self._rows, self._modes = [history.values], list(history.modes)
 
-    def go_over_to_frame(self, velocity: float) -> None:
+    def change_frame(self, velocity: float) -> None:
         """From now on the coordinates of the run are those in a frame that moves with `velocity` along x [m/s]."""
         if self.joints is not None:
             self.joint_motion = self.joints.in_moving_frame(self.joint_motion, velocity)
-
-    @property
-    def _columns(self) -> int:
-        return NUMBERS + self._joint_forces.size
 
     def _drain_history(self, run: RunState) -> None:
         clock, samples = run.clock[0], run.history
@@ -151,7 +130,7 @@ class Recorder:
         if count == 0:
             return
         times: FloatArray = np.arange(first, first + count, dtype=np.float64) * samples.interval
-        rows = np.empty((count, self._columns))
+        rows = np.empty((count, NUMBERS + self._joint_forces.size))
         rows[:, 0] = as_written(times)
         rows[:, 1:4] = floor_history(run.motion, times).T
         rows[:, 4:NUMBERS] = samples.columns[:count, ORDER]
@@ -159,7 +138,7 @@ class Recorder:
         rows += 0.0  # no minus zero
         modes = [MODE_NAMES[int(mode)] for mode in samples.mode[:count]]
         if self._recovery is not None:
-            strained = np.argsort(samples.columns[:count, ROW_STRAIN])[-STRAINED:]
+            strained = np.argsort(samples.columns[:count, stepper.ROW_STRAIN])[-STRAINED:]
             if samples.position.shape[1] > 0 and not self._recovery.full:
                 self._note_stress(self._recovery.largest_von_mises(samples.position[strained]))
         self._rows.append(rows)
@@ -173,7 +152,7 @@ class Recorder:
         if self.joints is None:
             return np.zeros((count, 0))
         motion = self.joints.motion(
-            samples.position[:count], samples.velocity[:count], samples.columns[:count, ROW_ROTATION]
+            samples.position[:count], samples.velocity[:count], samples.columns[:count, stepper.ROW_ROTATION]
         )
         forces = self.joints.forces(np.concatenate([self.joint_motion[None], motion]), samples.interval)
         if first == 0:
@@ -215,8 +194,3 @@ def as_written(times: FloatArray) -> FloatArray:
     """
     short = np.round(times, DECIMALS)
     return np.where(np.abs(short - times) <= ROUNDING * np.abs(times), short, times)
-
-
-def _contact_areas(model: Model) -> FloatArray:
-    """Tributary area of each contact node (n_c,) [m2]."""
-    return model.run.contact.normal_stiffness / model.penalty

@@ -6,7 +6,7 @@ comparison with the rigid block and the band of the contact.
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +35,7 @@ from fem.run.checks import WantedChecks, add_checks, lacks_band, lacks_checks
 from fem.run.output import Start, Stopwatch, open_output, read_start
 from fem.run.setup_cache import SetupCache
 from fem.run.simulation import simulate
-from fem.run.size import required_disk, size_in_words
+from fem.run.size import require_room_for
 from fem.runtime.compilation import compilation_announced
 from fem.runtime.identity import versions
 from fem.runtime.progress import Reporter, SilentReporter
@@ -103,7 +103,7 @@ def run_case(
         folder, RUN, request, force=options.force, resume=options.resume, way_on=WAY_ON
     ) as place:
         if known is None:
-            require_room_for(case, mesh, place)
+            require_room_for(case, node_count(mesh, case.solver.order), place)
         model = set_up(case, mesh, place, request, force=options.force, reporter=reporter)
         with interruptible(reporter) as stop:
             result = known
@@ -112,12 +112,13 @@ def run_case(
                 result, history = compute(
                     model, place, request, texts=texts, watch=watch, reporter=reporter, stop=stop
                 )
-                result = store(replace(result, **asdict(watch.spent())), case, place)
+                result = store(replace(result, **watch.spent()), case, place)
             # The run is safe before its checks begin, and complete after them.
             checked = add_checks(result, model, place, options, reporter=reporter, stop=stop)
             if checked is not result:
-                spent = asdict(watch.spent()) if known is None else {}
-                result = store(replace(checked, **spent), case, place)
+                if known is None:
+                    checked = replace(checked, **watch.spent())
+                result = store(checked, case, place)
             if result is not known or _lacks_figures(files, case):
                 draw(model, place.path, reporter)
     finished = result.status in RUN.finished
@@ -170,7 +171,7 @@ def compute(
 
             def notes() -> dict[str, Any]:
                 place.check()
-                return output.sync() | {"spent": asdict(watch.spent())}
+                return output.sync() | {"spent": watch.spent()}
 
             save = CheckpointWriter(files.checkpoint, model, recorder, case_hash=request, notes=notes)
             ending = simulate(
@@ -201,13 +202,6 @@ def finished_result(folder: Path, request: str, options: RunOptions, reporter: R
         return RunResult.from_json(found)
     except ValueError as error:
         raise FolderError(f"{folder / RUN.mark}: damaged, {error}; compute it again with --force") from None
-
-
-def require_room_for(case: Case, mesh: ContainerMesh, place: ResultFolder) -> None:
-    """Refuse a run that the disk cannot hold; raises FolderError."""
-    nodes = node_count(mesh, case.solver.order)
-    way_out = "set a larger output.fields_s (0: no frames) or output.history_s"
-    place.require_room(required_disk(case, nodes), size_in_words(case, nodes), way_out)
 
 
 @contextmanager

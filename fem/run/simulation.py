@@ -51,6 +51,9 @@ class Progress:
     slice: tuple[float, int] | None = None
 
 
+BEGINNING = Progress()
+
+
 class Pace:
     """How many steps are attempted until the next pause, from the wall time that the last ones took."""
 
@@ -80,7 +83,7 @@ def simulate(
     reporter: Reporter | None = None,
     stop: Callable[[], bool] = lambda: False,
     save: Callable[[Progress, bool], None] | None = None,
-    progress: Progress | None = None,
+    progress: Progress = BEGINNING,
 ) -> Ending:
     """Step a model to its end; the recorder takes the samples.
 
@@ -92,11 +95,16 @@ def simulate(
             unfinished.
         progress: of the simulation that is resumed.
     """
-    reporter, progress = reporter or SilentReporter(), progress or Progress()
+    reporter = reporter or SilentReporter()
     full = isinstance(model.body, FullBody)
     advance_body(model.body, model.run, 0.0)
     duration, control, run = model.case.solver.duration_s, model.run.control, model.run
     clock, track = run.clock[0], run.track[0]
+
+    def ended(status: str, error: str | None = None) -> Ending:
+        reporter.finish()
+        return Ending(status=status, stepping_cpu_s=progress.stepping_cpu_s, error=error)
+
     if progress.undriven is not None:
         run = _on_resting_floor(run, progress.undriven)
     reporter.start(duration, float(clock.time))
@@ -106,8 +114,7 @@ def simulate(
         if save is not None:
             save(progress, stopped)
         if stopped:
-            reporter.finish()
-            return Ending(status="interrupted", stepping_cpu_s=progress.stepping_cpu_s)
+            return ended("interrupted")
         if progress.slice is None:
             until, ahead = duration, SLICE_FULL if full else SLICE_REDUCED
             if clock.time >= duration:
@@ -130,16 +137,13 @@ def simulate(
             residual = float(np.abs(run.work.law - run.work.force).max())
             failure = stepping_failure(model, residual)
         if failure is not None:
-            reporter.finish()
-            return Ending(status="failed", stepping_cpu_s=progress.stepping_cpu_s, error=failure)
+            return ended("failed", failure)
         if code == OVERTURNED:
             break
-    reporter.finish()
     error = audit(model)
     if error is not None:
-        return Ending(status="failed", stepping_cpu_s=progress.stepping_cpu_s, error=error)
-    status = "overturned" if np.isfinite(track.overturned_at) else "completed"
-    return Ending(status=status, stepping_cpu_s=progress.stepping_cpu_s)
+        return ended("failed", error)
+    return ended("overturned" if np.isfinite(track.overturned_at) else "completed")
 
 
 def _advance(model: Model, run: RunState, progress: Progress, pace: Pace) -> tuple[int, Progress]:
@@ -186,7 +190,7 @@ def _leave_alone(model: Model, run: RunState, recorder: Recorder) -> tuple[float
     since = float(run.clock[0].time)
     displacement, velocity, _ = floor_motion(run.motion, since)
     leave_body_alone(model.body, run, velocity)
-    recorder.go_over_to_frame(velocity)
+    recorder.change_frame(velocity)
     return since, float(displacement)
 
 
@@ -215,7 +219,7 @@ def crushing_failure(model: Model) -> str | None:
 def stepping_failure(model: Model, residual: float) -> str:
     """Where and why the stepping failed, and what to try; `residual` is that of the contact forces [N]."""
     control, clock = model.run.control, model.run.clock[0]
-    if clock.steps + clock.rejected >= most_attempts(control, float(clock.time)):
+    if _attempts(model.run) >= most_attempts(control, float(clock.time)):
         smallest = min(float(clock.smallest_step), control.largest_step)
         return (
             f"t = {float(clock.time):.6g} s: no progress: {int(clock.steps)} steps accepted, "

@@ -1,6 +1,7 @@
 """The file of a checkpoint: what comes back is what went in, and everything else is refused by name."""
 
 import gc
+import hashlib
 import json
 import os
 import struct
@@ -12,8 +13,7 @@ import numpy as np
 import pytest
 
 from contact.stepping.state import STEP_RECORD
-from fem.results import archive as checkpoint
-from fem.results.archive import ABOUT, CheckpointError, read_checkpoint, write_archive
+from fem.results.archive import ABOUT, FORMAT, CheckpointError, read_checkpoint, write_archive
 
 PROGRAM = {"unanchored": "0.1.0", "sources": "abc"}
 OWN = {"case_hash": "ours", "program": PROGRAM}
@@ -42,51 +42,26 @@ def path(tmp_path):
     return place
 
 
-def test_what_goes_in_comes_back_bit_for_bit(path):
+def test_what_goes_in_comes_back_bit_for_bit_and_numpy_reads_it_as_well(path):
     found = read(path)
     assert found.about["time_s"] == 0.1 + 0.2
     assert set(found.arrays) == set(arrays())
-    for name, array in arrays().items():
-        assert found.arrays[name].dtype.descr == array.dtype.descr
-        assert found.arrays[name].shape == array.shape
-        assert found.arrays[name].tobytes() == array.tobytes()
-    assert [entry.name for entry in path.parent.iterdir()] == [path.name]
-
-
-def test_the_file_is_an_npz_that_numpy_reads_without_pickle(path):
     with np.load(path, allow_pickle=False) as archive:
-        assert archive["work.pivot"].tolist() == [[0, 1], [2, 3]]
+        for name, array in arrays().items():
+            for one in (found.arrays[name], archive[name]):
+                assert (one.dtype.descr, one.shape) == (array.dtype.descr, array.shape)
+                assert one.tobytes() == array.tobytes()
 
 
-def test_objects_are_not_kept(tmp_path):
-    with pytest.raises(ValueError, match="allow_pickle"):
-        write_archive(tmp_path / "c.npz", OWN, {"a": np.array([print], dtype=object)})
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_checkpoint_cut_short_anywhere_is_refused(path):
+def test_a_checkpoint_cut_short_or_with_a_wrong_bit_anywhere_is_refused(path):
     whole = path.read_bytes()
-    for length in [0, 1, 10, *range(50, len(whole), 97), len(whole) - 1]:
-        path.write_bytes(whole[:length])
-        with pytest.raises(CheckpointError, match=r"checkpoint\.npz: damaged.*--force"):
-            read(path)
-
-
-def test_a_single_damaged_bit_anywhere_is_refused(path):
-    whole = path.read_bytes()
+    spoiled = [whole[:length] for length in [0, 1, 10, *range(50, len(whole), 97), len(whole) - 1]]
     for at in range(0, len(whole), 7):
-        damaged = bytearray(whole)
-        damaged[at] ^= 1 << (at % 8)
-        path.write_bytes(damaged)
-        with pytest.raises(CheckpointError, match="damaged"):
+        spoiled.append(whole[:at] + bytes([whole[at] ^ 1 << (at % 8)]) + whole[at + 1 :])
+    for content in [*spoiled, b"{}", b"\x93NUMPY\x01\x00", os.urandom(5000)]:
+        path.write_bytes(content)
+        with pytest.raises(CheckpointError, match=r"checkpoint\.npz: damaged, or not a checkpoint.*--force"):
             read(path)
-
-
-@pytest.mark.parametrize("content", [b"", b"PK\x03\x04", b"\x93NUMPY\x01\x00", b"{}", os.urandom(5000)])
-def test_what_is_no_checkpoint_is_refused(tmp_path, content):
-    (tmp_path / "c.npz").write_bytes(content)
-    with pytest.raises(CheckpointError, match=r"c\.npz: damaged, or not a checkpoint.*--force"):
-        read(tmp_path / "c.npz")
 
 
 @pytest.mark.parametrize(
@@ -102,46 +77,44 @@ def test_a_checkpoint_of_another_case_or_version_is_refused(path, asked, words):
         read(path, **asked)
 
 
-def test_a_missing_checkpoint_and_another_format_are_refused(path, tmp_path, monkeypatch):
+def test_a_missing_checkpoint_and_another_format_are_refused(path, tmp_path):
     with pytest.raises(CheckpointError, match="cannot be read"):
         read(tmp_path / "none.npz")
-    monkeypatch.setattr(checkpoint, "FORMAT", checkpoint.FORMAT + 1)
+    write_archive(path, {**OWN, "format": FORMAT + 1}, {})
     with pytest.raises(CheckpointError, match="another version"):
         read(path)
 
 
-def forged(path, name, header, content, compression):
+def forged(path, header, content, compression):
     """An archive whose checksum is right, with one array that is not what it seems."""
     text = f"{header!r}".encode().ljust(118) + b"\n"
     array = b"\x93NUMPY\x01\x00" + struct.pack("<H", len(text)) + text + content
     with zipfile.ZipFile(path, "w", compression) as archive:
-        archive.writestr(ABOUT, json.dumps({"format": checkpoint.FORMAT, **OWN}))
-        archive.writestr(name, array)
-        archive.comment = bytes(checkpoint.DIGEST_LENGTH)
-    content = path.read_bytes()[: -checkpoint.DIGEST_LENGTH]
-    path.write_bytes(content + checkpoint._digest(content))
+        archive.writestr(ABOUT, json.dumps({"format": FORMAT, **OWN}))
+        archive.writestr("a.npy", array)
+        archive.comment = bytes(64)
+    content = path.read_bytes()[:-64]
+    path.write_bytes(content + hashlib.sha256(content).hexdigest().encode())
 
 
 @pytest.mark.parametrize(
     ("header", "content", "compression", "words"),
     [
-        *(
-            ({"descr": "<f8", "shape": (10**k,)}, bytes(16), zipfile.ZIP_STORED, "damaged")
-            for k in (1, 9, 15, 30)
-        ),
+        ({"descr": "<f8", "shape": (10,)}, bytes(16), zipfile.ZIP_STORED, "damaged"),
+        ({"descr": "<f8", "shape": (10**30,)}, bytes(16), zipfile.ZIP_STORED, "damaged"),
         ({"descr": "|O", "shape": (1,)}, b"cos\nsystem\n(S'false'\ntR.", zipfile.ZIP_STORED, "allow_pickle"),
         ({"descr": "<f8", "shape": (10**6,)}, bytes(8 * 10**6), zipfile.ZIP_DEFLATED, "it is compressed"),
     ],
 )
 def test_an_array_that_is_not_what_it_seems_is_refused(tmp_path, header, content, compression, words):
     # .. without taking the memory that it claims, and without running what a pickle holds
-    forged(tmp_path / "c.npz", "a.npy", header | {"fortran_order": False}, content, compression)
+    forged(tmp_path / "c.npz", header | {"fortran_order": False}, content, compression)
     with pytest.raises(CheckpointError, match=words):
         read(tmp_path / "c.npz")
 
 
 class Garbage:
-    """Rubbish whose collection runs Python code, so that threads change places where they otherwise would not."""
+    """Its collection runs Python code, so that threads change places where they otherwise would not."""
 
     def __init__(self):
         self.itself = self
@@ -171,16 +144,3 @@ def test_two_threads_that_read_at_once_find_nothing_damaged(path):
     finally:
         gc.set_threshold(*before[0])
         sys.setswitchinterval(before[1])
-
-
-def test_a_write_that_fails_keeps_the_old_checkpoint(path, monkeypatch):
-    before = path.read_bytes()
-
-    def full(*_):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(OSError, match="No space"):
-        write_archive(path, OWN, {"a": np.zeros(3)})
-    assert path.read_bytes() == before
-    assert [entry.name for entry in path.parent.iterdir()] == [path.name]

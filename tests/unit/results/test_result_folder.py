@@ -3,10 +3,10 @@
 import json
 import math
 import os
-import shutil
 
 import numpy as np
 import pytest
+from interrupted_runs import files_of
 
 from fem.results.errors import FolderError, OutputError, writing_into
 from fem.results.files import to_json, write_atomically
@@ -40,12 +40,6 @@ def computed(path, kind, status="completed", request="ours", **options):
     return folder
 
 
-def files_in(path):
-    return {
-        file.relative_to(path).as_posix(): file.read_bytes() for file in path.rglob("*") if file.is_file()
-    }
-
-
 def test_a_new_folder_is_marked_as_running_with_what_was_asked(tmp_path, kind):
     place = tmp_path / "outputs" / "result"
     with open_result_folder(place, kind, "ours") as folder:
@@ -53,19 +47,19 @@ def test_a_new_folder_is_marked_as_running_with_what_was_asked(tmp_path, kind):
         folder.begin(mark(kind), TEXTS)
     assert json.loads((place / kind.mark).read_text()) == mark(kind)
     assert (place / "case.toml").read_text(encoding="utf-8") == TEXTS["case.toml"]
-    assert sorted(files_in(place)) == sorted([*TEXTS, kind.mark])
+    assert sorted(files_of(place)) == sorted([*TEXTS, kind.mark])
 
 
 def test_a_finished_result_of_the_same_request_is_not_touched_unless_forced(tmp_path, kind):
     for status in kind.finished:
         computed(tmp_path, kind, status, force=True)
-        before = files_in(tmp_path)
+        before = files_of(tmp_path)
         assert computed(tmp_path, kind).found == mark(kind, status)
-        assert files_in(tmp_path) == before
+        assert files_of(tmp_path) == before
     with open_result_folder(tmp_path, kind, "ours", force=True, resume=True) as folder:
         assert not folder.finished and not folder.resuming
         folder.begin(mark(kind), TEXTS)
-    assert sorted(files_in(tmp_path)) == sorted([*TEXTS, kind.mark])
+    assert sorted(files_of(tmp_path)) == sorted([*TEXTS, kind.mark])
 
 
 @pytest.mark.parametrize("resume", [False, True])
@@ -76,7 +70,7 @@ def test_an_unfinished_result_keeps_its_files_only_to_resume(tmp_path, kind, sta
         assert folder.resuming is resume
         folder.begin(mark(kind), TEXTS)
     kept = own_files(kind) if resume else []
-    assert sorted(files_in(tmp_path)) == sorted([*TEXTS, kind.mark, *kept])
+    assert sorted(files_of(tmp_path)) == sorted([*TEXTS, kind.mark, *kept])
     with (
         open_result_folder(tmp_path, kind, "ours") as folder,
         pytest.raises(FolderError, match=r"--resume.*--force"),
@@ -86,16 +80,18 @@ def test_an_unfinished_result_keeps_its_files_only_to_resume(tmp_path, kind, sta
 
 def test_another_request_is_refused_and_force_replaces_it(tmp_path, kind):
     computed(tmp_path, kind)
-    before = files_in(tmp_path)
+    before = files_of(tmp_path)
     for options in ({}, {"resume": True}):
         with pytest.raises(FolderError, match=rf"another {kind.asked}.*--out.*--force"):
             computed(tmp_path, kind, request="theirs", **options)
-    assert files_in(tmp_path) == before
+    assert files_of(tmp_path) == before
     computed(tmp_path, kind, "failed", request="theirs", force=True, resume=True)
     assert read_result(tmp_path / kind.mark, kind) == mark(kind, "failed", "theirs")
 
 
 def test_foreign_files_are_refused_and_survive_force(tmp_path, kind):
+    for name in (f".{kind.mark}.part", ".lock", ".owner"):  # left by a kill: no obstacle
+        (tmp_path / name).write_text("{")
     (tmp_path / "thesis.tex").write_text("years of work")
     with pytest.raises(FolderError, match=rf"not empty and holds no {kind.name}.*--out.*--force"):
         computed(tmp_path, kind)
@@ -116,12 +112,6 @@ def test_a_damaged_mark_is_refused_by_name(tmp_path, kind, text):
     with pytest.raises(FolderError, match=rf"{kind.mark}: damaged.*the result of.*--force"):
         computed(tmp_path, kind)
     assert computed(tmp_path, kind, force=True).found is None
-
-
-def test_leftovers_of_a_kill_are_no_obstacle(tmp_path, kind):
-    for name in (f".{kind.mark}.part", ".lock", ".owner"):
-        (tmp_path / name).write_text("{")
-    assert computed(tmp_path, kind).found is None
 
 
 def test_the_program_that_wrote_an_unfinished_result_must_be_this_one(tmp_path, kind):
@@ -171,23 +161,16 @@ def test_a_file_or_a_broken_link_on_the_way_is_named(tmp_path, kind):
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["file", "link"]
 
 
-def test_a_folder_that_is_lost_or_full_is_an_error_with_the_way_on(tmp_path, kind):
-    place = tmp_path / "r"
-    removed = pytest.raises(OutputError, match=r"removed.*can be read.*--resume")
-    with removed, open_result_folder(place, kind, "ours") as folder:
-        shutil.rmtree(place)
-        folder.check()
-    full = pytest.raises(OutputError, match=r"No space left.*then go on")
-    with full, open_result_folder(place, kind, "ours", way_on="then go on"):
-        raise OSError(28, os.strerror(28))
-
-
-def test_a_full_disk_at_the_start_leaves_nothing_behind(tmp_path, kind, monkeypatch):
-    def full(file):
+def test_a_full_disk_is_an_error_with_the_way_on_and_at_the_start_leaves_nothing(tmp_path, kind, monkeypatch):
+    def full(*_):
         raise OSError(28, "No space left on device")
 
+    place = tmp_path / "outputs" / "r"
+    failed = pytest.raises(OutputError, match=r"No space left.*can be read.*then compute")
+    with failed, open_result_folder(place, kind, "ours", way_on="then compute"):
+        full()
     refused = pytest.raises(FolderError, match="No space left")
-    with refused, open_result_folder(tmp_path / "outputs" / "r", kind, "ours") as folder:
+    with refused, open_result_folder(place, kind, "ours") as folder:
         monkeypatch.setattr(os, "fsync", full)
         folder.begin(mark(kind), TEXTS)
     assert list(tmp_path.iterdir()) == []
@@ -204,7 +187,7 @@ def test_a_result_is_strict_json_and_replaced_whole(tmp_path, kind, monkeypatch)
         "a": 0.1, "b": None, "c": [1.0, None], "d": {"e": 3, "f": True, "g": None},
         "h": ["rest"], "i": ["rock", "slide"],
     }  # fmt: skip
-    before = files_in(tmp_path)
+    before = files_of(tmp_path)
 
     def fail(*_):
         raise OSError(5, "Input/output error")
@@ -212,4 +195,4 @@ def test_a_result_is_strict_json_and_replaced_whole(tmp_path, kind, monkeypatch)
     monkeypatch.setattr(os, "replace", fail)
     with pytest.raises(OSError, match="Input/output"):
         write_atomically(path, b"new")
-    assert files_in(tmp_path) == before
+    assert files_of(tmp_path) == before

@@ -1,4 +1,4 @@
-"""A band that is cut off amid a member goes on there, and comes to the band of the run left alone."""
+"""A band interrupted within a member continues there and gives the undisturbed band."""
 
 import json
 import re
@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from interrupted_runs import COARSE, one_slice, same
+from interrupted_runs import COARSE, one_slice, require_same, run_command
 
 import fem.run.simulation
 from fem.__main__ import main
@@ -44,8 +44,7 @@ main(sys.argv[1:])
 
 
 def command(folder: Path, *overrides: str) -> list[str]:
-    changes = [word for override in (*SHORT, *overrides) for word in ("--set", override)]
-    return ["run", "rocking", "--band", "-q", "--out", str(folder), *changes]
+    return [*run_command("rocking", folder, *SHORT, *overrides), "--band"]
 
 
 @pytest.fixture
@@ -77,10 +76,12 @@ def test_a_band_cut_off_after_every_slice_is_the_band_left_alone(tmp_path, monke
         assert list((tmp_path / "cut" / "members").iterdir())
         cuts += 1
     assert cuts >= 2
-    same(tmp_path / "cut", tmp_path / "whole")
+    require_same(tmp_path / "cut", tmp_path / "whole")
 
 
-def test_a_band_killed_amid_a_member_goes_on_from_its_last_checkpoint(tmp_path, monkeypatch, short_slices):
+def test_a_band_killed_within_a_member_continues_from_its_last_checkpoint(
+    tmp_path, monkeypatch, short_slices
+):
     assert main(command(tmp_path / "whole", *MODELS["full"])) == 0
     process = subprocess.Popen(
         [sys.executable, "-c", KILLED, *command(tmp_path / "cut", *MODELS["full"])], stdout=subprocess.PIPE
@@ -102,10 +103,10 @@ def test_a_band_killed_amid_a_member_goes_on_from_its_last_checkpoint(tmp_path, 
 
     monkeypatch.setattr(band, "simulate", step)
     assert main(command(tmp_path / "cut", *MODELS["full"])) == 0
-    # Two members were finished; the third goes on from its last checkpoint, the others begin.
+    # Two members were finished; the third continues from its last checkpoint, the others begin.
     assert reached > 0.0
     assert sorted(beginnings) == [0.0, 0.0, reached]
-    same(tmp_path / "cut", tmp_path / "whole")
+    require_same(tmp_path / "cut", tmp_path / "whole")
 
 
 def test_checkpoints_of_a_band_that_cannot_be_trusted_are_reported_and_computed_again(
@@ -133,7 +134,7 @@ def test_checkpoints_of_a_band_that_cannot_be_trusted_are_reported_and_computed_
     }.items():
         assert re.search(rf"{name} is refused \([^)]*{reason}", message), message
     assert message.count("starts over at t = 0") == 3
-    same(tmp_path / "cut", tmp_path / "whole")
+    require_same(tmp_path / "cut", tmp_path / "whole")
 
 
 def test_a_band_that_cannot_be_stored_ends_at_once(tmp_path, monkeypatch):

@@ -6,10 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from interrupted_runs import run_command
 
 import fem.assessment.verdict
 import fem.model.equilibrium
 import fem.model.step_size
+import fem.run.run
 from contact.reference.floor_acceleration import still_floor
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
@@ -18,7 +20,6 @@ from fem.case.case import load_case
 from fem.results.history import History, read_history
 from fem.results.kinds import read_result
 from fem.run.run import Run, RunOptions, run_case
-from fem.runtime.progress import SilentReporter
 
 QUICK = ("solver.model=rigid", "output.fields_s=0", "output.figures=false")
 ANGLE = math.atan(1.1 / 4.0)  #: slenderness angle of the shipped stack [rad]
@@ -30,22 +31,11 @@ def run(folder: Path, name: str, *overrides: str, **options) -> Run:
 
 
 def command(folder: Path, name: str, *overrides: str) -> int:
-    changes = [word for override in (*QUICK, *overrides) for word in ("--set", override)]
-    return main(["run", name, "--out", str(folder), "-q", *changes])
+    return main(run_command(name, folder, *QUICK, *overrides))
 
 
 def history_of(folder: Path) -> History:
     return read_history(folder / "history.csv")
-
-
-class Collecting(SilentReporter):
-    """Keeps what it is told."""
-
-    def __init__(self) -> None:
-        self.messages: list[str] = []
-
-    def message(self, text: str) -> None:
-        self.messages.append(text)
 
 
 class TestEnd:
@@ -73,7 +63,7 @@ class TestEnd:
     def test_a_step_that_cannot_be_solved_ends_with_3_and_says_when_and_what_to_try(
         self, tmp_path, monkeypatch, capsys
     ):
-        # A ladder of one step, and a tolerance finer than rounding: the first step that fails is the smallest there is.
+        # One step size only, and a tolerance finer than rounding: the first step that fails is the smallest there is.
         monkeypatch.setattr(fem.model.step_size, "SMALLEST_SHARE", 1.0)
         monkeypatch.setattr(fem.model.equilibrium, "POINT_TOLERANCE", 1e-40)
         folder = tmp_path / "r"
@@ -97,13 +87,30 @@ class TestEnd:
         assert "No verdict:" in page
         assert "did not overturn" not in page
 
-    def test_a_ledger_beyond_its_limits_fails_the_run(self, tmp_path, monkeypatch):
+    def test_an_energy_balance_beyond_its_limits_fails_the_run_which_has_no_checks_then(
+        self, tmp_path, monkeypatch
+    ):
         monkeypatch.setattr(fem.assessment.verdict, "GAIN_LIMIT", -1.0)
-        found = run(tmp_path / "r", "rocking", "solver.duration_s=1")
+        found = run(tmp_path / "r", "rocking", "solver.duration_s=1", check_rigid=True, band=True)
         assert found.status == "failed"
         assert "of the energy to overturn" in found.result["error"]
         assert "solver.step_s" in found.result["error"]
         assert found.result["verdict"]["outcome"] is None
+        assert found.result["verdict"]["band"] is None
+        assert "rigid_check" not in found.result
+
+    def test_the_last_sample_and_frame_fall_on_the_end_although_rounding_puts_them_beyond(self, tmp_path):
+        assert 12 * 0.1 > 1.2
+        every = ("output.history_s=0.1", "output.fields_s=0.1")
+        run(tmp_path, "free_rocking", "solver.duration_s=1.2", *every)
+        assert len(history_of(tmp_path)) == 13
+        assert (tmp_path / "fields" / "frame_00012.vtu").is_file()
+
+    def test_a_history_coarser_than_the_drive_has_no_peak_to_peak_and_the_run_is_kept(self, tmp_path):
+        coarse = ("motion.cycles=2", "solver.duration_s=3.0", "output.history_s=2.5")
+        found = run(tmp_path, "seed_box", *coarse)
+        assert found.status == "completed"
+        assert found.result["verdict"]["slip_peak_to_peak_m"] is None
 
     def test_bad_input_leaves_no_folder_and_exits_with_2(self, tmp_path, capsys):
         folder = tmp_path / "r"
@@ -126,33 +133,21 @@ class TestAftermath:
         assert found.result["verdict"]["overturned_at_s"] == pytest.approx(falls_at, rel=2e-3)
         assert history_of(folder)["time_s"][-1] > 2.0
 
-    def test_one_that_comes_back_is_followed_until_it_has(self, tmp_path):
-        start = 1.06 * ANGLE
-        folder = tmp_path / "r"
-        found = run(
-            folder,
-            "free_rocking",
-            f"initial.rotation_rad={start!r}",
-            "initial.angular_velocity_rad_s=-0.2",
-            "solver.duration_s=0.02",
-        )
-        assert found.status == "completed"
-        assert found.result["verdict"]["outcome"] == "rock"
-        history = history_of(folder)
+    def test_one_that_comes_back_is_followed_until_it_has_on_a_floor_that_stands_still(self, tmp_path):
+        initial = (f"initial.rotation_rad={1.06 * ANGLE!r}", "initial.angular_velocity_rad_s=-0.2")
+        found = run(tmp_path / "back", "free_rocking", *initial, "solver.duration_s=0.02")
+        assert (found.status, found.result["verdict"]["outcome"]) == ("completed", "rock")
+        history = history_of(tmp_path / "back")
         assert history["time_s"][-1] > 0.02
         assert abs(history["rotation_rad"][-1]) < ANGLE
-
-    def test_the_floor_is_left_alone_meanwhile(self, tmp_path):
-        folder = tmp_path / "r"
-        found = run(folder, "overturning", "solver.duration_s=1.5")
-        assert found.status == "overturned"
-        history = history_of(folder)
+        assert run(tmp_path / "falls", "overturning", "solver.duration_s=1.5").status == "overturned"
+        history = history_of(tmp_path / "falls")
         after = history["time_s"] > 1.5 + 1e-9
         assert after.sum() > 5
         assert np.ptp(history["base_velocity_m_s"][after]) == 0.0
         assert not history["base_acceleration_m_s2"][after].any()
 
-    def test_a_run_told_not_to_stop_goes_on_with_the_container_on_its_side(self, tmp_path):
+    def test_a_run_that_is_not_to_stop_continues_with_the_container_on_its_side(self, tmp_path):
         folder = tmp_path / "r"
         found = run(folder, "overturning", "output.stop_when_overturned=false", "solver.duration_s=4")
         assert found.status == "overturned"
@@ -166,49 +161,31 @@ class TestAftermath:
 
 
 class TestAgain:
-    @pytest.mark.parametrize(
-        ("name", "overrides"),
-        [
-            ("seed_stack_plateau", ("solver.duration_s=4",)),
-            ("rocking", ("solver.model=reduced", "solver.duration_s=2", "support.kind=feet")),
-        ],
-    )
-    def test_the_resolved_case_gives_the_same_bytes(self, tmp_path, name, overrides):
-        first, second = tmp_path / "first", tmp_path / "second"
-        run(first, name, *overrides, band=False)
-        case = load_case(first / "resolved.toml")
-        run_case(case, case_text=case.text, folder=second, options=RunOptions(band=False))
-        for file in ("history.csv", "resolved.toml"):
-            assert (second / file).read_bytes() == (first / file).read_bytes()
-        hashes = [read_result(folder / "run.json")["case_hash"] for folder in (first, second)]
-        assert hashes[0] == hashes[1]
-        assert "auto" not in (first / "resolved.toml").read_text()
-
-    def test_a_finished_run_is_not_computed_again_unless_forced(self, tmp_path):
+    def test_a_finished_run_is_not_computed_again_unless_forced(self, tmp_path, monkeypatch, capsys):
         folder = tmp_path / "r"
         run(folder, "rocking", "solver.duration_s=1")
         before = (folder / "run.json").read_bytes()
-        (folder / "history.csv").write_text("kept as it is")
-        reporter = Collecting()
-        case = load_case("rocking", [*QUICK, "solver.duration_s=1"])
-        again = run_case(case, case_text=case.text, folder=folder, reporter=reporter)
-        assert again.status == "completed"
-        assert "--force" in reporter.messages[0]
+        (folder / "history.csv").write_text("unchanged")
+        monkeypatch.setattr(fem.run.run, "discretise", lambda *_: pytest.fail("set up again"))
+        words = [
+            word for word in run_command("rocking", folder, *QUICK, "solver.duration_s=1") if word != "-q"
+        ]
+        assert main(words) == 0
+        assert "--force" in "".join(capsys.readouterr())
         assert (folder / "run.json").read_bytes() == before
-        assert (folder / "history.csv").read_text() == "kept as it is"
+        assert (folder / "history.csv").read_text() == "unchanged"
+        monkeypatch.undo()
         run(folder, "rocking", "solver.duration_s=1", force=True)
         assert len(history_of(folder)) == 201
 
 
 class TestChecks:
-    def test_rocking_has_its_band_and_sliding_none(self, tmp_path):
+    def test_rocking_has_its_band_and_sliding_none_unless_asked_otherwise(self, tmp_path):
         rocks = run(tmp_path / "rocks", "rocking", "solver.duration_s=2")
         assert rocks.result["verdict"]["band"]["outcomes"]
         slides = run(tmp_path / "slides", "sliding", "solver.duration_s=2")
         assert slides.result["verdict"]["outcome"] == "slide"
         assert slides.result["verdict"]["band"] is None
-
-    def test_a_band_may_be_asked_for_and_left_out(self, tmp_path):
         asked = run(tmp_path / "asked", "sliding", "solver.duration_s=1", band=True)
         assert asked.result["verdict"]["band"]["outcomes"] == ["slide"]
         assert asked.result["verdict"]["band"]["unsure"] is False
@@ -231,42 +208,3 @@ class TestChecks:
         assert kept["rigid_check"]["reference"] == "rigid block that does not slide"
         assert kept["wall_s"] == first.result["wall_s"]
         assert (folder / "rigid_check.csv").is_file()
-
-    def test_a_failed_run_has_no_checks(self, tmp_path, monkeypatch):
-        monkeypatch.setattr(fem.assessment.verdict, "GAIN_LIMIT", -1.0)
-        found = run(tmp_path / "r", "free_rocking", "solver.duration_s=1", check_rigid=True, band=True)
-        assert found.status == "failed"
-        assert found.result["verdict"]["band"] is None
-        assert "rigid_check" not in found.result
-
-
-def test_the_last_sample_and_frame_fall_on_the_end_though_rounding_puts_them_beyond(tmp_path):
-    assert 12 * 0.1 > 1.2
-    folder = tmp_path / "r"
-    run(
-        folder,
-        "free_rocking",
-        "solver.model=rigid",
-        "solver.duration_s=1.2",
-        "output.history_s=0.1",
-        "output.fields_s=0.1",
-    )
-    assert len(read_history(folder / "history.csv")) == 13
-    assert (folder / "fields" / "frame_00012.vtu").is_file()
-
-
-def test_a_history_coarser_than_the_drive_has_no_peak_to_peak_and_the_run_stands(tmp_path):
-    overrides = (
-        "solver.model=rigid",
-        "motion.cycles=2",
-        "solver.duration_s=3.0",
-        "output.history_s=2.5",
-        "output.fields_s=0",
-    )
-    assert (
-        main(["run", "seed_box", *(f"--set={one}" for one in overrides), "-q", "--out", str(tmp_path / "r")])
-        == 0
-    )
-    result = read_result(tmp_path / "r" / "run.json")
-    assert result["status"] == "completed"
-    assert result["verdict"]["slip_peak_to_peak_m"] is None

@@ -1,10 +1,10 @@
-"""A run that is cut off and gone on with is, bit for bit, the run that was left alone."""
+"""A run that is interrupted and resumed is, bit for bit, the undisturbed run."""
 
 from functools import partial
 from pathlib import Path
 
 import pytest
-from interrupted_runs import COARSE, one_slice, same
+from interrupted_runs import COARSE, FLAT_SHELL, one_slice, require_same
 
 import fem.run.run
 import fem.run.simulation
@@ -13,8 +13,8 @@ from fem.run.run import Run, RunOptions, run_case
 
 RIGID = ("solver.model=rigid", "solver.duration_s=1.2", "output.fields_s=0.1")
 REDUCED = ("solver.duration_s=0.7", "output.fields_s=0.1")
-FLAT = (*REDUCED, "support.kind=flat", "container.wall_m=0.02", "solver.elastic_modes=4")
-FULL = ("solver.model=full", "solver.duration_s=0.12", "solver.element_size_m=0.5", "output.fields_s=0.02")
+FLAT = (*REDUCED, *FLAT_SHELL)
+FULL = (*COARSE, "solver.duration_s=0.12", "output.fields_s=0.02")
 #: still beyond its slenderness angle when time is up, then falling
 FALLING = ("solver.model=rigid", "initial.rotation_rad=0.8", "solver.duration_s=0.3", "output.fields_s=0.2")
 
@@ -50,18 +50,18 @@ def test_a_run_cut_off_after_every_slice_is_the_run_left_alone(tmp_path, monkeyp
         cuts += 1
         assert (tmp_path / "cut" / "checkpoint.npz").is_file()
     assert cuts >= 2
-    same(tmp_path / "cut", tmp_path / "whole")
+    require_same(tmp_path / "cut", tmp_path / "whole")
 
 
 @pytest.mark.parametrize("kind", ["rigid", "reduced, flat base", "full", "aftermath"])
 def test_a_run_paused_after_every_step_is_the_run_that_never_pauses(tmp_path, monkeypatch, kind):
-    # Where the pauses fall depends on the clock on the wall; nothing else may.
+    # Where the pauses fall depends on the wall clock; nothing else may.
     name, overrides = CASES[kind]
     for folder, first, longer in (("paused", 1, 1), ("whole", 10**9, 8)):
         monkeypatch.setattr(fem.run.simulation, "FIRST_PAUSE", first)
         monkeypatch.setattr(fem.run.simulation, "LONGER", longer)
         run(tmp_path / folder, name, (*overrides, "solver.duration_s=0.1"))
-    same(tmp_path / "paused", tmp_path / "whole")
+    require_same(tmp_path / "paused", tmp_path / "whole")
 
 
 def test_pauses_come_every_few_seconds_whatever_a_step_takes():

@@ -1,4 +1,4 @@
-"""A set-up that is cut off goes on with the parts that it has, to the bits of the one left alone."""
+"""An interrupted set-up continues with the parts that it has and gives the same bits."""
 
 import signal
 import subprocess
@@ -6,10 +6,9 @@ import sys
 from pathlib import Path
 
 import pytest
-from interrupted_runs import same
+from interrupted_runs import require_same, run_command
 
 from fem.__main__ import main
-from fem.results.kinds import read_result
 from fem.run import setup_cache
 from fem.solid import reduction
 
@@ -26,8 +25,7 @@ FULL = (*FLAT, "solver.model=full", "solver.element_size_m=0.5", "solver.duratio
 
 
 def command(folder: Path, *overrides: str) -> list[str]:
-    changes = [word for override in overrides for word in ("--set", override)]
-    return ["run", "seed_stack_plateau", "--out", str(folder), "--no-band", "-q", *changes]
+    return [*run_command("seed_stack_plateau", folder, *overrides), "--no-band"]
 
 
 @pytest.fixture
@@ -57,10 +55,10 @@ def test_a_set_up_cut_off_after_every_file_is_the_set_up_left_alone(
         assert [entry.name for entry in folder.iterdir()] == [".setup"]
     assert cuts >= 3
     assert len(names) == len(set(names))  # no part was made twice
-    same(folder, tmp_path / "whole")
+    require_same(folder, tmp_path / "whole")
 
 
-def test_what_the_disk_has_no_room_for_is_not_kept_and_that_is_said(tmp_path, monkeypatch, capsys):
+def test_arrays_that_the_disk_has_no_room_for_are_reported(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(setup_cache, "CHECKPOINT_S", 0.0)
     monkeypatch.setattr(setup_cache, "free_disk", lambda folder: 1e4)
     quiet = command(tmp_path / "r", *FULL)
@@ -72,7 +70,7 @@ def test_what_the_disk_has_no_room_for_is_not_kept_and_that_is_said(tmp_path, mo
     )
 
 
-def test_a_damaged_part_is_named_and_the_set_up_goes_on_before_it(
+def test_a_damaged_part_is_named_and_the_set_up_continues_before_it(
     tmp_path, monkeypatch, in_many_parts, capsys
 ):
     assert main(command(tmp_path / "whole", *FLAT)) == 0
@@ -92,7 +90,7 @@ def test_a_damaged_part_is_named_and_the_set_up_goes_on_before_it(
     capsys.readouterr()
     assert main(command(tmp_path / "cut", *FLAT)) == 0  # and -q
     assert str(damaged) in "".join(capsys.readouterr().err.split("\n"))
-    same(tmp_path / "cut", tmp_path / "whole")
+    require_same(tmp_path / "cut", tmp_path / "whole")
 
 
 def test_a_short_set_up_keeps_nothing_and_a_refused_one_leaves_nothing(tmp_path, monkeypatch, in_many_parts):
@@ -109,7 +107,7 @@ def test_a_short_set_up_keeps_nothing_and_a_refused_one_leaves_nothing(tmp_path,
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_amid_the_set_up_ends_it_at_once(tmp_path, number):
+def test_a_signal_during_the_set_up_ends_it_at_once(tmp_path, number):
     slow = """
 import sys, time
 import fem.run.run
@@ -132,10 +130,3 @@ program()
     assert process.returncode == 4
     assert err == "interrupted\n"
     assert not (tmp_path / "r").exists()
-
-
-def test_a_finished_run_is_told_without_a_set_up(tmp_path, monkeypatch):
-    assert main(command(tmp_path / "r", *FLAT)) == 0
-    monkeypatch.setattr("fem.run.run.discretise", lambda *_: pytest.fail("set up again"))
-    assert main(command(tmp_path / "r", *FLAT)) == 0
-    assert read_result(tmp_path / "r" / "run.json")["status"] == "completed"
