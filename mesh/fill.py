@@ -53,9 +53,9 @@ class BoxCells:
 
 def cell_thickness(geometry: ContainerGeometry, region: IntArray) -> FloatArray:
     """Thickness of the material out of the plane (m,): the depth, or both sheets together [m]."""
-    if geometry.section is Section.SOLID:
+    if geometry.wall is None:
         return np.full(len(region), geometry.depth)
-    return np.where(region == Region.WALL, geometry.depth, geometry.sheet_thickness)
+    return np.where(region == Region.WALL, geometry.depth, 2.0 * geometry.wall)
 
 
 def distribute_mass(

@@ -14,7 +14,7 @@ from contact.interface.laws import ELASTIC_STICK
 from contact.interface.solver import Contact, make_workspace
 from contact.motion.base_motion import BaseMotion
 from contact.motion.kernel import floor_motion
-from contact.stepping import modal_body
+from contact.stepping import modal_kernels
 from contact.stepping.body import State, make_state
 from contact.stepping.ledger import spring_energy
 from contact.stepping.modal_body import ModalBody
@@ -159,5 +159,5 @@ def _place(
         body.place(state, stance, response, floor_velocity)
         body.start(state, floor)
     else:
-        modal_body.place(body, state, stance, floor_velocity)
-        modal_body.start(body, state, floor)
+        modal_kernels.place(body, state, stance, floor_velocity)
+        modal_kernels.start(body, state, floor)

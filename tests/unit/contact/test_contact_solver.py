@@ -13,16 +13,9 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from contact.interface.dense import factor_dense, substitute_dense
 from contact.interface.laws import ELASTIC_STICK, REGULARISED
-from contact.interface.solver import (
-    Contact,
-    Workspace,
-    evaluate_laws,
-    factor_dense,
-    make_workspace,
-    solve_contact,
-    substitute_dense,
-)
+from contact.interface.solver import Contact, Workspace, evaluate_laws, make_workspace, solve_contact
 
 OPEN, CLOSED, TOUCHED = "open", "closed", "touched"
 STUCK, FORWARD, BACKWARD = "stuck", "forward", "backward"

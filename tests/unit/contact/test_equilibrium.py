@@ -7,7 +7,8 @@ import pytest
 
 from contact.interface.equilibrium import SettlingError, Stance, standing, tilted
 from contact.stepping.body import make_state
-from contact.stepping.modal_body import make_modal_body, place, start
+from contact.stepping.modal_body import make_modal_body
+from contact.stepping.modal_kernels import place, start
 
 MASS, GRAVITY = 1e4, 9.81
 WEIGHT = MASS * GRAVITY

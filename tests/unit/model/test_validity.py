@@ -26,7 +26,7 @@ def test_contact_springs_into_which_the_container_sinks_are_refused_by_check_and
     with pytest.raises(CaseError, match=reason):
         build_model(case)
     with pytest.raises(CaseError, match=reason):
-        _ = preview_of(case).numerics
+        preview_of(case).to_json()
 
 
 def test_a_corner_whose_spring_would_throw_the_container_is_refused():

@@ -52,7 +52,6 @@ def test_a_period_longer_than_a_third_of_the_window_is_not_claimed():
     sections = np.tile(np.arange(8.0), 3)[:20, None]
     found = classify(sections, resting=False)
     assert found.kind == "not periodic"
-    assert found.largest_period == 6
 
 
 def test_growing_amplitudes_diverge_and_bounded_ones_do_not():
@@ -60,8 +59,3 @@ def test_growing_amplitudes_diverge_and_bounded_ones_do_not():
     assert amplitudes_diverge(0.2 * 1.02**periods)
     assert not amplitudes_diverge(0.2 + 0.01 * np.sin(periods))
     assert not amplitudes_diverge(1e-6 * 1.1**periods)  # of nothing
-
-
-def test_too_few_sections_are_refused():
-    with pytest.raises(ValueError, match="at least 4"):
-        classify(np.zeros((3, 4)), resting=False)
