@@ -8,7 +8,6 @@ are straight; the order of the elements is chosen where the mesh is used.
 
 import contextlib
 import io
-from dataclasses import dataclass
 from pathlib import Path
 
 import meshio
@@ -57,22 +56,13 @@ def read_container_mesh(path: Path | str, geometry: ContainerGeometry, fill: Mas
     path = Path(path)
     require_harmless(path)
     try:
-        return _container(_parse(path), geometry, fill)
+        return _container(*_parse(path), geometry, fill)
     except MeshError as error:
         raise type(error)(f"mesh file {path}: {error}") from error
 
 
-@dataclass(frozen=True, kw_only=True)
-class _Raw:
-    """Contents of a file in plain arrays; only types are checked yet."""
-
-    points: FloatArray  #: (n, 2 or 3) [m]
-    quads: IntArray  #: (m, 4)
-    tags: CellTags
-
-
-def _parse(path: Path) -> _Raw:
-    """Parse the file; every error of a reader becomes a MeshError."""
+def _parse(path: Path) -> tuple[FloatArray, IntArray, CellTags]:
+    """Points (n, 2 or 3) [m], corners (m, 4) and tags; every error of a reader becomes a MeshError."""
     chatter = io.StringIO()
     suffix = path.suffix.lower()
     try:
@@ -81,8 +71,8 @@ def _parse(path: Path) -> _Raw:
             contextlib.redirect_stderr(chatter),
             bounded_memory(path),
         ):
-            raw = _READERS[suffix](str(path))
-        return _raw(raw)
+            mesh = _READERS[suffix](str(path))
+        return _checked(mesh)
     except MeshError:
         raise
     # Parsers of damaged files raise any exception, one of them SystemExit.
@@ -91,7 +81,7 @@ def _parse(path: Path) -> _Raw:
         raise MeshError(f"not readable as {FORMATS[suffix]} ({reason}); is it complete?") from error
 
 
-def _raw(mesh: meshio.Mesh) -> _Raw:
+def _checked(mesh: meshio.Mesh) -> tuple[FloatArray, IntArray, CellTags]:
     others = sorted({block.type for block in mesh.cells if block.type not in (*QUADS, *BYSTANDERS)})
     if others:
         raise MeshError(
@@ -122,13 +112,15 @@ def _raw(mesh: meshio.Mesh) -> _Raw:
             if np.shape(entry) == (2,) and int(entry[1]) == 2
         },
     )
-    return _Raw(points=points, quads=quads, tags=tags)
+    return points, quads, tags
 
 
-def _container(raw: _Raw, geometry: ContainerGeometry, fill: MassFill) -> ContainerMesh:
-    used, numbers = np.unique(raw.quads, return_inverse=True)
-    points, quads = _plane(raw.points[used]), numbers.reshape(raw.quads.shape).astype(np.int64)
-    points = place_on_floor(points, geometry.width, geometry.total_height)
+def _container(
+    points: FloatArray, quads: IntArray, tags: CellTags, geometry: ContainerGeometry, fill: MassFill
+) -> ContainerMesh:
+    used, numbers = np.unique(quads, return_inverse=True)
+    quads = numbers.reshape(quads.shape).astype(np.int64)
+    points = place_on_floor(_plane(points[used]), geometry.width, geometry.total_height)
     clockwise = signed_areas(points, quads) < 0.0
     quads[clockwise] = quads[clockwise, ::-1]
     require_quality(points, quads)
@@ -136,7 +128,7 @@ def _container(raw: _Raw, geometry: ContainerGeometry, fill: MassFill) -> Contai
 
     solid = geometry.section is Section.SOLID
     allowed = (Region.SOLID,) if solid else (Region.WALL, Region.SHEET, Region.FILL)
-    region = cell_regions(raw.tags, allowed)
+    region = cell_regions(tags, allowed)
     density, region = _fill_boxes(points, quads, region, geometry, fill)
     return ContainerMesh(
         points=points,

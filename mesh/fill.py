@@ -53,9 +53,9 @@ class BoxCells:
 
 def cell_thickness(geometry: ContainerGeometry, region: IntArray) -> FloatArray:
     """Thickness of the material out of the plane (m,): the depth, or both sheets together [m]."""
-    if geometry.section is Section.SOLID:
+    if geometry.wall is None:
         return np.full(len(region), geometry.depth)
-    return np.where(region == Region.WALL, geometry.depth, geometry.sheet_thickness)
+    return np.where(region == Region.WALL, geometry.depth, 2.0 * geometry.wall)
 
 
 def distribute_mass(
@@ -121,7 +121,12 @@ def _shell_density(
     wall_moment = float(wall_masses @ cells.centroid)
     room = np.flatnonzero(cells.region == Region.FILL)
     if fill_mass <= ROUNDING * fill.mass:
-        _require_centroid_of_walls(fill, wall_moment / wall_mass, geometry.height)
+        centroid = wall_moment / wall_mass
+        if abs(fill.centroid_height - centroid) > 1e-9 * geometry.height:
+            raise MeshError(
+                f"the walls weigh as much as the box, so its centroid is theirs, {centroid:.6g} m, "
+                f"got {fill.centroid_height} m"
+            )
         room = room[:0]
     elif room.size == 0:
         raise MeshError(
@@ -134,14 +139,6 @@ def _shell_density(
         density[room] += fill_mass / (cells.area[room] @ share) * share
         region[room[share > 0.0]] = Region.FILL
     return density, region
-
-
-def _require_centroid_of_walls(fill: MassFill, wall_centroid: float, height: float) -> None:
-    if abs(fill.centroid_height - wall_centroid) > 1e-9 * height:
-        raise MeshError(
-            f"the walls weigh as much as the box, so its centroid is theirs, {wall_centroid:.6g} m, "
-            f"got {fill.centroid_height} m"
-        )
 
 
 def _fill_shares(

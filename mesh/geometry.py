@@ -57,13 +57,6 @@ class ContainerGeometry:
         """Height of all boxes together [m]."""
         return self.boxes * self.height
 
-    @property
-    def sheet_thickness(self) -> float:
-        """Front and back sheet together, out of the plane; shell only [m]."""
-        if self.wall is None:
-            raise MeshError("a solid section has no sheets")
-        return 2.0 * self.wall
-
 
 def _require_length(name: str, value: float) -> None:
     if not (value > 0.0 and math.isfinite(value)):  # also refuses nan

@@ -12,7 +12,7 @@ import numpy as np
 from mesh.cells import FloatArray, IntArray
 from mesh.errors import MeshError, MeshQualityError
 
-#: Smallest scaled Jacobian accepted by default: corner angles between 11.5 and 168.5 degrees.
+#: Smallest scaled Jacobian accepted: corner angles between 11.5 and 168.5 degrees.
 LEAST_SCALED_JACOBIAN = 0.2
 
 #: Larger positions are refused [m]; squares and cubes of smaller ones are finite.
@@ -56,8 +56,8 @@ def corner_angles(points: FloatArray, quads: IntArray) -> FloatArray:
     return np.mod(np.degrees(np.arctan2(cross, dot)), 360.0)
 
 
-def require_quality(points: FloatArray, quads: IntArray, least: float = LEAST_SCALED_JACOBIAN) -> None:
-    """Refuse a mesh with a cell whose scaled Jacobian is below `least`.
+def require_quality(points: FloatArray, quads: IntArray) -> None:
+    """Refuse a mesh with a cell whose scaled Jacobian is below `LEAST_SCALED_JACOBIAN`.
 
     Raises:
         MeshError: points or cells of the wrong shape, positions that are not finite, corners not in the mesh.
@@ -66,15 +66,16 @@ def require_quality(points: FloatArray, quads: IntArray, least: float = LEAST_SC
     _require_numbers(points, quads)
     quality = scaled_jacobian(points, quads)
     worst = int(np.argmin(quality))
-    if quality[worst] >= least:
+    if quality[worst] >= LEAST_SCALED_JACOBIAN:
         return
     centre = points[quads[worst]].mean(axis=0)
     angles = ", ".join(f"{angle:.1f}" for angle in corner_angles(points, quads[worst : worst + 1])[0])
+    below = int(np.sum(quality < LEAST_SCALED_JACOBIAN))
     fault = "inverted, folded or without area" if quality[worst] <= 0.0 else "too distorted"
     raise MeshQualityError(
         f"cell {worst} at x = {centre[0]:.4g} m, z = {centre[1]:.4g} m is {fault}: scaled Jacobian "
-        f"{quality[worst]:.4g} (at least {least} needed), corner angles {angles} degrees; "
-        f"{int(np.sum(quality < least))} of {len(quads)} cells are below; move its corners or remesh there"
+        f"{quality[worst]:.4g} (at least {LEAST_SCALED_JACOBIAN} needed), corner angles {angles} degrees; "
+        f"{below} of {len(quads)} cells are below; move its corners or remesh there"
     )
 
 

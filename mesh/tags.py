@@ -101,11 +101,8 @@ def _from_region_field(tags: CellTags) -> dict[str, BoolArray]:
     codes = tags.data.get("region")
     if codes is None:
         return {}
-    names = {int(region): region.name.lower() for region in Region}
-    return {
-        names.get(int(code), f"region {code}") if code == np.floor(code) else f"region {code}": codes == code
-        for code in np.unique(codes[np.isfinite(codes)])
-    }
+    names = {int(region): name for name, region in REGION_NAMES.items()}
+    return {names.get(code, f"region {code}"): codes == code for code in np.unique(codes[np.isfinite(codes)])}
 
 
 def _from_flags(tags: CellTags) -> dict[str, BoolArray]:

@@ -46,7 +46,10 @@ def require_harmless(path: Path) -> None:
     """
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
-        raise MeshError(f"mesh file {path}: format {suffix or 'without suffix'} is not read; {format_list()}")
+        known = ", ".join(f"{each} ({name})" for each, name in FORMATS.items())
+        raise MeshError(
+            f"mesh file {path}: format {suffix or 'without suffix'} is not read; known are {known}"
+        )
     if not path.is_file():
         raise MeshError(f"mesh file {path}: no such file")
     size = path.stat().st_size
@@ -79,11 +82,6 @@ def bounded_memory(path: Path) -> Iterator[None]:
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
-
-
-def format_list() -> str:
-    """The formats in words, for messages."""
-    return "known are " + ", ".join(f"{suffix} ({name})" for suffix, name in FORMATS.items())
 
 
 def _gmsh(contents: bytes) -> str | None:

@@ -51,7 +51,7 @@ class Browser:
         os.write(self._to, json.dumps(message).encode() + b"\0")
         end = time.monotonic() + PATIENCE_S
         while time.monotonic() < end:
-            for answer in self._receive():
+            for answer in list(self._receive()):
                 if answer.get("id") == number:
                     if "error" in answer:
                         raise RuntimeError(f"{method}: {answer['error']}")
@@ -59,10 +59,9 @@ class Browser:
         raise TimeoutError(method)
 
     def open(self, path: Path, fragment: str = "") -> None:
-        """Load a file anew and wait until it is there."""
-        self.call(
-            "Page.navigate", url="about:blank"
-        )  # else another fragment would only move about in the page
+        """Load a file and wait until it is there."""
+        # from an empty page: another fragment alone would not load the file again
+        self.call("Page.navigate", url="about:blank")
         self.wait("location.href === 'about:blank'")
         self.requests.clear()
         self.errors.clear()
@@ -84,11 +83,11 @@ class Browser:
                 raise TimeoutError(expression)
             time.sleep(0.05)
 
-    def press(self, key: str, code: int = 0, text: str | None = None) -> None:
+    def press(self, key: str, code: int) -> None:
         """A key, down and up."""
-        key_of = {"key": key, "windowsVirtualKeyCode": code}
-        self.call("Input.dispatchKeyEvent", type="keyDown", **key_of, **({"text": text} if text else {}))
-        self.call("Input.dispatchKeyEvent", type="keyUp", **key_of)
+        pressed = {"key": key, "windowsVirtualKeyCode": code, "text": key if len(key) == 1 else ""}
+        self.call("Input.dispatchKeyEvent", type="keyDown", **pressed)
+        self.call("Input.dispatchKeyEvent", type="keyUp", key=key, windowsVirtualKeyCode=code)
 
     def click(self, selector: str, x: float = 0.5, y: float = 0.5) -> None:
         """A click into an element, at shares of its width and height."""
@@ -103,19 +102,8 @@ class Browser:
 
     def window(self, width: int, height: int) -> None:
         """The size of the view."""
-        self.call(
-            "Emulation.setDeviceMetricsOverride",
-            width=width, height=height, deviceScaleFactor=1, mobile=False,
-        )  # fmt: skip
-
-    def prefer(self, **features: str) -> None:
-        """Media features, such as prefers_reduced_motion="reduce"."""
-        named = [{"name": name.replace("_", "-"), "value": value} for name, value in features.items()]
-        self.call("Emulation.setEmulatedMedia", features=named)
-
-    def screenshot(self) -> bytes:
-        """The view as PNG."""
-        return base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self.call("Emulation.setDeviceMetricsOverride", **size)
 
     def pdf(self) -> bytes:
         """The page as it would be printed."""
@@ -124,24 +112,19 @@ class Browser:
     def _receive(self):
         data = os.read(self._from, 1 << 20)
         if not data:
-            raise RuntimeError("the browser has gone")
+            raise RuntimeError("the browser has ended")
         *whole, self._rest = (self._rest + data).split(b"\0")
-        messages = [json.loads(message) for message in whole]
-        for message in messages:
-            self._note(message)
-        return messages
-
-    def _note(self, message) -> None:
-        parameters = message.get("params", {})
-        match message.get("method"):
-            case "Network.requestWillBeSent" if not parameters["request"]["url"].startswith("data:"):
-                self.requests.append(parameters["request"]["url"])
-            case "Runtime.exceptionThrown":
-                self.errors.append(str(parameters["exceptionDetails"]))
-            case "Log.entryAdded" if parameters["entry"]["level"] == "error":
-                self.errors.append(parameters["entry"]["text"])
-            case "Runtime.consoleAPICalled" if parameters["type"] == "error":
-                self.errors.append(str(parameters["args"]))
+        for message in map(json.loads, whole):
+            match message:
+                case {"method": "Network.requestWillBeSent", "params": {"request": {"url": url}}}:
+                    self.requests += [] if url.startswith("data:") else [url]
+                case (
+                    {"method": "Runtime.exceptionThrown", "params": error}
+                    | {"method": "Log.entryAdded", "params": {"entry": {"level": "error"}} as error}
+                    | {"method": "Runtime.consoleAPICalled", "params": {"type": "error"} as error}
+                ):
+                    self.errors.append(str(error))
+            yield message
 
     def __enter__(self):
         return self

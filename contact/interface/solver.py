@@ -15,18 +15,15 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.arrays import FloatArray, IntArray
+from contact.interface.dense import factor_dense, substitute_dense
 from contact.interface.laws import ELASTIC_STICK, normal_force, regularised_friction, stick_friction
 from contact.jit import compiled
 
 FULL_STEPS = 1  #: full Newton steps before the line search begins; problems with friction tend to cycle
 NEWTON_LIMIT = 40
 WORTH_KEEPING = 5  #: active points from which an old factorisation is reused before a new one is computed
-#: residual force over the largest force at which the contact problem is solved
-FORCE_TOLERANCE = 1e-11
-
-
-#: tangential force over its limit above which a point counts as sliding
-SLIDING = 1.0 - 1e-6
+FORCE_TOLERANCE = 1e-11  #: residual force over the largest force at which the contact problem is solved
+SLIDING = 1.0 - 1e-6  #: tangential force over its limit above which a point counts as sliding
 
 
 class Contact(NamedTuple):
@@ -42,7 +39,7 @@ class Contact(NamedTuple):
     regularisation_velocity: float  #: [m/s]
     force_scale: float  #: weight of the container [N], the scale of negligible forces
     resolution: (
-        float  #: rounding of a base point's position [m]; times the slope, the smallest resolvable force
+        float  #: rounding of a base point's position; times the slope, the smallest force resolved [m]
     )
 
 
@@ -180,47 +177,6 @@ def move_points(velocity_slope: float, force: FloatArray, work: Workspace) -> No
                     moved += work.compliance[2 * i + k, 2 * j + 1] * force[j, 1]
             work.point[i, k] = work.free[i, k] + moved
             work.velocity[i, k] = work.free_velocity[i, k] + velocity_slope * moved
-
-
-@compiled(inline=True)
-def factor_dense(size: int, matrix: FloatArray, pivot: IntArray) -> bool:
-    """LU decomposition with row pivoting of the leading size x size block, in place; False if singular."""
-    for k in range(size):
-        chosen, largest = k, abs(matrix[k, k])
-        for i in range(k + 1, size):
-            if abs(matrix[i, k]) > largest:
-                chosen, largest = i, abs(matrix[i, k])
-        pivot[k] = chosen
-        if not largest > 0.0:
-            return False
-        if chosen != k:
-            for j in range(size):
-                matrix[k, j], matrix[chosen, j] = matrix[chosen, j], matrix[k, j]
-        for i in range(k + 1, size):
-            factor = matrix[i, k] / matrix[k, k]
-            matrix[i, k] = factor
-            if factor != 0.0:
-                for j in range(k + 1, size):
-                    matrix[i, j] -= factor * matrix[k, j]
-    return True
-
-
-@compiled(inline=True)
-def substitute_dense(size: int, factors: FloatArray, pivot: IntArray, vector: FloatArray) -> None:
-    """Solve with the factors of `factor_dense`, in place."""
-    for k in range(size):
-        if pivot[k] != k:
-            vector[k], vector[pivot[k]] = vector[pivot[k]], vector[k]
-    for k in range(1, size):
-        total = vector[k]
-        for j in range(k):
-            total -= factors[k, j] * vector[j]
-        vector[k] = total
-    for k in range(size - 1, -1, -1):
-        total = vector[k]
-        for j in range(k + 1, size):
-            total -= factors[k, j] * vector[j]
-        vector[k] = total / factors[k, k]
 
 
 @compiled(inline=True)

@@ -16,9 +16,7 @@ from contact.motion.table import TableMotion
 
 Unit = Literal["m/s2", "g", "m"]
 
-STANDARD_GRAVITY = (
-    9.80665  #: [m/s2] of a record in g (ISO 80000-3); does not depend on the gravity of the case
-)
+STANDARD_GRAVITY = 9.80665  #: of a record in g (ISO 80000-3), not the gravity of the case [m/s2]
 LARGEST_FILE = 64 * 2**20  #: [bytes]: three million samples and more
 
 # Quantity of each unit, and its factor to SI.
@@ -27,32 +25,12 @@ UNITS: dict[str, tuple[str, float]] = {
     "g": ("acceleration", STANDARD_GRAVITY),
     "m": ("displacement", 1.0),
 }
-# Spellings in headers. The last group is recognised only to be refused.
-SPELLINGS: dict[str, str] = {
-    **dict.fromkeys(
-        ("m/s2", "m/s^2", "m/s**2", "m/s²", "m/sec2", "m/sec^2", "m_s2", "m s-2", "m s^-2"), "m/s2"
-    ),
-    **dict.fromkeys(("g",), "g"),
-    **dict.fromkeys(("m",), "m"),
-    **{
-        u: u
-        for u in (
-            "mm",
-            "cm",
-            "in",
-            "ft",
-            "m/s",
-            "cm/s",
-            "gal",
-            "cm/s2",
-            "cm/s^2",
-            "mm/s2",
-            "in/s2",
-            "mg",
-            "%g",
-        )
-    },
-}
+# Spellings in headers; those of `REFUSED` are recognised only to be refused.
+SPELLINGS = dict.fromkeys(
+    ("m/s2", "m/s^2", "m/s**2", "m/s²", "m/sec2", "m/sec^2", "m_s2", "m s-2", "m s^-2"), "m/s2"
+)
+REFUSED = "mm cm in ft m/s cm/s gal cm/s2 cm/s^2 mm/s2 in/s2 mg %g"
+SPELLINGS |= {unit: unit for unit in ("g", "m", *REFUSED.split())}
 LARGEST_NUMBER = 1e12  #: of seconds or of any unit: above it the integrals of the motion are meaningless
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?", re.ASCII)
 
@@ -98,7 +76,7 @@ def _text(path: Path) -> str:
     size = path.stat().st_size
     if size > LARGEST_FILE:
         raise ValueError(
-            f"{path.name}: the file has {size / 2**20:.0f} MB; a motion table may have {LARGEST_FILE >> 20} MB"
+            f"{path.name}: {size} bytes; a motion table may have at most {LARGEST_FILE >> 20} MB"
         )
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -162,7 +140,7 @@ def _check_header(content: str, place: str, unit: Unit) -> None:
         found = _unit_of(field)
         if found is not None and found != wanted:
             raise ValueError(
-                f"{place}: the header gives {found!r}, but the case gives {wanted!r} ({field[:40]!r}); "
+                f"{place}: the header gives {found!r}, but {wanted!r} is needed ({field[:40]!r}); "
                 f"set the unit or convert the column"
             )
 

@@ -46,7 +46,7 @@ def initiation_mode(
 
 
 def sustained_sine_threshold_slender(frequency_ratio: float) -> float:
-    """Acceleration ratio under A sin(Omega t) that goes on: sqrt(1 + w^2) [-].
+    """Acceleration ratio under a lasting A sin(Omega t): sqrt(1 + w^2) [-].
 
     y never falls below -1 and grows without bound if a cos psi > w, with a sin psi = 1. Slender block, floor
     motion starting at zero displacement, block moving with the floor; any w.
@@ -57,7 +57,7 @@ def sustained_sine_threshold_slender(frequency_ratio: float) -> float:
 def half_sine_threshold_slender(frequency_ratio: float) -> float:
     """Acceleration ratio of a half-sine pulse, duration pi/Omega [-].
 
-    a [cos psi + exp(-(pi - psi)/w)] = w. Below the sqrt(1 + w^2) of the sine that goes on, which Housner
+    a [cos psi + exp(-(pi - psi)/w)] = w. Below the sqrt(1 + w^2) of the lasting sine, which Housner
     (1963) gave for this pulse and Makris and Roussos (2000) corrected. Slender block; any w > 0.
     """
     return _threshold(frequency_ratio, lambda a, psi, w: a * (math.cos(psi) + math.exp(-(math.pi - psi) / w)))

@@ -53,7 +53,7 @@ def pulse_slip(*, peak: float, duration: float, mu_static: float, mu_kinetic: fl
     """Signed slip left by a rectangular pulse of the floor acceleration [m].
 
     V^2/(2 mu_k g) (1 - mu_k g/a0) against the floor's acceleration, V = a0 t0: Newmark (1965), one way.
-    Zero where a0 <= mu_s g. The floor goes on with the velocity V.
+    Zero where a0 <= mu_s g. The floor keeps the velocity V.
     """
     if sticks(peak_acceleration=peak, mu_static=mu_static, gravity=gravity):
         return 0.0

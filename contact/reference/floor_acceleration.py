@@ -101,12 +101,12 @@ def half_sine_pulse(*, peak: float, duration: float, delay: float = 0.0) -> Floo
     )
 
 
-def one_sine_pulse(*, peak: float, duration: float, delay: float = 0.0) -> FloorAcceleration:
+def one_sine_pulse(*, peak: float, duration: float) -> FloorAcceleration:
     """peak x sin(2 pi t/duration) for one period, zero before and after [m/s2]."""
     return _pulse(
         lambda share: peak * math.sin(2.0 * math.pi * share),
         duration=duration,
-        delay=delay,
+        delay=0.0,
         longest_step=0.125 * duration,
     )
 

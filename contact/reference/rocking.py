@@ -32,7 +32,7 @@ class RockingOutcome(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class RockingImpact:
-    """A corner meets the floor and the block goes on about it."""
+    """A corner meets the floor and becomes the pivot."""
 
     time: float  #: [s]
     velocity_before: float  #: angular velocity, positive toward +x [rad/s]
@@ -49,7 +49,7 @@ class RockingPeak:
 
 @dataclass(frozen=True, kw_only=True)
 class RockingMotion:
-    """What a block that cannot slide did."""
+    """Motion of a block that cannot slide."""
 
     block: RigidBlock
     restitution: float  #: used at every impact [-]
@@ -57,7 +57,7 @@ class RockingMotion:
     impacts: tuple[RockingImpact, ...]
     peaks: tuple[RockingPeak, ...]
     uplifts: tuple[float, ...]  #: instants at which the block left the rest on its base [s]
-    end: float  #: duration asked for, or earlier where it overturned or was told to stop [s]
+    end: float  #: duration asked for, or earlier: overturned or stopped at the first impact [s]
     overturned_at: float | None  #: rotation of 90 degrees reached [s]
     largest_rotation: float  #: largest |rotation| [rad]
     pieces: tuple[Piece, ...]
@@ -103,7 +103,12 @@ def simulate_rocking(
         EventError: more than 100 000 impacts and uplifts.
     """
     used = max(block.housner_restitution, 0.0) if restitution is None else restitution
-    _check(duration, rotation, used)
+    if not 0.0 < duration < math.inf:
+        raise ValueError(f"rocking: duration must be positive and finite, got {duration} s")
+    if not abs(rotation) < 0.5 * math.pi:
+        raise ValueError(f"rocking: the start must lie below 90 degrees, got {rotation} rad")
+    if not 0.0 <= used <= 1.0:
+        raise ValueError(f"rocking: restitution must lie between 0 and 1, got {used}")
     scale = np.array([block.slenderness_angle, block.slenderness_angle * block.frequency_parameter])
     inertia = block.inertia_ratio * block.radius**2
     least_velocity = math.sqrt(2.0 * rest_energy * block.overturning_energy / inertia)
@@ -205,15 +210,6 @@ def first_swing_threshold(
         middle = 0.5 * (low + high)
         low, high = (low, middle) if overturns(middle) else (middle, high)
     return 0.5 * (low + high)
-
-
-def _check(duration: float, rotation: float, restitution: float) -> None:
-    if not 0.0 < duration < math.inf:
-        raise ValueError(f"rocking: duration must be positive and finite, got {duration} s")
-    if not abs(rotation) < 0.5 * math.pi:
-        raise ValueError(f"rocking: the start must lie below 90 degrees, got {rotation} rad")
-    if not 0.0 <= restitution <= 1.0:
-        raise ValueError(f"rocking: restitution must lie between 0 and 1, got {restitution}")
 
 
 def _rate(block: RigidBlock, side: int) -> Rate:

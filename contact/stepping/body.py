@@ -2,7 +2,7 @@
 
 A body has coordinates, whose number and meaning only the body knows, and base points that may touch the floor. The
 stepping calls the functions of this module: `predict`, `release`, `respond`, `complete`, `observe`, `shift_velocity`,
-`prepared` and `sizes_match`. In compiled code they are those of `contact.stepping.modal_body` (a floating frame with
+`prepared` and `sizes_match`. In compiled code they are those of `contact.stepping.modal_kernels` (a floating frame with
 elastic modes) or of `fem.solid.nodal_kernels` (the nodes of a mesh), see `implements`. In Python they call the method
 of the body with the same name.
 """
@@ -48,25 +48,10 @@ class State(NamedTuple):
 
 def make_state(coordinates: int, points: int, monitors: int) -> State:
     """Allocate a state for these numbers of coordinates, base points and monitored points."""
-    vector, pairs = (coordinates,), (points, 2)
-    shapes = {
-        "position": vector,
-        "velocity": vector,
-        "acceleration": vector,
-        "jerk": vector,
-        "internal": vector,
-        "damping": vector,
-        "external": vector,
-        "point": pairs,
-        "force": pairs,
-        "descent": pairs,
-        "stick": (points,),
-        "pose": (6,),
-        "energy": (3,),
-    }
-    numbers = np.zeros(sum(math.prod(shape) for shape in shapes.values()))
+    shapes: list[tuple[int, ...]] = [*7 * [(coordinates,)], *3 * [(points, 2)], (points,), (6,), (3,)]
+    numbers = np.zeros(sum(math.prod(shape) for shape in shapes))
     fields, begin = {}, 0
-    for name, shape in shapes.items():
+    for name, shape in zip(State._fields, shapes, strict=False):
         end = begin + math.prod(shape)
         fields[name], begin = numbers[begin:end].reshape(shape), end
     return State(**fields, monitor=np.zeros((monitors, 4)), numbers=numbers)

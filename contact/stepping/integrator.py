@@ -17,6 +17,7 @@ from numba.extending import register_jitable
 from contact.interface.laws import weakened_mu
 from contact.interface.solver import Contact
 from contact.jit import compiled
+from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
 from contact.stepping.body import ROTATION, complete, prepared, shift_velocity, sizes_match
 from contact.stepping.control import (
     STEPS_PER_OCTAVE,
@@ -43,6 +44,7 @@ REACHED, OVERTURNED, FAILED, UNPREPARED = 0, 1, 2, 3
 OVERTURNING_ROTATION = 0.5 * np.pi
 #: without stop at overturning, it counts this much earlier, where the side of the container meets the floor [rad]
 LYING_MARGIN = 2e-3
+AFTERMATH_SLICE = 0.05  #: interval of the checks after the end of the floor motion [s]
 
 
 @compiled(inline=True)
@@ -96,24 +98,6 @@ def close_step(run: RunState, step: float, slip_step: float, iterations: int) ->
 
 
 @register_jitable(forceinline=True)
-def _accept(
-    body: Any,
-    run: RunState,
-    step: float,
-    slip_step: float,
-    slip_velocity: float,
-    every: bool,
-    iterations: int,
-) -> None:
-    """Make the step attempted the state of the run; samples, ledger and record update_observables."""
-    clock = run.clock[0]
-    update_records(run, step, slip_step, slip_velocity, every)
-    clock.samples = sample(body, run, run.history, clock.samples, clock.samples_drained, step, slip_step)
-    clock.frames = sample(body, run, run.frames, clock.frames, clock.frames_drained, step, slip_step)
-    close_step(run, step, slip_step, iterations)
-
-
-@register_jitable(forceinline=True)
 def _kinetic_friction(contact: Contact, slid: float) -> float:
     """Coefficient of friction of a sliding support after a path of `slid` [m]."""
     return weakened_mu(contact.mu_static, contact.mu_kinetic, contact.weakening, slid)
@@ -131,20 +115,15 @@ def _is_full(run: RunState) -> bool:
 
 @register_jitable(forceinline=True)
 def enter_floor_frame(body: Any, run: RunState, floor_velocity: float) -> None:
-    """Change to the frame of the floor at the end of its motion: the floor is at rest there, without an impulse.
+    """Change to the frame of the floor at the end of its motion, where its velocity is `floor_velocity` [m/s].
 
-    Args:
-        body: the body; run: at the end of the floor motion.
-        floor_velocity: at this instant [m/s].
+    The floor is at rest in this frame; the container gets no impulse.
     """
     shift_velocity(body, run.old, floor_velocity)
     complete(body, run.old, run.floor[0, 0])
     for side in range(2):
         run.floor[side, 1], run.floor[side, 2] = 0.0, 0.0
     run.clock[0].next_break = 0
-
-
-AFTERMATH_SLICE = 0.05  #: interval of the checks after the end of the floor motion [s]
 
 
 def advance(body: Any, run: RunState, until: float) -> int:
@@ -205,7 +184,10 @@ def advance(body: Any, run: RunState, until: float) -> int:
         clock.recent_dissipation = clock.recent_dissipation / (1.0 + late * (1.0 + 0.5 * late)) + max(
             dissipated, 0.0
         )
-        _accept(body, run, step, slip_step, slip_velocity, every, iterations)
+        update_records(run, step, slip_step, slip_velocity, every)
+        clock.samples = sample(body, run, run.history, clock.samples, clock.samples_drained, step, slip_step)
+        clock.frames = sample(body, run, run.frames, clock.frames, clock.frames_drained, step, slip_step)
+        close_step(run, step, slip_step, iterations)
         # The imbalance of one step may vanish by chance while it changes sign: remember the last steps.
         recent = max(min(used, 1.0), FADING * clock.allowance_used)
         level = change_level(clock.level, recent, clock.growth_hold == 0)

@@ -68,10 +68,7 @@ OBSERVABLES = np.dtype(
         ("averaging_time", "f8"),  # over which the angular velocity has been averaged
         ("mean_velocity", "f8"),
         ("velocity_before", "f8"),  # angular velocity just before the first impact
-        (
-            "new_pivot",
-            "i8",
-        ),  # the corner that was the pivot at the first impact: -1 left, +1 right, 0 none
+        ("new_pivot", "i8"),  # pivot before the first impact: -1 left, +1 right, 0 none
         ("restitution_by_velocity", "f8"),
     ],
     align=True,

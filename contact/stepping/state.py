@@ -54,9 +54,7 @@ class Control(NamedTuple):
     energy_share: float  #: imbalance allowed over the dissipation of the step [-]
     recent_share: float  #: imbalance allowed over the recent dissipation [-]
     recent_time: float  #: decay time of the recent dissipation [s]
-    closing_share: (
-        float  #: imbalance allowed when a gap closes, over the kinetic energy against the floor [-]
-    )
+    closing_share: float  #: imbalance allowed as a gap closes, over the kinetic energy against the floor [-]
     mass: float  #: [kg]
     gravity: float  #: [m/s2]
     frequency_parameter: float  #: of rocking [1/s]

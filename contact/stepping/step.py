@@ -31,13 +31,6 @@ ITERATION_LIMIT = 12  #: of free motion, contact, response within one step
 
 
 @compiled(inline=True)
-def copy_vector(target: FloatArray, source: FloatArray) -> None:
-    """Copy a vector in place."""
-    for i in range(target.size):
-        target[i] = source[i]
-
-
-@compiled(inline=True)
 def copy_rows(target: FloatArray, source: FloatArray) -> None:
     """Copy a matrix in place."""
     for i in range(target.shape[0]):
@@ -169,5 +162,6 @@ def account(run: RunState) -> float:
 
 @compiled(inline=True)
 def copy_state(old: State, new: State) -> None:
-    """Copy all of a state but its monitored points."""
-    copy_vector(old.numbers, new.numbers)
+    """Copy `new` to `old`, all but the monitored points."""
+    for i in range(old.numbers.size):
+        old.numbers[i] = new.numbers[i]

@@ -1,11 +1,7 @@
 """What the joints between the boxes of a stack must carry, and what they would do without bolts.
 
-A joint of rigid faces carries compression at its two edges only: N/2 + M/a at the left, N/2 - M/a at the right, a
-the width. Where one of them is negative the resultant lies outside the joint (|M| > N a/2), an unbolted joint opens at
-that edge, and the bolts along it must carry at least that much, all together (more where they sit further in).
-Faces that press on one another over the whole width, with a linear pressure, open in part from |M| > N a/6. An
-unbolted joint slides where |V| > mu N, here with mu_static of the floor; bolts that are to hold it must carry the
-rest in shear. Forces are means over `output.history_s` (`fem.model.joints`).
+The bolts along an edge must carry its tension all together, and more where they sit further in. Forces are means over
+`output.history_s` (`fem.model.joints`).
 """
 
 import numpy as np
@@ -30,27 +26,13 @@ def joint_demands(model: Model, history: History) -> tuple[JointDemand, ...] | N
     standing = history["time_s"] <= model.run.track[0].overturned_at
     if history.joints == 0 or not standing.any():
         return None
-    return tuple(
-        _demands_of(
-            joint,
-            *(history[name.format(joint)][standing] for name in JOINT_COLUMNS),
-            time=history["time_s"][standing],
-            model=model,
-        )
-        for joint in range(1, history.joints + 1)
-    )
+    return tuple(_demands_of(model, history, joint, standing) for joint in range(1, history.joints + 1))
 
 
-def _demands_of(
-    joint: int,
-    normal: FloatArray,
-    shear: FloatArray,
-    moment: FloatArray,
-    *,
-    time: FloatArray,
-    model: Model,
-) -> JointDemand:
+def _demands_of(model: Model, history: History, joint: int, standing: NDArray[np.bool_]) -> JointDemand:
     width, mu = model.container.mesh.width, model.case.contact.mu_static
+    time = history["time_s"][standing]
+    normal, shear, moment = (history[name.format(joint)][standing] for name in JOINT_COLUMNS)
     left, right = edge_forces(normal, moment, width)
     carried = mu * np.maximum(normal, 0.0)
     return JointDemand(

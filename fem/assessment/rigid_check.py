@@ -1,9 +1,7 @@
 """The rigid check of a run: its rotation compared with that of the analytic rigid block on the same floor.
 
-The block has mass centre, inertia and base of the mesh, and the case's friction; its impacts are Housner's
-(angular momentum about the new corner is kept, BSSA 53 (1963) 403). It shares no code with the finite
-elements or the time stepping. It is rigid, stands on two corners and does not bounce: where the container
-differs from that, so must the motion, and the check says so. Rotation > 0 toward +x.
+Impacts of the block are Housner's: angular momentum about the new corner is kept (BSSA 53 (1963) 403).
+Rotation > 0 toward +x.
 """
 
 import math
@@ -35,6 +33,8 @@ SOFT_FLOOR = 1e-3  #: static penetration over width times slenderness angle: the
 BOUNCING_CONTACT = 1.0  #: contact damping ratio below which an impact is not plastic
 OFF_CENTRE = 1e-6  #: of the mass centre, over the width
 PEAKS = 6  #: turning points that are compared
+#: times [s] -> rotation [rad], angular velocity [rad/s], each of shape (n,)
+RotationAt = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 COLUMNS = ("time_s", "rotation_rad", ANALYTIC_COLUMN, "analytic_angular_velocity_rad_s")
 
 
@@ -61,25 +61,9 @@ class Reference:
     """The motion of the rigid block."""
 
     name: str
-    at: Callable[[FloatArray], tuple[FloatArray, FloatArray]]  #: times -> rotation, angular velocity
+    at: RotationAt
     impact: PlanarImpact | RockingImpact | None  #: the first after it had tilted
     left_model_at: float | None = None  #: outside its model from here on [s]
-
-    @property
-    def first_impact(self) -> float | None:
-        """Its time [s]."""
-        return None if self.impact is None else self.impact.time
-
-    @property
-    def velocity_ratio(self) -> float | None:
-        """After over before that impact [-]."""
-        return None if self.impact is None else self.impact.velocity_after / self.impact.velocity_before
-
-    @property
-    def slides_at_impact(self) -> bool:
-        """Whether it slides before or after that impact."""
-        impact = self.impact
-        return isinstance(impact, PlanarImpact) and (impact.slides or impact.slip_velocity_before != 0.0)
 
 
 def wants_rigid_check(asked: bool, case: Case) -> bool:
@@ -91,12 +75,10 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
     """Compare a finished run with the rigid block.
 
     Args:
-        model: of the run, stepped or not.
-        history: of the run, two samples or more.
-        verdict: of the run.
+        model, history, verdict: of the run; the model may be stepped or not.
 
     Raises:
-        ValueError: a history without two samples.
+        ValueError: the history has less than two samples.
         EventError: the block changes its state too often.
     """
     if len(history) < 2:
@@ -104,19 +86,28 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
     time, angle = history["time_s"], model.static.slenderness_angle
     reference = follow_block(model, float(time[-1]))
     rotation, rate = reference.at(time)
-    found = first_peaks(time, history["rotation_rad"], ROCKING * angle)
-    expected = first_peaks(time, rotation, ROCKING * angle)
+    peaks = zip(
+        first_peaks(time, history["rotation_rad"], ROCKING * angle)[:PEAKS],
+        first_peaks(time, rotation, ROCKING * angle)[:PEAKS],
+        strict=False,
+    )
+    same_side = takewhile(lambda pair: pair[0][1] * pair[1][1] > 0.0, peaks)
     reasons = reasons_against(model, history, verdict, reference)
-    impacts = (verdict.first_impact_s, reference.first_impact)
-    before = time < min((impact for impact in impacts if impact is not None), default=math.inf)
-    difference = np.abs(history["rotation_rad"] - rotation)[before & np.isfinite(rotation)]
+    impact = reference.impact
+    impacts = RunAndBlock(run=verdict.first_impact_s, block=impact.time if impact else None)
+    ratio = impact.velocity_after / impact.velocity_before if impact else None
+    first = min((one for one in (impacts.run, impacts.block) if one is not None), default=math.inf)
+    difference = np.abs(history["rotation_rad"] - rotation)[(time < first) & np.isfinite(rotation)]
     result = RigidCheckResult(
         reference=reference.name,
         meaningful=not reasons,
         reasons=tuple(reasons),
-        first_impact_s=RunAndBlock(run=verdict.first_impact_s, block=reference.first_impact),
-        velocity_ratio=RunAndBlock(run=verdict.restitution_first, block=reference.velocity_ratio),
-        peaks=_paired(found[:PEAKS], expected[:PEAKS]),
+        first_impact_s=impacts,
+        velocity_ratio=RunAndBlock(run=verdict.restitution_first, block=ratio),
+        peaks=tuple(
+            PeakPair(run_s=run[0], run_rad=run[1], block_s=block[0], block_rad=block[1])
+            for run, block in same_side
+        ),
         largest_difference_before_impact=float(difference.max()) / angle if difference.size else None,
     )
     rows = np.column_stack([time, history["rotation_rad"], rotation, rate])
@@ -142,17 +133,21 @@ def follow_block(model: Model, end: float) -> Reference:
     block never slides, the block that cannot slide is the reference.
     """
     case, block = model.case, block_of(model)
-    initial, friction = case.initial, case.contact
     floor = floor_of(model.motion, driven_until=case.solver.duration_s)
     jerk = floor_motion(model.motion.compiled(), 0.0)[1] if case.motion.start == "rest" else 0.0
-    least = IMPACT_GAP * model.static.slenderness_angle
+    rotation, rate = case.initial.rotation_rad, case.initial.angular_velocity_rad_s
+
+    def had_tilted(at: RotationAt, impact: PlanarImpact | RockingImpact) -> bool:
+        before, _ = at(np.linspace(0.0, impact.time, 512))
+        return bool(np.nanmax(np.abs(before)) > IMPACT_GAP * model.static.slenderness_angle)
+
     sliding = simulate_planar_block(
-        PlanarBlock(body=block, mu_static=friction.mu_static, mu_kinetic=friction.mu_kinetic),
+        PlanarBlock(body=block, mu_static=case.contact.mu_static, mu_kinetic=case.contact.mu_kinetic),
         floor,
         duration=end,
-        rotation=initial.rotation_rad,
-        angular_velocity=initial.angular_velocity_rad_s,
-        slip_velocity=initial.velocity_m_s - jerk,
+        rotation=rotation,
+        angular_velocity=rate,
+        slip_velocity=case.initial.velocity_m_s - jerk,
     )
     if sliding.modes & {PlanarMode.SLIDE, PlanarMode.SLIDE_ROCK}:
 
@@ -163,20 +158,14 @@ def follow_block(model: Model, end: float) -> Reference:
         return Reference(
             name="rigid block with friction",
             at=at,
-            impact=next((one for one in sliding.impacts if _had_tilted(at, one.time, least)), None),
+            impact=next((one for one in sliding.impacts if had_tilted(at, one)), None),
             left_model_at=sliding.end if sliding.outcome is PlanarMode.OUTSIDE else None,
         )
-    rocking = simulate_rocking(
-        block,
-        floor,
-        duration=end,
-        rotation=initial.rotation_rad,
-        angular_velocity=initial.angular_velocity_rad_s,
-    )
+    rocking = simulate_rocking(block, floor, duration=end, rotation=rotation, angular_velocity=rate)
     return Reference(
         name="rigid block that does not slide",
         at=rocking.at,
-        impact=next((one for one in rocking.impacts if _had_tilted(rocking.at, one.time, least)), None),
+        impact=next((one for one in rocking.impacts if had_tilted(rocking.at, one)), None),
     )
 
 
@@ -208,8 +197,7 @@ def first_peaks(time: FloatArray, rotation: FloatArray, least: float) -> list[tu
     time, rotation = time[known], rotation[known]
     if time.size < 3:
         return []
-    side = np.sign(rotation)
-    bounds = np.flatnonzero(np.diff(side) != 0.0) + 1
+    bounds = np.flatnonzero(np.diff(np.sign(rotation)) != 0.0) + 1
     peaks = []
     for swing in np.split(np.arange(time.size), bounds):
         top = int(swing[np.argmax(np.abs(rotation[swing]))])
@@ -218,23 +206,19 @@ def first_peaks(time: FloatArray, rotation: FloatArray, least: float) -> list[tu
         before, here, after = np.abs(rotation[top - 1 : top + 2])
         bend = before - 2.0 * here + after
         share = 0.5 * (before - after) / bend if bend < 0.0 else 0.0
+        instant = time[top] + share * (time[top + 1] - time[top])
         peak = here - 0.25 * (before - after) * share
-        peaks.append(
-            (
-                float(time[top] + share * (time[top + 1] - time[top])),
-                float(math.copysign(peak, rotation[top])),
-            )
-        )
+        peaks.append((float(instant), math.copysign(peak, rotation[top])))
     return peaks
 
 
 def reasons_against(model: Model, history: History, verdict: Verdict, reference: Reference) -> list[str]:
     """Why the container is not the rigid block; none where it is."""
     mesh, static, contact = model.container.mesh, model.static, model.case.contact
-    kind = model.case.support.kind
-    bounce = contact_frequency(mesh.mass, model.base_stiffness)
+    kind, impact = model.case.support.kind, reference.impact
     sinking = static.weight / model.base_stiffness / (mesh.width * static.slenderness_angle)
-    stiffness = _first_elastic_frequency(model) / bounce
+    stiffness = _first_elastic_frequency(model) / contact_frequency(mesh.mass, model.base_stiffness)
+    block_slides = isinstance(impact, PlanarImpact) and (impact.slides or impact.slip_velocity_before != 0.0)
     reasons = []
     if not static.housner_credible:
         reasons.append(
@@ -244,7 +228,7 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
         reasons.append(
             f"support {kind!r}: the container turns about a moving region, the block about its corners"
         )
-    if reference.slides_at_impact or _slides_at_impact(model, history, verdict):
+    if block_slides or _slides_at_impact(model, history, verdict):
         reasons.append("it slides at the first impact, which Housner's block does not")
     if stiffness < STIFF_CONTAINER:
         reasons.append(
@@ -262,24 +246,9 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
         reasons.append(
             f"the block leaves the floor, or its impact has no solution, at {reference.left_model_at:.4g} s"
         )
-    if reference.impact is None and verdict.first_impact_s is None:
+    if impact is None and verdict.first_impact_s is None:
         reasons.append("no impact in the run or the block")
     return reasons
-
-
-def _had_tilted(
-    at: Callable[[FloatArray], tuple[FloatArray, FloatArray]], impact: float, least: float
-) -> bool:
-    """Whether the block tilted by more than `least` [rad] before this impact [s]."""
-    return bool(np.nanmax(np.abs(at(np.linspace(0.0, impact, 512))[0])) > least)
-
-
-def _paired(found: list[tuple[float, float]], expected: list[tuple[float, float]]) -> tuple[PeakPair, ...]:
-    """Peaks of run and block, as long as both swing to the same side."""
-    pairs = takewhile(lambda pair: pair[0][1] * pair[1][1] > 0.0, zip(found, expected, strict=False))
-    return tuple(
-        PeakPair(run_s=run[0], run_rad=run[1], block_s=block[0], block_rad=block[1]) for run, block in pairs
-    )
 
 
 def _first_elastic_frequency(model: Model) -> float:
@@ -291,9 +260,8 @@ def _first_elastic_frequency(model: Model) -> float:
 
 def _slides_at_impact(model: Model, history: History, verdict: Verdict) -> bool:
     """Whether the run slides by what counts as sliding within a few samples of its first impact."""
-    impact = verdict.first_impact_s
-    if impact is None:
+    if verdict.first_impact_s is None:
         return False
-    first = int(np.searchsorted(history["time_s"], impact))
+    first = int(np.searchsorted(history["time_s"], verdict.first_impact_s))
     near = history["slip_m"][max(first - 2, 0) : first + 3]
     return bool(np.ptp(near) > SLIDING * model.container.mesh.width) if near.size else False

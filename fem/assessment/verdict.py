@@ -1,8 +1,4 @@
-"""The verdict of a run: outcome, extremes, events, energy balance, numerics.
-
-The container slides when it slid more than 1e-4 of its width, it rocks when it turned by more than a
-hundredth of its slenderness angle with a side unloaded, below both it rested; overturned is 90 degrees.
-"""
+"""The verdict of a run: outcome, extremes, events, energy balance, numerics."""
 
 import math
 from types import SimpleNamespace
@@ -33,15 +29,9 @@ RotationT = TypeVar("RotationT", float, FloatArray)
 SLIDING = 1e-4  #: slip over the width that counts as sliding
 
 
-def record_of(model: Model) -> SimpleNamespace:
-    """The record of a run (`observables.OBSERVABLES`) as plain numbers, which are read a hundred times faster."""
-    track = model.run.track
-    return SimpleNamespace(**dict(zip(track.dtype.names, track[0].item(), strict=True)))
-
-
-def outcome_of(model: Model, record: SimpleNamespace | None = None) -> str:
-    """One word for the whole run; `record` is a copy of its record where there is one already."""
-    track = record or record_of(model)
+def outcome_of(model: Model) -> str:
+    """One word for the whole run."""
+    track = model.run.track[0]
     if math.isfinite(track.overturned_at):
         return "overturned"
     slides = track.max_slip > SLIDING * model.container.mesh.width
@@ -62,11 +52,7 @@ def verdict_of(model: Model, history: History, largest_von_mises: float | None) 
 
 
 def verdict_from(
-    model: Model,
-    end: float | None,
-    time: np.ndarray,
-    slip: np.ndarray,
-    largest_von_mises: float | None,
+    model: Model, end: float | None, time: np.ndarray, slip: np.ndarray, largest_von_mises: float | None
 ) -> Verdict:
     """The `verdict` of a model that was stepped to its end.
 
@@ -76,52 +62,39 @@ def verdict_from(
         time, slip: of the samples, as far back as a cycle of the drive at least [s], [m].
         largest_von_mises: [Pa].
     """
-    track, run = record_of(model), model.run
+    run, angle, outcome = model.run, model.static.slenderness_angle, outcome_of(model)
+    # plain numbers are read a hundred times faster than those of a numpy record
+    track = SimpleNamespace(**dict(zip(run.track.dtype.names, run.track[0].item(), strict=True)))
     sampled = end is not None and end > 0.0
-    angle = model.static.slenderness_angle
-    outcome = outcome_of(model, track)
     rocked = outcome in ("rock", "slide-rock")
-    at_end = abs(float(run.old.pose[0]))
+    still = model.case.motion.kind == "none"
     return Verdict(
         outcome=outcome,
         modes=_modes_seen(model, track, outcome),
-        max_rotation_rad=float(track.max_rotation),
-        rotation_ratio=rotation_ratio(float(track.max_rotation), angle),
-        max_slip_m=float(track.max_slip),
+        max_rotation_rad=track.max_rotation,
+        rotation_ratio=rotation_ratio(track.max_rotation, angle),
+        max_slip_m=track.max_slip,
         residual_slip_m=float(run.clock[0].slip),
         slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),
-        slip_travel_m=float(track.slip_travel),
-        max_uplift_m=float(track.max_uplift),
-        impacts=int(track.impacts),
-        first_opening_s=_time(track.first_opening),
-        first_uplift_s=_time(track.first_uplift),
-        first_impact_s=_time(track.first_impact),
-        overturned_at_s=_time(track.overturned_at),
-        restored=rocked and at_end < ROCKING * angle,
-        restitution_first=_restitution(model, track),
-        max_corner_force_N=float(track.max_corner_force),
-        max_top_displacement_m=float(track.max_top_displacement) if sampled else None,
-        max_acceleration_m_s2=float(track.max_acceleration) if sampled else None,
+        slip_travel_m=track.slip_travel,
+        max_uplift_m=track.max_uplift,
+        impacts=track.impacts,
+        first_opening_s=_finite(track.first_opening),
+        first_uplift_s=_finite(track.first_uplift),
+        first_impact_s=_finite(track.first_impact),
+        overturned_at_s=_finite(track.overturned_at),
+        restored=rocked and abs(float(run.old.pose[0])) < ROCKING * angle,
+        restitution_first=_finite(track.restitution_by_peaks if still else track.restitution_by_velocity),
+        max_corner_force_N=track.max_corner_force,
+        max_top_displacement_m=track.max_top_displacement if sampled else None,
+        max_acceleration_m_s2=track.max_acceleration if sampled else None,
         max_von_mises_Pa=largest_von_mises,
-    )
-
-
-def short_verdict(model: Model) -> Verdict:
-    """Those parts of a verdict that take no samples."""
-    track = model.run.track[0]
-    return Verdict(
-        outcome=outcome_of(model),
-        rotation_ratio=rotation_ratio(float(track.max_rotation), model.static.slenderness_angle),
-        max_slip_m=float(track.max_slip),
-        residual_slip_m=float(model.run.clock[0].slip),
-        max_uplift_m=float(track.max_uplift),
     )
 
 
 def energy_of(model: Model) -> Energy:
     """The energy balance of a model that was stepped to its end."""
-    ledger, clock = model.run.ledger, model.run.clock[0]
-    reference = model.run.control.reference_energy
+    ledger, clock, reference = model.run.ledger, model.run.clock[0], model.run.control.reference_energy
     return Energy(
         reference_J=reference,
         closure_error=max(-float(clock.least_imbalance), float(clock.most_imbalance)) / reference,
@@ -135,10 +108,8 @@ def energy_of(model: Model) -> Energy:
 
 def audit(model: Model) -> str | None:
     """Why the energy balance fails this run, or None; of an overturned run, up to its fall."""
-    clock = model.run.clock[0]
-    reference = model.run.control.reference_energy
+    clock, reference = model.run.clock[0], model.run.control.reference_energy
     gained, lost = -float(clock.least_imbalance), float(clock.most_imbalance)
-    dissipated = float(clock.dissipated)
     remedy = (
         f"set solver.step_s below the {model.run.control.largest_step:.2g} s used, "
         "or a softer contact.normal_penalty_Pa_m"
@@ -152,7 +123,7 @@ def audit(model: Model) -> str | None:
             f"numerical energy gain {gained:.3g} J, {gained / reference:.1e} of the energy to overturn "
             f"(limit {GAIN_LIMIT:.0e}); {remedy}"
         )
-    limit = max(LOSS_SHARE_LIMIT * dissipated, LOSS_LIMIT * reference)
+    limit = max(LOSS_SHARE_LIMIT * float(clock.dissipated), LOSS_LIMIT * reference)
     if lost > limit:
         return f"energy balance error {lost:.3g} J (limit {limit:.3g} J); {remedy}"
     return None
@@ -164,7 +135,7 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
     clock = run.clock[0]
     mass, stiffness = container.mesh.mass, model.base_stiffness
     # Rayleigh and Ritz: the modes of the free container come first, then the attachment modes of its contact points.
-    elastic = model.case.solver.elastic_modes if container.basis is not None else 1
+    elastic = model.case.solver.elastic_modes if model.case.solver.model == "reduced" else 1
     return Numerics(
         unknowns=int(run.old.position.size),
         contact_nodes=int(container.support.index.size),
@@ -186,8 +157,8 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
     )
 
 
-def _time(instant: float) -> float | None:
-    return float(instant) if math.isfinite(instant) else None
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
 
 
 def _modes_seen(model: Model, track: SimpleNamespace, outcome: str) -> tuple[str, ...]:
@@ -195,8 +166,7 @@ def _modes_seen(model: Model, track: SimpleNamespace, outcome: str) -> tuple[str
 
     Sliding that is too small to count in the outcome does not count here.
     """
-    bits = int(track.modes)
-    seen = {name for mode, name in MODE_NAMES.items() if bits & 1 << mode}
+    seen = {name for mode, name in MODE_NAMES.items() if track.modes & 1 << mode}
     if track.max_slip <= SLIDING * model.container.mesh.width:
         seen = {{"slide": "rest", "slide-rock": "rock"}.get(name, name) for name in seen}
     return tuple(name for name in MODE_NAMES.values() if name in seen or name == outcome)
@@ -219,10 +189,3 @@ def _peak_to_peak(model: Model, last: float | None, time: np.ndarray, slip: np.n
     if cycle.size < 2:  # sampled more coarsely than a cycle
         return None
     return float(cycle.max() - cycle.min())
-
-
-def _restitution(model: Model, track: SimpleNamespace) -> float | None:
-    """First impact: by the peaks around it where the floor stands still, else by the angular velocities."""
-    still = model.case.motion.kind == "none"
-    value = float(track.restitution_by_peaks if still else track.restitution_by_velocity)
-    return value if math.isfinite(value) else None

@@ -1,10 +1,9 @@
 """The axes of a study: each is one key of a case and its values."""
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal, TypeVar, get_args
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError
@@ -12,7 +11,7 @@ from pydantic.fields import FieldInfo
 
 from fem.case.quantities import Quantity, with_unit
 from fem.case.tables import TABLES
-from fem.case.validation import TOP, did_you_mean, known_keys, quantity_of, requirement_of
+from fem.case.validation import TOP, choices_of, did_you_mean, known_keys, quantity_of, requirement_of
 
 #: keys that do not change a result, and why
 NO_AXIS = {
@@ -21,6 +20,8 @@ NO_AXIS = {
     "output.fields_s": "no fields are kept",
 }
 MOST_VALUES = 1_000_000
+
+ModelT = TypeVar("ModelT", bound=BaseModel)
 
 
 class Range(BaseModel):
@@ -55,18 +56,10 @@ def shape_of(axes: Sequence[Axis]) -> tuple[int, ...]:
     return tuple(len(axis.values) for axis in axes)
 
 
-def indices_of(axes: Sequence[Axis], number: int) -> tuple[int, ...]:
-    """Place of a point on each axis."""
-    places = []
-    for axis in reversed(axes):
-        number, place = divmod(number, len(axis.values))
-        places.append(place)
-    return tuple(reversed(places))
-
-
 def point_of(axes: Sequence[Axis], number: int) -> dict[str, Any]:
     """Values of the axes at a point, by key."""
-    return {axis.key: axis.values[k] for axis, k in zip(axes, indices_of(axes, number), strict=True)}
+    places = np.unravel_index(number, shape_of(axes))
+    return {axis.key: axis.values[k] for axis, k in zip(axes, places, strict=True)}
 
 
 def axis_label(axis: Axis) -> str:
@@ -109,18 +102,14 @@ def field_of(key: str) -> FieldInfo:
         if owners:
             wanted = " or ".join(f"{one}.{name}" for one in owners)
             raise AxisError(f"is no key before the first table; write {wanted!r}")
-        raise AxisError(f"is no key of a case file{_hint(name, [*TOP, *all_keys()])}")
+        keys = [f"{known}.{one}" for known, model in TABLES.items() for one in known_keys(model)]
+        raise AxisError(f"is no key of a case file{hint(name, [*TOP, *keys])}")
     if table not in TABLES:
-        raise AxisError(f"names no table of a case file{_hint(table, TABLES)} (known: {', '.join(TABLES)})")
+        raise AxisError(f"names no table of a case file{hint(table, TABLES)} (known: {', '.join(TABLES)})")
     fields = known_keys(TABLES[table])
     if name not in fields:
-        raise AxisError(f"is no key of a case file{_hint(name, fields)} (known: {', '.join(fields)})")
+        raise AxisError(f"is no key of a case file{hint(name, fields)} (known: {', '.join(fields)})")
     return fields[name]
-
-
-def all_keys() -> list[str]:
-    """Every dotted key of a case file."""
-    return [f"{table}.{name}" for table, model in TABLES.items() for name in known_keys(model)]
 
 
 def read_axis(key: str, given: Any) -> Axis:
@@ -142,16 +131,40 @@ def read_axis(key: str, given: Any) -> Axis:
             f"must be a list or a range, got {with_unit(given, unit)}; "
             "for instance [0.2, 0.3] or { from = 1.0, to = 4.0, count = 13 }"
         )
-    if _is_whole(field):
+    if field.annotation is int or int in get_args(field.annotation):
         values = tuple(_whole(value) for value in values)
     for value in values:
         _check(field, quantity, unit, value)
     return Axis(key=key, values=values, scale=scale, unit=unit)
 
 
-def _hint(name: str, known: Any) -> str:
-    near = did_you_mean(name, known)
+def hint(name: object, known: Iterable[str]) -> str:
+    """The nearest known name as the end of a message; nothing where none is near."""
+    near = did_you_mean(name, known) if isinstance(name, str) else ""
     return f"; {near}" if near else ""
+
+
+def read_inline(model: type[ModelT], given: Mapping[str, Any], example: str) -> ModelT:
+    """An inline table of a study's file.
+
+    Raises:
+        AxisError: unknown, missing or bad keys; all of them, with the example.
+    """
+    try:
+        return model.model_validate(given)
+    except ValidationError as error:
+        known = ", ".join(field.alias or name for name, field in model.model_fields.items())
+        reasons = []
+        for detail in error.errors(include_url=False):
+            name = str(detail["loc"][0])
+            match detail["type"]:
+                case "missing":
+                    reasons.append(f"has no {name!r}")
+                case "extra_forbidden":
+                    reasons.append(f"has the unknown key {name!r} (known: {known})")
+                case _:
+                    reasons.append(f"{name} {requirement_of(detail)}, got {detail['input']!r}")
+        raise AxisError(f"{'; '.join(reasons)}; {example}") from None
 
 
 def _listed(given: list[Any]) -> tuple[Any, ...]:
@@ -166,10 +179,7 @@ def _listed(given: list[Any]) -> tuple[Any, ...]:
 
 
 def _spaced(given: Mapping[str, Any], quantity: Quantity | None, unit: str) -> tuple[tuple[float, ...], str]:
-    try:
-        wanted = Range.model_validate({k: float(v) if _is_end(k, v) else v for k, v in given.items()})
-    except ValidationError as error:
-        raise AxisError(_reason_of_range(error)) from None
+    wanted = read_inline(Range, given, "a range is { from = 1.0, to = 4.0, count = 13 }")
     if quantity is None:
         raise AxisError("is not a number, so it has no range; list its values")
     low, high, count = wanted.lowest, wanted.highest, wanted.count
@@ -196,48 +206,23 @@ def _spaced(given: Mapping[str, Any], quantity: Quantity | None, unit: str) -> t
     return tuple(float(f"{value:.15g}") for value in spaced), wanted.scale
 
 
-def _is_end(name: str, value: Any) -> bool:
-    return name in ("from", "to") and isinstance(value, int) and not isinstance(value, bool)
-
-
-def _reason_of_range(error: ValidationError) -> str:
-    known = "from, to, count, scale"
-    reasons = []
-    for detail in error.errors(include_url=False):
-        name = str(detail["loc"][0]) if detail["loc"] else ""
-        match detail["type"]:
-            case "missing":
-                reasons.append(f"has a range without {name!r}")
-            case "extra_forbidden":
-                reasons.append(f"has a range with the unknown key {name!r} (known: {known})")
-            case _:
-                reasons.append(f"has a range whose {name} {requirement_of(detail)}, got {detail['input']!r}")
-    return "; ".join(reasons) + "; a range is { from = 1.0, to = 4.0, count = 13 }"
-
-
-def _is_whole(field: FieldInfo) -> bool:
-    return field.annotation is int or int in get_args(field.annotation)
-
-
 def _whole(value: Any) -> Any:
-    if isinstance(value, float) and value == math.floor(value):
-        return int(value)
-    if isinstance(value, float):
+    if not isinstance(value, float):
+        return value
+    if not value.is_integer():
         raise AxisError(
             f"takes whole numbers, got {value!r}; choose from, to and count so that the values are whole, or list them"
         )
-    return value
+    return int(value)
 
 
 def _check(field: FieldInfo, quantity: Quantity | None, unit: str, value: Any) -> None:
     """Refuse a value that the key can never have; rules between keys are checked with the case."""
     if quantity is None:
-        choices = {choice for choice in get_args(field.annotation) if isinstance(choice, str)}
-        choices |= {c for part in get_args(field.annotation) for c in get_args(part) if isinstance(c, str)}
+        choices = choices_of(field.annotation)
         if choices and value not in choices:
-            near = did_you_mean(value, choices) if isinstance(value, str) else ""
-            listed = " or ".join(f'"{choice}"' for choice in sorted(choices))
-            raise AxisError(f"must be {listed}, got {value!r}{'; ' + near if near else ''}")
+            listed = " or ".join(f'"{choice}"' for choice in choices)
+            raise AxisError(f"must be {listed}, got {value!r}{hint(value, choices)}")
         return
     if isinstance(value, bool) or (isinstance(value, str) and value != "auto"):
         raise AxisError(f"must be a number{' in ' + unit if unit else ''}, got {value!r}")

@@ -1,7 +1,6 @@
 """Many cases that differ from a base case in a few keys, made without validating all of it again."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from pydantic import ValidationError
@@ -9,14 +8,6 @@ from pydantic import ValidationError
 from fem.case.case import Case
 from fem.case.overrides import with_overrides
 from fem.case.tables import TABLES
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Template:
-    """What all cases that set the same keys share."""
-
-    fixed: dict[str, Any]  #: tables that do not change, and the keys of the heading
-    touched: dict[str, dict[str, Any]]  #: content of the tables that change, alternatives replaced
 
 
 class CaseMaker:
@@ -28,7 +19,8 @@ class CaseMaker:
 
     def __init__(self, base: Case) -> None:
         self.base = base
-        self._templates: dict[tuple[str, ...], _Template] = {}
+        #: by the keys that are set: what does not change, and the content of the tables that do
+        self._templates: dict[tuple[str, ...], tuple[dict[str, Any], dict[str, dict[str, Any]]]] = {}
 
     def __call__(self, values: Mapping[str, Any]) -> Case:
         """The base with dotted keys set; alternatives are replaced.
@@ -37,25 +29,23 @@ class CaseMaker:
             CaseError: as for a case file.
         """
         keys = tuple(values)
-        template = self._templates.get(keys)
-        if template is None:
-            template = self._templates[keys] = self._template(values)
+        if keys not in self._templates:
+            self._templates[keys] = self._template(values)
+        fixed, touched = self._templates[keys]
         heading: dict[str, Any] = {}
-        content = {name: dict(given) for name, given in template.touched.items()}
+        content = {name: dict(given) for name, given in touched.items()}
         for dotted, value in values.items():
             table, _, key = dotted.rpartition(".")
             (content[table] if table else heading)[key] = value
         try:
             tables = {name: TABLES[name].model_validate(given) for name, given in content.items()}
-            return Case.model_validate(template.fixed | heading | tables).from_origin(
-                self.base.origin_with(values)
-            )
+            return Case.model_validate(fixed | heading | tables).from_origin(self.base.origin_with(values))
         except ValidationError:
             return self.base.with_values(values)
 
-    def _template(self, values: Mapping[str, Any]) -> _Template:
+    def _template(self, values: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
         data = with_overrides(self.base.given(), values)
         names = {key.rpartition(".")[0] for key in values} - {""}
         fixed = {key: value for key, value in data.items() if key not in TABLES}
         fixed |= {name: getattr(self.base, name) for name in TABLES if name not in names}
-        return _Template(fixed=fixed, touched={name: data[name] for name in names})
+        return fixed, {name: data[name] for name in names}

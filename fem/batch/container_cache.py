@@ -3,6 +3,7 @@
 import threading
 from collections.abc import Hashable
 from concurrent.futures import Future
+from weakref import WeakKeyDictionary
 
 from fem.case.case import Case
 from fem.model.container import Container, discretise
@@ -33,7 +34,7 @@ class ContainerCache:
         self._most = most
         self._lock = threading.Lock()
         self._held: dict[Hashable, Future[Container]] = {}
-        self._recoveries: dict[int, tuple[Container, Recovery]] = {}
+        self._recoveries = WeakKeyDictionary[Container, Recovery]()
 
     def container_of(self, case: Case) -> Container:
         """The container of a case, built if it is missing.
@@ -58,14 +59,7 @@ class ContainerCache:
 
     def recovery_of(self, model: Model) -> Recovery:
         """What recovers the stresses of a model's container; built once a container."""
-        key = id(model.container)
-        with self._lock:
-            found = self._recoveries.get(key)
-        if found is not None and found[0] is model.container:
-            return found[1]
-        made = recovery_of(model)
-        with self._lock:
-            self._recoveries[key] = (model.container, made)
-            while len(self._recoveries) > self._most:
-                del self._recoveries[next(iter(self._recoveries))]
-        return made
+        found = self._recoveries.get(model.container)
+        if found is None:
+            found = self._recoveries[model.container] = recovery_of(model)
+        return found

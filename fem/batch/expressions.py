@@ -6,6 +6,7 @@ own parser reads the text; only a white list of its nodes becomes a tree of tupl
 
 import ast
 import math
+import operator
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -34,6 +35,13 @@ OPERATORS: dict[type[ast.AST], str] = {
     ast.Pow: "^",
     ast.UAdd: "+",
     ast.USub: "-",
+}
+ARITHMETIC: dict[str, Callable[[float, float], float]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+    "^": math.pow,
 }
 NUMBER = re.compile(r"(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 KEY = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)?", re.ASCII)
@@ -174,14 +182,5 @@ def _value(tree: Tree, values: Mapping[str, float]) -> float:
             return -_value(part, values) if sign == "-" else _value(part, values)
         case ("call", name, *parts):
             return FUNCTIONS[name][0](*(_value(part, values) for part in parts))
-    sign, left, right = tree[0], _value(tree[1], values), _value(tree[2], values)
-    match sign:
-        case "+":
-            return left + right
-        case "-":
-            return left - right
-        case "*":
-            return left * right
-        case "/":
-            return left / right
-    return math.pow(left, right)
+    sign, left, right = tree
+    return ARITHMETIC[sign](_value(left, values), _value(right, values))

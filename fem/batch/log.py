@@ -9,10 +9,10 @@ import csv
 import io
 import os
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Generic, Self
+from typing import Any, Generic
 
 import numpy as np
 
@@ -43,7 +43,7 @@ def table_text(columns: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
 
 
 def table_of_lines(columns: Iterable[str], lines: Iterable[str]) -> str:
-    """A table as text, of rows that are lines already."""
+    """A table as text, from lines."""
     return "".join(f"{line}\n" for line in (line_of(columns), *lines))
 
 
@@ -58,7 +58,7 @@ def read_lines(path: Path, columns: Iterable[str]) -> list[str]:
 
 
 class RowLog:
-    """Appends lines to a table, each as a whole; a context manager.
+    """Appends lines to a table, each as a whole.
 
     Args:
         path: of the table; continued behind its last whole line if it has these columns, else begun.
@@ -87,12 +87,7 @@ class RowLog:
         """Have what was written survive a power cut as well."""
         os.fsync(self._file.fileno())
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
         self._file.close()
 
 
@@ -115,7 +110,7 @@ class LoggedRuns(Generic[ItemT]):
             runner: runs the cases.
             batches: of missing items; each is asked for when all rows before are noted.
         """
-        with RowLog(self.path, self.columns) as log:
+        with closing(RowLog(self.path, self.columns)) as log:
             for line in log.lines:
                 self.note(line)
             for items in batches:

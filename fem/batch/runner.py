@@ -16,7 +16,7 @@ import numpy as np
 
 from contact.stepping.integrator import FAILED as STEPPING_FAILED
 from contact.stepping.modal_body import ModalBody
-from contact.stepping.outcome import KeptSamples, run_to_end
+from contact.stepping.outcome import run_to_end
 from fem.assessment.verdict import audit, end_of_drive, verdict_from, verdict_of
 from fem.batch.container_cache import ContainerCache, container_key
 from fem.batch.workers import LocalWorkers, WorkersOf, hand_out, never
@@ -178,11 +178,7 @@ def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row
             else:
                 before = _model_of(case, before)
                 row = run_model(before)
-        except (
-            ValueError,
-            ArithmeticError,
-            RuntimeError,
-        ) as error:  # bad input, no equilibrium, a singular matrix
+        except (ValueError, ArithmeticError, RuntimeError) as error:  # bad input, no equilibrium, singular
             row = _row_without_outcome("failed", str(error))
         rows.append(row | {"wall_s": time.perf_counter() - began})
     return rows
@@ -191,8 +187,9 @@ def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row
 def _model_of(case: Case, before: Model | None) -> Model:
     """The model of a case; one that differs in its motion alone takes over the equilibrium of the one before."""
     container = _CONTAINERS.container_of(case)
-    same = before is not None and before.container is container and same_equilibrium(case, before.case)
-    return build_model(case, container, before.equilibrium if before is not None and same else None)
+    if before is None or before.container is not container or not same_equilibrium(case, before.case):
+        return build_model(case, container)
+    return build_model(case, container, before.equilibrium)
 
 
 def run_model(model: Model) -> Row:
@@ -208,12 +205,7 @@ def run_model(model: Model) -> Row:
         cycle=min(model.case.motion.period, duration),
         strained=model.case.solver.model == "reduced",
     )
-    return _row_of(model, status, kept, until)
-
-
-def _row_of(model: Model, status: int, kept: KeptSamples, until: float) -> Row:
-    """The row of a model that was stepped to its end."""
-    run, interval = model.run, model.run.history.interval
+    interval = run.history.interval
     count = int(run.clock[0].samples)
     last = min(count - 1, int((until + 1e-9) / interval))
     numbers = np.arange(max(0, last + 1 - kept.slip.size), last + 1)
@@ -227,15 +219,14 @@ def _row_of(model: Model, status: int, kept: KeptSamples, until: float) -> Row:
         error: str | None = stepping_failure(model, float(np.abs(run.work.law - run.work.force).max()))
     else:
         error = audit(model)
-    if error is not None:
-        return _row_without_outcome("failed", error) | _figures(verdict)
     ended = "overturned" if verdict.outcome == "overturned" else "completed"
-    return _row_without_outcome(ended, None) | _figures(verdict) | {"outcome": verdict.outcome}
+    return _row("failed" if error else ended, error, verdict)
 
 
-def _figures(verdict: Verdict) -> Row:
-    """The figures of a verdict, without its outcome."""
-    return {name: getattr(verdict, name) for name in SCALARS if name != "outcome"}
+def _row(status: str, reason: str | None, verdict: Verdict) -> Row:
+    """The row of a run; a failed one has figures, and no outcome."""
+    row = _row_without_outcome(status, reason) | {name: getattr(verdict, name) for name in SCALARS}
+    return row | {"outcome": None} if status == "failed" else row
 
 
 def _run_full(case: Case) -> Row:
@@ -243,8 +234,7 @@ def _run_full(case: Case) -> Row:
     recorder = Recorder(model, recovery_of(model))
     ending = simulate(model, recorder)
     verdict = verdict_of(model, recorder.history(), recorder.largest_von_mises)
-    row = _row_without_outcome(ending.status, ending.error) | _figures(verdict)
-    return row if ending.status == "failed" else row | {"outcome": verdict.outcome}
+    return _row(ending.status, ending.error, verdict)
 
 
 def _row_without_outcome(status: str, reason: str | None) -> Row:

@@ -4,12 +4,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
-from fem.batch.axes import Axis, AxisError
+from fem.batch.axes import Axis, AxisError, hint
 from fem.case.case import Case, load_case
 from fem.case.files import CASES, Origin, is_there, parse_case
 from fem.case.problem import outside_the_folder, stays_in_the_folder
 from fem.case.tables import CaseTable
-from fem.case.validation import CaseError, did_you_mean, problem_lines, read_table
+from fem.case.validation import CaseError, problem_lines, read_table
 
 TableT = TypeVar("TableT", bound=CaseTable)
 StudyT = TypeVar("StudyT")
@@ -52,9 +52,8 @@ def split_tables(
     heading = {key: value for key, value in data.items() if key not in tables}
     for name in tables:
         if name not in known:
-            near = did_you_mean(name, known)
             raise CaseError(
-                f"[{name}] unknown table{'; ' + near if near else ''} (known: {', '.join(known)}); "
+                f"[{name}] unknown table{hint(name, known)} (known: {', '.join(known)}); "
                 'dotted keys stand in quotes, such as "contact.mu_static"'
             )
     for key in heading:

@@ -32,9 +32,9 @@ def ensemble(
     folder = out if out is not None else Path("outputs") / asked.name
     # Loaded only now, so that bad input is answered before anything is compiled.
     study = importlib.import_module("fem.ensemble.run")
-    done = study.run_ensemble(
+    result = study.run_ensemble(
         asked, folder=folder, jobs=jobs, force=force, resume=resume, reporter=ScreenReporter(quiet=quiet)
     )
-    result = json.loads(to_json(done.result))
+    result = json.loads(to_json(result))
     print(json.dumps(result, indent=2) if as_json else study.page_of(result, folder))
-    return EXIT_CODES[done.status]
+    return EXIT_CODES[result["status"]]

@@ -64,8 +64,8 @@ def response(
     folder = out if out is not None else Path("outputs") / f"{loaded.name}-response"
     # Loaded only now, so that bad input is answered before anything is compiled.
     study = importlib.import_module("fem.response.run")
-    done = study.run_response(
+    result = study.run_response(
         request, folder=folder, force=force, resume=resume, reporter=ScreenReporter(quiet=quiet)
     )
-    print(json.dumps(done.result, indent=2) if as_json else study.page_of(request, done.result, folder))
-    return EXIT_CODES[done.status]
+    print(json.dumps(result, indent=2) if as_json else study.page_of(request, result, folder))
+    return EXIT_CODES[result["status"]]

@@ -4,18 +4,15 @@ A distribution maps a number between 0 and 1 to a value, so independent draws, a
 are treated alike. Normal and lognormal distributions are cut off a few deviations from their middle.
 """
 
-import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 from scipy.special import ndtr, ndtri
 from scipy.stats import qmc
 
-from fem.case.case import CaseError
-from fem.case.validation import requirement_of
+from fem.batch.axes import AxisError, read_inline
 from fem.runtime.arrays import FloatArray
 
 Sampling = Literal["independent", "latin-hypercube", "sobol"]
@@ -42,6 +39,12 @@ class Distribution(BaseModel):
     cut: float = 3.0  #: deviations from the middle beyond which there are no values
     relative: bool = False  #: a factor on the value that the key has anyway
 
+    @property
+    def numbers(self) -> list[float]:
+        """Values of the keys that the distribution needs."""
+        given = self.model_dump(by_alias=True)
+        return [given[name] for name in NEEDS[self.distribution]]
+
 
 @dataclass(frozen=True, kw_only=True)
 class RandomQuantity:
@@ -58,57 +61,43 @@ class RandomQuantity:
 
     def values(self, shares: FloatArray) -> FloatArray:
         """Values at given shares of probability, each between 0 and 1."""
-        spread = self.spread
-        if spread.distribution in ("uniform", "log-uniform"):
-            low, high = _number(spread.least), _number(spread.most)
-            if spread.distribution == "uniform":
-                return low + (high - low) * shares
-            return np.asarray(low * (high / low) ** shares)
-        outside = ndtr(-spread.cut)
+        kind, (first, second) = self.spread.distribution, self.spread.numbers
+        if kind == "uniform":
+            return first + (second - first) * shares
+        if kind == "log-uniform":
+            return np.asarray(first * (second / first) ** shares)
+        outside = ndtr(-self.spread.cut)
         normal = ndtri(outside + (1.0 - 2.0 * outside) * shares)
-        if spread.distribution == "normal":
-            return np.asarray(_number(spread.mean) + _number(spread.deviation) * normal)
-        return np.asarray(_number(spread.median) * np.exp(_number(spread.deviation) * normal))
+        return np.asarray(first + second * normal if kind == "normal" else first * np.exp(second * normal))
 
 
 def read_random(key: str, given: Any) -> RandomQuantity:
     """One entry of `[random]`.
 
     Raises:
-        CaseError: with the reason why it cannot be used.
+        AxisError: with the reason why it cannot be used.
     """
-    place = f"[random] {key!r}"
     example = 'for instance { distribution = "uniform", from = 0.3, to = 0.4 }'
     if not isinstance(given, dict):
-        raise CaseError(f"{place} must be a distribution, got {given!r}; {example}")
-    try:
-        numbers = {
-            k: float(v) if isinstance(v, int) and not isinstance(v, bool) else v for k, v in given.items()
-        }
-        spread = Distribution.model_validate(numbers)
-    except ValidationError as error:
-        reasons = [_reason(detail, given) for detail in error.errors(include_url=False)]
-        raise CaseError(f"{place} {'; '.join(reasons)}; {example}") from None
-    needed = NEEDS[spread.distribution]
-    named = {"from": spread.least, "to": spread.most, "mean": spread.mean, "median": spread.median}
-    named["deviation"] = spread.deviation
-    missing = [name for name in needed if named[name] is None]
-    idle = [name for name, value in named.items() if value is not None and name not in needed]
+        raise AxisError(f"must be a distribution, got {given!r}; {example}")
+    spread = read_inline(Distribution, given, example)
+    kind, needed = spread.distribution, NEEDS[spread.distribution]
+    missing = [name for name in needed if name not in given]
+    idle = [name for name in given if any(name in one for one in NEEDS.values()) and name not in needed]
     if missing or idle:
         what = f"needs {' and '.join(missing)}" if missing else f"has no use for {' and '.join(idle)}"
-        raise CaseError(f"{place} distribution = {spread.distribution!r} {what}; {example}")
-    if "from" in needed and not _number(spread.least) < _number(spread.most):
-        raise CaseError(f"{place} from = {spread.least:g} must be less than to = {spread.most:g}")
-    if spread.distribution == "log-uniform" and not _number(spread.least) > 0.0:
-        raise CaseError(f"{place} from must be positive for a log-uniform distribution, got {spread.least:g}")
-    if "median" in needed and not _number(spread.median) > 0.0:
-        raise CaseError(f"{place} median must be positive, got {spread.median:g}")
-    if "deviation" in needed and not _number(spread.deviation) > 0.0:
-        raise CaseError(
-            f"{place} deviation must be positive, got {spread.deviation:g}; leave the key out of [random]"
-        )
+        raise AxisError(f"distribution = {kind!r} {what}; {example}")
+    first, second = spread.numbers
+    if "from" in needed and not first < second:
+        raise AxisError(f"from = {first:g} must be less than to = {second:g}")
+    if kind == "log-uniform" and not first > 0.0:
+        raise AxisError(f"from must be positive for a log-uniform distribution, got {first:g}")
+    if kind == "lognormal" and not first > 0.0:
+        raise AxisError(f"median must be positive, got {first:g}")
+    if "deviation" in needed and not second > 0.0:
+        raise AxisError(f"deviation must be positive, got {second:g}; leave the key out of [random]")
     if not 0.5 <= spread.cut <= 8.0:
-        raise CaseError(f"{place} cut must lie between 0.5 and 8 deviations, got {spread.cut:g}; 3 is usual")
+        raise AxisError(f"cut must lie between 0.5 and 8 deviations, got {spread.cut:g}; 3 is usual")
     return RandomQuantity(key=key, spread=spread)
 
 
@@ -135,18 +124,3 @@ def draw_shares(
 
 def _generator(seed: int, cell: int, replicate: int) -> np.random.Generator:
     return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(cell, replicate)))
-
-
-def _number(value: float | None) -> float:
-    return math.nan if value is None else value
-
-
-def _reason(detail: Any, given: Mapping[str, Any]) -> str:
-    name = ".".join(str(part) for part in detail["loc"])
-    match detail["type"]:
-        case "missing":
-            return f"has no {name!r}"
-        case "extra_forbidden":
-            known = "distribution, from, to, mean, median, deviation, cut, relative"
-            return f"has the unknown key {name!r} (known: {known})"
-    return f"{name} {requirement_of(detail)}, got {given.get(name)!r}"

@@ -1,12 +1,5 @@
 """Read an ensemble file: base case, axes, random quantities, sampling; the reasons why it cannot be used.
 
-    case = "seed_stack"                    # a shipped case, or a file in the folder of the ensemble file
-    draws = 128                            # at each point
-    [set]                                  # keys changed in the base case, as in a sweep file
-    [axes]                                 # one: a fragility curve; two: a boundary; three: one a value of the first
-    [random]                               # distributions of keys
-    [derived]                              # keys that follow, as expressions of others
-
 Beside the keys of a case, axes and draws may be variables `free.NAME`, to which derived keys refer.
 """
 
@@ -63,11 +56,7 @@ def load_ensemble(name_or_path: str | Path) -> Ensemble:
 
 def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
     given, tables = split_tables(data, TABLES)
-    numbers = {
-        key: float(value) if key in ("confidence", "probability") and type(value) is int else value
-        for key, value in given.items()
-    }
-    heading = read_as("", EnsembleHeading, numbers)
+    heading = read_as("", EnsembleHeading, given)
     base = base_case(heading.case, tables.get("set", {}), origin)
     if base.solver.model == "full":
         raise CaseError(
@@ -120,9 +109,9 @@ def _random(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> tuple[RandomQ
     for key, value in content.items():
         try:
             _check_key(key)
+            one = read_random(key, value)
         except AxisError as error:
             raise CaseError(f"[random] {key!r} {error}") from None
-        one = read_random(key, value)
         if any(axis.key == key for axis in axes) and not one.spread.relative:
             raise CaseError(
                 f"[random] {key!r} is an axis as well; give the scatter about its values with relative = true"

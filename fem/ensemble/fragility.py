@@ -1,9 +1,6 @@
 """The fragility curve: probability of overturning over the strength of the motion, and a lognormal fit.
 
-p(a) = Phi(ln(a/median)/deviation), by maximum binomial likelihood of the counts: probit regression on ln a. The band
-is that of a bootstrap. A lognormal curve always rises; rocking need not: a stronger motion may leave standing what a
-weaker one overturned. So the counts with their intervals come first; the levels that the fit misses and the levels at
-which the counts fall are reported beside it.
+p(a) = Phi(ln(a/median)/deviation), by maximum binomial likelihood of the counts: probit regression on ln a.
 """
 
 from dataclasses import dataclass
@@ -72,15 +69,13 @@ def bootstrap_fits(
     if independent:
         shares = np.divide(counts.sum(axis=1), totals, out=np.zeros(len(totals)), where=totals > 0.0)
         drawn = generator.binomial(totals.astype(int), shares, size=(BOOTSTRAPS, len(totals))).astype(float)
-        weights = totals
     else:
         picked = generator.integers(counts.shape[1], size=(BOOTSTRAPS, *counts.shape))
         levels = np.arange(len(totals))[:, None]
         # Replicates lack the draws that failed; a resampled one counts as if it lacked the average number.
         share = np.divide(counts, sizes, out=np.zeros_like(counts), where=sizes > 0.0)
         drawn = share[levels, picked].mean(axis=2) * totals
-        weights = totals
-    slopes, intercepts, sound = _probit(np.log(strengths), drawn, weights)
+    slopes, intercepts, sound = _probit(np.log(strengths), drawn, totals)
     return np.exp(-intercepts[sound] / slopes[sound]), 1.0 / slopes[sound]
 
 

@@ -5,11 +5,8 @@ confidence for every number of draws.
 
 Replicates of a randomised point set (a Latin hypercube, a scrambled Sobol sequence): the points of one replicate
 depend on one another, so its count is not binomial. The replicates are independent and each mean is an unbiased
-estimate (Owen, Ann. Stat. 25, 1997), so their spread gives Student's interval. Where almost nothing or almost all
-overturned, too few replicates differ to estimate that spread: the interval is then widened to that of as many
-independent draws. This is no theorem: a Latin hypercube of n points has at most n/(n-1) times the variance of
-independent draws (Owen, 1997), a scrambled net at most a bounded multiple and in practice less; a test measures the
-coverage.
+estimate (Owen, Ann. Stat. 25, 1997), so their spread gives Student's interval. The README says why that is widened
+where almost nothing or almost all overturned.
 """
 
 import math

@@ -7,7 +7,6 @@ that nor on the number of cores.
 import hashlib
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -42,15 +41,6 @@ WORDS = {STOOD: "stood", OVERTURNED: "overturned", FAILED: "failed"}
 CODES = {word: code for code, word in WORDS.items()}
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class EnsembleResult:
-    """Result of an ensemble."""
-
-    status: str  #: completed | interrupted | failed: no draw has an outcome
-    result: dict[str, Any]  #: as in ensemble.json
-    points: tuple[PointResult, ...]
-
-
 class DrawRows:
     """The rows of the draws so far."""
 
@@ -66,14 +56,8 @@ class DrawRows:
         replicate = draw.number // (self._ensemble.draws // self._ensemble.replicates)
         ratio = row["rotation_ratio"]
         known = ratio is not None and np.isfinite(ratio)
-        return (
-            draw.cell,
-            draw.number,
-            replicate,
-            *draw.values,
-            WORDS[code_of(row)],
-            ratio if known else None,
-        )
+        found = WORDS[code_of(row)], ratio if known else None
+        return draw.cell, draw.number, replicate, *draw.values, *found
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
@@ -100,8 +84,11 @@ def run_ensemble(
     force: bool = False,
     resume: bool = False,
     reporter: Reporter | None = None,
-) -> EnsembleResult:
+) -> dict[str, Any]:
     """Compute an ensemble into a folder; a finished one of the same request is not computed again.
+
+    Returns:
+        The content of `ensemble.json`.
 
     Raises:
         CaseError, FolderError: bad input.
@@ -116,7 +103,7 @@ def run_ensemble(
     ):
         if place.finished and place.found:
             reporter.message(f"{folder} holds this ensemble already; --force computes it again")
-            return EnsembleResult(status="completed", result=place.found, points=())
+            return place.found
         if place.resuming:
             place.require_same_program()
         place.require_room(required_disk(ensemble), "the ensemble", "take fewer draws")
@@ -136,7 +123,7 @@ def run_ensemble(
         return _finish(ensemble, place, draws)
 
 
-def _finish(ensemble: Ensemble, place: ResultFolder, draws: DrawRows) -> EnsembleResult:
+def _finish(ensemble: Ensemble, place: ResultFolder, draws: DrawRows) -> dict[str, Any]:
     """Count what there is, and write it."""
     complete = (draws.codes != MISSING).all(axis=1)
     points = [count_point(ensemble, int(k), draws.codes[k]) for k in np.flatnonzero(complete)]
@@ -152,7 +139,7 @@ def _finish(ensemble: Ensemble, place: ResultFolder, draws: DrawRows) -> Ensembl
             place.write_text(f"figures/{name}.svg", svg)
     result = result_of(ensemble, points, fragility, status)
     place.write_result(result)
-    return EnsembleResult(status=status, result=result, points=tuple(points))
+    return result
 
 
 def required_disk(ensemble: Ensemble) -> float:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from fem.ensemble.fragility import (
+    BOOTSTRAPS,
     bootstrap_fits,
     falls,
     fit_lognormal,
@@ -121,7 +122,7 @@ def _lognormal(
     fitted["levels_missed"] = misses(curve, strengths, low, high)
     fitted["missed_by_chance"] = misses_by_chance(len(strengths), ensemble.confidence)
     fitted["adequate"] = fitted["levels_missed"] <= fitted["missed_by_chance"]
-    enough = len(medians) >= FEWEST_RESAMPLED * 1000
+    enough = len(medians) >= FEWEST_RESAMPLED * BOOTSTRAPS
     for name, found in (("median", medians), ("deviation", deviations)):
         ends = np.percentile(found, [outside, 100.0 - outside]).tolist() if enough else None
         fitted[f"{name}_interval"] = ends

@@ -1,7 +1,7 @@
 """Figure cache: the figures of a run in its folder, SVG files and `drawn.json` with their metadata.
 
-Drawing the figures takes longer than all the rest of a report, so a report reuses them. It does so only if the
-metadata match: drawn by the same program from the same results, and not changed since. Otherwise it draws them again.
+Drawing takes longer than all the rest of a report, so a report reuses the figures if the metadata match: drawn by the
+same program from the same results, and not changed since.
 """
 
 import hashlib
@@ -21,14 +21,7 @@ from fem.runtime.identity import program_identity
 
 
 def write_figures(run: OpenedRun, container: Container) -> list[Path]:
-    """Draw all figures of a run into its folder `figures`, as SVG.
-
-    Args:
-        run: finished or not.
-        container: of its case.
-
-    Returns:
-        The files of the figures.
+    """Draw all figures of a run into its folder `figures`, as SVG; returns the files.
 
     Raises:
         FolderError: the history is missing or damaged.
@@ -46,10 +39,6 @@ def write_figures(run: OpenedRun, container: Container) -> list[Path]:
 
 def drawings_of(run: OpenedRun, container: Container) -> dict[str, Drawing]:
     """Figures of a run by name, in the order of reading: from the cache, or else drawn.
-
-    Args:
-        run: finished or not.
-        container: of its case.
 
     Raises:
         FolderError: the history is missing or damaged.

@@ -1,9 +1,8 @@
 """Figure of the joints between the boxes of a stack: the forces in them, and what their bolts must carry.
 
-Forces are means over `output.history_s`, on the boxes above (`fem.model.joints`). Impacts are so short and so many that
-curves of several joints over time would hide one another. Above: the range of each force over the height of the stack,
-with the force from the weight above. Below: the largest bolt force at any joint over time. Where it is not zero, a
-joint without bolts opens at an edge or slides (`fem.assessment.joint_demands`).
+Above: the range of each force over the height of the stack, with the force from the weight above (curves of several
+joints over time would hide one another). Below: the largest bolt force at any joint over time; where it is not zero, a
+joint without bolts opens at an edge or slides.
 """
 
 import numpy as np

@@ -43,7 +43,6 @@ from fem.figures.style import (
     panels,
     svg_of,
     time_panels,
-    title_of,
 )
 from fem.model.container import Container
 from fem.results.reader import OpenedRun
@@ -82,13 +81,12 @@ def draw_all(run: OpenedRun, container: Container) -> list[Drawing]:
             boxes=run.case.container.boxes,
             name=run.name,
         )
-    return [_drawing(name, figure) for name, figure in figures.items()]
-
-
-def _drawing(name: str, figure: Figure) -> Drawing:
-    svg = svg_of(figure)  # lays the figure out
-    title = title_of(figure) or name.replace("_", " ")
-    return Drawing(name=name, title=title, cursor=cursor_axes(figure), svg=svg)
+    drawings = []
+    for name, figure in figures.items():
+        svg = svg_of(figure)  # lays the figure out
+        title = figure.texts[0].get_text()  # written by `head`
+        drawings.append(Drawing(name=name, title=title, cursor=cursor_axes(figure), svg=svg))
+    return drawings
 
 
 def base_motion_figure(run: OpenedRun) -> Figure:
@@ -119,7 +117,7 @@ def base_motion_figure(run: OpenedRun) -> Figure:
 
 def rotation_figure(run: OpenedRun) -> Figure:
     """Rotation with the slenderness angle marked, the rigid block's beside it where there is one."""
-    verdict, angle = _verdict(run), math.degrees(run.slenderness_angle)
+    verdict, angle = run.typed_result.verdict or Verdict(), math.degrees(run.slenderness_angle)
     rotation, check = np.degrees(run.history["rotation_rad"]), run.rigid_check
     figure, axes = _panel(run, rotation, "rotation [degrees]", f"{run.case.solver.model} model", legend=True)
     if check is not None:
@@ -148,7 +146,7 @@ def rotation_figure(run: OpenedRun) -> Figure:
 
 def slip_figure(run: OpenedRun) -> Figure:
     """Sliding of the loaded contact points over the floor."""
-    verdict, slip = _verdict(run), 1e3 * run.history["slip_m"]
+    verdict, slip = run.typed_result.verdict or Verdict(), 1e3 * run.history["slip_m"]
     limit = 1e3 * SLIDING * run.case.container.width_m
     small = bool(np.abs(slip).max() < 10.0 * limit)
     figure, axes = _panel(run, slip, "slip [mm]", zero=True, legend=small)
@@ -167,7 +165,7 @@ def slip_figure(run: OpenedRun) -> Figure:
 
 def uplift_figure(run: OpenedRun) -> Figure:
     """Uplift of the higher side of the base."""
-    verdict, uplift = _verdict(run), 1e3 * run.history["uplift_m"]
+    verdict, uplift = run.typed_result.verdict or Verdict(), 1e3 * run.history["uplift_m"]
     struck = verdict.first_impact_s is not None
     figure, axes = _panel(run, uplift, "uplift [mm]", legend=struck)
     axes.set_ylim(0.0, max(1.08 * float(uplift.max()), run.case.container.width_m))
@@ -235,10 +233,6 @@ def _panel(
     figure, (axes,) = time_panels((2.3,), history=run.history, header=2 if legend else 1)
     curve_panel(axes, label, run.history["time_s"], (values, BLUE, "-", name), zero=zero)
     return figure, axes
-
-
-def _verdict(run: OpenedRun) -> Verdict:
-    return run.typed_result.verdict or Verdict()
 
 
 def _millimetres(value: float) -> str:

@@ -19,6 +19,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from fem.html.units import times_ten_to
 from fem.results.history import History
 from fem.runtime.arrays import FloatArray
 
@@ -69,7 +70,6 @@ TIME = "time [s]"
 PLANE = "plane"
 #: share of the slenderness angle, or of the energy to overturn, from which that limit is drawn to scale
 NEAR_LIMIT = 0.15
-SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 STRETCHES = 800  #: of a long curve, each drawn by its extremes: finer than print
 
 
@@ -99,7 +99,6 @@ def panels(
     header: int = 2,
     width: float = WIDTH,
     right: float = RIGHT,
-    footer: float = FOOTER,
     above: float = 0.0,
 ) -> tuple[Figure, list[Axes]]:
     """A figure of panels of equal width, one below the other, at fixed positions.
@@ -110,11 +109,10 @@ def panels(
         header: lines of text above the first panel, title included.
         width: of the figure [inch].
         right: margin beside the panels [inch].
-        footer: below the last panel [inch].
         above: space between header and first panel, for other panels [inch].
     """
     gaps = gaps or [GAP] * (len(heights) - 1)
-    tall = 0.08 + header * LINE + above + sum(heights) + sum(gaps) + footer
+    tall = 0.08 + header * LINE + above + sum(heights) + sum(gaps) + FOOTER
     figure = Figure(figsize=(width, tall))
     axes, top = [], tall - 0.08 - header * LINE - above
     for height, gap in zip(heights, [*gaps, 0.0], strict=True):
@@ -171,7 +169,7 @@ def curve_panel(
     """Draw curves over time into a panel.
 
     Args:
-        axes: the panel; label: of its vertical axis, with the unit.
+        label: of the vertical axis, with the unit.
         time: of the samples, shape (n,) [s].
         curves: values (n,), colour, line style, and name in the legend.
         zero: draw a line at zero.
@@ -208,10 +206,7 @@ def _draw_states(axes: Axes, time: FloatArray, modes: Sequence[str], states: Seq
     ends = np.append(time[1:], time[-1])
     for row, state in enumerate(states):
         inside = np.concatenate([[False], names == state, [False]])
-        first, last = (
-            np.flatnonzero(np.diff(inside.astype(int)) == 1),
-            np.flatnonzero(~inside[1:] & inside[:-1]),
-        )
+        first, last = np.flatnonzero(~inside[:-1] & inside[1:]), np.flatnonzero(inside[:-1] & ~inside[1:])
         spans = _joined(time[first], ends[last - 1], float(time[-1] - time[0]) / STRETCHES)
         axes.broken_barh(spans, (row - 0.4, 0.8), color=STATE_COLOURS[state], linewidth=0)
     axes.set_yticks(range(len(states)), states, fontsize=8)
@@ -253,19 +248,13 @@ def zero_line(axes: Axes) -> None:
 def number(value: float, digits: int = 3) -> str:
     """A number for text: 1350 for 1.35e+03, 2 × 10⁻⁵ for 2e-05, with a minus sign for a hyphen."""
     mantissa, power, exponent = f"{float(f'{value:.{digits}g}'):.{max(digits, 6)}g}".partition("e")
-    tens = f" × 10{str(int(exponent)).translate(SUPERSCRIPTS)}" if power else ""
-    return mantissa.replace("-", "−") + tens
+    return mantissa.replace("-", "−") + (times_ten_to(exponent) if power else "")
 
 
 def keep_visible(axes: Axes, least: float) -> None:
     """Extend the vertical axis to at least ± least, so that rounding does not look like motion."""
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, -least), max(high, least))
-
-
-def title_of(figure: Figure) -> str:
-    """Title that `head` wrote above a figure; empty without one."""
-    return next((text.get_text() for text in figure.texts if text.get_text()), "")
 
 
 def svg_of(figure: Figure) -> str:

@@ -21,8 +21,8 @@ def number(value: float | None, factor: float = 1.0, figures: int = 4) -> str:
         return "0"
     mantissa, _, exponent = f"{scaled:.{figures - 1}e}".partition("e")
     if not -3 <= int(exponent) < 6:
-        return f"{_minus(mantissa)} × 10{str(int(exponent)).translate(SUPERSCRIPTS)}"
-    return _minus(f"{scaled:.{max(figures - 1 - int(exponent), 0)}f}")
+        return mantissa.replace("-", "−") + times_ten_to(exponent)
+    return f"{scaled:.{max(figures - 1 - int(exponent), 0)}f}".replace("-", "−")
 
 
 def short(value: float | None, factor: float = 1.0, figures: int = 4) -> str:
@@ -64,10 +64,9 @@ def typeset(text: str) -> str:
     """A line of the summary for a page: true minus signs, powers of ten, m/s²."""
     text = text.replace("m/s2", "m/s²")
     text = re.sub(r"(?<![\w.)-])-(?=\d)", "−", text)
-    return re.sub(
-        r"(?<=\d)e([+-]\d+)\b", lambda power: f" × 10{str(int(power[1])).translate(SUPERSCRIPTS)}", text
-    )
+    return re.sub(r"(?<=\d)e([+-]\d+)\b", lambda power: times_ten_to(power[1]), text)
 
 
-def _minus(text: str) -> str:
-    return text.replace("-", "−")
+def times_ten_to(exponent: str) -> str:
+    """The power of ten behind a mantissa: " × 10⁻⁵" for "-05"."""
+    return f" × 10{str(int(exponent)).translate(SUPERSCRIPTS)}"

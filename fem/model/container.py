@@ -1,7 +1,4 @@
-"""The container of a case, discretised: mesh, elements, contact nodes, elastic modes.
-
-It does not depend on the floor or its motion, so many cases share one.
-"""
+"""The container of a case, discretised: mesh, elements, contact nodes, elastic modes."""
 
 import math
 from dataclasses import dataclass
@@ -25,7 +22,7 @@ from mesh.region import Region
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Container:
-    """A discretised container; it does not depend on the floor or its motion."""
+    """A discretised container; it does not depend on the floor or its motion, so many cases share one."""
 
     mesh: ContainerMesh
     elements: FiniteElements
@@ -33,7 +30,7 @@ class Container:
     nodes: IntArray  #: (n_c,) contact nodes, those of the base first, by rising x
     monitors: IntArray  #: (n_m,) nodes whose motion is observed
     response: StaticResponse
-    basis: ReducedBasis | None  #: elastic modes, of a reduced model
+    basis: ReducedBasis  #: elastic modes of a reduced model; none of the others
     damping: float  #: a of C = a K [s]
     first: float  #: lowest elastic angular frequency; infinite for a rigid container [rad/s]
 
@@ -41,10 +38,7 @@ class Container:
 def discretise(case: Case, mesh: ContainerMesh | None = None, cache: ArrayCache = no_cache) -> Container:
     """Build elements, contact nodes and elastic modes of a case's container.
 
-    Args:
-        case: what to build.
-        mesh: of the container, where it is built already.
-        cache: of the arrays that take long to compute.
+    `mesh` is given where it is built already; `cache` holds the arrays that take long to compute.
 
     Raises:
         CaseError, MeshError: bad input.
@@ -63,7 +57,8 @@ def discretise(case: Case, mesh: ContainerMesh | None = None, cache: ArrayCache 
     if not case.output.stop_when_overturned:  # lying on its side it touches with the upper corners, too
         nodes = np.concatenate([nodes, _upper_corners(elements)])
     response = static_response(elements, nodes, cache)
-    basis, first, damping = None, math.inf, 0.0
+    basis = ReducedBasis(angular_frequencies=np.zeros(0), shapes=np.zeros((0, *elements.nodes.shape)))
+    first, damping = math.inf, 0.0
     if case.solver.model == "reduced":
         basis = reduced_basis(elements, response, case.solver.elastic_modes, cache)
         first = float(basis.angular_frequencies[0])

@@ -1,6 +1,5 @@
 """Static equilibrium of a container on its floor before the floor moves: contact, body, settled stance."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +15,7 @@ from fem.model.support import normal_penalty
 from fem.model.validity import require_stiff_contact, require_stiff_container
 from fem.runtime.arrays import FloatArray
 from fem.solid.elasticity import least_principal_strain
-from fem.solid.nodal_body import FullBody
+from fem.solid.nodal_body import FullBody, rotation_matrix
 from mesh.container import ContainerMesh
 
 #: error of a base point at which the iterations of a step stop, over the static penetration
@@ -68,8 +67,7 @@ def same_equilibrium(case: Case, other: Case) -> bool:
 
 def _compression(container: Container, stance: Stance) -> float:
     """Largest compressive strain of the container under its contact forces [-]."""
-    cosine, sine = math.cos(stance.rotation), math.sin(stance.rotation)
-    force = stance.with_points(container.nodes.size).force @ np.array([[cosine, sine], [-sine, cosine]])
+    force = stance.with_points(container.nodes.size).force @ rotation_matrix(stance.rotation)
     displacement = np.tensordot(force.ravel(), container.response.displacement, axes=1)
     return -least_principal_strain(container.elements.displacement_gradient(displacement))
 
@@ -96,10 +94,7 @@ def _body(case: Case, container: Container, contact: Contact) -> ModalBody | Ful
     nodes, monitors = container.nodes, container.monitors
     if case.solver.model == "full":
         return FullBody(elements, nodes, monitors, gravity=gravity, damping=container.damping)
-    centroid = np.asarray(mesh.centroid)
-    basis = container.basis
-    omega = np.zeros(0) if basis is None else basis.angular_frequencies
-    shapes = np.zeros((0, *elements.nodes.shape)) if basis is None else basis.shapes
+    centroid, basis = np.asarray(mesh.centroid), container.basis
     penetration = mesh.mass * gravity / float(contact.normal_stiffness.sum())
     return make_modal_body(
         mass=mesh.mass,
@@ -107,11 +102,11 @@ def _body(case: Case, container: Container, contact: Contact) -> ModalBody | Ful
         gravity=gravity,
         point=elements.nodes[nodes] - centroid,
         rest=mesh.centroid,
-        shape=np.moveaxis(shapes[:, nodes], 0, -1),
-        frequencies=omega,
-        damping_ratios=0.5 * container.damping * omega,
+        shape=np.moveaxis(basis.shapes[:, nodes], 0, -1),
+        frequencies=basis.angular_frequencies,
+        damping_ratios=0.5 * container.damping * basis.angular_frequencies,
         monitor=elements.nodes[monitors] - centroid,
-        monitor_shape=np.moveaxis(shapes[:, monitors], 0, -1),
+        monitor_shape=np.moveaxis(basis.shapes[:, monitors], 0, -1),
         tolerance=POINT_TOLERANCE * penetration,
     )
 

@@ -10,28 +10,6 @@ from mesh.fill import MassFill
 from mesh.geometry import ContainerGeometry, Section
 
 
-def container_geometry(case: Case) -> ContainerGeometry:
-    """Outer dimensions and section of the case's container."""
-    box = case.container
-    return ContainerGeometry(
-        width=box.width_m,
-        height=box.height_m,
-        depth=box.depth_m,
-        boxes=box.boxes,
-        section=Section(box.section),
-        wall=box.wall_m if box.section == "shell" else None,
-    )
-
-
-def mass_fill(case: Case) -> MassFill:
-    """Mass of one box of the case and height of its mass centre."""
-    return MassFill(
-        mass=case.box_mass,
-        centroid_height=case.container.centroid_m,
-        wall_density=case.container.wall_density_kg_m3,
-    )
-
-
 def build_container(case: Case) -> ContainerMesh:
     """The case's container: from its mesh file if it names one, else structured.
 
@@ -40,8 +18,17 @@ def build_container(case: Case) -> ContainerMesh:
             that does not fit the case.
         CaseError: the mesh file is missing in the folder of the case.
     """
-    geometry, fill = container_geometry(case), mass_fill(case)
-    if case.container.mesh_file is not None:
+    box = case.container
+    geometry = ContainerGeometry(
+        width=box.width_m,
+        height=box.height_m,
+        depth=box.depth_m,
+        boxes=box.boxes,
+        section=Section(box.section),
+        wall=box.wall_m if box.section == "shell" else None,
+    )
+    fill = MassFill(mass=case.box_mass, centroid_height=box.centroid_m, wall_density=box.wall_density_kg_m3)
+    if box.mesh_file is not None:
         return read_container_mesh(case.data_files["container.mesh_file"], geometry, fill)
     return build_container_mesh(
         geometry, fill, element_size=case.solver.element_size_m, foot=case.support.foot

@@ -1,15 +1,9 @@
 """Forces in the joints between the boxes of a stack that moves as one body.
 
-The boxes are bolted and move as one body; the force in a joint follows from the motion of the boxes above it,
-
-    F = d/dt (sum of m_i v_i) + m g z,        M = d/dt (sum of (x_i - o) x m_i v_i) - moment of the weight about o,
-
-with the consistent mass of the elements above. Both are means over an interval of the history, from the momentum at
-its ends: under the dashpot of an impact the instantaneous acceleration grows without bound as the step falls. o is
-the position of the joint's centre in the middle of the interval; normal and shear are taken along the container's axes
-there. Forces act on the boxes above: normal > 0 in compression, shear > 0 toward +x, moment > 0
-toward +x; their resultant lies -M/N to the right of the joint's centre. In a floating frame terms of the order of the
-strain times the inertia are dropped, as in its equations of motion.
+Formulas and signs: README.md of this folder. Forces are means over an interval of the history, from the momentum
+at its ends; o is the joint's centre in the middle of the interval, where normal and shear are taken along the
+container's axes. In a floating frame terms of the order of the strain times the inertia are dropped, as in its
+equations of motion.
 """
 
 from dataclasses import dataclass
@@ -148,12 +142,11 @@ def joints_of(model: Model, heights: FloatArray | None = None) -> Joints | None:
         heights: (J,) of mesh lines taken for joints; those between the boxes, if not given [m].
     """
     container = model.container
-    mesh, elements, basis = container.mesh, container.elements, container.basis
+    mesh, elements, shapes = container.mesh, container.elements, container.basis.shapes
     box = model.case.container
     lines = box.height_m * np.arange(1.0, box.boxes) if heights is None else np.asarray(heights, dtype=float)
     if lines.size == 0:
         return None
-    shapes = np.zeros((0, *elements.nodes.shape)) if basis is None else basis.shapes
     layers = _layers(elements, mesh, np.append(lines, np.inf))
     arm = elements.nodes - np.asarray(mesh.centroid)
     spin = np.column_stack([arm[:, 1], -arm[:, 0]])  # velocities of a unit rotation

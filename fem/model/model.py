@@ -1,7 +1,6 @@
 """From a case to the model that is stepped: container, equilibrium on the floor, base motion, limits, initial state.
 
-Every "auto" is decided here and in the functions called here, once and for every kind of model; `full`, `reduced` and
-`rigid` differ in the body alone.
+The models `full`, `reduced` and `rigid` differ in the body alone.
 """
 
 import math
@@ -15,7 +14,7 @@ from contact.interface.laws import ELASTIC_STICK
 from contact.interface.solver import Contact, make_workspace
 from contact.motion.base_motion import BaseMotion
 from contact.motion.kernel import floor_motion
-from contact.stepping import modal_body
+from contact.stepping import modal_kernels
 from contact.stepping.body import State, make_state
 from contact.stepping.ledger import spring_energy
 from contact.stepping.modal_body import ModalBody
@@ -66,10 +65,9 @@ class Model:
     @property
     def frequencies(self) -> FloatArray:
         """Elastic frequencies of the model's modes [Hz]: all of `reduced`, the first of `full`, none of `rigid`."""
-        if self.container.basis is not None:
-            return self.container.basis.angular_frequencies / (2.0 * np.pi)
-        first = self.container.first
-        return np.array([first / (2.0 * np.pi)]) if math.isfinite(first) else np.zeros(0)
+        container = self.container
+        full = np.array([container.first]) if self.case.solver.model == "full" else np.zeros(0)
+        return np.append(container.basis.angular_frequencies, full) / (2.0 * np.pi)
 
 
 def build_model(
@@ -78,7 +76,6 @@ def build_model(
     """Discretise a case, settle it on its floor and write its initial state.
 
     Args:
-        case: what to build.
         container: of the case, where it is built already.
         equilibrium: of that container, where `same_equilibrium` allows its reuse.
 
@@ -162,5 +159,5 @@ def _place(
         body.place(state, stance, response, floor_velocity)
         body.start(state, floor)
     else:
-        modal_body.place(body, state, stance, floor_velocity)
-        modal_body.start(body, state, floor)
+        modal_kernels.place(body, state, stance, floor_velocity)
+        modal_kernels.start(body, state, floor)

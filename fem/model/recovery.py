@@ -10,7 +10,7 @@ from fem.model.model import Model
 from fem.runtime.arrays import FloatArray
 from fem.solid.assembly import FiniteElements
 from fem.solid.elasticity import von_mises
-from fem.solid.nodal_body import FullBody
+from fem.solid.nodal_body import FullBody, rotation_matrix
 
 #: largest elastic displacement used to probe the stress of a mode, over the size of the container
 PROBE = 1e-6
@@ -50,8 +50,7 @@ class Recovery:
                 velocity=velocity.reshape(-1, 2),
                 von_mises=self.elements.nodal_von_mises(displacement),
             )
-        cosine, sine = math.cos(position[2]), math.sin(position[2])
-        turn = np.array([[cosine, sine], [-sine, cosine]])
+        turn = rotation_matrix(position[2])
         arm = (nodes - self.centroid + np.tensordot(position[3:], self.shapes, axes=1)) @ turn.T
         elastic_rate = np.tensordot(velocity[3:], self.shapes, axes=1) @ turn.T
         spin = velocity[2] * np.column_stack([arm[:, 1], -arm[:, 0]])
@@ -91,7 +90,7 @@ class Recovery:
 def recovery_of(model: Model) -> Recovery:
     """Recovery of the fields of this model."""
     elements, basis = model.container.elements, model.container.basis
-    shapes = np.zeros((0, *elements.nodes.shape)) if basis is None else basis.shapes
+    shapes = basis.shapes
     stress = np.zeros((3, len(shapes), len(elements.nodes)))
     size = float(np.ptp(elements.nodes, axis=0).max())
     for k, shape in enumerate(shapes):
@@ -104,6 +103,6 @@ def recovery_of(model: Model) -> Recovery:
         centroid=np.asarray(model.container.mesh.centroid),
         shapes=shapes,
         full=isinstance(model.body, FullBody),
-        angular_frequencies=np.zeros(0) if basis is None else basis.angular_frequencies,
+        angular_frequencies=basis.angular_frequencies,
         _stress=stress,
     )

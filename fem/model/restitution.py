@@ -1,6 +1,5 @@
 """Restitution that follows from a contact damping ratio, by a shipped calibration table.
 
-Restitution is not an input: it follows from contact damping ratio, support and slenderness.
 `data/contact_damping_restitution.csv` says how the table was computed, for rigid homogeneous blocks. Other
 distributions of mass are treated through the share of Housner's loss, (1 - e)/(1 - e_H), which varies slowly. A
 container that deforms at an impact loses more.
@@ -63,9 +62,7 @@ def apparent_restitution(
         damping_ratio: of the contact, c/(2 sqrt(k m)) with the whole mass on one corner [-].
         housner: Housner's restitution of the container [-].
     """
-    calibration = read_calibrations().get(support)
-    if calibration is None:
-        return None
+    calibration = read_calibrations()[support]
     foot = float(calibration.foot[0]) if support != "feet" else foot_over_width or 0.0
     loss = calibration.loss_at(foot, slenderness, damping_ratio)
     return None if loss is None else 1.0 - loss * (1.0 - housner)
@@ -73,24 +70,18 @@ def apparent_restitution(
 
 @cache
 def read_calibrations() -> dict[str, Calibration]:
-    """The shipped table, by kind of support.
-
-    Raises:
-        ValueError: a table that is not a full grid for each support.
-    """
+    """The shipped table, by kind of support; a full grid for each."""
     text = resources.files("fem.model").joinpath("data", TABLE).read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if not line.startswith("#")]
     rows = list(csv.DictReader(lines))
     kinds = dict.fromkeys(row["support"] for row in rows)
-    return {kind: _calibration(kind, [row for row in rows if row["support"] == kind]) for kind in kinds}
+    return {kind: _calibration([row for row in rows if row["support"] == kind]) for kind in kinds}
 
 
-def _calibration(kind: str, rows: list[dict[str, str]]) -> Calibration:
+def _calibration(rows: list[dict[str, str]]) -> Calibration:
     names = ("foot_over_width", "height_over_width", "contact_damping_ratio")
     points = np.array([[float(row[name]) for name in names] for row in rows])
     axes = [np.unique(points[:, k]) for k in range(3)]
-    if len(rows) != np.prod([axis.size for axis in axes]):
-        raise ValueError(f"{TABLE}: the rows of {kind} do not form a full grid")
     values = [
         (1.0 - float(row["rigid"])) / (1.0 - float(row["housner"])) if row["rigid"] else np.nan
         for row in rows

@@ -55,32 +55,6 @@ def slenderness_angle(*, width: float, centroid: float) -> float:
     return math.atan2(0.5 * width, centroid)
 
 
-def radius(*, width: float, centroid: float) -> float:
-    """Distance from a corner to the mass centre, R [m]. Paper, section 2: r = c/2/sin(alpha)."""
-    return math.hypot(0.5 * width, centroid)
-
-
-def frequency_parameter(*, mass: float, inertia: float, radius: float, gravity: float) -> float:
-    """sqrt(M g R / I_O), with I_O = I + M R^2 about the corner [1/s]. Housner (1963).
-
-    Args:
-        mass: M [kg].
-        inertia: I, polar in the plane about the mass centre [kg m2].
-        radius: R, corner to mass centre [m].
-        gravity: g [m/s2].
-    """
-    return math.sqrt(mass * gravity * radius / (inertia + mass * radius**2))
-
-
-def housner_restitution(*, mass: float, inertia: float, radius: float, slenderness_angle: float) -> float:
-    """Ratio of the angular velocities after and before an impact, 1 - (M R^2/I_O)(1 - cos 2 al) [-].
-
-    Angular momentum about the new corner is kept, Housner (1963). Negative for a squat block: it
-    would not rise on the other corner.
-    """
-    return 1.0 - mass * radius**2 / (inertia + mass * radius**2) * (1.0 - math.cos(2.0 * slenderness_angle))
-
-
 def period_eq2(*, width: float, radius: float, gravity: float, initial_rotation: float) -> float:
     """Rocking period of a point mass, T = 8 sqrt(phi_0 r^2/(a g)) [s]. Paper, Eq. (2), after Klotter.
 
@@ -94,36 +68,13 @@ def period_eq3(*, radius: float, gravity: float) -> float:
     return 2.0 * math.pi * math.sqrt(4.0 * radius / (3.0 * gravity))
 
 
-def sliding_limit(*, weight: float, friction: float) -> float:
-    """Base shear at which friction gives way, mu G [N]. Paper, Eqs. (8), mu_static, and (11), mu_kinetic."""
-    return friction * weight
-
-
-def restoring_moment(*, weight: float, width: float) -> float:
-    """Moment of the weight about a corner before it turns, G a/2, a magnitude [Nm]. Paper, Eq. (10)."""
-    return weight * 0.5 * width
-
-
-def tilting_moment(*, base_shear: float, centroid: float) -> float:
-    """Moment of the base shear, F z_c, a magnitude [Nm]. Paper, Eq. (9)."""
-    return base_shear * centroid
-
-
-def uplift_acceleration(*, slenderness_angle: float, gravity: float) -> float:
-    """Floor acceleration at which the container begins to turn about a corner, g tan al [m/s2].
-
-    From F z_c = G a/2, paper, Eqs. (9) and (10); known as West's formula (1885).
-    """
-    return gravity * math.tan(slenderness_angle)
-
-
 def plateau_base_shear(
     *,
     mass: float,
     ground_acceleration: float,
     soil_factor: float,
     behaviour_factor: float,
-    importance_factor: float = 1.0,
+    importance_factor: float,
 ) -> float:
     """Base shear on the plateau of the design spectrum, m gamma_I a_gR S 2.5/q [N].
 
@@ -131,16 +82,6 @@ def plateau_base_shear(
     a_gR by 3.2.1 (3). Paper, Eq. (17). Accelerations in m/s2, mass in kg.
     """
     return mass * importance_factor * ground_acceleration * soil_factor * 2.5 / behaviour_factor
-
-
-def method_applicable(*, period: float, corner_period: float) -> CheckResult:
-    """The period against the limit of the lateral force method, min(4 T_C, 2.0 s) [s].
-
-    EN 1998-1:2004, 4.3.3.2.1 (2) a), Eq. (4.4).
-    """
-    return CheckResult(
-        demand=period, capacity=min(4.0 * corner_period, LIMIT_PERIOD), unit="s", clause=CLAUSE_APPLICABLE
-    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,21 +107,25 @@ class StaticChecks:
 
     weight: float  #: G, of all boxes with fill [N]
     centroid: float  #: z_c, height of the mass centre above the floor [m]
-    inertia: float  #: polar in the plane about the mass centre [kg m2]
-    radius: float  #: corner to mass centre [m]
-    slenderness_angle: float  #: from the vertical [rad]
-    frequency_parameter: float  #: [1/s]
+    inertia: float  #: I, polar in the plane about the mass centre [kg m2]
+    radius: float  #: R, corner to mass centre [m]. Paper, section 2
+    slenderness_angle: float  #: al, from the vertical [rad]
+    frequency_parameter: float  #: sqrt(M g R/I_O), I_O = I + M R^2 about the corner [1/s]. Housner (1963)
     period_eq2: float  #: of a point mass, at the initial rotation or half the slenderness angle [s]
     period_eq3: float  #: of a hanging bar [s]
-    sliding_limit_static: float  #: mu_static G [N]
-    sliding_limit_kinetic: float  #: mu_kinetic G [N]
-    restoring_moment: float  #: G a/2 [Nm]
-    uplift_acceleration: float  #: g tan al [m/s2]
-    housner_restitution: float  #: [-]
+    sliding_limit_static: float  #: mu_static G [N]. Paper, Eq. (8)
+    sliding_limit_kinetic: float  #: mu_kinetic G [N]. Paper, Eq. (11)
+    restoring_moment: float  #: of the weight about a corner before it turns, G a/2 [Nm]. Paper, Eq. (10)
+    uplift_acceleration: (
+        float  #: of the floor, g tan al [m/s2]. Paper, Eqs. (9) and (10); West's formula (1885)
+    )
+    #: ratio of the angular velocities after and before an impact, 1 - (M R^2/I_O)(1 - cos 2 al) [-]; angular momentum
+    #: about the new corner is kept, Housner (1963). Negative for a squat block: it would not rise on the other corner
+    housner_restitution: float
     own_motion: ActionCheck  #: under the peak floor acceleration of this run
     code: ActionCheck  #: under the code's base shear
     code_q1: ActionCheck  #: under the code's base shear with behaviour factor 1
-    applicability: CheckResult  #: of the lateral force method [s]
+    applicability: CheckResult  #: of the lateral force method: period against min(4 T_C, 2.0 s) [s]
 
     @property
     def housner_credible(self) -> bool:
@@ -236,8 +181,7 @@ def static_checks(
         inertia: polar in the plane about the mass centre [kg m2].
         width: a, of the base between its corners [m].
         gravity: g [m/s2].
-        mu_static: coefficient of static friction [-].
-        mu_kinetic: coefficient of kinetic friction [-].
+        mu_static, mu_kinetic: coefficients of friction [-].
         peak_floor_acceleration: largest |acceleration| of the floor in this run [m/s2].
         ground_acceleration: a_gR of the code [m/s2].
         soil_factor: S [-].
@@ -249,28 +193,15 @@ def static_checks(
 
     The rocking period that is compared with the limit of the lateral force method is that of Eq. (3), as
     in the paper's section 4.2.
-
-    Raises:
-        ValueError: if mass, centroid, inertia, width or gravity is not positive.
     """
-    for name, value in (
-        ("mass", mass),
-        ("centroid", centroid),
-        ("inertia", inertia),
-        ("width", width),
-        ("gravity", gravity),
-    ):
-        if not value > 0.0:
-            raise ValueError(f"static checks: {name} must be positive, got {value}")
-    weight = mass * gravity
+    weight, arm = mass * gravity, math.hypot(0.5 * width, centroid)
     angle = slenderness_angle(width=width, centroid=centroid)
-    arm = radius(width=width, centroid=centroid)
-    friction = sliding_limit(weight=weight, friction=mu_static)
-    restoring = restoring_moment(weight=weight, width=width)
+    about_corner = inertia + mass * arm**2
+    friction, restoring = mu_static * weight, weight * 0.5 * width
     period = period_eq3(radius=arm, gravity=gravity)
 
     def under(base_shear: float) -> ActionCheck:
-        moment = tilting_moment(base_shear=base_shear, centroid=centroid)
+        moment = base_shear * centroid  # paper, Eq. (9)
         return ActionCheck(
             sliding=CheckResult(demand=base_shear, capacity=friction, unit="N", clause=CLAUSE_SLIDING),
             overturning=CheckResult(demand=moment, capacity=restoring, unit="Nm", clause=CLAUSE_OVERTURNING),
@@ -291,22 +222,22 @@ def static_checks(
         inertia=inertia,
         radius=arm,
         slenderness_angle=angle,
-        frequency_parameter=frequency_parameter(mass=mass, inertia=inertia, radius=arm, gravity=gravity),
+        frequency_parameter=math.sqrt(mass * gravity * arm / about_corner),
         period_eq2=period_eq2(
             width=width, radius=arm, gravity=gravity, initial_rotation=initial_rotation or 0.5 * angle
         ),
         period_eq3=period,
         sliding_limit_static=friction,
-        sliding_limit_kinetic=sliding_limit(weight=weight, friction=mu_kinetic),
+        sliding_limit_kinetic=mu_kinetic * weight,
         restoring_moment=restoring,
-        uplift_acceleration=uplift_acceleration(slenderness_angle=angle, gravity=gravity),
-        housner_restitution=housner_restitution(
-            mass=mass, inertia=inertia, radius=arm, slenderness_angle=angle
-        ),
+        uplift_acceleration=gravity * math.tan(angle),
+        housner_restitution=1.0 - mass * arm**2 / about_corner * (1.0 - math.cos(2.0 * angle)),
         own_motion=under(mass * peak_floor_acceleration),
         code=under(code_base_shear(behaviour_factor)),
         code_q1=under(code_base_shear(1.0)),
-        applicability=method_applicable(period=period, corner_period=corner_period),
+        applicability=CheckResult(
+            demand=period, capacity=min(4.0 * corner_period, LIMIT_PERIOD), unit="s", clause=CLAUSE_APPLICABLE
+        ),
     )
 
 

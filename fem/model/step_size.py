@@ -12,7 +12,6 @@ from fem.case.case import Case, CaseError
 from fem.model.container import Container
 from fem.model.static_checks import StaticChecks
 from fem.runtime.arrays import FloatArray
-from mesh.container import ContainerMesh
 
 #: largest step over the time scale of rocking, 1/p, and over that of the base motion
 STEP_OF_ROCKING, STEP_OF_MOTION = 0.01, 0.02
@@ -96,11 +95,6 @@ def _span(motion: BaseMotion) -> tuple[float, float]:
     return 0.0, math.inf
 
 
-def reference_energy(mesh: ContainerMesh, static: StaticChecks, gravity: float) -> float:
-    """Energy to overturn the container quasi-statically, M g R (1 - cos slenderness angle) [J]."""
-    return mesh.mass * gravity * static.radius * (1.0 - math.cos(static.slenderness_angle))
-
-
 def _struck_mass(case: Case, container: Container) -> float:
     """Effective mass of a corner in the first instant of an impact [kg].
 
@@ -108,26 +102,19 @@ def _struck_mass(case: Case, container: Container) -> float:
     """
     mesh, corner = container.mesh, container.nodes[0]
     if case.solver.model == "full":
-        return float((container.elements.mass @ np.ones(len(container.elements.nodes)))[corner])
+        return float(container.elements.nodal_mass[corner])
     arm = container.elements.nodes[corner, 0] - mesh.centroid[0]
-    inverse = 1.0 / mesh.mass + arm * arm / mesh.inertia
-    if container.basis is not None:
-        inverse += float(np.sum(container.basis.shapes[:, corner, 1] ** 2))
-    return 1.0 / inverse
+    elastic = float(np.sum(container.basis.shapes[:, corner, 1] ** 2))
+    return 1.0 / (1.0 / mesh.mass + arm * arm / mesh.inertia + elastic)
 
 
 def control_of(
     case: Case, container: Container, static: StaticChecks, largest: float, contact: Contact
 ) -> Control:
-    """Limits of the stepping, from the time scales and energies of container and contact.
-
-    Args:
-        case: gives tolerance and model; container, static: of the case.
-        largest: step [s].
-        contact: with the floor.
-    """
+    """Limits of the stepping, from the time scales and energies of container and contact; `largest` step [s]."""
     mesh, base = container.mesh, container.support.index.size
-    reference = reference_energy(mesh, static, case.gravity_m_s2)
+    # Energy to overturn the container quasi-statically.
+    reference = static.weight * static.radius * (1.0 - math.cos(static.slenderness_angle))
     rate = static.frequency_parameter
     loose, rigid = case.solver.energy_tolerance, case.solver.model == "rigid"
     spring = float(contact.normal_stiffness[0])
@@ -167,12 +154,11 @@ def scheme_of(case: Case, container: Container, penalty: float, control: Control
     Raises:
         CaseError: a Newmark run without averaging that would gain energy.
     """
-    solver, elements = case.solver, container.elements
+    solver = case.solver
     if solver.scheme == "generalised-alpha":
         return generalised_alpha(solver.spectral_radius)
-    nodal = elements.mass @ np.ones(len(elements.nodes))
     stiff = penalty * solver.element_size_m / case.container.youngs_modulus_Pa
-    rate = math.sqrt(float(np.max(contact.normal_stiffness / nodal[container.nodes])))
+    rate = math.sqrt(float(np.max(contact.normal_stiffness / container.elements.nodal_mass[container.nodes])))
     if stiff > STIFF_CONTACT and control.largest_step * rate > LARGE_CONTACT_STEP:
         raise CaseError(
             "[solver] scheme = 'newmark' gains energy at impacts here: normal_penalty_Pa_m x element_size_m / "

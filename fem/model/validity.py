@@ -1,7 +1,6 @@
-"""Is the model valid? Refuses what a computation could not answer: sinking, crushing, too little memory.
+"""Refuses a model that is not valid or too large: sinking, crushing, too little memory.
 
-The contact springs and the material are idealisations of small deformations. Where the weight alone sinks deep into
-the springs, or crushes the container, the result would say nothing about a container.
+The contact springs and the material are idealisations of small deformations.
 """
 
 import math
@@ -24,9 +23,7 @@ MEMORY_SHARE = 0.8  #: of the machine's memory that may be used
 def require_stiff_contact(case: Case, mesh: ContainerMesh, stiffness: float) -> None:
     """Refuse contact springs into which the container would sink deep under its weight.
 
-    Args:
-        case: gives penalty and gravity; mesh: of its container.
-        stiffness: of the whole base [N/m].
+    `stiffness` is that of the whole base [N/m].
 
     Raises:
         CaseError: with the depth.
@@ -54,7 +51,6 @@ def require_stiff_corner(case: Case, *, width: float, depth: float, stored: floa
     springs, and not the container, would then decide the motion.
 
     Args:
-        case: of the start.
         width: of the container [m].
         depth: by which the corner sinks in at the start [m].
         stored: energy of the springs at the start over the energy to overturn the container [-].
@@ -76,8 +72,7 @@ def require_stiff_corner(case: Case, *, width: float, depth: float, stored: floa
 def require_stiff_container(case: Case, compression: float) -> None:
     """Refuse a container whose weight alone compresses it beyond what its material can carry.
 
-    Args:
-        case: of the container; compression: largest compressive strain under its weight [-].
+    `compression` is the largest compressive strain under the weight [-].
 
     Raises:
         CaseError: with the compression.

@@ -134,11 +134,8 @@ def _factor(run: CaseRun) -> float:
     centre = floor + run.history["centre_x_m"]
     period = 2.0 * math.pi / run.model.case.angular_frequency
     end = float(time[-1])
-    found = []
-    for cycle in range(3):
-        window = (time <= end - cycle * period) & (time >= end - (cycle + 1) * period)
-        found.append(float(np.ptp(centre[window]) / np.ptp(floor[window])))
-    return max(found)
+    cycles = [(time <= end - n * period) & (time >= end - (n + 1) * period) for n in range(3)]
+    return max(float(np.ptp(centre[cycle]) / np.ptp(floor[cycle])) for cycle in cycles)
 
 
 def _loads(run: CaseRun) -> tuple[float, float, float]:

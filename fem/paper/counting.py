@@ -1,7 +1,6 @@
 """The paper's central claim, counted: static rule, the paper's own criteria and the run, cell by cell."""
 
 from collections import Counter
-from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -19,7 +18,6 @@ from fem.paper.maps import (
     PEAKS,
     SHAPE_FREQUENCIES,
     SLENDERNESS,
-    MapCell,
     OutcomeMap,
     pairs,
     shape_maps,
@@ -116,7 +114,17 @@ def paper_criteria(experiments: Experiments) -> Evidence:
     yield from _witnesses(stack, paper_rule)
     yield from (_table(one) for one in maps)
     yield _mode_table(modes)
-    yield _stack_figure(stack)
+    smooth = np.linspace(min(FREQUENCIES), max(FREQUENCIES), 100)
+    yield draw_map(
+        "criteria-map",
+        "Outcome of the rigid stack, mu 0.4/0.2, with the criteria; hatched: unsure cells.",
+        stack,
+        [
+            MapCurve(x=smooth, y=HALF_WIDTH * smooth**2, label="A = a/2"),
+            MapCurve(x=smooth, y=np.full_like(smooth, UPLIFT), label="M_T = M_R"),
+            MapCurve(x=smooth, y=np.full_like(smooth, 0.4 * GRAVITY), label="stiction"),
+        ],
+    )
 
 
 @claim(
@@ -218,28 +226,12 @@ def _mode_table(modes: Counter[tuple[str, str]]) -> ClaimTable:
 def _witnesses(one: OutcomeMap, criterion: Criterion) -> list[PaperCase]:
     """One sure cell of either error, to be run again."""
 
-    def wrong(*, said: bool) -> Sequence[MapCell]:
-        return [
-            cell
-            for cell in one.cells
-            if cell.sure and criterion(cell.motion) is said and cell.fell is not said
-        ]
-
-    return [cell.case for said in (True, False) for cell in wrong(said=said)[:1]]
-
-
-def _stack_figure(one: OutcomeMap) -> ClaimFigure:
-    smooth = np.linspace(min(FREQUENCIES), max(FREQUENCIES), 100)
-    return draw_map(
-        "criteria-map",
-        "Outcome of the rigid stack, mu 0.4/0.2, with the criteria; hatched: unsure cells.",
-        one,
-        [
-            MapCurve(x=smooth, y=HALF_WIDTH * smooth**2, label="A = a/2"),
-            MapCurve(x=smooth, y=np.full_like(smooth, UPLIFT), label="M_T = M_R"),
-            MapCurve(x=smooth, y=np.full_like(smooth, 0.4 * GRAVITY), label="stiction"),
-        ],
-    )
+    sure = [cell for cell in one.cells if cell.sure]
+    return [
+        cell.case
+        for said in (True, False)
+        for cell in [one for one in sure if criterion(one.motion) is said and one.fell is not said][:1]
+    ]
 
 
 def _shape_figure(one: OutcomeMap) -> ClaimFigure:

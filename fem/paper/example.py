@@ -40,18 +40,13 @@ def box_just_sticks(experiments: Experiments) -> Evidence:
         box.but(G_TEN, what="box, stated motion, g = 10"),
         box.but(G_TEN, peak=3.98, frequency=ANGULAR_FREQUENCY, what="box, 3.98 m/s², g = 10"),
     ]
+    plateau = {
+        "motion.peak_acceleration_m_s2": PLATEAU_PEAK,
+        "motion.angular_frequency_rad_s": ANGULAR_FREQUENCY,
+    }
     at_plateau = [
-        box.but(
-            G_TEN,
-            peak=PLATEAU_PEAK,
-            frequency=ANGULAR_FREQUENCY,
-            what="box, plateau value, g = 10 (utilisation 1.000)",
-        ),
-        box.but(
-            peak=PLATEAU_PEAK,
-            frequency=ANGULAR_FREQUENCY,
-            what="box, plateau value, g = 9.81 (utilisation 1.019)",
-        ),
+        box.but(G_TEN, plateau, what="box, plateau value, g = 10 (utilisation 1.000)"),
+        box.but(plateau, what="box, plateau value, g = 9.81 (utilisation 1.019)"),
     ]
     cases = [*below, *at_plateau]
     rows = experiments.rows(cases)

@@ -203,7 +203,7 @@ class Experiments:
             model = self.model(wanted)
             recorder = Recorder(model)
             ending = simulate(model, recorder, stop=self._stop)
-            self._require_going(ending.status)
+            self._require_going()
             self._runs[wanted.key] = CaseRun(model=model, history=recorder.history(), status=ending.status)
         run = self._runs[wanted.key]
         if run.status == "failed":
@@ -266,6 +266,6 @@ class Experiments:
         ]
         return VariantBand(quantity=quantity, unit=unit, criterion=criterion, members=members)
 
-    def _require_going(self, status: str = "") -> None:
-        if status == "interrupted" or (not status and self._stop()):
+    def _require_going(self) -> None:
+        if self._stop():
             raise InterruptedStudyError("interrupted; the claims checked so far are kept")

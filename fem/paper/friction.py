@@ -7,7 +7,7 @@ import numpy as np
 from contact.reference.floor_acceleration import sine_floor
 from contact.reference.sliding import RigidSlider, simulate_sliding
 from fem.paper.cases import ANGULAR_FREQUENCY, BOX, FOR_MAPS, GRAVITY, PLATEAU, RIGID, STACK
-from fem.paper.claims import Evidence, at_most, claim, equal, table
+from fem.paper.claims import Comparison, Evidence, at_most, claim, equal, table
 from fem.paper.experiments import Experiments, stands
 from fem.paper.figures import PlottedLine, draw_curves
 from fem.paper.maps import pairs, stack_map
@@ -128,7 +128,7 @@ def friction_ratio(experiments: Experiments) -> Evidence:
         differ = [pair for pair in both if pair[0].fell != pair[1].fell]
         sure = [pair for pair in differ if pair[0].sure and pair[1].sure]
         what = f"sure cells that stand with 50 % and fall with {names[ratio]}, or the reverse"
-        yield at_most(what, len(sure), 0.0)
+        yield Comparison(what=what, measured=len(sure), relation="<=", limit=0.0)
         rows.append((names[ratio], len(both), len(differ), len(sure)))
         yield from [one.case for one, _ in sure[:1]]
     boxes = [

@@ -1,7 +1,6 @@
 """Every claim of the paper that is checked, by topic, and those that are not, with the reason."""
 
 from dataclasses import dataclass
-from types import ModuleType
 
 from fem.paper import (
     amplification,
@@ -27,22 +26,20 @@ class Untried:
     reason: str
 
 
-def _claims_in(module: ModuleType) -> tuple[Claim, ...]:
-    """The claims of a module, in the order of its file."""
-    return tuple(one for one in vars(module).values() if isinstance(one, Claim))
-
-
 TOPICS = {
-    "The central claim, counted": _claims_in(counting),
-    "The example of section 7": _claims_in(example),
-    "The printed numbers": _claims_in(numbers),
-    "Limit conditions": _claims_in(quasi_static),
-    "Sliding": _claims_in(sliding),
-    "Friction": _claims_in(friction),
-    "Rocking": _claims_in(rocking),
-    "Response": _claims_in(amplification),
-    "Overturning": _claims_in(overturning),
-    "The body": _claims_in(shape),
+    title: tuple(one for one in vars(module).values() if isinstance(one, Claim))  # in the order of its file
+    for title, module in {
+        "The central claim, counted": counting,
+        "The example of section 7": example,
+        "The printed numbers": numbers,
+        "Limit conditions": quasi_static,
+        "Sliding": sliding,
+        "Friction": friction,
+        "Rocking": rocking,
+        "Response": amplification,
+        "Overturning": overturning,
+        "The body": shape,
+    }.items()
 }
 
 UNTRIED = (

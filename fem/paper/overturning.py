@@ -20,10 +20,10 @@ from fem.paper.cases import (
     STACK,
     UPLIFT,
 )
-from fem.paper.claims import ClaimFigure, Evidence, at_least, at_most, claim, table
+from fem.paper.claims import Evidence, at_least, at_most, claim, table
 from fem.paper.experiments import Experiments, capped_ratio, stands
 from fem.paper.figures import PlottedLine, draw_curves, draw_map
-from fem.paper.maps import FAST, FREQUENCIES, HOLDING, MapCell, OutcomeMap, stack_map
+from fem.paper.maps import FAST, FREQUENCIES, HOLDING, MapCell, stack_map
 
 #: of the stack; None: the paper's own
 FRICTIONS = {"mu 0.4/0.2": None, "mu 1.0": HOLDING}
@@ -200,28 +200,24 @@ def half_width_is_conservative(experiments: Experiments) -> Evidence:
         "friction | cells | overturn | .. and are sure | smallest A/(a/2) that overturns",
         rows,
     )
-    yield _map_figure(stack_map(experiments, HOLDING), block.frequency_parameter)
+    smooth = np.linspace(min(FREQUENCIES), max(FREQUENCIES), 100)
+    first_swing = [UPLIFT * sustained_sine_threshold_slender(w / block.frequency_parameter) for w in smooth]
+    yield draw_map(
+        "half-width-map",
+        "Outcome of the rigid stack that cannot slide; hatched: unsure cells.",
+        stack_map(experiments, HOLDING),
+        [
+            MapCurve(x=smooth, y=HALF_WIDTH * smooth**2, label="A = a/2"),
+            MapCurve(x=smooth, y=np.full_like(smooth, UPLIFT), label="static rule, g a/c"),
+            MapCurve(x=smooth, y=np.array(first_swing), label="first swing (slender)"),
+        ],
+    )
     yield experiments.band(
         witness.but(SHELL, duration=10.0),
         quantity=f"rotation ratio at A = {witness.values['motion.amplitude_m'] / HALF_WIDTH:.2f} a/2",
         value=capped_ratio,
         criterion="it stands, as A <= a/2 says",
         holds=stands,
-    )
-
-
-def _map_figure(one: OutcomeMap, frequency_parameter: float) -> ClaimFigure:
-    smooth = np.linspace(min(FREQUENCIES), max(FREQUENCIES), 100)
-    first = [UPLIFT * sustained_sine_threshold_slender(w / frequency_parameter) for w in smooth]
-    return draw_map(
-        "half-width-map",
-        "Outcome of the rigid stack that cannot slide; hatched: unsure cells.",
-        one,
-        [
-            MapCurve(x=smooth, y=HALF_WIDTH * smooth**2, label="A = a/2"),
-            MapCurve(x=smooth, y=np.full_like(smooth, UPLIFT), label="static rule, g a/c"),
-            MapCurve(x=smooth, y=np.array(first), label="first swing (slender)"),
-        ],
     )
 
 

@@ -270,7 +270,6 @@ def _onset(
     what: str, seen: list[bool], shares: tuple[float, ...] = AROUND, *, inside: bool = True
 ) -> Comparison:
     """Where a scan first sees something, if it sees it from there on; else nan."""
-    first = seen.index(True) if True in seen else None
-    clean = first is not None and all(seen[first:])
-    measured = 0.5 * (shares[first - 1] + shares[first]) if clean and first else math.nan
+    first = seen.index(True) if True in seen else 0
+    measured = 0.5 * (shares[first - 1] + shares[first]) if first and all(seen[first:]) else math.nan
     return equal(what, measured, 1.0, NEAR, inside=inside)

@@ -276,7 +276,7 @@ def _largest_kick(
     if any(row["status"] == "failed" for row in rows):
         return math.nan
     falls = [not stands(row) for row in rows]
-    if True not in falls or falls[0] or not all(falls[falls.index(True) :]):
+    first = falls.index(True) if True in falls else 0
+    if first == 0 or not all(falls[first:]):
         return math.nan
-    first = falls.index(True)
     return 0.5 * (factors[first - 1] + factors[first])

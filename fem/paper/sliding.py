@@ -122,7 +122,8 @@ def slipping_stabilises(experiments: Experiments) -> Evidence:
         name = f"mu {static:g}/{kinetic:g}"
         share = len(more) / len(slid) if slid else np.nan
         turning = f"{name}: share of slipping cells that turn more than without slipping"
-        yield at_most(f"{name}: sure cells that fall only because they slip", len(sure), 0.0, inside=inside)
+        falls = f"{name}: sure cells that fall only because they slip"
+        yield Comparison(what=falls, measured=len(sure), relation="<=", limit=0.0, inside=inside)
         yield at_most(turning, share, 0.0, inside=inside)
         lines.append((name, len(slid), len(saved), len(lost), len(sure), len(more)))
         worse += [other.case for _, other in (sure or more)[:2]]

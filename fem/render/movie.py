@@ -4,9 +4,9 @@ Of frames closer in time than a browser can show, only every second, third, .. o
 """
 
 from collections.abc import Callable, Iterator
+from itertools import chain, islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import numpy as np
 from PIL import Image
@@ -49,7 +49,7 @@ def write_movie(
     try:
         with TemporaryDirectory() as folder:
             movie = Path(folder) / target.name
-            write(movie, _rendered(run, scene, chosen, progress), len(chosen), interval, scene.view.size)
+            write(movie, _rendered(run, scene, chosen, progress), interval)
             target.parent.mkdir(parents=True, exist_ok=True)
             write_atomically(target, movie.read_bytes())
     finally:
@@ -84,16 +84,12 @@ def _rendered(
     progress(len(chosen), len(chosen))
 
 
-def _write_gif(path: Path, images: Iterator[Image.Image], count: int, interval: float, size: Any) -> None:
+def _write_gif(path: Path, images: Iterator[Image.Image], interval: float) -> None:
     """One palette for all frames, so that parts that do not move are stored once."""
-    first = [next(images) for _ in range(min(PALETTE_FRAMES, count))]
-    palette = _side_by_side(first).quantize(256, method=Image.Quantize.MEDIANCUT)
-
-    def reduced() -> Iterator[Image.Image]:
-        for image in (*first, *images):
-            yield image.quantize(palette=palette, dither=Image.Dither.NONE)
-
-    frames = reduced()
+    first = list(islice(images, PALETTE_FRAMES))
+    side_by_side = Image.fromarray(np.concatenate([np.asarray(image) for image in first], axis=1))
+    palette = side_by_side.quantize(256, method=Image.Quantize.MEDIANCUT)
+    frames = (image.quantize(palette=palette, dither=Image.Dither.NONE) for image in chain(first, images))
     next(frames).save(
         path,
         format="GIF",
@@ -105,18 +101,13 @@ def _write_gif(path: Path, images: Iterator[Image.Image], count: int, interval: 
     )
 
 
-def _write_mp4(
-    path: Path, images: Iterator[Image.Image], count: int, interval: float, size: tuple[int, int]
-) -> None:
+def _write_mp4(path: Path, images: Iterator[Image.Image], interval: float) -> None:
     """H.264, which every player and slide program reads."""
-    writer = imageio_ffmpeg.write_frames(str(path), size, fps=1.0 / interval, macro_block_size=2)
+    first = next(images)
+    writer = imageio_ffmpeg.write_frames(str(path), first.size, fps=1.0 / interval, macro_block_size=2)
     writer.send(None)
     try:
-        for image in images:
+        for image in chain([first], images):
             writer.send(np.asarray(image).tobytes())
     finally:
         writer.close()
-
-
-def _side_by_side(images: list[Image.Image]) -> Image.Image:
-    return Image.fromarray(np.concatenate([np.asarray(image) for image in images], axis=1))

@@ -9,7 +9,6 @@ rotation > 0 toward +x; forces on the container.
 
 import base64
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -29,6 +28,7 @@ FIELD_BYTES = 2_400_000  #: of all frames, before base64 makes four thirds of it
 LEAST_FRAMES = 40  #: where cells would leave fewer frames, the outline alone is sent
 MOST_SAMPLES = 8000  #: of the history
 WIDE_JOURNEY = 4.0  #: a floor that travels more widths is followed by the view
+COLOURS = 64  #: of the stress scale
 SHOWN_ELASTIC = 0.03  #: elastic displacement as first shown, over the height
 SHOWN_ROUNDING = 0.002  #: rounding of the files that may show, over the height
 TYPICAL = 90  #: per cent of the frames are shown with less than that: impacts must not set the scale
@@ -52,7 +52,7 @@ SINGLE_PRECISION = 2.0**-24
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class AnimationFrame:
-    """One frame taken apart, n nodes."""
+    """One frame, n nodes."""
 
     time: float  #: [s]
     centre: FloatArray  #: (2,) mass centre [m]
@@ -105,7 +105,7 @@ def animation_of(model: Model, fields: Fields | None) -> Animation:
     """
     elements = model.container.elements
     contact = model.container.nodes[: model.container.support.index.size]
-    count = 0 if fields is None else len(fields)
+    count = len(fields) if fields else 0
     corners = np.asarray(elements.cells)[:, :4]
     edges = outline(corners, np.asarray(elements.region))
     whole = np.unique(np.concatenate([corners.ravel(), contact]))
@@ -116,14 +116,15 @@ def animation_of(model: Model, fields: Fields | None) -> Animation:
     place = np.full(len(elements.nodes), -1)
     place[drawn] = np.arange(drawn.size)
     centroid = np.asarray(model.container.mesh.centroid)
-    frames = [] if fields is None else list(_frames(model, fields, range(0, count, stride), drawn, contact))
     return Animation(
         centroid=centroid,
         points=elements.nodes[drawn] - centroid,
         quads=place[quads],
         edges=place[edges],
         contact=place[contact],
-        frames=frames,
+        frames=[_frame(model, fields.frame(k), drawn, contact) for k in range(0, count, stride)]
+        if fields
+        else [],
     )
 
 
@@ -153,45 +154,48 @@ def rigid_and_elastic(elements: FiniteElements, frame: Frame) -> tuple[FloatArra
     position = elements.nodes + np.asarray(frame.displacement, dtype=float)
     centre = share @ position
     turned, weighted = position - centre, mass @ arm
-    rotation = math.atan2(
-        float(np.sum(turned[:, 0] * weighted[:, 1] - turned[:, 1] * weighted[:, 0])),
-        float(np.sum(turned * weighted)),
-    )
+    moment = np.sum(turned[:, 0] * weighted[:, 1] - turned[:, 1] * weighted[:, 0])
+    rotation = math.atan2(moment, np.sum(turned * weighted))
     cosine, sine = math.cos(rotation), math.sin(rotation)
     back = turned @ np.array([[cosine, sine], [-sine, cosine]])
     return centre, rotation, back - arm
 
 
 def player_data(shown: Animation, history: History, *, model: Model) -> dict[str, Any]:
-    """What the script `player.js` reads."""
+    """What the script `player.js` reads, of a run with samples."""
     stride = max(1, math.ceil(len(history) / MOST_SAMPLES))
     columns = {name: history[column][::stride] for name, column in COLUMNS.items()}
     modes = sorted(set(history.modes))
-    mesh = model.container.mesh
-    scale = shown.stress_scale
-    drift = float(np.ptp(columns["base"])) if len(history) else 0.0
+    mesh, angle, scale = model.container.mesh, model.static.slenderness_angle, shown.stress_scale
+    wide = len(shown.points) >= 65536
+    index = "<u4" if wide else "<u2"
+    # The page opens at the largest rotation that is not yet a fall: that is what one looks for.
+    rotation = np.abs(history["rotation_rad"])
+    opening = int(np.argmax(np.where(rotation < angle, rotation, -1.0)))
     return {
         "step": model.case.output.history_s * stride,
         "samples": len(columns["x"]),
         "columns": {name: packed_floats(values) for name, values in columns.items()},
         "modes": modes,
         "mode": packed(np.array([modes.index(mode) for mode in history.modes[::stride]]), "u1"),
-        "angle": model.static.slenderness_angle,
+        "angle": angle,
         "weight": model.static.weight,
         "width": mesh.width,
         "height": mesh.height,
         "centroid": shown.centroid.tolist(),
-        "follow": drift > WIDE_JOURNEY * mesh.width,
+        "follow": float(np.ptp(columns["base"])) > WIDE_JOURNEY * mesh.width,
         "points": packed_floats(shown.points.ravel()),
-        "quads": packed(shown.quads.ravel(), "<u2" if len(shown.points) < 65536 else "<u4"),
-        "edges": packed(shown.edges.ravel(), "<u2" if len(shown.points) < 65536 else "<u4"),
-        "wide": len(shown.points) >= 65536,
+        "quads": packed(shown.quads.ravel(), index),
+        "edges": packed(shown.edges.ravel(), index),
+        "wide": wide,
         "contact": shown.contact.tolist(),
         "times": [frame.time for frame in shown.frames],
         "elastic": packed_floats(np.array([frame.elastic for frame in shown.frames]).ravel()),
         "stress": packed(_on_scale(shown.stresses, scale), "u1"),
         "stress_scale": scale,
         "normal": packed_floats(np.array([frame.normal_force for frame in shown.frames]).ravel()),
+        "colours": colour_scale("YlGnBu", COLOURS),
+        "first": float(history["time_s"][opening]),
     }
 
 
@@ -235,25 +239,20 @@ def packed(values: NDArray[Any], kind: str) -> str:
     return base64.b64encode(np.asarray(values).astype(kind).tobytes()).decode()
 
 
-def _frames(
-    model: Model, fields: Fields, indices: range, drawn: IntArray, contact: IntArray
-) -> Iterator[AnimationFrame]:
-    elements = model.container.elements
+def _frame(model: Model, frame: Frame, drawn: IntArray, contact: IntArray) -> AnimationFrame:
     area = model.run.contact.normal_stiffness[: contact.size] / model.penalty
-    for index in indices:
-        frame = fields.frame(index)
-        centre, rotation, elastic = rigid_and_elastic(elements, frame)
-        if model.case.solver.model == "rigid":  # what is left is the rounding of the files
-            elastic = np.zeros_like(elastic)
-        yield AnimationFrame(
-            time=frame.time,
-            centre=centre,
-            rotation=rotation,
-            floor=frame.floor_displacement,
-            elastic=elastic[drawn],
-            von_mises=None if frame.von_mises is None else np.asarray(frame.von_mises, dtype=float)[drawn],
-            normal_force=np.asarray(frame.contact_pressure, dtype=float)[contact] * area,
-        )
+    centre, rotation, elastic = rigid_and_elastic(model.container.elements, frame)
+    if model.case.solver.model == "rigid":  # what is left is the rounding of the files
+        elastic = np.zeros_like(elastic)
+    return AnimationFrame(
+        time=frame.time,
+        centre=centre,
+        rotation=rotation,
+        floor=frame.floor_displacement,
+        elastic=elastic[drawn],
+        von_mises=None if frame.von_mises is None else np.asarray(frame.von_mises, dtype=float)[drawn],
+        normal_force=np.asarray(frame.contact_pressure, dtype=float)[contact] * area,
+    )
 
 
 def _on_scale(stresses: list[FloatArray], scale: float) -> NDArray[np.uint8]:

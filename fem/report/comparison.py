@@ -38,28 +38,24 @@ def compared_rows(static: StaticChecks, verdict: Verdict, case: Case) -> list[Co
         (static.code, f"code, q = {short(q)}"),
         (static.code_q1, "code, q = 1"),
     ]
-    rows = []
-    for action, name in actions if q != 1.0 else actions[:2]:
+    return [
+        Compared(
+            check=check,
+            action=name,
+            demand=quantity(rule.demand, f"k{rule.unit}", 1e-3),
+            capacity=quantity(rule.capacity, f"k{rule.unit}", 1e-3),
+            utilisation=number(rule.utilisation),
+            exceeded=not rule.passed,
+            clause=rule.clause.removeprefix(EDITION).removesuffix(f", {check}"),
+            rule=rule_says(check, rule.utilisation if math.isfinite(rule.utilisation) else None),
+            run=typeset(found(verdict)) if action is static.own_motion and verdict.outcome else "",
+        )
+        for action, name in (actions if q != 1.0 else actions[:2])
         for check, rule, found in (
             ("sliding", action.sliding, run_slid),
             ("overturning", action.overturning, run_tilted),
-        ):
-            known = math.isfinite(rule.utilisation)
-            unit = f"k{rule.unit}"
-            rows.append(
-                Compared(
-                    check=check,
-                    action=name,
-                    demand=quantity(rule.demand, unit, 1e-3),
-                    capacity=quantity(rule.capacity, unit, 1e-3),
-                    utilisation=number(rule.utilisation),
-                    exceeded=not rule.passed,
-                    clause=rule.clause.removeprefix(EDITION).removesuffix(f", {check}"),
-                    rule=rule_says(check, rule.utilisation if known else None),
-                    run=typeset(found(verdict)) if action is static.own_motion and verdict.outcome else "",
-                )
-            )
-    return rows
+        )
+    ]
 
 
 def asked_rows(case: Case, history: History | None = None) -> list[tuple[str, str]]:
@@ -69,23 +65,28 @@ def asked_rows(case: Case, history: History | None = None) -> list[tuple[str, st
     wall = f"shell, walls {short(box.wall_m, 1e3)} mm" if box.section == "shell" else "solid block"
     size = " × ".join(short(length) for length in (box.width_m, box.depth_m, box.height_m))
     weight = f"{short(case.weight / box.boxes, 1e-3, 6)} kN"
-    rows = [
+    supports = {
+        "corners": "two bottom corners",
+        "feet": f"two feet, {short(case.support.foot_m, 1e3)} mm long",
+        "flat": "flat base",
+    }
+    models = {
+        "full": "full: every node of the mesh, finite rotation",
+        "reduced": f"reduced: turning frame and {case.solver.elastic_modes} elastic modes",
+        "rigid": "rigid: three coordinates",
+    }
+    mu = Markup("μ<sub>s</sub> = {}, μ<sub>k</sub> = {}")
+    return [
         ("container", f"{boxes}{size} m (width × depth × height), {weight} with fill"),
         ("section", f"{wall}, E = {short(box.youngs_modulus_Pa, 1e-9)} GPa, ν = {short(box.poisson_ratio)}"),
-        ("support", _support(case)),
-        (
-            "friction",
-            Markup("μ<sub>s</sub> = {}, μ<sub>k</sub> = {}").format(
-                short(contact.mu_static), short(contact.mu_kinetic)
-            ),
-        ),
+        ("support", supports[case.support.kind]),
+        ("friction", mu.format(short(contact.mu_static), short(contact.mu_kinetic))),
         ("floor", floor_in_words(case)),
         *_floor_peaks(case, history),
         ("start", _start(case)),
-        ("model", _model(case)),
+        ("model", models[case.solver.model]),
         ("time", f"{short(case.solver.duration_s)} s, g = {short(case.gravity_m_s2)} m/s²"),
     ]
-    return rows
 
 
 def assumptions(case: Case, result: RunResult | None = None) -> list[str]:
@@ -177,15 +178,6 @@ def _floor_peaks(case: Case, history: History | None) -> list[tuple[str, str]]:
     return [("its peaks", words)]
 
 
-def _support(case: Case) -> str:
-    match case.support.kind:
-        case "corners":
-            return "two bottom corners"
-        case "feet":
-            return f"two feet, {short(case.support.foot_m, 1e3)} mm long"
-    return "flat base"
-
-
 def _start(case: Case) -> str:
     initial = case.initial
     words = []
@@ -201,13 +193,3 @@ def _start(case: Case) -> str:
     if initial.velocity_m_s:
         words.append(f"sliding at {quantity(initial.velocity_m_s, 'm/s')}")
     return ", ".join(words) or "at rest"
-
-
-def _model(case: Case) -> str:
-    solver = case.solver
-    words = {
-        "full": "full: every node of the mesh, finite rotation",
-        "reduced": f"reduced: turning frame and {solver.elastic_modes} elastic modes",
-        "rigid": "rigid: three coordinates",
-    }
-    return words[solver.model]

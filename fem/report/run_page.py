@@ -1,17 +1,9 @@
-"""The report of a run: one page from its folder, verdict first, with everything needed to check it.
-
-The run is not computed again. The page adds what a checker asks next: the static calculation with its numbers, the
-outcome under other assumptions, the elastic modes, the comparison with the rigid block, the motion itself.
-"""
+"""The report of a run: one page from its folder, verdict first, with everything needed to check it."""
 
 import datetime as dt
 from collections.abc import Callable
 from contextlib import nullcontext
 from importlib import metadata
-from typing import Any
-
-import numpy as np
-from markupsafe import Markup
 
 from contact.reference.event_driven import EventError
 from fem.assessment.rigid_check import check_against_rigid_block
@@ -24,12 +16,11 @@ from fem.assessment.summary import (
     result_rows,
 )
 from fem.figures.cache import drawings_of
-from fem.figures.style import Drawing
 from fem.html.page import Signature, render_page, svg_element
 from fem.html.units import millimetres, number, quantity, rotation_ratio, short, turned, typeset
 from fem.model.model import Model, build_model
 from fem.report.animation import (
-    Animation,
+    COLOURS,
     animation_of,
     colour_scale,
     exaggeration,
@@ -49,7 +40,6 @@ from fem.results.reader import OpenedRun
 from fem.results.run_result import RigidCheckResult, Verdict
 from fem.solid.modes import FEW, elastic_mode_table, elastic_modes
 
-COLOURS = 64  #: of the stress scale in the animation
 #: figures beside the animation, in the order of reading; the others have their own sections
 MOTION = ("rotation", "slip", "base_motion", "uplift", "forces", "phase_portrait", "energy")
 
@@ -107,7 +97,7 @@ def _page(
     shown = animation_of(model, _fields(run, message))
     drawn = drawings_of(run, model.container)
     motion = [drawn[name] for name in MOTION if name in drawn]
-    played = _player_data(shown, history, model) if len(history) > 1 else {}
+    played = player_data(shown, history, model=model) if len(history) > 1 else {}
     computed = dt.datetime.fromtimestamp(run.place.result.stat().st_mtime)
     return render_page(
         "run.html.j2",
@@ -145,7 +135,7 @@ def _page(
         ),
         motion=[one for one in motion if one.name != "base_motion" or case.motion.kind != "none"],
         drawn=drawn,
-        svg_of=_svg_of,
+        svg_of=lambda drawing: svg_element(drawing.svg, label=drawing.title, prefix=drawing.name),
         check=rigid_check(run, model, history),
         modes=elastic_mode_table(elastic_modes(model.container.elements, FEW)),  # also of a rigid run
         resolved=run.place.resolved.read_text(encoding="utf-8"),
@@ -174,19 +164,6 @@ def rigid_check(run: OpenedRun, model: Model, history: History) -> RigidCheckRes
         return check_against_rigid_block(model, history, result.verdict).result
     except (ValueError, EventError) as error:
         return RigidCheckResult(reasons=(str(error),))
-
-
-def _player_data(shown: Animation, history: History, model: Model) -> dict[str, Any]:
-    data = player_data(shown, history, model=model)
-    rotation = np.abs(history["rotation_rad"])
-    # The page opens at the largest rotation that is not yet a fall: that is what one looks for.
-    inside = np.where(rotation < data["angle"], rotation, -1.0)
-    first = float(history["time_s"][int(np.argmax(inside))])
-    return data | {"colours": colour_scale("YlGnBu", COLOURS), "first": first}
-
-
-def _svg_of(drawing: Drawing) -> Markup:
-    return svg_element(drawing.svg, label=drawing.title, prefix=drawing.name)
 
 
 def _history(run: OpenedRun, message: Callable[[str], None]) -> History:

@@ -1,16 +1,17 @@
 """The static calculation of a report: every line a formula, its numbers, the result, the clause.
 
-It can be repeated with a pocket calculator: the numbers are those printed, and give the printed result to its last
-figure but one. The formulas are those of `fem.model.static_checks`. Weights in kN, moments in kNm, lengths in m.
+With a pocket calculator, the numbers printed give the printed result to its last figure but one. The formulas are those
+of `fem.model.static_checks`. Weights in kN, moments in kNm, lengths in m.
 """
 
 import math
 import re
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from markupsafe import Markup
 
+from fem.assessment.summary import rule_says
 from fem.case.case import Case
 from fem.html.units import number, short
 from fem.model.static_checks import (
@@ -38,10 +39,8 @@ class SheetRow(NamedTuple):
     source: str = ""
 
 
-WEIGHT = (
-    SheetRow("weight with fill", "G = n G_box", "{n:s4} × {G_box:s6}", "G", "kN", "n = {boxes}"),
-    SheetRow("mass", "m = G/g", "{G} / {g:s4}", "m", "t"),
-)
+WEIGHT = SheetRow("weight with fill", "G = n G_box", "{n:s4} × {G_box:s6}", "G", "kN")
+MASS = SheetRow("mass", "m = G/g", "{G} / {g:s4}", "m", "t")
 HEIGHT = SheetRow(
     *("height of the mass centre", "z_c = (n − 1) c/2 + z_box", "({n:s4} − 1) × {c:s4} / 2 + {z_box:s4}"),
     *("z_c", "m", "c, height of a box; the last, of the mass centre in it"),
@@ -74,7 +73,7 @@ PERIOD = SheetRow(
     f"{PAPER}, Eq. (3); limit min(4 <i>T</i><sub>C</sub>, {LIMIT_PERIOD:.1f} s) with <i>T</i><sub>C</sub> = "
     f"{{T_C:s4}} s, {CLAUSE_APPLICABLE} a), Eq. (4.4)",
 )
-MASS = (
+ROCKING = (
     SheetRow(
         "floor acceleration of uplift",
         "a_up = g tan α",
@@ -105,14 +104,10 @@ class SheetLine:
     formula: Markup
     numbers: str
     value: float
+    result: str  #: the value as printed
     unit: str
     source: Markup
     verdict: str  #: what the static rule says of a utilisation
-
-    @property
-    def result(self) -> str:
-        """The value as printed."""
-        return number(self.value)
 
 
 class _Printed(float):
@@ -123,16 +118,18 @@ class _Printed(float):
         return short(self, figures=figures) if spec.startswith("s") else number(self, figures=figures)
 
 
-Numbers = dict[str, _Printed | str]
+Numbers = dict[str, _Printed]
 
 
 def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[SheetLine]]]:
     """The calculation in groups: title and lines; the case is resolved."""
     numbers = _numbers(static, case)
+    boxes = "n = {n:s4} boxes, bolted" if case.container.boxes > 1 else "n = 1 box"
+    weight = (WEIGHT._replace(source=boxes), MASS)
     height = [HEIGHT] if case.container.mesh_file is None else []
     own = numbers | _action(static.own_motion)
     swings = case.motion.kind == "harmonic" and math.isclose(
-        _value(own, "a_max"), case.nominal_peak_acceleration or 0.0, rel_tol=1e-6
+        own["a_max"], case.nominal_peak_acceleration or 0.0, rel_tol=1e-6
     )
     shear = SHEAR._replace(source="" if swings else "largest |acceleration| of the floor within the run")
     factors = [(case.static.behaviour_factor, static.code), (1.0, static.code_q1)]
@@ -143,7 +140,7 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
     applies = "applies" if static.applicability.passed else "does not apply"
     credible = "credible" if static.housner_credible else "not credible, below 0.5"
     return [
-        ("Container", [_line(row, numbers) for row in (*WEIGHT, *height, ANGLE)]),
+        ("Container", [_line(row, numbers) for row in (*weight, *height, ANGLE)]),
         (
             "Static rule under the peak floor acceleration of this run",
             [
@@ -157,7 +154,7 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
         ),
         (
             "What follows from the mass alone",
-            [*(_line(row, numbers) for row in MASS), _line(RESTITUTION, numbers, credible)],
+            [*(_line(row, numbers) for row in ROCKING), _line(RESTITUTION, numbers, credible)],
         ),
     ]
 
@@ -166,13 +163,7 @@ def _numbers(static: StaticChecks, case: Case) -> Numbers:
     """The numbers of the calculation by their symbols."""
     box, rule = case.container, case.static
     weight, mass = static.weight / 1e3, static.weight / case.gravity_m_s2 / 1e3
-    found: dict[str, Any] = {
-        "n": box.boxes,
-        "G": weight,
-        "G_box": weight / box.boxes,
-        "g": case.gravity_m_s2,
-        "m": mass,
-    }
+    found = {"n": box.boxes, "G": weight, "G_box": weight / box.boxes, "g": case.gravity_m_s2, "m": mass}
     found |= {"a": box.width_m, "c": box.height_m, "z_box": box.centroid_m, "z_c": static.centroid}
     found |= {"α": math.degrees(static.slenderness_angle), "R": static.radius, "I": static.inertia / 1e3}
     found |= {"I_O": static.inertia / 1e3 + mass * static.radius**2, "p": static.frequency_parameter}
@@ -182,8 +173,7 @@ def _numbers(static: StaticChecks, case: Case) -> Numbers:
     found |= {"a_max": static.own_motion.sliding.demand / 1e3 / mass}
     if case.motion.kind == "harmonic":
         found |= {"A": case.amplitude, "Ω": case.angular_frequency}
-    boxes = f"{box.boxes} {'boxes, bolted' if box.boxes > 1 else 'box'}"
-    return {name: _Printed(value) for name, value in found.items() if value is not None} | {"boxes": boxes}
+    return {name: _Printed(value) for name, value in found.items() if value is not None}
 
 
 def _action(action: ActionCheck) -> Numbers:
@@ -200,20 +190,26 @@ def _action(action: ActionCheck) -> Numbers:
 
 def _utilisations(action: ActionCheck, numbers: Numbers, force: str) -> list[SheetLine]:
     """Sliding, where there is friction, and overturning; `force` is the symbol of the base shear."""
-    lines = []
-    if math.isfinite(action.sliding.utilisation):
-        row = SLIDING._replace(formula=SLIDING.formula.replace("F", force))
-        lines.append(_line(row, numbers, "holds" if action.sliding.passed else "slides"))
-    row = OVERTURNING._replace(formula=OVERTURNING.formula.replace("F", force))
-    return [*lines, _line(row, numbers, "stands" if action.overturning.passed else "overturns")]
+    return [
+        _line(
+            row._replace(formula=row.formula.replace("F", force)), numbers, rule_says(check, rule.utilisation)
+        )
+        for row, check, rule in (
+            (SLIDING, "sliding", action.sliding),
+            (OVERTURNING, "overturning", action.overturning),
+        )
+        if math.isfinite(rule.utilisation)
+    ]
 
 
 def _line(row: SheetRow, numbers: Numbers, verdict: str = "") -> SheetLine:
+    value = numbers[row.value]
     return SheetLine(
         name=row.name.format(**numbers),
         formula=Markup(SYMBOL.sub(_symbol, row.formula)),  # our own text, never a user's
         numbers=row.numbers.format(**numbers),
-        value=_value(numbers, row.value),
+        value=value,
+        result=number(value),
         unit=row.unit,
         source=Markup(row.source).format(**numbers),
         verdict=verdict,
@@ -223,9 +219,3 @@ def _line(row: SheetRow, numbers: Numbers, verdict: str = "") -> SheetLine:
 def _symbol(found: re.Match[str]) -> str:
     word, letter, index = found.groups()
     return word or f"<i>{letter}</i>" + (f"<sub>{index}</sub>" if index else "")
-
-
-def _value(numbers: Numbers, name: str) -> float:
-    value = numbers[name]
-    assert isinstance(value, _Printed)  # for the type checker
-    return float(value)

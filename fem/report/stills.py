@@ -47,7 +47,7 @@ def stills(
     top = 103.0 / span * max((float(points[:, 1].max()) for points in placed.values()), default=0.0)
     return [
         Still(
-            f"t = {frame.time:.3f} s, {chosen[k]}; rotation ratio {_signed_ratio(frame, angle)}",
+            f"t = {frame.time:.3f} s, {chosen[k]}; rotation ratio {_signed_ratio(frame.rotation, angle)}",
             _drawing(shown, frame, placed[k] * [100.0 / span, -100.0 / span], top),
         )
         for k, frame in frames.items()
@@ -77,10 +77,9 @@ def _instants(shown: Animation, history: History, verdict: Verdict) -> dict[int,
     return dict(sorted(chosen.items()))
 
 
-def _signed_ratio(frame: AnimationFrame, angle: float) -> str:
-    sign = "−" if frame.rotation < 0.0 else ""
-    ratio = ratio_in_words(rotation_ratio(frame.rotation, angle))
-    return ratio if ratio.startswith("<") else sign + ratio
+def _signed_ratio(rotation: float, angle: float) -> str:
+    ratio = ratio_in_words(rotation_ratio(rotation, angle))
+    return f"−{ratio}" if rotation < 0.0 and not ratio.startswith("<") else ratio
 
 
 def _placed(shown: Animation, frame: AnimationFrame, factor: float) -> FloatArray:

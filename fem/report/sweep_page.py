@@ -7,6 +7,7 @@ numbers go in single precision; the values of axes and derived keys, from which 
 import csv
 import datetime as dt
 import shlex
+from collections import Counter
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -108,13 +109,9 @@ def _axis_row(key: str, unit: str, values: tuple[object, ...], scale: str) -> tu
     return key, typeset(words), str(len(values))
 
 
-def _longest(table: SweepTable) -> tuple[int, int]:
-    """The two axes that are first shown: across and up; the second is -1 where there is one axis."""
-    order = sorted(range(len(table.axes)), key=lambda k: -len(table.axes[k].values))
-    if len(order) == 1:
-        return order[0], -1
-    across, up = sorted(order[:2])
-    return across, up
+def _longest(table: SweepTable) -> list[int]:
+    """The one or two axes that are first shown: across and up."""
+    return sorted(sorted(range(len(table.axes)), key=lambda k: -len(table.axes[k].values))[:2])
 
 
 def _thresholds(path: Path) -> tuple[list[str], list[list[str]]] | None:
@@ -200,18 +197,17 @@ def axis_label(key: str, unit: str) -> str:
 
 def counts(table: SweepTable) -> list[tuple[str, str, int, float]]:
     """Outcome, its colour, number of cells and their share, those that occur."""
-    words = np.asarray(table.outcome).astype(str)
-    rows = []
-    for name, label, colour, _ in OUTCOMES:
-        count = int(np.sum(words == name))
-        if count:
-            rows.append((label, colour, count, count / words.size))
-    return rows
+    found = Counter(map(str, table.outcome))
+    return [
+        (label, colour, found[name], found[name] / found.total())
+        for name, label, colour, _ in OUTCOMES
+        if found[name]
+    ]
 
 
-def failures(table: SweepTable, most: int = 20) -> list[tuple[int, str]]:
-    """Cells without an outcome and why, the first of them."""
-    failed = np.flatnonzero(np.asarray(table["status"]).astype(str) == "failed")[:most]
+def failures(table: SweepTable) -> list[tuple[int, str]]:
+    """The first 20 cells without an outcome, and why."""
+    failed = np.flatnonzero(np.asarray(table["status"]).astype(str) == "failed")[:20]
     return [(int(cell), str(table["reason"][cell])) for cell in failed]
 
 

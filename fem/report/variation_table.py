@@ -1,10 +1,7 @@
 """The table of variations: the outcome under changed assumptions, one run a line.
 
-The lines go through the engine of sweeps (`fem.batch.runner`). A case of the `full` model is varied with `reduced`,
-which takes seconds instead of hours, and the table says so. What the run itself and its band have found is not
-computed again. A report must be there in seconds: lines are computed beside the rest of the page, the more important
-first, as long as there is time; those left out are named, and `python -m fem report --all-variations` computes them.
-The rows are kept beside the run, so that a second report need not compute them.
+A case of the `full` model is varied with `reduced`, which takes seconds instead of hours. A report must be there in
+seconds: lines are computed beside the rest of the page, the more important first, as long as there is time.
 """
 
 import json
@@ -23,7 +20,7 @@ from fem.batch.runner import run_cases
 from fem.case.case import Case
 from fem.report.variations import Variation, by_importance, variations_of
 from fem.results.files import to_json, write_atomically
-from fem.results.run_result import BandMember, JsonBlock, RunResult, Verdict
+from fem.results.run_result import JsonBlock, RunResult
 from fem.run.band import NO_SAMPLES_S
 from fem.runtime.identity import versions
 
@@ -185,31 +182,18 @@ def _known_rows(case: Case, variations: Sequence[Variation], result: RunResult) 
     verdict = result.verdict
     if case.solver.model == "full" or verdict is None:
         return rows
-    rows[0] = _row(result.status, None, verdict)
-    own = {
-        "contact.normal_penalty_Pa_m": case.contact.normal_penalty_Pa_m,
-        "contact.damping_ratio": case.contact.damping_ratio,
-    }
+    rows[0] = VariationRow.from_json(verdict.to_json() | {"status": result.status})
+    penalty, damping = "contact.normal_penalty_Pa_m", "contact.damping_ratio"
+    own = {penalty: case.contact.normal_penalty_Pa_m, damping: case.contact.damping_ratio}
     for index, one in enumerate(variations[1:], start=1):
         if set(one.values) <= set(own):
-            wanted = list((own | dict(one.values)).values())
+            wanted = own | dict(one.values)
             for member in verdict.band.members if verdict.band is not None else ():
-                floor = (member.normal_penalty_Pa_m, member.damping_ratio)
-                if all(math.isclose(a, b, rel_tol=1e-9) for a, b in zip(floor, wanted, strict=True)):
-                    rows[index] = _row(member.status, member.error, member)
+                if member.damping_ratio == wanted[damping] and math.isclose(
+                    member.normal_penalty_Pa_m, wanted[penalty], rel_tol=1e-9
+                ):
+                    rows[index] = VariationRow.from_json(member.to_json() | {"reason": member.error})
     return rows
-
-
-def _row(status: str, reason: str | None, found: Verdict | BandMember) -> VariationRow:
-    return VariationRow(
-        status=status,
-        reason=reason,
-        outcome=found.outcome,
-        rotation_ratio=found.rotation_ratio,
-        max_slip_m=found.max_slip_m,
-        residual_slip_m=found.residual_slip_m,
-        max_uplift_m=found.max_uplift_m,
-    )
 
 
 def _computed(
@@ -223,18 +207,14 @@ def _computed(
             values = {**one.values, "output.history_s": NO_SAMPLES_S, "output.fields_s": 0.0}
             cases[index] = base.with_values(values)
         except ValueError as problem:  # beyond the limits of a case
-            rows[index] = VariationRow(status="failed", reason=_first_line(str(problem)))
+            rows[index] = VariationRow(status="failed", reason=str(problem).partition("\n")[0])
     found = run_cases(list(cases.values()), stop=stop, time_limit_s=time_limit_s)
     for index, row in zip(cases, found, strict=True):
         if row["status"] in ("completed", "overturned"):
             rows[index] = VariationRow.from_json(row | {"reason": None})
         elif row["status"] == "failed":
-            rows[index] = VariationRow(status="failed", reason=_first_line(str(row["reason"])))
+            rows[index] = VariationRow(status="failed", reason=str(row["reason"]).partition("\n")[0])
     return rows
-
-
-def _first_line(text: str) -> str:
-    return text.partition("\n")[0]
 
 
 def _kept(path: Path, mark: Mapping[str, Any]) -> tuple[list[VariationRow | None], float | None] | None:

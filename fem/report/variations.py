@@ -79,25 +79,19 @@ def variations_of(case: Case) -> Iterator[Variation]:
 
 def _strengths(case: Case) -> Iterator[Variation]:
     """The floor's motion made stronger and weaker: the factor at which it overturns is the margin."""
-    motion = case.motion
-    key = next(
-        (name for name in ("peak_acceleration_m_s2", "amplitude_m") if getattr(motion, name) is not None),
-        None,
-    )
-    key = "scale" if motion.kind == "table" else key
-    if motion.kind == "none" or key is None:
+    motion, peak = case.motion, case.nominal_peak_acceleration or 0.0
+    if motion.kind == "none":
         return
-    if key == "amplitude_m" and motion.angular_frequency_rad_s is None and motion.frequency_Hz is None:
-        return
-    given = getattr(motion, key)
+    if motion.kind == "table":
+        key, given = "scale", motion.scale
+    elif motion.peak_acceleration_m_s2 is not None:
+        key, given = "peak_acceleration_m_s2", motion.peak_acceleration_m_s2
+    else:
+        key, given = "amplitude_m", motion.amplitude
     for factor in STRENGTHS:
-        shown = ""
-        if motion.kind != "table":
-            shown = f", peak {quantity(factor * (case.nominal_peak_acceleration or 0.0), 'm/s²', figures=3)}"
+        shown = "" if key == "scale" else f", peak {quantity(factor * peak, 'm/s²', figures=3)}"
         yield Variation(
-            subject="strength",
-            change=f"× {factor:g}{shown}",
-            values={f"motion.{key}": factor * given},
+            subject="strength", change=f"× {factor:g}{shown}", values={f"motion.{key}": factor * given}
         )
 
 

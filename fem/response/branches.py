@@ -1,12 +1,8 @@
-"""What two sweeps over the same frequencies show: coexisting motions, jumps, drop-outs.
-
-Two motions at one frequency differ if one overturned and the other did not, if one is at rest and the other not, or if
-their largest rotations or slip strokes are further apart than they vary within their own windows.
-"""
+"""What two sweeps over the same frequencies show: coexisting motions, jumps, drop-outs."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import Any
 
 import numpy as np
@@ -64,17 +60,12 @@ def branches_of(records: Sequence[PointRecord]) -> dict[str, Any]:
 
 def coexistences(records: Sequence[PointRecord]) -> list[Coexistence]:
     """Ranges of frequencies at which up and down differ."""
-    up = {record.row.number: record for record in records if record.row.direction == "up"}
-    down = {record.row.number: record for record in records if record.row.direction == "down"}
-    runs: list[list[int]] = []
-    for number in sorted(up.keys() & down.keys()):
-        if not differ(up[number], down[number]):
-            continue
-        if runs and runs[-1][-1] == number - 1:
-            runs[-1].append(number)
-        else:
-            runs.append([number])
-    return [_coexistence([(up[k], down[k]) for k in run]) for run in runs]
+    up, down = (
+        {record.row.number: record for record in records if record.row.direction == direction}
+        for direction in ("up", "down")
+    )
+    pairs = [(up[number], down[number]) for number in sorted(up.keys() & down.keys())]
+    return [_coexistence(list(run)) for apart, run in groupby(pairs, lambda pair: differ(*pair)) if apart]
 
 
 def differ(one: PointRecord, other: PointRecord) -> bool:
@@ -125,28 +116,21 @@ def jumps(records: Sequence[PointRecord]) -> list[Jump]:
 
 def drop_outs(records: Sequence[PointRecord]) -> list[DropOut]:
     """Ranges of neighbouring frequencies, along each sweep, at which the container overturned."""
-    found: list[DropOut] = []
-    last: tuple[str, int] | None = None
-    for record in records:
-        row = record.row
-        here = (row.direction, row.number)
-        if row.status != "overturned":
-            continue
-        if found and last is not None and last[0] == here[0] and abs(last[1] - here[1]) == 1:
-            found[-1] = DropOut(
-                **asdict(found[-1]) | {"to_Hz": row.frequency_Hz, "frequencies": found[-1].frequencies + 1}
-            )
-        else:
+    found = []
+    for (direction, status), run in groupby(
+        records, lambda record: (record.row.direction, record.row.status)
+    ):
+        if status == "overturned":
+            rows = [record.row for record in run]
             found.append(
                 DropOut(
-                    direction=row.direction,
-                    from_Hz=row.frequency_Hz,
-                    to_Hz=row.frequency_Hz,
-                    frequencies=1,
-                    carried=row.began == "carried",
+                    direction=direction,
+                    from_Hz=rows[0].frequency_Hz,
+                    to_Hz=rows[-1].frequency_Hz,
+                    frequencies=len(rows),
+                    carried=rows[0].began == "carried",
                 )
             )
-        last = here
     return found
 
 

@@ -4,7 +4,7 @@ A container that overturned has no response; the next frequency then begins as t
 the drive stopped, on a copy of the motion.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from contact.stepping.observables import ROCK, ROCKING, SLIDE
 from fem.assessment.verdict import MODE_NAMES, SLIDING, rotation_ratio
 from fem.case.case import Case
-from fem.model.container import Container, discretise
+from fem.model.container import Container
 from fem.response.decay import Decay, follow_decay
 from fem.response.model import DrivenModel, begin_drive, carry_drive, driven_case
 from fem.response.orbit import Orbit, Progress, follow_periods, no_progress, step_until
@@ -32,8 +32,6 @@ class CurvePoint:
     number: int  #: of the frequency, from 0 for the lowest
     case: Case
     began: str  #: "carried" on from the frequency before, or as the "case" begins
-    status: str  #: completed | overturned | failed
-    reason: str | None  #: why it failed
     motion: str | None  #: rest | slide | rock | slide-rock | overturned, in the window observed
     long_time: LongTime | None  #: None where it overturned or failed
     periods: int  #: of the drive followed, until the end or the fall
@@ -59,7 +57,7 @@ class CurvePoint:
     @property
     def bounded(self) -> bool | None:
         """(a) of the paper's stability: it did not overturn, and amplitudes do not diverge; None where failed."""
-        if self.status == "failed":
+        if self.orbit.status == "failed":
             return None
         return self.long_time is not None and not amplitudes_diverge(self.amplitudes)
 
@@ -73,29 +71,22 @@ class CurvePoint:
 
 def sweep_points(
     request: ResponseRequest,
+    container: Container,
     *,
     skip: int = 0,
-    restore: Callable[[Case, Container], DrivenModel] | None = None,
+    before: DrivenModel | None = None,
     progress: Progress = no_progress,
 ) -> Iterator[tuple[CurvePoint, DrivenModel | None]]:
     """The points of a curve in the order in which they are swept, each with the motion that is carried on.
 
     Args:
         request: what is asked.
+        container: of its case.
         skip: points that are there already.
-        restore: the motion after the last of these, from its case and container; None: the next point begins as
-            the case does.
+        before: the motion after the last of these; None: the next point begins as the case does.
         progress: called within a point with the time since its beginning [s], the rotation [rad] and the mode.
-
-    Raises:
-        CaseError, MeshError: bad input.
     """
-    container = discretise(request.case)
-    plan = plan_of(request)
-    before: DrivenModel | None = None
-    if skip and restore is not None:
-        before = restore(case_at(request, plan[skip - 1][1]), container)
-    for direction, number in plan[skip:]:
+    for direction, number in plan_of(request)[skip:]:
         point, before = follow_point(
             request, container, before, direction=direction, number=number, progress=progress
         )
@@ -126,38 +117,50 @@ def follow_point(
     """One frequency, from the motion before; returns the point and the motion to carry on, None after a fall."""
     case = case_at(request, number)
     began = "case" if before is None else "carried"
-    if before is None:
-        lead, until = begin_drive(case, container)
-        status = step_until(lead, until) if until > 0.0 else "completed"
-        if status != "completed":
-            empty = Orbit(
-                status=status,
-                sections=np.zeros((0, 4)),
-                extremes=np.zeros((0, 6)),
-                portrait=np.zeros((0, 2)),
-                overturned_at=until,
-                reason="failed before the first section" if status == "failed" else None,
-            )
-            return _point(case, lead, direction, number, began, empty, None, 0), None
-        before = lead
-    driven = carry_drive(case, container, before)
-    driven, orbit = follow_periods(driven, request.settle, progress=progress)
-    periods = len(orbit.sections)
-    long_time = None
+    driven, orbit = settled(request, case, container, before, progress)
+    long_time, periods = None, len(orbit.sections)
     for _ in range(WINDOWS):
         if orbit.status != "completed":
             break
         driven, orbit = follow_periods(driven, request.observe, portrayed=PORTRAYED, progress=progress)
         periods += len(orbit.sections)
-        if orbit.status != "completed":
+        long_time = judge(request, case, driven, orbit) if orbit.status == "completed" else None
+        if long_time is not None and long_time.kind != "not settled":
             break
-        long_time = judge(request, case, driven, orbit)
-        if long_time.kind != "not settled":
-            break
-    if orbit.status != "completed":
-        return _point(case, driven, direction, number, began, orbit, None, periods), None
-    decay = follow_decay(case, container, driven)
-    return _point(case, driven, direction, number, began, orbit, long_time, periods, decay), driven
+    stands = orbit.status == "completed"
+    point = CurvePoint(
+        direction=direction,
+        number=number,
+        case=case,
+        began=began,
+        motion=None if orbit.status == "failed" else motion_of(driven, orbit),
+        long_time=long_time,
+        periods=periods,
+        orbit=orbit,
+        decay=follow_decay(case, container, driven) if stands else None,
+        slenderness_angle=driven.run.control.slenderness_angle,
+    )
+    return point, driven if stands else None
+
+
+def settled(
+    request: ResponseRequest,
+    case: Case,
+    container: Container,
+    before: DrivenModel | None,
+    progress: Progress,
+) -> tuple[DrivenModel, Orbit]:
+    """The model after the periods that are left out, and these; none where it fell before the first section."""
+    if before is None:
+        before, until = begin_drive(case, container)
+        status = step_until(before, until) if until > 0.0 else "completed"
+        if status != "completed":
+            reason = "failed before the first section" if status == "failed" else None
+            none = np.zeros((0, 4)), np.zeros((0, 6)), np.zeros((0, 2))
+            return before, Orbit(
+                status=status, sections=none[0], extremes=none[1], portrait=none[2], reason=reason
+            )
+    return follow_periods(carry_drive(case, container, before), request.settle, progress=progress)
 
 
 def judge(request: ResponseRequest, case: Case, driven: DrivenModel, orbit: Orbit) -> LongTime:
@@ -175,39 +178,8 @@ def judge(request: ResponseRequest, case: Case, driven: DrivenModel, orbit: Orbi
 
 def motion_of(driven: DrivenModel, orbit: Orbit) -> str:
     """One word for a window of periods, with the limits of a verdict."""
+    if orbit.status == "overturned":
+        return "overturned"
     rocks = orbit.extremes[:, 3].max() > ROCKING * driven.run.control.slenderness_angle
     slides = orbit.extremes[:, 4].max() > SLIDING * driven.run.control.width
     return MODE_NAMES[(ROCK if rocks else 0) + (SLIDE if slides else 0)]
-
-
-def _point(
-    case: Case,
-    driven: DrivenModel,
-    direction: str,
-    number: int,
-    began: str,
-    orbit: Orbit,
-    long_time: LongTime | None,
-    periods: int,
-    decay: Decay | None = None,
-) -> CurvePoint:
-    control = driven.run.control
-    motion = None
-    if orbit.status == "completed":
-        motion = motion_of(driven, orbit)
-    elif orbit.status == "overturned":
-        motion = "overturned"
-    return CurvePoint(
-        direction=direction,
-        number=number,
-        case=case,
-        began=began,
-        status=orbit.status,
-        reason=orbit.reason,
-        motion=motion,
-        long_time=long_time,
-        periods=periods,
-        orbit=orbit,
-        decay=decay,
-        slenderness_angle=control.slenderness_angle,
-    )

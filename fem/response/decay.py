@@ -1,8 +1,6 @@
-"""Whether a motion dies out without its drive: the second condition of stability of the paper.
+"""Whether a motion dies out without its drive: condition (b) of stability in Knoedel and Hrabowski, section 2.
 
-Knoedel and Hrabowski (section 2) call a motion stable if (a) long-time amplitudes do not diverge and (b) without the
-drive they converge to zero. For (b) the floor is stopped at a turning point, where its velocity is zero, so that
-stopping is no impulse, and the container is followed until it is at rest or has overturned.
+The floor is stopped at a turning point, where that is no impulse.
 """
 
 from dataclasses import dataclass

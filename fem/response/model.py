@@ -1,12 +1,7 @@
-"""A container on a harmonic floor whose frequency is changed while it moves.
+"""A container on a harmonic floor whose frequency is changed while it moves, at a turning point of the floor.
 
-The frequency changes at a turning point of the floor: there the velocity of both motions is zero, and the mean
-position of the new one is chosen so that the displacement is continuous too. The state of the container is carried to
-the next model. Where the peak acceleration is held, the acceleration is continuous as well; where the displacement is
-held, it jumps by the ratio of the squares of the frequencies.
-
-The mean position itself has no effect, as a level floor is the same everywhere: every motion is x = A cos(Omega t) from
-t = 0, and the container is moved along x instead of the floor.
+A level floor is the same everywhere: every motion is x = A cos(Omega t) from t = 0, and the container is moved along x
+in place of the mean position of the floor.
 """
 
 import math

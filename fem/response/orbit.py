@@ -1,8 +1,6 @@
 """The motion, period by period: a section at the end of each, and the extremes within it.
 
-A section is taken at the floor's turning point at +A, at the exact instant: the stepping ends a step there. Its
-coordinates are the rotation, the angular velocity, the velocity of the mass centre against the floor and what the
-container slid in the period. The distance walked is no coordinate: the floor is the same everywhere.
+The stepping ends a step at each section, the floor's turning point at +A.
 """
 
 import math
@@ -14,7 +12,6 @@ import numpy as np
 from contact.motion.kernel import floor_motion
 from contact.stepping.body import ANGULAR_VELOCITY, ROTATION, VELOCITY_X
 from contact.stepping.integrator import FAILED, OVERTURNED, REACHED, advance_compiled
-from contact.stepping.observables import NEVER
 from contact.stepping.state import ROW_ANGULAR_VELOCITY, ROW_ROTATION, ROW_SLIP
 from fem.assessment.verdict import audit
 from fem.response.model import DrivenModel, section_times, with_sections
@@ -47,7 +44,6 @@ class Orbit:
     sections: FloatArray  #: (n, 4), see `SECTION_COLUMNS`
     extremes: FloatArray  #: (n, 6), see `EXTREME_COLUMNS`
     portrait: FloatArray  #: (n_samples, 2) rotation [rad] and angular velocity [rad/s] over the last periods
-    overturned_at: float | None = None  #: since the first of these periods began [s]
     reason: str | None = None  #: why it failed
 
 
@@ -86,18 +82,18 @@ def follow_periods(
             break
         _, floor_velocity, _ = floor_motion(run.motion, end)
         pose, slip = run.old.pose, float(clock.slip)
-        rotation, sliding = samples[:, ROW_ROTATION], samples[:, ROW_SLIP]
+        rotation = np.append(samples[:, ROW_ROTATION], pose[ROTATION])
+        sliding = np.append(samples[:, ROW_SLIP], slip)
         sections.append(
             [pose[ROTATION], pose[ANGULAR_VELOCITY], pose[VELOCITY_X] - floor_velocity, slip - slipped]
         )
-        low, high = min(float(sliding.min()), slip), max(float(sliding.max()), slip)
         extremes.append(
             [
                 float(track.max_rotation),
-                min(float(rotation.min()), float(pose[ROTATION])),
-                max(float(rotation.max()), float(pose[ROTATION])),
+                rotation.min(),
+                rotation.max(),
                 float(track.max_rocking),
-                high - low,
+                np.ptp(sliding),
                 int(track.impacts) - impacts,
             ]
         )
@@ -120,13 +116,11 @@ def follow_periods(
     else:
         reason = reason or audit(driven.model)
         status = "failed" if reason else status
-    fallen = float(track.overturned_at)
     return driven, Orbit(
         status=status,
         sections=np.array(sections).reshape(-1, len(SECTION_COLUMNS)),
         extremes=np.array(extremes).reshape(-1, len(EXTREME_COLUMNS)),
         portrait=np.concatenate(portraits) if portraits else np.zeros((0, 2)),
-        overturned_at=fallen if fallen < NEVER else None,
         reason=reason,
     )
 

@@ -113,12 +113,12 @@ def record_of(point: CurvePoint) -> PointRecord:
         amplitude_m=case.amplitude,
         peak_acceleration_m_s2=case.amplitude * case.angular_frequency**2,
         began=point.began,
-        status=point.status,
+        status=orbit.status,
         motion=point.motion,
         periods=point.periods,
         bounded=point.bounded,
         stable=point.stable,
-        reason=point.reason,
+        reason=orbit.reason,
         **found,
     )
     kept = PORTRAYED if long_time is None else {"rest": 1}.get(long_time.kind, long_time.period or PORTRAYED)

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from typing import Literal
 
 import numpy as np
@@ -18,7 +18,6 @@ LEAST_HZ, MOST_HZ = 0.01, 100.0  #: as in a case file
 MOST_FREQUENCIES = 2000
 MOST_PERIODS = 100_000
 LEAST_OBSERVED = 8
-DEFAULT_SETTLED, DEFAULT_OBSERVED = 60, 48
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,11 +35,10 @@ class ResponseRequest:
     scale: Scale = "linear"
     hold: Hold | None = None  #: what of the drive stays the same; None: what the case states
     order: Order = "up-down"
-    settle: int = DEFAULT_SETTLED  #: periods of the drive left out at each frequency
-    observe: int = DEFAULT_OBSERVED  #: periods by which the long-time motion is judged
+    settle: int = 60  #: periods of the drive left out at each frequency
+    observe: int = 48  #: periods by which the long-time motion is judged
     tolerance: float = TOLERANCE  #: within which two sections count as the same, see `fem.response.stability`
     largest_period: int = LARGEST_PERIOD  #: tried, in periods of the drive
-    held: Hold = field(init=False)  #: the same, decided
 
     def __post_init__(self) -> None:
         motion, solver = self.case.motion, self.case.solver
@@ -88,9 +86,11 @@ class ResponseRequest:
             raise CaseError(
                 "[motion] a response curve needs a floor that moves: give amplitude_m or peak_acceleration_m_s2 above 0"
             )
-        given = motion.amplitude_m is None or motion.peak_acceleration_m_s2 is None
-        stated: Hold = "acceleration" if given and motion.amplitude_m is None else "displacement"
-        object.__setattr__(self, "held", self.hold or stated)
+
+    @property
+    def held(self) -> Hold:
+        """What of the drive stays the same."""
+        return self.hold or ("acceleration" if self.case.motion.amplitude_m is None else "displacement")
 
     @property
     def frequencies(self) -> np.ndarray:
@@ -115,7 +115,8 @@ class ResponseRequest:
         """As the result states it, without the case."""
         numbers = asdict(self)
         del numbers["case"], numbers["hold"]
-        return numbers | {"held_value": self.held_value, "frequencies_Hz": self.frequencies.tolist()}
+        frequencies = self.frequencies.tolist()
+        return numbers | {"held": self.held, "held_value": self.held_value, "frequencies_Hz": frequencies}
 
     @property
     def hash(self) -> str:

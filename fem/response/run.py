@@ -5,8 +5,9 @@ continues where it was, to the same bytes.
 """
 
 import json
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +15,9 @@ import numpy as np
 
 from fem.assessment.verdict import MODE_NAMES
 from fem.case.case import Case, to_toml
-from fem.model.container import Container
+from fem.model.container import Container, discretise
 from fem.response.branches import branches_of
-from fem.response.curve import PORTRAYED, plan_of, sweep_points
+from fem.response.curve import PORTRAYED, case_at, plan_of, sweep_points
 from fem.response.figures import response_figures
 from fem.response.model import SAMPLES_PER_PERIOD, DrivenModel, driven_model
 from fem.response.records import (
@@ -41,15 +42,6 @@ STATE = "state.npz"
 BYTES_OF_A_PERIOD, BYTES_OF_A_SAMPLE, BYTES_OF_A_POINT, BYTES_BESIDE = 220 + 160, 50 + 32, 2000, 1_000_000
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ResponseResult:
-    """Result of a response curve."""
-
-    status: str  #: completed | failed | interrupted
-    result: dict[str, Any]  #: as in response.json
-    records: tuple[PointRecord, ...]
-
-
 def run_response(
     request: ResponseRequest,
     *,
@@ -57,8 +49,11 @@ def run_response(
     force: bool = False,
     resume: bool = False,
     reporter: Reporter | None = None,
-) -> ResponseResult:
+) -> dict[str, Any]:
     """Compute a response curve into a folder; a finished one of the same request is not computed again.
+
+    Returns:
+        The content of `response.json`.
 
     Raises:
         CaseError, MeshError, FolderError: bad input.
@@ -71,7 +66,7 @@ def run_response(
     ):
         if place.finished and place.found:
             reporter.message(f"{folder} holds this response curve already; --force computes it again")
-            return ResponseResult(status="completed", result=place.found, records=())
+            return place.found
         if place.resuming:
             place.require_same_program()
         place.require_room(required_disk(request), "the response curve", "take fewer frequencies")
@@ -88,7 +83,7 @@ def run_response(
         place.write_result(result)
         if status == "completed":
             place.remove(STATE)
-    return ResponseResult(status=status, result=result, records=tuple(records))
+    return result
 
 
 def required_disk(request: ResponseRequest) -> float:
@@ -123,10 +118,7 @@ def page_of(request: ResponseRequest, result: Mapping[str, Any], folder: Path) -
     ]
     for direction in ("up", "down"):
         swept = [point for point in points if point["direction"] == direction]
-        counted: dict[str, int] = {}
-        for point in swept:
-            word = PointRow(**point).words
-            counted[word] = counted.get(word, 0) + 1
+        counted = Counter(PointRow(**point).words for point in swept)
         words = ", ".join(f"{count} x {word}" for word, count in counted.items())
         lines.append(f"  {direction:<11} {words or 'not reached'}")
     for found in result["coexisting"]:
@@ -219,17 +211,15 @@ def _sweep(
     length = request.settle + request.observe
     spans = [length / float(request.frequencies[number]) for _, number in plan]
     done, angle = sum(spans[: len(records)]), 1.0
+    container, before = discretise(request.case), None
+    if "clock" in saved:
+        before = driven_from(case_at(request, plan[len(records) - 1][1]), container, saved)
     reporter.start(sum(spans))
 
     def progress(time: float, rotation: float, mode: int) -> None:
         reporter.update(done + time, abs(rotation) / angle, MODE_NAMES[mode])
 
-    def restore(case: Case, container: Container) -> DrivenModel:
-        return driven_from(case, container, saved)
-
-    points = sweep_points(
-        request, skip=len(records), restore=restore if "clock" in saved else None, progress=progress
-    )
+    points = sweep_points(request, container, skip=len(records), before=before, progress=progress)
     if stop():
         return "interrupted"
     for point, after in points:

@@ -1,9 +1,4 @@
-"""The long-time motion, judged from sections once a period, with the figures that decide.
-
-- rest: within the limits of a verdict nothing turns and nothing slides;
-- periodic, of period n T: each section equals the one n periods before, within a tolerance, over the whole window;
-- not settled: no such n, and the distance of sections decreases with time;
-- not periodic: no such n up to the largest tried, and no decrease.
+"""The long-time motion, judged from sections once a period, with the figures that decide; the README defines them.
 
 Sections are compared in units of the slenderness angle, of that times the frequency parameter, of the floor's peak
 velocity and of its amplitude.
@@ -35,7 +30,6 @@ class LongTime:
     scatter: float  #: largest distance of sections n apart; of the best n where none was good enough
     compared: int  #: pairs of sections behind it
     settling: float | None  #: distances over the second half by those over the first; None where periodic
-    largest_period: int  #: tried
 
 
 def classify(
@@ -44,30 +38,27 @@ def classify(
     """Judge a window of sections.
 
     Args:
-        sections: (n, k), scaled to order one.
+        sections: (n, k), n at least 4, scaled to order one.
         resting: nothing moved beyond the limits of a verdict.
         tolerance: of the largest coordinate.
         largest_period: tried; at most a third of the window.
-
-    Raises:
-        ValueError: fewer sections than a period-one motion needs.
     """
     count = len(sections)
-    if count < REPEATS + 1:
-        raise ValueError(
-            f"{count} sections do not determine a long-time motion; at least {REPEATS + 1} are needed"
-        )
-    looked_for = max(1, min(largest_period, count // REPEATS))
+    looked_for = min(largest_period, count // REPEATS)
     scatters = np.array([distances(sections, n).max() for n in range(1, looked_for + 1)])
     repeating = np.flatnonzero(scatters <= tolerance)
     n = int(repeating[0]) + 1 if repeating.size else int(np.argmin(scatters)) + 1
-    common = {"scatter": float(scatters[n - 1]), "compared": count - n, "largest_period": looked_for}
-    if resting or repeating.size:
-        kind = "rest" if resting else "periodic"
-        return LongTime(kind=kind, period=None if resting else n, settling=None, **common)  # type: ignore[arg-type]
-    ratio = approach(sections, looked_for)
-    kind = "not settled" if ratio < SETTLING else "not periodic"
-    return LongTime(kind=kind, period=None, settling=ratio, **common)  # type: ignore[arg-type]
+    period = ratio = None
+    if resting:
+        kind = "rest"
+    elif repeating.size:
+        kind, period = "periodic", n
+    else:
+        ratio = approach(sections, looked_for)
+        kind = "not settled" if ratio < SETTLING else "not periodic"
+    return LongTime(
+        kind=kind, period=period, scatter=float(scatters[n - 1]), compared=count - n, settling=ratio
+    )
 
 
 def distances(sections: FloatArray, n: int) -> FloatArray:

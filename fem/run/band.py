@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import count, product
 
-from fem.assessment.verdict import MODE_NAMES, short_verdict
+from fem.assessment.verdict import MODE_NAMES, verdict_of
 from fem.case.case import Case
 from fem.model.model import Model, build_model
 from fem.model.validity import runs_in_memory
@@ -155,7 +155,7 @@ def _run_member(
         return _without_outcome(contact, "failed", str(problem))
     if ending.status not in ("completed", "overturned"):
         return _without_outcome(contact, ending.status, ending.error)
-    return member_from(contact, ending.status, short_verdict(model))
+    return member_from(contact, ending.status, verdict_of(model, recorder.history(), None))
 
 
 def _without_outcome(contact: Contact, status: str, error: str | None = None) -> BandMember:

@@ -1,7 +1,7 @@
-"""Compilation of kernels in this process: that a long one begins is told, and what all of it takes is counted.
+"""Compilation of kernels in this process: a long one is announced, and the time of all is counted.
 
-numba compiles a function when it is first called, after an installation or where a kept one does not fit, and
-broadcasts when it begins and ends; loading what is kept is no compilation. All times are of the wall clock [s].
+numba compiles a function when it is first called and no cached machine code fits, and broadcasts when it begins and
+ends. Loading cached code is not compilation. All times are wall-clock times [s].
 """
 
 import time
@@ -16,7 +16,7 @@ LONG = frozenset({"advance", "advance_in_slices"})
 
 
 class CompilationClock(event.Listener):
-    """Counts the time in which kernels are compiled, one within another counted once.
+    """Counts the time spent compiling; nested compilations are counted once.
 
     numba compiles under a lock, one thread at a time, so that the events do not mix.
     """
@@ -42,30 +42,30 @@ class CompilationClock(event.Listener):
 
 
 class Announcer(event.Listener):
-    """Tells once that a long compilation begins."""
+    """Announces the first long compilation."""
 
-    def __init__(self, tell: Callable[[str], None]) -> None:
-        self._tell, self._told = tell, False
+    def __init__(self, message: Callable[[str], None]) -> None:
+        self._message, self._announced = message, False
 
     def on_start(self, event: event.Event) -> None:
         """A compilation begins."""
-        if not self._told and kernel_name(event) in LONG:
-            self._told = True
-            self._tell("compiling the stepping kernels, once after installation: a minute or two")
+        if not self._announced and kernel_name(event) in LONG:
+            self._announced = True
+            self._message("compiling the stepping kernels, once after installation: a minute or two")
 
     def on_end(self, event: event.Event) -> None:
-        """Nothing to tell."""
+        """Nothing to announce."""
 
 
 def kernel_name(compilation: event.Event) -> str:
-    """Of the function that is compiled."""
+    """Name of the function that is compiled."""
     return str(compilation.data["dispatcher"].py_func.__name__)
 
 
 @contextmanager
-def compilation_announced(tell: Callable[[str], None]) -> Iterator[None]:
-    """Within it, a long compilation is told before it begins, once."""
-    with event.install_listener(COMPILING, Announcer(tell)):
+def compilation_announced(message: Callable[[str], None]) -> Iterator[None]:
+    """Announce the first long compilation in the block before it begins."""
+    with event.install_listener(COMPILING, Announcer(message)):
         yield
 
 

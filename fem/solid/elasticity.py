@@ -100,13 +100,6 @@ def second_stress(strain: FloatArray, lame: LamePair) -> FloatArray:
     return np.stack(stress_components(xx, zz, xz, lame.first, lame.shear))
 
 
-def first_stress(gradient: FloatArray, lame: LamePair) -> FloatArray:
-    """First Piola-Kirchhoff stress P = F S, shape (2, 2, ...), force axis first [Pa]."""
-    (xx, xz), (zx, zz) = gradient
-    pxx, pxz, pzx, pzz, _ = stress_and_energy(xx, xz, zx, zz, lame.first, lame.shear)
-    return np.array([[pxx, pxz], [pzx, pzz]])
-
-
 @compiled(sources=SOURCES)
 def element_forces(
     cells: IntArray,
@@ -161,7 +154,7 @@ def element_forces(
 
 
 def first_stress_tangent(gradient: FloatArray, lame: LamePair) -> FloatArray:
-    """Derivative of `first_stress`: A[i, j, k, l] = d P_ij / d H_kl, shape (2, 2, 2, 2, ...) [Pa].
+    """Derivative of P = F S: A[i, j, k, l] = d P_ij / d H_kl, shape (2, 2, 2, 2, ...) [Pa].
 
     A_ijkl = delta_ik S_jl + first F_ij F_kl + shear (F_il F_kj + (F F^T)_ik delta_jl).
     """

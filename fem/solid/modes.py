@@ -15,11 +15,11 @@ import meshio
 import numpy as np
 from scipy.linalg import cholesky, eigh, qr, solve_triangular
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh, splu
+from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh
 
 from fem.runtime.arrays import FloatArray
 from fem.solid.array_cache import ArrayCache, no_cache
-from fem.solid.assembly import FiniteElements
+from fem.solid.assembly import FiniteElements, factorised
 
 FEW = 5  #: modes in the table and the figure of a run: one row of shapes
 _DENSE_UNKNOWNS = 400  # up to here a dense solution is as fast, and gives all modes
@@ -44,7 +44,7 @@ def rigid_modes(elements: FiniteElements) -> FloatArray:
 
     Unit motions divided by sqrt(mass), sqrt(mass) and sqrt(polar inertia).
     """
-    nodal_mass = elements.mass @ np.ones(len(elements.nodes))
+    nodal_mass = elements.nodal_mass
     arm = elements.nodes - nodal_mass @ elements.nodes / nodal_mass.sum()
     modes = np.zeros((3, *elements.nodes.shape))
     modes[0, :, 0] = modes[1, :, 1] = 1.0
@@ -53,16 +53,11 @@ def rigid_modes(elements: FiniteElements) -> FloatArray:
 
 
 def elastic_modes(elements: FiniteElements, count: int, cache: ArrayCache = no_cache) -> ElasticModes:
-    """The `count` lowest elastic modes; the same input gives the same shapes and signs.
+    """The `count` lowest elastic modes, at most all but the three rigid ones of the unknowns.
 
-    The largest component of each shape is positive (the first of equals, by node).
-
-    Raises:
-        ValueError: count below 1, or above the number of elastic modes that the mesh has.
+    The same input gives the same shapes and signs: the largest component of each shape is positive (the first of
+    equals, by node).
     """
-    available = elements.unknowns - 3
-    if not 1 <= count <= available:
-        raise ValueError(f"elastic modes asked for: {count}; this mesh has from 1 to {available}")
     rigid = rigid_modes(elements).reshape(3, -1)
     if elements.unknowns <= max(_DENSE_UNKNOWNS, 4 * count):
         squares, vectors = _dense_modes(elements, rigid, count)
@@ -125,15 +120,10 @@ def _lanczos_modes(
     shift = _first_square_estimate(elements, rigid)
 
     # K alone is singular; K + shift M is positive definite, and any shift near the first elastic mode keeps
-    # both the factor well conditioned and the wanted modes apart. Symmetric mode: a third of the fill.
+    # both the factor well conditioned and the wanted modes apart.
     @functools.cache
     def factor() -> SuperLU:
-        return splu(
-            (stiffness + shift * mass).tocsc(),
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
+        return factorised(stiffness + shift * mass)
 
     number = count_from(1)
 
@@ -147,9 +137,8 @@ def _lanczos_modes(
         )
         return solution
 
-    start = np.random.default_rng(0).standard_normal(
-        elements.unknowns
-    )  # without symmetry, so that no mode is missed
+    # Without symmetry, so that no mode is missed.
+    start = np.random.default_rng(0).standard_normal(elements.unknowns)
     squares, vectors = eigsh(
         stiffness,
         k=count,

@@ -1,13 +1,8 @@
 """The full model: every node free to move, total Lagrangian, without assembling a tangent.
 
-In the frame that turns with the container the Newmark matrix M/(beta h^2) + K is constant, because M, the same for x
-and z, commutes with the rotation. It is factored once for each step size (SuperLU). The residual is exact for finite
-rotation and St. Venant-Kirchhoff elasticity, and each iteration is one rotated back-substitution. The matrix leaves out
-the geometric stiffness, of the order of the strain; this only costs iterations. The contact is condensed to the base
-points and solved by the same compiled functions as for the reduced container.
-
-Coordinates are the absolute positions of the nodes, x and z in turn. Damping is proportional to the stiffness and acts
-in the turned frame, so that it does not damp the rocking itself. `fem.solid.nodal_kernels` holds the compiled step.
+The method: README.md of this folder. The contact is condensed to the base points and solved by the same compiled
+functions as for the reduced container. Coordinates are the absolute positions of the nodes, x and z in turn.
+`fem.solid.nodal_kernels` holds the compiled step.
 """
 
 import math
@@ -27,7 +22,7 @@ from contact.stepping.scheme import Scheme
 from contact.stepping.state import RunState
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid import nodal_kernels
-from fem.solid.assembly import FiniteElements
+from fem.solid.assembly import FiniteElements, factorised
 from fem.solid.nodal_kernels import NodalBody, advance_nodal, enter_floor_frame_nodal
 from fem.solid.reduction import StaticResponse
 
@@ -41,8 +36,8 @@ BYTES_OF_A_NODE = 35e3  #: while the matrix is factored, measured on stacks of 2
 REMEMBERED = ("turn", "internal", "damping_force", "strain_energy")
 
 
-def _rotation_matrix(rotation: float) -> FloatArray:
-    """R with x = R X for a rotation > 0 toward +x."""
+def rotation_matrix(rotation: float) -> FloatArray:
+    """R with x = R X for a rotation > 0 toward +x [rad]."""
     cosine, sine = math.cos(rotation), math.sin(rotation)
     return np.array([[cosine, sine], [-sine, cosine]])
 
@@ -75,7 +70,7 @@ class FullBody:
         self.gravity = gravity
         self.damping = damping
         self._vector_mass = elements.vector_mass
-        nodal_mass = elements.mass @ np.ones(len(elements.nodes))
+        nodal_mass = elements.nodal_mass
         self.mass = float(nodal_mass.sum())
         self.centroid = nodal_mass @ elements.nodes / self.mass
         self._arm = elements.nodes - self.centroid
@@ -90,7 +85,7 @@ class FullBody:
 
     def place(self, state: State, stance: Stance, response: StaticResponse, floor_velocity: float) -> None:
         """Write the initial coordinates: the stance's rigid pose, strained by its contact forces."""
-        turn = _rotation_matrix(stance.rotation)
+        turn = rotation_matrix(stance.rotation)
         elastic = np.tensordot((stance.force @ turn).ravel(), response.displacement, axes=1)
         arm = (self._arm + elastic) @ turn.T
         position = np.asarray(stance.centre) + arm
@@ -118,12 +113,7 @@ class FullBody:
         now = 1.0 - scheme.alpha_f
         inertial = (1.0 - scheme.alpha_m) / (scheme.newmark_beta * step * step)
         elastic = now * (1.0 + self.damping * scheme.newmark_gamma / (scheme.newmark_beta * step))
-        solver = scipy.sparse.linalg.splu(
-            (inertial * self._vector_mass + elastic * self.elements.stiffness).tocsc(),
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
+        solver = factorised(inertial * self._vector_mass + elastic * self.elements.stiffness)
         if nodal.lower.shape[1] == 0:
             nodal = self.nodal = _with_room(nodal, solver)
         slots = nodal.cached_step.size - 1

@@ -75,9 +75,8 @@ class NodalBody(NamedTuple):
     internal: FloatArray  #: (n, 2) at the last residual [N]
     turned: FloatArray  #: (2 n,) velocities in the turned frame [m/s]
     damping_force: FloatArray  #: (n, 2) at the last residual [N]
-    residual: (
-        FloatArray  #: (2 n,) inertia plus internal minus external forces, without the new contact forces [N]
-    )
+    #: (2 n,) inertia plus internal minus external forces, without the new contact forces [N]
+    residual: FloatArray
     permuted: FloatArray  #: (2 n,) right-hand side and solution in the order of the factors
     free_change: FloatArray  #: (2 n,) change of the coordinates without contact force [m]
     local: FloatArray  #: (2, k, 2) displacements and forces of a cell's nodes

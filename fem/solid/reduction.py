@@ -1,9 +1,8 @@
 """The reduced container: free elastic modes plus attachment modes, in the frame that floats with it.
 
-An attachment mode is the static response of the free body to a unit force at a base point, its rigid acceleration
-taken out (inertia relief). With one for every contact degree of freedom the local compliance under the contact
-is exact, however few free modes are kept. All are made orthonormal: mass 1, stiffness diag(omega^2). Rubin,
-AIAA J. 13 (1975) 995; Craig, Structural Dynamics (1981), ch. 19.
+An attachment mode is the static response of the free body to a unit force at a base point, without its rigid
+acceleration (inertia relief). With one for every contact degree of freedom the local compliance under the contact is
+exact, however few free modes are kept. Rubin, AIAA J. 13 (1975) 995; Craig, Structural Dynamics (1981), ch. 19.
 """
 
 import functools
@@ -12,12 +11,12 @@ from functools import partial
 
 import numpy as np
 import scipy.linalg
-import scipy.sparse.linalg
 from scipy.sparse import csc_array
+from scipy.sparse.linalg import SuperLU
 
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.array_cache import ArrayCache, blocks, no_cache
-from fem.solid.assembly import FiniteElements
+from fem.solid.assembly import FiniteElements, factorised
 from fem.solid.modes import elastic_modes, rigid_modes
 
 #: relative mass below which an attachment mode, less its projection on the others, is rounding noise
@@ -47,8 +46,8 @@ class ReducedBasis:
 def static_response(elements: FiniteElements, base: IntArray, cache: ArrayCache = no_cache) -> StaticResponse:
     """Response of the free elastic container to unit forces at the nodes `base` (n_c,).
 
-    The body is held at three degrees of freedom. The loads are self-balanced, so the supports carry nothing; they
-    only choose the rigid motion, which is then removed.
+    The body is held at three degrees of freedom, which carry nothing: the loads are self-balanced. The rigid motion is
+    then removed.
     """
     rigid = rigid_modes(elements).reshape(3, -1)
     mass, nodes = elements.vector_mass, elements.nodes
@@ -59,13 +58,8 @@ def static_response(elements: FiniteElements, base: IntArray, cache: ArrayCache 
     dofs = (2 * np.asarray(base)[:, None] + np.arange(2)).ravel()
 
     @functools.cache
-    def factor() -> scipy.sparse.linalg.SuperLU:
-        return scipy.sparse.linalg.splu(
-            elements.stiffness[:, free][free].tocsc(),
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
+    def factor() -> SuperLU:
+        return factorised(elements.stiffness[:, free][free])
 
     def responses_to(loaded: IntArray) -> FloatArray:
         loads = -rigid_momentum @ rigid[:, loaded]
@@ -88,8 +82,8 @@ def reduced_basis(
 ) -> ReducedBasis:
     """Span of `modes` free modes and all attachment modes, diagonalised (Rayleigh-Ritz).
 
-    Orthonormalised twice. First the attachment modes against the free ones, by their products with the mass; these
-    products cancel to rounding where an attachment mode is nearly spanned. Then all columns as they are after that.
+    Orthonormalised twice: first the attachment modes against the free ones, by products with the mass, which cancel to
+    rounding where an attachment mode is nearly spanned; then all columns.
     """
     mass, stiffness, unknowns = elements.vector_mass, elements.stiffness, elements.unknowns
     free = np.zeros((0, unknowns))
@@ -116,13 +110,13 @@ def reduced_basis(
 def _products(rows: FloatArray, matrix: csc_array, cache: ArrayCache, name: str) -> FloatArray:
     """rows matrix rows^T, symmetric to the bit."""
     found = np.empty((len(rows), len(rows)))
+
+    def product(some: slice) -> FloatArray:
+        return np.asarray((rows[some] @ matrix) @ rows.T)
+
     for block in blocks(len(rows), _affordable(rows)):
-        cache(f"{name} {block.start}", found[block], partial(_product, rows[block], matrix, rows))
+        cache(f"{name} {block.start}", found[block], partial(product, block))
     return 0.5 * (found + found.T)
-
-
-def _product(some: FloatArray, matrix: csc_array, rows: FloatArray) -> FloatArray:
-    return np.asarray((some @ matrix) @ rows.T)
 
 
 def _combine(

@@ -1,5 +1,7 @@
 """The rows of a sweep's cells so far."""
 
+from collections import Counter
+
 import numpy as np
 
 from fem.batch.log import fields_of, number_in
@@ -14,11 +16,10 @@ class CellRows:
 
     def __init__(self, sweep: Sweep) -> None:
         self.columns = row_columns(sweep.axes, (one.key for one in sweep.derived))
-        self.shape = sweep.shape
         self.lines: dict[int, str] = {}  #: row of each cell, as in the log
         self.kind: IntArray = np.full(sweep.count, UNKNOWN)  #: (n_cells,) see `neighbours`
         self.rotation_ratio: FloatArray = np.full(sweep.count, np.nan)  #: (n_cells,)
-        self.outcomes: dict[str, int] = {}  #: how often there is each; "failed" too
+        self.outcomes = Counter[str]()  #: how often there is each; "failed" too
         self._places = [self.columns.index(name) for name in ("status", "outcome", "rotation_ratio")]
 
     def note(self, line: str) -> None:
@@ -31,8 +32,7 @@ class CellRows:
         self.lines[cell] = line
         self.kind[cell] = kind_of(status, outcome)
         self.rotation_ratio[cell] = np.nan if found is None else found
-        word = outcome if outcome and status != "failed" else "failed"
-        self.outcomes[word] = self.outcomes.get(word, 0) + 1
+        self.outcomes[outcome if outcome and status != "failed" else "failed"] += 1
 
     @property
     def decided(self) -> BoolArray:

@@ -1,15 +1,4 @@
-"""Read a sweep file: base case, axes, derived keys; one line for each reason why it cannot be used.
-
-The file is TOML:
-
-    case = "seed_stack"                    # a shipped case, or a file in the folder of the sweep file
-    [set]                                  # keys changed in the base case
-    [axes]                                 # one to four dotted keys: a list, or { from, to, count, scale }
-    [derived]                              # keys that follow, as expressions of others
-    [perturbation]                         # sensitivity of a cell: see `perturbation`
-    [threshold]                            # where the outcome changes along one axis: see `threshold`
-    [maps]                                 # x, y: the axes that span them; fixed: values of others
-"""
+"""Read a sweep file: base case, axes, derived keys; one line for each reason why it cannot be used."""
 
 from collections.abc import Mapping
 from itertools import islice, product
@@ -18,13 +7,13 @@ from typing import Any
 
 from pydantic import Field
 
-from fem.batch.axes import Axis, AxisError, check_varied, field_of, read_axis
+from fem.batch.axes import Axis, AxisError, check_varied, field_of, hint, read_axis
 from fem.batch.derived import Derived, read_derived, value_in
 from fem.batch.study_file import base_case, flat, read_as, read_axes, read_study, require_once, split_tables
 from fem.case.case import Case
 from fem.case.files import DEFAULT_CASE, SWEEPS, Origin
 from fem.case.tables import CaseTable
-from fem.case.validation import CaseError, did_you_mean
+from fem.case.validation import CaseError
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.plan import MapChoice, Sweep
 from fem.sweep.threshold import Threshold
@@ -101,9 +90,8 @@ def _threshold(tables: Mapping[str, Any], axes: tuple[Axis, ...]) -> Threshold |
     threshold = read_as("threshold", Threshold, tables["threshold"])
     known = {axis.key: axis for axis in axes}
     if threshold.axis not in known:
-        near = did_you_mean(threshold.axis, known)
         raise CaseError(
-            f"[threshold] axis {threshold.axis!r} is none of the axes{'; ' + near if near else ''} "
+            f"[threshold] axis {threshold.axis!r} is none of the axes{hint(threshold.axis, known)} "
             f"(axes: {', '.join(known)})"
         )
     if not known[threshold.axis].is_numeric:
@@ -122,9 +110,8 @@ def _maps(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> MapChoice:
     known = {axis.key: axis.values for axis in axes}
     for key in (choice.x, choice.y, *choice.fixed):
         if key is not None and key not in known:
-            near = did_you_mean(key, known)
             raise CaseError(
-                f"[maps] {key!r} is none of the axes{'; ' + near if near else ''} (axes: {', '.join(known)})"
+                f"[maps] {key!r} is none of the axes{hint(key, known)} (axes: {', '.join(known)})"
             )
     for key, value in choice.fixed.items():
         if value not in known[key]:
@@ -132,6 +119,8 @@ def _maps(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> MapChoice:
             raise CaseError(f"[maps] {key!r} has no value {value!r} (values: {listed})")
         if key in (choice.x, choice.y):
             raise CaseError(f"[maps] {key!r} cannot span the map and be fixed as well")
+    if len(axes) > 1 and len(axes) - len(choice.fixed) < 2:
+        raise CaseError("[maps] a map needs two axes that are not fixed")
     if choice.x is not None and choice.x == choice.y:
         raise CaseError(f"[maps] a map needs two axes, got {choice.x!r} twice")
     return choice
@@ -163,9 +152,7 @@ def _try_cells(sweep: Sweep) -> None:
 
 
 def _is_idle(case: Case, key: str) -> bool:
-    table, dot, name = key.rpartition(".")
-    if not dot:
-        return False
-    if table == "solver" and name == "elastic_modes":
+    table, _, name = key.rpartition(".")
+    if key == "solver.elastic_modes":
         return case.solver.model != "reduced"
-    return name in getattr(case, table).idle_keys()
+    return bool(table) and name in getattr(case, table).idle_keys()

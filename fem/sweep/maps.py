@@ -19,6 +19,7 @@ from fem.batch.axes import Axis, axis_label
 from fem.figures.heat_map import MapAxis, Panel, draw_heat_map, value_label
 from fem.figures.style import GREY, STATE_COLOURS, VERMILLION, WIDTH, house_style, number, svg_of
 from fem.results.files import write_atomically
+from fem.sweep.plan import MapChoice
 from fem.sweep.table import SweepTable
 
 OUTCOME_COLOURS = {**STATE_COLOURS, "failed": VERMILLION, "": "#FFFFFF"}
@@ -26,75 +27,52 @@ MOST_PANELS = 12
 LEAST_SLIP_MM = 1e-2  #: less is no slip
 
 
-class MapError(ValueError):
-    """A map that cannot be drawn as asked."""
-
-
-def draw_maps(
-    table: SweepTable,
-    folder: Path,
-    x: str | None = None,
-    y: str | None = None,
-    fixed: Mapping[str, Any] | None = None,
-) -> list[str]:
-    """Write every map of a sweep into a folder as SVG; returns their names there. Axes as for `outcome_map`."""
+def draw_maps(table: SweepTable, folder: Path, choice: MapChoice) -> list[str]:
+    """Write every map of a sweep into a folder as SVG; returns their names there."""
     folder.mkdir(exist_ok=True)
     if len(table.axes) == 1 or sum(len(axis.values) > 1 for axis in table.axes) < 2:
         figures = {"rotation": rotation_curve(table)}
     else:
-        kinds = {"outcome": outcome_map, "rotation": rotation_map, "slip": slip_map}
-        figures = {name: draw(table, x, y, fixed) for name, draw in kinds.items()}
+        figures = {kind: sweep_map(table, kind, choice) for kind in ("outcome", "rotation", "slip")}
     for name, figure in figures.items():
         write_atomically(folder / f"{name}.svg", svg_of(figure))
     return [f"{folder.name}/{name}.svg" for name in figures]
 
 
-def outcome_map(
-    table: SweepTable, x: str | None = None, y: str | None = None, fixed: Mapping[str, Any] | None = None
-) -> Figure:
-    """Outcome by colour.
+def sweep_map(table: SweepTable, kind: str, choice: MapChoice) -> Figure:
+    """One map.
 
     Args:
-        table: of the sweep.
-        x, y: keys of the axes that span the map; by default the two with the most values.
-        fixed: values at which other axes are held; those that are not have a panel each.
-
-    Raises:
-        MapError: no such axis or value.
+        table: of the sweep, which has two axes or more.
+        kind: outcome (by colour) | rotation (largest, over the slenderness angle) | slip (largest); the latter two
+            where the container stands.
+        choice: of axes that the sweep has, and of values on them.
     """
-    words = list(OUTCOME_COLOURS)
-    codes = np.array([words.index(word) for word in table.outcome])
-    return _map(table, x, y, fixed, codes, title="Outcome", colours=OUTCOME_COLOURS)
-
-
-def rotation_map(
-    table: SweepTable, x: str | None = None, y: str | None = None, fixed: Mapping[str, Any] | None = None
-) -> Figure:
-    """Largest rotation over the slenderness angle where the container stands; see `outcome_map`."""
-    return _map(
-        table, x, y, fixed,
-        np.where(table.outcome == "overturned", np.nan, table["rotation_ratio"]),
-        title="Largest rotation over slenderness angle, where it stands",
-        colours=matplotlib.colormaps["viridis"],
-        norm=Normalize(0.0, 1.0),
-        bar="rotation ratio [-]",
-    )  # fmt: skip
-
-
-def slip_map(
-    table: SweepTable, x: str | None = None, y: str | None = None, fixed: Mapping[str, Any] | None = None
-) -> Figure:
-    """Largest slip where the container stands; see `outcome_map`."""
-    slip = 1e3 * np.where(table.outcome == "overturned", np.nan, table["max_slip_m"])
+    if kind == "outcome":
+        codes = np.array([list(OUTCOME_COLOURS).index(word) for word in table.outcome])
+        return _map(table, choice, codes, title="Outcome", colours=OUTCOME_COLOURS)
+    fallen = table.outcome == "overturned"
+    if kind == "rotation":
+        return _map(
+            table,
+            choice,
+            np.where(fallen, np.nan, table["rotation_ratio"]),
+            title="Largest rotation over slenderness angle, where it stands",
+            colours=matplotlib.colormaps["viridis"],
+            norm=Normalize(0.0, 1.0),
+            bar="rotation ratio [-]",
+        )
+    slip = 1e3 * np.where(fallen, np.nan, table["max_slip_m"])
     largest = max(np.nanmax(slip, initial=0.0), 10.0 * LEAST_SLIP_MM)
     return _map(
-        table, x, y, fixed,
+        table,
+        choice,
         np.maximum(slip, LEAST_SLIP_MM),
         title="Largest slip, where it stands",
         colours=matplotlib.colormaps["cividis"],
         norm=LogNorm(LEAST_SLIP_MM, largest),
         bar=f"slip [mm] (below {number(LEAST_SLIP_MM)}: none)",
-    )  # fmt: skip
+    )
 
 
 def rotation_curve(table: SweepTable) -> Figure:
@@ -128,9 +106,7 @@ def rotation_curve(table: SweepTable) -> Figure:
 
 def _map(
     table: SweepTable,
-    x: str | None,
-    y: str | None,
-    fixed: Mapping[str, Any] | None,
+    choice: MapChoice,
     values: NDArray[Any],
     *,
     title: str,
@@ -139,8 +115,8 @@ def _map(
     bar: str = "",
 ) -> Figure:
     """The panels of values (n_cells,)."""
-    across, up = _plane(table, x, y)
-    picks, left_out = _picks(table, (across, up), fixed or {})
+    across, up = _plane(table, choice)
+    picks, left_out = _picks(table, (across, up), choice.fixed)
     swapped = table.axes.index(across) < table.axes.index(up)
 
     def plane(column: NDArray[Any], pick: Mapping[int, int]) -> NDArray[Any]:
@@ -176,21 +152,16 @@ def map_axis(axis: Axis) -> MapAxis:
     return MapAxis(label=axis_label(axis), values=axis.values, scale=scale)
 
 
-def _plane(table: SweepTable, x: str | None, y: str | None) -> tuple[Axis, Axis]:
+def _plane(table: SweepTable, choice: MapChoice) -> tuple[Axis, Axis]:
+    """The axes across and up: those chosen, else those with the most values."""
+    keys = choice.x, choice.y
     by_key = {axis.key: axis for axis in table.axes}
-    for key in (x, y):
-        if key is not None and key not in by_key:
-            raise MapError(f"no axis {key!r} in this sweep (axes: {', '.join(by_key)})")
-    if x is not None and x == y:
-        raise MapError(f"a map needs two axes, got {x!r} twice")
-    if len(table.axes) < 2:
-        raise MapError("a map needs two axes, this sweep has one")
     largest = sorted(table.axes, key=lambda axis: -len(axis.values))
-    rest = [axis for axis in largest if axis.key not in (x, y)]
-    found = [by_key[key] if key is not None else rest.pop(0) for key in (x, y)]
-    if x is None and y is None:
-        found.sort(key=table.axes.index)
-    return found[0], found[1]
+    rest = [axis for axis in largest if axis.key not in (*keys, *choice.fixed)]
+    across, up = (by_key[key] if key is not None else rest.pop(0) for key in keys)
+    if keys == (None, None) and table.axes.index(across) > table.axes.index(up):
+        return up, across
+    return across, up
 
 
 def _picks(
@@ -198,18 +169,10 @@ def _picks(
 ) -> tuple[list[tuple[str, dict[int, int]]], int]:
     """Name and indices of the other axes for each panel, and how many panels are left out."""
     others = [(k, axis) for k, axis in enumerate(table.axes) if axis not in plane]
-    unknown = set(fixed) - {axis.key for _, axis in others}
-    if unknown:
-        raise MapError(f"{sorted(unknown)[0]!r} is no axis that can be held fixed here")
-    choices = []
-    for _, axis in others:
-        if axis.key not in fixed:
-            choices.append(list(range(len(axis.values))))
-        elif fixed[axis.key] in axis.values:
-            choices.append([axis.values.index(fixed[axis.key])])
-        else:
-            listed = ", ".join(str(value) for value in axis.values)
-            raise MapError(f"axis {axis.key!r} has no value {fixed[axis.key]!r} (values: {listed})")
+    choices = [
+        [axis.values.index(fixed[axis.key])] if axis.key in fixed else range(len(axis.values))
+        for _, axis in others
+    ]
     picks = []
     for indices in islice(product(*choices), MOST_PANELS):
         pairs = list(zip(others, indices, strict=True))

@@ -1,11 +1,4 @@
-"""Which cells of a sweep are near a change of outcome, and how wide the band of unsure cells is.
-
-Cells stand or overturn; a failed cell does neither. A cell is near if one of its neighbours (diagonal ones included,
-along the axes whose values are rising numbers) is of another kind, or if it stands but turned by more than `close` of
-its slenderness angle. These are perturbed, then the neighbours of every unsure cell, and so on, until the unsure cells
-are enclosed by sure ones. Cells farther away are not perturbed and count as sure: an island of the other outcome
-between the cells of the grid, far from all others, is missed.
-"""
+"""Which cells of a sweep are near a change of outcome, and how wide the band of unsure cells is; see the README."""
 
 from collections.abc import Sequence
 

@@ -1,9 +1,4 @@
-"""Sensitivity of a cell: copies of it with motion, friction and contact changed a little.
-
-Each copy changes one thing: the amplitude of the floor by some per cent up and down, both coefficients of friction up
-and down, the phase of a harmonic floor earlier and later, the damping ratio of the contact to each of the values given.
-A cell is unsure if a copy stands where the cell overturns, overturns where it stands, or fails.
-"""
+"""Sensitivity of a cell: copies of it that each change one thing of motion, friction or contact a little."""
 
 import math
 from collections.abc import Iterator
@@ -45,11 +40,8 @@ class Perturbation(CaseTable):
         default=0.5, description="rotation ratio above which a standing cell counts as near"
     )
 
-    def members(self, case: Case) -> list[dict[str, Any]]:
+    def members(self, case: Case) -> Iterator[dict[str, Any]]:
         """The keys that each copy of a case changes."""
-        return list(self._members(case))
-
-    def _members(self, case: Case) -> Iterator[dict[str, Any]]:
         for factor in (1.0 - self.amplitude_share, 1.0 + self.amplitude_share):
             scaled = _scaled_motion(case, factor)
             if scaled and factor != 1.0:

@@ -1,10 +1,6 @@
-"""The perturbed copies of a sweep's cells: which cells have them, and what they show.
+"""The perturbed copies of a sweep's cells: which cells have them, and what they show."""
 
-Cells near a change of outcome are copied (see `neighbours`), then the neighbours of every unsure cell, until no
-unsure cell has a neighbour without copies.
-"""
-
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,7 +9,7 @@ import numpy as np
 
 from fem.batch.log import LoggedRuns, fields_of, number_in
 from fem.batch.runner import Row, Runner
-from fem.runtime.arrays import BoolArray, FloatArray
+from fem.runtime.arrays import BoolArray
 from fem.sweep.cells import CellRows
 from fem.sweep.neighbours import around, band_width, kind_of, near_cells
 from fem.sweep.plan import Sweep
@@ -63,38 +59,32 @@ class PerturbedRows:
         return (min(own, *found), max(own, *found)) if found and np.isfinite(own) else (None, None)
 
 
-class BandColumns:
-    """The columns that the perturbed copies add to the table: see `table.band_columns`."""
+def band_rows(
+    sweep: Sweep, cells: CellRows, perturbed: PerturbedRows
+) -> tuple[BoolArray, Callable[[int], tuple[Any, ...]]]:
+    """What the perturbed copies add to the table.
 
-    def __init__(self, sweep: Sweep, cells: CellRows, perturbed: PerturbedRows) -> None:
-        self._perturbed = perturbed
-        seen = ~cells.decided
-        seen[list(perturbed.rows)] = True
-        self.unsure: BoolArray = perturbed.unsure(seen)  #: (n_cells,)
-        grid = self.unsure.reshape(sweep.shape)
-        self._widths: list[FloatArray] = [
-            band_width(sweep.axes, grid, k).ravel() for k, axis in enumerate(sweep.axes) if axis.is_numeric
-        ]
+    Returns:
+        Which cells are unsure, (n_cells,), and for a cell the values of `table.band_columns`.
+    """
+    seen = ~cells.decided
+    seen[list(perturbed.rows)] = True
+    unsure = perturbed.unsure(seen)
+    grid = unsure.reshape(sweep.shape)
+    widths = [band_width(sweep.axes, grid, k).ravel() for k, axis in enumerate(sweep.axes) if axis.is_numeric]
 
-    def values(self, cell: int) -> Iterator[Any]:
-        """The values of a cell."""
-        yield len(self._perturbed.rows.get(cell, {}))
-        yield self.unsure[cell]
-        yield from self._perturbed.ratios(cell)
-        yield from (width[cell] for width in self._widths)
+    def values(cell: int) -> tuple[Any, ...]:
+        copies = len(perturbed.rows.get(cell, {}))
+        return copies, unsure[cell], *perturbed.ratios(cell), *(width[cell] for width in widths)
+
+    return unsure, values
 
 
 def perturb_cells(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> PerturbedRows | None:
-    """Perturb the cells near a change of outcome, then the neighbours of those that are unsure.
-
-    Args:
-        runner: runs the copies.
-        sweep: whose cells.
-        cells: their rows, all of them.
-        log: of the copies; those of an earlier attempt are not computed again.
+    """Perturb the cells near a change of outcome, then the neighbours of those that are unsure, until there are none.
 
     Returns:
-        The copies; None where none are wanted.
+        The copies, those that the log held already included; None where none are wanted.
     """
     chosen = sweep.perturbation.cells
     if chosen == "none" or (chosen == "auto" and sweep.base.solver.model == "full"):

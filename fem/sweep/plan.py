@@ -5,18 +5,19 @@ Cells are numbered from 0 in the order of the axes, the last one fastest.
 
 import math
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 from pydantic import Field
 
-from fem.batch.axes import Axis, indices_of, point_of, shape_of
+from fem.batch.axes import Axis, point_of, shape_of
 from fem.batch.case_maker import CaseMaker
 from fem.batch.derived import Derived, with_derived
 from fem.case.case import Case
 from fem.case.tables import CaseTable
+from fem.case.validation import CaseError
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.threshold import Threshold
 
@@ -69,11 +70,6 @@ class Sweep:
         """Cells."""
         return math.prod(self.shape)
 
-    @property
-    def folder(self) -> Path:
-        """Where mesh and motion files are looked for."""
-        return self.base.folder
-
     def point(self, cell: int) -> dict[str, Any]:
         """Values of the axes in a cell, by key."""
         return point_of(self.axes, cell)
@@ -88,7 +84,7 @@ class Sweep:
 
     def model_of(self, cell: int) -> str:
         """The model of a cell."""
-        return str(self.point(cell)["solver.model"]) if self._models else self.base.solver.model
+        return str(self.point(cell).get("solver.model", self.base.solver.model))
 
     def case_at(self, point: Mapping[str, Any], more: Mapping[str, Any] | None = None) -> Case:
         """The case at a point on the axes, with further keys set.
@@ -104,13 +100,11 @@ class Sweep:
 
     def member_changes(self, cell: int) -> list[dict[str, Any]]:
         """The keys that each perturbed copy of a cell changes."""
-        found = self._changes.get(cell)
-        if found is None:
-            found = self.perturbation.members(self.case(cell))
+        if cell not in self._changes:
             if len(self._changes) >= REMEMBERED:
                 self._changes.clear()
-            self._changes[cell] = found
-        return found
+            self._changes[cell] = list(self.perturbation.members(self.case(cell)))
+        return self._changes[cell]
 
     def member_case(self, item: tuple[int, int]) -> Case:
         """The case of a perturbed copy: cell and number of the copy."""
@@ -133,20 +127,14 @@ class Sweep:
         moving = {axis.key for axis in self.axes} | {one.key for one in self.derived}
         if not any(key.startswith(OF_THE_CONTAINER) for key in moving):
             return sorted(cells)
-        # A derived key of the container may follow any axis: then the values themselves decide.
-        own = [k for k, axis in enumerate(self.axes) if axis.key.startswith(OF_THE_CONTAINER)]
-        if any(one.key.startswith(OF_THE_CONTAINER) for one in self.derived):
-            return sorted(cells, key=lambda cell: (self._container_values(cell), cell))
-        return sorted(cells, key=lambda cell: ([indices_of(self.axes, cell)[k] for k in own], cell))
 
-    def _container_values(self, cell: int) -> str:
-        values = self.values(self.point(cell))
-        return repr([value for key, value in values.items() if key.startswith(OF_THE_CONTAINER)])
+        def container(cell: int) -> str:
+            values = self.point(cell)
+            with suppress(CaseError):  # a derived key without a value: the row will have the reason
+                values = self.values(values)
+            return repr([value for key, value in values.items() if key.startswith(OF_THE_CONTAINER)])
 
-    @cached_property
-    def _models(self) -> bool:
-        """Whether the model is an axis."""
-        return any(axis.key == "solver.model" for axis in self.axes)
+        return sorted(cells, key=lambda cell: (container(cell), cell))
 
     @cached_property
     def _changes(self) -> dict[int, list[dict[str, Any]]]:

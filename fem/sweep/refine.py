@@ -20,13 +20,7 @@ Lines = dict[int, dict[float, str]]
 
 
 def refine(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> list[tuple[int, Change]] | None:
-    """Locate every change of outcome along the axis asked for.
-
-    Args:
-        runner: runs the cases between cells.
-        sweep: whose cells.
-        cells: their rows, all of them.
-        log: of the cases between cells; those of an earlier attempt are not computed again.
+    """Locate every change of outcome along the axis asked for; cases that the log holds are not computed again.
 
     Returns:
         The changes, each with the first cell of its line of cells; None where none are wanted.

@@ -26,7 +26,7 @@ from fem.runtime.threads import cores
 from fem.sweep import perturbed
 from fem.sweep.cells import CellRows
 from fem.sweep.maps import draw_maps
-from fem.sweep.perturbed import BandColumns, perturb_cells
+from fem.sweep.perturbed import PerturbedRows, band_rows, perturb_cells
 from fem.sweep.plan import Sweep
 from fem.sweep.refine import refine, table_of_changes
 from fem.sweep.table import FOUND, band_columns, open_sweep
@@ -55,13 +55,10 @@ def run_sweep(
     """Compute a sweep into a folder; a finished one is not computed again.
 
     Args:
-        sweep: what is asked.
-        folder: of the results.
         jobs: cores to use; all by default. The table does not depend on it.
         workers_of: who computes so many cases of a model, in place of this machine's cores.
         resume: continue with the rows that are there.
         force: overwrite earlier results; also lifts the limit on the number of cells.
-        reporter: of the progress.
 
     Returns:
         The content of `sweep.json`.
@@ -163,7 +160,7 @@ class _Work:
         self.info["status"] = "interrupted"
         if not stop():
             place.check()
-            self._write_table(None if copies is None else BandColumns(self.sweep, self.cells, copies))
+            self._write_table(copies)
             if copies is not None:
                 place.write_text(MEMBERS, table_of_lines(perturbed.COLUMNS, copies.lines()))
             if changes is not None:
@@ -216,14 +213,15 @@ class _Work:
         if time.perf_counter() - self._updated > UPDATE_S:
             self._update()
 
-    def _write_table(self, band: BandColumns | None) -> None:
+    def _write_table(self, copies: PerturbedRows | None) -> None:
         columns = band_columns(self.sweep.axes)
-        lines = (
-            f"{self.cells.lines[cell]},{line_of(band.values(cell) if band else (None for _ in columns))}"
-            for cell in range(self.sweep.count)
-        )
+        bands = [line_of([None] * len(columns))] * self.sweep.count
+        if copies is not None:
+            unsure, values = band_rows(self.sweep, self.cells, copies)
+            bands = [line_of(values(cell)) for cell in range(self.sweep.count)]
+            self.info["unsure"] = int(unsure.sum())
+        lines = (f"{self.cells.lines[cell]},{band}" for cell, band in enumerate(bands))
         self.place.write_text(TABLE, table_of_lines((*self.cells.columns, *columns), lines))
-        self.info["unsure"] = int(band.unsure.sum()) if band else None
 
     def _update(self) -> None:
         """Write into `sweep.json` how many rows there are."""
@@ -244,7 +242,7 @@ def _with_maps(place: ResultFolder, info: dict[str, Any], sweep: Sweep) -> dict[
 
 
 def _draw(place: ResultFolder, sweep: Sweep) -> list[str]:
-    return draw_maps(open_sweep(place.path), place.path / "maps", **sweep.maps.model_dump())
+    return draw_maps(open_sweep(place.path), place.path / "maps", sweep.maps)
 
 
 def _rows_in(log: Path) -> int:

@@ -4,7 +4,8 @@ While a sweep runs, rows are appended to `rows.csv` in the order in which they a
 end, in the order of the cells. It has the columns of the log, and those of the perturbed copies.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -90,15 +91,15 @@ def open_sweep(folder: Path | str) -> SweepTable:
                 f"{source.name} has {len(lines)} rows of {info['cells']}; recompute it: "
                 f"python -m fem sweep {info['sweep']} --out {folder} --force"
             )
-        return SweepTable(info=info, axes=axes, columns=_columns(info, axes, names, lines))
+        return SweepTable(info=info, axes=axes, columns=_columns(axes, names, lines))
     except (KeyError, TypeError, ValueError, IndexError, OSError) as error:
         raise FolderError(f"{folder}: damaged, or not the folder of a sweep ({error})") from None
 
 
 def _columns(
-    info: Mapping[str, Any], axes: Sequence[Axis], names: Sequence[str], lines: Sequence[Sequence[str]]
+    axes: Sequence[Axis], names: Sequence[str], lines: Sequence[Sequence[str]]
 ) -> dict[str, NDArray[Any]]:
-    count = int(np.prod([len(axis.values) for axis in axes]))
+    count = math.prod(shape_of(axes))
     cells = np.array([int(fields[0]) for fields in lines], dtype=np.int64)
     columns: dict[str, NDArray[Any]] = {}
     grids = np.meshgrid(*(np.array(axis.values, dtype=object) for axis in axes), indexing="ij")

@@ -1,9 +1,6 @@
 """Changes of outcome along one axis: a scan, then every change located by refinement.
 
-There are safe islands above the first amplitude that overturns, so there is no single threshold to bisect for. The
-values of the axis are the scan; between two neighbours of different outcome a few values are tried, then between any
-two of these that differ, until the bracket is narrow enough. An island narrower than the step of the scan may be
-missed.
+An island narrower than the step of the scan may be missed.
 """
 
 from collections.abc import Callable, Mapping, Sequence

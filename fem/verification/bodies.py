@@ -13,11 +13,11 @@ from contact.interface.equilibrium import Stance
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.solver import Contact, make_workspace
 from contact.motion.kernel import UNIFORM, as_floor_motion
-from contact.stepping import modal_body
+from contact.stepping import modal_kernels
 from contact.stepping.body import State, make_state
 from contact.stepping.integrator import REACHED
 from contact.stepping.modal_body import ModalBody
-from contact.stepping.scheme import Scheme, generalised_alpha
+from contact.stepping.scheme import Scheme
 from contact.stepping.state import RunState, make_run, make_samples
 from fem.model.model import build_model
 from fem.runtime.arrays import FloatArray
@@ -73,9 +73,9 @@ def free_run(
     body: ModalBody | FullBody,
     *,
     step: float,
-    scheme: Scheme | None = None,
+    scheme: Scheme,
     velocity: FloatArray | None = None,
-    modal_position: FloatArray | None = None,
+    modal_position: float = 0.0,
     height: float = 0.0,
     springs: FloatArray | None = None,
     until: float = math.inf,
@@ -84,18 +84,18 @@ def free_run(
 
     Args:
         step: [s].
-        scheme: of time stepping; None: generalised-alpha, spectral radius 0.5.
-        velocity: of the coordinates at t = 0; None: at rest.
-        modal_position: amplitudes of a modal body's modes at t = 0; None: undeformed.
+        scheme: of time stepping.
+        velocity: of the nodes of a full body at t = 0, (n, 2) [m/s]; None: at rest.
+        modal_position: amplitude of a modal body's modes at t = 0.
         height: above its place on the floor at t = 0 [m].
         springs: (n,) contact springs, without damping and friction [N/m]; None: negligible ones.
         until: an instant at which a step ends [s].
     """
-    full = isinstance(body, FullBody)
-    coordinates = body.coordinates if isinstance(body, FullBody) else 3 + body.stiffness.size
-    points = len(body.base) if isinstance(body, FullBody) else len(body.point)
+    if isinstance(body, FullBody):
+        coordinates, points, (x, z) = body.coordinates, len(body.base), body.centroid
+    else:
+        coordinates, points, (x, z) = 3 + body.stiffness.size, len(body.point), body.rest
     old, new = (make_state(coordinates, points, 0) for _ in range(2))
-    x, z = body.centroid if isinstance(body, FullBody) else body.rest
     stance = Stance(
         centre=(float(x), float(z) + height),
         rotation=0.0,
@@ -107,18 +107,16 @@ def free_run(
         unstrained = np.zeros((2 * points, len(body.elements.nodes), 2))
         compliance = np.zeros((2 * points, 2 * points))
         body.place(old, stance, StaticResponse(displacement=unstrained, compliance=compliance), 0.0)
-    else:
-        modal_body.place(body, old, stance, 0.0)
-    if velocity is not None:
-        old.velocity[:] = np.ravel(velocity)
-    if modal_position is not None:
-        old.position[3:] = modal_position
-    if isinstance(body, FullBody):
+        if velocity is not None:
+            old.velocity[:] = velocity.ravel()
         body.start(old, 0.0)
     else:
-        modal_body.start(body, old, 0.0)
+        modal_kernels.place(body, old, stance, 0.0)
+        old.position[3:] = modal_position
+        modal_kernels.start(body, old, 0.0)
+    samples = coordinates if isinstance(body, ModalBody) else 0
     run = make_run(
-        scheme=generalised_alpha(0.5) if scheme is None else scheme,
+        scheme=scheme,
         contact=_contact(np.full(points, 1.0) if springs is None else springs, body.mass),
         motion=as_floor_motion(UNIFORM, (0.0, 0.0, 0.0)),
         breaks=np.full(1, until),
@@ -133,16 +131,16 @@ def free_run(
         old=old,
         new=new,
         work=make_workspace(points),
-        history=make_samples(1e6 * step, 8, points, columns=True, position=0 if full else coordinates),
+        history=make_samples(1e6 * step, 8, points, columns=True, position=samples),
         frames=make_samples(math.inf, 8, points),
     )
     return Flight(body=body, run=run, step=step, first_energy=float(old.energy[:2].sum()))
 
 
-def full_body(elements: FiniteElements, *, gravity: float = 1e-3, damping: float = 0.0) -> FullBody:
+def full_body(elements: FiniteElements, *, gravity: float = 1e-3) -> FullBody:
     """A body of these elements on the ends of its base, nearly without weight."""
     ends, no_monitors = elements.base_nodes[[0, -1]], elements.base_nodes[:0]
-    return FullBody(elements, ends, no_monitors, gravity=gravity, damping=damping)
+    return FullBody(elements, ends, no_monitors, gravity=gravity, damping=0.0)
 
 
 def _contact(springs: FloatArray, mass: float) -> Contact:

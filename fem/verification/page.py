@@ -1,16 +1,15 @@
 """The verification table for people: lines for a terminal, and one self-contained page with convergence plots."""
 
 import datetime as dt
-import io
 import math
 from collections.abc import Sequence
 from typing import Any
 
-import matplotlib
 import numpy as np
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
+from fem.figures.style import house_style, svg_of
 from fem.html.page import render_page, svg_element
 from fem.html.units import ABSENT, short, typeset
 from fem.runtime.arrays import FloatArray
@@ -66,23 +65,19 @@ def convergence_plot(convergence: Convergence, prefix: str = "plot") -> Markup:
     `prefix` keeps the ids of plots in one page apart.
     """
     sizes, errors = np.array(convergence.sizes), np.array(convergence.errors)
-    # Text stays text: a small file, and the same bytes every time.
-    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "unanchored", "font.size": 9}):
+    with house_style():
         figure = Figure(figsize=(3.6, 2.7), layout="constrained")
-        axes = figure.add_subplot()
+        axes = figure.add_subplot(xlabel=convergence.against, ylabel="error")
         axes.loglog(sizes, errors, "o-", color="#20507a", label=f"observed {convergence.observed:.2f}")
         guide = errors[np.argmin(sizes)] * (sizes / sizes.min()) ** convergence.expected
         axes.loglog(sizes, guide, "--", color="#999999", label=f"order {convergence.expected:g}")
         axes.set_xticks(sizes, _labels(sizes), rotation=30)
         axes.set_xticks([], minor=True)
-        axes.set_xlabel(convergence.against)
-        axes.set_ylabel("error")
+        axes.margins(0.05)
         axes.grid(visible=True, which="both", linewidth=0.3)
         axes.legend(frameon=False)
-        stream = io.StringIO()
-        figure.savefig(stream, format="svg", metadata={"Date": None})
     label = f"error over {convergence.against}, observed order {convergence.observed:.2f}"
-    return svg_element(stream.getvalue(), label=label, prefix=prefix)
+    return svg_element(svg_of(figure), label=label, prefix=prefix)
 
 
 def _plots(topic: str, checks: Sequence[ComputedCheck]) -> list[tuple[str, Markup]]:

@@ -154,12 +154,6 @@ def check(topic: str, title: str, *, quick: bool = True) -> Callable[[Callable[[
     return lambda rows: Check(topic=topic, title=title, rows=rows, quick=quick)
 
 
-def failed_row(check: Check, error: Exception) -> Row:
-    """The row of a check that could not be computed."""
-    reason = f"{type(error).__name__}: {error}"
-    return analytic(check.title, "computed at all", math.nan, source="", absolute=0.0, note=reason)
-
-
 def _plain(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}

@@ -14,8 +14,9 @@ import numpy as np
 from contact.interface.equilibrium import Stance
 from contact.motion.kernel import FloorMotion, floor_motion
 from contact.reference.rigid_block import RigidBlock
-from contact.stepping import modal_body
+from contact.stepping import modal_kernels
 from contact.stepping.modal_body import ModalBody
+from fem.assessment.rigid_check import block_of
 from fem.assessment.verdict import outcome_of
 from fem.case.case import Case, read_case
 from fem.model.container import Container
@@ -104,15 +105,7 @@ class Finished:
     @property
     def block(self) -> RigidBlock:
         """The analytic block with the mass, centroid and inertia of the mesh."""
-        mesh = self.model.container.mesh
-        half, height = 0.5 * mesh.width, mesh.centroid[1]
-        square = half**2 + height**2
-        return RigidBlock(
-            half_width=half,
-            centroid_height=height,
-            gravity=self.model.case.gravity_m_s2,
-            inertia_ratio=1.0 + mesh.inertia / (mesh.mass * square),
-        )
+        return block_of(self.model)
 
 
 def run(case: Case, values: Mapping[str, Any] | None = None, container: Container | None = None) -> Finished:
@@ -170,7 +163,7 @@ def with_motion(model: Model, motion: FloorMotion, breaks: tuple[float, ...] = (
     state.position[0] += floor - before
     state.velocity[0] += speed - speed_before
     model.run.floor[:] = floor, speed, acceleration
-    modal_body.start(_modal(model), state, floor)
+    modal_kernels.start(_modal(model), state, floor)
     ends = np.array([*breaks, model.case.solver.duration_s, np.inf])
     return replace(model, run=model.run._replace(motion=motion, breaks=ends))
 
@@ -187,8 +180,8 @@ def lifted(model: Model, height: float, speed: float) -> Model:
         angular_velocity=0.0,
         force=state.force.copy(),
     )
-    modal_body.place(_modal(model), state, stance, 0.0)
-    modal_body.start(_modal(model), state, float(model.run.floor[0, 0]))
+    modal_kernels.place(_modal(model), state, stance, 0.0)
+    modal_kernels.start(_modal(model), state, float(model.run.floor[0, 0]))
     return model
 
 

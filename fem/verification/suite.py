@@ -4,6 +4,7 @@ A check that cannot be computed gives a row that fails, with the reason; the oth
 """
 
 import difflib
+import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -21,7 +22,7 @@ from fem.verification import (
     statics,
     time_stepping,
 )
-from fem.verification.rows import Check, Row, failed_row
+from fem.verification.rows import Check, Row, analytic
 from fem.verification.runs import STACK, run
 
 MODULES = (
@@ -64,7 +65,7 @@ class ComputedCheck:
 
 @dataclass(frozen=True, kw_only=True)
 class SuiteResult:
-    """Result of the suite, or of a part of it."""
+    """The computed checks."""
 
     quick: bool
     checks: tuple[ComputedCheck, ...]
@@ -143,5 +144,6 @@ def _compute(check: Check) -> ComputedCheck:
     try:
         rows = tuple(check.rows())
     except (ArithmeticError, ValueError, RuntimeError, LookupError) as error:
-        rows = (failed_row(check, error),)
+        reason = f"{type(error).__name__}: {error}"
+        rows = (analytic(check.title, "computed at all", math.nan, source="", absolute=0.0, note=reason),)
     return ComputedCheck(topic=check.topic, title=check.title, rows=rows, seconds=time.perf_counter() - began)

@@ -40,6 +40,7 @@ SCHEMES = {
     TRAPEZOIDAL: newmark(0.25, 0.5),
 }
 CHUNG_HULBERT = "Chung and Hulbert 1993"
+MODELS: dict[str, Keys] = {"rigid stack": {}, "solid stack, 20 modes": SOLID}
 OMEGA, DAMPING = 2.0 * math.pi, 0.05  #: of the oscillator
 SPIN = 20.0  #: of a block thrown into the air [rad/s]
 #: rocks, slides and strikes for 5 s
@@ -105,8 +106,7 @@ def energy_closure() -> Iterator[Row]:
     """The energy balance closes with the square of the step if nothing opens, slides or strikes."""
     vibrating = {"initial.velocity_m_s": 1e-3, "contact.damping_ratio": 0.0, "solver.duration_s": 0.1}
     kinetic = 0.5 * 1e4 * 1e-6
-    models: dict[str, Keys] = {"rigid stack": {}, "solid stack, 20 modes": SOLID}
-    for name, values in models.items():
+    for name, values in MODELS.items():
         errors: dict[float, float] = {}
         for step in (2e-4, 1e-4, 5e-5, 2.5e-5):
             model = build_model(STACK.with_values(values | vibrating))
@@ -147,9 +147,8 @@ def spin() -> Iterator[Row]:
 @check("time", "mirror symmetry")
 def mirror() -> Iterator[Row]:
     """The floor's motion mirrored: the container's motion mirrored."""
-    models: dict[str, Keys] = {"rigid stack": {}, "solid stack, 20 modes": SOLID}
     note = "sin(Omega t + pi) is -sin(Omega t) except for rounding"
-    for name, values in models.items():
+    for name, values in MODELS.items():
         one, other = (run(STACK, VIOLENT | values | {"motion.phase_rad": phase}) for phase in (0.0, math.pi))
         case = f"{name}, slide-rocking for 5 s, floor mirrored"
         yield same_rotation(case, one, -other.history["rotation_rad"], source="symmetry", note=note)
@@ -213,7 +212,7 @@ def oscillator(omega: float, damping_ratio: float) -> ModalBody:
 def oscillator_error(scheme: Scheme, step: float, end: float) -> float:
     """Error of position and velocity over the amplitude after a time, from an amplitude of one."""
     flight = free_run(
-        oscillator(OMEGA, DAMPING), step=step, scheme=scheme, modal_position=np.ones(1), until=end
+        oscillator(OMEGA, DAMPING), step=step, scheme=scheme, modal_position=1.0, until=end
     ).advance(end)
     t, rate, decay = flight.time, OMEGA * math.sqrt(1.0 - DAMPING**2), DAMPING * OMEGA
     envelope = math.exp(-decay * t)

@@ -5,13 +5,14 @@ whole process `python -m fem run` without fields.
 """
 
 import os
+import statistics
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 import numpy as np
-from measuring import Figure, at_most, median_of, report, stepped
+from measuring import Figure, Stepped, at_most, report, stepped
 
 from fem.case.case import Case, load_case
 from fem.model.container import Container, discretise
@@ -25,10 +26,10 @@ CASES = ("seed_stack", "rocking")
 DURATIONS, MODES = (5.0, 10.0, 20.0, 40.0), (10, 20, 40, 80)
 
 
-def cost(case: Case, container: Container) -> tuple[float, int]:
-    """Median CPU seconds of stepping, and steps."""
+def cost(case: Case, container: Container) -> tuple[float, Stepped]:
+    """Median CPU seconds of stepping, and one of the runs."""
     runs = [stepped(case, container) for _ in range(REPEATS)]
-    return median_of(REPEATS, iter([run.cpu_s for run in runs]).__next__), runs[0].steps
+    return statistics.median(run.cpu_s for run in runs), runs[0]
 
 
 def growth(sizes: tuple[float, ...], costs: list[float]) -> float:
@@ -55,10 +56,9 @@ def single_runs() -> list[Figure]:
         for name in CASES:
             case = load_case(name, [f"support.kind={kind}", f"solver.duration_s={DURATION}"])
             container = discretise(case)
-            run = stepped(case, container)
-            cpu, steps = cost(case, container)
+            cpu, run = cost(case, container)
             what = f"{name}, {kind}, {container.support.index.size} contact nodes"
-            details = f"{steps}, {100.0 * run.rejected_share:.1f} %, {run.rotation_ratio:.4f}"
+            details = f"{run.steps}, {100.0 * run.rejected_share:.1f} %, {run.rotation_ratio:.4f}"
             figures += [
                 at_most(f"{what}: CPU s", cpu, limit, ".3f"),
                 Figure(f"{what}: steps, rejected, rotation ratio", details),
@@ -74,8 +74,8 @@ def scaling() -> list[Figure]:
     by_modes = []
     for count in MODES:
         case = base.with_values({"solver.elastic_modes": count, "solver.duration_s": DURATION})
-        cpu, steps = cost(case, discretise(case))
-        by_modes.append(1e6 * cpu / steps)
+        cpu, run = cost(case, discretise(case))
+        by_modes.append(1e6 * cpu / run.steps)
     in_time, in_modes = growth(DURATIONS, by_duration), growth(tuple(map(float, MODES)), by_modes)
     limit = 1.0 + EXPONENT
     seconds, each = (

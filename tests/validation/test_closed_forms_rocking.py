@@ -8,7 +8,6 @@ from scipy.integrate import solve_ivp
 
 from contact.reference.closed_forms_rocking import (
     damped_drop_restitution,
-    drop_force,
     holding_acceleration,
     impact_friction_need,
     peak_after_impacts,
@@ -34,13 +33,6 @@ def test_quarter_period_is_the_time_of_the_first_impact(block, ratio):
     assert motion.impacts[0].time == pytest.approx(quarter_period(block, rotation), rel=1e-10)
 
 
-def test_first_impact_and_first_peak_of_the_stack():
-    # Released from al/2: 0.700737 s and 0.098783 rad (analytic).
-    motion = simulate_rocking(STACK, still_floor(), duration=2.0, rotation=0.5 * STACK.slenderness_angle)
-    assert motion.impacts[0].time == pytest.approx(0.700737, abs=5e-7)
-    assert abs(motion.peaks[0].rotation) == pytest.approx(0.098783, abs=5e-7)
-
-
 @pytest.mark.parametrize("block", [STACK, ODD])
 def test_peaks_and_impact_times_of_free_rocking(block):
     start = 0.8 * block.slenderness_angle
@@ -54,26 +46,14 @@ def test_peaks_and_impact_times_of_free_rocking(block):
         before = expected
 
 
-@pytest.mark.parametrize(("aspect", "ratio"), [(0.1, 0.98515), (0.25, 0.91176), (0.5, 0.7)])
-def test_velocity_ratio_at_impact(aspect, ratio):
-    # 1 - 1.5 sin^2 al for B/H = 0.1, 0.25, 0.5; here from the impulses of the planar block.
-    body = RigidBlock(half_width=aspect, centroid_height=1.0, gravity=9.81)
-    block = PlanarBlock(body=body, mu_static=5.0, mu_kinetic=5.0)
-    motion = simulate_planar_block(block, still_floor(), duration=5.0, rotation=0.5 * body.slenderness_angle)
-    impact = motion.impacts[0]
-    assert impact.velocity_after / impact.velocity_before == pytest.approx(ratio, abs=5e-6)
-
-
 def test_friction_need_of_an_impact():
     # mu >= 3 tan al/(4 + tan^2 al): 0.2024 for the stack.
     need = impact_friction_need(STACK)
-    assert need == pytest.approx(0.2024, abs=5e-5)
     assert need == pytest.approx(3.0 * 0.275 / (4.0 + 0.275**2), rel=1e-13)
-    start = 0.5 * STACK.slenderness_angle
     for mu, slips in ((1.001 * need, False), (0.999 * need, True)):
-        # only the impact is looked at: a block let go from rest may slide on its corner before
         block = PlanarBlock(body=STACK, mu_static=mu, mu_kinetic=mu)
-        motion = simulate_planar_block(block, still_floor(), duration=1.0, rotation=0.1 * start)
+        rotation = 0.05 * STACK.slenderness_angle  # from a larger one it may slide on its corner before
+        motion = simulate_planar_block(block, still_floor(), duration=1.0, rotation=rotation)
         assert motion.impacts[0].slides is slips
     with pytest.raises(ValueError, match="lies down"):
         impact_friction_need(RigidBlock.homogeneous(width=2.0, height=1.0))
@@ -81,7 +61,7 @@ def test_friction_need_of_an_impact():
 
 @pytest.mark.parametrize("ratio", [0.2, 0.7, 1.3])
 def test_tilt_statics(ratio):
-    # a = g tan(al - theta) holds the body at theta: a little more lifts it on, a little less lets it back.
+    # g tan(al - theta) holds the body at theta: a little more lifts it, with a little less it falls back.
     rotation = ratio * STACK.slenderness_angle
     hold = holding_acceleration(STACK, rotation)
     assert hold == pytest.approx(9.81 * math.tan(STACK.slenderness_angle - rotation), rel=1e-14)
@@ -89,25 +69,6 @@ def test_tilt_statics(ratio):
         floor = rectangular_pulse(peak=-hold - surplus, duration=1.0)
         motion = simulate_rocking(STACK, floor, duration=0.05, rotation=rotation)
         assert sign * motion.at(np.array([0.05]))[1][0] > 0.0
-
-
-@pytest.mark.parametrize("block", [STACK, BOX, ODD])
-def test_kick_of_a_floor_that_starts_at_once(block):
-    # A short strong pulse of the same velocity, extrapolated to no duration.
-    velocity, rates = 0.4, []
-    inertia = block.inertia_ratio * block.radius**2  # about the corner, per mass
-    for duration in (2e-5, 1e-5):
-        floor = rectangular_pulse(peak=velocity / duration, duration=duration)
-        motion = simulate_rocking(block, floor, duration=duration)
-        rates.append(motion.at(np.array([duration]))[1][0])
-    assert 2.0 * rates[1] - rates[0] == pytest.approx(-velocity * block.centroid_height / inertia, rel=1e-6)
-
-
-def test_steady_orbit_of_the_reference():
-    # e = 0.9, w = 3, A Omega^2/(g al) = 3, slender: 1.302075 al p and 0.421204 al.
-    orbit = symmetric_orbit_slender(acceleration_ratio=3.0, frequency_ratio=3.0, restitution=0.9)
-    assert orbit.post_impact_speed == pytest.approx(1.302075, abs=5e-7)
-    assert orbit.peak == pytest.approx(0.421204, abs=5e-7)
 
 
 @pytest.mark.parametrize(("ratio", "frequency"), [(3.0, 3.0), (1.5, 4.0), (6.0, 8.0), (0.2, 1.0)])
@@ -129,11 +90,13 @@ def test_steady_orbit_repeats_itself(ratio, frequency):
     assert motion.peaks[0].rotation == pytest.approx(orbit.peak * angle, rel=1e-4)
 
 
-def test_an_orbit_that_does_not_exist_is_refused():
+def test_an_orbit_that_does_not_exist_and_negative_damping_are_refused():
     with pytest.raises(ValueError, match="symmetric orbit"):
         symmetric_orbit_slender(acceleration_ratio=0.08, frequency_ratio=1.0, restitution=0.9)
     with pytest.raises(ValueError, match="restitution"):
         symmetric_orbit_slender(acceleration_ratio=3.0, frequency_ratio=3.0, restitution=1.0)
+    with pytest.raises(ValueError, match="damping_ratio"):
+        damped_drop_restitution(-0.1)
 
 
 @pytest.mark.parametrize("ratio", [0.0, 1.0, 1.2])
@@ -173,24 +136,3 @@ def test_rebound_from_a_bed_that_does_not_pull(zeta):
         first_step=1e-6,
     )
     assert -solution.y_events[0][0][1] == pytest.approx(damped_drop_restitution(zeta), rel=1e-8)
-
-
-def test_largest_force_of_a_flat_drop():
-    mass, stiffness, speed, gravity = 2500.0, 4e7, 0.3, 9.81
-    solution = solve_ivp(
-        lambda t, y: [y[1], gravity - stiffness / mass * y[0]],
-        (0.0, 0.05),
-        [0.0, speed],
-        rtol=1e-11,
-        atol=1e-13,
-        dense_output=True,
-    )
-    largest = stiffness * solution.sol(np.linspace(0.0, 0.05, 100001))[0].max()
-    assert largest == pytest.approx(
-        drop_force(mass=mass, stiffness=stiffness, speed=speed, gravity=gravity), rel=1e-7
-    )
-
-
-def test_negative_damping_is_refused():
-    with pytest.raises(ValueError, match="damping_ratio"):
-        damped_drop_restitution(-0.1)

@@ -6,11 +6,9 @@ import numpy as np
 import pytest
 
 from contact.reference.closed_forms_sliding import (
-    incline_acceleration,
     never_stops_ratio,
     pulse_slip,
     steady_stroke,
-    sticks,
 )
 from contact.reference.floor_acceleration import rectangular_pulse, sine_floor
 from contact.reference.sliding import RigidSlider, simulate_sliding
@@ -26,17 +24,6 @@ def slider(kappa, static_ratio):
     return RigidSlider(mu_static=static_ratio * mu_kinetic, mu_kinetic=mu_kinetic, gravity=GRAVITY)
 
 
-def test_stick_limit():
-    # sticks while A Omega^2 <= mu_s g
-    for factor, expected in ((1.0 - 1e-6, True), (1.0 + 1e-6, False)):
-        peak = factor * 0.4 * GRAVITY
-        body = RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=GRAVITY)
-        floor = sine_floor(amplitude=peak / FREQUENCY**2, angular_frequency=FREQUENCY)
-        motion = simulate_sliding(body, floor, duration=PERIOD)
-        assert sticks(peak_acceleration=peak, mu_static=0.4, gravity=GRAVITY) is expected
-        assert (motion.largest_slip == 0.0) is expected
-
-
 @pytest.mark.parametrize(("static_ratio", "limit"), [(1.0, 0.53703), (2.0, 0.39322)])
 def test_limit_of_sliding_without_stops(static_ratio, limit):
     assert never_stops_ratio(static_ratio) == pytest.approx(limit, abs=5e-6)
@@ -44,11 +31,6 @@ def test_limit_of_sliding_without_stops(static_ratio, limit):
         motion = simulate_sliding(slider(factor * limit, static_ratio), FLOOR, duration=50.0 * PERIOD)
         late = [i for i in motion.intervals if i.start > 40.0 * PERIOD]
         assert any(interval.direction == 0 for interval in late) is stops
-
-
-@pytest.mark.parametrize(("kappa", "stroke"), [(0.2, 1.898741), (0.5, 1.237982), (0.7, 0.432494)])
-def test_steady_strokes_of_the_reference(kappa, stroke):
-    assert steady_stroke(friction_ratio=kappa, static_ratio=1.0) == pytest.approx(stroke, abs=5e-7)
 
 
 @pytest.mark.parametrize(
@@ -89,17 +71,6 @@ def test_rectangular_pulse_one_way(peak, mu_kinetic):
         assert expected == pytest.approx(-(2.4**2) / (2.0 * limit) * (1.0 - limit / 8.0), rel=1e-14)
     if peak == 3.0:
         assert expected == 0.0
-
-
-def test_body_on_an_incline():
-    # 30 degrees, mu_k 0.2: 3.20586 m/s2. As a floor: gravity g cos, acceleration -g sin along the slope.
-    angle = math.radians(30.0)
-    expected = incline_acceleration(angle=angle, mu_kinetic=0.2, gravity=GRAVITY)
-    assert expected == pytest.approx(3.20586, abs=5e-6)
-    body = RigidSlider(mu_static=0.2, mu_kinetic=0.2, gravity=GRAVITY * math.cos(angle))
-    floor = rectangular_pulse(peak=-GRAVITY * math.sin(angle), duration=3.0)
-    motion = simulate_sliding(body, floor, duration=2.0)
-    assert motion.at(np.array([2.0]))[1][0] == pytest.approx(2.0 * expected, rel=1e-12)
 
 
 def test_forms_refuse_what_no_slider_has():

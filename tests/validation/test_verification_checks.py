@@ -19,24 +19,7 @@ def test_every_row_of_a_verification_check_passes(check):
     assert not failed
 
 
-def test_the_suite_is_complete():
-    topics = {
-        "statics": 2,
-        "elasticity": 9,
-        "time": 9,
-        "contact": 7,
-        "sliding": 10,
-        "rocking": 6,
-        "restitution": 4,
-        "overturning": 5,
-        "limits": 8,
-    }
-    found = [check.topic for check in CHECKS]
-    assert {topic: found.count(topic) for topic in dict.fromkeys(found)} == topics
-    assert list(dict.fromkeys(found)) == list(topics)
+def test_no_check_is_lost_or_called_as_another():
     assert len({check.title for check in CHECKS}) == len(CHECKS) == 60
-    assert [check.title for check in CHECKS if not check.quick] == [
-        "manufactured solution, dynamic",
-        "impact of a bar",
-        "full model",
-    ]
+    slow = ["manufactured solution, dynamic", "impact of a bar", "full model"]
+    assert [check.title for check in CHECKS if not check.quick] == slow

@@ -1,7 +1,7 @@
 """A stepped rigid block on two springs and dashpots against the exact rocking block.
 
-Contact damping 2 makes an impact plastic at the corner (Housner, 1963). The penalty is varied: the bounce
-frequency on it is a third, once and three times the one that a case chooses.
+Contact damping 2 makes an impact plastic at the corner (Housner, 1963). The bounce frequency on the penalty is once
+and three times the one that a case chooses.
 """
 
 import math
@@ -17,10 +17,9 @@ from contact.stepping.integrator import OVERTURNED, advance_compiled
 
 STACK = Block()
 AMPLE = replace(STACK, mu_static=1.0, mu_kinetic=1.0)
-STIFFNESSES = [40.0, 117.0, 350.0]  #: a third, once and three times the one chosen for the stack [Hz]
 
 
-def released(block: Block, share: float, **options) -> Rig:
+def released(block: Block, share: float) -> Rig:
     """Tilted to a share of the slenderness angle, let go."""
     stance = tilted(
         rotation=share * block.slenderness_angle,
@@ -34,12 +33,7 @@ def released(block: Block, share: float, **options) -> Rig:
         normal_stiffness=block.contact().normal_stiffness,
         mu_static=block.mu_static,
     )
-    return rig(block, stance=stance, **options)
-
-
-def shaken(block: Block, *, amplitude: float, omega: float, until: float, start_moving: bool = True) -> Rig:
-    motion = HarmonicMotion(amplitude=amplitude, angular_frequency=omega, duration=100.0)
-    return rig(block, motion=motion, start_moving=start_moving).advance(until)
+    return rig(block, stance=stance)
 
 
 # Housner's e = 1 - (3/2) sin^2 of the slenderness angle, c/a = 1.5, 2, 2.5, 3.64.
@@ -55,18 +49,6 @@ def test_restitution_on_two_corners_is_housners(height, printed, frequency):
     run = released(block, 0.5).advance(4.0)
     assert run.track.restitution_by_peaks == pytest.approx(exact, abs=5e-3)
     assert run.track.restitution_by_velocity == pytest.approx(exact, abs=5e-3)
-
-
-@pytest.mark.parametrize("frequency", STIFFNESSES)
-def test_the_stack_under_the_codes_plateau_rocks_without_slip_and_stands(frequency):
-    # Event-driven block: 0.399 of the slenderness angle in 8 s, 0.38 to 0.43 for restitution 0.85 to 0.96.
-    block = replace(STACK, mu_kinetic=0.2, bounce_frequency=frequency)
-    run = shaken(block, amplitude=4.0 / 6.928**2, omega=6.928, until=8.0)
-    ratio = run.track.max_rotation / block.slenderness_angle
-    assert 0.38 <= ratio <= 0.43
-    if frequency >= 117.0:
-        assert ratio == pytest.approx(0.399, abs=2e-3)
-    assert run.track.max_slip < 1e-4 * block.width
 
 
 @pytest.mark.parametrize("share", [0.99, 1.01])

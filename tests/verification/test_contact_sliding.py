@@ -13,7 +13,6 @@ from block_on_floor import GRAVITY, Block, Rig, piecewise_motion, rig
 
 from contact.interface.solver import FloatArray
 from contact.motion.base_motion import HarmonicMotion, PulseMotion
-from contact.stepping.ledger import FRICTION
 from contact.stepping.state import ROW_CENTRE_X
 
 #: the single box of the seed paper; 158 Hz is the penalty that a case chooses for it
@@ -36,15 +35,6 @@ def test_slip_leaves_out_the_elastic_stick():
     assert moved - float(run.clock.slip) == pytest.approx(stick, rel=0.02)
 
 
-def test_friction_heat_is_kinetic_friction_times_the_path():
-    block = replace(BOX, mu_static=0.2)
-    motion = HarmonicMotion(amplitude=AMPLITUDE, angular_frequency=12.0, duration=10.0)
-    run = rig(block, motion=motion).advance(5.0)
-    assert run.track.slip_travel > 0.5
-    expected = 0.2 * block.mass * GRAVITY * run.track.slip_travel
-    assert run.run.ledger[FRICTION] == pytest.approx(expected, rel=1e-5)
-
-
 def steady(run: Rig, period: float) -> FloatArray:
     """Slip over the last cycle [m]."""
     return run.slip[-round(period / run.run.history.interval) - 1 :]
@@ -53,7 +43,7 @@ def steady(run: Rig, period: float) -> FloatArray:
 def shaken(block: Block, angular_frequency: float, cycles: float, **options) -> Rig:
     period = 2.0 * math.pi / angular_frequency
     motion = HarmonicMotion(amplitude=AMPLITUDE, angular_frequency=angular_frequency, duration=1e3)
-    return rig(block, motion=motion, sampled=period / 200.0, samples=8000, **options).advance(cycles * period)
+    return rig(block, motion=motion, sampled=period / 200.0, **options).advance(cycles * period)
 
 
 def test_the_error_of_a_stroke_falls_with_the_stiffness_of_the_stick():
@@ -86,11 +76,6 @@ def test_a_stuck_block_does_not_creep(share, stairs, sign):
     assert np.ptp(run.slip[after]) <= 1e-12
     assert np.ptp(leaning[after]) <= 1e-11
     assert abs(run.slip[-1]) < 1e-5
-
-
-def test_above_the_limit_it_slides():
-    run = rig(BOX, motion=constant_pull(1.02 * 0.4 * GRAVITY)).advance(1.0)
-    assert run.slip_velocity == pytest.approx(-(1.02 * 0.4 - 0.2) * GRAVITY, rel=0.1)
 
 
 def test_a_slip_distance_for_weakening_shortens_the_stroke_and_nothing_else():

@@ -1,20 +1,13 @@
 """The reduced model between its limits: the full model as modes are added, the rigid one as stiffness grows."""
 
-from functools import cache
-
 import numpy as np
-from container_runs import difference, stack, velocity_ratio
+from container_runs import difference, stack
 
 from fem.verification.runs import Finished, run
 
 #: softer than the default, so that f1/f_c is 11, 34, 107; held, so that only the container changes [Pa/m]
 PENALTY = 4.577e8
 MODULI = (1e11, 1e12, 1e13)
-
-
-@cache
-def shell_with(modes: int) -> Finished:
-    return run(stack("shell", solver__elastic_modes=modes, solver__duration_s=1.3))
 
 
 def solid_with(**values: object) -> Finished:
@@ -25,18 +18,16 @@ def solid_with(**values: object) -> Finished:
 
 def test_motion_converges_with_the_number_of_modes() -> None:
     # Attachment modes carry the local deformation under the corners, so even no elastic mode at all is close.
-    full = run(stack("shell", solver__model="full", solver__duration_s=1.3))
-    errors = {modes: difference(shell_with(modes), full) for modes in (0, 2, 5, 20, 40)}
+    shell = stack("shell", solver__duration_s=1.3)
+    full = run(shell.with_values({"solver.model": "full"}))
+    errors = {
+        modes: difference(run(shell.with_values({"solver.elastic_modes": modes})), full)
+        for modes in (0, 2, 5, 20)
+    }
     assert errors[0] <= 0.01
     assert errors[5] <= 1e-3
     assert errors[20] <= 3e-4
-    assert errors[40] <= 3e-4
     assert errors[0] > 2.0 * errors[2] > 4.0 * errors[5]
-
-
-def test_velocity_ratio_does_not_depend_on_the_number_of_modes_beyond_five() -> None:
-    ratios = [velocity_ratio(shell_with(modes)) for modes in (5, 10, 20, 40, 80)]
-    assert np.ptp(ratios) < 1e-3
 
 
 def test_rigid_is_the_limit_of_reduced_through_an_impact() -> None:

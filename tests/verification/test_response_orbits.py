@@ -118,7 +118,7 @@ def test_rest_and_rocking_coexist_below_uplift_and_rest_ends_at_uplift():
     # A Omega^2 = g tan al is where rest ends on the way up; the rocking motion is kept on the way down.
     uplift = math.sqrt(GRAVITY * math.tan(BLOCK.slenderness_angle) / 0.08) / (2.0 * math.pi)
     request = request_of(first=0.85 * uplift, last=1.25 * uplift, count=5)
-    points = [point for point, _ in sweep_points(request)]
+    points = [point for point, _ in sweep_points(request, discretise(request.case))]
     up, down = points[:5], points[5:]
     frequencies = request.frequencies
     assert [point.motion == "rest" for point in up] == [bool(f < uplift) for f in frequencies]

@@ -90,12 +90,3 @@ def test_the_imbalance_of_rocking_falls_with_the_tolerance():
     assert errors[0] <= 1e-2
     assert errors[1] <= 0.5 * errors[0]
     assert errors[2] <= 0.5 * errors[1]
-
-
-def test_the_step_control_never_lets_the_scheme_win_energy_by_rocking():
-    # No base work, nothing but losses: the total of the container's energy may only fall.
-    block = Block(mu_static=1.0, mu_kinetic=1.0)
-    stance = block.standing().turning(0.4, block.point)
-    run = rig(block, stance=stance).advance(6.0)
-    assert run.track.impacts >= 3
-    assert float(run.clock.least_imbalance) >= -1e-4 * block.reference_energy

@@ -57,7 +57,6 @@ RESULT = RunResult(
     ),
     wall_s=1.9,
 )
-FOLDER = Path("outputs/stack")
 
 
 def case(*overrides: str) -> Case:
@@ -77,7 +76,7 @@ def with_value(block, keys, value):
     return replace(block, **{first: with_value(getattr(block, first), rest, value) if rest else value})
 
 
-def text_of(result: RunResult, folder: Path = FOLDER) -> str:
+def text_of(result: RunResult, folder: Path = Path("outputs/stack")) -> str:
     return plain_summary(result, folder=folder)
 
 
@@ -110,9 +109,9 @@ def test_only_the_own_motion_is_compared_with_the_run():
     assert rules[2:] == ["slides", "overturns", "slides", "overturns"]
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
+def test_the_summary_holds_what_the_run_found_in_units_for_people():
+    text = words_of()
+    for words in (
         "6.14 degrees, 0.399 of the slenderness angle",
         "0.02, -0.01, 0.03 mm",
         "117.6 mm",
@@ -120,10 +119,8 @@ def test_only_the_own_motion_is_compared_with_the_run():
         "0.895 (Housner 0.895)",
         "1e-05 of the 7300 J that it takes to overturn; numerical loss 0.05 J",
         "12000, 100 rejected, 23 unknowns",
-    ],
-)
-def test_the_summary_holds_what_the_run_found_in_units_for_people(words):
-    assert words in words_of()
+    ):
+        assert words in text
 
 
 @pytest.mark.parametrize(
@@ -170,13 +167,7 @@ def test_the_outcome_is_one_sentence(result, sentence):
 def test_a_run_is_never_called_safe_or_verified(outcome):
     result = changed(verdict__outcome=outcome)
     text = text_of(replace(result, warnings=tuple(warnings_for(result, CASE)))).lower()
-    for word in ("safe", "verified", "stable"):
-        assert word not in text
-
-
-def test_a_failed_run_shows_no_verdict():
-    text = words_of(status="failed", error="residual")
-    assert "No verdict: residual" in text and "did not overturn under this motion" not in text
+    assert not any(word in text for word in ("safe", "verified", "stable"))
 
 
 def test_overturning_is_what_the_run_found_when_it_overturned():
@@ -226,10 +217,6 @@ def test_titles_and_warnings_are_never_read_as_markup():
     assert text.startswith("[red]x[/oops]\n") and "Warning: [bold]w[/bold]" in text
 
 
-def test_a_sound_result_raises_no_warning():
-    assert warnings_for(RESULT, CASE) == []
-
-
 @pytest.mark.parametrize(
     ("result", "words"),
     [
@@ -242,10 +229,7 @@ def test_a_sound_result_raises_no_warning():
         (changed(numerics__max_penetration_m=1.6e-3), "penetration reached 1.6 mm"),
         (changed(energy__numerical_J=-0.4), "energy gain 5.5e-05"),
         (changed(energy__closure_error=6.5e-4), "energy balance error 4.75 J (limit 9.21 J)"),
-        (
-            changed(energy__closure_error=5.5e-4, energy__contact_damping_J=0.0),
-            "(limit 7.3 J)",
-        ),
+        (changed(energy__closure_error=5.5e-4, energy__contact_damping_J=0.0), "(limit 7.3 J)"),
         (changed(verdict__first_uplift_s=None), "a gap opened at the base at t = 0.1 s"),
         (changed(numerics__rejected=700), "6 % of the steps were rejected"),
         (changed(verdict__max_von_mises_Pa=2.4e8), "reached 240 MPa"),
@@ -272,6 +256,9 @@ def test_each_doubt_raises_its_own_warning_and_no_other(result, words):
 @pytest.mark.parametrize(
     "result",
     [
+        RESULT,
+        RunResult(status="failed"),
+        RunResult(status="running"),
         changed(static__housner_credible=None),
         changed(numerics__contact_frequency_Hz=30.0),
         changed(numerics__contact_frequency_Hz=31.0, verdict__impacts=0),
@@ -284,7 +271,7 @@ def test_each_doubt_raises_its_own_warning_and_no_other(result, words):
         changed(verdict__outcome="rest"),  # the static rule overturns: that is news, and no warning
     ],
 )
-def test_no_warning_on_the_good_side_of_a_limit(result):
+def test_no_warning_on_the_good_side_of_a_limit_or_without_results(result):
     assert warnings_for(result, CASE) == []
 
 
@@ -294,18 +281,19 @@ def test_creep_of_regularised_friction_is_estimated():
     regularised = case("contact.friction=regularised")
     (warning,) = warnings_for(result, regularised)
     assert "by 11 mm in 20 s" in warning
-    (beyond,) = warnings_for(RESULT, regularised)  # more than friction can carry: it slides anyway
+    (beyond,) = warnings_for(RESULT, regularised)  # more than friction can carry: it slides
     assert "creeps; friction = 'elastic-stick' does not" in beyond
 
 
-def test_rigid_model_has_no_elastic_frequency_to_warn_of():
-    result = changed(numerics__contact_frequency_Hz=900.0)
-    assert warnings_for(result, case("solver.model=rigid")) == []
-
-
-def test_solid_blocks_are_not_measured_against_the_yield_strength_of_a_steel_shell():
-    result = changed(verdict__max_von_mises_Pa=2.4e8)
-    assert warnings_for(result, case("container.section=solid")) == []
+@pytest.mark.parametrize(
+    ("result", "override"),
+    [
+        (changed(numerics__contact_frequency_Hz=900.0), "solver.model=rigid"),  # no elastic frequency
+        (changed(verdict__max_von_mises_Pa=2.4e8), "container.section=solid"),  # no steel that yields
+    ],
+)
+def test_no_warning_of_what_the_model_does_not_have(result, override):
+    assert warnings_for(result, case(override)) == []
 
 
 def test_a_container_too_soft_for_the_linear_model_raises_a_warning():
@@ -324,8 +312,3 @@ def test_a_contact_that_creeps_under_the_weight_raises_a_warning():
     creeping = case("contact.damping_ratio=20")
     (warning,) = [text for text in warnings_for(result, creeping) if "relaxes" in text]
     assert "in 0.18 s" in warning and "1/p = 0.5 s" in warning
-
-
-@pytest.mark.parametrize("result", [RunResult(status="failed"), RunResult(status="running")])
-def test_unfinished_results_raise_no_warning_and_no_error(result):
-    assert warnings_for(result, CASE) == []

@@ -1,4 +1,4 @@
-"""A sweep on a dask cluster: the same table as on this machine; who does not answer is told of at once."""
+"""A sweep on a dask cluster: the same table as here; a scheduler that does not answer is reported at once."""
 
 import socket
 import time
@@ -27,7 +27,7 @@ def test_a_cluster_gives_the_same_table(tmp_path, monkeypatch, capsys, address):
     capsys.readouterr()
 
 
-def test_a_scheduler_that_does_not_answer_is_told_of_within_seconds(tmp_path, monkeypatch, capsys):
+def test_a_scheduler_that_does_not_answer_is_reported_within_seconds(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     with socket.socket() as silent:  # listens, and says nothing
         silent.bind(("127.0.0.1", 0))

@@ -108,7 +108,7 @@ def test_a_case_that_cannot_be_computed_has_a_reason_and_no_outcome(cases):
     assert "gone.csv" in bad["reason"]
 
 
-def test_full_cases_run_in_processes_of_their_own():
+def test_full_cases_run_in_other_processes():
     case = load_case("seed_box", ["solver.model=full", "solver.duration_s=0.02", "output.fields_s=0"])
     (row,) = run_cases([case], jobs=1)
     assert row["status"] == "completed"

@@ -84,7 +84,7 @@ STUDIES = pytest.mark.parametrize(
 @pytest.fixture(autouse=True)
 def undrawn(monkeypatch):
     """Maps take four fifths of the time of so small a sweep, and are tested by themselves."""
-    monkeypatch.setattr("fem.sweep.run.draw_maps", lambda table, folder, **asked: [])
+    monkeypatch.setattr("fem.sweep.run.draw_maps", lambda table, folder, choice: [])
 
 
 def files_of(folder):

@@ -10,16 +10,8 @@ import pytest
 
 from contact.interface.solver import Workspace, make_workspace
 from contact.stepping.body import KINETIC, POTENTIAL, STRAIN, State, make_state
-from contact.stepping.modal_body import (
-    ModalBody,
-    complete,
-    gather_force,
-    observe,
-    predict,
-    release,
-    respond,
-)
-from contact.stepping.modal_body import make_modal_body as build
+from contact.stepping.modal_body import ModalBody, make_modal_body
+from contact.stepping.modal_kernels import complete, gather_force, observe, predict, release, respond
 from contact.stepping.scheme import Scheme, generalised_alpha, newmark
 
 MASS, INERTIA, GRAVITY = 1e4, 1.434e4, 9.81
@@ -33,7 +25,7 @@ SCHEMES = {"generalised-alpha": generalised_alpha(0.5), "newmark": newmark(0.25,
 
 def make_body(modes: int = 4) -> ModalBody:
     draw = np.random.default_rng(7)
-    return build(
+    return make_modal_body(
         mass=MASS,
         inertia=INERTIA,
         gravity=GRAVITY,

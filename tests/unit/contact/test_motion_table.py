@@ -46,17 +46,6 @@ def test_floor_is_at_rest_before_the_table_and_coasts_after_it():
     assert later[:2] == pytest.approx([end[0] + 3.0 * end[1], end[1]], rel=1e-14)
 
 
-def test_samples_of_a_sine_converge_to_the_sine_with_order_two():
-    # x = A sin(Omega t) from rest at t = 0 in the frame that starts with its velocity: subtract A Omega t.
-    errors = []
-    for count in (51, 101, 201, 401):
-        times = np.linspace(0.0, 5.0, count)
-        motion = TableMotion(times=times, values=-0.05 * 49.0 * np.sin(7.0 * times))
-        x = motion.evaluate(times)[0] + 0.05 * 7.0 * times
-        errors.append(np.abs(x - 0.05 * np.sin(7.0 * times)).max())
-    assert np.diff(np.log2(errors)) == pytest.approx([-2.0] * 3, abs=0.1)
-
-
 def test_mean_baseline_brings_the_floor_to_rest():
     x, v, _ = TableMotion(times=TIMES, values=VALUES + 0.3, baseline="mean").evaluate(TIMES[-1:])[:, 0]
     assert v == pytest.approx(0.0, abs=1e-13)
@@ -87,13 +76,6 @@ def test_peak_acceleration_is_the_largest_sample_after_the_baseline():
     assert shifted.peak_acceleration == pytest.approx(1.0, rel=1e-14)  # the mean over time is 2
 
 
-def test_displacement_table_passes_through_its_samples_and_is_smooth():
-    motion = TableMotion(times=TIMES, values=0.01 * VALUES, quantity="displacement")
-    assert motion.evaluate(TIMES)[0] == pytest.approx(0.01 * VALUES, abs=1e-14)
-    left, right = motion.evaluate(TIMES - 1e-10), motion.evaluate(TIMES + 1e-10)
-    assert right == pytest.approx(left, rel=1e-6, abs=1e-6)  # no jump, in acceleration either (natural ends)
-
-
 @pytest.mark.parametrize("count", [2, 3, 40])
 def test_a_displacement_table_is_the_natural_spline(count):
     times, values = TIMES[:count], VALUES[:count]
@@ -103,21 +85,6 @@ def test_a_displacement_table_is_the_natural_spline(count):
     for order, row in enumerate(motion.evaluate(within)):
         largest = np.abs(spline(within, order)).max()
         assert row == pytest.approx(spline(within, order), rel=1e-9, abs=1e-9 * largest)
-
-
-def test_displacement_samples_of_a_sine_give_its_acceleration():
-    times = np.linspace(0.0, 4.0 * math.pi / 7.0, 400)  # two periods: natural ends are exact for a sine
-    motion = TableMotion(times=times, values=0.05 * np.sin(7.0 * times), quantity="displacement")
-    inner = np.linspace(0.01, 1.7, 77)
-    assert motion.evaluate(inner)[2] == pytest.approx(-2.45 * np.sin(7.0 * inner), abs=1e-3)
-    assert motion.peak_acceleration == pytest.approx(2.45, rel=1e-3)
-
-
-def test_table_keeps_its_own_copy_of_the_samples():
-    times, values = TIMES.copy(), VALUES.copy()
-    motion = TableMotion(times=times, values=values)
-    values[:] = 99.0
-    assert motion.peak_acceleration == np.abs(VALUES).max()
 
 
 @pytest.mark.parametrize(

@@ -11,17 +11,6 @@ from contact.reference.floor_acceleration import (
 )
 
 
-def test_acceleration_of_the_sine_is_the_second_derivative_of_its_displacement():
-    floor = sine_floor(amplitude=0.05, angular_frequency=7.0, phase=0.4)
-    h = 1e-4
-
-    def displacement(t):
-        return 0.05 * math.sin(7.0 * t + 0.4)
-
-    difference = (displacement(0.3 + h) - 2 * displacement(0.3) + displacement(0.3 - h)) / h**2
-    assert floor.just_after(0.3) == pytest.approx(difference, rel=1e-6)
-
-
 def test_each_side_of_a_jump_has_its_own_limit():
     # 0.1 + 0.2 does not fall on a round number: the end must still belong to the pulse seen from before.
     floor = rectangular_pulse(peak=3.0, duration=0.2, delay=0.1)

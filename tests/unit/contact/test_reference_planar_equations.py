@@ -91,25 +91,6 @@ def test_an_impact_with_enough_friction_is_housners(side):
     assert impact.tilt_rate == pytest.approx(0.7 * STACK.housner_restitution, rel=1e-13)
 
 
-def test_an_impact_slides_below_the_friction_it_needs():
-    # mu >= 3 tan al/(4 + tan^2 al) = 0.20242 for the stack.
-    need = 3.0 * 0.275 / (4.0 + 0.275**2)
-    for mu, slides in ((1.0001 * need, False), (0.9999 * need, True)):
-        impact = corner_impact(STACK, 1, 0.0, -0.7, mu_static=mu, mu_kinetic=mu)
-        assert impact is not None
-        assert impact.slides is slides
-        assert (impact.slip_velocity != 0.0) is slides
-
-
-def test_an_impact_without_friction_keeps_the_horizontal_momentum():
-    impact = corner_impact(STACK, 1, 0.0, -0.7, mu_static=0.0, mu_kinetic=0.0)
-    assert impact is not None
-    height = STACK.centroid_height
-    before = 0.0 + 1 * height * -0.7
-    after = impact.slip_velocity + -1 * height * impact.tilt_rate
-    assert after == pytest.approx(before, rel=1e-13)
-
-
 @given(
     half_width=st.floats(0.05, 3.0),
     inertia_ratio=st.floats(1.05, 1.9),

@@ -16,12 +16,6 @@ def test_seed_paper_box_and_stack():
     assert stack.uplift_acceleration == pytest.approx(9.81 * 1.1 / 4.0, rel=1e-14)
 
 
-@pytest.mark.parametrize(("aspect", "restitution"), [(0.1, 0.98515), (0.25, 0.91176), (0.5, 0.7)])
-def test_housner_restitution_of_a_homogeneous_block(aspect, restitution):
-    block = RigidBlock(half_width=aspect, centroid_height=1.0, gravity=9.81)
-    assert block.housner_restitution == pytest.approx(restitution, abs=5e-6)
-
-
 def test_restitution_keeps_angular_momentum_about_the_new_corner():
     # I_O w+ = (I_G + M (H^2 - B^2)) w-: moment of momentum of a body that turned about the old corner.
     block = RigidBlock(half_width=0.4, centroid_height=1.1, gravity=9.81, inertia_ratio=1.6)

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from contact.reference.floor_acceleration import (
-    FloorAcceleration,
     half_sine_pulse,
     rectangular_pulse,
     sine_floor,
@@ -88,34 +87,6 @@ def test_uplift_that_lasts_an_instant_is_not_missed():
     assert motion.outcome is RockingOutcome.ROCK
 
 
-def test_mirror_image_in_mirror_image_out():
-    times = np.linspace(0.0, 8.0, 161)
-    runs = [
-        simulate_rocking(
-            STACK,
-            sine_floor(amplitude=sign * 0.1, angular_frequency=8.0),
-            duration=8.0,
-            rotation=sign * 0.02,
-            angular_velocity=sign * 0.1,
-        )
-        for sign in (1.0, -1.0)
-    ]
-    assert np.array_equal(runs[0].at(times)[0], -runs[1].at(times)[0])
-    assert np.array_equal(runs[0].at(times)[1], -runs[1].at(times)[1])
-
-
-def test_a_block_three_times_as_large_does_the_same_more_slowly():
-    # lengths x 3, times x sqrt 3, floor displacement x 3.
-    slow = math.sqrt(3.0)
-    large = RigidBlock.homogeneous(width=3.3, height=12.0)
-    small_run = simulate_rocking(STACK, sine_floor(amplitude=0.1, angular_frequency=8.0), duration=4.0)
-    large_run = simulate_rocking(
-        large, sine_floor(amplitude=0.3, angular_frequency=8.0 / slow), duration=4.0 * slow
-    )
-    times = np.linspace(0.0, 4.0, 81)
-    assert large_run.at(times * slow)[0] == pytest.approx(small_run.at(times)[0], abs=1e-10)
-
-
 def test_a_start_beyond_the_balance_point_falls_to_ninety_degrees():
     motion = simulate_rocking(STACK, still_floor(), duration=20.0, rotation=-1.01 * ANGLE)
     assert motion.outcome is RockingOutcome.OVERTURNED
@@ -131,17 +102,6 @@ def test_a_block_beyond_its_balance_point_can_be_brought_back():
     motion = simulate_rocking(STACK, pull, duration=5.0, rotation=1.05 * ANGLE)
     assert motion.outcome is RockingOutcome.ROCK
     assert motion.impacts
-
-
-def test_a_break_given_away_is_paid_for_in_accuracy_only():
-    # A pulse that ends within a step: the declared break gives the impulse exactly, V = a t.
-    declared = rectangular_pulse(peak=2.0, duration=0.123)
-    hidden = FloorAcceleration(function=declared.function, longest_step=0.01)
-    ends = [
-        simulate_rocking(STACK, floor, duration=0.5, rotation=0.1).at(np.array([0.5]))[0][0]
-        for floor in (declared, hidden)
-    ]
-    assert ends[1] == pytest.approx(ends[0], abs=1e-6)
 
 
 def test_squat_block_lies_down_at_its_first_impact():

@@ -79,21 +79,6 @@ def test_intervals_fill_the_time_and_strokes_add_up():
     assert np.abs(velocity).max() > 0.1
 
 
-def test_mirror_image_in_mirror_image_out():
-    times = np.linspace(0.0, 3.0, 101)
-    slips = [
-        simulate_sliding(
-            HALF,
-            sine_floor(amplitude=sign * 0.05, angular_frequency=10.0),
-            duration=3.0,
-            slip_velocity=sign * 0.2,
-        ).at(times)[0]
-        for sign in (1.0, -1.0)
-    ]
-    assert np.array_equal(slips[0], -slips[1])
-    assert np.abs(slips[0]).max() > 0.01
-
-
 def test_nonsense_is_refused():
     with pytest.raises(ValueError, match="mu_kinetic must not exceed mu_static"):
         RigidSlider(mu_static=0.2, mu_kinetic=0.3, gravity=GRAVITY)

@@ -30,7 +30,7 @@ def test_tributary_lengths_integrate_what_the_elements_can_represent(order):
 
 @pytest.mark.parametrize(("count", "order"), [(1, 1), (4, 2), (2, 2), (1, 2)])
 def test_nodes_that_make_no_whole_elements_are_refused(count, order):
-    with pytest.raises(ValueError, match="do not make up elements"):
+    with pytest.raises(ValueError, match="do not form elements"):
         tributary_lengths(np.linspace(0.0, 1.0, count), order)
 
 
@@ -64,7 +64,7 @@ def test_feet_of_second_order_elements_end_at_a_mesh_line_not_at_a_middle():
         11,
         12,
     ]
-    with pytest.raises(ValueError, match="no mesh line ends the feet"):
+    with pytest.raises(ValueError, match="do not end at a mesh line"):
         choose_support("feet", x, depth=0.8, order=2, feet=(0.09, 0.14))
 
 

@@ -65,7 +65,7 @@ def test_where_there_is_no_lognormal_curve_none_is_given(shares):
     assert fit_lognormal(STRENGTHS, 200.0 * shares, DRAWS) is None
 
 
-def test_an_island_of_standing_is_told_and_misses_the_curve():
+def test_an_island_of_standing_is_reported_and_misses_the_curve():
     values = TRUTH.probability(STRENGTHS)
     values[12] = 0.4
     low, high = values - 0.05, values + 0.05

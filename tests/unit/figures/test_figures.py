@@ -30,7 +30,6 @@ from fem.figures.style import (
     svg_of,
     time_panels,
 )
-from fem.html.page import svg_element
 from fem.model.container import discretise
 from fem.results.reader import OpenedRun
 from fem.run.run import RunOptions, run_case
@@ -329,14 +328,6 @@ def test_a_cursor_follows_every_figure_over_time_and_the_phase_portrait(runs):
     for drawing in drawings_of(run, discretise(run.case)).values():
         kind = {"phase_portrait": "plane", "band": None, "modes": None}.get(drawing.name, "time")
         assert (drawing.cursor or {"kind": None})["kind"] == kind, drawing.name
-
-
-def test_figures_in_one_page_share_no_id(drawn):
-    pages = [svg_element(svg_of(drawn["rest"][name]), label=name, prefix=name) for name in ("slip", "uplift")]
-    ids = [set(re.findall(r'\bid="([^"]+)"', page)) for page in pages]
-    assert ids[0] and not ids[0] & ids[1]
-    for page, known in zip(pages, ids, strict=True):
-        assert set(re.findall(r'(?:href="#|url\(#)([^")]+)', page)) <= known
 
 
 def test_drawing_leaves_the_user_s_matplotlib_alone(runs):

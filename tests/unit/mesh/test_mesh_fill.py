@@ -17,11 +17,6 @@ BOX = ContainerGeometry(width=1.1, height=1.0, depth=1.1, wall=0.008)
 BLOCK = ContainerGeometry(width=1.1, height=1.0, depth=1.1, section=Section.SOLID)
 
 
-def test_default_density_of_steel_is_that_of_en_1991_1_1():
-    # EN 1991-1-1:2002, Table A.4: 77.0 to 78.5 kN/m3, 7850 kg/m3 with g = 10.
-    assert MassFill(mass=1.0, centroid_height=0.5).wall_density == 7850.0
-
-
 @pytest.mark.parametrize("name", ["mass", "centroid_height", "wall_density"])
 @pytest.mark.parametrize("value", [0.0, -1.0, math.nan, math.inf])
 def test_values_must_be_positive_and_finite(name, value):

@@ -1,6 +1,7 @@
 """Scaled Jacobian of quadrilaterals with known angles, and what is refused with which figures."""
 
 import math
+from contextlib import nullcontext
 
 import numpy as np
 import pytest
@@ -32,10 +33,10 @@ def test_rectangle_scores_one_however_thin_and_however_turned(length, side, turn
     assert scaled_jacobian(points, QUAD)[0] == pytest.approx(1.0, abs=max(1e-12, rounding**2, rounding))
 
 
-@given(angle=st.floats(5.0, 175.0), length=st.floats(0.01, 10.0))
-def test_parallelogram_scores_the_sine_of_its_angle(angle, length):
+@given(angle=st.floats(5.0, 175.0), length=st.floats(0.01, 10.0), scale=st.sampled_from([1e-6, 1.0, 1e6]))
+def test_parallelogram_scores_the_sine_of_its_angle_at_any_size(angle, length, scale):
     # Knupp (2000): the cross product of unit edge vectors.
-    points = parallelogram(angle, length)
+    points = scale * parallelogram(angle, length)
     assert scaled_jacobian(points, QUAD)[0] == pytest.approx(math.sin(math.radians(angle)), rel=1e-9)
     assert corner_angles(points, QUAD)[0] == pytest.approx([angle, 180 - angle, angle, 180 - angle], rel=1e-9)
 
@@ -45,13 +46,6 @@ def test_worst_corner_counts():
     points = np.array([[0.0, 0.0], [2.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     assert scaled_jacobian(points, QUAD)[0] == pytest.approx(math.sqrt(0.5), rel=1e-15)
     assert sorted(corner_angles(points, QUAD)[0]) == pytest.approx([45.0, 90.0, 90.0, 135.0])
-
-
-@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
-def test_scaled_jacobian_does_not_depend_on_size(scale):
-    assert scaled_jacobian(scale * parallelogram(40.0), QUAD)[0] == pytest.approx(
-        math.sin(math.radians(40.0))
-    )
 
 
 @pytest.mark.parametrize(
@@ -89,18 +83,8 @@ def test_refusal_names_the_worst_cell_with_its_figures():
 @pytest.mark.parametrize(("angle", "accepted"), [(11.6, True), (11.5, False)])
 def test_threshold_is_the_sine_of_eleven_and_a_half_degrees(angle, accepted):
     # asin 0.2 = 11.537 degrees.
-    if accepted:
+    with nullcontext() if accepted else pytest.raises(MeshQualityError):
         require_quality(parallelogram(angle), QUAD)
-    else:
-        with pytest.raises(MeshQualityError):
-            require_quality(parallelogram(angle), QUAD)
-
-
-def test_an_inward_corner_has_an_angle_beyond_180_degrees():
-    points = np.array([[0.0, 0.0], [1.0, 0.0], [0.2, 0.2], [0.0, 1.0]])
-    angles = corner_angles(points, QUAD)[0]
-    assert angles.sum() == pytest.approx(360.0)
-    assert angles[2] > 180.0
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e300])

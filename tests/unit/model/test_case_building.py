@@ -11,7 +11,6 @@ from fem.cli.check import preview_of
 from fem.model.geometry import base_positions, build_container, node_count
 from fem.model.motion import build_motion
 from fem.model.support import build_support, normal_penalty
-from mesh.errors import MeshError
 
 
 @pytest.mark.parametrize("name", CASES.names)
@@ -23,11 +22,6 @@ def test_the_mesh_of_a_case_has_its_mass_and_mass_centre(name):
     boxes, height = case.container.boxes, case.container.height_m
     assert mesh.centroid[1] == pytest.approx(0.5 * (boxes - 1) * height + case.container.centroid_m, rel=1e-9)
     assert (mesh.width, mesh.height) == pytest.approx((case.container.width_m, case.container.total_height))
-
-
-def test_walls_heavier_than_the_box_are_refused():
-    with pytest.raises(MeshError, match="walls of one box weigh"):
-        build_container(load_case("seed_box", ["container.weight_N=2500"]))
 
 
 def test_a_mesh_file_beside_the_case_takes_the_place_of_the_structured_mesh(tmp_path):

@@ -10,7 +10,7 @@ import pytest
 from fem.__main__ import main
 from fem.case.case import load_case
 from fem.paper import maps
-from fem.paper.cases import STACK, PaperCase, harmonic
+from fem.paper.cases import STACK, PaperCase
 from fem.paper.claims import (
     Claim,
     ClaimFigure,
@@ -86,8 +86,8 @@ def test_a_band_counts_how_often_the_criterion_holds_and_leaves_failed_runs_out(
 
 
 def test_the_command_of_a_case_runs_the_very_case():
-    changes = {"support.kind": "flat", "output.stop_when_overturned": True, "solver.model": "rigid"}
-    case = STACK.but(harmonic(4.0, 7.1), changes)
+    changes = {"output.stop_when_overturned": True, "solver.model": "rigid"}
+    case = STACK.but(changes, support="flat", peak=4.0, frequency=7.1)
     words = case.command.split()
     overrides = [words[n + 1] for n, word in enumerate(words) if word == "--set"]
     typed = load_case(words[4], overrides).with_values({"output.fields_s": 0.0})

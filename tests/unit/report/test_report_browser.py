@@ -1,7 +1,4 @@
-"""Reports in a browser: nothing is loaded, the animation plays, keys and slider work, everybody can read them.
-
-Chromium, driven over a pipe; where there is none, these tests are left out.
-"""
+"""Reports in a browser: nothing is loaded, the animation plays, keys and slider work, everybody can read them."""
 
 import json
 import shutil
@@ -53,6 +50,7 @@ FAINT = """(() => {
   }
   return found;
 })()"""  # noqa: E501
+CONTROLS = ("button", "slider", "combobox", "checkbox", "textbox", "application", "link", "image", "region")
 CLOCK = "parseFloat(document.getElementById('now-clock').textContent)"
 
 
@@ -102,23 +100,7 @@ class TestEveryReport:
     def test_every_control_has_a_name(self, browser, pages, name):
         browser.open(pages / name)
         nodes = browser.call("Accessibility.getFullAXTree")["nodes"]
-        controls = [
-            node
-            for node in nodes
-            if not node["ignored"]
-            and node["role"]["value"]
-            in {
-                "button",
-                "slider",
-                "combobox",
-                "checkbox",
-                "textbox",
-                "application",
-                "link",
-                "image",
-                "region",
-            }
-        ]
+        controls = [node for node in nodes if not node["ignored"] and node["role"]["value"] in CONTROLS]
         assert len(controls) > 8
         assert [node["role"]["value"] for node in controls if not node.get("name", {}).get("value")] == []
 
@@ -159,18 +141,18 @@ class TestTheAnimation:
         run_page.evaluate("document.getElementById('time').focus()")
         run_page.press("ArrowRight", 39)
         assert run_page.evaluate(CLOCK) == pytest.approx(0.505)
-        run_page.press(",", 188, ",")
+        run_page.press(",", 188)
         assert run_page.evaluate(CLOCK) == pytest.approx(0.5)
-        run_page.press("l", 76, "l")
+        run_page.press("l", 76)
         assert run_page.evaluate(CLOCK) == pytest.approx(0.6)
         run_page.press("End", 35)
         assert run_page.evaluate(CLOCK) == pytest.approx(2.0)
         assert "rotation" in run_page.evaluate(
             "document.getElementById('time').getAttribute('aria-valuetext')"
         )
-        run_page.press(" ", 32, " ")  # from the end it plays again from the start
+        run_page.press(" ", 32)  # from the end it plays again from the start
         run_page.wait(f"{CLOCK} < 1.9 && {CLOCK} > 0")
-        run_page.press("k", 75, "k")
+        run_page.press("k", 75)
         assert run_page.evaluate("document.getElementById('play').textContent") == "Play"
 
     def test_marks_move_over_the_drawing_and_not_beside_it(self, run_page):
@@ -202,13 +184,14 @@ class TestTheAnimation:
         assert len(shown) == 1 + len(changes)
 
     def test_who_asks_for_less_motion_gets_stills(self, run_page):
-        run_page.prefer(prefers_reduced_motion="reduce")
+        reduced = {"name": "prefers-reduced-motion", "value": "reduce"}
+        run_page.call("Emulation.setEmulatedMedia", features=[reduced])
         try:
             run_page.click("#play")
             run_page.wait(f"{CLOCK} > 0.5")
             assert run_page.evaluate(CLOCK) in (pytest.approx(1.0), pytest.approx(1.5), pytest.approx(2.0))
         finally:
-            run_page.prefer(prefers_reduced_motion="no-preference")
+            run_page.call("Emulation.setEmulatedMedia", features=[])
 
     def test_on_paper_stills_take_its_place(self, run_page):
         run_page.call("Emulation.setEmulatedMedia", media="print")
@@ -227,12 +210,7 @@ def test_assumptions_and_exclusions_stand_on_the_first_page(run_page, tmp_path):
     first = subprocess.run(
         ["pdftotext", "-l", "1", pdf, "-"], capture_output=True, text=True, check=True
     ).stdout
-    for words in (
-        "Result:",
-        "The case",
-        "Assumptions and exclusions",
-        "asks for three or more",
-    ):
+    for words in ("Result:", "The case", "Assumptions and exclusions", "asks for three or more"):
         assert words in first
 
 

@@ -1,5 +1,6 @@
 """The report of a run: whole, self-contained, honest about what is missing, and its refusals."""
 
+import html
 import re
 from dataclasses import replace
 
@@ -18,6 +19,8 @@ from fem.report.variations import by_importance, variations_of
 from fem.results.reader import open_run
 from fem.run.run import RunOptions, run_case
 
+SECTIONS = """verdict-title asked assumptions static motion-title variations modes block joints sheet
+numerics provenance"""
 HOSTILE = "</title><script>alert(1)</script> & co"
 COARSE = ("solver.duration_s=1.2", "solver.element_size_m=0.5", "solver.order=1", "solver.elastic_modes=4")
 
@@ -41,25 +44,8 @@ def without_band(run):
     return replace(run.typed_result, verdict=replace(run.typed_result.verdict, band=None))
 
 
-def sections(page):
-    return re.findall(r'<h2 id="([a-z-]+)"', page)
-
-
 def test_the_page_has_every_part_in_the_order_of_reading(page):
-    assert sections(page) == [
-        "verdict-title",
-        "asked",
-        "assumptions",
-        "static",
-        "motion-title",
-        "variations",
-        "modes",
-        "block",
-        "joints",
-        "sheet",
-        "numerics",
-        "provenance",
-    ]
+    assert re.findall(r'<h2 id="([a-z-]+)"', page) == SECTIONS.split()
     assert page.index("Result: ") < page.index("The case")
 
 
@@ -78,9 +64,7 @@ def test_names_from_the_case_stay_text(page):
 
 def test_the_case_in_the_page_is_the_one_that_was_run(page, folder):
     text = re.search(r"<pre class=\"case\">(.*?)</pre>", page, re.DOTALL)[1]
-    for escaped, sign in (("&lt;", "<"), ("&gt;", ">"), ("&#34;", '"'), ("&amp;", "&")):
-        text = text.replace(escaped, sign)
-    assert read_case(text).resolved() == open_run(folder).case.resolved()
+    assert read_case(html.unescape(text)).resolved() == open_run(folder).case.resolved()
 
 
 def test_the_animation_of_a_rigid_run_has_no_stress(tmp_path):
@@ -109,7 +93,7 @@ def test_variations_that_take_long_are_named_and_computed_when_asked_for(folder,
     assert len(known) == 4  # the run itself and those members of its band that differ in one thing
     assert [one.change for one in short.left_out] == ["ratio 1", "ratio 4"]
     again = variation_table(run.case, kept, result=run.typed_result)
-    assert again == short  # not computed behind one's back by a second report
+    assert again == short  # a second report does not compute them unasked
     full = variation_table(run.case, kept, result=run.typed_result, every=True)
     assert full.left_out == ()
     # A run without known rows gets the same ones.
@@ -151,19 +135,18 @@ def test_moderate_variations_of_every_subject_come_first(folder):
     assert frictions == ["0.75)", "1.25)", "0.5)", "1.5)"]
 
 
-class TestRefusals:
-    def test_a_folder_that_is_not_there(self, tmp_path, capsys):
-        assert main(["report", str(tmp_path / "nothing")]) == 2
-        assert "no such folder" in capsys.readouterr().err
-
-    def test_a_folder_without_a_run(self, tmp_path, capsys):
-        assert main(["report", str(tmp_path)]) == 2
-        assert "run.json" in capsys.readouterr().err
-
-    def test_a_damaged_study(self, tmp_path, capsys):
-        (tmp_path / "study.json").write_text('{"groups": 3}')
-        assert main(["report", str(tmp_path)]) == 2
-        assert "not the result of a study" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    ("folder", "file", "words"),
+    [
+        ("nothing", "other.txt", "no such folder"),
+        (".", "other.txt", "run.json"),
+        (".", "study.json", "not the result of a study"),
+    ],
+)
+def test_a_folder_without_results_or_with_damaged_ones_is_refused(tmp_path, capsys, folder, file, words):
+    (tmp_path / file).write_text('{"groups": 3}')
+    assert main(["report", str(tmp_path / folder)]) == 2
+    assert words in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -2,19 +2,15 @@
 
 import csv
 import json
-import os
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
 
+from fem.__main__ import main
 from fem.case.case import CaseError, load_case
 from fem.response.request import ResponseRequest
 from fem.response.run import run_response
 from fem.results.errors import FolderError
 
-ROOT = Path(__file__).parents[3]
 CHANGES = ("solver.model=rigid", "contact.mu_static=1", "contact.mu_kinetic=1", "solver.element_size_m=1")
 
 
@@ -62,21 +58,13 @@ def test_a_request_that_cannot_be_met_is_refused(changes, values, message):
         request_of(*changes, **values)
 
 
-def test_the_command_writes_its_tables_and_figures(tmp_path):
+def test_the_command_writes_its_tables_and_figures(tmp_path, capsys):
     line = ["response", "seed_stack_plateau", "--from", "0.9", "--to", "1.1", "--count", "2", "--json", "-q"]
     line += ["--settle", "4", "--observe", "8", "--out", str(tmp_path / "r")]
     for change in CHANGES:
         line += ["--set", change]
-    done = subprocess.run(
-        [sys.executable, "-m", "fem", *line],
-        cwd=tmp_path,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    result = json.loads(done.stdout)
+    assert main(line) == 0
+    result = json.loads(capsys.readouterr().out)
     assert result == json.loads((tmp_path / "r" / "response.json").read_text())
     with (tmp_path / "r" / "response.csv").open() as file:
         rows = list(csv.DictReader(file))

@@ -5,7 +5,6 @@ import pytest
 
 from fem.solid.elasticity import (
     cauchy_stress,
-    first_stress,
     first_stress_tangent,
     green_strain,
     least_principal_strain,
@@ -38,6 +37,11 @@ def energy(gradient):
     return stress_and_energy(*gradient.reshape(4, -1), *STEEL)[4]
 
 
+def first_stress(gradient):
+    """First Piola-Kirchhoff stress P, shape (2, 2, ...), force axis first [Pa]."""
+    return np.stack(stress_and_energy(*gradient.reshape(4, -1), *STEEL)[:4]).reshape(gradient.shape)
+
+
 def test_plane_stress_pair_gives_hookes_law_of_a_thin_sheet():
     # Pulled along x and free across: stress E eps along, none across.
     strain = np.array([1e-4, -NU * 1e-4, 0.0])
@@ -47,16 +51,14 @@ def test_plane_stress_pair_gives_hookes_law_of_a_thin_sheet():
     assert shear == pytest.approx([0.0, 0.0, E / (2 * (1 + NU)) * 1e-4], rel=1e-14)
 
 
-@pytest.mark.parametrize(("modulus", "ratio"), [(0.0, 0.3), (-1.0, 0.3), (np.nan, 0.3), (np.inf, 0.3)])
-def test_impossible_moduli_are_refused(modulus, ratio):
-    with pytest.raises(ValueError, match="Young's modulus"):
+@pytest.mark.parametrize(
+    ("modulus", "ratio", "message"),
+    [(value, NU, "Young's modulus") for value in (0.0, -1.0, np.nan, np.inf)]
+    + [(E, value, "Poisson's ratio") for value in (-1.0, 0.51, np.nan)],
+)
+def test_impossible_elastic_constants_are_refused(modulus, ratio, message):
+    with pytest.raises(ValueError, match=message):
         plane_stress_lame(modulus, ratio)
-
-
-@pytest.mark.parametrize("ratio", [-1.0, 0.51, np.nan])
-def test_impossible_poisson_ratios_are_refused(ratio):
-    with pytest.raises(ValueError, match="Poisson's ratio"):
-        plane_stress_lame(E, ratio)
 
 
 def test_rotation_alone_strains_nothing():
@@ -78,7 +80,7 @@ def test_tiny_strain_survives_without_cancellation():
 @pytest.mark.parametrize("size", [1e-4, 1e-3, 1e-2, 1e-1])
 def test_first_stress_is_the_derivative_of_the_energy(size):
     gradient, step = rotated_gradients(size), 1e-3 * size
-    stress = first_stress(gradient, STEEL)
+    stress = first_stress(gradient)
     scale = np.abs(stress).max()
     for i, j in np.ndindex(2, 2):
         change = np.zeros((2, 2, 1))
@@ -95,7 +97,7 @@ def test_first_stress_tangent_is_the_derivative_of_the_first_stress(size):
     for k, l in np.ndindex(2, 2):  # noqa: E741 - the indices of the tensor
         change = np.zeros((2, 2, 1))
         change[k, l] = step
-        ahead, behind = (first_stress(gradient + s * change, STEEL) for s in (1, -1))
+        ahead, behind = (first_stress(gradient + s * change) for s in (1, -1))
         # Cubic in the gradient: the difference errs by step^2 E and by eps/step E.
         assert np.abs((ahead - behind) / (2 * step) - tangent[:, :, k, l]).max() < 1e-9 * E
 
@@ -110,7 +112,7 @@ def test_stress_turns_with_the_body():
     gradient = np.array([[0.02, 0.01], [0.03, -0.03]])
     Q = rotation(0.8)
     turned = Q @ (np.eye(2) + gradient) - np.eye(2)
-    assert first_stress(turned, STEEL) == pytest.approx(Q @ first_stress(gradient, STEEL), rel=1e-12)
+    assert first_stress(turned) == pytest.approx(Q @ first_stress(gradient), rel=1e-12)
     xx, zz, xz = cauchy_stress(gradient, STEEL)
     expected = Q @ np.array([[xx, xz], [xz, zz]]) @ Q.T
     assert cauchy_stress(turned, STEEL) == pytest.approx(

@@ -51,13 +51,6 @@ def newmark_matrix(model):
     return (inertial * body.elements.vector_mass + elastic * body.elements.stiffness).tocsc()
 
 
-def test_a_step_size_is_prepared_once_it_was_factored(model):
-    assert not model.body.prepared(STEP)
-    model.body.prepare(model.run.scheme, STEP)
-    assert model.body.prepared(STEP)
-    assert not model.body.prepared(0.5 * STEP)
-
-
 def test_substitution_solves_with_the_newmark_matrix(model):
     body = model.body
     body.prepare(model.run.scheme, STEP)
@@ -70,9 +63,11 @@ def test_substitution_solves_with_the_newmark_matrix(model):
 
 
 def test_the_oldest_factors_make_room():
-    body = build_model(load_case("seed_stack_plateau", COARSE)).body
-    scheme = build_model(load_case("seed_stack_plateau", COARSE)).run.scheme
+    model = build_model(load_case("seed_stack_plateau", COARSE))
+    body, scheme = model.body, model.run.scheme
+    assert not body.prepared(STEP)
     body.prepare(scheme, STEP)
+    assert body.prepared(STEP)
     slots = body.nodal.cached_step.size - 1
     steps = STEP * (1.0 + 0.01 * np.arange(1, slots + 1))
     for step in steps:

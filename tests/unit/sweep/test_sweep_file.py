@@ -7,6 +7,7 @@ from fem.case.files import SWEEPS
 from fem.sweep.file import load_sweep
 
 HEAD = 'case = "seed_stack_plateau"\n[set]\n"solver.model" = "rigid"\n'
+PAIR = '"contact.mu_static" = [0.2, 0.3]\n'
 FREQUENCY = '"motion.angular_frequency_rad_s" = { from = 2.0, to = 4.0, count = 3 }\n'
 
 
@@ -63,18 +64,6 @@ def test_derived_keys_follow_axes_defaults_and_one_another(sweep_of):
     assert values["initial.velocity_m_s"] == pytest.approx(1.6 + 0.2)
 
 
-def test_a_default_that_follows_an_axis_is_the_cells_own(sweep_of):
-    head = 'case = "sliding"\n[set]\n"solver.model" = "rigid"\n'
-    sweep = sweep_of(
-        '[axes]\n"container.width_m" = [1.0, 1.5]\n[derived]\n"initial.velocity_m_s" = "container.depth_m"\n',
-        head,
-    )
-    given = "depth_m" in sweep.base.container.model_fields_set
-    assert sweep.values(sweep.point(1))["initial.velocity_m_s"] == (
-        sweep.base.container.depth_m if given else 1.5
-    )
-
-
 @pytest.mark.parametrize(
     ("body", "words"),
     [
@@ -83,7 +72,7 @@ def test_a_default_that_follows_an_axis_is_the_cells_own(sweep_of):
         ("[axes]\nmu_static = [0.2]\n", ["write 'contact.mu_static'"]),
         ("[axes]\n", ["one to 4 keys, got 0", "for instance"]),
         ('[axes]\n"contact.mu_static" = []\n', ["the list is empty"]),
-        ('[axes]\n"contact.mu_static" = { from = 0.2, count = 3 }\n', ["without 'to'", "a range is"]),
+        ('[axes]\n"contact.mu_static" = { from = 0.2, count = 3 }\n', ["has no 'to'", "a range is"]),
         ('[axes]\n"contact.mu_static" = { from = 0.2, to = 0.4, count = 1 }\n', ["empty range", "[0.2]"]),
         (
             '[axes]\n"contact.mu_static" = { from = 0.2, to = 0.4, count = 3.5 }\n',
@@ -127,6 +116,13 @@ def test_a_default_that_follows_an_axis_is_the_cells_own(sweep_of):
             ["[perturbation] contact_damping_ratios", "-1"],
         ),
         (f"[axes]\n{FREQUENCY}[maps]\nx = 'contact.mu_static'\n", ["[maps]", "none of the axes"]),
+        (f"[axes]\n{FREQUENCY}[maps]\nfixed = {{ 'contact.mu_static' = 0.25 }}\n", ["none of the axes"]),
+        (
+            f"[axes]\n{FREQUENCY}{PAIR}[maps]\nfixed = {{ 'contact.mu_static' = 0.25 }}\n",
+            ["values: 0.2, 0.3"],
+        ),
+        (f"[axes]\n{FREQUENCY}{PAIR}[maps]\nfixed = {{ 'contact.mu_static' = 0.3 }}\n", ["two axes"]),
+        (f"[axes]\n{FREQUENCY}{PAIR}[maps]\nx = 'contact.mu_static'\ny = 'contact.mu_static'\n", ["twice"]),
         (f"[axis]\n{FREQUENCY}", ["unknown table", "did you mean 'axes'"]),
     ],
 )

@@ -36,7 +36,7 @@ def test_an_island_inside_a_bracket_is_kept():
 
 @pytest.mark.parametrize("last_standing", [0.0, -1e-9])
 def test_a_change_at_zero_is_closed_in_on_and_left(last_standing):
-    # No share of a value is narrow enough there: the scan's step tells.
+    # No share of a value is narrow enough there: the step of the scan decides.
     def judge(values):
         return ["overturned" if v > last_standing else "standing" for v in values]
 
@@ -61,7 +61,7 @@ def test_without_a_change_nothing_is_tried():
     assert refine_changes(SCAN, ["standing"] * 5, judge) == []
 
 
-def test_a_failed_value_is_a_kind_of_its_own():
+def test_a_failed_value_is_a_third_kind():
     def judge(values):
         return ["failed" if 2.0 < v < 2.5 else "standing" for v in values]
 
