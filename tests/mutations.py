@@ -253,8 +253,8 @@ MUTATIONS = (
     Mutation(
         name="an audit that lets the scheme win energy",
         file="fem/assessment/verdict.py",
-        old="if won > GAIN_LIMIT * reference:",
-        new="if won > 1e9 * GAIN_LIMIT * reference:",
+        old="if gained > GAIN_LIMIT * reference:",
+        new="if gained > 1e9 * GAIN_LIMIT * reference:",
         tests=("validation/test_verification_checks.py", "-k", "audit"),
     ),
 )

@@ -42,7 +42,7 @@ def test_a_resolved_case_with_its_files_beside_it_gives_the_same_bytes(tmp_path,
     (tmp_path / "case" / "data").mkdir(parents=True)
     monkeypatch.chdir(tmp_path / "case")  # paths relative to the current folder, as a user gives them
     write_container_mesh(
-        "data/box.vtu", build_container(load_case("seed_box", ["solver.element_size_m=0.25"]))
+        Path("data/box.vtu"), build_container(load_case("seed_box", ["solver.element_size_m=0.25"]))
     )
     times = np.arange(0.0, 1.0, 0.02)
     rows = "".join(f"{t:.2f},{4.5 * np.sin(7.0 * t):.6f}\n" for t in times)
