@@ -43,7 +43,7 @@ BAND_NOTE = (
     "where outcomes differ, this model cannot decide."
 )
 MARGIN_NOTE = (
-    "The rotation ratio is no margin. The margin is the factor on the motion at which the container overturns; a "
+    "The rotation ratio is not a margin. The margin is the factor on the motion at which the container overturns; a "
     "sweep over motions finds it."
 )
 JOINTS_NOTE = (

@@ -86,7 +86,7 @@ def words_of(**paths) -> str:
 
 def test_results_come_first_and_numerics_last():
     text = text_of(RESULT)
-    places = [text.index(words) for words in ("Result: ", "The run", "Static rules", "no margin", "Numerics")]
+    places = [text.index(words) for words in ("Result: ", "The run", "Static rules", "not a margin", "Numerics")]
     assert places == sorted(places)
 
 
@@ -172,7 +172,7 @@ def test_a_run_is_never_called_safe_or_verified(outcome):
 
 def test_overturning_is_what_the_run_found_when_it_overturned():
     text = words_of(status="overturned", verdict__outcome="overturned")
-    assert "1.483 overturns overturned" in text and "ratio is no margin" not in text
+    assert "1.483 overturns overturned" in text and "ratio is not a margin" not in text
 
 
 def test_sliding_is_what_the_run_found_when_it_slid():
