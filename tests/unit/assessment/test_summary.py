@@ -86,7 +86,9 @@ def words_of(**paths) -> str:
 
 def test_results_come_first_and_numerics_last():
     text = text_of(RESULT)
-    places = [text.index(words) for words in ("Result: ", "The run", "Static rules", "not a margin", "Numerics")]
+    places = [
+        text.index(words) for words in ("Result: ", "The run", "Static rules", "not a margin", "Numerics")
+    ]
     assert places == sorted(places)
 
 
