@@ -12,7 +12,9 @@ from fem.runtime.signals import interruptible
 
 
 def outcome(argument: str, script: str) -> tuple[int, str]:
-    program = f"import os, signal, sys\nsys.argv[0] = {argument!r}\nimport fem\n{script}"
+    # A suite started in the background inherits an ignored SIGINT, which would stay ignored here.
+    default = "signal.signal(signal.SIGINT, signal.default_int_handler)"
+    program = f"import os, signal, sys\n{default}\nsys.argv[0] = {argument!r}\nimport fem\n{script}"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     return done.returncode, done.stderr
 
