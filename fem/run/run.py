@@ -35,7 +35,7 @@ from fem.run.checks import WantedChecks, add_checks, lacks_band, lacks_checks
 from fem.run.output import Start, Stopwatch, open_output, read_start
 from fem.run.setup_cache import SetupCache
 from fem.run.simulation import simulate
-from fem.run.size import require_room_for
+from fem.run.size import required_disk, size_in_words
 from fem.runtime.compilation import compilation_announced
 from fem.runtime.identity import versions
 from fem.runtime.progress import Reporter, SilentReporter
@@ -103,7 +103,9 @@ def run_case(
         folder, RUN, request, force=options.force, resume=options.resume, way_on=WAY_ON
     ) as place:
         if known is None:
-            require_room_for(case, node_count(mesh, case.solver.order), place)
+            nodes = node_count(mesh, case.solver.order)
+            way_out = "set a larger output.fields_s (0: no frames) or output.history_s"
+            place.require_room(required_disk(case, nodes), size_in_words(case, nodes), way_out)
         model = set_up(case, mesh, place, request, force=options.force, reporter=reporter)
         with interruptible(reporter) as stop:
             result = known

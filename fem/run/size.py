@@ -9,7 +9,6 @@ import math
 
 from fem.case.case import Case
 from fem.results.disk import in_units
-from fem.results.folder import ResultFolder
 from fem.results.history import history_columns
 
 BYTES_OF_A_NODE, BYTES_OF_A_FRAME = 40.0, 2e3
@@ -37,11 +36,7 @@ def required_disk(case: Case, nodes: int) -> float:
     return history + frames + BYTES_OF_A_CHECKPOINT_NODE * nodes + BYTES_BESIDE
 
 
-def require_room_for(case: Case, nodes: int, folder: ResultFolder) -> None:
-    """Refuse a run that the disk cannot hold; raises FolderError."""
+def size_in_words(case: Case, nodes: int) -> str:
+    """The run and what takes most of its space, for a refusal."""
     frame = in_units(BYTES_OF_A_NODE * nodes + BYTES_OF_A_FRAME)
-    folder.require_room(
-        required_disk(case, nodes),
-        f"the run ({frames_of(case)} frames of {frame}, {samples_of(case)} rows of history)",
-        "set a larger output.fields_s (0: no frames) or output.history_s",
-    )
+    return f"the run ({frames_of(case)} frames of {frame}, {samples_of(case)} rows of history)"
