@@ -1,4 +1,4 @@
-"""How long a step may be, and that no run goes on without headway."""
+"""Limits of the step size, and the end of a run without progress."""
 
 import numpy as np
 import pytest
