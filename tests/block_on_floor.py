@@ -43,6 +43,7 @@ class Block:
     mu_static: float = 0.4
     mu_kinetic: float = 0.4
     weakening: float = 0.0  #: [m]
+    stribeck_velocity: float = 0.0  #: [m/s]
 
     @property
     def rigid(self) -> RigidBlock:
@@ -83,6 +84,7 @@ class Block:
             mu_static=self.mu_static,
             mu_kinetic=self.mu_kinetic,
             weakening=self.weakening,
+            stribeck_velocity=self.stribeck_velocity,
             friction=ELASTIC_STICK,
             regularisation_velocity=1e-3,
             force_scale=self.mass * GRAVITY,

@@ -16,7 +16,13 @@ import numpy as np
 
 from contact.arrays import FloatArray, IntArray
 from contact.interface.dense import factor_dense, substitute_dense
-from contact.interface.laws import ELASTIC_STICK, normal_force, regularised_friction, stick_friction
+from contact.interface.laws import (
+    ELASTIC_STICK,
+    normal_force,
+    regularised_friction,
+    stick_friction,
+    stribeck_mu,
+)
 from contact.jit import compiled
 
 FULL_STEPS = 1  #: full Newton steps before the line search begins; problems with friction tend to cycle
@@ -35,6 +41,7 @@ class Contact(NamedTuple):
     mu_static: float
     mu_kinetic: float
     weakening: float  #: slip over which static falls to kinetic friction [m]
+    stribeck_velocity: float  #: slip velocity over which it falls; 0: not with velocity [m/s]
     friction: int  #: ELASTIC_STICK or REGULARISED
     regularisation_velocity: float  #: [m/s]
     force_scale: float  #: weight of the container [N], the scale of negligible forces
@@ -132,10 +139,13 @@ def evaluate_laws(
             if start[i, 1] < 0.0:  # closed at the beginning: the spring acts over the whole step
                 trial -= stiffness * (stick[i] + work.point[i, 0] - start[i, 0])
                 trial_slope += stiffness
-            force, by_trial, by_limit = stick_friction(trial, mu * normal)
+            present_mu, by_velocity = stribeck_mu(
+                mu, contact.mu_kinetic, contact.stribeck_velocity, work.velocity[i, 0]
+            )
+            force, by_trial, by_limit = stick_friction(trial, present_mu * normal)
             work.law[i, 0] = force
-            work.slope[i, 0] = by_trial * trial_slope
-            work.slope[i, 1] = by_limit * mu * work.slope[i, 2]
+            work.slope[i, 0] = by_trial * trial_slope - by_limit * normal * by_velocity * velocity_slope
+            work.slope[i, 1] = by_limit * present_mu * work.slope[i, 2]
         else:
             force, by_normal, by_velocity = regularised_friction(
                 normal,
@@ -275,7 +285,10 @@ def return_held_points(
     for i in range(work.force.shape[0]):
         tangential, normal = work.force[i, 0], work.force[i, 1]
         closed = normal > 0.0 and start[i, 1] < 0.0
-        stuck = closed and contact.friction == ELASTIC_STICK and abs(tangential) < SLIDING * mu * normal
+        limit = (
+            normal * stribeck_mu(mu, contact.mu_kinetic, contact.stribeck_velocity, work.velocity[i, 0])[0]
+        )
+        stuck = closed and contact.friction == ELASTIC_STICK and abs(tangential) < SLIDING * limit
         for k in range(2):
             stiffness = contact.tangential_stiffness[i] if k == 0 else contact.normal_stiffness[i]
             held = stuck if k == 0 else closed

@@ -99,7 +99,9 @@ def close_step(run: RunState, step: float, slip_step: float, iterations: int) ->
 
 @register_jitable(forceinline=True)
 def _kinetic_friction(contact: Contact, slid: float) -> float:
-    """Coefficient of friction of a sliding support after a path of `slid` [m]."""
+    """Coefficient of friction, at no velocity, of a sliding support after a path of `slid` [m]."""
+    if contact.stribeck_velocity > 0.0 and contact.weakening <= 0.0:
+        return contact.mu_static
     return weakened_mu(contact.mu_static, contact.mu_kinetic, contact.weakening, slid)
 
 

@@ -111,7 +111,7 @@ def slide(run: RunState, step: float) -> tuple[bool, float, float]:
         if contact.friction != ELASTIC_STICK:
             new.stick[i] = 0.0
             run.slip[i] = moved
-        elif normal <= 0.0 or work.slope[i, 0] == 0.0:
+        elif normal <= 0.0 or work.slope[i, 0] <= 0.0:
             new.stick[i] = relaxed_stick(
                 stick, -tangential, contact.tangential_stiffness[i], contact.relaxation_time, step
             )
@@ -126,7 +126,7 @@ def slide(run: RunState, step: float) -> tuple[bool, float, float]:
             total += normal
             if contact.friction != ELASTIC_STICK:
                 every = every and abs(work.velocity[i, 0]) > contact.regularisation_velocity
-            elif work.slope[i, 0] != 0.0 or direction * work.law[i, 0] < 0.0:
+            elif work.slope[i, 0] > 0.0 or direction * work.law[i, 0] < 0.0:
                 every = False
             direction = work.law[i, 0]
     if total <= 0.0:  # in flight: sliding or sticking as before

@@ -150,6 +150,9 @@ RATIO = Quantity(unit="", least=1e-6, most=1e3, advice="1 is usual")
 WEAKENING = Quantity(
     unit="m", least=0.0, most=0.1, typical=1e-4, slips={"micrometres": 1e-6, "millimetres": 1e-3}
 )
+STRIBECK_VELOCITY = Quantity(
+    unit="m/s", least=0.0, most=10.0, typical=0.1, slips={"mm/s": 1e-3}, advice="0.3 is a slow fall"
+)
 AMPLITUDE = Quantity(unit="m", least=0.0, most=10.0, typical=0.05, slips=MILLI_AND_CENTI)
 PEAK_ACCELERATION = Quantity(unit="m/s2", least=-100.0, most=100.0, typical=4.0, slips=GAL)
 ANGULAR_FREQUENCY = Quantity(

@@ -155,6 +155,11 @@ class ContactTable(CaseTable):
     weakening_m: Annotated[float, q.WEAKENING] = _key(
         "slip over which mu_static falls to mu_kinetic; 0: at once", 0.0
     )
+    stribeck_velocity_m_s: Annotated[float, q.STRIBECK_VELOCITY] = _key(
+        "slip velocity over which mu_static falls to mu_kinetic, like exp(-(v/v_s)^2); 0: not with velocity",
+        0.0,
+        only=("friction", "elastic-stick"),
+    )
     damping_ratio: Annotated[float, q.CONTACT_DAMPING] = _key(
         "c/(2 sqrt(k m)), the whole mass m on the spring k of one corner", 2.0
     )

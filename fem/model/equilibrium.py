@@ -82,6 +82,7 @@ def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) ->
         mu_static=chosen.mu_static,
         mu_kinetic=chosen.mu_kinetic,
         weakening=chosen.weakening_m,
+        stribeck_velocity=chosen.stribeck_velocity_m_s,
         friction=laws[chosen.friction],
         regularisation_velocity=chosen.regularisation_velocity_m_s,
         force_scale=mesh.mass * case.gravity_m_s2,

@@ -151,6 +151,7 @@ def _contact(springs: FloatArray, mass: float) -> Contact:
         mu_static=1e-9,
         mu_kinetic=1e-9,
         weakening=0.0,
+        stribeck_velocity=0.0,
         friction=ELASTIC_STICK,
         regularisation_velocity=1e-3,
         force_scale=mass,

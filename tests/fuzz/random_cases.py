@@ -59,6 +59,7 @@ def random_tables(rng: np.random.Generator, model: str, longest: float) -> Table
         "damping_ratio": pick(rng, 2.0, 2.0, float(rng.uniform(0.0, 4.0))),
         "tangential_ratio": pick(rng, 1.0, log_uniform(rng, 0.1, 10.0)),
         "weakening_m": 1e-3 if chance(rng, 0.1) else 0.0,
+        "stribeck_velocity_m_s": 0.3 if chance(rng, 0.1) else 0.0,
     }
     duration = log_uniform(rng, 0.05, longest)
     solver: Tables = {

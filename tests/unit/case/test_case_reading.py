@@ -52,6 +52,7 @@ def test_least_case_has_the_documented_defaults():
             "normal_penalty_Pa_m": "auto",
             "tangential_ratio": 1.0,
             "weakening_m": 0.0,
+            "stribeck_velocity_m_s": 0.0,
             "damping_ratio": 2.0,
         },
         "motion": {"kind": "none"},

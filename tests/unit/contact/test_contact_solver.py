@@ -77,6 +77,7 @@ def random_problem(seed: int, points: int, *, friction: int = ELASTIC_STICK) -> 
         mu_static=mu,
         mu_kinetic=mu,
         weakening=0.0,
+        stribeck_velocity=0.0,
         friction=friction,
         regularisation_velocity=1e-3,
         force_scale=weight,

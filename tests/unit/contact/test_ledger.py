@@ -14,6 +14,7 @@ CONTACT = Contact(
     mu_static=0.4,
     mu_kinetic=0.2,
     weakening=0.0,
+    stribeck_velocity=0.0,
     friction=ELASTIC_STICK,
     regularisation_velocity=1e-3,
     force_scale=1e5,
