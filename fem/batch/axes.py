@@ -83,6 +83,8 @@ def check_varied(key: str) -> FieldInfo:
         AxisError: an unknown key, or one that does not change a result.
     """
     field = field_of(key)
+    if key.startswith("uncertainty."):
+        raise AxisError("cannot vary: it changes the band of a run, not what happens")
     if key in NO_AXIS:
         raise AxisError(f"cannot vary: {NO_AXIS[key]}")
     return field

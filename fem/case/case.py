@@ -26,6 +26,7 @@ from fem.case.tables import (
     SolverTable,
     StaticTable,
     SupportTable,
+    UncertaintyTable,
 )
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError, problem_lines, read_case_tables
@@ -46,6 +47,7 @@ class Case(CaseHeading):
     static: StaticTable = Field(default_factory=StaticTable)
     solver: SolverTable = Field(default_factory=SolverTable)
     output: OutputTable = Field(default_factory=OutputTable)
+    uncertainty: UncertaintyTable = Field(default_factory=UncertaintyTable)
 
     _origin: Origin = PrivateAttr(default_factory=Origin)
 

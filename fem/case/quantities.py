@@ -146,6 +146,7 @@ SLIP_VELOCITY = Quantity(
     advice="about 1e-3 of the largest slip velocity is usual",
 )
 PENALTY = Quantity(unit="Pa/m", least=1.0, most=1e20, advice='"auto" chooses it')
+DRAWS = Quantity(unit="", least=0, most=1024, advice="32 is usual")
 RATIO = Quantity(unit="", least=1e-6, most=1e3, advice="1 is usual")
 WEAKENING = Quantity(
     unit="m", least=0.0, most=0.1, typical=1e-4, slips={"micrometres": 1e-6, "millimetres": 1e-3}

@@ -102,6 +102,42 @@ SOLVER_RULES = (
 )
 
 
+#: keys of [uncertainty] that hold a range, and what both ends are
+RANGES = {
+    "mu_kinetic": q.FRICTION,
+    "weakening_m": q.WEAKENING,
+    "stribeck_velocity_m_s": q.STRIBECK_VELOCITY,
+    "normal_penalty_Pa_m": q.PENALTY,
+    "damping_ratio": q.CONTACT_DAMPING,
+    "material_damping_ratio": q.MATERIAL_DAMPING,
+}
+
+
+def _range_refused(key: str) -> Rule:
+    """A range rises, and both of its ends are values that the input may have."""
+
+    def reason(table: Any) -> str:
+        ends = getattr(table, key)
+        if not isinstance(ends, list):
+            return ""
+        for end in ends:
+            try:
+                RANGES[key].check(end)
+            except ValueError as error:
+                return str(error)
+        if ends[0] <= ends[1]:
+            return ""
+        return (
+            f"must be [low, high] with low at most high, got {ends}; write {ends[::-1]}, "
+            'or "known" for the value of the case alone'
+        )
+
+    return Rule(f"uncertainty.{key}", lambda table: not reason(table), reason)
+
+
+UNCERTAINTY_RULES = tuple(map(_range_refused, RANGES))
+
+
 def _density(case: Any, weight: float) -> float:
     """Mean density of a box of such a weight [kg/m3]."""
     box = case.container
@@ -203,6 +239,17 @@ CASE_RULES = (
         lambda case: case.motion.kind != "pulse" or case.motion.delay_s < case.solver.duration_s,
         "must be less than duration_s = {solver.duration_s:g} s, got {motion.delay_s:g} s: "
         "the pulse would begin after the end of the run",
+    ),
+    Rule(
+        "uncertainty.mu_kinetic",
+        lambda case: (
+            not isinstance(case.uncertainty.mu_kinetic, list)
+            or case.uncertainty.mu_kinetic[1] <= case.contact.mu_static
+        ),
+        lambda case: (
+            f"must be at most contact.mu_static = {case.contact.mu_static:g}, got up to "
+            f"{case.uncertainty.mu_kinetic[1]:g}; end the range there, or raise contact.mu_static"
+        ),
     ),
     Rule(
         "output.history_s",

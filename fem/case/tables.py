@@ -14,7 +14,10 @@ from pydantic_core import PydanticUndefined
 from fem.case import quantities as q
 from fem.case.motion_rules import MOTION_RULES, harmonic_amplitude, harmonic_angular_frequency
 from fem.case.problem import BrokenRulesError, Rule, broken
-from fem.case.rules import CONTACT_RULES, CONTAINER_RULES, SOLVER_RULES
+from fem.case.rules import CONTACT_RULES, CONTAINER_RULES, SOLVER_RULES, UNCERTAINTY_RULES
+
+#: a range [low, high], or that the value of the case is known
+Unknown = Annotated[list[float], Field(min_length=2, max_length=2)] | Literal["known"] | None
 
 
 class CaseTable(BaseModel):
@@ -316,6 +319,36 @@ class OutputTable(CaseTable):
     stop_when_overturned: bool = _key("end the run when the container lies on its side", True)
 
 
+class UncertaintyTable(CaseTable):
+    """What is not known of the inputs: [low, high], or "known" as given. The band of a run covers it."""
+
+    mu_kinetic: Unknown = _key(
+        "of kinetic friction; default: as given to mu_static", None, example=[0.2, 0.4]
+    )
+    weakening_m: Unknown = _key(
+        "of the contact; default: 0 to 5 mm where mu_kinetic < mu_static", None, example=[0.0, 0.005]
+    )
+    stribeck_velocity_m_s: Unknown = _key(
+        "of the contact; default: 0 to 0.3 m/s where mu_kinetic < mu_static", None, example=[0.0, 0.3]
+    )
+    normal_penalty_Pa_m: Unknown = _key(  # noqa: N815
+        "of the contact; default: a ninth to three times", None, example=[1e9, 3e10]
+    )
+    damping_ratio: Unknown = _key("of the contact; default: half to twice", None, example=[1.0, 4.0])
+    material_damping_ratio: Unknown = _key(
+        "of the container; default: half to twice", None, example=[0.01, 0.04]
+    )
+    start: bool | Literal["known"] | None = _key(
+        "harmonic: whether motion.start may be the other one; default: true", None, example=True
+    )
+    ramp: bool | Literal["known"] | None = _key(
+        "harmonic: whether a ramp of two cycles may begin it, or none; default: true", None, example=True
+    )
+    draws: Annotated[int, Strict(), q.DRAWS] = _key("runs in which all of these are drawn at once", 32)
+
+    rules = UNCERTAINTY_RULES
+
+
 TABLES: dict[str, type[CaseTable]] = {
     "container": ContainerTable,
     "support": SupportTable,
@@ -325,6 +358,7 @@ TABLES: dict[str, type[CaseTable]] = {
     "static": StaticTable,
     "solver": SolverTable,
     "output": OutputTable,
+    "uncertainty": UncertaintyTable,
 }
 
 

@@ -7,10 +7,10 @@ from typing import Any
 
 
 def toml_value(value: object) -> str:
-    """One scalar as TOML 1.0; a float keeps all its digits.
+    """A scalar, or a list of scalars, as TOML 1.0; a float keeps all its digits.
 
     Raises:
-        TypeError: for anything but a bool, an int, a finite or infinite float, or a string.
+        TypeError: for anything but a bool, an int, a finite or infinite float, a string, or a list of these.
     """
     if isinstance(value, bool):
         return "true" if value else "false"
@@ -21,6 +21,8 @@ def toml_value(value: object) -> str:
     if isinstance(value, str):
         # JSON escapes what TOML wants escaped, except the delete character.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, list):
+        return f"[{', '.join(map(toml_value, value))}]"
     raise TypeError(f"no TOML scalar: {type(value).__name__}")
 
 

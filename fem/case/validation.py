@@ -162,7 +162,9 @@ def _reason(field: FieldInfo, details: list[ErrorDetails]) -> str:
         example = f", for instance {field.examples[0]!r}" if field.examples else ""
         return f"is missing: {field.description}{example} {unit}".strip().replace("'", '"')
     if "literal_error" in faults and len(faults) > 1:
-        return f'must be a number or "auto", got {_shown(value)}'
+        choice = choices_of(field.annotation)[0]
+        kind = "a number" if choice == "auto" else "true, false" if "bool_type" in faults else "[low, high]"
+        return f'must be {kind} or "{choice}", got {_shown(faults["literal_error"]["input"])}'
     if "literal_error" in faults:
         choices = choices_of(field.annotation)
         near = did_you_mean(value, choices) if isinstance(value, str) else ""

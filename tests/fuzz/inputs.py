@@ -21,6 +21,7 @@ from pydantic.fields import FieldInfo
 from fem.case.files import CASES
 from fem.case.overrides import with_overrides
 from fem.case.quantities import Quantity
+from fem.case.rules import RANGES
 from fem.case.tables import TABLES, CaseHeading
 from fem.case.toml import toml_value
 from fem.case.validation import known_keys, quantity_of
@@ -119,7 +120,7 @@ def values_of(key: str, now: Any) -> st.SearchStrategy[Any]:
 def types_in(annotation: Any) -> list[Any]:
     """Plain types and literals in an annotation."""
     parts = [part for part in get_args(annotation) if not isinstance(part, Quantity)]
-    if get_origin(annotation) is Literal or not parts:
+    if get_origin(annotation) in (Literal, list) or not parts:
         return [annotation]
     return [kind for part in parts if isinstance(part, type) or get_args(part) for kind in types_in(part)]
 
@@ -127,6 +128,9 @@ def types_in(annotation: Any) -> list[Any]:
 def values_of_type(key: str, kind: Any, quantity: Quantity | None, now: Any) -> st.SearchStrategy[Any]:
     if get_origin(kind) is Literal:
         return st.sampled_from(get_args(kind))
+    if get_origin(kind) is list:
+        one = numbers(RANGES[key.partition(".")[2]], None, float, now)
+        return st.lists(one, min_size=2, max_size=2).map(sorted)
     if kind is bool:
         # figures take a second to draw
         return st.sampled_from((False,) * 20 + (True,)) if key == "output.figures" else st.booleans()

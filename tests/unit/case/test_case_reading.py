@@ -76,6 +76,7 @@ def test_least_case_has_the_documented_defaults():
             "order": 2,
         },
         "output": {"history_s": 0.005, "fields_s": 0.05, "figures": True, "stop_when_overturned": True},
+        "uncertainty": {"draws": 32},
     }
 
 

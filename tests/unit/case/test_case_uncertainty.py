@@ -1,0 +1,169 @@
+"""What nobody knows of a case: ranges that follow it or are stated, changed cases, Sobol's points, bad ranges."""
+
+import warnings
+
+import numpy as np
+import pytest
+from cases import named_case
+from scipy.stats import qmc
+
+from fem.case.case import CaseError
+from fem.case.uncertainty import changes_of, draws_of, pairs_of, ranges_of, sobol_points, stiff_floor
+
+PENALTY = 1e9
+FRICTION = {"contact.mu_kinetic": 0.2}
+
+
+def changes(name="harmonic", values=None):
+    """Labels of the changes of one input."""
+    return [one.label for one in changes_of(named_case(name, values), PENALTY)]
+
+
+def ends(name="harmonic", values=None):
+    return {one.key: one.ends for one in ranges_of(named_case(name, values), PENALTY)}
+
+
+def test_defaults_follow_the_case():
+    assert ends("harmonic", FRICTION) == {
+        "contact.mu_kinetic": (0.4,),
+        "contact.weakening_m": (0.005,),
+        "contact.stribeck_velocity_m_s": (0.3,),
+        "motion.start": ("rest",),
+        "motion.ramp_cycles": (2.0,),
+        "contact.normal_penalty_Pa_m": (pytest.approx(PENALTY / 9.0), 3.0 * PENALTY),
+        "contact.damping_ratio": (1.0, 4.0),
+        "container.damping_ratio": (0.01, 0.04),
+    }
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "missing"),
+    [
+        ("harmonic", {}, {"contact.mu_kinetic", "contact.weakening_m", "contact.stribeck_velocity_m_s"}),
+        ("pulse", FRICTION, {"motion.start", "motion.ramp_cycles"}),
+        ("harmonic", FRICTION | {"solver.model": "rigid"}, {"container.damping_ratio"}),
+        ("harmonic", FRICTION | {"contact.damping_ratio": 0.0}, {"contact.damping_ratio"}),
+        ("harmonic", FRICTION | {"motion.phase_rad": np.pi / 2}, {"motion.start"}),
+        (
+            "harmonic",
+            FRICTION | {"contact.friction": "regularised"},
+            {"contact.weakening_m", "contact.stribeck_velocity_m_s"},
+        ),
+    ],
+    ids=["one friction", "a pulse", "rigid", "no dashpot", "a floor that starts at rest", "regularised"],
+)
+def test_what_makes_no_difference_is_not_varied(name, values, missing):
+    given = ends("harmonic", FRICTION)
+    assert set(given) - set(ends(name, values)) == missing
+
+
+def test_the_numerics_are_always_tried():
+    for name in ("harmonic", "pulse", "least"):
+        assert changes(name)[-1] == "solver.energy_tolerance = 0.1"
+
+
+def test_a_stated_range_replaces_the_default_and_known_leaves_it_out():
+    stated = FRICTION | {
+        "uncertainty.mu_kinetic": [0.1, 0.3],
+        "uncertainty.weakening_m": "known",
+        "uncertainty.stribeck_velocity_m_s": "known",
+        "uncertainty.normal_penalty_Pa_m": [1e8, PENALTY],
+        "uncertainty.damping_ratio": "known",
+        "uncertainty.material_damping_ratio": [0.02, 0.02],
+        "uncertainty.start": "known",
+        "uncertainty.ramp": False,
+    }
+    assert ends("harmonic", stated) == {
+        "contact.mu_kinetic": (0.1, 0.3),
+        "contact.normal_penalty_Pa_m": (1e8,),
+    }
+    assert pairs_of(named_case("harmonic", stated)) == ()
+
+
+def test_changes_between_the_ends_are_smaller_than_those_to_an_end():
+    shares = {one.label: one.share for one in changes_of(named_case("harmonic", FRICTION), None)}
+    assert shares["contact.weakening_m = 0.0001"] == pytest.approx(0.02)
+    assert shares["contact.weakening_m = 0.001"] == pytest.approx(0.2)
+    assert shares["contact.mu_kinetic = 0.3"] == pytest.approx(0.5)
+    assert shares["contact.mu_kinetic = 0.4"] == shares["contact.weakening_m = 0.005"] == 1.0
+
+
+def test_pairs_join_a_smaller_fall_of_friction_with_a_slower_one():
+    assert [one.label for one in pairs_of(named_case("harmonic", FRICTION))] == [
+        "contact.mu_kinetic = 0.3, contact.weakening_m = 0.005",
+        "contact.mu_kinetic = 0.3, contact.stribeck_velocity_m_s = 0.3",
+    ]
+    assert pairs_of(named_case("harmonic")) == ()
+
+
+def test_draws_fill_every_range_and_make_cases_that_can_be_read():
+    case = named_case("harmonic", FRICTION)
+    draws = draws_of(case, PENALTY)
+    assert len(draws) == 32
+    assert draws == draws_of(case, PENALTY)
+    drawn = [case.with_values(one.values) for one in draws]
+    friction = [one.contact.mu_kinetic for one in drawn]
+    assert 0.2 < min(friction) < 0.21 and 0.39 < max(friction) < 0.4
+    stiffness = np.log([one.contact.normal_penalty_Pa_m for one in drawn])
+    assert np.mean(stiffness) == pytest.approx(np.log(PENALTY / np.sqrt(3.0)), abs=0.1)
+    assert sum(one.contact.weakening_m < 1e-3 for one in drawn) > 16
+    for read in (lambda one: one.motion.start == "rest", lambda one: one.motion.ramp_cycles == 2.0):
+        assert sum(map(read, drawn)) == 16
+    assert len(draws_of(case, PENALTY, 5)) == 5
+    assert draws_of(named_case("harmonic", {"uncertainty.draws": 0}), PENALTY) == ()
+
+
+@pytest.mark.parametrize("count", [1, 2, 5, 32, 1000])
+def test_points_are_those_of_sobol(count):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the count is no power of two
+        expected = qmc.Sobol(8, scramble=False).random(count)
+    bits = int(np.ceil(np.log2(count)))
+    np.testing.assert_allclose(sobol_points(count, 8), expected + 0.5 / 2**bits, atol=1e-15)
+
+
+def test_a_ramp_fits_the_motion():
+    short = {"motion.cycles": 3.0}
+    assert ends("harmonic", short)["motion.ramp_cycles"] == (pytest.approx(1.5),)
+    ramped = FRICTION | {"motion.ramp_cycles": 1.0}
+    assert ends("harmonic", ramped)["motion.ramp_cycles"] == (0.0,)
+    assert "motion.start" not in ends("harmonic", ramped)
+    for values in (short, ramped, {"solver.duration_s": 0.5}):
+        case = named_case("harmonic", values)
+        for one in changes_of(case, PENALTY):
+            case.with_values(one.values)
+
+
+def test_a_stiff_floor_is_thirty_times_as_stiff():
+    assert stiff_floor(PENALTY).values == {"contact.normal_penalty_Pa_m": 30.0 * PENALTY}
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        (
+            "mu_kinetic",
+            [0.3, 0.2],
+            "must be [low, high] with low at most high, got [0.3, 0.2]; write [0.2, 0.3]",
+        ),
+        (
+            "mu_kinetic",
+            [0.2, 0.5],
+            "must be at most contact.mu_static = 0.4, got up to 0.5; end the range there",
+        ),
+        ("mu_kinetic", [-0.1, 0.2], "must be between 0 and 5, got -0.1; steel on concrete has 0.3 to 0.4"),
+        ("mu_kinetic", 0.3, 'must be [low, high] or "known", got 0.3'),
+        ("mu_kinetic", [0.3], 'must be [low, high] or "known", got a list'),
+        ("mu_kinetic", ["a", 0.3], "must be [low, high] or \"known\", got the list ['a', 0.3]"),
+        ("mu_kinetic", "unknown", "must be [low, high] or \"known\", got the text 'unknown'"),
+        ("weakening_m", [0.0, 5.0], "must be between 0 and 0.1 m, got 5 m; looks like micrometres: 5e-06 m?"),
+        ("damping_ratio", [0.0, 1e9], "must be between 0 and 1000, got 1e+09; 2 is usual"),
+        ("start", "rest", "must be true, false or \"known\", got the text 'rest'"),
+        ("draws", -1, "must be between 0 and 1024, got -1; 32 is usual"),
+        ("mu", [0.1, 0.2], "unknown key 'mu'; did you mean 'mu_kinetic'?"),
+    ],
+)
+def test_bad_ranges_are_refused_with_a_way_out(key, value, said):
+    with pytest.raises(CaseError) as refused:
+        named_case("harmonic", {f"uncertainty.{key}": value})
+    assert said in str(refused.value) and "[uncertainty] " in str(refused.value)
