@@ -154,7 +154,7 @@ def test_a_stiff_floor_is_thirty_times_as_stiff():
         ("mu_kinetic", [-0.1, 0.2], "must be between 0 and 5, got -0.1; steel on concrete has 0.3 to 0.4"),
         ("mu_kinetic", 0.3, 'must be [low, high] or "known", got 0.3'),
         ("mu_kinetic", [0.3], 'must be [low, high] or "known", got a list'),
-        ("mu_kinetic", ["a", 0.3], "must be [low, high] or \"known\", got the list ['a', 0.3]"),
+        ("mu_kinetic", ["a", 0.3], 'must be [low, high] or "known", got a list'),
         ("mu_kinetic", "unknown", "must be [low, high] or \"known\", got the text 'unknown'"),
         ("weakening_m", [0.0, 5.0], "must be between 0 and 0.1 m, got 5 m; looks like micrometres: 5e-06 m?"),
         ("damping_ratio", [0.0, 1e9], "must be between 0 and 1000, got 1e+09; 2 is usual"),
