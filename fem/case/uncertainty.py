@@ -162,7 +162,7 @@ def sobol_points(count: int, dimensions: int) -> NDArray[np.float64]:
     Direction numbers of Joe and Kuo, SIAM J. Sci. Comput. 30 (2008) 2635, for at most eight dimensions. (The sequence
     of scipy is the same; importing it takes longer than a run.)
     """
-    bits = max(1, math.ceil(math.log2(max(count, 1))))
+    bits = math.ceil(math.log2(max(count, 1)))
     number = np.arange(count)
     gray = number ^ (number >> 1)
     points = np.zeros((count, dimensions), dtype=np.int64)
