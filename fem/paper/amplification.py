@@ -31,10 +31,8 @@ def mass_centre(experiments: Experiments) -> Evidence:
     near = math.sqrt(2.0) >= RATIOS
     base = STACK.but(FOR_MAPS, interval=0.002, duration=25.0)
     for peak in PEAKS:
-        group = [
-            base.but(peak=peak, frequency=ratio * OMEGA_EQ_3, what=f"stack, {peak:g} m/s² at eta = {ratio:g}")
-            for ratio in RATIOS
-        ]
+        frequencies = (RATIOS * OMEGA_EQ_3).tolist()
+        group = base.but(peak=peak).scan("frequency", frequencies, f"stack, {peak:g} m/s² at {{:.4g}} rad/s")
         runs = [experiments.run(case, also_failed=True) for case in group]
         yield from [case for case, ratio in zip(group, RATIOS, strict=True) if ratio in (1.2, 2.0)]
         overturned += [run.status == "overturned" for run in runs]

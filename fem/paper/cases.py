@@ -1,7 +1,7 @@
 """The paper's containers and motions: shipped cases, and what the check of a claim changes of them."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,7 +16,6 @@ FREQUENCY_PARAMETER = math.sqrt(0.75 * GRAVITY / (0.5 * math.hypot(WIDTH, HEIGHT
 ANGULAR_FREQUENCY = 6.928  #: sqrt(2.4 m/s2 / 50 mm), the paper's motion [rad/s]
 STATED_PEAK, PLATEAU_PEAK = 2.4, 4.0  #: [m/s2]
 
-
 #: short names of the keys that claims change most
 KEYS = {
     "model": "solver.model",
@@ -26,6 +25,7 @@ KEYS = {
     "boxes": "container.boxes",
     "mu_static": "contact.mu_static",
     "mu_kinetic": "contact.mu_kinetic",
+    "damping": "contact.damping_ratio",
     "amplitude": "motion.amplitude_m",
     "peak": "motion.peak_acceleration_m_s2",
     "frequency": "motion.angular_frequency_rad_s",
@@ -57,6 +57,10 @@ class PaperCase:
         values |= {KEYS[name]: _rounded(value) for name, value in named.items()}
         return PaperCase(base=self.base, values=values, what=what or self.what)
 
+    def scan(self, name: str, values: Iterable[float], what: str) -> list["PaperCase"]:
+        """This case once for each value of a key by its short name; `what` is a format of the value."""
+        return [self.but(what=what.format(value), **{name: value}) for value in values]
+
     @property
     def case(self) -> Case:
         """The case as a run reads it, without fields.
@@ -78,7 +82,7 @@ class PaperCase:
         return f"python -m fem run {self.base}{changes} --out outputs/try"
 
 
-def _rounded(value: float | str) -> float | str:
+def _rounded(value: Any) -> Any:
     return float(f"{value:.8g}") if isinstance(value, float) else value
 
 
@@ -97,4 +101,13 @@ RIGID, SHELL = {"solver.model": "rigid"}, {"solver.model": "reduced"}
 FOR_MAPS = {**RIGID, "output.history_s": 2.0}
 #: the paper's g with its mass: 2500 kg
 G_TEN = {"gravity_m_s2": 10.0, "container.weight_N": 25000.0}
-NO_SLIDING = {"contact.mu_static": 1.0, "contact.mu_kinetic": 1.0}
+
+
+def friction(mu_static: float, mu_kinetic: float) -> dict[str, float]:
+    """The keys of both coefficients, rounded as by `but`."""
+    return {"contact.mu_static": _rounded(mu_static), "contact.mu_kinetic": _rounded(mu_kinetic)}
+
+
+PAPER_MU = (0.4, 0.2)  #: static and kinetic, Eq. (6)
+HOLDING = (1.0, 1.0)  #: of a stack that cannot slide
+NO_SLIDING = friction(*HOLDING)

@@ -20,6 +20,13 @@ class Conclusion(Enum):
     BOUNDED = "confirmed within stated bounds"
     REFUTED = "refuted"
     UNDECIDED = "not computed"
+    MISPRINT = "misprint"
+    REMARK = "remark"
+
+
+#: a statement can be refuted; a printed number or sign is right or a misprint; a remark is what runs add to a sentence
+#: that claims nothing they could refute
+ClaimKind = Literal["statement", "print", "remark"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,6 +112,7 @@ class Finding:
     comparisons: Sequence[Comparison]
     reading: str  #: what the numbers say, in a sentence or two
     bounds: str = ""  #: of the comparisons marked `inside`; empty: the claim as the paper makes it
+    kind: ClaimKind = "statement"
     cases: Sequence[PaperCase] = ()
     tables: Sequence[ClaimTable] = ()
     figures: Sequence[ClaimFigure] = ()
@@ -113,7 +121,7 @@ class Finding:
     @property
     def conclusion(self) -> Conclusion:
         """By `conclude`."""
-        return conclude(self.comparisons, self.bounds)
+        return conclude(self.comparisons, self.bounds, self.kind)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for `study.json`, without the contents of the figures."""
@@ -126,20 +134,24 @@ class Finding:
             "drawings": [{"name": figure.name, "caption": figure.caption} for figure in self.figures],
             "band": None if self.band is None else self.band.to_dict(),
             "verdict": self.conclusion.value,
-            "rule": counts_in_words(self.comparisons, self.bounds),
+            "rule": counts_in_words(self.comparisons, self.bounds) if self.comparisons else "",
         }
 
 
-def conclude(comparisons: Sequence[Comparison], bounds: str) -> Conclusion:
-    """Confirmed if every comparison holds; within bounds if bounds are stated, all comparisons inside them
-    hold and there is one; refuted otherwise. Without comparisons nothing is decided.
+def conclude(comparisons: Sequence[Comparison], bounds: str, kind: ClaimKind = "statement") -> Conclusion:
+    """Confirmed if every comparison holds; within bounds if bounds are stated, all comparisons inside them hold and
+    there is one; else refuted, or a misprint. A remark compares nothing; a claim without comparisons is undecided.
     """
+    if kind == "remark":
+        return Conclusion.REMARK
     if not comparisons:
         return Conclusion.UNDECIDED
     if all(one.holds for one in comparisons):
         return Conclusion.CONFIRMED
     inside = [one.holds for one in comparisons if one.inside]
-    return Conclusion.BOUNDED if bounds and inside and all(inside) else Conclusion.REFUTED
+    if bounds and inside and all(inside):
+        return Conclusion.BOUNDED
+    return Conclusion.MISPRINT if kind == "print" else Conclusion.REFUTED
 
 
 def counts_in_words(comparisons: Sequence[Comparison], bounds: str) -> str:
@@ -169,7 +181,7 @@ Kind = TypeVar("Kind")
 
 
 def claim(
-    section: str, quote: str, *, bounds: str = "", more: str = ""
+    section: str, quote: str, *, bounds: str = "", more: str = "", kind: ClaimKind = "statement"
 ) -> Callable[[Callable[[Experiments], Evidence]], Claim]:
     """Decorator: make a claim of the function that yields the evidence for and against it.
 
@@ -188,6 +200,7 @@ def claim(
                 comparisons=of(Comparison),
                 reading=" ".join(of(str)),
                 bounds=bounds,
+                kind=kind,
                 cases=of(PaperCase),
                 tables=of(ClaimTable),
                 figures=of(ClaimFigure),

@@ -64,17 +64,22 @@ def half_width_rule(motion: MapMotion) -> bool:
     return motion.amplitude > HALF_WIDTH
 
 
+def tilting_rule(motion: MapMotion) -> bool:
+    """Eqs. (8) to (13) alone: it overturns as soon as it tilts, before or while it slides."""
+    return motion.tilts and (not motion.slides_first or motion.tilts_while_sliding)
+
+
 def paper_rule(motion: MapMotion) -> bool:
-    """Eqs. (8) to (13) with A > a/2: it tilts before or while it slides, and the amplitude suffices."""
-    tilted = motion.tilts and (not motion.slides_first or motion.tilts_while_sliding)
-    return tilted and half_width_rule(motion)
+    """Eqs. (8) to (13) with A > a/2: it tilts, and the amplitude suffices."""
+    return tilting_rule(motion) and half_width_rule(motion)
 
 
 CRITERIA: Mapping[str, Criterion] = {
     "static rule, own peak": static_rule,
     "static rule, tilting or sliding": static_rule_or_sliding,
     "A <= a/2": half_width_rule,
-    "the paper's, Eqs. 8 to 13 and A": paper_rule,
+    "Eqs. 8 to 13": tilting_rule,
+    "Eqs. 8 to 13 and A <= a/2": paper_rule,
 }
 
 

@@ -23,10 +23,13 @@ from fem.paper.cases import (
     FOR_MAPS,
     FREQUENCY_PARAMETER,
     HEIGHT,
+    PAPER_MU,
     PLATEAU_PEAK,
+    SHELL,
     STACK,
     WIDTH,
     PaperCase,
+    friction,
 )
 from fem.paper.criteria import Contingency, Criterion, MapMotion, contingency
 from fem.paper.experiments import Experiments, stands
@@ -44,8 +47,6 @@ SHAPE = MapAxis(label="slenderness c/a [-]", values=SLENDERNESS, scale="linear")
 STICTION = MapAxis(label="static friction mu_s [-]", values=FRICTION, scale="linear")
 SHAPE_FREQUENCIES = (2.5, 4.0, ANGULAR_FREQUENCY)  #: [rad/s]
 FAST = 3.0 * FREQUENCY_PARAMETER  #: of a floor, against the stack [rad/s]
-FOR_SHELL = {"solver.model": "reduced", "solver.duration_s": 10.0}
-HOLDING = (1.0, 1.0)  #: friction of a stack that cannot slide
 PERTURBATION = Perturbation(contact_damping_ratios=[0.5])
 
 
@@ -136,7 +137,7 @@ class OutcomeMap:
 
 def stack_map(
     experiments: Experiments,
-    mu: tuple[float, float] | None = None,
+    mu: tuple[float, float] = PAPER_MU,
     *,
     peaks: Sequence[float] = PEAKS,
     rigid: bool = True,
@@ -146,20 +147,22 @@ def stack_map(
 
     Args:
         experiments: computes the cells.
-        mu: static and kinetic friction; default: the paper's, 0.4 and 0.2.
+        mu: static and kinetic friction.
         peaks: [m/s2].
         rigid: or a shell, at every second frequency and peak.
         perturbed: find out which cells are sure; all count as sure otherwise.
     """
-    static, kinetic = mu or (0.4, 0.2)
-    friction = {"mu_static": static, "mu_kinetic": kinetic}
-    base = STACK.but(FOR_MAPS, duration=15.0)
+    base = STACK.but(FOR_MAPS, friction(*mu), {} if rigid else SHELL, duration=15.0 if rigid else 10.0)
 
     def place(frequency: float, peak: float) -> tuple[PaperCase, MapMotion]:
         what = f"stack, {peak:g} m/s² at {frequency:g} rad/s"
-        case = base.but(peak=peak, frequency=frequency, what=what, **(friction if mu else {}))
-        motion = MapMotion(angular_frequency=frequency, peak=peak, slenderness=HEIGHT / WIDTH, **friction)
-        return case if rigid else case.but(FOR_SHELL), motion
+        return base.but(peak=peak, frequency=frequency, what=what), MapMotion(
+            angular_frequency=frequency,
+            peak=peak,
+            slenderness=HEIGHT / WIDTH,
+            mu_static=mu[0],
+            mu_kinetic=mu[1],
+        )
 
     return _computed(
         experiments,
@@ -177,11 +180,9 @@ def shape_maps(experiments: Experiments, *, rigid: bool = True) -> list[OutcomeM
     Rigid, or a shell at every second slenderness and friction.
     """
     kind = "rigid" if rigid else "shell"
-    base = STACK.but(FOR_MAPS, duration=15.0, peak=PLATEAU_PEAK)
+    base = STACK.but(FOR_MAPS, {} if rigid else SHELL, duration=15.0 if rigid else 10.0, peak=PLATEAU_PEAK)
 
     def of_frequency(frequency: float) -> OutcomeMap:
-        floor = base.but(frequency=frequency).but({} if rigid else FOR_SHELL)
-
         def place(slenderness: float, mu: float) -> tuple[PaperCase, MapMotion]:
             body = {
                 "container.boxes": 1,
@@ -190,7 +191,7 @@ def shape_maps(experiments: Experiments, *, rigid: bool = True) -> list[OutcomeM
                 "container.weight_N": round(BOX_WEIGHT * slenderness * WIDTH, 1),
             }
             what = f"{kind}, c/a = {slenderness:g}, mu_s = {mu:g}, {frequency:g} rad/s"
-            return floor.but(body, mu_static=mu, mu_kinetic=round(0.5 * mu, 4), what=what), MapMotion(
+            return base.but(body, friction(mu, 0.5 * mu), frequency=frequency, what=what), MapMotion(
                 angular_frequency=frequency,
                 peak=PLATEAU_PEAK,
                 slenderness=slenderness,

@@ -13,7 +13,9 @@ from fem.paper.cases import (
     FOR_MAPS,
     FREQUENCY_PARAMETER,
     HALF_WIDTH,
+    HOLDING,
     NO_SLIDING,
+    PAPER_MU,
     PLATEAU,
     RIGID,
     SHELL,
@@ -23,10 +25,9 @@ from fem.paper.cases import (
 from fem.paper.claims import Evidence, at_least, at_most, claim, table
 from fem.paper.experiments import Experiments, capped_ratio, stands
 from fem.paper.figures import PlottedLine, draw_curves, draw_map
-from fem.paper.maps import FAST, FREQUENCIES, HOLDING, MapCell, stack_map
+from fem.paper.maps import FAST, FREQUENCIES, MapCell, stack_map
 
-#: of the stack; None: the paper's own
-FRICTIONS = {"mu 0.4/0.2": None, "mu 1.0": HOLDING}
+FRICTIONS = {"mu 0.4/0.2": PAPER_MU, "mu 1.0": HOLDING}
 
 
 @claim(
@@ -71,9 +72,9 @@ def beginning_is_restored(experiments: Experiments) -> Evidence:
     )
     yield experiments.band(
         pulse.but(SHELL, duration=20.0),
-        quantity="rotation ratio",
-        criterion="it tilts and does not overturn",
-        holds=lambda row: row["first_uplift_s"] is not None and stands(row),
+        "rotation ratio",
+        "it tilts and does not overturn",
+        lambda row: row["first_uplift_s"] is not None and stands(row),
     )
 
 
@@ -128,9 +129,9 @@ def short_before_reversal(experiments: Experiments) -> Evidence:
     )
     yield experiments.band(
         STACK.but(NO_SLIDING, peak=1.1 * UPLIFT, frequency=ANGULAR_FREQUENCY, duration=8.0),
-        quantity="rotation ratio at 1.1 g a/c, 6.928 rad/s",
-        criterion="it stands",
-        holds=stands,
+        "rotation ratio at 1.1 g a/c, 6.928 rad/s",
+        "it stands",
+        stands,
     )
 
 
@@ -154,19 +155,12 @@ def half_width_is_conservative(experiments: Experiments) -> Evidence:
     )
     share = threshold / ANGULAR_FREQUENCY**2 / HALF_WIDTH
     held = STACK.but(FOR_MAPS, NO_SLIDING)
-    scan = [
-        held.but(
-            amplitude=round(part * HALF_WIDTH, 5),
-            duration=15.0,
-            what=f"stack that cannot slide, A = {part:.2f} a/2 at 6.928 rad/s",
-        )
-        for part in [round(0.1 + 0.02 * n, 3) for n in range(46)]
-    ]
-    falling = [
-        case
-        for case, row in zip(scan, experiments.rows(scan, also_failed=True), strict=True)
-        if not stands(row)
-    ]
+    amplitudes = [round((0.1 + 0.02 * n) * HALF_WIDTH, 5) for n in range(46)]
+    scan = held.but(duration=15.0).scan(
+        "amplitude", amplitudes, "stack that cannot slide, A = {:g} m at 6.928 rad/s"
+    )
+    ends = zip(scan, experiments.rows(scan, also_failed=True), strict=True)
+    falling = [case for case, row in ends if not stands(row)]
     smallest = min((case.values["motion.amplitude_m"] / HALF_WIDTH for case in falling), default=math.nan)
     witnesses, rows = [], []
     for name, mu in FRICTIONS.items():
@@ -214,10 +208,10 @@ def half_width_is_conservative(experiments: Experiments) -> Evidence:
     )
     yield experiments.band(
         witness.but(SHELL, duration=10.0),
-        quantity=f"rotation ratio at A = {witness.values['motion.amplitude_m'] / HALF_WIDTH:.2f} a/2",
+        f"rotation ratio at A = {witness.values['motion.amplitude_m'] / HALF_WIDTH:.2f} a/2",
+        "it stands, as A <= a/2 says",
+        stands,
         value=capped_ratio,
-        criterion="it stands, as A <= a/2 says",
-        holds=stands,
     )
 
 
@@ -231,16 +225,10 @@ def rotation_at_half_width(experiments: Experiments) -> Evidence:
     """A = a/2 at six frequencies, stack that cannot slide: rotation in the first quarter period, and the end."""
     rows = []
     angle = experiments.block(STACK).slenderness_angle
-    for frequency in (2.5, 3.5, 5.0, ANGULAR_FREQUENCY, 9.0, 12.0):
-        case = STACK.but(
-            FOR_MAPS,
-            NO_SLIDING,
-            amplitude=HALF_WIDTH,
-            frequency=frequency,
-            duration=10.0,
-            interval=0.005,
-            what=f"stack that cannot slide, A = a/2 at {frequency:g} rad/s",
-        )
+    held = STACK.but(FOR_MAPS, NO_SLIDING, amplitude=HALF_WIDTH, duration=10.0, interval=0.005)
+    frequencies = (2.5, 3.5, 5.0, ANGULAR_FREQUENCY, 9.0, 12.0)
+    cases = held.scan("frequency", frequencies, "stack that cannot slide, A = a/2 at {:g} rad/s")
+    for frequency, case in zip(frequencies, cases, strict=True):
         run = experiments.run(case)
         time, rotation = run.history["time_s"], np.abs(run.history["rotation_rad"])
         ratio = float(rotation[time <= 0.5 * math.pi / frequency].max()) / angle
@@ -291,10 +279,10 @@ def beyond_half_width(experiments: Experiments) -> Evidence:
     yield from [cell.case for cell in [*sure[:2], *beyond[:1]]]
     yield experiments.band(
         STACK.but(NO_SLIDING, amplitude=0.66, frequency=2.5, duration=8.0),
-        quantity="rotation ratio at A = 1.2 a/2, 2.5 rad/s (1: overturned)",
+        "rotation ratio at A = 1.2 a/2, 2.5 rad/s (1: overturned)",
+        "it overturns",
+        lambda row: not stands(row),
         value=capped_ratio,
-        criterion="it overturns",
-        holds=lambda row: not stands(row),
     )
 
 

@@ -16,6 +16,8 @@ MARKS = {
     Conclusion.BOUNDED.value: "doubt",
     Conclusion.REFUTED.value: "fail",
     Conclusion.UNDECIDED.value: "fail",
+    Conclusion.MISPRINT.value: "doubt",
+    Conclusion.REMARK.value: "quiet",
 }
 
 

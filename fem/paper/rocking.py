@@ -23,16 +23,12 @@ POINT_MASS = 1.0 + 1e-9
 def _periods(experiments: Experiments, name: str) -> tuple[RigidBlock, list[PaperCase], dict[float, float]]:
     """Analytic block, cases, and four times the time from release to the first impact, by RELEASES [s]."""
     block = experiments.block(BODIES[name])
-    cases = [
-        BODIES[name].but(
-            RIGID,
-            FREE,
-            rotation=share * block.slenderness_angle,
-            duration=3.0,
-            what=f"{name} released at {share:g} of beta",
-        )
-        for share in RELEASES
-    ]
+    released = [share * block.slenderness_angle for share in RELEASES]
+    cases = (
+        BODIES[name]
+        .but(RIGID, FREE, duration=3.0)
+        .scan("rotation", released, f"{name} released at {{:.4f}} rad")
+    )
     times = [row["first_impact_s"] for row in experiments.rows(cases)]
     periods = [math.nan if time is None else 4.0 * time for time in times]
     return block, cases, dict(zip(RELEASES, periods, strict=True))
@@ -147,12 +143,10 @@ def _band_of_periods(experiments: Experiments) -> VariantBand:
     exact = quarter_period(block, rotation)
     return experiments.band(
         STACK.but(FREE, rotation=rotation, duration=1.5),
-        quantity="period of the stack released at 0.5 beta over the exact block's",
+        "period of the stack released at 0.5 beta over the exact block's",
+        "within 5 % of the exact block's",
+        lambda row: row["first_impact_s"] is not None and abs(row["first_impact_s"] / exact - 1.0) <= 0.05,
         value=lambda row: None if row["first_impact_s"] is None else row["first_impact_s"] / exact,
-        criterion="within 5 % of the exact block's",
-        holds=lambda row: (
-            row["first_impact_s"] is not None and abs(row["first_impact_s"] / exact - 1.0) <= 0.05
-        ),
     )
 
 

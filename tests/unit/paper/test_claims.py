@@ -51,21 +51,27 @@ GOOD_OUTSIDE, BAD_OUTSIDE = replace(GOOD, inside=False), replace(BAD, inside=Fal
 
 
 @pytest.mark.parametrize(
-    ("comparisons", "bounds", "conclusion"),
+    ("comparisons", "bounds", "kind", "conclusion"),
     [
-        ((GOOD, GOOD_OUTSIDE), "", Conclusion.CONFIRMED),
-        ((GOOD, GOOD_OUTSIDE), "some", Conclusion.CONFIRMED),
-        ((GOOD, BAD_OUTSIDE), "some", Conclusion.BOUNDED),
-        ((GOOD, BAD_OUTSIDE), "", Conclusion.REFUTED),
-        ((GOOD, BAD), "some", Conclusion.REFUTED),
-        ((BAD, GOOD_OUTSIDE), "some", Conclusion.REFUTED),
-        ((BAD_OUTSIDE,), "some", Conclusion.REFUTED),
-        ((BAD,), "", Conclusion.REFUTED),
-        ((), "some", Conclusion.UNDECIDED),
+        ((GOOD, GOOD_OUTSIDE), "", "statement", Conclusion.CONFIRMED),
+        ((GOOD, GOOD_OUTSIDE), "some", "statement", Conclusion.CONFIRMED),
+        ((GOOD, BAD_OUTSIDE), "some", "statement", Conclusion.BOUNDED),
+        ((GOOD, BAD_OUTSIDE), "", "statement", Conclusion.REFUTED),
+        ((GOOD, BAD), "some", "statement", Conclusion.REFUTED),
+        ((BAD, GOOD_OUTSIDE), "some", "statement", Conclusion.REFUTED),
+        ((BAD_OUTSIDE,), "some", "statement", Conclusion.REFUTED),
+        ((BAD,), "", "statement", Conclusion.REFUTED),
+        ((), "some", "statement", Conclusion.UNDECIDED),
+        ((GOOD,), "", "print", Conclusion.CONFIRMED),
+        ((GOOD, BAD_OUTSIDE), "some", "print", Conclusion.BOUNDED),
+        ((BAD,), "", "print", Conclusion.MISPRINT),
+        ((), "", "print", Conclusion.UNDECIDED),
+        ((), "", "remark", Conclusion.REMARK),
+        ((BAD,), "", "remark", Conclusion.REMARK),
     ],
 )
-def test_the_conclusion_follows_from_the_comparisons(comparisons, bounds, conclusion):
-    assert conclude(comparisons, bounds) is conclusion
+def test_the_conclusion_follows_from_the_comparisons(comparisons, bounds, kind, conclusion):
+    assert conclude(comparisons, bounds, kind) is conclusion
 
 
 def band_of(*holds):
@@ -83,6 +89,15 @@ def test_a_band_counts_how_often_the_criterion_holds_and_leaves_failed_runs_out(
     assert band_of(True, True).summary.endswith("do not change it")
     assert band_of(False, False).summary.endswith("it holds in none of them")
     assert math.isnan(band_of(None).low)
+
+
+def test_a_band_says_where_the_regime_rests_on_chance():
+    first, second = band_of(True, False).members
+    rock, slide = replace(first, outcome="rock"), replace(second, outcome="slide-rock")
+    regimes = replace(band_of(), members=[rock, slide])
+    assert "chance" in replace(regimes, drop=True).summary
+    assert "chance" not in regimes.summary  # with mu_k = mu_s the same regimes differ by a little slip
+    assert "chance" not in replace(regimes, drop=True, members=[slide, slide]).summary
 
 
 def test_the_command_of_a_case_runs_the_very_case():
@@ -174,7 +189,7 @@ def test_a_claim_that_cannot_be_computed_has_no_conclusion_and_ends_as_failed(th
     claims, _ = three
     document = check_claims(tmp_path / "study", Experiments(), claims=claims[:3])
     assert document["status"] == "failed"
-    assert list(document["counts"].values()) == [1, 0, 1, 1]
+    assert [document["counts"][name] for name in ("confirmed", "refuted", "not computed")] == [1, 1, 1]
     page = (tmp_path / "study" / "study.html").read_text()
     assert "no balance" in page and "as read" in page
 
@@ -247,13 +262,22 @@ def test_names_of_claims_are_used_once():
 
 
 def test_the_command_writes_page_and_document(tmp_path, capsys):
-    arguments = ["study", "seed", "--only", "numbers-one-box", "--only", "half-width", "--json", "-q"]
-    assert main([*arguments, "--out", str(tmp_path / "s")]) == 0
+    names = {
+        "numbers-one-box": "confirmed within stated bounds",
+        "half-width": "misprint",
+        "centre-or-base": "remark",
+    }
+    only = [word for name in names for word in ("--only", name)]
+    assert main(["study", "seed", *only, "--json", "-q", "--out", str(tmp_path / "s")]) == 0
     document = json.loads(capsys.readouterr().out)
     verdicts = {one["name"]: one["verdict"] for group in document["groups"] for one in group["statements"]}
-    assert verdicts == {"numbers-one-box": "confirmed within stated bounds", "half-width": "refuted"}
+    assert verdicts == names
+    assert {name: count for name, count in document["counts"].items() if count} == dict.fromkeys(
+        names.values(), 1
+    )
     page = (tmp_path / "s" / "study.html").read_text()
-    assert page.count("<article") == 2
+    assert page.count("<article") == 3
+    assert "comparisons of half-width" in page and "comparisons of centre-or-base" not in page
     assert "src=" not in page  # nothing to load
     assert page.count("<script") == 1 and 'id="save"' in page  # what keeps author and checker in a copy
 
