@@ -1,4 +1,9 @@
-"""A run to its end where only the outcome is wanted, as for maps: no history is kept, no Python runs within a slice.
+"""When a run is over, and a run to its end where only the outcome is wanted, as for maps.
+
+A run has three parts. It is driven until `rest_from`, the end of a pulse or a record, or else to its duration. From
+`rest_from` on it ends when the container is at rest or has fallen, at the latest at its duration. A container that is
+beyond its slenderness angle then has neither fallen nor come back: it is followed on a resting floor until it has done
+one or the other. No history is kept here, and no Python runs within a slice.
 
 Of the samples that a history would have, the stepper follows the largest acceleration and the sway of the contents.
 The slip of the last cycle is kept, and the coordinates of the samples with the largest strain energy, from which
@@ -13,7 +18,7 @@ import numpy as np
 from contact.arrays import FloatArray
 from contact.jit import compiled
 from contact.motion.kernel import UNIFORM, as_floor_motion, floor_motion
-from contact.stepping.body import ROTATION
+from contact.stepping.body import KINETIC, POTENTIAL, ROTATION, VELOCITY_X
 from contact.stepping.control import most_attempts
 from contact.stepping.integrator import (
     AFTERMATH_SLICE,
@@ -24,8 +29,13 @@ from contact.stepping.integrator import (
     enter_floor_frame_compiled,
 )
 from contact.stepping.modal_body import ModalBody, with_own_scratch
+from contact.stepping.observables import NEVER
 from contact.stepping.state import ROW_SLIP, ROW_STRAIN, RunState
 
+#: energy of a container at rest, over that which it takes to overturn; and how long it must stay below [1/p]
+RESTING_ENERGY, RESTING_TIME = 1e-5, 1.0
+#: what ends a part of a run before its time: nothing but a fall; also rest; also being upright
+DRIVEN, FREE, UNDECIDED = 0, 1, 2
 SLICE, MOST_STRAINED = 0.25, 4  #: so many of the most strained samples are kept of each slice [s]
 
 
@@ -50,6 +60,7 @@ def run_to_end(
     run: RunState,
     duration: float,
     *,
+    rest_from: float = math.inf,
     aftermath: float = 0.0,
     slip_until: float = 0.0,
     cycle: float = 0.0,
@@ -60,7 +71,8 @@ def run_to_end(
     Args:
         body: its container, which runs may share: the scratch arrays are not touched.
         run: with samples at the interval of its history, if that has columns.
-        duration: [s].
+        duration: at most [s].
+        rest_from: from here on the run ends where the container is at rest or has fallen [s].
         aftermath: how long a container beyond its slenderness angle is followed afterwards on a resting floor [s].
         slip_until, cycle: the slip is kept of the last `cycle` before `slip_until` [s].
         strained: keep the most strained samples of every slice.
@@ -83,38 +95,64 @@ def run_to_end(
         frames=run.frames._replace(interval=math.inf),
     )
     ahead = SLICE if strained else math.inf  # without slices the stepping returns where the samples are full
-    status = advance_in_slices(own, run, kept, ahead, duration, False)
-    if status == REACHED and is_undecided.py_func(run):
+    status = advance_in_slices(own, run, kept, ahead, min(duration, rest_from), DRIVEN)
+    if status == REACHED and rest_from < duration:
+        status = advance_in_slices(own, run, kept, AFTERMATH_SLICE, duration, FREE)
+    if status == REACHED and not is_over.py_func(run, UNDECIDED):
         displacement, velocity, _ = floor_motion(run.motion, clock["time"])
         enter_floor_frame_compiled(own, run, velocity)
         still = as_floor_motion(UNIFORM, (float(clock["time"]), displacement, 0.0))
         run = run._replace(motion=still, breaks=np.full(1, np.inf))
-        status = advance_in_slices(own, run, kept, AFTERMATH_SLICE, duration + aftermath, True)
+        status = advance_in_slices(own, run, kept, AFTERMATH_SLICE, duration + aftermath, UNDECIDED)
     if status == REACHED and run.track["overturned_at"][0] < np.inf:
         status = OVERTURNED
     return Outcome(status, kept)
 
 
 @compiled
-def is_undecided(run: RunState) -> bool:
-    """The container is beyond its slenderness angle and has not overturned yet."""
-    beyond = abs(run.old.pose[ROTATION]) > run.control.slenderness_angle
-    return beyond and not run.track[0].overturned_at < np.inf
+def is_over(run: RunState, part: int) -> bool:
+    """Whether a part of a run (DRIVEN, FREE or UNDECIDED) is over before its time; asked before each of its slices.
+
+    At rest, kinetic energy in the frame of the floor and gravity potential above that of the resting container are
+    together below a share of the energy to overturn, at every look for some time; the floor must not accelerate. The
+    times of the looks do not depend on the slices.
+    """
+    clock, track, control = run.clock[0], run.track[0], run.control
+    if part == DRIVEN:
+        return False
+    if track.overturned_at < NEVER:
+        return True
+    if part == UNDECIDED:
+        return abs(run.old.pose[ROTATION]) <= control.slenderness_angle
+    if clock.time < clock.next_look:
+        return False
+    clock.next_look = clock.time + AFTERMATH_SLICE
+    floor_velocity = run.floor[0, 1]
+    moving = run.old.energy[KINETIC] + control.mass * floor_velocity * (
+        0.5 * floor_velocity - run.old.pose[VELOCITY_X]
+    )
+    raised = max(0.0, run.old.energy[POTENTIAL] - control.resting_energy)
+    if moving + raised > RESTING_ENERGY * control.reference_energy:
+        clock.rest_since = NEVER
+        return False
+    clock.rest_since = min(clock.rest_since, clock.time)
+    return clock.time - clock.rest_since >= RESTING_TIME / control.frequency_parameter
 
 
 @compiled
 def advance_in_slices(
-    body: ModalBody, run: RunState, kept: KeptSamples, ahead: float, until: float, undecided_only: bool
+    body: ModalBody, run: RunState, kept: KeptSamples, ahead: float, until: float, part: int
 ) -> int:
-    """Step to `until`, looking at the samples every `ahead` [s] or sooner; `undecided_only`: until it is decided."""
+    """Step to `until` or until this part of the run is over, looking at the samples every `ahead` [s] or sooner."""
     clock = run.clock[0]
-    while clock.time < until:
-        status = advance_compiled(body, run, min(clock.time + ahead, until))
+    while clock.time < until and not is_over(run, part):
+        target = clock.next_look if part == FREE else clock.time + ahead
+        status = advance_compiled(body, run, min(target, until))
         if run.history.columns.shape[1] > 0:
             keep_slip(run, kept)
             keep_most_strained(run, kept)
         clock.samples_drained = clock.samples
-        if status != REACHED or (undecided_only and not is_undecided(run)):
+        if status != REACHED:
             return status
         if clock.time < until and clock.steps + clock.rejected >= clock.attempt_limit:
             return FAILED

@@ -94,6 +94,9 @@ STEP_RECORD = np.dtype(
         ("iterations", "i8"),
         ("contact_iterations", "i8"),
         ("smallest_step", "f8"),
+        # free motion after a pulse or a record, see `outcome.is_over`
+        ("rest_since", "f8"),  # at every look since then the container was at rest
+        ("next_look", "f8"),
         # samples
         ("samples", "i8"),  # of the history, so far
         ("samples_drained", "i8"),  # of these no longer in the arrays
@@ -173,6 +176,7 @@ def make_run(
     clock = np.zeros(1, STEP_RECORD).view(np.recarray)
     clock["smallest_step"] = NEVER
     clock["attempt_limit"] = UNLIMITED
+    clock["rest_since"] = NEVER
     return RunState(
         scheme=scheme,
         contact=contact,

@@ -133,7 +133,7 @@ def follow_block(model: Model, end: float) -> Reference:
     block never slides, the block that cannot slide is the reference.
     """
     case, block = model.case, block_of(model)
-    floor = floor_of(model.motion, driven_until=case.solver.duration_s)
+    floor = floor_of(model.motion, driven_until=model.duration)
     jerk = floor_motion(model.motion.compiled(), 0.0)[1] if case.motion.start == "rest" else 0.0
     rotation, rate = case.initial.rotation_rad, case.initial.angular_velocity_rad_s
 

@@ -15,10 +15,12 @@ from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from fem.assessment.motion_words import covered_in_words, missing_peak, motion_in_words
 from fem.results.run_result import (
     Band,
     Energy,
     JointDemand,
+    MotionResult,
     Numerics,
     RigidCheckResult,
     RunAndBlock,
@@ -92,16 +94,16 @@ def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
 
 
 def outcome_sentence(result: RunResult) -> str:
-    """What happened, in one sentence."""
+    """What happened, in one sentence: the first line of the verdict."""
     if result.status == "failed":
         return f"No verdict: {result.error or 'the solution failed'}. Results up to there are kept."
-    found = _found(result.verdict or Verdict())
+    found = _found(result.verdict or Verdict(), result.motion or MotionResult())
     if result.status in ("interrupted", "running"):
         return f"Not finished ({result.status}). So far: {found}."
     return f"Result: {found}."
 
 
-def _found(verdict: Verdict) -> str:
+def _found(verdict: Verdict, motion: MotionResult) -> str:
     if verdict.outcome is None:
         return "no result yet"
     if verdict.outcome == "overturned":
@@ -109,7 +111,8 @@ def _found(verdict: Verdict) -> str:
         return "overturned" + (f" at t = {at:.3f} s" if at is not None else "")
     restored = ", returned upright" if verdict.restored else ""
     unsure = " (unsure, see the band)" if verdict.band is not None and verdict.band.unsure else ""
-    return f"{VERBS.get(verdict.outcome, verdict.outcome)}{restored} and did not overturn under this motion{unsure}"
+    under = f"{covered_in_words(motion)}{unsure}{missing_peak(motion)}"
+    return f"{VERBS.get(verdict.outcome, verdict.outcome)}{restored} and did not overturn under {under}"
 
 
 def _static_table(static: StaticResult, verdict: Verdict) -> Table:
@@ -189,6 +192,8 @@ def result_rows(result: RunResult) -> list[tuple[str, str]]:
     numerics = result.numerics or Numerics()
     impacts = verdict.impacts
     rows = [
+        ("floor motion", motion_in_words(result.motion or MotionResult())),
+        ("simulated time", _simulated(verdict, numerics)),
         ("states seen", ", ".join(verdict.modes)),
         ("largest rotation", _rotation(verdict)),
         (
@@ -213,6 +218,13 @@ def result_rows(result: RunResult) -> list[tuple[str, str]]:
         *_rigid_rows(result.rigid_check, static.slenderness_angle_rad),
     ]
     return [(name, value) for name, value in rows if value]
+
+
+def _simulated(verdict: Verdict, numerics: Numerics) -> str:
+    if numerics.simulated_s is None:
+        return ""
+    at_rest = "" if verdict.at_rest_s is None else f", at rest from {verdict.at_rest_s:.4g} s on"
+    return f"{numerics.simulated_s:.4g} s{at_rest}"
 
 
 def numerics_rows(result: RunResult) -> list[tuple[str, str]]:

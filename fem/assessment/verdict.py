@@ -84,6 +84,7 @@ def verdict_from(
         first_impact_s=_finite(track.first_impact),
         overturned_at_s=_finite(track.overturned_at),
         restored=rocked and abs(float(run.old.pose[0])) < ROCKING * angle,
+        at_rest_s=_finite(float(run.clock[0].rest_since)),
         restitution_first=_finite(track.restitution_by_peaks if still else track.restitution_by_velocity),
         max_corner_force_N=track.max_corner_force,
         max_top_displacement_m=track.max_top_displacement if sampled else None,
@@ -143,6 +144,7 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
         rejected=int(clock.rejected),
         newton_iterations=int(clock.contact_iterations),
         iterations=int(clock.iterations),
+        simulated_s=float(clock.time),
         largest_step_s=run.control.largest_step,
         smallest_step_s=float(clock.smallest_step) if clock.steps else None,
         stepping_cpu_s=stepping_cpu,
@@ -174,7 +176,7 @@ def _modes_seen(model: Model, track: SimpleNamespace, outcome: str) -> tuple[str
 
 def end_of_drive(model: Model) -> float:
     """When the floor stops, or else the run [s]."""
-    return min(model.case.solver.duration_s, getattr(model.motion, "end_time", math.inf))
+    return min(model.duration, getattr(model.motion, "end_time", math.inf))
 
 
 def _peak_to_peak(model: Model, last: float | None, time: np.ndarray, slip: np.ndarray) -> float | None:

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from fem.assessment.summary import ratio_in_words
 from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from fem.case.case import Case
+from fem.case.rules import MOST_FREE_MOTION, ends_at_rest, longest_time
 from fem.results.run_result import (
     ActionResult,
     Energy,
@@ -99,10 +100,10 @@ def regularised_friction_creeps(result: RunResult, case: Case) -> str | None:
     start = "friction regularised in velocity never sticks: the container creeps"
     if share is None or not 0.0 < share < 1.0:
         return f"{start}; friction = 'elastic-stick' does not"
-    creep = case.contact.regularisation_velocity_m_s * math.atanh(share) * case.solver.duration_s
+    creep = case.contact.regularisation_velocity_m_s * math.atanh(share) * longest_time(case)
     return (
         f"{start}, under a steady load of {share:.2g} of the friction limit, the peak of this run, by "
-        f"{1e3 * creep:.2g} mm in {case.solver.duration_s:g} s; friction = 'elastic-stick' does not"
+        f"{1e3 * creep:.2g} mm in {longest_time(case):g} s; friction = 'elastic-stick' does not"
     )
 
 
@@ -152,6 +153,16 @@ def lateral_force_method_does_not_apply(result: RunResult, case: Case) -> str | 
     return (
         f"the lateral force method does not apply at this period ({_static(result).clause}); the code's rows are "
         "shown for comparison only"
+    )
+
+
+def it_still_moves(result: RunResult, case: Case) -> str | None:
+    """The free motion after a pulse or a record was given up before the container came to rest."""
+    if not ends_at_rest(case) or _verdict(result).at_rest_s is not None or result.status != "completed":
+        return None
+    return (
+        f"the container still moves {MOST_FREE_MOTION:g} s after the end of the motion, where the run ends; a longer "
+        "solver.duration_s follows it further"
     )
 
 
@@ -227,6 +238,7 @@ def steps_were_rejected(result: RunResult, case: Case) -> str | None:
 CHECKS: tuple[Callable[[RunResult, Case], str | None], ...] = (
     band_is_unsure,
     motion_is_doubtful,
+    it_still_moves,
     energy_is_near_its_limits,
     contact_penetrates,
     regularised_friction_creeps,

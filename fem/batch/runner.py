@@ -195,11 +195,12 @@ def _model_of(case: Case, before: Model | None) -> Model:
 def run_model(model: Model) -> Row:
     """Step a rigid or reduced model to its end, in place; its row."""
     assert isinstance(model.body, ModalBody)
-    run, duration, until = model.run, model.case.solver.duration_s, end_of_drive(model)
+    run, duration, until = model.run, model.duration, end_of_drive(model)
     status, kept = run_to_end(
         model.body,
         run,
         duration,
+        rest_from=model.rest_from,
         aftermath=AFTERMATH / run.control.frequency_parameter,
         slip_until=until,
         cycle=min(model.case.motion.period, duration),

@@ -11,6 +11,10 @@ MOST_SAMPLES = 2e7
 MOST_HISTORY = 2.6e9  # bytes in memory: so many samples of a single box
 MOST_FRAMES = 1e6
 MOST_STEPS = 1e9
+#: simulated time of duration_s = "auto" where the floor stands or moves harmonically [s]
+USUAL_DURATION = 20.0
+#: time after the end of a pulse or a table in which the container comes to rest or falls, at most [s]
+MOST_FREE_MOTION = 60.0
 
 
 def _smallest(box: Any) -> float:
@@ -91,14 +95,6 @@ SOLVER_RULES = (
             f"got {solver.newmark_beta:g}; 1/4 and 1/2 are usual"
         ),
     ),
-    Rule(
-        "solver.step_s",
-        lambda solver: solver.step_s == "auto" or solver.duration_s / solver.step_s <= MOST_STEPS,
-        lambda solver: (
-            f"= {solver.step_s:g} s makes {solver.duration_s / solver.step_s:.3g} steps of duration_s = "
-            f'{solver.duration_s:g} s, more than {MOST_STEPS:.0e}; take a longer step or "auto"'
-        ),
-    ),
 )
 
 
@@ -163,6 +159,29 @@ def _largest(case: Any) -> float:
     return float(max(case.container.width_m, case.container.boxes * case.container.height_m))
 
 
+def ends_at_rest(case: Any) -> bool:
+    """Whether a run ends where the container comes to rest after its motion, and not at a given time."""
+    return case.solver.duration_s == "auto" and case.motion.kind in ("pulse", "table")
+
+
+def longest_time(case: Any) -> float:
+    """Simulated time of a case, at most [s]; of a table without duration, the free motion after it alone."""
+    motion, given = case.motion, case.solver.duration_s
+    if given != "auto":
+        return float(given)
+    if motion.kind == "pulse":
+        return float(motion.delay_s + (motion.pulse_s or 0.0) + MOST_FREE_MOTION)
+    return MOST_FREE_MOTION if motion.kind == "table" else USUAL_DURATION
+
+
+def duration_in_words(case: Any) -> str:
+    """The simulated time as a case file has it, with its upper bound."""
+    time = f"{longest_time(case):g} s"
+    return (
+        f"duration_s = {time}" if case.solver.duration_s != "auto" else f'duration_s = "auto", up to {time}'
+    )
+
+
 def _tapered(case: Any) -> float:
     """Time of both tapers of a harmonic motion that ends with the run [s]; 0 for every other motion."""
     frequency = harmonic_angular_frequency(case.motion)
@@ -172,7 +191,7 @@ def _tapered(case: Any) -> float:
 
 
 def _samples(case: Any) -> float:
-    return float(case.solver.duration_s / case.output.history_s + 1.0)
+    return longest_time(case) / float(case.output.history_s) + 1.0
 
 
 def _bytes_of_a_sample(case: Any) -> float:
@@ -183,7 +202,7 @@ def _bytes_of_a_sample(case: Any) -> float:
 def _too_many_samples(case: Any) -> str:
     samples, size = _samples(case), _bytes_of_a_sample(case)
     return (
-        f"= {case.output.history_s:g} s makes {samples:.3g} samples of duration_s = {case.solver.duration_s:g} s, "
+        f"= {case.output.history_s:g} s makes {samples:.3g} samples of {duration_in_words(case)}, "
         f"{size * samples / 1e9:.2g} GB in memory and some {2.4 * size * samples / 1e9:.2g} GB of text; "
         f"at most {min(MOST_SAMPLES, MOST_HISTORY / size):.1g} are kept: take a longer interval"
     )
@@ -191,7 +210,7 @@ def _too_many_samples(case: Any) -> str:
 
 def _frames(case: Any) -> float:
     interval = case.output.fields_s
-    return float(case.solver.duration_s / interval + 1.0) if interval else 0.0
+    return longest_time(case) / float(interval) + 1.0 if interval else 0.0
 
 
 CASE_RULES = (
@@ -227,16 +246,24 @@ CASE_RULES = (
         ),
     ),
     Rule(
-        "motion.ramp_cycles",
-        lambda case: _tapered(case) <= case.solver.duration_s,
+        "solver.step_s",
+        lambda case: case.solver.step_s == "auto" or longest_time(case) / case.solver.step_s <= MOST_STEPS,
         lambda case: (
-            f"= {case.motion.ramp_cycles:g} tapers {_tapered(case):g} s in all, more than duration_s = "
-            f"{case.solver.duration_s:g} s; take fewer or a longer run"
+            f"= {case.solver.step_s:g} s makes {longest_time(case) / case.solver.step_s:.3g} steps of "
+            f'{duration_in_words(case)}, more than {MOST_STEPS:.0e}; take a longer step or "auto"'
+        ),
+    ),
+    Rule(
+        "motion.ramp_cycles",
+        lambda case: _tapered(case) <= longest_time(case),
+        lambda case: (
+            f"= {case.motion.ramp_cycles:g} tapers {_tapered(case):g} s in all, more than "
+            f"{duration_in_words(case)}; take fewer or a longer run"
         ),
     ),
     Rule(
         "motion.delay_s",
-        lambda case: case.motion.kind != "pulse" or case.motion.delay_s < case.solver.duration_s,
+        lambda case: case.motion.kind != "pulse" or case.motion.delay_s < longest_time(case),
         "must be less than duration_s = {solver.duration_s:g} s, got {motion.delay_s:g} s: "
         "the pulse would begin after the end of the run",
     ),
@@ -260,8 +287,8 @@ CASE_RULES = (
         "output.fields_s",
         lambda case: _frames(case) <= MOST_FRAMES,
         lambda case: (
-            f"= {case.output.fields_s:g} s makes {_frames(case):.3g} frames of duration_s = "
-            f"{case.solver.duration_s:g} s, more than {MOST_FRAMES:.0e}; take a longer interval, or 0 for none"
+            f"= {case.output.fields_s:g} s makes {_frames(case):.3g} frames of "
+            f"{duration_in_words(case)}, more than {MOST_FRAMES:.0e}; take a longer interval, or 0 for none"
         ),
     ),
 )

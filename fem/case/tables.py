@@ -301,7 +301,11 @@ class SolverTable(CaseTable):
     energy_tolerance: Annotated[float, q.ENERGY_TOLERANCE] = _key(
         "factor on the energy that a step may lose; 10: coarser and faster, for maps", 1.0
     )
-    duration_s: Annotated[float, q.DURATION] = _key("simulated time", 20.0)
+    duration_s: Annotated[float, q.DURATION] | Literal["auto"] = _key(
+        'simulated time, or "auto": pulse and table: their end and free motion until rest or a fall, '
+        "at most 60 s more; else 20 s",
+        "auto",
+    )
     element_size_m: Annotated[float, q.ELEMENT_SIZE] = _key(
         "of the structured mesh; mesh lines also at wall_m and foot_m", 0.1
     )

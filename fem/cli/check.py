@@ -7,11 +7,14 @@ from collections.abc import Mapping
 from textwrap import fill
 from typing import Any
 
+from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak, motion_in_words
 from fem.case.case import Case, case_hash, load_case
+from fem.case.rules import longest_time
 from fem.cli.console import WIDTH, AsJson, CaseName, Overrides
 from fem.model.geometry import build_container
+from fem.model.motion_summary import summary_from_keys
 from fem.results.disk import in_units
-from fem.run.preview import Preview, peak_without_motion
+from fem.run.preview import Preview
 
 
 def check(
@@ -33,18 +36,19 @@ def preview_of(case: Case) -> Preview:
 
     The motion itself is evaluated only where it must be: its compiled functions take long to load.
     """
-    peak, mesh = peak_without_motion(case), build_container(case)
-    if peak is not None:
-        return Preview(case=case, mesh=mesh, peak=peak)
+    summary, mesh = summary_from_keys(case), build_container(case)
+    if summary is not None:
+        return Preview(case=case, mesh=mesh, motion=summary, duration=longest_time(case))
     module = importlib.import_module("fem.model.motion")
     motion = module.build_motion(case)
-    peak = float(module.peak_acceleration_within(motion, case.solver.duration_s))
-    return Preview(case=case, mesh=mesh, peak=peak, motion_notes=tuple(module.motion_notes(motion)))
+    summary, duration = module.motion_result(case, motion), module.longest_run(case, motion)
+    return Preview(case=case, mesh=mesh, motion=summary, duration=duration)
 
 
 def numerics_lines(numerics: Mapping[str, Any]) -> list[str]:
     """The numerical settings, for people."""
     modes = f", {numerics['elastic_modes']} elastic modes" if numerics["elastic_modes"] else ""
+    most = "at most " if numerics["ends_at_rest"] else ""
     return [
         f"  model       {numerics['model']}{modes}, {numerics['scheme']}",
         f"  mesh        {numerics['elements']} elements, {numerics['nodes']} nodes "
@@ -53,7 +57,7 @@ def numerics_lines(numerics: Mapping[str, Any]) -> list[str]:
         f"{numerics['contact_frequency_Hz']:.4g} Hz, "
         f"sinks in by {1e6 * numerics['static_penetration_m']:.3g} um",
         f"  output      {numerics['history_samples']} samples, {numerics['field_frames']} frames "
-        f"over {numerics['duration_s']:g} s, about {in_units(numerics['output_bytes'])}",
+        f"over {most}{numerics['duration_s']:g} s, about {in_units(numerics['output_bytes'])}",
     ]
 
 
@@ -69,6 +73,11 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
         f"  container   {derived['width_m']:g} x {derived['height_m']:g} m, "
         f"{derived['mass_kg']:.6g} kg, {boxes}",
         f"  floor       {floor}, peak {derived['peak_floor_acceleration_m_s2']:.4g} m/s2",
+        *([f"  motion      {length}"] if (length := motion_in_words(preview.motion)) else []),
+        *(
+            [f"  run         {covered_in_words(preview.motion)}{missing_peak(preview.motion)}"]
+            * is_cut(preview.motion)
+        ),
         "",
         f"  slenderness angle      {math.degrees(static.slenderness_angle):8.3f} deg   "
         f"mass centre at {static.centroid:.4g} m",

@@ -16,6 +16,7 @@ from fem.batch.log import LoggedRuns, fields_of, table_of_lines, table_text
 from fem.batch.runner import Row, Runner
 from fem.batch.workers import LocalWorkers
 from fem.case.case import case_hash, to_toml
+from fem.case.rules import ends_at_rest, longest_time
 from fem.ensemble.figures import ensemble_figures
 from fem.ensemble.plan import Draw, Ensemble
 from fem.ensemble.statistics import (
@@ -177,7 +178,7 @@ def result_of(
         "title": ensemble.title,
         "case": ensemble.base.name,
         "model": ensemble.base.solver.model,
-        "duration_s": ensemble.base.solver.duration_s,
+        "duration_s": longest_time(ensemble.base) if not ends_at_rest(ensemble.base) else "auto",
         **asked_of(ensemble),
         "axes": [{"key": axis.key, "values": list(axis.values), "unit": axis.unit} for axis in ensemble.axes],
         "random": {
@@ -191,12 +192,16 @@ def result_of(
     } | program_of_results()
 
 
+def _each(duration: float | str) -> str:
+    return "to rest" if isinstance(duration, str) else f"{duration:g} s"
+
+
 def page_of(result: dict[str, Any], folder: Path) -> str:
     """The result of an ensemble as text."""
     lines = [
         f"{result['ensemble']}: {result['title']}" if result["title"] else str(result["ensemble"]),
         f"  {len(result['points'])} points x {result['draws']} draws ({result['sampling']}, seed {result['seed']}), "
-        f"model {result['model']}, {result['duration_s']:g} s each, {result['status']}",
+        f"model {result['model']}, {_each(result['duration_s'])} each, {result['status']}",
         f"  random: {', '.join(result['random'])}; the floor's motion is not random",
     ]
     for name, count in result["regions"].items():

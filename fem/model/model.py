@@ -23,7 +23,7 @@ from contact.stepping.state import RunState, make_run, make_samples
 from fem.case.case import Case
 from fem.model.container import Container, discretise
 from fem.model.equilibrium import Equilibrium, find_equilibrium
-from fem.model.motion import build_motion, peak_acceleration_within
+from fem.model.motion import build_motion, longest_run, peak_acceleration_within, rest_sought_from
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.step_size import control_of, largest_step_of, scheme_of
 from fem.model.validity import require_stiff_corner
@@ -46,6 +46,10 @@ class Model:
     motion: BaseMotion
     static: StaticChecks
     run: RunState
+    duration: float  #: simulated time, at most [s]
+    rest_from: (
+        float  #: from here on the run ends when the container is at rest or has fallen [s]; or infinite
+    )
 
     @property
     def penalty(self) -> float:
@@ -87,7 +91,8 @@ def build_model(
     equilibrium = equilibrium or find_equilibrium(case, container)
     mesh, nodes = container.mesh, container.nodes
     contact, body = equilibrium.contact, equilibrium.body
-    static = static_checks_of(case, mesh, peak_acceleration_within(motion, case.solver.duration_s))
+    duration = longest_run(case, motion)
+    static = static_checks_of(case, mesh, peak_acceleration_within(motion, duration))
     largest, breaks = largest_step_of(case, static, motion)
     control = control_of(case, container, static, largest, contact)
     scheme = scheme_of(case, container, equilibrium.penalty, control, contact)
@@ -133,7 +138,14 @@ def build_model(
     )
     record_start(run.track[0], control, old)
     return Model(
-        case=case, container=container, equilibrium=equilibrium, motion=motion, static=static, run=run
+        case=case,
+        container=container,
+        equilibrium=equilibrium,
+        motion=motion,
+        static=static,
+        run=run,
+        duration=duration,
+        rest_from=rest_sought_from(case, motion),
     )
 
 

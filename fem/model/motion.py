@@ -1,6 +1,8 @@
-"""The base motion of a case, and doubts about a recorded one."""
+"""The base motion of a case, how long a run follows it, its numbers, and doubts about a recorded one."""
 
 import math
+from dataclasses import replace
+from types import SimpleNamespace
 from typing import TypeVar
 
 import numpy as np
@@ -9,10 +11,20 @@ from contact.motion.base_motion import BaseMotion, HarmonicMotion, NoMotion, Pul
 from contact.motion.table_file import read_motion_table
 from fem.case import quantities as q
 from fem.case.case import Case, CaseError
+from fem.case.problem import broken
+from fem.case.rules import CASE_RULES, MOST_FREE_MOTION, ends_at_rest, longest_time
+from fem.case.validation import problem_lines
+from fem.model.motion_summary import summary_from_keys
+from fem.results.run_result import MotionResult
+from fem.runtime.arrays import FloatArray
 
 DRIFT = 0.1  #: over the largest velocity: velocity at the end of a table from which a drift is reported
 COARSE = 2.0 * math.sin(math.pi / 10.0)  #: change between samples over the amplitude, ten samples a period
 PEAK_SAMPLES = 20_001  #: over a run, in addition to the instants at which a pulse or a table changes
+CYCLE_SAMPLES, MOST_CYCLES = 256, 4000  #: samples of a cycle for its peaks, of so many cycles at most
+
+#: rules of a case that limit what a long run makes
+BOUNDED = frozenset({"solver.step_s", "output.history_s", "output.fields_s"})
 
 ValueT = TypeVar("ValueT")
 
@@ -29,6 +41,85 @@ def build_motion(case: Case) -> BaseMotion:
         raise
     except ValueError as error:
         raise CaseError(f"[motion] {error}") from error
+
+
+def motion_span(motion: BaseMotion) -> tuple[float, float]:
+    """Begin and end of a pulse or a record; any other motion has no end [s]."""
+    if isinstance(motion, PulseMotion):
+        return motion.delay, motion.delay + motion.pulse
+    if isinstance(motion, TableMotion):
+        return float(motion.times[0]), float(motion.times[-1])
+    return 0.0, math.inf
+
+
+def longest_run(case: Case, motion: BaseMotion) -> float:
+    """Simulated time of a run on its motion, at most [s].
+
+    Raises:
+        CaseError: a record so long that its samples, frames or steps would be too many.
+    """
+    if case.motion.kind != "table" or not ends_at_rest(case):
+        return longest_time(case)
+    longest = motion_span(motion)[1] + MOST_FREE_MOTION
+    solver = case.solver.model_copy(update={"duration_s": longest})
+    tables = {"motion": case.motion, "output": case.output, "container": case.container}
+    bounds = [rule for rule in CASE_RULES if rule.place in BOUNDED]
+    if problems := broken(bounds, SimpleNamespace(**tables, solver=solver)):
+        raise CaseError("\n".join(problem_lines(problems)))
+    return longest
+
+
+def rest_sought_from(case: Case, motion: BaseMotion) -> float:
+    """Time from which a run ends where the container is at rest or has fallen [s]; infinite with a given duration."""
+    return motion_span(motion)[1] if ends_at_rest(case) else math.inf
+
+
+def motion_result(case: Case, motion: BaseMotion) -> MotionResult:
+    """The motion's numbers, and doubts about it."""
+    found = summary_from_keys(case) or _evaluated(motion, longest_run(case, motion))
+    return replace(found, kind=case.motion.kind, notes=tuple(motion_notes(motion)))
+
+
+def _evaluated(motion: BaseMotion, duration: float) -> MotionResult:
+    """Numbers of a motion that is evaluated, for a run of this duration [s]."""
+    begin, end = motion_span(motion)
+    if isinstance(motion, HarmonicMotion):
+        end = motion.end_time if math.isfinite(motion.end_time) else duration
+    peaks = np.abs(motion.evaluate(_extremes_of(motion, begin, end))).max(axis=1)
+    if isinstance(motion, PulseMotion):
+        begin = 0.0  # its delay is a part of it
+    covered = max(0.0, min(end, duration) - max(begin, 0.0)) / (end - begin)
+    whole = motion.peak_acceleration
+    table = motion if isinstance(motion, TableMotion) else None
+    return MotionResult(
+        duration_s=end - begin,
+        step_s=None if table is None else float(np.median(np.diff(table.times))),
+        samples=None if table is None else table.times.size,
+        peak_acceleration_m_s2=whole,
+        peak_velocity_m_s=float(peaks[1]),
+        peak_displacement_m=float(peaks[0]),
+        covered=covered,
+        peak_in_run_m_s2=peak_acceleration_within(motion, duration),
+    )
+
+
+def _extremes_of(motion: BaseMotion, begin: float, end: float) -> FloatArray:
+    """Instants that are dense enough for the peaks of displacement and velocity, within 0.01 % [s]."""
+    if isinstance(motion, TableMotion):  # samples, and where acceleration and then velocity pass through zero
+        times = motion.times
+        for row in (2, 1):
+            times = np.unique(np.append(times, _zeros(times, motion.evaluate(times)[row])))
+        return times
+    cycles = min(math.ceil((end - begin) / motion.time_scale), MOST_CYCLES)
+    return np.linspace(begin, end, CYCLE_SAMPLES * max(cycles, 1) + 1)
+
+
+def _zeros(times: FloatArray, values: FloatArray) -> FloatArray:
+    """Instants at which the straight lines through the samples pass through zero [s]."""
+    before, after = values[:-1], values[1:]
+    through = before * after < 0.0
+    share = before[through] / (before[through] - after[through])
+    return np.asarray(times[:-1][through] + share * np.diff(times)[through])
 
 
 def peak_acceleration_within(motion: BaseMotion, duration: float) -> float:
@@ -74,6 +165,10 @@ def motion_notes(motion: BaseMotion) -> list[str]:
 
 
 def _plausible(motion: TableMotion) -> TableMotion:
+    if motion.times[-1] <= 0.0:
+        raise CaseError(
+            f"[motion] file: its times end at {motion.times[-1]:g} s, and the run begins at t = 0; shift them"
+        )
     peak = motion.peak_acceleration
     if q.PEAK_ACCELERATION.allows(peak):
         return motion
@@ -95,7 +190,7 @@ def _build(case: Case) -> BaseMotion:
             return HarmonicMotion(
                 amplitude=motion.amplitude,
                 angular_frequency=motion.angular_frequency,
-                duration=case.solver.duration_s,
+                duration=longest_time(case),
                 phase=motion.phase_rad,
                 ramp_cycles=motion.ramp_cycles,
                 cycles=motion.cycles,

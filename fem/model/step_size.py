@@ -5,11 +5,12 @@ import math
 import numpy as np
 
 from contact.interface.solver import Contact
-from contact.motion.base_motion import BaseMotion, PulseMotion, TableMotion
+from contact.motion.base_motion import BaseMotion
 from contact.stepping.scheme import Scheme, generalised_alpha, newmark
 from contact.stepping.state import Control
 from fem.case.case import Case, CaseError
 from fem.model.container import Container
+from fem.model.motion import longest_run, motion_span
 from fem.model.static_checks import StaticChecks
 from fem.runtime.arrays import FloatArray
 
@@ -48,15 +49,15 @@ def largest_step_of(case: Case, static: StaticChecks, motion: BaseMotion) -> tup
     Raises:
         CaseError: a given step that is too long for the motion.
     """
-    solver, output = case.solver, case.output
+    solver, output, duration = case.solver, case.output, longest_run(case, motion)
     free, wanted = STEP_OF_ROCKING / static.frequency_parameter, STEP_OF_MOTION * motion.time_scale
-    ends = [time for time in motion.break_times if 0.0 < time < solver.duration_s]
-    begin, end = _span(motion)
+    ends = [time for time in motion.break_times if 0.0 < time < duration]
+    begin, end = motion_span(motion)
     pieces = (end - begin) / wanted if math.isfinite(end) else math.inf
-    short = pieces <= MOST_PIECES and end - begin < SHORT_SHARE * solver.duration_s
+    short = pieces <= MOST_PIECES and end - begin < SHORT_SHARE * duration
     if short and wanted < (free if solver.step_s == "auto" else solver.step_s):
         inside = np.linspace(begin, end, math.ceil(pieces) + 1)
-        ends = sorted({*ends, *inside[(inside > 0.0) & (inside < solver.duration_s)].tolist()})
+        ends = sorted({*ends, *inside[(inside > 0.0) & (inside < duration)].tolist()})
         wanted = math.inf
     largest = min(free, wanted)
     if solver.step_s != "auto":
@@ -67,8 +68,8 @@ def largest_step_of(case: Case, static: StaticChecks, motion: BaseMotion) -> tup
             )
         largest = solver.step_s
     interval = min(output.history_s, output.fields_s or math.inf)
-    largest = min(largest, solver.duration_s, MOST_SAMPLES_A_STEP * interval)
-    return largest, _apart(ends, solver.duration_s, SMALLEST_SHARE * largest)
+    largest = min(largest, duration, MOST_SAMPLES_A_STEP * interval)
+    return largest, _apart(ends, duration, SMALLEST_SHARE * largest)
 
 
 def _apart(instants: list[float], end: float, least: float) -> FloatArray:
@@ -84,15 +85,6 @@ def _apart(instants: list[float], end: float, least: float) -> FloatArray:
         if instant - kept[-1] >= least and end - instant >= least:
             kept.append(instant)
     return np.array([*kept[1:], end])
-
-
-def _span(motion: BaseMotion) -> tuple[float, float]:
-    """Begin and end of a pulse or a record; any other motion has no end [s]."""
-    if isinstance(motion, PulseMotion):
-        return motion.delay, motion.delay + motion.pulse
-    if isinstance(motion, TableMotion):
-        return float(motion.times[0]), float(motion.times[-1])
-    return 0.0, math.inf
 
 
 def _struck_mass(case: Case, container: Container) -> float:

@@ -85,8 +85,14 @@ def asked_rows(case: Case, history: History | None = None) -> list[tuple[str, st
         *_floor_peaks(case, history),
         ("start", _start(case)),
         ("model", models[case.solver.model]),
-        ("time", f"{short(case.solver.duration_s)} s, g = {short(case.gravity_m_s2)} m/s²"),
+        ("time", f"{_duration(case)}, g = {short(case.gravity_m_s2)} m/s²"),
     ]
+
+
+def _duration(case: Case) -> str:
+    if case.solver.duration_s == "auto":
+        return "to the end of the motion, and on until rest or a fall"
+    return f"{short(case.solver.duration_s)} s"
 
 
 def assumptions(case: Case, result: RunResult | None = None) -> list[str]:

@@ -94,9 +94,18 @@ class StaticResult(JsonBlock):
 
 @dataclass(frozen=True, kw_only=True)
 class MotionResult(JsonBlock):
-    """The floor's motion."""
+    """The floor's motion as used, after scale and baseline (`fem.model.motion_summary`)."""
 
     notes: tuple[str, ...] = ()  #: doubts about a recorded motion
+    kind: str | None = None  #: none | harmonic | pulse | table
+    duration_s: float | None = None  #: from its beginning to its end; of a drive without end, the run's
+    step_s: float | None = None  #: median interval of the samples of a table
+    samples: int | None = None  #: of a table
+    peak_acceleration_m_s2: float | None = None  #: of the whole motion, as the following
+    peak_velocity_m_s: float | None = None
+    peak_displacement_m: float | None = None
+    covered: float | None = None  #: share of the motion's time within the run
+    peak_in_run_m_s2: float | None = None  #: largest acceleration within the run
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,12 +152,14 @@ class Verdict(JsonBlock):
     first_impact_s: float | None = None
     overturned_at_s: float | None = None
     restored: bool | None = None  #: it rocked and stands again at the end
+    at_rest_s: float | None = None  #: since when it is at rest, of a run that ended for it
     restitution_first: float | None = None
     max_corner_force_N: float | None = None
     max_top_displacement_m: float | None = None  #: relative to the floor
     max_acceleration_m_s2: float | None = None  #: of the contents
     max_von_mises_Pa: float | None = None  #: None of a rigid container
     basis: str = "study"
+    first_line: str | None = None  #: the verdict in one sentence, as on the page
     band: Band | None = None
 
 
@@ -194,6 +205,7 @@ class Numerics(JsonBlock):
     rejected: int | None = None
     newton_iterations: int | None = None
     iterations: int | None = None
+    simulated_s: float | None = None
     largest_step_s: float | None = None
     smallest_step_s: float | None = None
     stepping_cpu_s: float | None = None  #: without compilation, set-up and output

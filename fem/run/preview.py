@@ -7,27 +7,15 @@ from typing import Any
 
 from contact.interface.penalty import contact_frequency
 from fem.case.case import Case
+from fem.case.rules import ends_at_rest
 from fem.model.geometry import node_count
 from fem.model.restitution import apparent_restitution
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.support import build_support, normal_penalty
 from fem.model.validity import require_stiff_contact
+from fem.results.run_result import MotionResult
 from fem.run.size import frames_of, required_disk, samples_of
 from mesh.container import ContainerMesh
-
-
-def peak_without_motion(case: Case) -> float | None:
-    """Largest |acceleration| that the floor reaches in the run [m/s2], as far as the keys alone determine it.
-
-    None where the motion itself must be evaluated: a table, ramps, a run that ends before the peak.
-    """
-    motion, duration = case.motion, case.solver.duration_s
-    reached = {
-        "none": True,
-        "harmonic": motion.ramp_cycles == 0.0 and duration >= 0.5 * motion.period,
-        "pulse": duration >= motion.delay_s + (motion.pulse_s or 0.0),
-    }
-    return case.nominal_peak_acceleration if reached.get(motion.kind) else None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,8 +24,13 @@ class Preview:
 
     case: Case
     mesh: ContainerMesh
-    peak: float  #: largest |acceleration| that the floor reaches in the run [m/s2]
-    motion_notes: tuple[str, ...] = ()  #: what is doubtful in a recorded motion
+    motion: MotionResult
+    duration: float  #: simulated time, at most [s]
+
+    @property
+    def peak(self) -> float:
+        """Largest |acceleration| that the floor reaches in the run [m/s2]."""
+        return self.motion.peak_in_run_m_s2 or 0.0
 
     @cached_property
     def static(self) -> StaticChecks:
@@ -84,10 +77,11 @@ class Preview:
             "normal_penalty_Pa_m": penalty,
             "contact_frequency_Hz": contact_frequency(mesh.mass, stiffness),
             "static_penetration_m": mesh.mass * case.gravity_m_s2 / stiffness,
-            "duration_s": solver.duration_s,
-            "history_samples": samples_of(case),
-            "field_frames": frames_of(case),
-            "output_bytes": required_disk(case, nodes),
+            "duration_s": self.duration,
+            "ends_at_rest": ends_at_rest(case),
+            "history_samples": samples_of(case, self.duration),
+            "field_frames": frames_of(case, self.duration),
+            "output_bytes": required_disk(case, nodes, self.duration),
         }
 
     @property
@@ -123,7 +117,7 @@ class Preview:
                 f"the lateral force method does not apply: rocking period {limit.demand:.2f} s > "
                 f"{limit.capacity:.1f} s ({limit.clause})",
             ),
-            *((True, note) for note in self.motion_notes),
+            *((True, note) for note in self.motion.notes),
             (
                 case.contact.friction == "regularised",
                 "friction regularised in velocity creeps under constant load; elastic-stick does not",
@@ -143,6 +137,7 @@ class Preview:
         """Everything but the hash of the case, as JSON types."""
         return {
             "derived": self.derived,
+            "motion": self.motion.to_json(),
             "static": self.static.to_result().to_json(),
             "contact_restitution": self.contact_restitution,
             "numerics": self.numerics,

@@ -11,15 +11,16 @@ from pathlib import Path
 from typing import Any
 
 from fem.assessment.joint_demands import joint_demands
-from fem.assessment.summary import plain_summary
+from fem.assessment.summary import outcome_sentence, plain_summary
 from fem.assessment.verdict import energy_of, numerics_of, verdict_of
 from fem.assessment.warnings import warnings_for
 from fem.case.case import Case, case_hash, to_toml
+from fem.case.rules import ends_at_rest, longest_time
 from fem.figures.cache import write_figures
 from fem.model.container import discretise
 from fem.model.geometry import build_container, node_count
 from fem.model.model import Model, build_model
-from fem.model.motion import build_motion, motion_notes, peak_acceleration_within
+from fem.model.motion import build_motion, longest_run, motion_result, peak_acceleration_within
 from fem.model.static_checks import static_checks_of
 from fem.model.step_size import largest_step_of
 from fem.model.support import normal_penalty
@@ -29,7 +30,7 @@ from fem.results.history import History
 from fem.results.kinds import RUN
 from fem.results.reader import open_run
 from fem.results.run_files import RunFiles, copy_data_files
-from fem.results.run_result import MotionResult, RunResult
+from fem.results.run_result import RunResult
 from fem.run.checkpoint import CheckpointWriter
 from fem.run.checks import WantedChecks, add_checks, lacks_band, lacks_checks
 from fem.run.output import Start, Stopwatch, open_output, read_start
@@ -105,7 +106,9 @@ def run_case(
         if known is None:
             nodes = node_count(mesh, case.solver.order)
             way_out = "set a larger output.fields_s (0: no frames) or output.history_s"
-            place.require_room(required_disk(case, nodes), size_in_words(case, nodes), way_out)
+            longest = longest_run(case, build_motion(case))
+            size = size_in_words(case, nodes, longest)
+            place.require_room(required_disk(case, nodes, longest), size, way_out)
         model = set_up(case, mesh, place, request, force=options.force, reporter=reporter)
         with interruptible(reporter) as stop:
             result = known
@@ -160,7 +163,7 @@ def compute(
         title=case.title,
         case_hash=request,
         static=model.static.to_result(),
-        motion=MotionResult(notes=tuple(motion_notes(model.motion))),
+        motion=motion_result(case, model.motion),
         versions=versions(),
     )
     place.begin(result.to_json(), texts, keep=start.is_resumed)
@@ -226,6 +229,9 @@ def store(result: RunResult, case: Case, place: ResultFolder) -> RunResult:
     """
     place.check()
     result = replace(result, warnings=tuple(warnings_for(result, case)))
+    if result.verdict is not None:
+        first_line = outcome_sentence(result)
+        result = replace(result, verdict=replace(result.verdict, first_line=first_line))
     place.write_text(RunFiles(place.path).summary.name, plain_summary(result, folder=place.path))
     place.write_result(result.to_json())
     if result.status in RUN.finished:
@@ -250,15 +256,19 @@ def draw(model: Model, folder: Path, reporter: Reporter) -> None:
 def resolve(case: Case, mesh: ContainerMesh) -> Case:
     """The case with every "auto" replaced by the value chosen; running it again gives the same result.
 
+    A duration that depends on when the container comes to rest stays "auto".
+
     Raises:
         CaseError: a motion that cannot be built, or that the given step would step over.
     """
     chosen: dict[str, Any] = {}
     if case.contact.normal_penalty_Pa_m == "auto":
         chosen["contact.normal_penalty_Pa_m"] = normal_penalty(case, mesh)
+    if case.solver.duration_s == "auto" and not ends_at_rest(case):
+        chosen["solver.duration_s"] = longest_time(case)
     if case.solver.step_s == "auto":
         motion = build_motion(case)
-        static = static_checks_of(case, mesh, peak_acceleration_within(motion, case.solver.duration_s))
+        static = static_checks_of(case, mesh, peak_acceleration_within(motion, longest_run(case, motion)))
         chosen["solver.step_s"], _ = largest_step_of(case, static, motion)
     return case.with_values(chosen) if chosen else case
 

@@ -5,8 +5,9 @@ decision to continue) falls on the same instants on any machine. A slice of a la
 interrupted by pauses, which depend on the wall clock and in which nothing is decided: the state may be saved, and a
 request to stop is heard.
 
-A container that is beyond its slenderness angle at the end of a run has neither fallen nor come back: it is followed
-in the frame of its floor, which stands still from then on, until it has done one or the other.
+`contact.stepping.outcome` says when a run is over: at its duration; after a pulse or a record as soon as the container
+is at rest or has fallen; and a container that is beyond its slenderness angle at the end is followed in the frame of
+its floor, which stands still from then on, until it has fallen or come back.
 """
 
 import math
@@ -20,6 +21,7 @@ from contact.motion.kernel import UNIFORM, as_floor_motion, floor_motion
 from contact.stepping.body import ROTATION
 from contact.stepping.control import most_attempts
 from contact.stepping.integrator import AFTERMATH_SLICE, FAILED, OVERTURNED, REACHED
+from contact.stepping.outcome import DRIVEN, FREE, UNDECIDED, is_over
 from contact.stepping.state import RunState
 from fem.assessment.verdict import MODE_NAMES, audit, rotation_ratio
 from fem.model.model import Model
@@ -98,7 +100,7 @@ def simulate(
     reporter = reporter or SilentReporter()
     full = isinstance(model.body, FullBody)
     advance_body(model.body, model.run, 0.0)
-    duration, control, run = model.case.solver.duration_s, model.run.control, model.run
+    duration, control, run = model.duration, model.run.control, model.run
     clock, track = run.clock[0], run.track[0]
 
     def ended(status: str, error: str | None = None) -> Ending:
@@ -116,14 +118,14 @@ def simulate(
         if stopped:
             return ended("interrupted")
         if progress.slice is None:
-            until, ahead = duration, SLICE_FULL if full else SLICE_REDUCED
-            if clock.time >= duration:
-                until, ahead = _end_of_aftermath(model), AFTERMATH_SLICE
-                if progress.undriven is None:
-                    undriven = _leave_alone(model, run, recorder)
-                    progress, run = replace(progress, undriven=undriven), _on_resting_floor(run, undriven)
+            part, until = _part_of(model)
+            ahead = AFTERMATH_SLICE if part != DRIVEN else SLICE_FULL if full else SLICE_REDUCED
+            target = float(clock.next_look) if part == FREE else float(clock.time) + ahead
+            if part == UNDECIDED and progress.undriven is None:
+                undriven = _leave_alone(model, run, recorder)
+                progress, run = replace(progress, undriven=undriven), _on_resting_floor(run, undriven)
             most = _attempts(run) + (LOOK_FULL if full else LOOK_REDUCED)
-            progress = replace(progress, slice=(min(float(clock.time) + ahead, until), most))
+            progress = replace(progress, slice=(min(target, until), most))
         code, progress = _advance(model, run, progress, pace)
         if progress.slice is None:
             recorder.drain(run)
@@ -171,18 +173,19 @@ def _attempts(run: RunState) -> int:
 
 
 def _goes_on(model: Model) -> bool:
-    """Whether there is time left, or the container has neither fallen nor come back at the end."""
-    clock, run = model.run.clock[0], model.run
-    if clock.time < model.case.solver.duration_s:
-        return True
-    beyond = abs(float(run.old.pose[ROTATION])) > run.control.slenderness_angle
-    undecided = beyond and not np.isfinite(run.track[0].overturned_at)
-    return undecided and clock.time < _end_of_aftermath(model)
+    """Whether the present part of the run has time left and is not over."""
+    part, until = _part_of(model)
+    return float(model.run.clock[0].time) < until and not is_over.py_func(model.run, part)
 
 
-def _end_of_aftermath(model: Model) -> float:
-    """Time at which a container that neither falls nor comes back is given up [s]."""
-    return model.case.solver.duration_s + AFTERMATH / model.run.control.frequency_parameter
+def _part_of(model: Model) -> tuple[int, float]:
+    """The present part of the run, and when it ends at the latest [s]."""
+    time, duration = float(model.run.clock[0].time), model.duration
+    if time < min(duration, model.rest_from):
+        return DRIVEN, min(duration, model.rest_from)
+    if time < duration:
+        return FREE, duration
+    return UNDECIDED, duration + AFTERMATH / model.run.control.frequency_parameter
 
 
 def _leave_alone(model: Model, run: RunState, recorder: Recorder) -> tuple[float, float]:

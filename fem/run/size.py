@@ -17,26 +17,26 @@ BYTES_OF_A_CHECKPOINT_NODE = 500.0
 BYTES_BESIDE = 2e6
 
 
-def samples_of(case: Case) -> int:
-    """Rows of the history of a run to its end."""
-    return math.floor(case.solver.duration_s / case.output.history_s * (1.0 + 1e-12)) + 1
+def samples_of(case: Case, duration: float) -> int:
+    """Rows of the history of a run of this duration [s]."""
+    return math.floor(duration / case.output.history_s * (1.0 + 1e-12)) + 1
 
 
-def frames_of(case: Case) -> int:
-    """Frames of a run to its end."""
+def frames_of(case: Case, duration: float) -> int:
+    """Frames of a run of this duration [s]."""
     if case.output.fields_s == 0.0:
         return 0
-    return math.floor(case.solver.duration_s / case.output.fields_s * (1.0 + 1e-12)) + 1
+    return math.floor(duration / case.output.fields_s * (1.0 + 1e-12)) + 1
 
 
-def required_disk(case: Case, nodes: int) -> float:
-    """Size of the folder of a run [bytes]; `nodes` of the elements."""
-    history = BYTES_OF_A_NUMBER * len(history_columns(case.container.boxes - 1)) * samples_of(case)
-    frames = (BYTES_OF_A_NODE * nodes + BYTES_OF_A_FRAME) * frames_of(case)
+def required_disk(case: Case, nodes: int, duration: float) -> float:
+    """Size of the folder of a run of this duration [s], in bytes; `nodes` of the elements."""
+    history = BYTES_OF_A_NUMBER * len(history_columns(case.container.boxes - 1)) * samples_of(case, duration)
+    frames = (BYTES_OF_A_NODE * nodes + BYTES_OF_A_FRAME) * frames_of(case, duration)
     return history + frames + BYTES_OF_A_CHECKPOINT_NODE * nodes + BYTES_BESIDE
 
 
-def size_in_words(case: Case, nodes: int) -> str:
+def size_in_words(case: Case, nodes: int, duration: float) -> str:
     """The run and what takes most of its space, for a refusal."""
     frame = in_units(BYTES_OF_A_NODE * nodes + BYTES_OF_A_FRAME)
-    return f"the run ({frames_of(case)} frames of {frame}, {samples_of(case)} rows of history)"
+    return f"the run ({frames_of(case, duration)} frames of {frame}, {samples_of(case, duration)} rows of history)"

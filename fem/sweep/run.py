@@ -15,6 +15,7 @@ from fem.batch.log import LoggedRuns, fields_of, line_of, read_lines, table_of_l
 from fem.batch.runner import Row, Runner
 from fem.batch.workers import LocalWorkers, WorkersOf
 from fem.case.case import case_hash
+from fem.case.rules import ends_at_rest, longest_time
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
@@ -123,7 +124,8 @@ def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
     if sweep.count <= MOST_CELLS or force:
         return
     axes = {axis.key: axis.values for axis in sweep.axes}
-    durations = axes.get("solver.duration_s", (sweep.base.solver.duration_s,))
+    asked = axes.get("solver.duration_s", (sweep.base.solver.duration_s,))
+    durations = [longest_time(sweep.base) if one == "auto" else one for one in asked]
     speeds = [SECONDS_PER_SECOND[one] for one in axes.get("solver.model", (sweep.base.solver.model,))]
     seconds = sweep.count * sum(durations) / len(durations) * sum(speeds) / len(speeds) / jobs
     sizes = " x ".join(str(size) for size in sweep.shape)
@@ -261,7 +263,7 @@ def _asked(sweep: Sweep) -> dict[str, Any]:
         "band_hash": band_hash(sweep),
         "base_hash": case_hash(sweep.base),
         "model": sweep.base.solver.model,
-        "duration_s": sweep.base.solver.duration_s,
+        "duration_s": longest_time(sweep.base) if not ends_at_rest(sweep.base) else "auto",
         "axes": [
             {"key": axis.key, "values": axis.values, "scale": axis.scale, "unit": axis.unit}
             for axis in sweep.axes

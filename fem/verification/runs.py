@@ -164,7 +164,7 @@ def with_motion(model: Model, motion: FloorMotion, breaks: tuple[float, ...] = (
     state.velocity[0] += speed - speed_before
     model.run.floor[:] = floor, speed, acceleration
     modal_kernels.start(_modal(model), state, floor)
-    ends = np.array([*breaks, model.case.solver.duration_s, np.inf])
+    ends = np.array([*breaks, model.duration, np.inf])
     return replace(model, run=model.run._replace(motion=motion, breaks=ends))
 
 

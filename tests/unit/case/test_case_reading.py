@@ -71,7 +71,7 @@ def test_least_case_has_the_documented_defaults():
             "spectral_radius": 0.5,
             "step_s": "auto",
             "energy_tolerance": 1.0,
-            "duration_s": 20.0,
+            "duration_s": "auto",
             "element_size_m": 0.1,
             "order": 2,
         },
@@ -249,7 +249,8 @@ harmonic | motion.cycles=2 & motion.ramp_cycles=1.5 | ramp_cycles must be at mos
 harmonic | motion.ramp_cycles=1e-162 | [motion] ramp_cycles must be 0 or at least 0.01, got 1e-162
 harmonic | motion.ramp_cycles=20 | [motion] ramp_cycles = 20 tapers 36.2771 s in all, more than
 least    | motion.kind=pulse & motion.peak_acceleration_m_s2=1 | [motion] shape and pulse_s are missing: kind =
-pulse    | motion.delay_s=20 | [motion] delay_s must be less than duration_s = 20 s, got 20 s
+pulse    | motion.delay_s=20 & solver.duration_s=20 | [motion] delay_s must be less than duration_s = 20 s, got 20 s
+pulse    | motion.delay_s=5 & output.history_s=1e-6 | samples of duration_s = "auto", up to 65.5 s
 least    | motion.kind=table & motion.file=a.csv & motion.quantity=acceleration | [motion] unit is missing
 table    | motion.unit=m | unit must be m/s2 or g for quantity = "acceleration", got "m"
 table    | motion.scale=0.0 | [motion] scale must not be 0
@@ -263,9 +264,13 @@ least    | initial.rotation_rad=1.6 | [initial] rotation_rad must be more than -
 least    | solver.model=rigit | got the text 'rigit'; did you mean 'rigid'?
 least    | solver.order=3 | [solver] order must be between 1 and 2, got 3
 least    | solver.scheme=newmark & solver.newmark_beta=0.1 | newmark_beta must be at least newmark_gamma/2
+least    | solver.duration_s=Auto | [solver] duration_s must be a number or "auto", got the text 'Auto'
+least    | solver.duration_s=0 | [solver] duration_s must be between 0.001 and 10000 s, got 0 s
+least    | solver.duration_s=-5 | [solver] duration_s must be between 0.001 and 10000 s, got -5 s
+least    | solver.duration_s=5 & output.history_s=1e-7 | makes 5e+07 samples of duration_s = 5 s
 least    | solver.step_s=fast | [solver] step_s must be a number or "auto", got the text 'fast'
 least    | solver.step_s=1e-9 | [solver] step_s = 1e-09 s makes 2e+10 steps
-least    | output.history_s=1e-7 | [output] history_s = 1e-07 s makes 2e+08 samples of duration_s = 20 s
+least    | output.history_s=1e-7 | [output] history_s = 1e-07 s makes 2e+08 samples of duration_s = "auto", up to 20 s
 least    | output.fields_s=1e-6 | [output] fields_s = 1e-06 s makes 2e+07 frames
 least    | output.fields_s=-1.0 | [output] fields_s must be between 0 and 10000 s, got -1 s; 0 writes no fields
 least    | output.stop_when_overturned=1 | [output] stop_when_overturned must be true or false, got 1

@@ -18,11 +18,18 @@ FULL = (*COARSE, "solver.duration_s=0.12", "output.fields_s=0.02")
 #: still beyond its slenderness angle when time is up, then falling
 FALLING = ("solver.model=rigid", "initial.rotation_rad=0.8", "solver.duration_s=0.3", "output.fields_s=0.2")
 
+#: a pulse of which the box slides on, comes to rest and is watched for 0.3 s
+FREE = (
+    *("solver.model=rigid", "solver.duration_s=auto", "motion.kind=pulse", "motion.shape=rectangular"),
+    *("motion.pulse_s=0.1", "motion.peak_acceleration_m_s2=6.0", "output.fields_s=0.1"),
+)
+
 CASES = {
     "rigid": ("rocking", RIGID),
     "reduced": ("seed_stack_plateau", REDUCED),
     "reduced, flat base": ("seed_stack_plateau", FLAT),
     "full": ("seed_stack_plateau", FULL),
+    "free motion": ("seed_box", FREE),
     "aftermath": ("free_rocking", FALLING),
     "aftermath, full": ("free_rocking", (*FALLING, *COARSE, "solver.duration_s=0.1")),
 }

@@ -1,0 +1,43 @@
+"""The floor's motion of a run in words: its length, samples and peaks, and what of it the run leaves out."""
+
+from fem.results.run_result import MotionResult
+
+STANDARD_GRAVITY = 9.80665  #: accelerations are also given in g, as records are [m/s2]
+NAMES = {"table": "record", "pulse": "pulse"}
+
+
+def motion_in_words(motion: MotionResult) -> str:
+    """Length, samples and peaks; empty of a floor at rest, and of a result of an older version."""
+    if motion.duration_s is None or motion.peak_acceleration_m_s2 is None:
+        return ""
+    length = f"{motion.duration_s:.4g} s"
+    if motion.samples is not None and motion.step_s is not None:
+        length += f", {motion.samples} samples of {motion.step_s:.3g} s"
+    peak = motion.peak_acceleration_m_s2
+    words = f"{length}; peaks {peak:.4g} m/s2 = {peak / STANDARD_GRAVITY:.3g} g"
+    if motion.peak_velocity_m_s is not None:
+        words += f", {motion.peak_velocity_m_s:.3g} m/s"
+    if motion.peak_displacement_m is not None:
+        words += f", {1e3 * motion.peak_displacement_m:.3g} mm"
+    return words
+
+
+def is_cut(motion: MotionResult) -> bool:
+    """Whether the run ends before the motion, or begins after it has."""
+    return motion.covered is not None and motion.covered < 1.0 - 1e-9
+
+
+def covered_in_words(motion: MotionResult) -> str:
+    """The motion under which a verdict holds: "this motion", or the part of it that the run covers."""
+    if not is_cut(motion) or motion.covered is None or motion.duration_s is None:
+        return "this motion"
+    return f"the first {motion.covered * motion.duration_s:.4g} of {motion.duration_s:.4g} s"
+
+
+def missing_peak(motion: MotionResult) -> str:
+    """That the peak of the motion is not within the run; empty where it is."""
+    whole, within = motion.peak_acceleration_m_s2, motion.peak_in_run_m_s2
+    if not is_cut(motion) or whole is None or within is None or within >= whole * (1.0 - 1e-9):
+        return ""
+    name = NAMES.get(motion.kind or "", "motion")
+    return f"; the {name}'s peak of {whole / STANDARD_GRAVITY:.3g} g is not in it"

@@ -1,0 +1,177 @@
+"""When a run ends: at rest after its motion, or at a given time; and what is said of a motion that it cuts short."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from cases import named_case
+
+from contact.motion.base_motion import PulseMotion
+from fem.__main__ import main
+from fem.batch.runner import run_model
+from fem.case.case import CaseError, load_case, read_case
+from fem.cli.check import preview_of
+from fem.model.model import build_model
+from fem.model.motion import build_motion, motion_result
+from fem.results.reader import open_run
+from fem.run.run import run_case
+from fem.verification.runs import finish
+
+PULSE = {
+    "solver.model": "rigid",
+    "solver.duration_s": "auto",
+    "output.fields_s": 0.0,
+    "output.figures": False,
+    "motion.kind": "pulse",
+    "motion.shape": "sine",
+    "motion.pulse_s": 0.8,
+    "contact.mu_kinetic": 0.4,
+}
+#: a record of 4 s at 100 Hz whose peak of 1.75 g comes after 3 s
+RECORD = np.column_stack([np.arange(401) / 100.0, np.where(np.arange(401) == 300, 1.75, 0.0)])
+TABLE_CASE = """
+[container]
+width_m = 1.1
+height_m = 1.0
+weight_N = 24525.0
+[contact]
+mu_static = 0.4
+[motion]
+kind = "table"
+file = "floor.csv"
+quantity = "acceleration"
+unit = "g"
+[solver]
+model = "rigid"
+element_size_m = 0.5
+[output]
+fields_s = 0.0
+figures = false
+"""
+
+
+def record_case(folder: Path, rows: np.ndarray = RECORD, more: str = ""):
+    """The case of a record, in a folder, with lines of [solver] added."""
+    np.savetxt(folder / "floor.csv", rows, delimiter=",")
+    (folder / "case.toml").write_text(TABLE_CASE.replace("[output]", f"{more}\n[output]"))
+    return load_case(folder / "case.toml")
+
+
+@pytest.mark.parametrize(("peak", "outcome"), [(2.0, "rest"), (4.0, "rock")])
+def test_a_pulse_run_ends_at_rest_before_its_cap(peak, outcome):
+    model = build_model(named_case("seed_stack", PULSE | {"motion.peak_acceleration_m_s2": peak}))
+    done = finish(model)
+    end, resting = float(done.model.run.clock.time[0]), float(done.model.run.clock.rest_since[0])
+    assert done.outcome == outcome and end < 0.5 * model.duration
+    assert end - resting == pytest.approx(1.0 / model.static.frequency_parameter, abs=0.06)
+    tail = done.history["time_s"] >= resting
+    assert np.abs(done.history["rotation_rad"][tail]).max() < 1e-3 * model.static.slenderness_angle
+    # in 5 s more it would still do nothing
+    longer = finish(build_model(model.case.with_values({"solver.duration_s": end + 5.0})))
+    assert abs(float(longer.model.run.clock.slip[0] - model.run.clock.slip[0])) < 1e-6
+
+
+def test_a_run_and_a_batch_end_at_the_same_instant_with_the_same_bits():
+    case = named_case("seed_stack", PULSE | {"motion.peak_acceleration_m_s2": 4.0})
+    one, other = build_model(case.with_values({"output.fields_s": 0.0007})), build_model(case)
+    finish(one)
+    row = run_model(other)
+    assert one.run.clock.time[0] == other.run.clock.time[0] < one.duration
+    assert row["residual_slip_m"] == one.run.clock.slip[0]
+
+
+def test_free_motion_ends_with_a_fall_or_at_the_cap():
+    fallen = finish(build_model(named_case("seed_stack", PULSE | {"motion.peak_acceleration_m_s2": 6.0})))
+    assert fallen.status == "overturned" and float(fallen.model.run.clock.time[0]) < 5.0
+    smooth = {"motion.peak_acceleration_m_s2": 3.0, "motion.shape": "rectangular", "contact.mu_static": 0.0}
+    sliding = finish(build_model(named_case("seed_box", PULSE | smooth | {"contact.mu_kinetic": 0.0})))
+    assert float(sliding.model.run.clock.time[0]) == pytest.approx(60.8)
+    assert sliding.model.run.clock.rest_since[0] == math.inf
+
+
+def test_a_harmonic_run_without_duration_is_that_of_20_s_to_the_bit():
+    given = load_case("seed_box", ["solver.model=rigid", "output.fields_s=0"])
+    auto = given.with_values({"solver.duration_s": "auto"})
+    one, other = finish(build_model(given)), finish(build_model(auto))
+    assert one.history.values.tobytes() == other.history.values.tobytes()
+
+
+def test_the_resolved_case_of_a_pulse_gives_the_same_run(tmp_path):
+    case = named_case("seed_box", PULSE | {"motion.peak_acceleration_m_s2": 6.0, "contact.mu_kinetic": 0.2})
+    first = run_case(case, case_text=case.text, folder=tmp_path / "first")
+    again = load_case(tmp_path / "first" / "resolved.toml")
+    assert again.solver.duration_s == "auto" and again.solver.step_s != "auto"
+    second = run_case(again, case_text=again.text, folder=tmp_path / "second")
+    assert first.history.values.tobytes() == second.history.values.tobytes()
+    assert first.typed_result.verdict.at_rest_s == second.typed_result.verdict.at_rest_s
+    assert first.typed_result.case_hash == second.typed_result.case_hash
+
+
+def test_a_record_cut_short_says_so_in_its_first_line(tmp_path, monkeypatch):
+    record_case(tmp_path, more="duration_s = 2.0")
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "case.toml", "--out", "cut", "-q"]) == 0
+    line = (tmp_path / "cut" / "summary.txt").read_text().replace("\n", " ")
+    said = "under the first 2 of 4 s; the record's peak of 1.75 g is not in it"
+    assert said in line
+    document = json.loads((tmp_path / "cut" / "run.json").read_text())
+    assert said in document["verdict"]["first_line"]
+    motion = document["motion"]
+    assert (motion["duration_s"], motion["step_s"], motion["samples"]) == (4.0, pytest.approx(0.01), 401)
+    assert motion["covered"] == pytest.approx(0.5)
+    assert motion["peak_acceleration_m_s2"] == pytest.approx(1.75 * 9.80665)
+    assert open_run(tmp_path / "cut").typed_result.motion.peak_in_run_m_s2 == 0.0
+
+
+def test_a_record_run_whole_is_under_this_motion(tmp_path):
+    case = record_case(tmp_path)
+    result = run_case(case, case_text=case.text, folder=tmp_path / "whole").typed_result
+    assert "under this motion" in result.verdict.first_line
+    assert (
+        result.motion.covered == 1.0 and 4.0 <= result.verdict.at_rest_s < result.numerics.simulated_s < 20.0
+    )
+
+
+@pytest.mark.parametrize(
+    ("duration", "words"),
+    [(3.5, "the first 3.5 of 4 s"), (2.9, "the first 2.9 of 4 s; the record's peak of 1.75 g is not in it")],
+)
+def test_check_says_what_a_run_leaves_out(tmp_path, capsys, duration, words):
+    record_case(tmp_path, more=f"duration_s = {duration}")
+    assert main(["check", str(tmp_path / "case.toml")]) == 0
+    page = capsys.readouterr().out
+    assert words + "\n" in page
+    assert "4 s, 401 samples of 0.01 s; peaks 17.16 m/s2 = 1.75 g, 0.172 m/s" in page
+
+
+def test_a_record_of_negative_times_is_covered_from_zero_on(tmp_path):
+    case = record_case(tmp_path, RECORD - [1.0, 0.0])
+    assert motion_result(case, build_motion(case)).covered == pytest.approx(0.75)
+    with pytest.raises(CaseError, match="its times end at -1 s, and the run begins at t = 0; shift them"):
+        build_motion(record_case(tmp_path, RECORD - [5.0, 0.0]))
+
+
+def test_a_record_too_long_for_its_samples_is_refused_when_it_is_read(tmp_path):
+    case = record_case(tmp_path, RECORD * [2000.0, 1.0]).with_values({"output.history_s": 1e-4})
+    with pytest.raises(CaseError, match=r"8.06e\+07 samples of duration_s = 8060 s"):
+        build_model(case)
+
+
+@pytest.mark.parametrize("shape", ["rectangular", "half-sine", "sine"])
+def test_peaks_of_a_pulse_are_its_integrals(shape):
+    values = {"motion.shape": shape, "motion.delay_s": 0.3, "solver.duration_s": 5.0}
+    case = read_case(named_case("pulse").text).with_values(values)
+    found = preview_of(case).motion
+    motion = build_motion(case)
+    assert isinstance(motion, PulseMotion)
+    x, v, a = np.abs(motion.evaluate(np.linspace(0.0, 0.8, 20_001))).max(axis=1)
+    assert found.peak_acceleration_m_s2 == pytest.approx(a, rel=1e-6)
+    assert found.peak_velocity_m_s == pytest.approx(v, rel=1e-6)
+    assert found.peak_displacement_m == pytest.approx(x, rel=1e-6)
+    # the same by evaluation, where the run covers a part of it
+    part = motion_result(case.with_values({"solver.duration_s": 0.35}), motion)
+    assert part.covered == pytest.approx(0.35 / 0.8)
+    assert part.peak_velocity_m_s == pytest.approx(v, rel=1e-4)
+    assert part.peak_displacement_m == pytest.approx(x, rel=1e-4)
