@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from fem.case import quantities as q
 from fem.case.case import Case
 from fem.case.motion_rules import LEAST_RAMP
+from fem.case.rules import longest_time
 
 SOFTEST, STIFFEST = 1.0 / 9.0, 3.0  #: contact stiffness over that of the case
 DAMPING = (0.5, 2.0)  #: contact and material damping over those of the case
@@ -236,7 +237,7 @@ def _beginnings(case: Case) -> Iterator[InputRange]:
     if stated.start in (None, True) and jerks:
         yield _either(START, motion.start, "rest" if motion.start == "moving" else "moving")
     if stated.ramp in (None, True):
-        cycles = motion.cycles or case.solver.duration_s / motion.period
+        cycles = motion.cycles or longest_time(case) / motion.period
         ramp = min(RAMP_CYCLES, _short(0.5 * cycles * (1.0 - 1e-9))) if motion.ramp_cycles == 0.0 else 0.0
         if ramp == 0.0 or ramp >= LEAST_RAMP:
             yield _either(RAMP, motion.ramp_cycles, ramp)
