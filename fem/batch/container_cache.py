@@ -12,10 +12,10 @@ from fem.model.recovery import Recovery, recovery_of
 
 
 def container_key(case: Case) -> Hashable:
-    """Equal for cases whose containers are the same, whatever floor they stand on."""
+    """Equal for cases whose containers are the same, whatever floor they stand on and however they are damped."""
     solver = case.solver
     return (
-        case.container,
+        case.container.model_copy(update={"damping_ratio": 0.0}),
         case.support,
         case.gravity_m_s2,
         case.folder,

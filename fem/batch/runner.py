@@ -12,12 +12,7 @@ from functools import partial
 from operator import itemgetter
 from typing import Any, TypeVar
 
-import numpy as np
-
-from contact.stepping.integrator import FAILED as STEPPING_FAILED
-from contact.stepping.modal_body import ModalBody
-from contact.stepping.outcome import run_to_end
-from fem.assessment.verdict import audit, end_of_drive, verdict_from, verdict_of
+from fem.assessment.verdict import verdict_of
 from fem.batch.container_cache import ContainerCache, container_key
 from fem.batch.workers import LocalWorkers, WorkersOf, hand_out, never
 from fem.case.case import Case
@@ -25,8 +20,9 @@ from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
 from fem.model.recovery import recovery_of
 from fem.results.run_result import Verdict
+from fem.run.outcome import run_without_history
 from fem.run.recorder import Recorder
-from fem.run.simulation import AFTERMATH, simulate, stepping_failure
+from fem.run.simulation import simulate
 from fem.runtime.progress import Reporter, SilentReporter, clock_time
 from fem.runtime.threads import cores
 
@@ -194,32 +190,8 @@ def _model_of(case: Case, before: Model | None) -> Model:
 
 def run_model(model: Model) -> Row:
     """Step a rigid or reduced model to its end, in place; its row."""
-    assert isinstance(model.body, ModalBody)
-    run, duration, until = model.run, model.duration, end_of_drive(model)
-    status, kept = run_to_end(
-        model.body,
-        run,
-        duration,
-        rest_from=model.rest_from,
-        aftermath=AFTERMATH / run.control.frequency_parameter,
-        slip_until=until,
-        cycle=min(model.case.motion.period, duration),
-        strained=model.case.solver.model == "reduced",
-    )
-    interval = run.history.interval
-    count = int(run.clock[0].samples)
-    last = min(count - 1, int((until + 1e-9) / interval))
-    numbers = np.arange(max(0, last + 1 - kept.slip.size), last + 1)
-    stress = None
-    if kept.strain.size:
-        positions = kept.position[kept.strain >= 0.0]
-        stress = _CONTAINERS.recovery_of(model).largest_von_mises(positions)
-    end = (count - 1) * interval if count else None
-    verdict = verdict_from(model, end, numbers * interval, kept.slip[numbers % kept.slip.size], stress)
-    if status == STEPPING_FAILED:
-        error: str | None = stepping_failure(model, float(np.abs(run.work.law - run.work.force).max()))
-    else:
-        error = audit(model)
+    recovery = _CONTAINERS.recovery_of(model) if model.case.solver.model == "reduced" else None
+    verdict, error = run_without_history(model, recovery)
     ended = "overturned" if verdict.outcome == "overturned" else "completed"
     return _row("failed" if error else ended, error, verdict)
 

@@ -22,7 +22,7 @@ from mesh.region import Region
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Container:
-    """A discretised container; it does not depend on the floor or its motion, so many cases share one."""
+    """A discretised container; it does not depend on floor, motion and damping, so many cases share one."""
 
     mesh: ContainerMesh
     elements: FiniteElements
@@ -31,8 +31,11 @@ class Container:
     monitors: IntArray  #: (n_m,) nodes whose motion is observed
     response: StaticResponse
     basis: ReducedBasis  #: elastic modes of a reduced model; none of the others
-    damping: float  #: a of C = a K [s]
     first: float  #: lowest elastic angular frequency; infinite for a rigid container [rad/s]
+
+    def damping(self, ratio: float) -> float:
+        """a of C = a K [s], with this damping ratio of the first elastic mode."""
+        return 2.0 * ratio / self.first
 
 
 def discretise(case: Case, mesh: ContainerMesh | None = None, cache: ArrayCache = no_cache) -> Container:
@@ -58,14 +61,12 @@ def discretise(case: Case, mesh: ContainerMesh | None = None, cache: ArrayCache 
         nodes = np.concatenate([nodes, _upper_corners(elements)])
     response = static_response(elements, nodes, cache)
     basis = ReducedBasis(angular_frequencies=np.zeros(0), shapes=np.zeros((0, *elements.nodes.shape)))
-    first, damping = math.inf, 0.0
+    first = math.inf
     if case.solver.model == "reduced":
         basis = reduced_basis(elements, response, case.solver.elastic_modes, cache)
         first = float(basis.angular_frequencies[0])
     elif case.solver.model == "full":
         first = float(elastic_modes(elements, 1, cache).angular_frequencies[0])
-    if math.isfinite(first):
-        damping = 2.0 * case.container.damping_ratio / first
     return Container(
         mesh=mesh,
         elements=elements,
@@ -74,7 +75,6 @@ def discretise(case: Case, mesh: ContainerMesh | None = None, cache: ArrayCache 
         monitors=_monitors(elements),
         response=response,
         basis=basis,
-        damping=damping,
         first=first,
     )
 

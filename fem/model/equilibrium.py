@@ -60,6 +60,7 @@ def same_equilibrium(case: Case, other: Case) -> bool:
     return (
         case.contact == other.contact
         and case.initial == other.initial
+        and case.container.damping_ratio == other.container.damping_ratio
         and case.gravity_m_s2 == other.gravity_m_s2
         and case.solver.model == other.solver.model
     )
@@ -93,8 +94,9 @@ def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) ->
 def _body(case: Case, container: Container, contact: Contact) -> ModalBody | FullBody:
     elements, mesh, gravity = container.elements, container.mesh, case.gravity_m_s2
     nodes, monitors = container.nodes, container.monitors
+    damping = container.damping(case.container.damping_ratio)
     if case.solver.model == "full":
-        return FullBody(elements, nodes, monitors, gravity=gravity, damping=container.damping)
+        return FullBody(elements, nodes, monitors, gravity=gravity, damping=damping)
     centroid, basis = np.asarray(mesh.centroid), container.basis
     penetration = mesh.mass * gravity / float(contact.normal_stiffness.sum())
     return make_modal_body(
@@ -105,7 +107,7 @@ def _body(case: Case, container: Container, contact: Contact) -> ModalBody | Ful
         rest=mesh.centroid,
         shape=np.moveaxis(basis.shapes[:, nodes], 0, -1),
         frequencies=basis.angular_frequencies,
-        damping_ratios=0.5 * container.damping * basis.angular_frequencies,
+        damping_ratios=0.5 * damping * basis.angular_frequencies,
         monitor=elements.nodes[monitors] - centroid,
         monitor_shape=np.moveaxis(basis.shapes[:, monitors], 0, -1),
         tolerance=POINT_TOLERANCE * penetration,

@@ -6,6 +6,7 @@ import time
 import pytest
 
 from fem.assessment.verdict import verdict_of
+from fem.batch.container_cache import container_key
 from fem.batch.runner import SCALARS, run_cases
 from fem.batch.workers import WORTH_PROCESSES, LocalWorkers, hand_out
 from fem.case.case import load_case
@@ -119,3 +120,13 @@ def test_full_cases_run_in_other_processes():
 def test_no_case_is_started_after_the_time_limit(cases):
     assert {row["status"] for row in run_cases(cases, time_limit_s=-1.0)} == {"interrupted"}
     assert without_wall(run_cases(cases, time_limit_s=600.0)) == without_wall(run_cases(cases))
+
+
+def test_cases_that_differ_in_material_damping_share_their_container():
+    # mean-axis modes do not depend on damping; without its own damping a row would be that of the case before
+    shell = load_case("rocking", ["solver.element_size_m=0.5", "solver.duration_s=2"])
+    ratios = (0.0, 0.02, 0.5)
+    cases = [shell.with_values({"container.damping_ratio": ratio}) for ratio in ratios]
+    assert len({container_key(case) for case in cases}) == 1
+    turned = [row["rotation_ratio"] for row in run_cases(cases, jobs=1)]
+    assert len(set(turned)) == len(ratios)
