@@ -15,6 +15,7 @@ from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from fem.assessment.code_note import code_note
 from fem.assessment.motion_words import covered_in_words, missing_peak, motion_in_words
 from fem.results.run_result import (
     Band,
@@ -35,10 +36,6 @@ INVISIBLE = 1e-9  #: in the units of people: smaller numbers are rounding
 LEAST_LENGTH, LEAST_DEGREES, LEAST_RATIO = 1e-5, 0.01, 1e-3
 LEAST_N = 1e-6  #: smaller joint forces [N] and moments [Nm] are rounding
 MOST_JOINTS = 8  #: joints shown; of more, those with a largest value
-CODE_NOTE = (
-    "The code's rows are a design response (EN 1998-1:2004, 4.3.3.2), not the motion of this floor; they are not "
-    "compared with the run."
-)
 BAND_NOTE = (
     "The band repeats the run with a third and three times the contact penalty and with contact damping ratios 0.5 "
     "and 2, because no floor is known better than that. One outcome throughout does not depend on the contact; "
@@ -78,7 +75,8 @@ def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
     yield from _table_of_pairs("The run", result_rows(result))
     if result.static is not None:
         yield _static_table(result.static, verdict)
-        yield Text(f"{CODE_NOTE}\n")
+        if note := code_note(result.static):
+            yield Text(f"{note}\n")
     if result.joints:
         yield from _joint_tables(_shown(result.joints))
         left_out = len(result.joints) - len(_shown(result.joints))

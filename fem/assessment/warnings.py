@@ -146,16 +146,6 @@ def opening_is_not_uplift(result: RunResult, case: Case) -> str | None:
     )
 
 
-def lateral_force_method_does_not_apply(result: RunResult, case: Case) -> str | None:
-    """EN 1998-1:2004, 4.3.3.2.1 (2): T1 <= 4 T_C and T1 <= 2.0 s."""
-    if _static(result).method_applicable is not False:
-        return None
-    return (
-        f"the lateral force method does not apply at this period ({_static(result).clause}); the code's rows are "
-        "shown for comparison only"
-    )
-
-
 def it_still_moves(result: RunResult, case: Case) -> str | None:
     """The free motion after a pulse or a record was given up before the container came to rest."""
     if not ends_at_rest(case) or _verdict(result).at_rest_s is not None or result.status != "completed":
@@ -249,7 +239,6 @@ CHECKS: tuple[Callable[[RunResult, Case], str | None], ...] = (
     stress_is_beyond_yield,
     housner_is_not_credible,
     opening_is_not_uplift,
-    lateral_force_method_does_not_apply,
     rest_proves_nothing,
 )
 

@@ -98,7 +98,7 @@ def value_in(base: Case, key: str, values: Mapping[str, Any]) -> float | None:
         return _as_number(base.resolved().get(name))
     if table not in TABLES:
         return None
-    content = getattr(base, table)
+    content = getattr(base, table) or TABLES[table]()
     if name in content.model_fields_set:
         return _as_number(getattr(content, name))
     own = content.model_dump() | {

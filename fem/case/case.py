@@ -16,6 +16,7 @@ from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
 from fem.case.overrides import parse_override, with_overrides
 from fem.case.rules import CASE_RULES
 from fem.case.tables import (
+    OPTIONAL,
     TABLES,
     CaseHeading,
     ContactTable,
@@ -44,7 +45,7 @@ class Case(CaseHeading):
     contact: ContactTable
     motion: MotionTable
     initial: InitialTable = Field(default_factory=InitialTable)
-    static: StaticTable = Field(default_factory=StaticTable)
+    static: StaticTable | None = None  #: None: no rows of the code
     solver: SolverTable = Field(default_factory=SolverTable)
     output: OutputTable = Field(default_factory=OutputTable)
     uncertainty: UncertaintyTable = Field(default_factory=UncertaintyTable)
@@ -137,14 +138,17 @@ class Case(CaseHeading):
     def given(self) -> dict[str, Any]:
         """The keys that were set, by table, as a case file would hold them."""
         keys = self.model_dump(by_alias=True, exclude_unset=True, exclude=set(TABLES))
-        tables = {name: getattr(self, name).model_dump(exclude_unset=True) for name in TABLES}
-        return keys | {name: content for name, content in tables.items() if content}
+        tables = {name: getattr(self, name) for name in TABLES}
+        content = {name: table.model_dump(exclude_unset=True) for name, table in tables.items() if table}
+        return keys | {name: given for name, given in content.items() if given or name in OPTIONAL}
 
     def resolved(self) -> dict[str, Any]:
         """Every key that is used, defaults included, by table."""
         document = self.model_dump(by_alias=True, exclude=set(TABLES))
         for name in TABLES:
             table = getattr(self, name)
+            if table is None:
+                continue
             idle = table.idle_keys()
             document[name] = {
                 key: value

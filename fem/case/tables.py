@@ -267,7 +267,7 @@ class InitialTable(CaseTable):
 
 
 class StaticTable(CaseTable):
-    """The lateral force method that the run is compared with, EN 1998-1:2004, 4.3.3.2."""
+    """The lateral force method, EN 1998-1:2004, 4.3.3.2, beside the run; without this table it is left out."""
 
     ground_acceleration_m_s2: Annotated[float, q.GROUND_ACCELERATION] = _key(
         "reference peak ground acceleration a_gR", 1.6
@@ -364,6 +364,10 @@ TABLES: dict[str, type[CaseTable]] = {
     "output": OutputTable,
     "uncertainty": UncertaintyTable,
 }
+
+
+#: tables that mean something by standing in a case file; the others have their defaults where they do not
+OPTIONAL = frozenset({"static"})
 
 
 class CaseHeading(CaseTable):

@@ -29,8 +29,8 @@ def case_template(case: Case) -> str:
     ]
     lines += _key_lines(known_keys(CaseHeading), resolved)
     for name, table in TABLES.items():
-        lines += ["", f"[{name}]  # {_first_line(table.__doc__)}"]
-        lines += _key_lines(known_keys(table), resolved[name])
+        lines += ["", f"{'' if name in resolved else '# '}[{name}]  # {_first_line(table.__doc__)}"]
+        lines += _key_lines(known_keys(table), resolved.get(name, {}))
     return "\n".join(lines) + "\n"
 
 

@@ -17,7 +17,7 @@ from pydantic_core import ErrorDetails, PydanticUndefined
 from fem.case.problem import Problem, broken
 from fem.case.quantities import Quantity, with_unit
 from fem.case.rules import CASE_RULES
-from fem.case.tables import TABLES, CaseHeading, CaseTable
+from fem.case.tables import OPTIONAL, TABLES, CaseHeading, CaseTable
 
 
 class CaseError(ValueError):
@@ -83,6 +83,8 @@ def read_case_tables(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Prob
     problems += found
     for name, model in TABLES.items():
         content = data.get(name, {})
+        if name in OPTIONAL and name not in data:
+            continue
         if not isinstance(content, dict):
             continue
         given, part, found = read_table(name, model, content)

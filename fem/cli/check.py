@@ -90,11 +90,9 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
         "",
         "  static rule                        demand     capacity   utilisation",
     ]
-    actions = {
-        "own motion": static.own_motion,
-        f"code, q = {case.static.behaviour_factor:g}": static.code,
-        "code, q = 1": static.code_q1,
-    }
+    actions = {"own motion": static.own_motion}
+    if (code := static.by_code) is not None:
+        actions |= {f"code, q = {code.values.behaviour_factor:g}": code.as_given, "code, q = 1": code.q1}
     for action, result in actions.items():
         for what, one in (("sliding", result.sliding), ("overturning", result.overturning)):
             verdict = "" if one.passed else f"  {'slides' if what == 'sliding' else 'overturns'}"

@@ -8,14 +8,15 @@ the `slenderness_angle` is the complement of the paper's alpha.
 
 A static rule may be compared with a run only under the floor acceleration of that run (`own_motion`).
 The design base shear of the code (`code`, and `code_q1` with behaviour factor 1) is the amplified and
-reduced response of an elastic building: another question, in columns of its own.
+reduced response of an elastic building: another question, in rows of its own, where a case gives [static].
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from fem.case.case import Case
-from fem.results.run_result import ActionResult, StaticResult
+from fem.case.tables import StaticTable
+from fem.results.run_result import ActionResult, CodeValues, StaticResult
 from mesh.container import ContainerMesh
 
 LIMIT_PERIOD = 2.0  # s, EN 1998-1:2004, 4.3.3.2.1 (2) a), Eq. (4.4)
@@ -102,6 +103,28 @@ class ActionCheck:
 
 
 @dataclass(frozen=True, kw_only=True)
+class CodeChecks:
+    """The lateral force method with the values of a case."""
+
+    values: StaticTable
+    as_given: ActionCheck  #: under the code's base shear
+    q1: ActionCheck  #: under the code's base shear with behaviour factor 1
+    applicability: CheckResult  #: of the method: period against min(4 T_C, 2.0 s) [s]
+
+    def added_to(self, found: StaticResult) -> StaticResult:
+        """The checks of a container with these."""
+        return replace(
+            found,
+            code=self.as_given.to_result(),
+            code_q1=self.q1.to_result(),
+            method_applicable=self.applicability.passed,
+            clause=self.applicability.clause,
+            period_limit_s=self.applicability.capacity,
+            code_values=CodeValues(**self.values.model_dump()),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
 class StaticChecks:
     """Results of the static rules for one container, and what follows from its mass alone."""
 
@@ -123,9 +146,14 @@ class StaticChecks:
     #: about the new corner is kept, Housner (1963). Negative for a squat block: it would not rise on the other corner
     housner_restitution: float
     own_motion: ActionCheck  #: under the peak floor acceleration of this run
-    code: ActionCheck  #: under the code's base shear
-    code_q1: ActionCheck  #: under the code's base shear with behaviour factor 1
-    applicability: CheckResult  #: of the lateral force method: period against min(4 T_C, 2.0 s) [s]
+    by_code: CodeChecks | None  #: None where the case has no [static]
+
+    @property
+    def code(self) -> ActionCheck:
+        """Under the code's base shear; raises ValueError where the case has no [static]."""
+        if self.by_code is None:
+            raise ValueError("the case has no table [static]")
+        return self.by_code.as_given
 
     @property
     def housner_credible(self) -> bool:
@@ -134,7 +162,7 @@ class StaticChecks:
 
     def to_result(self) -> StaticResult:
         """The checks as the result of a run holds them."""
-        return StaticResult(
+        found = StaticResult(
             weight_N=self.weight,
             centroid_m=self.centroid,
             inertia_kg_m2=self.inertia,
@@ -149,11 +177,8 @@ class StaticChecks:
             housner_restitution=self.housner_restitution,
             housner_credible=self.housner_credible,
             own_motion=self.own_motion.to_result(),
-            code=self.code.to_result(),
-            code_q1=self.code_q1.to_result(),
-            method_applicable=self.applicability.passed,
-            clause=self.applicability.clause,
         )
+        return found if self.by_code is None else self.by_code.added_to(found)
 
 
 def static_checks(
@@ -166,11 +191,7 @@ def static_checks(
     mu_static: float,
     mu_kinetic: float,
     peak_floor_acceleration: float,
-    ground_acceleration: float,
-    soil_factor: float,
-    corner_period: float,
-    behaviour_factor: float,
-    importance_factor: float,
+    code: StaticTable | None = None,
     initial_rotation: float = 0.0,
 ) -> StaticChecks:
     """All static checks of one container under one motion.
@@ -183,11 +204,7 @@ def static_checks(
         gravity: g [m/s2].
         mu_static, mu_kinetic: coefficients of friction [-].
         peak_floor_acceleration: largest |acceleration| of the floor in this run [m/s2].
-        ground_acceleration: a_gR of the code [m/s2].
-        soil_factor: S [-].
-        corner_period: T_C [s].
-        behaviour_factor: q [-].
-        importance_factor: gamma_I [-].
+        code: values of the lateral force method; None: it is left out.
         initial_rotation: phi_0 of Eq. (2) [rad]; where it is 0, half the slenderness angle is taken, as an
             ordinary rotation of a rocking container.
 
@@ -207,13 +224,24 @@ def static_checks(
             overturning=CheckResult(demand=moment, capacity=restoring, unit="Nm", clause=CLAUSE_OVERTURNING),
         )
 
-    def code_base_shear(q: float) -> float:
-        return plateau_base_shear(
-            mass=mass,
-            ground_acceleration=ground_acceleration,
-            soil_factor=soil_factor,
-            behaviour_factor=q,
-            importance_factor=importance_factor,
+    def under_code(values: StaticTable, q: float) -> ActionCheck:
+        return under(
+            plateau_base_shear(
+                mass=mass,
+                ground_acceleration=values.ground_acceleration_m_s2,
+                soil_factor=values.soil_factor,
+                behaviour_factor=q,
+                importance_factor=values.importance_factor,
+            )
+        )
+
+    def code_checks(values: StaticTable) -> CodeChecks:
+        limit = min(4.0 * values.corner_period_s, LIMIT_PERIOD)
+        return CodeChecks(
+            values=values,
+            as_given=under_code(values, values.behaviour_factor),
+            q1=under_code(values, 1.0),
+            applicability=CheckResult(demand=period, capacity=limit, unit="s", clause=CLAUSE_APPLICABLE),
         )
 
     return StaticChecks(
@@ -233,11 +261,7 @@ def static_checks(
         uplift_acceleration=gravity * math.tan(angle),
         housner_restitution=1.0 - mass * arm**2 / about_corner * (1.0 - math.cos(2.0 * angle)),
         own_motion=under(mass * peak_floor_acceleration),
-        code=under(code_base_shear(behaviour_factor)),
-        code_q1=under(code_base_shear(1.0)),
-        applicability=CheckResult(
-            demand=period, capacity=min(4.0 * corner_period, LIMIT_PERIOD), unit="s", clause=CLAUSE_APPLICABLE
-        ),
+        by_code=None if code is None else code_checks(code),
     )
 
 
@@ -252,11 +276,7 @@ def static_checks_of(case: Case, mesh: ContainerMesh, peak_floor_acceleration: f
         mu_static=case.contact.mu_static,
         mu_kinetic=case.contact.mu_kinetic,
         peak_floor_acceleration=peak_floor_acceleration,
-        ground_acceleration=case.static.ground_acceleration_m_s2,
-        soil_factor=case.static.soil_factor,
-        corner_period=case.static.corner_period_s,
-        behaviour_factor=case.static.behaviour_factor,
-        importance_factor=case.static.importance_factor,
+        code=case.static,
         initial_rotation=case.initial.rotation_rad,
     )
 

@@ -32,12 +32,11 @@ class Compared(NamedTuple):
 
 def compared_rows(static: StaticChecks, verdict: Verdict, case: Case) -> list[Compared]:
     """Sliding and overturning under the run's own peak, then under the code's base shear."""
-    q = case.static.behaviour_factor
-    actions = [
-        (static.own_motion, typeset(own_motion_name(static.to_result()))),
-        (static.code, f"code, q = {short(q)}"),
-        (static.code_q1, "code, q = 1"),
-    ]
+    actions = [(static.own_motion, typeset(own_motion_name(static.to_result())))]
+    if (code := static.by_code) is not None:
+        q = code.values.behaviour_factor
+        rows = [(code.as_given, f"code, q = {short(q)}"), (code.q1, "code, q = 1")]
+        actions += rows if q != 1.0 else rows[:1]
     return [
         Compared(
             check=check,
@@ -50,7 +49,7 @@ def compared_rows(static: StaticChecks, verdict: Verdict, case: Case) -> list[Co
             rule=rule_says(check, rule.utilisation if math.isfinite(rule.utilisation) else None),
             run=typeset(found(verdict)) if action is static.own_motion and verdict.outcome else "",
         )
-        for action, name in (actions if q != 1.0 else actions[:2])
+        for action, name in actions
         for check, rule, found in (
             ("sliding", action.sliding, run_slid),
             ("overturning", action.overturning, run_tilted),

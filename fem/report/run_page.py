@@ -6,10 +6,10 @@ from contextlib import nullcontext
 from importlib import metadata
 
 from contact.reference.event_driven import EventError
+from fem.assessment.code_note import code_note
 from fem.assessment.rigid_check import check_against_rigid_block
 from fem.assessment.summary import (
     BAND_NOTE,
-    CODE_NOTE,
     JOINTS_NOTE,
     MARGIN_NOTE,
     outcome_sentence,
@@ -142,7 +142,12 @@ def _page(
         computed=computed.strftime("%Y-%m-%d %H:%M"),
         version=metadata.version("unanchored"),
         today=dt.date.today().isoformat(),
-        notes={"code": CODE_NOTE, "margin": MARGIN_NOTE, "band": BAND_NOTE, "joints": JOINTS_NOTE},
+        notes={
+            "code": typeset(code_note(static.to_result())),
+            "margin": MARGIN_NOTE,
+            "band": BAND_NOTE,
+            "joints": JOINTS_NOTE,
+        },
         turned=turned,
         rotation_ratio=rotation_ratio,
         millimetres=millimetres,

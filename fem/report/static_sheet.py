@@ -20,6 +20,7 @@ from fem.model.static_checks import (
     CLAUSE_SLIDING,
     LIMIT_PERIOD,
     ActionCheck,
+    CodeChecks,
     StaticChecks,
 )
 
@@ -132,13 +133,8 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
         own["a_max"], case.nominal_peak_acceleration or 0.0, rel_tol=1e-6
     )
     shear = SHEAR._replace(source="" if swings else "largest |acceleration| of the floor within the run")
-    factors = [(case.static.behaviour_factor, static.code), (1.0, static.code_q1)]
-    code = []
-    for q, action in factors if case.static.behaviour_factor != 1.0 else factors[:1]:
-        numbers_q = numbers | _action(action) | {"q": _Printed(q)}
-        code += [_line(PLATEAU, numbers_q), *_utilisations(action, numbers_q, "F_b")]
-    applies = "applies" if static.applicability.passed else "does not apply"
     credible = "credible" if static.housner_credible else "not credible, below 0.5"
+    code = _code_lines(static.by_code, numbers) if static.by_code is not None else []
     return [
         ("Container", [_line(row, numbers) for row in (*weight, *height, ANGLE)]),
         (
@@ -148,15 +144,22 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
                 *_utilisations(static.own_motion, own, "F"),
             ],
         ),
-        (
-            "Design base shear of the code (not compared with the run)",
-            [*code, _line(PERIOD, numbers, applies)],
-        ),
+        *([("Design base shear of the code (not compared with the run)", code)] if code else []),
         (
             "What follows from the mass alone",
             [*(_line(row, numbers) for row in ROCKING), _line(RESTITUTION, numbers, credible)],
         ),
     ]
+
+
+def _code_lines(code: CodeChecks, numbers: Numbers) -> list[SheetLine]:
+    """The code's base shear, and the period up to which its method applies."""
+    given, lines = code.values.behaviour_factor, []
+    for q, action in {given: code.as_given, 1.0: code.q1}.items():
+        numbers_q = numbers | _action(action) | {"q": _Printed(q)}
+        lines += [_line(PLATEAU, numbers_q), *_utilisations(action, numbers_q, "F_b")]
+    within = "within the limit" if code.applicability.passed else "above the limit"
+    return [*lines, _line(PERIOD, numbers, within)]
 
 
 def _numbers(static: StaticChecks, case: Case) -> Numbers:
@@ -168,8 +171,10 @@ def _numbers(static: StaticChecks, case: Case) -> Numbers:
     found |= {"α": math.degrees(static.slenderness_angle), "R": static.radius, "I": static.inertia / 1e3}
     found |= {"I_O": static.inertia / 1e3 + mass * static.radius**2, "p": static.frequency_parameter}
     found |= {"e": static.housner_restitution, "a_up": static.uplift_acceleration, "T": static.period_eq3}
-    found |= {"μ_s": case.contact.mu_static, "T_C": rule.corner_period_s, "S": rule.soil_factor}
-    found |= {"γ_I": rule.importance_factor, "a_gR": rule.ground_acceleration_m_s2}
+    found |= {"μ_s": case.contact.mu_static}
+    if rule is not None:
+        found |= {"T_C": rule.corner_period_s, "S": rule.soil_factor}
+        found |= {"γ_I": rule.importance_factor, "a_gR": rule.ground_acceleration_m_s2}
     found |= {"a_max": static.own_motion.sliding.demand / 1e3 / mass}
     if case.motion.kind == "harmonic":
         found |= {"A": case.amplitude, "Ω": case.angular_frequency}

@@ -69,6 +69,17 @@ class ActionResult(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
+class CodeValues(JsonBlock):
+    """The values of [static] that the code's rows take."""
+
+    ground_acceleration_m_s2: float  #: a_gR
+    soil_factor: float
+    corner_period_s: float  #: T_C
+    behaviour_factor: float
+    importance_factor: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class StaticResult(JsonBlock):
     """The static rules, and what follows from the mass alone (`fem.model.static_checks`)."""
 
@@ -86,10 +97,12 @@ class StaticResult(JsonBlock):
     housner_restitution: float | None = None
     housner_credible: bool | None = None  #: a restitution of at least 0.5
     own_motion: ActionResult | None = None  #: peak floor acceleration of this run
-    code: ActionResult | None = None  #: behaviour factor as given
+    code: ActionResult | None = None  #: behaviour factor as given; None without [static], as all that follows
     code_q1: ActionResult | None = None  #: behaviour factor 1
     method_applicable: bool | None = None  #: the lateral force method
     clause: str | None = None
+    period_limit_s: float | None = None  #: up to which the method applies
+    code_values: CodeValues | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import Any
 
 from contact.interface.penalty import contact_frequency
+from fem.assessment.code_note import code_note
 from fem.case.case import Case
 from fem.case.rules import ends_at_rest
 from fem.model.geometry import node_count
@@ -99,7 +100,7 @@ class Preview:
     @property
     def notes(self) -> list[str]:
         """What to keep in mind when the run is read."""
-        case, static, limit = self.case, self.static, self.static.applicability
+        case, static = self.case, self.static
         kick = case.amplitude * case.angular_frequency * abs(math.cos(case.motion.phase_rad))
         notes = [
             (
@@ -112,11 +113,7 @@ class Preview:
                 f"Housner's restitution is {static.housner_restitution:.3f}, below 0.5: for a container so squat "
                 "the rigid block's impact model is not credible",
             ),
-            (
-                not limit.passed,
-                f"the lateral force method does not apply: rocking period {limit.demand:.2f} s > "
-                f"{limit.capacity:.1f} s ({limit.clause})",
-            ),
+            (static.by_code is not None, code_note(static.to_result())),
             *((True, note) for note in self.motion.notes),
             (
                 case.contact.friction == "regularised",

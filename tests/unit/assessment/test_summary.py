@@ -226,7 +226,6 @@ def test_titles_and_warnings_are_never_read_as_markup():
             changed(static__housner_credible=False, static__housner_restitution=0.17873),
             "Housner's restitution is 0.179",
         ),
-        (changed(static__method_applicable=False), "4.3.3.2.1 (2)"),
         (changed(numerics__contact_frequency_Hz=31.0), "is 3.9 (< 4)"),
         (changed(numerics__max_penetration_m=1.6e-3), "penetration reached 1.6 mm"),
         (changed(energy__numerical_J=-0.4), "energy gain 5.5e-05"),

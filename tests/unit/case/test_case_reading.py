@@ -57,13 +57,6 @@ def test_least_case_has_the_documented_defaults():
         },
         "motion": {"kind": "none"},
         "initial": {"rotation_rad": 0.0, "angular_velocity_rad_s": 0.0, "velocity_m_s": 0.0},
-        "static": {
-            "ground_acceleration_m_s2": 1.6,
-            "soil_factor": 1.5,
-            "corner_period_s": 0.8,
-            "behaviour_factor": 1.5,
-            "importance_factor": 1.0,
-        },
         "solver": {
             "model": "reduced",
             "elastic_modes": 20,

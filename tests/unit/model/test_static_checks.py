@@ -7,7 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fem.case.tables import StaticTable
 from fem.model.static_checks import CheckResult, static_checks
+
+CODE = StaticTable(ground_acceleration_m_s2=1.6, soil_factor=1.5, corner_period_s=0.8, behaviour_factor=1.5)
+
+
+def code(**changes):
+    """The values of the code with some changed."""
+    return CODE.model_copy(update=changes)
 
 
 def block(width=1.0, height=4.0, mass=1000.0, **changes):
@@ -20,11 +28,7 @@ def block(width=1.0, height=4.0, mass=1000.0, **changes):
         "mu_static": 0.4,
         "mu_kinetic": 0.2,
         "peak_floor_acceleration": 3.0,
-        "ground_acceleration": 1.6,
-        "soil_factor": 1.5,
-        "corner_period": 0.8,
-        "behaviour_factor": 1.5,
-        "importance_factor": 1.0,
+        "code": CODE,
     }
     return static_checks(**(arguments | changes))
 
@@ -57,15 +61,25 @@ def test_sliding_begins_at_friction_times_gravity():
 
 
 def test_code_with_behaviour_factor_one_is_the_code_times_the_behaviour_factor():
-    static = block(behaviour_factor=2.5)
-    assert static.code_q1.sliding.demand == pytest.approx(2.5 * static.code.sliding.demand)
-    assert static.code_q1.overturning.demand == pytest.approx(2.5 * static.code.overturning.demand)
+    rows = block(code=code(behaviour_factor=2.5)).by_code
+    assert rows.q1.sliding.demand == pytest.approx(2.5 * rows.as_given.sliding.demand)
+    assert rows.q1.overturning.demand == pytest.approx(2.5 * rows.as_given.overturning.demand)
+
+
+def test_without_values_of_the_code_there_are_only_the_rows_of_the_own_motion():
+    static = block(code=None)
+    document = static.to_result().to_json()
+    assert document["own_motion"] == block().to_result().to_json()["own_motion"]
+    for key in ("code", "code_q1", "method_applicable", "clause", "code_values"):
+        assert document[key] is None
+    with pytest.raises(ValueError, match=r"has no table \[static\]"):
+        _ = static.code
 
 
 def test_plateau_base_shear_of_eq_17():
     # 2500 kg, 1.6 m/s2, S = 1.5, q = 1.5, gamma_I = 1.0: 10 kN; gamma_I 1.4: 14 kN.
     for importance, shear in ((1.0, 10e3), (1.4, 14e3)):
-        static = block(mass=2500.0, importance_factor=importance)
+        static = block(mass=2500.0, code=code(importance_factor=importance))
         assert static.code.sliding.demand == pytest.approx(shear)
 
 
@@ -83,7 +97,7 @@ def test_homogeneous_block_has_housners_closed_forms(width, height):
 @given(factor=st.floats(0.01, 100.0))
 def test_utilisations_do_not_depend_on_the_mass(factor):
     one, other = block(), block(mass=1000.0 * factor)
-    for action in ("own_motion", "code", "code_q1"):
+    for action in ("own_motion", "code"):
         for check in ("sliding", "overturning"):
             first, second = (getattr(getattr(static, action), check) for static in (one, other))
             assert second.utilisation == pytest.approx(first.utilisation, rel=1e-12)
@@ -102,5 +116,5 @@ def test_period_of_a_point_mass_takes_the_initial_rotation_or_half_the_slenderne
 def test_lateral_force_method_is_limited_to_two_seconds_and_four_control_periods():
     # EN 1998-1:2004, 4.3.3.2.1 (2) a): T1 <= 4 T_C and T1 <= 2.0 s.
     for corner_period, limit in ((0.8, 2.0), (0.4, 1.6)):
-        applicability = block(corner_period=corner_period).applicability
+        applicability = block(code=code(corner_period_s=corner_period)).by_code.applicability
         assert (applicability.demand, applicability.capacity) == (block().period_eq3, limit)
