@@ -6,9 +6,9 @@ import numpy as np
 
 from fem.model.static_checks import period_eq3
 from fem.paper.cases import FOR_MAPS, GRAVITY, HEIGHT, PLATEAU, PLATEAU_PEAK, STACK, WIDTH, PaperCase
-from fem.paper.claims import Evidence, at_most, claim, table
+from fem.paper.claims import Evidence, at_most, claim
 from fem.paper.experiments import CaseRun, Experiments, VariantBand, variant_result
-from fem.paper.figures import PlottedLine, draw_curves
+from fem.paper.figures import curve, draw_curves
 
 #: of the stack with g = 9.81 [rad/s]
 OMEGA_EQ_3 = 2.0 * math.pi / period_eq3(radius=0.5 * math.hypot(WIDTH, HEIGHT), gravity=GRAVITY)
@@ -37,7 +37,7 @@ def mass_centre(experiments: Experiments) -> Evidence:
         yield from [case for case, ratio in zip(group, RATIOS, strict=True) if ratio in (1.2, 2.0)]
         overturned += [run.status == "overturned" for run in runs]
         factors = np.array([_factor(run) for run in runs])
-        curves.append(PlottedLine(x=RATIOS, y=factors, label=f"{peak:g} m/s²", style="o-"))
+        curves.append(curve(RATIOS, factors, f"{peak:g} m/s²", "o-"))
         for which, chosen, inside in (("above sqrt 2", ~near, True), ("from 1 to sqrt 2", near, False)):
             known = factors[chosen & np.isfinite(factors)]
             what = f"{peak:g} m/s²: largest DAF, eta {which}, cases that stand"
@@ -46,7 +46,6 @@ def mass_centre(experiments: Experiments) -> Evidence:
     total = len(PEAKS) * RATIOS.size
     yield at_most(f"runs with eta above 1 that overturn, of {total}", overturned.sum(), 0.0, inside=False)
     eta = np.linspace(1.45, 7.0, 100)
-    linear = PlottedLine(x=eta, y=1.0 / (eta**2 - 1.0), label="linear oscillator", style=":")
     yield (
         f"eta is taken with the paper's Eq. 3. {overturned.sum()} of {total} runs overturn, of them "
         f"{overturned[near].sum()} of {len(PEAKS) * near.sum()} with eta up to sqrt 2, and "
@@ -57,9 +56,8 @@ def mass_centre(experiments: Experiments) -> Evidence:
         "mass-centre",
         "Displacement amplitude of the mass centre over that of the floor, last three cycles; "
         "gaps: overturned.",
-        [*curves, linear],
-        x_label="eta = Omega / omega (Eq. 3) [-]",
-        y_label="DAF [-]",
+        "eta = Omega / omega (Eq. 3) [-] | DAF [-]",
+        [*curves, curve(eta, 1.0 / (eta**2 - 1.0), "linear oscillator", ":")],
         y_limits=(0.0, 2.0),
     )
     yield _band(
@@ -95,11 +93,6 @@ def no_amplification(experiments: Experiments) -> Evidence:
         f"{usual:.2f} of the plateau load."
     )
     yield from [case for case, _ in loads[:2]]
-    yield table(
-        "Largest horizontal force over M x 4.0 m/s² in 10 s",
-        "container and floor | peaks of impacts | mean of 50 ms | 95 % of the time",
-        [(case.what, *load) for case, load in loads],
-    )
     yield _band(
         "horizontal load over that of the plateau, 95 % of the time",
         [(case, run, math.nan if run.status == "failed" else _loads(run)[2]) for case, run in runs],

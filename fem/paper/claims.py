@@ -5,7 +5,7 @@ Rotation > 0 tilts toward +x; SI units, each with its number.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from enum import Enum
 from typing import Any, Literal, TypeVar
 
@@ -41,45 +41,35 @@ class Comparison:
     tolerance: float = 0.0  #: of "=", absolute
     inside: bool = True  #: whether it is made inside the stated bounds of the claim
 
+    def __post_init__(self) -> None:
+        object.__setattr__(
+            self, "measured", float(self.measured)
+        )  # of a count, a truth value or a numpy number
+
     @property
     def holds(self) -> bool:
         """Whether the measured number satisfies the relation; nan never does."""
-        match self.relation:
-            case "=":
-                return abs(self.measured - self.limit) <= self.tolerance
-            case "<=":
-                return self.measured <= self.limit
-            case ">=":
-                return self.measured >= self.limit
+        if self.relation == "=":
+            return abs(self.measured - self.limit) <= self.tolerance
+        return self.measured <= self.limit if self.relation == "<=" else self.measured >= self.limit
 
 
 def at_most(what: str, measured: float, limit: float, unit: str = "-", *, inside: bool = True) -> Comparison:
     """The measured number must not exceed the limit."""
-    return Comparison(
-        what=what, measured=float(measured), relation="<=", limit=limit, unit=unit, inside=inside
-    )
+    return Comparison(what=what, measured=measured, relation="<=", limit=limit, unit=unit, inside=inside)
 
 
 def at_least(what: str, measured: float, limit: float, unit: str = "-", *, inside: bool = True) -> Comparison:
     """The measured number must reach the limit."""
-    return Comparison(
-        what=what, measured=float(measured), relation=">=", limit=limit, unit=unit, inside=inside
-    )
+    return Comparison(what=what, measured=measured, relation=">=", limit=limit, unit=unit, inside=inside)
 
 
 def equal(
     what: str, measured: float, limit: float, tolerance: float, unit: str = "-", *, inside: bool = True
 ) -> Comparison:
     """The measured number must be within an absolute tolerance of the limit."""
-    return Comparison(
-        what=what,
-        measured=float(measured),
-        relation="=",
-        limit=limit,
-        unit=unit,
-        tolerance=tolerance,
-        inside=inside,
-    )
+    one = at_most(what, measured, limit, unit, inside=inside)
+    return replace(one, relation="=", tolerance=tolerance)
 
 
 @dataclass(frozen=True, kw_only=True)

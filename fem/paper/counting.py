@@ -31,7 +31,7 @@ from fem.paper.criteria import (
     tilting_rule,
 )
 from fem.paper.experiments import Experiments
-from fem.paper.figures import PlottedLine, draw_curves, draw_map
+from fem.paper.figures import curve, draw_curves, draw_map
 from fem.paper.maps import (
     FAST,
     FREQUENCIES,
@@ -96,15 +96,8 @@ def static_rule_is_conservative(experiments: Experiments) -> Evidence:
         "static-rule-over-frequency",
         "Share of the motions that the static rule turns over and the rigid stack stands (peaks from "
         "g a/c to 12 m/s²).",
-        [
-            PlottedLine(
-                x=FREQUENCIES,
-                y=[stack.standing_share(static_rule, [frequency]) for frequency in FREQUENCIES],
-                style="o-",
-            )
-        ],
-        x_label="angular frequency [rad/s]",
-        y_label="share that stands [-]",
+        "angular frequency [rad/s] | share that stands [-]",
+        [curve(FREQUENCIES, [stack.standing_share(static_rule, [one]) for one in FREQUENCIES], style="o-")],
         y_limits=(0.0, 1.05),
     )
     yield _shape_figure(shape_maps(experiments)[-1])

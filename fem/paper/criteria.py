@@ -4,10 +4,11 @@ A criterion says whether the container stands or overturns; the run decides. A c
 says "overturns", the container stands) or unconservative (it says "stands", the container overturns).
 """
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from fem.paper.cases import GRAVITY, HALF_WIDTH
+from fem.paper.cases import GRAVITY, HALF_WIDTH, HEIGHT, KEYS, WIDTH, PaperCase
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,6 +45,18 @@ class MapMotion:
     def tilts_while_sliding(self) -> bool:
         """Eqs. (9) to (11): once it slides, the shear is mu_k G."""
         return self.mu_kinetic > 1.0 / self.slenderness
+
+
+def motion_of(case: PaperCase) -> MapMotion:
+    """What a criterion knows of a case of a map."""
+    values = case.values
+    return MapMotion(
+        angular_frequency=values[KEYS["frequency"]],
+        peak=values[KEYS["peak"]],
+        slenderness=round(values.get("container.height_m", HEIGHT) / WIDTH, 6),
+        mu_static=values[KEYS["mu_static"]],
+        mu_kinetic=values[KEYS["mu_kinetic"]],
+    )
 
 
 Criterion = Callable[[MapMotion], bool]
@@ -88,9 +101,13 @@ class Contingency:
     """How often a criterion was right, over some cells."""
 
     cells: int
-    right: int
     conservative: int
     unconservative: int
+
+    @property
+    def right(self) -> int:
+        """Cells of which it says what happens."""
+        return self.cells - self.conservative - self.unconservative
 
     @property
     def share_right(self) -> float:
@@ -100,12 +117,9 @@ class Contingency:
 
 def contingency(says_overturns: Sequence[bool], overturned: Sequence[bool]) -> Contingency:
     """Count a criterion against the runs."""
-    pairs = list(zip(says_overturns, overturned, strict=True))
+    counts = Counter(zip(says_overturns, overturned, strict=True))
     return Contingency(
-        cells=len(pairs),
-        right=sum(said == did for said, did in pairs),
-        conservative=sum(said and not did for said, did in pairs),
-        unconservative=sum(did and not said for said, did in pairs),
+        cells=counts.total(), conservative=counts[True, False], unconservative=counts[False, True]
     )
 
 

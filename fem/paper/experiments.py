@@ -50,13 +50,13 @@ class CaseRun:
 
 @dataclass(frozen=True, kw_only=True)
 class VariantResult:
-    """The case of a claim on another container or floor."""
+    """The case of a claim on another container or floor; where its run failed nothing is known."""
 
     what: str
     command: str
-    outcome: str | None  #: None where the run failed
+    outcome: str | None
     value: float | None
-    holds: bool | None  #: whether the criterion of the claim holds there; None where the run failed
+    holds: bool | None  #: whether the criterion of the claim holds there
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,12 +72,12 @@ class VariantBand:
     @property
     def low(self) -> float:
         """Smallest computed value; nan without any."""
-        return min(self._values, default=math.nan)
+        return min((one.value for one in self.members if one.value is not None), default=math.nan)
 
     @property
     def high(self) -> float:
         """Largest computed value; nan without any."""
-        return max(self._values, default=math.nan)
+        return max((one.value for one in self.members if one.value is not None), default=math.nan)
 
     @property
     def holding(self) -> int:
@@ -109,17 +109,11 @@ class VariantBand:
         """Plain data for `study.json`."""
         return asdict(self) | {"low": self.low, "high": self.high, "summary": self.summary}
 
-    @property
-    def _values(self) -> list[float]:
-        return [member.value for member in self.members if member.value is not None]
-
 
 def variant_result(case: PaperCase, outcome: str | None, value: float | None, holds: bool) -> VariantResult:
     """What a variant gave; nothing if it has no outcome."""
-    found = (None, None) if outcome is None else (value, bool(holds))
-    return VariantResult(
-        what=case.what, command=case.command, outcome=outcome, value=found[0], holds=found[1]
-    )
+    known, met = (None, None) if outcome is None else (value, bool(holds))
+    return VariantResult(what=case.what, command=case.command, outcome=outcome, value=known, holds=met)
 
 
 def capped_ratio(row: Row) -> float:
@@ -260,12 +254,11 @@ class Experiments:
             criterion, holds: what the claim requires of a row.
         """
         variants = self.variants(wanted)
-        members = [
-            variant_result(variant, row["outcome"], value(row), holds(row))
-            if row["status"] != "failed"
-            else variant_result(variant, None, None, False)
-            for variant, row in zip(variants, self.rows(variants, also_failed=True), strict=True)
-        ]
+        members = []
+        for variant, row in zip(variants, self.rows(variants, also_failed=True), strict=True):
+            failed = row["status"] == "failed"
+            found = (None, None, False) if failed else (row["outcome"], value(row), holds(row))
+            members.append(variant_result(variant, *found))
         contact = self.case(wanted).contact
         drop = contact.mu_kinetic < contact.mu_static
         return VariantBand(quantity=quantity, unit=unit, criterion=criterion, members=members, drop=drop)

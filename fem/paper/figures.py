@@ -24,25 +24,32 @@ class PlottedLine:
 
     x: Sequence[float] | FloatArray
     y: Sequence[float] | FloatArray
-    label: str = ""
-    style: str = "-"
+    label: str
+    style: str
+
+
+def curve(
+    x: Sequence[float] | FloatArray, y: Sequence[float] | FloatArray, label: str = "", style: str = "-"
+) -> PlottedLine:
+    """A line; the style is that of matplotlib."""
+    return PlottedLine(x=x, y=y, label=label, style=style)
 
 
 def draw_curves(
     name: str,
     caption: str,
+    labels: str,
     lines: Sequence[PlottedLine],
     *,
-    x_label: str,
-    y_label: str,
     levels: Mapping[str, float] | None = None,
     log_x: bool = False,
     y_limits: tuple[float, float] | None = None,
 ) -> ClaimFigure:
-    """Curves over one pair of axes; `levels` are horizontal lines with a name."""
+    """Curves over one pair of axes, labelled "x | y"; `levels` are horizontal lines with a name."""
     with house_style():
         figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
-        axes = figure.add_subplot(xlabel=x_label, ylabel=y_label)
+        across, up = labels.split(" | ")
+        axes = figure.add_subplot(xlabel=across, ylabel=up)
         for line, colour in zip(lines, COLOURS * (1 + len(lines) // len(COLOURS)), strict=False):
             axes.plot(line.x, line.y, line.style, color=colour, label=line.label, linewidth=1.4, markersize=4)
         for text, level in (levels or {}).items():

@@ -1,7 +1,5 @@
 """Every claim of the paper that is checked, by topic, and those that are not, with the reason."""
 
-from dataclasses import dataclass
-
 from fem.paper import (
     amplification,
     counting,
@@ -13,16 +11,6 @@ from fem.paper import (
     sliding,
 )
 from fem.paper.claims import Claim
-
-
-@dataclass(frozen=True, kw_only=True)
-class Untried:
-    """A sentence of the paper that no run can confirm or refute."""
-
-    section: str
-    quote: str
-    reason: str
-
 
 TOPICS = {
     title: tuple(one for one in vars(module).values() if isinstance(one, Claim))  # in the order of its file
@@ -38,38 +26,33 @@ TOPICS = {
     }.items()
 }
 
+#: sentences of the paper that no run can confirm or refute: section, quote, reason
 UNTRIED = (
-    Untried(
-        section="3",
-        quote="For simplicity ... the seismic action is assumed to be a harmonic ground motion",
-        reason='An assumption, not a claim; recorded motions are another study (motion.kind = "table").',
+    (
+        "3",
+        "For simplicity ... the seismic action is assumed to be a horizontal harmonic ground motion",
+        'An assumption, not a claim; recorded motions are another study (motion.kind = "table").',
     ),
-    Untried(
-        section="3",
-        quote="the asperity of both contact surfaces being represented by constant coefficients",
-        reason="An assumption; the effect of the coefficients is checked under sliding.",
+    (
+        "3",
+        "the asperity of both contact surfaces being represented by constant coefficients",
+        "An assumption; the effect of the coefficients is checked under sliding.",
     ),
-    Untried(
-        section="4.1",
-        quote="there is no simple engineering solution published, which includes friction with belt-reversals",
-        reason=(
-            "A statement on the literature. Westermo and Udwadia (1983) give the sliding oscillator on a "
-            "reversing floor in closed form; rocking and sliding together have criteria of initiation "
-            "(Shenton 1996), not more."
-        ),
+    (
+        "4.1",
+        "there is no simple engineering solution published, which includes friction with “belt-reversals”",
+        "A statement on the literature. Westermo and Udwadia (1983) give the sliding oscillator on a reversing floor "
+        "in closed form; rocking and sliding together have criteria of initiation (Shenton 1996), not more.",
     ),
-    Untried(
-        section="4.3",
-        quote=(
-            "values are given for steel on concrete: 0,3 <= mu_s <= 0,4; big differences result from "
-            "higher displacement rates"
-        ),
-        reason="A matter of tests on materials.",
+    (
+        "4.3",
+        "values are given for steel on concrete ... big differences result from higher displacement rates",
+        "A matter of tests on materials.",
     ),
-    Untried(
-        section="6",
-        quote="the tuning of the driving frequency can be difficult",
-        reason="A remark on method; `python -m fem response` follows a frequency up and down.",
+    (
+        "6",
+        "the tuning of the driving frequency can be difficult",
+        "A remark on method; `python -m fem response` follows a frequency up and down.",
     ),
 )
 

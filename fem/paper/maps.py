@@ -9,6 +9,7 @@ twentieth of a turn earlier and later, a contact damping ratio of 0.5. A cell is
 overturn, as it does.
 """
 
+import itertools
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -22,7 +23,6 @@ from fem.paper.cases import (
     BOX_WEIGHT,
     FOR_MAPS,
     FREQUENCY_PARAMETER,
-    HEIGHT,
     PAPER_MU,
     PLATEAU_PEAK,
     SHELL,
@@ -31,7 +31,7 @@ from fem.paper.cases import (
     PaperCase,
     friction,
 )
-from fem.paper.criteria import Contingency, Criterion, MapMotion, contingency
+from fem.paper.criteria import Contingency, Criterion, MapMotion, contingency, motion_of
 from fem.paper.experiments import Experiments, stands
 from fem.runtime.arrays import BoolArray
 from fem.sweep.neighbours import OVERTURNED, STANDING, kind_of, near_cells
@@ -85,6 +85,7 @@ class OutcomeMap:
     """Cells over two axes, row by row of rising y."""
 
     title: str
+    rigid: bool  #: or a shell
     x: MapAxis
     y: MapAxis
     every: Sequence[MapCell]  #: failed ones as well
@@ -95,20 +96,10 @@ class OutcomeMap:
         return [cell for cell in self.every if cell.computed]
 
     @property
-    def places(self) -> list[tuple[float, float]]:
-        """x and y of all cells."""
-        return [(across, up) for up in self.y.values for across in self.x.values]
-
-    @property
     def rows(self) -> list[list[MapCell]]:
         """All cells, those of one y together."""
         width = len(self.x.values)
         return [list(self.every[first : first + width]) for first in range(0, len(self.every), width)]
-
-    @property
-    def rigid(self) -> bool:
-        """Whether the container is rigid, or a shell."""
-        return bool(self.every[0].case.values["solver.model"] == "rigid")
 
     @property
     def fast(self) -> bool:
@@ -152,26 +143,13 @@ def stack_map(
         rigid: or a shell, at every second frequency and peak.
         perturbed: find out which cells are sure; all count as sure otherwise.
     """
-    base = STACK.but(FOR_MAPS, friction(*mu), {} if rigid else SHELL, duration=15.0 if rigid else 10.0)
+    base = STACK.but(FOR_MAPS, friction(*mu), duration=15.0)
 
-    def place(frequency: float, peak: float) -> tuple[PaperCase, MapMotion]:
-        what = f"stack, {peak:g} m/s² at {frequency:g} rad/s"
-        return base.but(peak=peak, frequency=frequency, what=what), MapMotion(
-            angular_frequency=frequency,
-            peak=peak,
-            slenderness=HEIGHT / WIDTH,
-            mu_static=mu[0],
-            mu_kinetic=mu[1],
-        )
+    def place(frequency: float, peak: float) -> PaperCase:
+        return base.but(peak=peak, frequency=frequency, what=f"stack, {peak:g} m/s² at {frequency:g} rad/s")
 
-    return _computed(
-        experiments,
-        place,
-        title=f"{'rigid' if rigid else 'shell'} stack, frequency x peak",
-        x=FREQUENCY if rigid else _every_second(FREQUENCY, 0),
-        y=replace(PEAK, values=peaks if rigid else peaks[1::2]),
-        perturbed=perturbed,
-    )
+    y = replace(PEAK, values=peaks)
+    return _computed(experiments, place, "stack, frequency x peak", FREQUENCY, y, (0, 1), rigid, perturbed)
 
 
 def shape_maps(experiments: Experiments, *, rigid: bool = True) -> list[OutcomeMap]:
@@ -179,46 +157,35 @@ def shape_maps(experiments: Experiments, *, rigid: bool = True) -> list[OutcomeM
 
     Rigid, or a shell at every second slenderness and friction.
     """
-    kind = "rigid" if rigid else "shell"
-    base = STACK.but(FOR_MAPS, {} if rigid else SHELL, duration=15.0 if rigid else 10.0, peak=PLATEAU_PEAK)
 
     def of_frequency(frequency: float) -> OutcomeMap:
-        def place(slenderness: float, mu: float) -> tuple[PaperCase, MapMotion]:
+        base = STACK.but(
+            FOR_MAPS, {"container.boxes": 1}, duration=15.0, peak=PLATEAU_PEAK, frequency=frequency
+        )
+
+        def place(slenderness: float, mu: float) -> PaperCase:
             body = {
-                "container.boxes": 1,
                 "container.height_m": round(slenderness * WIDTH, 4),
                 "container.centroid_m": round(0.5 * slenderness * WIDTH, 4),
                 "container.weight_N": round(BOX_WEIGHT * slenderness * WIDTH, 1),
             }
-            what = f"{kind}, c/a = {slenderness:g}, mu_s = {mu:g}, {frequency:g} rad/s"
-            return base.but(body, friction(mu, 0.5 * mu), frequency=frequency, what=what), MapMotion(
-                angular_frequency=frequency,
-                peak=PLATEAU_PEAK,
-                slenderness=slenderness,
-                mu_static=mu,
-                mu_kinetic=0.5 * mu,
-            )
+            what = f"c/a = {slenderness:g}, mu_s = {mu:g}, {frequency:g} rad/s"
+            return base.but(body, friction(mu, 0.5 * mu), what=what)
 
-        return _computed(
-            experiments,
-            place,
-            title=f"{kind}, c/a x mu_s, {PLATEAU_PEAK:.1f} m/s² at {frequency:g} rad/s",
-            x=SHAPE if rigid else _every_second(SHAPE, 1),
-            y=STICTION if rigid else _every_second(STICTION, 1),
-        )
+        title = f"c/a x mu_s, {PLATEAU_PEAK:.1f} m/s² at {frequency:g} rad/s"
+        return _computed(experiments, place, title, SHAPE, STICTION, (1, 1), rigid)
 
     return [of_frequency(frequency) for frequency in SHAPE_FREQUENCIES]
 
 
-def _every_second(axis: MapAxis, first: int) -> MapAxis:
-    """Of the maps of a shell."""
-    return replace(axis, values=axis.values[first::2])
-
-
 def pairs(one: OutcomeMap, other: OutcomeMap) -> list[tuple[MapCell, MapCell]]:
     """Cells at the same place of two maps, both computed; every place of the other must be one of the first."""
-    known = dict(zip(one.places, one.every, strict=True))
-    both = [(known[place], cell) for place, cell in zip(other.places, other.every, strict=True)]
+    places = itertools.product(other.y.values, other.x.values)
+    x, y = list(one.x.values), list(one.y.values)
+    both = [
+        (one.rows[y.index(up)][x.index(across)], cell)
+        for (up, across), cell in zip(places, other.every, strict=True)
+    ]
     return [(first, second) for first, second in both if first.computed and second.computed]
 
 
@@ -233,15 +200,23 @@ def near_change(rows: Sequence[Row], x: Sequence[float], y: Sequence[float]) -> 
 
 def _computed(
     experiments: Experiments,
-    place: Callable[[float, float], tuple[PaperCase, MapMotion]],
-    *,
+    place: Callable[[float, float], PaperCase],
     title: str,
     x: MapAxis,
     y: MapAxis,
+    first: tuple[int, int],
+    rigid: bool,
     perturbed: bool = True,
 ) -> OutcomeMap:
-    """Compute a map; where asked, perturb the cells near a change of outcome."""
-    cases, motions = zip(*(place(across, up) for up in y.values for across in x.values), strict=True)
+    """Compute a map; where asked, perturb the cells near a change of outcome.
+
+    That of a shell has every second value of either axis, from the given first ones on, and runs of 10 s.
+    """
+    if not rigid:
+        x, y = (replace(one, values=one.values[start::2]) for one, start in zip((x, y), first, strict=True))
+    cases = [place(across, up) for up in y.values for across in x.values]
+    if not rigid:
+        cases = [case.but(SHELL, duration=10.0, what=f"shell, {case.what}") for case in cases]
     rows = experiments.rows(cases, also_failed=True)
     sure = [True] * len(cases)
     if perturbed:
@@ -255,7 +230,8 @@ def _computed(
             kinds = {kind_of(row["status"], row["outcome"]) for row in found}
             sure[k] = kinds in ({STANDING}, {OVERTURNED})
     cells = [
-        MapCell(motion=motion, case=case, row=row, sure=certain)
-        for motion, case, row, certain in zip(motions, cases, rows, sure, strict=True)
+        MapCell(motion=motion_of(case), case=case, row=row, sure=certain)
+        for case, row, certain in zip(cases, rows, sure, strict=True)
     ]
-    return OutcomeMap(title=title, x=x, y=y, every=cells)
+    title = f"{'rigid' if rigid else 'shell'} {title}"
+    return OutcomeMap(title=title, rigid=rigid, x=x, y=y, every=cells)

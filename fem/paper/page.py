@@ -34,35 +34,31 @@ def paper_report(folder: Path, *, signature: Signature | None = None) -> str:
     path = folder / PAPER.mark
     document = read_result(path, PAPER)
     try:
-        svgs = {one.stem: one.read_text(encoding="utf-8") for one in (folder / "figures").glob("*.svg")}
-        return _page(document, svgs, signature or Signature())
+        files = {one.stem: one.read_text(encoding="utf-8") for one in (folder / "figures").glob("*.svg")}
+        entries = [entry for group in document["groups"] for entry in group["statements"]]
+        drawings = [one for entry in entries for one in entry.get("drawings", ()) if one["name"] in files]
+        return render_page(
+            "study.html.j2",
+            scripts=["signature.js"],
+            name=f"study_{document['study']}",
+            signature=signature or Signature(),
+            today=dt.date.today().isoformat(),
+            study=document,
+            marks=MARKS,
+            figures={
+                one["name"]: svg_element(files[one["name"]], label=one["caption"], prefix=one["name"])
+                for one in drawings
+            },
+            versions=", ".join(f"{name} {version}" for name, version in document["versions"].items()),
+            number=number,
+            plural=plural,
+            limit=limit,
+        )
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise FolderError(
             f"{path}: damaged, or not the result of a study ({error}); compute it again with "
             "python -m fem study seed --force"
         ) from None
-
-
-def _page(document: Mapping[str, Any], svgs: Mapping[str, str], signature: Signature) -> str:
-    return render_page(
-        "study.html.j2",
-        scripts=["signature.js"],
-        name=f"study_{document['study']}",
-        signature=signature,
-        today=dt.date.today().isoformat(),
-        study=document,
-        marks=MARKS,
-        figures={
-            one["name"]: svg_element(svgs[one["name"]], label=one["caption"], prefix=one["name"])
-            for group in document["groups"]
-            for entry in group["statements"]
-            for one in entry.get("drawings", ())
-            if one["name"] in svgs
-        },
-        versions=", ".join(f"{name} {version}" for name, version in document["versions"].items()),
-        number=number,
-        limit=limit,
-    )
 
 
 def table_lines(document: Mapping[str, Any]) -> list[str]:
@@ -73,8 +69,16 @@ def table_lines(document: Mapping[str, Any]) -> list[str]:
         for entry in group["statements"]:
             rule = entry.get("rule") or entry.get("error", "")
             lines.append(f"  {entry['name']:<26} {entry['verdict']:<31} {rule}")
-    counts = ", ".join(f"{count} {verdict}" for verdict, count in document["counts"].items() if count)
+    counts = ", ".join(
+        f"{count} {plural(name, count)}" for name, count in document["counts"].items() if count
+    )
     return [*lines, "", f"{document['statements']} claims: {counts}"]
+
+
+def plural(conclusion: str, count: int) -> str:
+    """The conclusion behind a count: 3 remarks, 3 refuted."""
+    noun = conclusion in (Conclusion.MISPRINT.value, Conclusion.REMARK.value)
+    return f"{conclusion}s" if noun and count > 1 else conclusion
 
 
 def number(value: Any) -> str:

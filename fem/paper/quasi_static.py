@@ -21,9 +21,9 @@ from fem.paper.cases import (
     PaperCase,
     friction,
 )
-from fem.paper.claims import Comparison, Evidence, at_least, at_most, claim, equal, table
+from fem.paper.claims import Comparison, Evidence, at_least, at_most, claim, equal
 from fem.paper.experiments import Experiments
-from fem.paper.figures import PlottedLine, draw_curves
+from fem.paper.figures import curve, draw_curves
 
 #: a scan around a limit: peaks over the limit, and how near the onset must be
 AROUND = tuple(round(0.95 + 0.005 * n, 4) for n in range(21))
@@ -87,14 +87,11 @@ def kinetic_limit(experiments: Experiments) -> Evidence:
     yield draw_curves(
         "kinetic-limit",
         "Shear force over weight of the box, and the force that sticking would require.",
+        "time [s] | force / weight [-]",
         [
-            PlottedLine(x=time[shown], y=shear[shown], label="shear force / weight"),
-            PlottedLine(
-                x=time[shown], y=-acceleration[shown] / GRAVITY, label="required for sticking", style="--"
-            ),
+            curve(time[shown], shear[shown], "shear force / weight"),
+            curve(time[shown], -acceleration[shown] / GRAVITY, "required for sticking", "--"),
         ],
-        x_label="time [s]",
-        y_label="force / weight [-]",
         levels={"mu_s": 0.4, "mu_k": 0.2},
     )
 
@@ -170,19 +167,14 @@ def moments_of_a_tilted_body(experiments: Experiments) -> Evidence:
         pair = [_released(rotation, factor * balance) for factor in (0.98, 1.02)]
         back, away = (1e3 * _turn(experiments, case) for case in pair)
         yield from pair
-        rows.append((share, balance, back, away))
-        what = f"turn in {TURNING} s at {share:g} of beta, 2 %"
+        rows.append((back, away))
+        what = f"turn in {TURNING} s at {share:g} of beta (balance {balance:.2f} m/s²), 2 %"
         yield at_most(f"{what} below the balance of Eqs. 12, 13", back, 0.0, "mrad")
         yield at_least(f"{what} above it", away, 0.0, "mrad")
     yield (
         "The moments of Eqs. 12 and 13 balance at a(t) = g cot(phi + alpha). Two per cent below it the stack "
-        f"comes back from {sum(back < 0.0 for _, _, back, _ in rows)} of {len(rows)} rotations, two per cent "
-        f"above it falls from {sum(away > 0.0 for *_, away in rows)}."
-    )
-    yield table(
-        f"Rotation after {TURNING} s less that at the start, released at rest",
-        "phi/beta [-] | balance [m/s²] | 2 % below [mrad] | 2 % above [mrad]",
-        rows,
+        f"comes back from {sum(back < 0.0 for back, _ in rows)} of {len(rows)} rotations, two per cent "
+        f"above it falls from {sum(away > 0.0 for _, away in rows)}."
     )
 
 
