@@ -3,14 +3,12 @@
 import math
 from typing import NamedTuple
 
-import numpy as np
 from markupsafe import Markup
 
 from fem.assessment.summary import own_motion_name, rule_says, run_slid, run_tilted
 from fem.case.case import Case
 from fem.html.units import degrees, number, quantity, short, typeset
 from fem.model.static_checks import StaticChecks
-from fem.results.history import History
 from fem.results.run_result import Numerics, RunResult, Verdict
 
 EDITION = "EN 1998-1:2004, "  #: of the clauses; the head of their column names it
@@ -57,8 +55,8 @@ def compared_rows(static: StaticChecks, verdict: Verdict, case: Case) -> list[Co
     ]
 
 
-def asked_rows(case: Case, history: History | None = None) -> list[tuple[str, str]]:
-    """The case in words: name and value; with a history, the peaks of the floor."""
+def asked_rows(case: Case) -> list[tuple[str, str]]:
+    """The case in words: name and value."""
     box, contact = case.container, case.contact
     boxes = f"{box.boxes} boxes, bolted, each " if box.boxes > 1 else ""
     wall = f"shell, walls {short(box.wall_m, 1e3)} mm" if box.section == "shell" else "solid block"
@@ -81,7 +79,6 @@ def asked_rows(case: Case, history: History | None = None) -> list[tuple[str, st
         ("support", supports[case.support.kind]),
         ("friction", mu.format(short(contact.mu_static), short(contact.mu_kinetic))),
         ("floor", floor_in_words(case)),
-        *_floor_peaks(case, history),
         ("start", _start(case)),
         ("model", models[case.solver.model]),
         ("time", f"{_duration(case)}, g = {short(case.gravity_m_s2)} m/s²"),
@@ -166,21 +163,6 @@ def floor_in_words(case: Case) -> str:
         f"record {motion.file} ({motion.quantity}, {motion.unit}), scale {short(motion.scale)}, "
         f"baseline {motion.baseline}"
     )
-
-
-def _floor_peaks(case: Case, history: History | None) -> list[tuple[str, str]]:
-    """Largest displacement, velocity and acceleration of the floor, from the samples."""
-    if history is None or len(history) == 0 or case.motion.kind == "none":
-        return []
-    moved, speed, acceleration = (
-        float(np.abs(history[column]).max())
-        for column in ("base_displacement_m", "base_velocity_m_s", "base_acceleration_m_s2")
-    )
-    words = (
-        f"{quantity(moved, 'mm', 1e3)}, {quantity(speed, 'm/s')}, {quantity(acceleration, 'm/s²')} "
-        f"= {quantity(acceleration / case.gravity_m_s2, 'g', figures=3)}"
-    )
-    return [("its peaks", words)]
 
 
 def _start(case: Case) -> str:

@@ -119,7 +119,7 @@ def _page(
             centroid=static.centroid,
             peak_acceleration=static.own_motion.sliding.demand * case.gravity_m_s2 / static.weight,
         ),
-        asked=asked_rows(case, history),
+        asked=asked_rows(case),
         assumptions=assumptions(case, result),
         exclusions=EXCLUSIONS,
         compared=compared_rows(static, verdict, case),
