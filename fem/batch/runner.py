@@ -12,12 +12,14 @@ from functools import partial
 from operator import itemgetter
 from typing import Any, TypeVar
 
+from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak
 from fem.assessment.verdict import verdict_of
 from fem.batch.container_cache import ContainerCache, container_key
 from fem.batch.workers import LocalWorkers, WorkersOf, hand_out, never
-from fem.case.case import Case
+from fem.case.case import Case, CaseError
 from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
+from fem.model.motion import build_motion, motion_result
 from fem.model.recovery import recovery_of
 from fem.results.run_result import Verdict
 from fem.run.outcome import run_without_history
@@ -159,6 +161,15 @@ def run_cases(
             finished += len(chunk)
             done(finished)
     return rows
+
+
+def motion_left_out(case: Case) -> str | None:
+    """The part of its motion that runs of a case are under, where they end before it; None where they do not."""
+    try:
+        motion = motion_result(case, build_motion(case))
+    except CaseError:  # a row of the study says so
+        return None
+    return f"{covered_in_words(motion)}{missing_peak(motion)}" if is_cut(motion) else None
 
 
 def run_chunk(make: Callable[[ItemT], Case], items: Sequence[ItemT]) -> list[Row]:

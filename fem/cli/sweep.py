@@ -75,6 +75,8 @@ def page_of(info: dict[str, Any], folder: Path) -> str:
     """The result of a sweep, for people."""
     title = f": {info['title']}" if info["title"] else ""
     lines = [f"{info['sweep']}{title}", f"  {info['rows']} of {info['cells']} cells, {info['status']}"]
+    if info.get("motion_covered"):
+        lines.append(f"  under {info['motion_covered']}")
     for outcome, count in info["outcomes"].items():
         lines.append(f"  {outcome:12} {count:>8}  {100.0 * count / max(info['rows'], 1):5.1f} %")
     if info["unsure"] is not None:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from fem.batch.log import LoggedRuns, fields_of, table_of_lines, table_text
-from fem.batch.runner import Row, Runner
+from fem.batch.runner import Row, Runner, motion_left_out
 from fem.batch.workers import LocalWorkers
 from fem.case.case import case_hash, to_toml
 from fem.case.rules import ends_at_rest, longest_time
@@ -179,6 +179,7 @@ def result_of(
         "case": ensemble.base.name,
         "model": ensemble.base.solver.model,
         "duration_s": longest_time(ensemble.base) if not ends_at_rest(ensemble.base) else "auto",
+        "motion_covered": motion_left_out(ensemble.base),
         **asked_of(ensemble),
         "axes": [{"key": axis.key, "values": list(axis.values), "unit": axis.unit} for axis in ensemble.axes],
         "random": {
@@ -202,6 +203,7 @@ def page_of(result: dict[str, Any], folder: Path) -> str:
         f"{result['ensemble']}: {result['title']}" if result["title"] else str(result["ensemble"]),
         f"  {len(result['points'])} points x {result['draws']} draws ({result['sampling']}, seed {result['seed']}), "
         f"model {result['model']}, {_each(result['duration_s'])} each, {result['status']}",
+        *([f"  under {result['motion_covered']}"] if result.get("motion_covered") else []),
         f"  random: {', '.join(result['random'])}; the floor's motion is not random",
     ]
     for name, count in result["regions"].items():

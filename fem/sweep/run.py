@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from fem.batch.log import LoggedRuns, fields_of, line_of, read_lines, table_of_lines
-from fem.batch.runner import Row, Runner
+from fem.batch.runner import Row, Runner, motion_left_out
 from fem.batch.workers import LocalWorkers, WorkersOf
 from fem.case.case import case_hash
 from fem.case.rules import ends_at_rest, longest_time
@@ -264,6 +264,7 @@ def _asked(sweep: Sweep) -> dict[str, Any]:
         "base_hash": case_hash(sweep.base),
         "model": sweep.base.solver.model,
         "duration_s": longest_time(sweep.base) if not ends_at_rest(sweep.base) else "auto",
+        "motion_covered": motion_left_out(sweep.base),
         "axes": [
             {"key": axis.key, "values": axis.values, "scale": axis.scale, "unit": axis.unit}
             for axis in sweep.axes

@@ -125,6 +125,14 @@ def test_a_record_cut_short_says_so_in_its_first_line(tmp_path, monkeypatch):
     assert open_run(tmp_path / "cut").typed_result.motion.peak_in_run_m_s2 == 0.0
 
 
+def test_a_sweep_over_a_record_cut_short_says_so(tmp_path, capsys, monkeypatch):
+    record_case(tmp_path, more="duration_s = 2.0")
+    (tmp_path / "sweep.toml").write_text('case = "case.toml"\n[axes]\n"contact.mu_static" = [0.3, 0.5]\n')
+    monkeypatch.chdir(tmp_path)
+    assert main(["sweep", "sweep.toml", "-j", "1", "-q"]) == 0
+    assert "  under the first 2 of 4 s; the record's peak of 1.75 g is not in it\n" in capsys.readouterr().out
+
+
 def test_a_record_run_whole_is_under_this_motion(tmp_path):
     case = record_case(tmp_path)
     result = run_case(case, case_text=case.text, folder=tmp_path / "whole").typed_result
