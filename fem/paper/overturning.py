@@ -231,8 +231,8 @@ def rotation_at_half_width(experiments: Experiments) -> Evidence:
 
 @claim(
     "5.4",
-    "Overturning: tilting moment does exceed restoring moment; steady state amplitude A > a/2 "
-    "(weak condition)",
+    "Overturning Mode ... Tilting moment does exceed restoring moment from self weight ... Steady state amplitude "
+    "A > a/2 (quasi-static, weak condition)",
 )
 def beyond_half_width(experiments: Experiments) -> Evidence:
     """The map of the stack that cannot slide, above A = a/2 and g a/c."""

@@ -15,7 +15,6 @@ from fem.paper.cases import (
     GRAVITY,
     HEIGHT,
     HOLDING,
-    NO_SLIDING,
     PAPER_MU,
     PLATEAU,
     RIGID,
@@ -105,7 +104,6 @@ def slipping_stabilises(experiments: Experiments) -> Evidence:
     """Maps of the rigid stack over frequency and peak acceleration with five frictions, against friction that holds;
     the sure cells of the map with the paper's friction again with mu_k = mu_s."""
     holding = stack_map(experiments, HOLDING)
-    fixed = experiments.row(PLATEAU.but(RIGID, NO_SLIDING, duration=10.0))["rotation_ratio"]
     low_cells: list[MapCell] = []
     lines, worse = [], []
     for mu in ((0.2, 0.1), (0.25, 0.125), (0.3, 0.15), PAPER_MU, (0.4, 0.4)):
@@ -146,12 +144,6 @@ def slipping_stabilises(experiments: Experiments) -> Evidence:
         f"Cells of {len(holding.every)} that slip more than 1 mm, against friction that holds (1.0)",
         "friction | slip | saved by slipping | lost by slipping | .. of them sure | turn more by slipping",
         lines,
-    )
-    yield experiments.band(
-        PLATEAU.but(duration=10.0),
-        "rotation ratio at the plateau value",
-        f"it slides and turns less than the rigid block that cannot slide ({fixed:.3f})",
-        lambda row: row["outcome"] == "slide-rock" and row["rotation_ratio"] < fixed,
     )
 
 
