@@ -1,20 +1,11 @@
 """The paper's containers and motions: shipped cases, and what the check of a claim changes of them."""
 
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from fem.case.case import Case, load_case
-
-GRAVITY, WIDTH, HEIGHT = 9.81, 1.1, 4.0  #: m/s2; of the stack [m]
-BOX_WEIGHT = 24525.0  #: of one box, 1 m high [N]
-HALF_WIDTH = 0.5 * WIDTH  #: a/2 [m]
-UPLIFT = GRAVITY * WIDTH / HEIGHT  #: acceleration at which the stack tilts, g a/c [m/s2]
-#: p of a homogeneous block as large as the stack, p^2 = 3 g/(4 R) [1/s]
-FREQUENCY_PARAMETER = math.sqrt(0.75 * GRAVITY / (0.5 * math.hypot(WIDTH, HEIGHT)))
-ANGULAR_FREQUENCY = 6.928  #: sqrt(2.4 m/s2 / 50 mm), the paper's motion [rad/s]
-STATED_PEAK, PLATEAU_PEAK = 2.4, 4.0  #: [m/s2]
+from fem.paper.dimensions import HOLDING
 
 #: short names of the keys that claims change most
 KEYS = {
@@ -108,6 +99,4 @@ def friction(mu_static: float, mu_kinetic: float) -> dict[str, float]:
     return {"contact.mu_static": _rounded(mu_static), "contact.mu_kinetic": _rounded(mu_kinetic)}
 
 
-PAPER_MU = (0.4, 0.2)  #: static and kinetic, Eq. (6)
-HOLDING = (1.0, 1.0)  #: of a stack that cannot slide
 NO_SLIDING = friction(*HOLDING)

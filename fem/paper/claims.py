@@ -86,6 +86,17 @@ def table(caption: str, columns: str, rows: Sequence[Sequence[Any]]) -> ClaimTab
     return ClaimTable(caption=caption, columns=columns.split(" | "), rows=rows)
 
 
+def outcomes(caption: str, experiments: Experiments, cases: Sequence[PaperCase]) -> ClaimTable:
+    """Outcome, rotation and slip of each case."""
+    columns = ("outcome", "rotation_ratio", "max_slip_m")
+    rows = [[row[name] for name in columns] for row in experiments.rows(cases)]
+    return table(
+        caption,
+        "run | outcome | rotation ratio [-] | largest slip [m]",
+        [(case.what, *row) for case, row in zip(cases, rows, strict=True)],
+    )
+
+
 @dataclass(frozen=True, kw_only=True)
 class ClaimFigure:
     """A figure of the page."""

@@ -7,20 +7,18 @@ from itertools import pairwise
 import numpy as np
 
 from fem.figures.heat_map import MapCurve
-from fem.paper.cases import (
-    ANGULAR_FREQUENCY,
-    BOX,
-    FREQUENCY_PARAMETER,
-    GRAVITY,
-    HALF_WIDTH,
-    PAPER_MU,
-    SHELL,
-    STACK,
-    UPLIFT,
-    PaperCase,
-    friction,
+from fem.paper.cases import BOX, SHELL, STACK, PaperCase, friction
+from fem.paper.claims import (
+    ClaimFigure,
+    ClaimTable,
+    Comparison,
+    Evidence,
+    at_least,
+    at_most,
+    claim,
+    outcomes,
+    table,
 )
-from fem.paper.claims import ClaimFigure, ClaimTable, Comparison, Evidence, at_least, at_most, claim, table
 from fem.paper.criteria import (
     CRITERIA,
     Contingency,
@@ -30,6 +28,7 @@ from fem.paper.criteria import (
     static_rule,
     tilting_rule,
 )
+from fem.paper.dimensions import ANGULAR_FREQUENCY, FREQUENCY_PARAMETER, GRAVITY, HALF_WIDTH, PAPER_MU, UPLIFT
 from fem.paper.experiments import Experiments
 from fem.paper.figures import curve, draw_curves, draw_map
 from fem.paper.maps import (
@@ -141,6 +140,7 @@ def _below_the_limits(experiments: Experiments) -> Evidence:
         f"of beta ({ratios[3]:.2g} on a floor 100 times as stiff)."
     )
     yield from cases
+    yield outcomes("Below the static limits", experiments, cases)
 
 
 def _bound(one: Comparison) -> str:
@@ -230,13 +230,13 @@ def region_of_safety(experiments: Experiments) -> Evidence:
     for one in (*maps, *shells):
         changes = f"{one.title}: changes from falling back to standing along c/a"
         yield at_least(
-            f"{one.title}: share of cells that stand", _standing_share(one), 0.05, inside=one.rigid
+            f"{one.title}: share of cells that stand", one.standing_share(), 0.05, inside=one.rigid
         )
         yield at_most(changes, _re_entries(one), 0.0, inside=False)
     both = [pair for one, other in zip(maps, shells, strict=True) for pair in pairs(one, other)]
     yield (
         "The safe region depends on the motion: it is "
-        f"{', '.join(f'{100.0 * _standing_share(one):.0f} %' for one in maps)} of the cells of the rigid "
+        f"{', '.join(f'{100.0 * one.standing_share():.0f} %' for one in maps)} of the cells of the rigid "
         f"container at {', '.join(f'{one:g}' for one in SHAPE_FREQUENCIES)} rad/s. Along c/a it is left and "
         f"re-entered {sum(_re_entries(one) for one in maps)} times in {len(maps) * len(FRICTION)} rows of "
         f"cells. The outcome of the shell differs from that of the rigid container in "
@@ -245,10 +245,6 @@ def region_of_safety(experiments: Experiments) -> Evidence:
     )
     yield from [one.every[-1].case for one in (*maps, *shells[-1:])]
     yield from [_shape_figure(one) for one in maps[:2]]
-
-
-def _standing_share(one: OutcomeMap) -> float:
-    return float(np.mean([cell.stood for cell in one.every]))
 
 
 def _re_entries(one: OutcomeMap) -> int:

@@ -8,7 +8,8 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from fem.paper.cases import GRAVITY, HALF_WIDTH, HEIGHT, KEYS, WIDTH, PaperCase
+from fem.paper.cases import KEYS, PaperCase
+from fem.paper.dimensions import GRAVITY, HALF_WIDTH, HEIGHT, WIDTH
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,20 +18,16 @@ import numpy as np
 from fem.batch.axes import Axis
 from fem.batch.runner import Row
 from fem.figures.heat_map import MapAxis
-from fem.paper.cases import (
+from fem.paper.cases import FOR_MAPS, SHELL, STACK, PaperCase, friction
+from fem.paper.criteria import Contingency, Criterion, MapMotion, contingency, motion_of
+from fem.paper.dimensions import (
     ANGULAR_FREQUENCY,
     BOX_WEIGHT,
-    FOR_MAPS,
     FREQUENCY_PARAMETER,
     PAPER_MU,
     PLATEAU_PEAK,
-    SHELL,
-    STACK,
     WIDTH,
-    PaperCase,
-    friction,
 )
-from fem.paper.criteria import Contingency, Criterion, MapMotion, contingency, motion_of
 from fem.paper.experiments import Experiments, stands
 from fem.runtime.arrays import BoolArray
 from fem.sweep.neighbours import OVERTURNED, STANDING, kind_of, near_cells
@@ -111,11 +107,13 @@ class OutcomeMap:
         chosen = [cell for cell in self.cells if sure is None or cell.sure is sure]
         return contingency([criterion(cell.motion) for cell in chosen], [cell.fell for cell in chosen])
 
-    def standing_share(self, criterion: Criterion, frequencies: Collection[float] = ()) -> float:
+    def standing_share(
+        self, criterion: Criterion = lambda motion: True, frequencies: Collection[float] = ()
+    ) -> float:
         """Of the computed cells that a criterion turns over, the share that stands; nan without any.
 
         Args:
-            criterion: says which cells overturn.
+            criterion: says which cells overturn; default: all.
             frequencies: only cells at these, if there are any [rad/s].
         """
         said = [

@@ -8,21 +8,9 @@ from contact.reference.closed_forms_overturning import sustained_sine_threshold_
 from contact.reference.floor_acceleration import sine_floor
 from contact.reference.rocking import first_swing_threshold
 from fem.figures.heat_map import MapCurve
-from fem.paper.cases import (
-    ANGULAR_FREQUENCY,
-    FOR_MAPS,
-    FREQUENCY_PARAMETER,
-    HALF_WIDTH,
-    HOLDING,
-    NO_SLIDING,
-    PAPER_MU,
-    PLATEAU,
-    RIGID,
-    SHELL,
-    STACK,
-    UPLIFT,
-)
+from fem.paper.cases import FOR_MAPS, NO_SLIDING, PLATEAU, RIGID, SHELL, STACK
 from fem.paper.claims import Evidence, at_least, at_most, claim, table
+from fem.paper.dimensions import ANGULAR_FREQUENCY, FREQUENCY_PARAMETER, HALF_WIDTH, HOLDING, PAPER_MU, UPLIFT
 from fem.paper.experiments import Experiments, capped_ratio, stands
 from fem.paper.figures import curve, draw_curves, draw_map
 from fem.paper.maps import FAST, FREQUENCIES, MapCell, stack_map

@@ -6,22 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from contact.reference.closed_forms_rocking import holding_acceleration
-from fem.paper.cases import (
-    ANGULAR_FREQUENCY,
-    BOX,
-    FOR_MAPS,
-    GRAVITY,
-    HALF_WIDTH,
-    NO_SLIDING,
-    RIGID,
-    SHELL,
-    STACK,
-    UPLIFT,
-    WIDTH,
-    PaperCase,
-    friction,
-)
+from fem.paper.cases import BOX, FOR_MAPS, NO_SLIDING, RIGID, SHELL, STACK, PaperCase, friction
 from fem.paper.claims import Comparison, Evidence, at_least, at_most, claim, equal
+from fem.paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HALF_WIDTH, UPLIFT, WIDTH
 from fem.paper.experiments import Experiments
 from fem.paper.figures import curve, draw_curves
 

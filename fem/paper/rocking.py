@@ -7,21 +7,9 @@ import numpy as np
 from contact.reference.closed_forms_rocking import quarter_period
 from contact.reference.rigid_block import RigidBlock
 from fem.model.static_checks import period_eq2, period_eq3
-from fem.paper.cases import (
-    BOX,
-    FOR_MAPS,
-    GRAVITY,
-    HEIGHT,
-    NO_SLIDING,
-    PLATEAU,
-    PLATEAU_PEAK,
-    RIGID,
-    SHELL,
-    STACK,
-    WIDTH,
-    PaperCase,
-)
+from fem.paper.cases import BOX, FOR_MAPS, NO_SLIDING, PLATEAU, RIGID, SHELL, STACK, PaperCase
 from fem.paper.claims import Evidence, at_least, at_most, claim, equal
+from fem.paper.dimensions import GRAVITY, HEIGHT, PLATEAU_PEAK, WIDTH
 from fem.paper.experiments import CaseRun, Experiments, VariantBand, stands, variant_result
 from fem.paper.figures import curve, draw_curves
 

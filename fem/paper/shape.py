@@ -8,20 +8,9 @@ from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import first_swing_threshold, simulate_rocking
 from fem.assessment.joint_demands import joint_demands
 from fem.model.recovery import recovery_of
-from fem.paper.cases import (
-    ANGULAR_FREQUENCY,
-    GRAVITY,
-    HALF_WIDTH,
-    HEIGHT,
-    PLATEAU,
-    PLATEAU_PEAK,
-    RIGID,
-    SHELL,
-    STACK,
-    WIDTH,
-    PaperCase,
-)
-from fem.paper.claims import Evidence, at_most, claim, equal, table
+from fem.paper.cases import PLATEAU, RIGID, SHELL, STACK, PaperCase
+from fem.paper.claims import Evidence, at_most, claim, equal, outcomes, table
+from fem.paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HALF_WIDTH, HEIGHT, PLATEAU_PEAK, WIDTH
 from fem.paper.experiments import Experiments
 from fem.paper.figures import curve, draw_curves
 from fem.run.recorder import Recorder
@@ -131,36 +120,27 @@ def rigid_assumption(experiments: Experiments) -> Evidence:
         for one in (0.1, 10.0)
     ]
     rows = experiments.rows([*cases, *numerics])
-    outcomes = [row["outcome"] for row in rows]
+    ends = [row["outcome"] for row in rows]
     ratios = [row["rotation_ratio"] for row in rows]
     slips = [1e3 * rows[k]["max_slip_m"] for k in (2, 6, 7)]
     reproduced = max(slips) <= 1.1 * min(slips)
     for k, name in ((1, "shell"), (2, "solid steel")):
-        yield at_most(
-            f"stands or falls otherwise than the rigid block, {name}", outcomes[k] == "overturned", 0.0
-        )
+        yield at_most(f"stands or falls otherwise than the rigid block, {name}", ends[k] == "overturned", 0.0)
     for k in (1, 4):
         mu = cases[k].what.rpartition(", ")[2]
-        other = outcomes[k] != outcomes[k - 1]
+        other = ends[k] != ends[k - 1]
         yield at_most(f"another regime than the rigid block, shell, {mu}", other, 0.0, inside=False)
         yield equal(
             f"rotation ratio, shell over rigid, {mu}", ratios[k] / ratios[k - 1], 1.0, 0.1, inside=False
         )
     yield (
         f"With mu_k = mu_s rigid block, shell and solid steel turn to {_range(ratios[3:6])} of beta, with mu_k = "
-        f"mu_s/2 to {_range(ratios[:3])}. {_CHANCE if len(set(outcomes[:3])) > 1 else ''}With an energy tolerance of "
+        f"mu_s/2 to {_range(ratios[:3])}. {_CHANCE if len(set(ends[:3])) > 1 else ''}With an energy tolerance of "
         f"1, 0.1 and 10 solid steel slides by {', '.join(f'{one:.0f}' for one in slips)} mm"
         f"{'' if reproduced else ': this slip is not reproducible'}."
     )
     yield from [*cases, *numerics]
-    yield table(
-        "At the plateau value",
-        "container | outcome | rotation ratio [-] | slip [mm]",
-        [
-            (case.what, row["outcome"], row["rotation_ratio"], 1e3 * row["max_slip_m"])
-            for case, row in zip([*cases, *numerics], rows, strict=True)
-        ],
-    )
+    yield outcomes("At the plateau value", experiments, [*cases, *numerics])
     histories = {case.what: experiments.run(case).history for case in cases[:2]}
     yield draw_curves(
         "rigid-assumption",
@@ -172,7 +152,7 @@ def rigid_assumption(experiments: Experiments) -> Evidence:
         base,
         "rotation ratio at the plateau value",
         "the outcome of the rigid block",
-        lambda row: row["outcome"] == outcomes[0],
+        lambda row: row["outcome"] == ends[0],
     )
 
 

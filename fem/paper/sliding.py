@@ -8,21 +8,9 @@ import numpy as np
 from contact.reference.floor_acceleration import sine_floor
 from contact.reference.sliding import RigidSlider, simulate_sliding
 from fem.batch.runner import Row
-from fem.paper.cases import (
-    ANGULAR_FREQUENCY,
-    BOX,
-    FOR_MAPS,
-    GRAVITY,
-    HEIGHT,
-    HOLDING,
-    PAPER_MU,
-    PLATEAU,
-    RIGID,
-    STACK,
-    WIDTH,
-    friction,
-)
+from fem.paper.cases import BOX, FOR_MAPS, PLATEAU, RIGID, STACK, friction
 from fem.paper.claims import Evidence, at_most, claim, table
+from fem.paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HEIGHT, HOLDING, PAPER_MU, WIDTH
 from fem.paper.experiments import Experiments, capped_ratio, stands
 from fem.paper.figures import curve, draw_curves
 from fem.paper.maps import MapCell, pairs, stack_map
