@@ -18,6 +18,7 @@ class CellRows:
         self.columns = row_columns(sweep.axes, (one.key for one in sweep.derived))
         self.lines: dict[int, str] = {}  #: row of each cell, as in the log
         self.kind: IntArray = np.full(sweep.count, UNKNOWN)  #: (n_cells,) see `neighbours`
+        self.outcome: list[str] = [""] * sweep.count  #: "" where there is none
         self.rotation_ratio: FloatArray = np.full(sweep.count, np.nan)  #: (n_cells,)
         self.outcomes = Counter[str]()  #: how often there is each; "failed" too
         self._places = [self.columns.index(name) for name in ("status", "outcome", "rotation_ratio")]
@@ -31,6 +32,7 @@ class CellRows:
             return
         self.lines[cell] = line
         self.kind[cell] = kind_of(status, outcome)
+        self.outcome[cell] = outcome
         self.rotation_ratio[cell] = np.nan if found is None else found
         self.outcomes[outcome if outcome and status != "failed" else "failed"] += 1
 

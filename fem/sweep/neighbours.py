@@ -1,15 +1,17 @@
-"""Which cells of a sweep are near a change of outcome, and how wide the band of unsure cells is; see the README."""
+"""Neighbours on the grid of a sweep: near a change of outcome, around cells, on a coarse grid; see the README."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from scipy import ndimage
 
-from fem.batch.axes import Axis
+from fem.batch.axes import Axis, shape_of
 from fem.runtime.arrays import BoolArray, FloatArray, IntArray
 
 #: kinds of cells
 UNKNOWN, STANDING, OVERTURNED, FAILED = 0, 1, 2, 3
+#: one in so many values of a numeric axis belongs to the coarse grid
+COARSE = 4
 KIND_NAMES = {UNKNOWN: "unknown", STANDING: "standing", OVERTURNED: "overturned", FAILED: "failed"}
 
 
@@ -20,9 +22,9 @@ def kind_of(status: str, outcome: str | None) -> int:
     return OVERTURNED if outcome == "overturned" else STANDING
 
 
-def _reach(axes: Sequence[Axis]) -> tuple[int, ...]:
+def _size(axes: Sequence[Axis], reach: int = 1) -> tuple[int, ...]:
     """Size of the neighbourhood along each axis."""
-    return tuple(3 if axis.is_numeric else 1 for axis in axes)
+    return tuple(2 * reach + 1 if axis.is_numeric else 1 for axis in axes)
 
 
 def near_cells(axes: Sequence[Axis], kind: IntArray, rotation_ratio: FloatArray, close: float) -> BoolArray:
@@ -34,17 +36,28 @@ def near_cells(axes: Sequence[Axis], kind: IntArray, rotation_ratio: FloatArray,
         rotation_ratio: in the shape of the axes; nan where there is none.
         close: rotation ratio that counts as close.
     """
-    size = _reach(axes)
+    size = _size(axes)
     highest = ndimage.maximum_filter(kind, size=size, mode="nearest")
     lowest = ndimage.minimum_filter(kind, size=size, mode="nearest")
     with np.errstate(invalid="ignore"):
         return (highest != lowest) | ((kind == STANDING) & (rotation_ratio >= close))
 
 
-def around(axes: Sequence[Axis], cells: BoolArray) -> BoolArray:
-    """The cells and their neighbours."""
-    grown: BoolArray = ndimage.maximum_filter(cells, size=_reach(axes), mode="constant", cval=False)
+def around(axes: Sequence[Axis], cells: BoolArray, reach: int = 1) -> BoolArray:
+    """The cells and those up to `reach` away from them, diagonally as well."""
+    grown: BoolArray = ndimage.maximum_filter(cells, size=_size(axes, reach), mode="constant", cval=False)
     return grown
+
+
+def coarse_cells(axes: Sequence[Axis]) -> BoolArray:
+    """Every fourth cell along each numeric axis, from the second on, in the shape of the axes."""
+    chosen = np.zeros(shape_of(axes), dtype=bool)
+    places = (
+        slice((min(len(axis.values), COARSE) - 1) // 2, None, COARSE) if axis.is_numeric else slice(None)
+        for axis in axes
+    )
+    chosen[tuple(places)] = True
+    return chosen
 
 
 def band_width(axes: Sequence[Axis], unsure: BoolArray, place: int) -> FloatArray:

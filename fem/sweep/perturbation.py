@@ -1,20 +1,25 @@
-"""Sensitivity of a cell: copies of it that each change one thing of motion, friction or contact a little."""
+"""What a sweep file says of the copies of its cells: which cells have them, and small changes of motion and contact.
+
+The changes over the ranges of unknown inputs come beside these, from the table [uncertainty] of the base case.
+"""
 
 import math
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, Strict
 
 from fem.case.case import Case
-from fem.case.quantities import CONTACT_DAMPING, Quantity
+from fem.case.quantities import CONTACT_DAMPING, DRAWS, Quantity
 from fem.case.tables import CaseTable
+from fem.case.uncertainty import DASHPOT, InputChange
 
 SHARE = Quantity(unit="", least=0.0, most=0.5, advice="0.02 is two per cent")
 FRICTION_STEP = Quantity(unit="", least=0.0, most=1.0, advice="0.02 is usual")
 PHASE_STEP = Quantity(unit="rad", least=0.0, most=math.pi, advice="one turn is 2 pi")
 CLOSE = Quantity(unit="", least=0.0, advice="rotation over the slenderness angle")
 TURN = 2.0 * math.pi
+SMALL = 0.0  #: of a range
 
 
 class Perturbation(CaseTable):
@@ -22,7 +27,8 @@ class Perturbation(CaseTable):
 
     cells: Literal["auto", "near", "all", "none"] = Field(
         default="auto",
-        description='"near" a change of outcome | "all" | "none" | "auto": near, none for the full model',
+        description='"auto": a coarse grid of all cells, then around what changes, none for the full model | '
+        '"near" a change of outcome only | "all" | "none"',
     )
     amplitude_share: Annotated[float, SHARE] = Field(
         default=0.02, description="of the floor's amplitude, up and down"
@@ -36,9 +42,19 @@ class Perturbation(CaseTable):
     contact_damping_ratios: list[Annotated[float, CONTACT_DAMPING]] = Field(
         default=[0.5, 1.0, 2.0], description="tried in place of the cell's own"
     )
+    draws: Annotated[int, Strict(), DRAWS] | None = Field(
+        default=None,
+        description="copies in which all unknown inputs are drawn at once; default: a quarter of [uncertainty] draws",
+    )
     close: Annotated[float, CLOSE] = Field(
         default=0.5, description="rotation ratio above which a standing cell counts as near"
     )
+
+    def changes(self, case: Case) -> Iterator[InputChange]:
+        """What each copy of a case changes; what is small counts as a small share of a range."""
+        for values in self.members(case):
+            share = 1.0 if DASHPOT in values else SMALL
+            yield InputChange(kind="one", values=values, share=share)
 
     def members(self, case: Case) -> Iterator[dict[str, Any]]:
         """The keys that each copy of a case changes."""
@@ -57,6 +73,11 @@ class Perturbation(CaseTable):
         if case.motion.kind == "harmonic" and self.phase_rad > 0.0:
             for step in (-self.phase_rad, self.phase_rad):
                 yield {"motion.phase_rad": math.remainder(case.motion.phase_rad + step, TURN)}
+        if (
+            case.uncertainty.damping_ratio == "known"
+            and "contact_damping_ratios" not in self.model_fields_set
+        ):
+            return
         for ratio in self.contact_damping_ratios:
             if ratio != friction.damping_ratio:
                 yield {"contact.damping_ratio": ratio}

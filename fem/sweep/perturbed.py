@@ -1,6 +1,12 @@
-"""The perturbed copies of a sweep's cells: which cells have them, and what they show."""
+"""The perturbed copies of a sweep's cells: which cells have which, and what they show.
 
-from collections.abc import Callable, Iterable, Iterator
+A change is tried on a coarse grid of all cells and near changes of outcome, and then around every cell whose outcome it
+turns, until no further cell has another outcome. The draws of all unknown inputs follow where nothing else turned a
+cell over. Which copies there are depends on the outcomes alone, not on the order in which they are computed.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,10 +17,14 @@ from fem.batch.log import LoggedRuns, fields_of, number_in
 from fem.batch.runner import Row, Runner
 from fem.runtime.arrays import BoolArray
 from fem.sweep.cells import CellRows
-from fem.sweep.neighbours import around, band_width, kind_of, near_cells
-from fem.sweep.plan import Sweep
+from fem.sweep.copies import CellCopies, Copy
+from fem.sweep.neighbours import around, band_width, coarse_cells, kind_of, near_cells
+from fem.sweep.plan import CopyItem, Sweep
 
 COLUMNS = ("cell", "member", "change", "status", "outcome", "rotation_ratio", "reason")
+SURENESS = SURE, REGIME_UNSURE, UNSURE = "sure", "regime unsure", "unsure"
+#: cells around one with another outcome that try the same change
+REACH = 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,35 +32,68 @@ class PerturbedRow:
     """A perturbed copy of a cell."""
 
     line: str  #: as in the log
+    copy: Copy
     kind: int  #: see `neighbours`
+    outcome: str
     ratio: float | None  #: rotation ratio
 
 
 class PerturbedRows:
     """The perturbed copies of cells so far."""
 
-    def __init__(self, cells: CellRows) -> None:
+    def __init__(self, sweep: Sweep, cells: CellRows) -> None:
         self._cells = cells
+        self.copies = CellCopies(sweep)
         self.rows: dict[int, dict[int, PerturbedRow]] = {}  #: by cell and number of the copy
+        self.turned: dict[
+            str, BoolArray
+        ] = {}  #: by name of the change: cells whose outcome it turns, (n_cells,)
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
-        cell, member, _, status, outcome, ratio, _ = fields_of(line)
-        row = PerturbedRow(line=line, kind=kind_of(status, outcome), ratio=number_in(ratio))
-        self.rows.setdefault(int(cell), {})[int(member)] = row
+        cell_text, number, _, status, outcome, ratio, _ = fields_of(line)
+        cell = int(cell_text)
+        copy = self.copies.of(cell)[int(number)]
+        kind = kind_of(status, outcome)
+        row = PerturbedRow(line=line, copy=copy, kind=kind, outcome=outcome, ratio=number_in(ratio))
+        self.rows.setdefault(cell, {})[int(number)] = row
+        turned = kind != self._cells.kind[cell]
+        # Draws are to find what overturns; half of them turn rest to sliding, by the start alone.
+        if turned or (not copy.drawn and outcome != self._cells.outcome[cell]):
+            nowhere = np.zeros(self._cells.kind.size, dtype=bool)
+            self.turned.setdefault(copy.name, (copy, nowhere))[1][cell] = True
 
     def lines(self) -> Iterator[str]:
         """The log, in the order of cells and copies."""
         for _, copies in sorted(self.rows.items()):
             yield from (copy.line for _, copy in sorted(copies.items()))
 
-    def unsure(self, seen: BoolArray) -> BoolArray:
-        """Which of the cells `seen` are unsure, (n_cells,): those that failed, or have a copy of another kind."""
-        found = seen & ~self._cells.decided
+    def unsure(self, *, drawn: bool = True) -> BoolArray:
+        """Which cells are unsure, (n_cells,): those that failed, or have a copy of another kind.
+
+        Args:
+            drawn: whether draws of all inputs count.
+        """
+        found = ~self._cells.decided
         for cell, copies in self.rows.items():
-            if seen[cell]:
-                found[cell] |= any(copy.kind != self._cells.kind[cell] for copy in copies.values())
+            found[cell] |= any(
+                copy.kind != self._cells.kind[cell]
+                for copy in copies.values()
+                if drawn or not copy.copy.drawn
+            )
         return found
+
+    def sureness(self, cell: int) -> tuple[str, tuple[str, ...]]:
+        """How sure a cell is, and the inputs that decide: the smallest change that turns its outcome first."""
+        kind, outcome = self._cells.kind[cell], self._cells.outcome[cell]
+        copies = self.rows.get(cell, {}).values()
+        if not self._cells.decided[cell]:
+            return UNSURE, ()
+        turning = [one for one in copies if one.kind != kind]
+        if turning:
+            return UNSURE, deciding(turning)
+        turning = [one for one in copies if one.outcome != outcome]
+        return (REGIME_UNSURE, deciding(turning)) if turning else (SURE, ())
 
     def ratios(self, cell: int) -> tuple[float | None, float | None]:
         """Least and largest rotation ratio of a cell and its copies; None where there is none."""
@@ -59,29 +102,52 @@ class PerturbedRows:
         return (min(own, *found), max(own, *found)) if found and np.isfinite(own) else (None, None)
 
 
+def deciding(turning: list[PerturbedRow]) -> tuple[str, ...]:
+    """The inputs of the copies that turn an outcome, the smallest change first.
+
+    Where only pairs or draws turn it, all their inputs do so together. Both coefficients of friction moved at once
+    count as `contact.mu_static`.
+    """
+    kinds = {one.copy.change.kind for one in turning}
+    first = next(kind for kind in ("one", "pair", "draw") if kind in kinds)
+    changes = [one.copy.change for one in turning if one.copy.change.kind == first]
+    if first == "one":
+        ordered = sorted(changes, key=lambda one: one.share)
+        return tuple(dict.fromkeys(one.inputs[0] for one in ordered))
+    return tuple(dict.fromkeys(key for one in changes for key in one.inputs))
+
+
 def band_rows(
     sweep: Sweep, cells: CellRows, perturbed: PerturbedRows
-) -> tuple[BoolArray, Callable[[int], tuple[Any, ...]]]:
+) -> tuple[Counter[str], Counter[str], Callable[[int], tuple[Any, ...]]]:
     """What the perturbed copies add to the table.
 
     Returns:
-        Which cells are unsure, (n_cells,), and for a cell the values of `table.band_columns`.
+        How many cells are sure, regime unsure, unsure; how many unsure ones each input decides; and for a cell the
+        values of `table.band_columns`.
     """
-    seen = ~cells.decided
-    seen[list(perturbed.rows)] = True
-    unsure = perturbed.unsure(seen)
+    everywhere = sweep.perturbation.cells != "near"
+    found = [perturbed.sureness(cell) for cell in range(sweep.count)]
+    unsure = np.array([word == UNSURE for word, _ in found])
     grid = unsure.reshape(sweep.shape)
     widths = [band_width(sweep.axes, grid, k).ravel() for k, axis in enumerate(sweep.axes) if axis.is_numeric]
 
+    def sure(cell: int) -> str:
+        """Nothing is known of a cell that was left out."""
+        return found[cell][0] if everywhere or unsure[cell] or cell in perturbed.rows else ""
+
     def values(cell: int) -> tuple[Any, ...]:
         copies = len(perturbed.rows.get(cell, {}))
-        return copies, unsure[cell], *perturbed.ratios(cell), *(width[cell] for width in widths)
+        by = " ".join(found[cell][1])
+        ratios = perturbed.ratios(cell)
+        return copies, unsure[cell], sure(cell), by, *ratios, *(width[cell] for width in widths)
 
-    return unsure, values
+    counts = Counter(word for cell in range(sweep.count) if (word := sure(cell)))
+    return counts, Counter(key for word, by in found if word == UNSURE for key in by), values
 
 
 def perturb_cells(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> PerturbedRows | None:
-    """Perturb the cells near a change of outcome, then the neighbours of those that are unsure, until there are none.
+    """Compute the perturbed copies of a sweep's cells.
 
     Returns:
         The copies, those that the log held already included; None where none are wanted.
@@ -89,41 +155,102 @@ def perturb_cells(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> P
     chosen = sweep.perturbation.cells
     if chosen == "none" or (chosen == "auto" and sweep.base.solver.model == "full"):
         return None
-    perturbed = PerturbedRows(cells)
+    perturbed = PerturbedRows(sweep, cells)
     LoggedRuns(
         what="perturbed copies",
         path=log,
         columns=COLUMNS,
-        make=sweep.member_case,
-        model_of=lambda item: sweep.model_of(item[0]),
-        values=lambda item, row: _values(sweep, item, row),
+        make=sweep.copy_case,
+        model_of=lambda item: sweep.model_of(item.cell),
+        values=_values,
         note=perturbed.note,
     ).run(runner, _missing(sweep, cells, perturbed))
     return perturbed
 
 
-def _missing(sweep: Sweep, cells: CellRows, perturbed: PerturbedRows) -> Iterator[list[tuple[int, int]]]:
-    """Copies that are not there yet, as cell and number: ring after ring around the unsure cells."""
-    shape, decided = sweep.shape, cells.decided.reshape(sweep.shape)
-    kind, ratio = cells.kind.reshape(shape), cells.rotation_ratio.reshape(shape)
-    wanted = decided & (
-        (sweep.perturbation.cells == "all") | near_cells(sweep.axes, kind, ratio, sweep.perturbation.close)
+def _missing(sweep: Sweep, cells: CellRows, perturbed: PerturbedRows) -> Iterator[list[CopyItem]]:
+    """Copies that are not there yet: single changes and pairs, then draws."""
+    axes, shape = sweep.axes, sweep.shape
+    decided = cells.decided.reshape(shape)
+    near = near_cells(
+        axes, cells.kind.reshape(shape), cells.rotation_ratio.reshape(shape), sweep.perturbation.close
     )
-    seen = np.zeros(shape, dtype=bool)
-    while wanted.any():
-        yield list(_copies(sweep, np.flatnonzero(wanted), perturbed))
-        seen |= wanted
-        wanted = around(sweep.axes, perturbed.unsure(seen.ravel()).reshape(shape)) & ~seen & decided
+    begin = near.copy()
+    match sweep.perturbation.cells:
+        case "all":
+            near[:] = begin[:] = True
+        case "auto":
+            begin |= coarse_cells(axes)
+    yield from _closing_in(sweep, perturbed, decided, drawn=False, begin=begin, small=near)
+    sure = decided & ~perturbed.unsure(drawn=False).reshape(shape)
+    yield from _closing_in(sweep, perturbed, sure, drawn=True, begin=begin | around(axes, ~sure), small=near)
 
 
-def _copies(sweep: Sweep, cells: Iterable[int], perturbed: PerturbedRows) -> Iterator[tuple[int, int]]:
-    for cell in sweep.by_container(int(cell) for cell in cells):
-        known = perturbed.rows.get(cell, {})
-        yield from ((cell, k) for k in range(len(sweep.member_changes(cell))) if k not in known)
+def _closing_in(
+    sweep: Sweep,
+    perturbed: PerturbedRows,
+    among: BoolArray,
+    *,
+    drawn: bool,
+    begin: BoolArray,
+    small: BoolArray,
+) -> Iterator[list[CopyItem]]:
+    """Missing copies of the cells to begin with, then of each change around the cells that it turns.
+
+    Args:
+        sweep, perturbed: what is asked for, and what there is.
+        among: cells that may have them, in the shape of the axes.
+        drawn: the draws, or all others.
+        begin: cells to begin with, for small changes those of `small`.
+        small: as `begin`.
+    """
+    seen: dict[str, BoolArray] = {}
+
+    def known(copy: Copy) -> BoolArray:
+        if copy.name not in seen:
+            seen[copy.name] = among & (small if copy.small else begin)
+        return seen[copy.name]
+
+    yield _items(
+        sweep,
+        perturbed,
+        among & begin,
+        lambda cell, copy: copy.drawn == drawn and bool(known(copy).ravel()[cell]),
+    )
+    while True:
+        more: dict[str, BoolArray] = {}
+        for name, (copy, turned) in perturbed.turned.items():
+            here = around(sweep.axes, turned.reshape(sweep.shape), REACH) & among & ~known(copy)
+            if copy.drawn == drawn and here.any():
+                more[name] = here.ravel()
+                seen[name] |= here
+        if not more:
+            return
+        somewhere = np.any(list(more.values()), axis=0)
+        yield _items(
+            sweep,
+            perturbed,
+            somewhere,
+            lambda cell, copy, more=more: copy.name in more and bool(more[copy.name][cell]),
+        )
 
 
-def _values(sweep: Sweep, item: tuple[int, int], row: Row) -> Iterator[Any]:
-    cell, member = item
-    change = sweep.member_changes(cell)[member]
-    yield from (cell, member, " ".join(f"{key}={value!r}" for key, value in change.items()))
+def _items(
+    sweep: Sweep,
+    perturbed: PerturbedRows,
+    cells: BoolArray,
+    wants: Callable[[int, Copy], bool],
+) -> list[CopyItem]:
+    """Copies of cells that are not there yet: of one container together, and within it of one change."""
+    found = []
+    for cell in np.flatnonzero(cells).tolist():
+        known, container = perturbed.rows.get(cell, {}), sweep.container_of(cell)
+        for number, copy in enumerate(perturbed.copies.of(cell)):
+            if number not in known and wants(cell, copy):
+                found.append((container, copy.name, CopyItem(cell, number, copy.change.values)))
+    return [item for _, _, item in sorted(found, key=lambda one: (*one[:2], one[2].cell))]
+
+
+def _values(item: CopyItem, row: Row) -> Iterator[Any]:
+    yield from (item.cell, item.number, " ".join(f"{key}={value!r}" for key, value in item.values.items()))
     yield from (row[name] for name in COLUMNS[3:])

@@ -8,7 +8,8 @@ from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from itertools import product
+from typing import Any, NamedTuple
 
 from pydantic import Field
 
@@ -21,8 +22,6 @@ from fem.case.validation import CaseError
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.threshold import Threshold
 
-#: cells whose perturbed copies are remembered
-REMEMBERED = 4096
 #: tables and keys on which the container depends, or how it is computed: see `container_cache.container_key`
 OF_THE_CONTAINER = (
     "gravity_m_s2",
@@ -44,6 +43,14 @@ class MapChoice(CaseTable):
     fixed: dict[str, Any] = Field(
         default={}, description="values at which further axes are held; the others have a panel each"
     )
+
+
+class CopyItem(NamedTuple):
+    """A copy of a cell."""
+
+    cell: int
+    number: int  #: of the copy
+    values: Mapping[str, Any]  #: that it changes
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -98,18 +105,17 @@ class Sweep:
         """The case of a cell."""
         return self.case_at(self.point(cell))
 
-    def member_changes(self, cell: int) -> list[dict[str, Any]]:
-        """The keys that each perturbed copy of a cell changes."""
-        if cell not in self._changes:
-            if len(self._changes) >= REMEMBERED:
-                self._changes.clear()
-            self._changes[cell] = list(self.perturbation.members(self.case(cell)))
-        return self._changes[cell]
+    def ends(self) -> list[Case]:
+        """The cases at the ends of each axis, those that can be made."""
+        found = []
+        for corner in product(*((axis.values[0], axis.values[-1]) for axis in self.axes)):
+            with suppress(CaseError):
+                found.append(self.case_at(dict(zip((axis.key for axis in self.axes), corner, strict=True))))
+        return found
 
-    def member_case(self, item: tuple[int, int]) -> Case:
-        """The case of a perturbed copy: cell and number of the copy."""
-        cell, member = item
-        return self.case_at(self.point(cell), self.member_changes(cell)[member])
+    def copy_case(self, item: CopyItem) -> Case:
+        """The case of a copy of a cell."""
+        return self.case_at(self.point(item.cell), item.values)
 
     def tried_case(self, item: tuple[int, float]) -> Case:
         """The case between cells that a threshold tries: a cell of the line, and the value on the axis."""
@@ -124,22 +130,21 @@ class Sweep:
 
     def by_container(self, cells: Iterable[int]) -> list[int]:
         """The cells in an order in which those of one container are neighbours."""
-        moving = {axis.key for axis in self.axes} | {one.key for one in self.derived}
-        if not any(key.startswith(OF_THE_CONTAINER) for key in moving):
-            return sorted(cells)
+        return sorted(cells, key=lambda cell: (self.container_of(cell), cell))
 
-        def container(cell: int) -> str:
-            values = self.point(cell)
-            with suppress(CaseError):  # a derived key without a value: the row will have the reason
-                values = self.values(values)
-            return repr([value for key, value in values.items() if key.startswith(OF_THE_CONTAINER)])
-
-        return sorted(cells, key=lambda cell: (container(cell), cell))
+    def container_of(self, cell: int) -> str:
+        """Equal for cells that have the same container."""
+        if not self._varies_container:
+            return ""
+        values = self.point(cell)
+        with suppress(CaseError):  # a derived key without a value: the row will have the reason
+            values = self.values(values)
+        return repr([value for key, value in values.items() if key.startswith(OF_THE_CONTAINER)])
 
     @cached_property
-    def _changes(self) -> dict[int, list[dict[str, Any]]]:
-        """Of the cells last asked for: every copy of a cell asks for them."""
-        return {}
+    def _varies_container(self) -> bool:
+        moving = {axis.key for axis in self.axes} | {one.key for one in self.derived}
+        return any(key.startswith(OF_THE_CONTAINER) for key in moving)
 
     @cached_property
     def _make(self) -> CaseMaker:

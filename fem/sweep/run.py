@@ -11,11 +11,13 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
+from fem.batch.held import held_inputs
 from fem.batch.log import LoggedRuns, fields_of, line_of, read_lines, table_of_lines
 from fem.batch.runner import Row, Runner, motion_left_out
 from fem.batch.workers import LocalWorkers, WorkersOf
 from fem.case.case import case_hash
 from fem.case.rules import ends_at_rest, longest_time
+from fem.case.tables import UncertaintyTable
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
@@ -26,8 +28,9 @@ from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
 from fem.sweep import perturbed
 from fem.sweep.cells import CellRows
+from fem.sweep.copies import left_out
 from fem.sweep.maps import draw_maps
-from fem.sweep.perturbed import PerturbedRows, band_rows, perturb_cells
+from fem.sweep.perturbed import SURENESS, UNSURE, PerturbedRows, band_rows, perturb_cells
 from fem.sweep.plan import Sweep
 from fem.sweep.refine import refine, table_of_changes
 from fem.sweep.table import FOUND, band_columns, open_sweep
@@ -40,7 +43,7 @@ MOST_CELLS = 1_000_000
 #: rough CPU time of a simulated second [s]
 SECONDS_PER_SECOND = {"rigid": 3e-4, "reduced": 3e-3, "full": 6.0}
 #: room on the disk [bytes]: a cell in the log, the table, the copies and the maps; all else
-BYTES_OF_A_CELL, BYTES_BESIDE = 1800, 500_000
+BYTES_OF_A_CELL, BYTES_BESIDE = 3000, 500_000
 
 
 def run_sweep(
@@ -102,8 +105,9 @@ def run_sweep(
 
 def sweep_hash(sweep: Sweep) -> str:
     """Equal for sweeps whose rows are the same."""
-    digest = hashlib.sha256(case_hash(sweep.base).encode())
-    given = {key: value for key, value in sweep.base.given().items() if key != "title"}
+    base = sweep.base.model_copy(update={"uncertainty": UncertaintyTable()})  # of the copies alone
+    digest = hashlib.sha256(case_hash(base).encode())
+    given = {key: value for key, value in base.given().items() if key not in ("title", "uncertainty")}
     digest.update(toml_document(given).encode())
     digest.update(repr([(axis.key, axis.values) for axis in sweep.axes]).encode())
     digest.update(repr([(one.key, one.expression.tree) for one in sweep.derived]).encode())
@@ -112,7 +116,8 @@ def sweep_hash(sweep: Sweep) -> str:
 
 def band_hash(sweep: Sweep) -> str:
     """Equal for sweeps that are perturbed and refined in the same way."""
-    return hashlib.sha256(repr((sweep.perturbation, sweep.threshold)).encode()).hexdigest()
+    asked = sweep.perturbation, sweep.base.uncertainty, sweep.threshold
+    return hashlib.sha256(repr(asked).encode()).hexdigest()
 
 
 def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
@@ -159,6 +164,7 @@ class _Work:
         copies = None if stop() else perturb_cells(self.runner, self.sweep, self.cells, place.path / MEMBERS)
         changes = None if stop() else refine(self.runner, self.sweep, self.cells, place.path / TRIED)
         self.info["perturbed"] = 0 if copies is None else len(copies.rows)
+        self.info["copies"] = 0 if copies is None else sum(map(len, copies.rows.values()))
         self.info["status"] = "interrupted"
         if not stop():
             place.check()
@@ -219,9 +225,10 @@ class _Work:
         columns = band_columns(self.sweep.axes)
         bands = [line_of([None] * len(columns))] * self.sweep.count
         if copies is not None:
-            unsure, values = band_rows(self.sweep, self.cells, copies)
+            counts, deciding, values = band_rows(self.sweep, self.cells, copies)
             bands = [line_of(values(cell)) for cell in range(self.sweep.count)]
-            self.info["unsure"] = int(unsure.sum())
+            self.info |= {"unsure": counts[UNSURE], "sure": {word: counts[word] for word in SURENESS}}
+            self.info["decided_by"] = dict(deciding.most_common())
         lines = (f"{self.cells.lines[cell]},{band}" for cell, band in enumerate(bands))
         self.place.write_text(TABLE, table_of_lines((*self.cells.columns, *columns), lines))
 
@@ -270,13 +277,19 @@ def _asked(sweep: Sweep) -> dict[str, Any]:
             for axis in sweep.axes
         ],
         "derived": {one.key: one.expression.text for one in sweep.derived},
+        "held": held_inputs(sweep.ends(), [axis.key for axis in sweep.axes]),
         "perturbation": sweep.perturbation.model_dump(),
+        "uncertainty": sweep.base.uncertainty.model_dump(),
+        "left_out": left_out(sweep),
         "threshold": sweep.threshold.model_dump() if sweep.threshold else None,
         "cells": sweep.count,
         "rows": 0,
         "outcomes": {},
         "perturbed": 0,
+        "copies": 0,
         "unsure": None,
+        "sure": None,
+        "decided_by": None,
         "changes": None,
         "map_axes": sweep.maps.model_dump(),
         "maps": [],

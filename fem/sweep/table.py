@@ -22,9 +22,9 @@ from fem.results.kinds import SWEEP, read_result
 #: columns behind the values of axes and derived keys in every row
 FOUND = ("status", *SCALARS, "reason", "wall_s")
 #: columns of the perturbed copies of a cell; the width of the band along each numeric axis follows
-BAND = ("perturbed", "unsure", "band_rotation_ratio_low", "band_rotation_ratio_high")
+BAND = ("perturbed", "unsure", "sure", "decided_by", "band_rotation_ratio_low", "band_rotation_ratio_high")
 WIDTH = "band_width."  #: before the key of an axis
-WORDS = frozenset({"status", "outcome", "reason"})
+WORDS = frozenset({"status", "outcome", "reason", "sure", "decided_by"})
 
 
 def row_columns(axes: Sequence[Axis], derived: Iterable[str]) -> tuple[str, ...]:
@@ -80,11 +80,10 @@ def open_sweep(folder: Path | str) -> SweepTable:
             Axis(key=one["key"], values=tuple(one["values"]), scale=one["scale"], unit=one["unit"])
             for one in info["axes"]
         )
-        rows = row_columns(axes, info["derived"])
-        names = (*rows, *band_columns(axes))
         source = folder / "table.csv"
         if not source.is_file():
-            source, names = folder / "rows.csv", rows
+            source = folder / "rows.csv"
+        names = _header(source, ("cell", *(axis.key for axis in axes), "status", "outcome", "rotation_ratio"))
         lines = [fields_of(line) for line in read_lines(source, names)]
         if info["status"] in ("completed", "failed") and len(lines) != info["cells"]:
             raise ValueError(
@@ -94,6 +93,17 @@ def open_sweep(folder: Path | str) -> SweepTable:
         return SweepTable(info=info, axes=axes, columns=_columns(axes, names, lines))
     except (KeyError, TypeError, ValueError, IndexError, OSError) as error:
         raise FolderError(f"{folder}: damaged, or not the folder of a sweep ({error})") from None
+
+
+def _header(source: Path, needed: Sequence[str]) -> list[str]:
+    """The columns of a table, those of an earlier version of the program too; ValueError without the needed ones."""
+    if not source.is_file():
+        return list(needed)
+    with source.open(encoding="utf-8", newline="") as stream:
+        names = fields_of(stream.readline().rstrip("\n"))
+    if missing := [name for name in needed if name not in names]:
+        raise ValueError(f"{source.name} has no column {missing[0]!r}")
+    return names
 
 
 def _columns(

@@ -1,0 +1,103 @@
+"""The copies that a cell of a sweep may have: what each changes, by a name that is the same in every cell.
+
+Small changes of motion and contact (`perturbation`), and the changes by which a run tries its unknown inputs
+(`fem.case.uncertainty`). An input that is an axis is not varied: its effect is what the sweep shows.
+"""
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from fem.batch.container_cache import container_key
+from fem.case.case import Case
+from fem.case.uncertainty import TOLERANCE, InputChange, changes_of, draws_of, pairs_of
+from fem.model.geometry import build_container
+from fem.model.support import normal_penalty
+from fem.sweep.perturbation import SMALL
+from fem.sweep.plan import Sweep
+
+#: cells and containers of which the copies and the penalty are remembered
+REMEMBERED = 4096
+#: draws of a cell over those of the band of a run
+SHARE_OF_DRAWS = 0.25
+#: what the copies of a deformable container, which take twenty times as long, leave out
+LEFT_OUT = (
+    "values between the ends of a range, pairs, draws of all inputs at once, a tighter energy tolerance"
+)
+
+
+def left_out(sweep: Sweep) -> str:
+    """What the copies of a sweep leave out of the band of a run, in words; nothing where they leave out nothing."""
+    chosen, rigid = sweep.perturbation.cells, sweep.base.solver.model == "rigid"
+    if chosen == "none" or (chosen == "auto" and sweep.base.solver.model == "full"):
+        return "all"
+    cells = "cells away from a change of outcome" if chosen == "near" else ""
+    return ", ".join(filter(None, (cells, "" if rigid else LEFT_OUT)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Copy:
+    """What a copy of a cell changes."""
+
+    name: str  #: of the change, the same in all cells: its keys, and which one of these it is
+    change: InputChange
+
+    @property
+    def drawn(self) -> bool:
+        """Whether it changes all unknown inputs at once."""
+        return self.change.kind == "draw"
+
+    @property
+    def small(self) -> bool:
+        """Whether it is a small change, which matters near a change of outcome alone."""
+        return self.change.share == SMALL
+
+
+class CellCopies:
+    """The copies of the cells of a sweep; those asked for last are remembered."""
+
+    def __init__(self, sweep: Sweep) -> None:
+        self._sweep = sweep
+        self._axes = {axis.key for axis in sweep.axes}
+        self._known: dict[int, tuple[Copy, ...]] = {}
+        self._penalties: dict[object, float] = {}
+
+    def of(self, cell: int) -> tuple[Copy, ...]:
+        """The copies of a cell: each change once, the draws last."""
+        if cell not in self._known:
+            if len(self._known) >= REMEMBERED:
+                self._known.clear()
+            self._known[cell] = tuple(self._copies(self._sweep.case(cell)))
+        return self._known[cell]
+
+    def _copies(self, case: Case) -> Iterator[Copy]:
+        seen: list[object] = []
+        count = Counter[str]()
+        for change in (*self._sweep.perturbation.changes(case), *self._over_ranges(case)):
+            if change.values and change.values not in seen:
+                seen.append(change.values)
+                keys = "draw" if change.kind == "draw" else " ".join(change.values)
+                yield Copy(name=f"{keys} {count[keys]}", change=change)
+                count[keys] += 1
+
+    def _over_ranges(self, case: Case) -> Iterator[InputChange]:
+        """The changes of a run's band, without the inputs that are axes."""
+        penalty = self._penalty(case)
+        changes = changes_of(case, penalty)
+        if case.solver.model == "rigid":
+            draws = self._sweep.perturbation.draws
+            if draws is None:
+                draws = round(SHARE_OF_DRAWS * case.uncertainty.draws)
+            changes = (*changes, *pairs_of(case), *draws_of(case, penalty, draws))
+        else:
+            changes = tuple(one for one in changes if one.share == 1.0 and TOLERANCE not in one.values)
+        for change in changes:
+            yield replace(change, values={k: v for k, v in change.values.items() if k not in self._axes})
+
+    def _penalty(self, case: Case) -> float:
+        key = container_key(case), case.contact.normal_penalty_Pa_m
+        if key not in self._penalties:
+            if len(self._penalties) >= REMEMBERED:
+                self._penalties.clear()
+            self._penalties[key] = normal_penalty(case, build_container(case))
+        return self._penalties[key]
