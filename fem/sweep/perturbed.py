@@ -45,9 +45,8 @@ class PerturbedRows:
         self._cells = cells
         self.copies = CellCopies(sweep)
         self.rows: dict[int, dict[int, PerturbedRow]] = {}  #: by cell and number of the copy
-        self.turned: dict[
-            str, BoolArray
-        ] = {}  #: by name of the change: cells whose outcome it turns, (n_cells,)
+        #: by name: a change, and which cells' outcome it turns, (n_cells,)
+        self.turned: dict[str, tuple[Copy, BoolArray]] = {}
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
@@ -60,7 +59,7 @@ class PerturbedRows:
         turned = kind != self._cells.kind[cell]
         # Draws are to find what overturns; half of them turn rest to sliding, by the start alone.
         if turned or (not copy.drawn and outcome != self._cells.outcome[cell]):
-            nowhere = np.zeros(self._cells.kind.size, dtype=bool)
+            nowhere: BoolArray = np.zeros(self._cells.kind.size, dtype=bool)
             self.turned.setdefault(copy.name, (copy, nowhere))[1][cell] = True
 
     def lines(self) -> Iterator[str]:
@@ -86,7 +85,7 @@ class PerturbedRows:
     def sureness(self, cell: int) -> tuple[str, tuple[str, ...]]:
         """How sure a cell is, and the inputs that decide: the smallest change that turns its outcome first."""
         kind, outcome = self._cells.kind[cell], self._cells.outcome[cell]
-        copies = self.rows.get(cell, {}).values()
+        copies = [copy for _, copy in sorted(self.rows.get(cell, {}).items())]
         if not self._cells.decided[cell]:
             return UNSURE, ()
         turning = [one for one in copies if one.kind != kind]
@@ -211,35 +210,27 @@ def _closing_in(
             seen[copy.name] = among & (small if copy.small else begin)
         return seen[copy.name]
 
-    yield _items(
-        sweep,
-        perturbed,
-        among & begin,
-        lambda cell, copy: copy.drawn == drawn and bool(known(copy).ravel()[cell]),
-    )
-    while True:
-        more: dict[str, BoolArray] = {}
+    here = among & begin
+    wanted: dict[str, BoolArray] | None = None
+
+    def wants(cell: int, copy: Copy) -> bool:
+        if wanted is None:
+            return copy.drawn == drawn and bool(known(copy).flat[cell])
+        return copy.name in wanted and bool(wanted[copy.name].flat[cell])
+
+    while here.any():
+        yield _items(sweep, perturbed, here, wants)
+        here, wanted = np.zeros_like(among), {}
         for name, (copy, turned) in perturbed.turned.items():
-            here = around(sweep.axes, turned.reshape(sweep.shape), REACH) & among & ~known(copy)
-            if copy.drawn == drawn and here.any():
-                more[name] = here.ravel()
-                seen[name] |= here
-        if not more:
-            return
-        somewhere = np.any(list(more.values()), axis=0)
-        yield _items(
-            sweep,
-            perturbed,
-            somewhere,
-            lambda cell, copy, more=more: copy.name in more and bool(more[copy.name][cell]),
-        )
+            around_it = around(sweep.axes, turned.reshape(sweep.shape), REACH) & among & ~known(copy)
+            if copy.drawn == drawn and around_it.any():
+                wanted[name] = around_it
+                seen[name] |= around_it
+                here |= around_it
 
 
 def _items(
-    sweep: Sweep,
-    perturbed: PerturbedRows,
-    cells: BoolArray,
-    wants: Callable[[int, Copy], bool],
+    sweep: Sweep, perturbed: PerturbedRows, cells: BoolArray, wants: Callable[[int, Copy], bool]
 ) -> list[CopyItem]:
     """Copies of cells that are not there yet: of one container together, and within it of one change."""
     found = []
