@@ -244,6 +244,20 @@ MUTATIONS = (
         tests=("validation/test_verification_checks.py", "-k", "large"),
     ),
     Mutation(
+        name="rest in the frame of the earth, where the floor goes on",
+        file="contact/stepping/outcome.py",
+        old="floor_velocity = run.floor[0, 1]",
+        new="floor_velocity = 0.0",
+        tests=("unit/run/test_motion_ends.py", "-k", "before_its_cap"),
+    ),
+    Mutation(
+        name="a motion cut short that is called whole",
+        file="fem/model/motion.py",
+        old="covered = max(0.0, min(end, duration) - max(begin, 0.0))",
+        new="covered = max(0.0, end - max(begin, 0.0))",
+        tests=("unit/run/test_motion_ends.py",),
+    ),
+    Mutation(
         name="the code's plateau without its 2.5",
         file="fem/model/static_checks.py",
         old="soil_factor * 2.5 / behaviour_factor",

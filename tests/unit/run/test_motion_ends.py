@@ -59,9 +59,17 @@ def record_case(folder: Path, rows: np.ndarray = RECORD, more: str = ""):
     return load_case(folder / "case.toml")
 
 
-@pytest.mark.parametrize(("peak", "outcome"), [(2.0, "rest"), (4.0, "rock")])
-def test_a_pulse_run_ends_at_rest_before_its_cap(peak, outcome):
-    model = build_model(named_case("seed_stack", PULSE | {"motion.peak_acceleration_m_s2": peak}))
+@pytest.mark.parametrize(
+    ("name", "shape", "peak", "outcome"),
+    [
+        ("seed_stack", "sine", 2.0, "rest"),
+        ("seed_stack", "sine", 4.0, "rock"),
+        ("seed_box", "rectangular", 6.0, "slide"),  # the floor goes on at 4.8 m/s
+    ],
+)
+def test_a_pulse_run_ends_at_rest_before_its_cap(name, shape, peak, outcome):
+    values = {"motion.peak_acceleration_m_s2": peak, "motion.shape": shape}
+    model = build_model(named_case(name, PULSE | values))
     done = finish(model)
     end, resting = float(done.model.run.clock.time[0]), float(done.model.run.clock.rest_since[0])
     assert done.outcome == outcome and end < 0.5 * model.duration
@@ -89,6 +97,15 @@ def test_free_motion_ends_with_a_fall_or_at_the_cap():
     sliding = finish(build_model(named_case("seed_box", PULSE | smooth | {"contact.mu_kinetic": 0.0})))
     assert float(sliding.model.run.clock.time[0]) == pytest.approx(60.8)
     assert sliding.model.run.clock.rest_since[0] == math.inf
+
+
+@pytest.mark.parametrize("compute", [finish, run_model])
+def test_the_floor_that_is_left_at_speed_gives_the_contents_no_jerk(compute):
+    # Beyond its slenderness angle at 1.5 s; the floor, then at 2.7 m/s, is the frame of what follows.
+    keys = {"solver.model": "rigid", "solver.duration_s": 1.5, "output.fields_s": 0.0}
+    model = build_model(named_case("overturning", keys))
+    compute(model)
+    assert float(model.run.clock.time[0]) > 1.9 and float(model.run.track.max_acceleration[0]) < 30.0
 
 
 def test_a_harmonic_run_without_duration_is_that_of_20_s_to_the_bit():
