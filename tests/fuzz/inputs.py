@@ -104,6 +104,9 @@ def bound_the_cost(tables: Tables) -> None:
     area = box["width_m"] * box["height_m"] * boxes
     least = (area / CELLS) ** 0.5
     solver["element_size_m"] = max(solver.get("element_size_m", 0.1), least, 0.5 * box["width_m"])
+    dear = solver["model"] != "rigid" or "step_s" in solver or "history_s" in tables.get("output", {})
+    if solver["duration_s"] == "auto" and dear:  # up to a minute of free motion
+        solver["duration_s"] = 0.2
     if solver["model"] == "full":
         solver["duration_s"] = min(solver["duration_s"], FULL_DURATION)
         solver["element_size_m"] = max(solver["element_size_m"], 0.5 * box["height_m"], 0.5 * foot)

@@ -10,12 +10,14 @@ from cases import named_case
 
 from contact.motion.base_motion import PulseMotion
 from fem.__main__ import main
+from fem.assessment.warnings import warnings_for
 from fem.batch.runner import run_model
 from fem.case.case import CaseError, load_case, read_case
 from fem.cli.check import preview_of
 from fem.model.model import build_model
 from fem.model.motion import build_motion, motion_result
 from fem.results.reader import open_run
+from fem.results.run_result import RunResult, Verdict
 from fem.run.run import run_case
 from fem.verification.runs import finish
 
@@ -140,6 +142,20 @@ def test_a_record_cut_short_says_so_in_its_first_line(tmp_path, monkeypatch):
     assert motion["covered"] == pytest.approx(0.5)
     assert motion["peak_acceleration_m_s2"] == pytest.approx(1.75 * 9.80665)
     assert open_run(tmp_path / "cut").typed_result.motion.peak_in_run_m_s2 == 0.0
+
+
+def test_a_container_that_never_rests_is_reported():
+    case = named_case("seed_box", PULSE | {"motion.peak_acceleration_m_s2": 3.0})
+    moving, resting = Verdict(outcome="slide"), Verdict(outcome="slide", at_rest_s=2.0)
+    said = [
+        [
+            text
+            for text in warnings_for(RunResult(status="completed", verdict=one), case)
+            if "still moves" in text
+        ]
+        for one in (moving, resting)
+    ]
+    assert len(said[0]) == 1 and "60 s after the end of the motion" in said[0][0] and said[1] == []
 
 
 def test_a_sweep_over_a_record_cut_short_says_so(tmp_path, capsys, monkeypatch):
