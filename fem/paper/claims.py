@@ -182,12 +182,12 @@ Kind = TypeVar("Kind")
 
 
 def claim(
-    section: str, quote: str, *, bounds: str = "", more: str = "", kind: ClaimKind = "statement"
+    section: str, quote: str, *, bounds: str = "", kind: ClaimKind = "statement"
 ) -> Callable[[Callable[[Experiments], Evidence]], Claim]:
     """Decorator: make a claim of the function that yields the evidence for and against it.
 
-    The function gives the claim its name, with dashes, and its docstring says how it is checked; `more` is added
-    to that. `bounds` are those of the comparisons marked `inside`.
+    The function gives the claim its name, with dashes, and its docstring says how it is checked. `bounds` are those of
+    the comparisons marked `inside`.
     """
 
     def claimed_by(function: Callable[[Experiments], Evidence]) -> Claim:
@@ -209,7 +209,7 @@ def claim(
             )
 
         name = function.__name__.replace("_", "-")
-        tried = " ".join([*(function.__doc__ or "").split(), *([more] if more else [])])
+        tried = " ".join((function.__doc__ or "").split())
         return Claim(name=name, section=section, quote=quote, tried=tried, check=check)
 
     return claimed_by
