@@ -170,7 +170,7 @@ def shape_maps(experiments: Experiments, *, rigid: bool = True) -> list[OutcomeM
             what = f"c/a = {slenderness:g}, mu_s = {mu:g}, {frequency:g} rad/s"
             return base.but(body, friction(mu, 0.5 * mu), what=what)
 
-        title = f"c/a x mu_s, {PLATEAU_PEAK:.1f} m/s² at {frequency:g} rad/s"
+        title = f"container, c/a x mu_s, {PLATEAU_PEAK:.1f} m/s² at {frequency:g} rad/s"
         return _computed(experiments, place, title, SHAPE, STICTION, (1, 1), rigid)
 
     return [of_frequency(frequency) for frequency in SHAPE_FREQUENCIES]
