@@ -31,7 +31,8 @@ def covered_in_words(motion: MotionResult) -> str:
     """The motion under which a verdict holds: "this motion", or the part of it that the run covers."""
     if not is_cut(motion) or motion.covered is None or motion.duration_s is None:
         return "this motion"
-    return f"the first {motion.covered * motion.duration_s:.4g} of {motion.duration_s:.4g} s"
+    part = f"{motion.covered * motion.duration_s:.4g} of {motion.duration_s:.4g} s"
+    return f"the first {part}" if motion.begin_s is None else f"{part}, from {-motion.begin_s:.4g} s of it on"
 
 
 def missing_peak(motion: MotionResult) -> str:

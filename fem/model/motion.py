@@ -93,6 +93,7 @@ def _evaluated(motion: BaseMotion, duration: float) -> MotionResult:
     table = motion if isinstance(motion, TableMotion) else None
     return MotionResult(
         duration_s=end - begin,
+        begin_s=begin if begin < 0.0 else None,
         step_s=None if table is None else float(np.median(np.diff(table.times))),
         samples=None if table is None else table.times.size,
         peak_acceleration_m_s2=whole,

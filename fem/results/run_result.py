@@ -112,6 +112,7 @@ class MotionResult(JsonBlock):
     notes: tuple[str, ...] = ()  #: doubts about a recorded motion
     kind: str | None = None  #: none | harmonic | pulse | table
     duration_s: float | None = None  #: from its beginning to its end; of a drive without end, the run's
+    begin_s: float | None = None  #: of a table, where its times begin before the run
     step_s: float | None = None  #: median interval of the samples of a table
     samples: int | None = None  #: of a table
     peak_acceleration_m_s2: float | None = None  #: of the whole motion, as the following

@@ -10,6 +10,7 @@ from cases import named_case
 
 from contact.motion.base_motion import PulseMotion
 from fem.__main__ import main
+from fem.assessment.motion_words import covered_in_words
 from fem.assessment.warnings import warnings_for
 from fem.batch.runner import run_model
 from fem.case.case import CaseError, load_case, read_case
@@ -189,7 +190,9 @@ def test_check_says_what_a_run_leaves_out(tmp_path, capsys, duration, words):
 
 def test_a_record_of_negative_times_is_covered_from_zero_on(tmp_path):
     case = record_case(tmp_path, RECORD - [1.0, 0.0])
-    assert motion_result(case, build_motion(case)).covered == pytest.approx(0.75)
+    found = motion_result(case, build_motion(case))
+    assert found.covered == pytest.approx(0.75)
+    assert covered_in_words(found) == "3 of 4 s, from 1 s of it on"
     with pytest.raises(CaseError, match="its times end at -1 s, and the run begins at t = 0; shift them"):
         build_motion(record_case(tmp_path, RECORD - [5.0, 0.0]))
 
