@@ -49,7 +49,7 @@ Value = float | str
 class InputChange:
     """A changed case: what one member of a band, or one copy of a cell, does differently."""
 
-    kind: Literal["one", "pair", "draw"]
+    kind: Literal["one", "floor", "pair", "draw"]
     values: Mapping[str, Value]  #: dotted key -> value
     share: float  #: how far it goes from the case to the end of the range; of a draw 1
     place: tuple[float, ...] = ()  #: of a draw in the ranges of `inputs`, 0 to 1
@@ -154,7 +154,7 @@ def draws_of(case: Case, penalty: float | None, count: int | None = None) -> tup
 
 def stiff_floor(penalty: float) -> InputChange:
     """A floor so stiff that a container on a flat base is a rigid block on a rigid floor."""
-    return InputChange(kind="one", values={PENALTY: _short(STIFF_FLOOR * penalty)}, share=1.0)
+    return InputChange(kind="floor", values={PENALTY: _short(STIFF_FLOOR * penalty)}, share=1.0)
 
 
 def sobol_points(count: int, dimensions: int) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""Figures of the two checks of a run: the analytic rigid block, and the sensitivity to the contact (the band)."""
+"""Figures of the two checks of a run: the analytic rigid block, and the sensitivity to what is not known (the band)."""
 
 import math
 import textwrap
@@ -7,6 +7,17 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fem.assessment.summary import ratio_in_words
+from fem.case.uncertainty import (
+    DASHPOT,
+    MATERIAL,
+    MU_KINETIC,
+    PENALTY,
+    RAMP,
+    START,
+    STRIBECK,
+    TOLERANCE,
+    WEAKENING,
+)
 from fem.figures.style import (
     BLACK,
     BLUE,
@@ -23,7 +34,18 @@ from fem.results.run_result import BandMember, RigidCheckResult, RunAndBlock, Ve
 
 FALLEN_ROW = 1.18  #: rotation ratio at which overturned members are drawn
 LINE_LENGTH = 105  #: characters of a line of text in a figure
-MARKERS = "osD^vP"
+#: inputs of a band in a word or two
+GROUPS = {
+    MU_KINETIC: "mu_kinetic",
+    WEAKENING: "weakening",
+    STRIBECK: "fall with velocity",
+    START: "start",
+    RAMP: "ramp",
+    PENALTY: "stiffness",
+    DASHPOT: "contact damping",
+    MATERIAL: "material damping",
+    TOLERANCE: "numerics",
+}
 
 
 def rigid_check_figure(run: OpenedRun) -> Figure | None:
@@ -68,51 +90,57 @@ def rigid_check_figure(run: OpenedRun) -> Figure | None:
 
 
 def band_figure(run: OpenedRun) -> Figure | None:
-    """Largest rotation of each run of the band over its contact penalty; None without a band."""
-    band = (run.typed_result.verdict or Verdict()).band
+    """Largest rotation and slip of each run of the band, by what it changes; None without a band."""
+    verdict = run.typed_result.verdict or Verdict()
+    band = verdict.band
     if band is None or not band.members:
         return None
-    members = band.members
-    own = members[0].normal_penalty_Pa_m  # the first member is the run itself
-    dampings = sorted({member.damping_ratio for member in members})
-    figure, (axes,) = panels((2.7,), right=2.0, header=2)
-    for member in members:
-        column = dampings.index(member.damping_ratio)
-        # Side by side, so that equal results do not hide each other.
-        place = member.normal_penalty_Pa_m / own * 1.08 ** (column - 0.5 * (len(dampings) - 1))
-        axes.plot(
-            place,
-            _height(member),
-            marker=MARKERS[column % len(MARKERS)] if member.outcome else "x",
-            color=STATE_COLOURS.get(member.outcome or "", VERMILLION),
-            markeredgecolor=BLACK,
-            markersize=11 if member is members[0] else 7,
-            linestyle="none",
-        )
-    for column, damping in enumerate(dampings):
-        axes.plot(
-            [], [], MARKERS[column % len(MARKERS)], color="white", markeredgecolor=BLACK,
-            label=f"contact damping ratio {damping:g}",
-        )  # fmt: skip
+    groups: dict[str, list[BandMember]] = {}
+    for member in band.members:
+        groups.setdefault(_group_of(member), []).append(member)
+    figure, (above, below) = panels((2.2, 1.5), right=2.0, header=2)
+    for place, members in enumerate(groups.values()):
+        spread = np.linspace(-0.3, 0.3, len(members)) if len(members) > 1 else np.zeros(1)
+        for offset, member in zip(spread, members, strict=True):
+            own = member is band.members[0]
+            for axes, height in ((above, _height(member)), (below, 1e3 * (member.max_slip_m or 0.0))):
+                axes.plot(
+                    place + offset,
+                    height,
+                    marker="o" if member.outcome else "x",
+                    color=STATE_COLOURS.get(member.outcome or "", VERMILLION),
+                    markeredgecolor=BLACK if member.outcome else VERMILLION,
+                    markersize=9 if own else 5,
+                    linestyle="none",
+                )
     for outcome in band.outcomes:
-        axes.plot([], [], "s", color=STATE_COLOURS[outcome], markersize=8, label=outcome)
-    if any(member.outcome is None for member in members):
-        axes.plot([], [], "x", color=VERMILLION, label="the solution failed")
-    axes.axhline(1.0, color=BLACK, linestyle="-.", linewidth=1.0, label="slenderness angle")
-    axes.set_xscale("log", base=3)
-    axes.set_xticks([1.0 / 3.0, 1.0, 3.0], ["1/3", "1", "3"])
-    axes.set_xticks([], minor=True)
-    axes.set_xlim(0.25, 4.0)
-    axes.set_ylim(0.0, 1.3)
-    axes.set_xlabel(f"contact penalty over that of the run, {1e-9 * own:.3g} GN/m³ [-]")
-    axes.set_ylabel("rotation ratio [-]")
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        above.plot([], [], "o", color=STATE_COLOURS[outcome], markersize=8, label=outcome)
+    if any(member.outcome is None for member in band.members):
+        above.plot([], [], "x", color=VERMILLION, label="the solution failed")
+    above.axhline(1.0, color=BLACK, linestyle="-.", linewidth=1.0, label="slenderness angle")
+    above.set_ylim(0.0, 1.3)
+    above.set_ylabel("rotation ratio [-]")
+    below.set_ylim(bottom=0.0)
+    below.set_ylabel("largest slip [mm]")
+    above.set_xticks(range(len(groups)), [])
+    below.set_xticks(range(len(groups)), list(groups), rotation=25, ha="right", fontsize=7)
+    for axes in (above, below):
+        axes.set_xlim(-0.6, len(groups) - 0.4)
+    above.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    sure = verdict.sure or ("unsure" if band.unsure else "the same outcome throughout")
     low, high = band.rotation_ratio or (0.0, 0.0)
-    sure = "unsure" if band.unsure else "the same outcome throughout"
     ratios = " to ".join(map(ratio_in_words, (low, high)))
     statement = f"rotation ratio {ratios}; the large mark is the run itself"
-    head(figure, f"Band over the contact, {sure}: {' or '.join(band.outcomes)}", statement)
+    head(figure, f"Band over what is not known, {sure}: {' or '.join(band.outcomes)}", statement)
     return figure
+
+
+def _group_of(member: BandMember) -> str:
+    """What a member changes, in a word or two."""
+    if member.kind in ("pair", "draw"):
+        return f"{member.kind}s"
+    keys = list(member.values or {})
+    return GROUPS.get(keys[0], keys[0]) if keys else "as given"
 
 
 def _ratios(check: RigidCheckResult) -> str:

@@ -21,9 +21,9 @@ from fem.case.case import Case
 from fem.report.variations import Variation, by_importance, variations_of
 from fem.results.files import to_json, write_atomically
 from fem.results.run_result import JsonBlock, RunResult
-from fem.run.band import NO_SAMPLES_S
 from fem.runtime.identity import versions
 
+NO_SAMPLES_S = 1e4  #: interval of a history of which only the first row is taken
 AFFORDED_S = 4.0  #: wall time for lines that are not asked for
 
 
@@ -183,17 +183,25 @@ def _known_rows(case: Case, variations: Sequence[Variation], result: RunResult) 
     if case.solver.model == "full" or verdict is None:
         return rows
     rows[0] = VariationRow.from_json(verdict.to_json() | {"status": result.status})
-    penalty, damping = "contact.normal_penalty_Pa_m", "contact.damping_ratio"
-    own = {penalty: case.contact.normal_penalty_Pa_m, damping: case.contact.damping_ratio}
+    members = verdict.band.members if verdict.band is not None else ()
     for index, one in enumerate(variations[1:], start=1):
-        if set(one.values) <= set(own):
-            wanted = own | dict(one.values)
-            for member in verdict.band.members if verdict.band is not None else ():
-                if member.damping_ratio == wanted[damping] and math.isclose(
-                    member.normal_penalty_Pa_m, wanted[penalty], rel_tol=1e-9
-                ):
-                    rows[index] = VariationRow.from_json(member.to_json() | {"reason": member.error})
+        for member in members:
+            if member.kind == "one" and _same_values(member.values or {}, one.values):
+                rows[index] = VariationRow.from_json(member.to_json() | {"reason": member.error})
     return rows
+
+
+def _same_values(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
+    """Whether the same keys have the same values, within rounding."""
+    return one.keys() == other.keys() and all(
+        one[key] == value
+        or (
+            isinstance(value, float)
+            and isinstance(one[key], float)
+            and math.isclose(one[key], value, rel_tol=1e-9)
+        )
+        for key, value in other.items()
+    )
 
 
 def _computed(

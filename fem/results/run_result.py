@@ -126,8 +126,11 @@ class MotionResult(JsonBlock):
 class BandMember(JsonBlock):
     """One run of a band."""
 
-    normal_penalty_Pa_m: float
-    damping_ratio: float  #: of the contact
+    change: str = ""  #: in words; empty: the run itself
+    kind: str = ""  #: one | floor | pair | draw (`fem.case.uncertainty`); empty: the run itself
+    values: Mapping[str, float | str] | None = None  #: the inputs that it changes, by dotted key
+    normal_penalty_Pa_m: float | None = None
+    damping_ratio: float | None = None  #: of the contact
     status: str  #: completed | overturned | failed | interrupted
     outcome: str | None = None  #: None where it failed or was stopped
     rotation_ratio: float | None = None
@@ -135,15 +138,33 @@ class BandMember(JsonBlock):
     max_slip_m: float | None = None
     residual_slip_m: float | None = None  #: signed, at the end
     max_uplift_m: float | None = None
+    max_corner_force_N: float | None = None
+    max_acceleration_m_s2: float | None = None
+    max_von_mises_Pa: float | None = None
+    bolt_tension_N: float | None = None  #: largest of all joints and sides; of members that change one input
+    bolt_shear_N: float | None = None  #: largest of all joints; likewise
 
 
 @dataclass(frozen=True, kw_only=True)
 class Band(JsonBlock):
-    """Sensitivity of the outcome to contact stiffness and damping."""
+    """What the run does when the inputs that are not known change; figures are [low, high]."""
 
     outcomes: tuple[str, ...] = ()  #: that were found, from rest to overturned
-    rotation_ratio: tuple[float, float] | None = None  #: smallest, largest
-    unsure: bool = False  #: outcomes differ, or a member failed
+    unsure: bool = False  #: the outcome is unsure: see `Verdict.sure`
+    draws: int | None = None  #: members in which all inputs are drawn at once
+    draws_overturned: int | None = None
+    left_out: tuple[str, ...] = ()  #: changes that the time did not allow
+    draws_left_out: int | None = None
+    # of the members that stand where the run stands, or overturn where it overturns:
+    rotation_ratio: tuple[float, float] | None = None
+    max_slip_m: tuple[float, float] | None = None
+    residual_slip_m: tuple[float, float] | None = None
+    max_uplift_m: tuple[float, float] | None = None
+    max_corner_force_N: tuple[float, float] | None = None
+    max_acceleration_m_s2: tuple[float, float] | None = None
+    max_von_mises_Pa: tuple[float, float] | None = None
+    bolt_tension_N: tuple[float, float] | None = None
+    bolt_shear_N: tuple[float, float] | None = None
     members: tuple[BandMember, ...] = ()  #: the run itself first
 
 
@@ -174,6 +195,8 @@ class Verdict(JsonBlock):
     max_von_mises_Pa: float | None = None  #: None of a rigid container
     basis: str = "study"
     first_line: str | None = None  #: the verdict in one sentence, as on the page
+    sure: str | None = None  #: sure | regime unsure | unsure; None: not tried
+    decided_by: tuple[str, ...] = ()  #: inputs that change the outcome, the one of the smallest change first
     band: Band | None = None
 
 

@@ -1,162 +1,241 @@
-"""The band: sensitivity of the outcome to contact stiffness and damping.
+"""The band of a run: what it does when the inputs that nobody knows change.
 
-Restitution at an impact is a property of the support, and where the container's first elastic mode is not far above
-the bounce on the contact, an impact excites vibration as well: how much depends on stiffness and damping, and with
-friction even the regime of motion may. Neither is known of a floor within a factor of three. So the run is repeated
-with the penalty divided and multiplied by three and with damping ratios 0.5 (the contact bounces a little) and 2 (it
-does not). Where the outcomes differ, the verdict is unsure. A member that fails has no outcome and makes the verdict
-unsure as well.
+`fem.case.uncertainty` says which inputs these are, in which ranges, and makes the changed cases; here they are run, and
+`fem.assessment.sureness` says what they show. All have the container of the run. Members of rigid and reduced models
+that take seconds run without a history; those that change one input have one where a stack needs the forces in its
+joints; long ones and those of the `full` model have one and a checkpoint. What does not fit the budget is left out:
+first the draws, then the changes of which another of the same input is tried. The choice follows from the sizes and
+steps of the run, not from the clock, so that a resumed or repeated band is the same.
 """
 
 import threading
-from collections.abc import Callable, Sequence
+import time
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from itertools import count, product
+from dataclasses import dataclass, replace
+from itertools import count
 
-from fem.assessment.verdict import MODE_NAMES, verdict_of
+from fem.assessment.joint_demands import joint_demands
+from fem.assessment.sureness import judged, static_use
+from fem.assessment.verdict import verdict_of
 from fem.case.case import Case
+from fem.case.uncertainty import InputChange, Value, changes_of, draws_of, pairs_of, stiff_floor
 from fem.model.model import Model, build_model
+from fem.model.recovery import Recovery, recovery_of
 from fem.model.validity import runs_in_memory
-from fem.results.run_result import Band, BandMember, Verdict
+from fem.results.run_result import (
+    ActionResult,
+    BandMember,
+    JointDemand,
+    Numerics,
+    RunResult,
+    StaticResult,
+    Verdict,
+)
 from fem.run.band_checkpoint import BandCheckpoint
+from fem.run.outcome import run_without_history
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 from fem.runtime.threads import cores
 from fem.solid.nodal_body import full_model_memory
 
-PENALTY_FACTORS = (1.0 / 3.0, 1.0, 3.0)
-DAMPING_RATIOS = (0.5, 2.0)
-#: outcomes that depend on impacts, or may
-DEPENDENT = frozenset({"rock", "slide-rock", "overturned"})
-NO_SAMPLES_S = 1e4  #: interval of a history of which only the first row is taken
+#: share of a static limit from which a container at rest may be brought to move by what is not known
+NEAR_LIMIT = 0.7
+#: shares of the uplift acceleration between which a soft bed may rock a container that a rigid floor would not
+BELOW_UPLIFT = (0.85, 1.0)
+#: processor time for the members, by the estimate below [s]; members that are computed in any case
+BUDGET_S, LEAST_MEMBERS = 30.0, 6
+SHORT_S = 5.0  #: estimated time up to which a member needs no checkpoint [s]
+MEMBER_COST = 1.2  #: of a member over the run: stiffer floors and tighter tolerances take more steps
+#: processor time of one attempted step of a modal model: fixed, by (base points)^2, by unknowns x 2 base points [s].
+#: Measured: 0.42e-6 (rigid) and 0.87e-6 (20 modes) on corners, 4.3e-6 (feet), 5.6e-6 and 25e-6 (flat)
+STEP_COST = (0.4e-6, 7e-9, 5e-9)
+STORED_S = 1.0  #: wall time between two notes of finished members
 
-#: normal penalty [Pa/m] and damping ratio of a contact
-Contact = tuple[float, float]
+
+@dataclass(frozen=True, kw_only=True)
+class Plan:
+    """Which members a band has."""
+
+    changes: tuple[InputChange, ...]
+    left_out: tuple[InputChange, ...]  #: for which there is no time
+    short: bool  #: members are so short that none needs a checkpoint
 
 
-def wants_band(asked: bool | None, case: Case, verdict: Verdict) -> bool:
-    """Whether a finished run is to have a band: as asked, else where its outcome depends on impacts.
+def wants_band(asked: bool | None, case: Case, result: RunResult) -> bool:
+    """Whether a finished run is to have a band: as asked, else unless it rests far below the static limits.
 
-    A run of the `full` model has one only when asked: it would take six times as long.
+    A run of the `full` model has one only when asked: it would take several times as long.
     """
     if asked is not None:
         return asked
-    return case.solver.model != "full" and verdict.outcome in DEPENDENT
+    outcome = (result.verdict or Verdict()).outcome
+    return case.solver.model != "full" and outcome is not None and not rests_far_below_limits(result)
 
 
-def band_of(
-    model: Model, verdict: Verdict, *, stop: Callable[[], bool], checkpoint: BandCheckpoint
-) -> Band | None:
-    """Compute the members of a band side by side and sum them up.
+def rests_far_below_limits(result: RunResult) -> bool:
+    """Whether a run rests and the static rule leaves so much that nothing which is not known moves it."""
+    used = static_use(result)
+    return (result.verdict or Verdict()).outcome == "rest" and used is not None and used < NEAR_LIMIT
+
+
+def plan_of(model: Model, result: RunResult) -> Plan:
+    """The members of a band, those that decide most often first."""
+    case, penalty = model.case, model.penalty
+    own = (result.static or StaticResult()).own_motion or ActionResult()
+    low, high = BELOW_UPLIFT
+    soft = case.support.kind != "corners" and low <= (own.utilisation_overturning or 0.0) <= high
+    floor = (stiff_floor(penalty),) if soft else ()
+    one, pairs, draws = changes_of(case, penalty), pairs_of(case), draws_of(case, penalty)
+    largest = {change.inputs: change for change in one}  # the last of each input is the end of its range
+    first = tuple(largest.values())
+    ordered = (*floor, *first, *(change for change in one if change not in first), *pairs, *draws)
+    cost = cost_of(result.numerics or Numerics())
+    most = LEAST_MEMBERS if case.solver.model == "full" else max(LEAST_MEMBERS, int(BUDGET_S / cost))
+    return Plan(
+        changes=ordered[:most],
+        left_out=ordered[most:],
+        short=case.solver.model != "full" and cost <= SHORT_S,
+    )
+
+
+def cost_of(numerics: Numerics) -> float:
+    """Processor time that a member of a modal model takes, about, from the steps and sizes of its run [s]."""
+    points, unknowns = numerics.contact_nodes or 0, numerics.unknowns or 0
+    fixed, by_points, by_unknowns = STEP_COST
+    step = fixed + by_points * points**2 + by_unknowns * unknowns * 2 * points
+    return MEMBER_COST * step * max(1, (numerics.steps or 0) + (numerics.rejected or 0))
+
+
+def with_band(
+    model: Model, result: RunResult, *, stop: Callable[[], bool], checkpoint: BandCheckpoint
+) -> Verdict | None:
+    """Compute the members of a band side by side and judge the verdict of the run by them.
 
     Args:
         model: of the run; the mesh and modes of its container serve every member.
-        verdict: of the run, which is itself a member.
+        result: of the run, which is itself a member.
         stop: called in pauses; true ends the band.
         checkpoint: of the band, to resume from.
 
     Returns:
-        The band, or None if it was stopped.
+        The verdict with its band, or None if it was stopped.
 
     Raises:
         OSError: a checkpoint could not be written; the other members have stopped then.
     """
-    own = (model.penalty, model.case.contact.damping_ratio)
-    others = _other_contacts(*own)
-    found = {(one.normal_penalty_Pa_m, one.damping_ratio): one for one in checkpoint.read_members()}
-    one_at_a_time, broken = threading.Lock(), threading.Event()
+    plan = plan_of(model, result)
+    found = {_key(one.values): one for one in checkpoint.read_members()}
+    one_at_a_time, broken, stored = threading.Lock(), threading.Event(), time.monotonic()
+    recovery = recovery_of(model) if model.case.solver.model == "reduced" else None
 
     def halted() -> bool:
         return stop() or broken.is_set()
 
-    def member_of(number: int, contact: Contact) -> BandMember:
-        if contact in found:
-            return found[contact]
+    def member_of(number: int, change: InputChange) -> BandMember:
+        nonlocal stored
+        key = _key(change.values)
+        if key in found:
+            return replace(found[key], kind=change.kind)
         if halted():
-            return _without_outcome(contact, "interrupted")
+            return _without_outcome(change, "interrupted")
         try:
-            member = _run_member(model, number, contact, halted, checkpoint)
+            member = _run_member(model, plan, number, change, recovery, halted, checkpoint)
             with one_at_a_time:
                 if member.status != "interrupted":
-                    found[contact] = member
-                    checkpoint.write_members(number, list(found.values()))
+                    found[key] = member
+                    if not plan.short or time.monotonic() - stored > STORED_S:
+                        checkpoint.write_members(list(found.values()), number)
+                        stored = time.monotonic()
         except BaseException:
             broken.set()  # stops the other members
             raise
         return member
 
-    workers = min(cores(), len(others))
+    workers = min(cores(), max(1, len(plan.changes)))
     if model.case.solver.model == "full":
         workers = runs_in_memory(workers, full_model_memory(len(model.container.elements.nodes)))
     with ThreadPoolExecutor(max_workers=workers) as pool:
-        members = list(pool.map(member_of, count(1), others))
+        members = list(pool.map(member_of, count(1), plan.changes))
     if any(member.status == "interrupted" for member in members):
+        checkpoint.write_members(list(found.values()))
         return None
-    status = "overturned" if verdict.outcome == "overturned" else "completed"
-    return summed_up([member_from(own, status, verdict), *members])
+    verdict = result.verdict or Verdict()
+    own = _member(None, model.case, model, result.status, verdict, result.joints)
+    return judged(verdict, [own, *members], plan.changes, plan.left_out, width=model.container.mesh.width)
 
 
-def summed_up(members: Sequence[BandMember]) -> Band:
-    """The band of these members: outcomes from rest to overturned, range of rotation, doubt."""
-    standing = [member for member in members if member.outcome is not None]
-    found = {member.outcome for member in standing}
-    ratios = [member.rotation_ratio for member in standing if member.rotation_ratio is not None]
-    return Band(
-        outcomes=tuple(name for name in MODE_NAMES.values() if name in found),
-        rotation_ratio=(min(ratios), max(ratios)),
-        unsure=len(found) > 1 or len(standing) < len(members),
-        members=tuple(members),
-    )
+def _run_member(
+    run: Model,
+    plan: Plan,
+    number: int,
+    change: InputChange,
+    recovery: Recovery | None,
+    stop: Callable[[], bool],
+    checkpoint: BandCheckpoint,
+) -> BandMember:
+    """One member; a problem of any kind is its error, never an outcome."""
+    try:
+        case = run.case.with_values({**change.values, "output.fields_s": 0.0})
+        model = build_model(case, run.container)
+        if plan.short and (change.kind != "one" or case.container.boxes == 1):
+            verdict, error = run_without_history(model, recovery)
+            status = "overturned" if verdict.outcome == "overturned" else "completed"
+            if error is not None:
+                return _without_outcome(change, "failed", error)
+            return _member(change, case, model, status, verdict, None)
+        recorder = Recorder(model, recovery)
+        if plan.short:
+            ending = simulate(model, recorder, stop=stop)
+        else:
+            save, progress = checkpoint.open_member(number, model, recorder)
+            ending = simulate(model, recorder, stop=stop, save=save, progress=progress)
+    # bad input, no equilibrium, a singular matrix
+    except (ValueError, ArithmeticError, RuntimeError) as problem:
+        return _without_outcome(change, "failed", str(problem))
+    if ending.status not in ("completed", "overturned"):
+        return _without_outcome(change, ending.status, ending.error)
+    history = recorder.history()
+    verdict = verdict_of(model, history, recorder.largest_von_mises)
+    return _member(change, case, model, ending.status, verdict, joint_demands(model, history))
 
 
-def member_from(contact: Contact, status: str, verdict: Verdict) -> BandMember:
-    """The member with this contact."""
-    return BandMember(
-        normal_penalty_Pa_m=contact[0],
-        damping_ratio=contact[1],
-        status=status,
+def _member(
+    change: InputChange | None,
+    case: Case,
+    model: Model,
+    status: str,
+    verdict: Verdict,
+    joints: Sequence[JointDemand] | None,
+) -> BandMember:
+    """The member of a verdict; without a change, the run itself."""
+    return replace(
+        _without_outcome(change, status),
+        normal_penalty_Pa_m=model.penalty,
+        damping_ratio=case.contact.damping_ratio,
         outcome=verdict.outcome,
         rotation_ratio=verdict.rotation_ratio,
         max_slip_m=verdict.max_slip_m,
         residual_slip_m=verdict.residual_slip_m,
         max_uplift_m=verdict.max_uplift_m,
+        max_corner_force_N=verdict.max_corner_force_N,
+        max_acceleration_m_s2=verdict.max_acceleration_m_s2,
+        max_von_mises_Pa=verdict.max_von_mises_Pa,
+        bolt_tension_N=max(
+            (max(one.bolt_tension_left_N, one.bolt_tension_right_N) for one in joints or ()), default=None
+        ),
+        bolt_shear_N=max((one.bolt_shear_N for one in joints or ()), default=None),
     )
 
 
-def _other_contacts(penalty: float, damping_ratio: float) -> list[Contact]:
-    """The contacts of all members but the run itself."""
-    ratios = sorted({*DAMPING_RATIOS, damping_ratio})
-    return [
-        (factor * penalty, ratio)
-        for factor, ratio in product(PENALTY_FACTORS, ratios)
-        if (factor, ratio) != (1.0, damping_ratio)
-    ]
+def _without_outcome(change: InputChange | None, status: str, error: str | None = None) -> BandMember:
+    if change is None:
+        return BandMember(status=status)
+    return BandMember(
+        change=change.label, kind=change.kind, values=dict(change.values), status=status, error=error
+    )
 
 
-def _run_member(
-    run: Model, number: int, contact: Contact, stop: Callable[[], bool], checkpoint: BandCheckpoint
-) -> BandMember:
-    """One member; a problem of any kind is its error, never an outcome."""
-    try:
-        case = run.case.with_values(
-            {
-                "contact.normal_penalty_Pa_m": contact[0],
-                "contact.damping_ratio": contact[1],
-                "output.history_s": NO_SAMPLES_S,
-                "output.fields_s": 0.0,
-            }
-        )
-        model = build_model(case, run.container)
-        recorder = Recorder(model)
-        save, progress = checkpoint.open_member(number, model, recorder)
-        ending = simulate(model, recorder, stop=stop, save=save, progress=progress)
-    # bad input, no equilibrium, a singular matrix
-    except (ValueError, ArithmeticError, RuntimeError) as problem:
-        return _without_outcome(contact, "failed", str(problem))
-    if ending.status not in ("completed", "overturned"):
-        return _without_outcome(contact, ending.status, ending.error)
-    return member_from(contact, ending.status, verdict_of(model, recorder.history(), None))
-
-
-def _without_outcome(contact: Contact, status: str, error: str | None = None) -> BandMember:
-    return BandMember(normal_penalty_Pa_m=contact[0], damping_ratio=contact[1], status=status, error=error)
+def _key(values: Mapping[str, Value] | None) -> tuple[tuple[str, Value], ...]:
+    """Equal for members that change the same inputs to the same values."""
+    return tuple(sorted((values or {}).items()))

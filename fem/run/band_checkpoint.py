@@ -52,11 +52,8 @@ class BandCheckpoint:
             self._reporter.warning(f"{path} is refused ({error}): its members are computed again")
             return []
 
-    def write_members(self, number: int, members: Sequence[BandMember]) -> None:
-        """Store the finished members, of which one is new.
-
-        Args:
-            number: of the new one; members: all finished ones.
+    def write_members(self, members: Sequence[BandMember], number: int | None = None) -> None:
+        """Store the finished members; the one of this number needs its checkpoint no more.
 
         Raises:
             OSError: the file cannot be written, or the folder was lost.
@@ -64,7 +61,8 @@ class BandCheckpoint:
         self._folder.check()
         page = self._owner | {"members": [one.to_json() for one in members]}
         self._folder.write_text(self._files.band.name, to_json(page))
-        self._files.member_checkpoint(number).unlink(missing_ok=True)
+        if number is not None:
+            self._files.member_checkpoint(number).unlink(missing_ok=True)
 
     def open_member(self, number: int, model: Model, recorder: Recorder) -> tuple[CheckpointWriter, Progress]:
         """Put a member where its checkpoint says; returns what writes the next one, and the progress.

@@ -1,4 +1,4 @@
-"""Checks of a finished run, where they are wanted and missing: the rigid block, the band of the contact.
+"""Checks of a finished run, where they are wanted and missing: the rigid block, the band over what is not known.
 
 Both can be added to a run that was finished without them.
 """
@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 from contact.reference.event_driven import EventError
 from fem.assessment.rigid_check import check_against_rigid_block, wants_rigid_check
+from fem.assessment.sureness import SURE
 from fem.case.case import Case
 from fem.model.model import Model
 from fem.results.errors import FolderError
@@ -16,7 +17,7 @@ from fem.results.history import add_analytic_rotation, read_history
 from fem.results.kinds import RUN
 from fem.results.run_files import RunFiles
 from fem.results.run_result import RigidCheckResult, RunResult, Verdict
-from fem.run.band import band_of, wants_band
+from fem.run.band import rests_far_below_limits, wants_band, with_band
 from fem.run.band_checkpoint import BandCheckpoint
 from fem.runtime.progress import Reporter
 
@@ -26,7 +27,7 @@ class WantedChecks:
     """Which checks are asked for."""
 
     check_rigid: bool = False
-    band: bool | None = None  #: None: where the outcome depends on impacts
+    band: bool | None = None  #: None: wherever it takes no longer than it is worth
 
 
 def add_checks(
@@ -52,11 +53,13 @@ def add_checks(
     if _lacks_rigid_check(result, model.case, wanted):
         result = replace(result, rigid_check=_rigid_check(model, folder, verdict))
     if lacks_band(result, model.case, wanted) and not stop():
-        reporter.message("band: repeating the run over contact stiffness and damping")
+        reporter.message("band: repeating the run over what is not known of its inputs")
         checkpoint = BandCheckpoint(folder, case_hash=str(result.case_hash), reporter=reporter)
-        band = band_of(model, verdict, stop=stop, checkpoint=checkpoint)
-        if band is not None:
-            result = replace(result, verdict=replace(verdict, band=band))
+        judged = with_band(model, result, stop=stop, checkpoint=checkpoint)
+        if judged is not None:
+            result = replace(result, verdict=judged)
+    elif verdict.sure is None and wanted.band is None and rests_far_below_limits(result):
+        result = replace(result, verdict=replace(verdict, sure=SURE))
     return result
 
 
@@ -68,7 +71,7 @@ def lacks_checks(result: RunResult, case: Case, wanted: WantedChecks) -> bool:
 def lacks_band(result: RunResult, case: Case, wanted: WantedChecks) -> bool:
     """Whether a finished run is still to have its band."""
     verdict = result.verdict
-    return verdict is not None and wants_band(wanted.band, case, verdict) and verdict.band is None
+    return verdict is not None and wants_band(wanted.band, case, result) and verdict.band is None
 
 
 def _lacks_rigid_check(result: RunResult, case: Case, wanted: WantedChecks) -> bool:

@@ -1,23 +1,28 @@
-"""The band over contact stiffness and damping: which runs it holds, when it is unsure, failed members."""
+"""The band of a run: which runs have one, its members, what does not fit the time, failed members."""
 
-import itertools
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from interrupted_runs import run_command
 
 from fem.__main__ import main
+from fem.assessment.joint_demands import joint_demands
 from fem.assessment.verdict import verdict_of
 from fem.case.case import Case, load_case
+from fem.case.uncertainty import changes_of, draws_of, pairs_of
 from fem.model.model import build_model
+from fem.model.recovery import recovery_of
 from fem.results.kinds import read_result
-from fem.results.run_result import BandMember, Verdict
-from fem.run.band import summed_up, wants_band
+from fem.results.run_result import ActionResult, Numerics, RunResult, StaticResult, Verdict
+from fem.run import band
+from fem.run.band import cost_of, plan_of, wants_band
 from fem.run.recorder import Recorder
 from fem.run.run import RunOptions, run_case
 from fem.run.simulation import simulate
 
 SHORT = ["solver.model=rigid", "solver.duration_s=3.0", "output.fields_s=0", "output.figures=false"]
+FEW = ["uncertainty.draws=2", "uncertainty.weakening_m=known", "uncertainty.stribeck_velocity_m_s=known"]
 
 
 def verdict_with_band(folder: Path, case: Case) -> Verdict:
@@ -25,93 +30,156 @@ def verdict_with_band(folder: Path, case: Case) -> Verdict:
     return found.typed_result.verdict
 
 
+def result(outcome: str, used: float = 1.2, numerics: Numerics | None = None) -> RunResult:
+    """A finished run whose static rule is used so far."""
+    own = ActionResult(utilisation_sliding=used, utilisation_overturning=used)
+    return RunResult(
+        status="completed",
+        verdict=Verdict(outcome=outcome),
+        static=StaticResult(own_motion=own),
+        numerics=numerics,
+    )
+
+
 @pytest.mark.parametrize(
-    ("model", "outcome", "expected"),
+    ("model", "outcome", "used", "expected"),
     [
-        ("reduced", "rock", True),
-        ("rigid", "overturned", True),
-        ("reduced", "slide", False),
-        ("full", "rock", False),
+        ("reduced", "rock", 1.2, True),
+        ("rigid", "overturned", 1.2, True),
+        ("reduced", "slide", 1.2, True),
+        ("reduced", "rest", 0.71, True),
+        ("reduced", "rest", 0.69, False),
+        ("full", "rock", 1.2, False),
     ],
 )
-def test_a_band_is_added_where_impacts_decide_and_runs_are_cheap(model, outcome, expected):
+def test_every_run_but_a_plain_rest_and_a_dear_one_has_a_band(model, outcome, used, expected):
     case = load_case("rocking", [f"solver.model={model}"])
     for asked, wanted in ((None, expected), (True, True), (False, False)):
-        assert wants_band(asked, case, Verdict(outcome=outcome)) is wanted
+        assert wants_band(asked, case, result(outcome, used)) is wanted
 
 
-@pytest.mark.parametrize(
-    ("outcomes", "listed", "unsure"),
-    [
-        (("rock", "rock", "rock"), ("rock",), False),
-        (("overturned", "slide-rock", "rock"), ("rock", "slide-rock", "overturned"), True),
-        (("rock", None, "rock"), ("rock",), True),
-    ],
-    ids=["one outcome", "several, in the order of the states", "a failed member"],
-)
-def test_a_band_is_sure_of_one_outcome_of_all_members(outcomes, listed, unsure):
-    members = [
-        BandMember(
-            normal_penalty_Pa_m=1e9,
-            damping_ratio=2.0,
-            status="completed" if outcome else "failed",
-            outcome=outcome,
-            rotation_ratio=0.2 + 0.1 * k if outcome else None,
-        )
-        for k, outcome in enumerate(outcomes)
-    ]
-    found = summed_up(members)
-    assert (found.outcomes, found.unsure, found.members) == (listed, unsure, tuple(members))
-    assert found.rotation_ratio == pytest.approx((0.2, 0.4))
-
-
-@pytest.mark.parametrize("ratios", [(2.0, 0.5), (1.2, 0.5, 2.0)], ids=["default", "given"])
-def test_members_span_penalty_and_damping_and_include_the_run_itself(tmp_path, ratios):
-    case = load_case("rocking", [*SHORT, f"contact.damping_ratio={ratios[0]}"])
+def test_members_are_the_run_itself_and_every_change_of_its_case(tmp_path):
+    case = load_case("rocking", SHORT)
     verdict = verdict_with_band(tmp_path, case)
-    given, *others = members = verdict.band.members
-    floors = {
-        (round(one.normal_penalty_Pa_m / given.normal_penalty_Pa_m, 6), one.damping_ratio) for one in members
-    }
-    assert floors == set(itertools.product((0.333333, 1.0, 3.0), ratios))
-    assert len(others) == len(floors) - 1
-    assert given.damping_ratio == ratios[0]
-    assert (given.outcome, given.rotation_ratio) == (verdict.outcome, verdict.rotation_ratio)
+    given, *others = verdict.band.members
+    penalty = given.normal_penalty_Pa_m
+    wanted = [*changes_of(case, penalty), *pairs_of(case), *draws_of(case, penalty)]
+    assert sorted(one.change for one in others) == sorted(one.label for one in wanted)
+    assert (given.change, given.outcome, given.rotation_ratio) == (
+        "",
+        verdict.outcome,
+        verdict.rotation_ratio,
+    )
+    assert verdict.band.left_out == () and verdict.band.draws == 32
 
 
-def test_members_side_by_side_are_the_runs_one_by_one(tmp_path):
+@pytest.mark.parametrize("model", ["rigid", "reduced"])
+def test_members_side_by_side_are_the_runs_one_by_one(tmp_path, model):
     # Threads share the container; each member must be to the bit what the case alone gives, whatever runs beside it.
-    changes = {"solver.duration_s": 2.0, "output.fields_s": 0, "output.figures": False}
-    case = load_case("rocking").with_values(changes)
-    for one in verdict_with_band(tmp_path, case).band.members:
-        contact = {
-            "contact.normal_penalty_Pa_m": one.normal_penalty_Pa_m,
-            "contact.damping_ratio": one.damping_ratio,
-        }
-        model = build_model(case.with_values(contact))
-        recorder = Recorder(model)
-        simulate(model, recorder)
-        assert verdict_of(model, recorder.history(), None).rotation_ratio == one.rotation_ratio
+    changes = [
+        *FEW,
+        f"solver.model={model}",
+        "solver.duration_s=2",
+        "output.fields_s=0",
+        "output.figures=false",
+    ]
+    case = load_case("rocking", changes)
+    members = verdict_with_band(tmp_path, case).band.members
+    assert len(members) >= 10
+    for one in members[1:]:
+        alone = build_model(case.with_values(one.values))
+        recorder = Recorder(alone, recovery_of(alone) if model == "reduced" else None)
+        simulate(alone, recorder)
+        verdict = verdict_of(alone, recorder.history(), recorder.largest_von_mises)
+        for name in ("outcome", "rotation_ratio", "max_slip_m", "max_corner_force_N", "max_von_mises_Pa"):
+            assert getattr(one, name) == getattr(verdict, name), (one.change, name)
+        joints = joint_demands(alone, recorder.history())
+        bolts = max(max(joint.bolt_tension_left_N, joint.bolt_tension_right_N) for joint in joints)
+        assert one.bolt_tension_N == (bolts if one.kind == "one" else None)
 
 
-def test_an_outcome_that_does_not_depend_on_the_contact_is_sure(tmp_path):
+def test_a_rest_far_below_the_static_limits_is_sure_without_a_band(tmp_path):
+    changes = ["motion.peak_acceleration_m_s2=1.0", *SHORT]
+    case = load_case("seed_stack", changes)
+    found = run_case(case, case_text=case.text, folder=tmp_path).typed_result.verdict
+    assert (found.outcome, found.sure, found.band) == ("rest", "sure", None)
+    assert found.first_line.endswith("Sure: the static rule is used to 0.37, so nothing else was tried.")
+
+
+class TestWhatDoesNotFitTheTime:
+    """What is computed follows from the run's own steps and sizes; what is left out is said."""
+
+    case = load_case("seed_stack_plateau", ["solver.model=rigid"])
+    model = build_model(case)
+
+    def plan(self, steps, **case):
+        model = replace(self.model, case=self.case.with_values(case)) if case else self.model
+        numerics = Numerics(steps=steps, rejected=0, contact_nodes=27, unknowns=77)
+        return plan_of(model, result("rock", numerics=numerics))
+
+    def test_a_cheap_band_is_whole_and_needs_no_checkpoints(self):
+        plan = self.plan(1000)
+        assert plan.left_out == () and plan.short
+
+    def test_draws_are_left_out_before_changes_of_one_input(self):
+        plan = self.plan(50_000)
+        assert {one.kind for one in plan.left_out} == {"draw"} and plan.short
+        assert {one.kind for one in plan.changes} == {"one", "pair", "draw"}
+
+    def test_of_a_dear_band_one_change_of_each_of_the_first_inputs_stays(self):
+        plan = self.plan(10_000_000)
+        assert not plan.short and len(plan.changes) == band.LEAST_MEMBERS
+        inputs = [one.inputs for one in plan.changes]
+        assert len(set(inputs)) == len(inputs) and inputs[0] == ("contact.mu_kinetic",)
+        assert plan.changes[0].label == "contact.mu_kinetic = 0.4"
+
+    def test_the_full_model_has_as_many_members_as_before(self):
+        assert len(self.plan(10, **{"solver.model": "full"}).changes) == band.LEAST_MEMBERS
+
+    def test_the_cost_grows_with_steps_and_base_points(self):
+        cheap = Numerics(steps=1000, rejected=0, contact_nodes=2, unknowns=3)
+        assert cost_of(replace(cheap, steps=2000)) == pytest.approx(2.0 * cost_of(cheap))
+        assert cost_of(replace(cheap, contact_nodes=27)) > 10.0 * cost_of(cheap)
+
+    def test_a_verdict_is_not_sure_where_changes_were_left_out(self, tmp_path, monkeypatch):
+        monkeypatch.setattr(band, "BUDGET_S", 0.0)
+        found = verdict_with_band(tmp_path, load_case("rocking", SHORT))
+        assert found.sure == "unsure" and len(found.band.members) == 1 + band.LEAST_MEMBERS
+        assert "changes were left out for time" in found.first_line
+        assert found.band.draws_left_out == 32
+
+
+@pytest.mark.parametrize(("share", "members"), [(0.8, 0), (0.9, 1), (1.05, 0)])
+def test_a_flat_base_near_uplift_is_tried_on_a_stiff_floor(share, members):
+    case = load_case("seed_stack", ["solver.model=rigid", "support.kind=flat"])
+    model = build_model(case)
+    floors = [one for one in plan_of(model, result("rock", share)).changes if one.kind == "floor"]
+    assert len(floors) == members
+    for one in floors:
+        assert one.values["contact.normal_penalty_Pa_m"] == pytest.approx(30.0 * model.penalty)
+
+
+def test_an_outcome_that_depends_on_nothing_is_sure(tmp_path):
     case = load_case("overturning", ["solver.model=rigid", "output.fields_s=0", "output.figures=false"])
-    found = verdict_with_band(tmp_path, case).band
-    assert (found.outcomes, found.unsure) == (("overturned",), False)
+    found = verdict_with_band(tmp_path, case)
+    assert (found.band.outcomes, found.sure, found.band.unsure) == (("overturned",), "sure", False)
 
 
 def test_a_member_that_fails_is_named_in_a_warning_and_in_the_summary(tmp_path):
     # Newmark without averaging gains energy on a contact beyond 3 E/h and refuses it: h k/E is 2 here, 6 at x 3.
-    soft = ("container.youngs_modulus_Pa=1e9", "contact.normal_penalty_Pa_m=2e10")
+    soft = ("container.youngs_modulus_Pa=1e9", "contact.normal_penalty_Pa_m=2e10", "uncertainty.draws=0")
     changes = (*SHORT, "solver.scheme=newmark", *soft)
     assert main([*run_command("rocking", tmp_path, *changes), "--band"]) == 0
-    result = read_result(tmp_path / "run.json")
-    found = result["verdict"]["band"]
-    failed = [one for one in found["members"] if one["outcome"] is None]
-    assert [(one["damping_ratio"], one["status"]) for one in failed] == [(0.5, "failed"), (2.0, "failed")]
+    found = read_result(tmp_path / "run.json")
+    failed = [one for one in found["verdict"]["band"]["members"] if one["outcome"] is None]
+    assert [(one["change"], one["status"]) for one in failed] == [
+        ("contact.normal_penalty_Pa_m = 6e+10", "failed")
+    ]
     assert all("gains energy" in one["error"] and one["rotation_ratio"] is None for one in failed)
-    assert found["unsure"] is True
-    first = result["warnings"][0]
-    assert first.startswith("unsure:") and "6e+10 Pa/m with damping ratio 0.5" in first
-    page = " ".join((tmp_path / "summary.txt").read_text().split())
-    assert "2 of 6 failed; unsure" in page and "(unsure, see the band)" in page
+    assert found["verdict"]["sure"] == "unsure" and found["verdict"]["band"]["unsure"] is True
+    assert (
+        "1 of " in found["verdict"]["first_line"]
+        and "runs of the band failed" in found["verdict"]["first_line"]
+    )
+    first = found["warnings"][0]
+    assert first.startswith("unsure:") and "contact.normal_penalty_Pa_m = 6e+10" in first

@@ -1,0 +1,188 @@
+"""How sure a verdict is: what the members of its band show, and which inputs decide.
+
+A member stands in the same way as the run where its outcome is the same and neither rotation nor slip is another order
+of magnitude: a container that rocks and slips 2 mm at its impacts does not move like one that slips 200 mm.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fem.assessment.verdict import MODE_NAMES
+from fem.case.uncertainty import INPUTS, InputChange
+from fem.results.run_result import Band, BandMember, RunResult, StaticResult, Verdict
+
+SURE, REGIME_UNSURE, UNSURE = "sure", "regime unsure", "unsure"
+#: figures of a band, each [low, high]
+FIGURES = (
+    "rotation_ratio",
+    "max_slip_m",
+    "residual_slip_m",
+    "max_uplift_m",
+    "max_corner_force_N",
+    "max_acceleration_m_s2",
+    "max_von_mises_Pa",
+    "bolt_tension_N",
+    "bolt_shear_N",
+)
+ANOTHER_SIZE = 10.0
+#: slip over the width, and rotation ratio, from which another size is another way to stand
+LARGE_SLIP, LARGE_ROTATION = 0.01, 0.1
+#: how a member differs from the run
+SAME, OTHER_REGIME, OTHER_END = 0, 1, 2
+MOST_DRAWN = 3  #: inputs named where only draws differ
+ROCKING = ("rock", "slide-rock")
+
+
+def judged(
+    verdict: Verdict,
+    members: Sequence[BandMember],
+    changes: Sequence[InputChange],
+    left_out: Sequence[InputChange],
+    *,
+    width: float,
+) -> Verdict:
+    """The verdict with its band.
+
+    Args:
+        verdict: of the run.
+        members: of the band, the run itself first, then one for each change.
+        changes: that the members made.
+        left_out: those that there was no time for.
+        width: of the container [m].
+    """
+    own, others = members[0], members[1:]
+    levels = [_difference(own, one, width) for one in others]
+    missing = [one for one in left_out if one.kind != "draw"]
+    no_outcome = any(one.outcome is None for one in others)
+    if no_outcome or missing or OTHER_END in levels or below_uplift(members):
+        sure = UNSURE
+    else:
+        sure = REGIME_UNSURE if OTHER_REGIME in levels else SURE
+    found = {one.outcome for one in members}
+    alike = [one for one in members if _stands(one) == _stands(own) and one.outcome is not None]
+    draws = [one for one in others if one.kind == "draw"]
+    band = Band(
+        outcomes=tuple(name for name in MODE_NAMES.values() if name in found),
+        unsure=sure == UNSURE,
+        draws=len(draws),
+        draws_overturned=sum(one.outcome == "overturned" for one in draws),
+        left_out=tuple(one.label for one in missing),
+        draws_left_out=len(left_out) - len(missing),
+        members=tuple(members),
+        **{name: _reach(getattr(one, name) for one in alike) for name in FIGURES},
+    )
+    return replace(verdict, sure=sure, decided_by=tuple(_deciding(levels, changes)), band=band)
+
+
+def below_uplift(members: Sequence[BandMember]) -> bool:
+    """Whether the run rocks and, on a floor so stiff that it is rigid, does not."""
+    return (
+        bool(members)
+        and members[0].outcome in ROCKING
+        and any(one.kind == "floor" and one.outcome not in (None, *ROCKING, "overturned") for one in members)
+    )
+
+
+def static_use(result: RunResult) -> float | None:
+    """The larger utilisation of the static rule under the peak of this run; None where it is not known."""
+    own = (result.static or StaticResult()).own_motion
+    if own is None or own.utilisation_sliding is None or own.utilisation_overturning is None:
+        return None
+    return max(own.utilisation_sliding, own.utilisation_overturning)
+
+
+def sureness_in_words(result: RunResult) -> str:
+    """One sentence, or none where it was not tried."""
+    verdict = result.verdict or Verdict()
+    band = verdict.band
+    if verdict.sure is None:
+        return ""
+    if band is None:
+        return f"Sure: the static rule is used to {static_use(result) or 0.0:.2f}, so nothing else was tried."
+    if verdict.sure == SURE:
+        return f"Sure: it ends in the same way in all {len(band.members)} runs of the band, {_drawn(band)}."
+    reasons = []
+    if verdict.decided_by:
+        named = ", ".join(verdict.decided_by[:4]) + (" and others" if len(verdict.decided_by) > 4 else "")
+        reasons.append(f"what decides is {named}")
+    if below_uplift(band.members):
+        reasons.append("it is below uplift of a rigid block, and on a floor thirty times as stiff it rests")
+    failed = sum(one.outcome is None for one in band.members)
+    if failed:
+        reasons.append(f"{failed} of {len(band.members)} runs of the band failed")
+    if band.left_out:
+        reasons.append(f"{len(band.left_out)} changes were left out for time")
+    return f"{verdict.sure.capitalize()}: {'; '.join([_drawn(band), *reasons])}."
+
+
+def _drawn(band: Band) -> str:
+    if not band.draws:
+        overturned = sum(one.outcome == "overturned" for one in band.members)
+        return f"overturned in {overturned} of {len(band.members)} runs"
+    left_out = f" ({band.draws_left_out} more left out for time)" if band.draws_left_out else ""
+    return f"overturned in {band.draws_overturned} of {band.draws} draws{left_out}"
+
+
+def _stands(member: BandMember) -> bool:
+    return member.outcome != "overturned"
+
+
+def _difference(own: BandMember, other: BandMember, width: float) -> int:
+    """How another member differs from the run; a failed one does not say."""
+    if other.outcome is None:
+        return SAME
+    if _stands(own) != _stands(other):
+        return OTHER_END
+    if not _stands(own):
+        return SAME
+    sizes = (
+        (own.max_slip_m, other.max_slip_m, LARGE_SLIP * width),
+        (own.rotation_ratio, other.rotation_ratio, LARGE_ROTATION),
+    )
+    another = any(_another_size(*pair) for pair in sizes)
+    return OTHER_REGIME if own.outcome != other.outcome or another else SAME
+
+
+def _another_size(one: float | None, other: float | None, large: float) -> bool:
+    low, high = sorted((one or 0.0, other or 0.0))
+    return high > large and high > ANOTHER_SIZE * low
+
+
+def _reach(values: Iterator[float | None]) -> tuple[float, float] | None:
+    known = [value for value in values if value is not None]
+    return (min(known), max(known)) if known else None
+
+
+def _deciding(levels: Sequence[int], changes: Sequence[InputChange]) -> Iterator[str]:
+    """Inputs that change the outcome: overturning before the regime, then the smallest change first.
+
+    Where no change of one input does, those of the pair that does; where only draws do, those that differ most between
+    the draws that do and those that do not.
+    """
+    named: list[str] = []
+    for level in (OTHER_END, OTHER_REGIME):
+        differing = [one for one, found in zip(changes, levels, strict=True) if found == level]
+        smallest: dict[str, float] = {}
+        for kind in (("one", "floor"), ("pair",)):
+            for one in differing if not smallest else ():
+                if one.kind in kind:
+                    smallest |= {key: min(one.share, smallest.get(key, 1.0)) for key in one.inputs}
+        found = sorted(smallest, key=lambda key: (smallest[key], INPUTS.index(key)))
+        named += found or _drawn_together(changes, [one == level for one in levels])
+    yield from dict.fromkeys(named)
+
+
+def _drawn_together(changes: Sequence[InputChange], differs: Sequence[bool]) -> list[str]:
+    """Inputs whose places in their ranges differ most between draws that differ from the run and the others."""
+    draws = [(one, other) for one, other in zip(changes, differs, strict=True) if one.kind == "draw"]
+    if not any(differ for _, differ in draws):
+        return []
+    places = np.array([one.place for one, _ in draws])
+    differ = np.array([other for _, other in draws])
+    rest = places[~differ].mean(axis=0) if not differ.all() else 0.5
+    apart = np.abs(places[differ].mean(axis=0) - rest)
+    inputs = draws[0][0].inputs
+    strongest = np.argsort(-apart)[:MOST_DRAWN]
+    return [inputs[k] for k in strongest if apart[k] >= 0.5 * apart.max()]
