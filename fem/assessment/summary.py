@@ -17,6 +17,7 @@ from rich.text import Text
 
 from fem.assessment.code_note import code_note
 from fem.assessment.motion_words import covered_in_words, missing_peak, motion_in_words
+from fem.assessment.sureness import sureness_in_words
 from fem.results.run_result import (
     Band,
     Energy,
@@ -37,9 +38,10 @@ LEAST_LENGTH, LEAST_DEGREES, LEAST_RATIO = 1e-5, 0.01, 1e-3
 LEAST_N = 1e-6  #: smaller joint forces [N] and moments [Nm] are rounding
 MOST_JOINTS = 8  #: joints shown; of more, those with a largest value
 BAND_NOTE = (
-    "The band repeats the run with a third and three times the contact penalty and with contact damping ratios 0.5 "
-    "and 2, because no floor is known better than that. One outcome throughout does not depend on the contact; "
-    "where outcomes differ, this model cannot decide."
+    "The band repeats the run with changed inputs: one at a time to the ends of the ranges that [uncertainty] states "
+    "or that follow from the case, and with all of them drawn at once. Numbers in parentheses are the least and the "
+    "largest of the runs that end as this one does. Where the outcome differs, the inputs named decide, and not this "
+    "run."
 )
 MARGIN_NOTE = (
     "The rotation ratio is not a margin. The margin is the factor on the motion at which the container overturns; a "
@@ -92,13 +94,13 @@ def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
 
 
 def outcome_sentence(result: RunResult) -> str:
-    """What happened, in one sentence: the first line of the verdict."""
+    """What happened, and how sure that is: the first line of the verdict."""
     if result.status == "failed":
         return f"No verdict: {result.error or 'the solution failed'}. Results up to there are kept."
     found = _found(result.verdict or Verdict(), result.motion or MotionResult())
     if result.status in ("interrupted", "running"):
         return f"Not finished ({result.status}). So far: {found}."
-    return f"Result: {found}."
+    return " ".join(part for part in (f"Result: {found}.", sureness_in_words(result)) if part)
 
 
 def _found(verdict: Verdict, motion: MotionResult) -> str:
@@ -108,8 +110,7 @@ def _found(verdict: Verdict, motion: MotionResult) -> str:
         at = verdict.overturned_at_s
         return "overturned" + (f" at t = {at:.3f} s" if at is not None else "")
     restored = ", returned upright" if verdict.restored else ""
-    unsure = " (unsure, see the band)" if verdict.band is not None and verdict.band.unsure else ""
-    under = f"{covered_in_words(motion)}{unsure}{missing_peak(motion)}"
+    under = f"{covered_in_words(motion)}{missing_peak(motion)}"
     return f"{VERBS.get(verdict.outcome, verdict.outcome)}{restored} and did not overturn under {under}"
 
 
@@ -212,7 +213,7 @@ def result_rows(result: RunResult) -> list[tuple[str, str]]:
             _mean(verdict.max_acceleration_m_s2, 1.0, "m/s2", numerics.acceleration_window_s),
         ),
         ("von Mises stress", _unit(verdict.max_von_mises_Pa, 1e-6, "MPa")),
-        ("band over the contact", _band(verdict.band)),
+        ("outcomes of the band", _band(verdict.band)),
         *_rigid_rows(result.rigid_check, static.slenderness_angle_rad),
     ]
     return [(name, value) for name, value in rows if value]
@@ -261,13 +262,10 @@ def _restitution(verdict: Verdict, static: StaticResult) -> str:
 def _band(band: Band | None) -> str:
     if band is None:
         return ""
-    parts = [", ".join(band.outcomes)]
-    if band.rotation_ratio is not None:
-        parts.append("rotation ratio " + " to ".join(map(ratio_in_words, band.rotation_ratio)))
+    runs = len(band.members)
     failed = sum(member.outcome is None for member in band.members)
-    if failed:
-        parts.append(f"{failed} of {len(band.members)} failed")
-    return "; ".join([*parts, "unsure"] if band.unsure else parts)
+    counts = f"{runs} runs" + (f", {failed} failed" if failed else "")
+    return f"{', '.join(band.outcomes)} in {counts}"
 
 
 def _rigid_rows(check: RigidCheckResult | None, angle: float | None) -> list[tuple[str, str]]:

@@ -7,7 +7,7 @@ that raised it, the limit, and what can be done. No warning changes a verdict.
 import math
 from collections.abc import Callable
 
-from fem.assessment.summary import ratio_in_words
+from fem.assessment.sureness import SURE, sureness_in_words
 from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from fem.case.case import Case
 from fem.case.rules import MOST_FREE_MOTION, ends_at_rest, longest_time
@@ -40,22 +40,15 @@ def warnings_for(result: RunResult, case: Case) -> list[str]:
     return [text for check in CHECKS if (text := check(result, case)) is not None]
 
 
-def band_is_unsure(result: RunResult, case: Case) -> str | None:
-    """The outcome changes within the uncertainty of the contact."""
-    band = _verdict(result).band
-    if band is None or not band.unsure:
+def verdict_is_unsure(result: RunResult, case: Case) -> str | None:
+    """The outcome changes within what is not known of the inputs."""
+    verdict = _verdict(result)
+    if verdict.band is None or verdict.sure in (None, SURE):
         return None
-    ratios = " to ".join(map(ratio_in_words, band.rotation_ratio or ()))
-    found = (
-        "unsure: within the band of contact stiffness and damping the outcome is "
-        f"{' or '.join(band.outcomes)}, the rotation ratio {ratios}"
-    )
-    places = ", ".join(
-        f"{member.normal_penalty_Pa_m:.3g} Pa/m with damping ratio {member.damping_ratio:g}"
-        for member in band.members
-        if member.outcome is None
-    )
-    return f"{found}; no outcome, because the solution failed, at penalty {places}" if places else found
+    found = sureness_in_words(result)
+    failed = "; ".join(member.change for member in verdict.band.members if member.outcome is None)
+    failures = f" No outcome, because the solution failed, with {failed}." if failed else ""
+    return f"{found[0].lower()}{found[1:]}{failures}"
 
 
 def energy_is_near_its_limits(result: RunResult, case: Case) -> str | None:
@@ -226,7 +219,7 @@ def steps_were_rejected(result: RunResult, case: Case) -> str | None:
 
 
 CHECKS: tuple[Callable[[RunResult, Case], str | None], ...] = (
-    band_is_unsure,
+    verdict_is_unsure,
     motion_is_doubtful,
     it_still_moves,
     energy_is_near_its_limits,

@@ -141,7 +141,9 @@ class BandMember(JsonBlock):
     max_corner_force_N: float | None = None
     max_acceleration_m_s2: float | None = None
     max_von_mises_Pa: float | None = None
-    bolt_tension_N: float | None = None  #: largest of all joints and sides; of members that change one input
+    bolt_tension_N: float | None = (
+        None  #: largest of all joints and sides; of short members that change one input
+    )
     bolt_shear_N: float | None = None  #: largest of all joints; likewise
 
 

@@ -197,7 +197,9 @@ def _run_member(
         return _without_outcome(change, ending.status, ending.error)
     history = recorder.history()
     verdict = verdict_of(model, history, recorder.largest_von_mises)
-    return _member(change, case, model, ending.status, verdict, joint_demands(model, history))
+    # of a resumed member the first samples are gone
+    joints = joint_demands(model, history) if plan.short else None
+    return _member(change, case, model, ending.status, verdict, joints)
 
 
 def _member(

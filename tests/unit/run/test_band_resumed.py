@@ -150,6 +150,7 @@ def test_a_band_that_cannot_be_stored_ends_at_once(tmp_path, monkeypatch):
         band, "simulate", lambda *rest, **options: begun.append(1) or stepping(*rest, **options)
     )
     monkeypatch.setattr(band, "cores", lambda: 1)
+    monkeypatch.setattr(band, "SHORT_S", 0.0)
     assert main(command(tmp_path / "r", "solver.model=rigid")) == 3
     assert len(begun) == 1
     assert read_result(tmp_path / "r" / "run.json")["status"] == "completed"
