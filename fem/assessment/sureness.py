@@ -97,8 +97,8 @@ def sureness_in_words(result: RunResult) -> str:
     """One sentence, or none where it was not tried."""
     verdict = result.verdict or Verdict()
     band = verdict.band
-    if verdict.sure is None:
-        return ""
+    if verdict.sure is None:  # no band, or one of a former version
+        return "Unsure: see the band." if band is not None and band.unsure else ""
     if band is None:
         return f"Sure: the static rule is used to {static_use(result) or 0.0:.2f}, so nothing else was tried."
     if verdict.sure == SURE:

@@ -43,9 +43,9 @@ def warnings_for(result: RunResult, case: Case) -> list[str]:
 def verdict_is_unsure(result: RunResult, case: Case) -> str | None:
     """The outcome changes within what is not known of the inputs."""
     verdict = _verdict(result)
-    if verdict.band is None or verdict.sure in (None, SURE):
-        return None
     found = sureness_in_words(result)
+    if verdict.band is None or verdict.sure == SURE or not found:
+        return None
     failed = "; ".join(member.change for member in verdict.band.members if member.outcome is None)
     failures = f" No outcome, because the solution failed, with {failed}." if failed else ""
     return f"{found[0].lower()}{found[1:]}{failures}"

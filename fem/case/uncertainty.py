@@ -294,7 +294,7 @@ def _ends(
 
 def _others(ends: tuple[float, float], own: float) -> tuple[float, ...]:
     """The ends, each once and without the case's own value."""
-    return tuple(sorted({_short(end) for end in ends} - {_short(own)}))
+    return tuple(end for end in sorted(set(ends)) if not math.isclose(end, own, rel_tol=1e-12))
 
 
 def _short(value: float) -> float:

@@ -36,14 +36,14 @@ FALLEN_ROW = 1.18  #: rotation ratio at which overturned members are drawn
 LINE_LENGTH = 105  #: characters of a line of text in a figure
 #: inputs of a band in a word or two
 GROUPS = {
-    MU_KINETIC: "mu_kinetic",
+    MU_KINETIC: "mu_k",
     WEAKENING: "weakening",
-    STRIBECK: "fall with velocity",
+    STRIBECK: "velocity",
     START: "start",
     RAMP: "ramp",
     PENALTY: "stiffness",
-    DASHPOT: "contact damping",
-    MATERIAL: "material damping",
+    DASHPOT: "damping",
+    MATERIAL: "material",
     TOLERANCE: "numerics",
 }
 
@@ -98,7 +98,7 @@ def band_figure(run: OpenedRun) -> Figure | None:
     groups: dict[str, list[BandMember]] = {}
     for member in band.members:
         groups.setdefault(_group_of(member), []).append(member)
-    figure, (above, below) = panels((2.2, 1.5), right=2.0, header=2)
+    figure, (above, below) = panels((2.2, 1.5), header=3)
     for place, members in enumerate(groups.values()):
         spread = np.linspace(-0.3, 0.3, len(members)) if len(members) > 1 else np.zeros(1)
         for offset, member in zip(spread, members, strict=True):
@@ -123,10 +123,11 @@ def band_figure(run: OpenedRun) -> Figure | None:
     below.set_ylim(bottom=0.0)
     below.set_ylabel("largest slip [mm]")
     above.set_xticks(range(len(groups)), [])
-    below.set_xticks(range(len(groups)), list(groups), rotation=25, ha="right", fontsize=7)
+    below.set_xticks(range(len(groups)), list(groups), fontsize=6.5)
+    below.set_xlabel("changed input, or several at once [-]")
     for axes in (above, below):
         axes.set_xlim(-0.6, len(groups) - 0.4)
-    above.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    legend_above(above, columns=4)
     sure = verdict.sure or ("unsure" if band.unsure else "the same outcome throughout")
     low, high = band.rotation_ratio or (0.0, 0.0)
     ratios = " to ".join(map(ratio_in_words, (low, high)))
