@@ -46,6 +46,11 @@ def at_most(what: str, value: float, limit: float, form: str = ".2f", *, details
     return Figure(what, f"{value:{form}}{details}", f"<= {limit:g}", value <= limit)
 
 
+def at_least(what: str, value: float, limit: float, form: str = ".2f") -> Figure:
+    """A value that must not be less than a limit."""
+    return Figure(what, f"{value:{form}}", f">= {limit:g}", value >= limit)
+
+
 def near(
     what: str, value: float, exact: float, accuracy: float, form: str = ".4f", *, details: str = ""
 ) -> Figure:

@@ -38,7 +38,7 @@ def map_of(model: str, cells: int, *, band: bool) -> Sweep:
         read_axis(FREQUENCY, {"from": 1.5, "to": 12.0, "count": cells, "scale": "log"}),
         read_axis(PEAK, {"from": 1.0, "to": 16.0, "count": cells}),
     )
-    perturbation = shipped.perturbation.model_copy(update={"cells": "near" if band else "none"})
+    perturbation = shipped.perturbation.model_copy(update={"cells": "auto" if band else "none"})
     base = shipped.base.with_values({"solver.model": model})
     return replace(shipped, base=base, axes=axes, perturbation=perturbation)
 
