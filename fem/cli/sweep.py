@@ -79,15 +79,23 @@ def page_of(info: dict[str, Any], folder: Path) -> str:
         lines.append(f"  under {info['motion_covered']}")
     for outcome, count in info["outcomes"].items():
         lines.append(f"  {outcome:12} {count:>8}  {100.0 * count / max(info['rows'], 1):5.1f} %")
-    if info["unsure"] is not None:
-        lines.append(
-            f"  {'unsure':12} {info['unsure']:>8}  {100.0 * info['unsure'] / max(info['rows'], 1):5.1f} %  "
-            f"of {info['perturbed']} cells perturbed"
-        )
+    held = info.get("held") or ""
+    if sure := info.get("sure"):
+        lines.append(f"  {held}" if held else "  of the outcomes")
+        for word, count in sure.items():
+            lines.append(f"  {word:13} {count:>7}  {100.0 * count / max(info['rows'], 1):5.1f} %")
+        lines.append(f"  by {info['copies']} copies of {info['perturbed']} cells")
+        if info["decided_by"]:
+            named = ", ".join(f"{key} ({count})" for key, count in list(info["decided_by"].items())[:4])
+            lines.append(f"  unsure cells are decided by {named}")
+        if info["left_out"]:
+            lines.append(f"  left out: {info['left_out']}")
     table = "rows.csv" if info["status"] == "interrupted" else "table.csv"
     lines.append(f"  {folder}: {table}, sweep.json" + "".join(f", {name}" for name in info["maps"]))
     if info["changes"] is not None:
-        lines.append(f"  {folder}: thresholds.csv, {info['changes']} changes of outcome refined")
+        lines.append(
+            f"  {folder}: thresholds.csv, {info['changes']} changes of outcome refined {held}".rstrip()
+        )
     if info["status"] == "interrupted":
         lines.append("  --resume continues")
     return "\n".join(lines)

@@ -1,4 +1,4 @@
-"""Maps over two axes: a colour for every cell, the change of outcome as a line, doubtful cells hatched.
+"""Maps over two axes: a colour for every cell, the change of outcome as a line, doubtful cells hatched or dotted.
 
 Cells are drawn side by side at equal size, whatever the spacing of their values; ticks stand at round values. Each
 panel is one map; all have the same axes and colours.
@@ -24,7 +24,7 @@ from fem.runtime.arrays import BoolArray, FloatArray
 
 COLUMNS = 3  #: of panels at most
 TICKS = 7
-HATCH = "////"
+HATCH, DOTS = "////", ".."
 WHITE = "#FFFFFF"
 CASED: list[AbstractPathEffect] = [
     withStroke(linewidth=2.8, foreground=WHITE)
@@ -78,6 +78,7 @@ class Panel:
     title: str = ""
     overturned: BoolArray | None = None  #: cells enclosed by a line; black where colours are a scale
     unsure: BoolArray | None = None  #: cells that are hatched
+    regime_unsure: BoolArray | None = None  #: cells that are dotted
     texts: Sequence[Sequence[str]] | None = None  #: within the cells
     curves: Sequence[MapCurve] = ()
 
@@ -133,7 +134,7 @@ def draw_heat_map(
         handles = _legend(panels, colours if isinstance(colours, Mapping) else {})
         handles += places[0].get_legend_handles_labels()[0]
         if handles:  # names of curves are long
-            columns = 4 if any(panel.curves for panel in panels) else 7
+            columns = 4 if len(handles) > 7 or any(panel.curves for panel in panels) else 7
             figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), columns))
     return figure
 
@@ -153,8 +154,13 @@ def _legend(panels: Sequence[Panel], colours: Mapping[str, str]) -> list[Any]:
     ]
     if not colours and any(panel.overturned is not None for panel in panels):
         handles.append(Patch(facecolor=BLACK, label="overturned"))
-    if any(panel.unsure is not None and panel.unsure.any() for panel in panels):
-        handles.append(Patch(facecolor=WHITE, edgecolor=BLACK, hatch=HATCH, label="unsure", linewidth=0))
+    signs = [(panel.regime_unsure, DOTS, "regime unsure") for panel in panels]
+    signs += [(panel.unsure, HATCH, "unsure") for panel in panels]
+    marked = {label: hatch for cells, hatch, label in signs if cells is not None and cells.any()}
+    if "regime unsure" in marked:
+        handles.append(Patch(facecolor=WHITE, edgecolor=GREY, label="sure: no sign", linewidth=0.5))
+    for label, hatch in marked.items():
+        handles.append(Patch(facecolor=WHITE, edgecolor=BLACK, hatch=hatch, label=label, linewidth=0))
     return handles
 
 
@@ -165,9 +171,10 @@ def _draw_over(axes: Axes, x: MapAxis, y: MapAxis, panel: Panel, *, cover: bool)
         shade = np.zeros((*fallen.shape, 4))
         shade[fallen] = to_rgba(BLACK)
         axes.imshow(shade, origin="lower", aspect="auto", interpolation="none")
-    if panel.unsure is not None:
-        _hatch(axes, panel.unsure & fallen, WHITE)
-        _hatch(axes, panel.unsure & ~fallen, BLACK)
+    for marked, hatch in ((panel.unsure, HATCH), (panel.regime_unsure, DOTS)):
+        if marked is not None:
+            _hatch(axes, marked & fallen, hatch, WHITE)
+            _hatch(axes, marked & ~fallen, hatch, BLACK)
     _outline(axes, fallen, WHITE, 1.6)
     _outline(axes, fallen, BLACK, 0.7)
     for row, words in enumerate(panel.texts or ()):
@@ -186,7 +193,7 @@ def _draw_over(axes: Axes, x: MapAxis, y: MapAxis, panel: Panel, *, cover: bool)
         )
 
 
-def _hatch(axes: Axes, cells: BoolArray, colour: str) -> None:
+def _hatch(axes: Axes, cells: BoolArray, hatch: str, colour: str) -> None:
     """Hatch cells, all as one path."""
     if not cells.any():
         return
@@ -195,7 +202,7 @@ def _hatch(axes: Axes, cells: BoolArray, colour: str) -> None:
         for row, column in np.argwhere(cells)
     ]
     path = Path.make_compound_path(*squares)
-    axes.add_patch(PathPatch(path, facecolor="none", edgecolor=colour, hatch=HATCH, linewidth=0))
+    axes.add_patch(PathPatch(path, facecolor="none", edgecolor=colour, hatch=hatch, linewidth=0))
 
 
 def _outline(axes: Axes, cells: BoolArray, colour: str, width: float) -> None:

@@ -23,7 +23,7 @@ from fem.html.units import number, short, typeset
 from fem.report.animation import colour_scale, packed
 from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions
 from fem.results.errors import FolderError
-from fem.sweep.table import SweepTable, open_sweep
+from fem.sweep.table import SURENESS, SweepTable, open_sweep
 
 #: what can be shown: column, words for it, unit, factor
 QUANTITIES = (
@@ -41,6 +41,8 @@ QUANTITIES = (
     ("band_rotation_ratio_high", "rotation ratio, perturbed, most", "", 1.0),
     ("wall_s", "computing time", "s", 1.0),
 )
+#: shown by a colour for every word: how sure a cell is; of folders of before, whether it is unsure
+FLAGS = (("sure", "how sure"), ("unsure", "unsure"))
 NEEDED = 3  #: of these, in the order above: without them no page is made
 MOST_BYTES = 3_600_000  #: of all columns, in base64
 COLOURS = 64
@@ -83,7 +85,8 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
         labels=[axis_label(axis.key, axis.unit) for axis in table.axes],
         longest=_longest(table),
         quantities=[(name, label) for name, label, *_ in QUANTITIES if name in known],
-        has_unsure="unsure" in known,
+        flags=[(name, label) for name, label in FLAGS if name in known],
+        deciding=deciding(table),
         counts=counts(table),
         computed=int((table["status"] != "").sum()),
         failures=failures(table),
@@ -156,7 +159,7 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
     outcome = {"name": "outcome", "label": "outcome", "unit": "", "factor": 1.0, "words": True}
     columns: list[dict[str, Any]] = [outcome | {"values": packed(found, "u1")}]
     if _has(table, "unsure"):
-        columns.append(_column(table, "unsure", "unsure", "", 1.0) | {"flag": True})
+        columns += _sureness(table)
     room = MOST_BYTES - sum(len(one["values"]) for one in columns)
     for k, (name, label, unit, factor) in enumerate(QUANTITIES):
         if k >= 1 and not _has(table, name):
@@ -186,6 +189,28 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
     }
 
 
+def _sureness(table: SweepTable) -> list[dict[str, Any]]:
+    """How sure each cell is and what decides, as numbers of words; in a folder of before, whether it is unsure."""
+    if "sure" not in table.columns:
+        names = ["sure", "unsure"]
+        return [_words("unsure", "unsure", np.where(table["unsure"] == 1.0, *reversed(names)), names)]
+    sure = np.where(table["sure"] == "", "not tried", table["sure"])
+    deciding = [
+        " ".join(name.rpartition(".")[2] for name in str(one).split()) or "-" for one in table["decided_by"]
+    ]
+    return [
+        _words("sure", "how sure", sure, [*SURENESS, "not tried"]),
+        _words("decided_by", "decided by", np.array(deciding), sorted(set(deciding))),
+    ]
+
+
+def _words(name: str, label: str, values: NDArray[Any], names: list[str]) -> dict[str, Any]:
+    """A column of words, as their places among `names`."""
+    places = np.array([names.index(str(one)) for one in values], dtype="<f4")
+    column = {"name": name, "label": label, "unit": "", "factor": 1.0, "names": names}
+    return column | {"values": packed(places, "<f4")}
+
+
 def axis_label(key: str, unit: str) -> str:
     """A key as people read it: contact.mu_static as `mu static`, with its unit."""
     name = key.rpartition(".")[2]
@@ -203,6 +228,12 @@ def counts(table: SweepTable) -> list[tuple[str, str, int, float]]:
         for name, label, colour, _ in OUTCOMES
         if found[name]
     ]
+
+
+def deciding(table: SweepTable) -> list[tuple[str, int]]:
+    """The inputs that decide unsure cells, and how many each; none for a folder of before."""
+    found = table.info.get("decided_by") or {}
+    return sorted(found.items(), key=lambda pair: -pair[1])
 
 
 def failures(table: SweepTable) -> list[tuple[int, str]]:

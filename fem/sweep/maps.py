@@ -1,7 +1,8 @@
 """Maps of a sweep: outcome, rotation and slip over two axes, drawn from its table alone.
 
 Two axes span a map; there is a panel for each combination of the others, unless they are held at one value. A line
-encloses the cells that overturn; unsure cells are hatched.
+encloses the cells that overturn; unsure cells are hatched, those unsure in their regime alone are dotted. The title
+says what the map holds fixed of the inputs that nobody knows.
 """
 
 from collections.abc import Mapping
@@ -17,10 +18,10 @@ from numpy.typing import NDArray
 
 from fem.batch.axes import Axis, axis_label
 from fem.figures.heat_map import MapAxis, Panel, draw_heat_map, value_label
-from fem.figures.style import GREY, STATE_COLOURS, VERMILLION, WIDTH, house_style, number, svg_of
+from fem.figures.style import BLACK, GREY, STATE_COLOURS, VERMILLION, WIDTH, house_style, number, svg_of
 from fem.results.files import write_atomically
 from fem.sweep.plan import MapChoice
-from fem.sweep.table import SweepTable
+from fem.sweep.table import REGIME_UNSURE, SweepTable
 
 OUTCOME_COLOURS = {**STATE_COLOURS, "failed": VERMILLION, "": "#FFFFFF"}
 MOST_PANELS = 12
@@ -81,6 +82,7 @@ def rotation_curve(table: SweepTable) -> Figure:
     numeric = all(not isinstance(value, bool | str) for value in axis.values)
     places = np.array(axis.values, dtype=float) if numeric else np.arange(len(axis.values), dtype=float)
     ratio = np.where(table.outcome == "overturned", 1.0, table["rotation_ratio"])
+    unsure = table.columns.get("unsure")
     low, high = table.columns.get("band_rotation_ratio_low"), table.columns.get("band_rotation_ratio_high")
     with house_style():
         figure = Figure(figsize=(WIDTH, 3.4), layout="constrained")
@@ -91,6 +93,17 @@ def rotation_curve(table: SweepTable) -> Figure:
             chosen = table.outcome == word
             if word and chosen.any():
                 axes.plot(places[chosen], ratio[chosen], "o", color=colour, markersize=4, label=word)
+        if unsure is not None and (unsure == 1.0).any():
+            chosen = unsure == 1.0
+            axes.plot(
+                places[chosen],
+                ratio[chosen],
+                "o",
+                color=BLACK,
+                fillstyle="none",
+                markersize=8,
+                label="unsure",
+            )
         if axis.scale == "log":
             axes.set_xscale("log")
         if not numeric:
@@ -99,7 +112,8 @@ def rotation_curve(table: SweepTable) -> Figure:
         axes.set_ylabel("largest rotation /\nslenderness angle [-]")
         axes.set_ylim(0.0, 1.05)
         axes.margins(x=0.02)
-        axes.set_title("Largest rotation and outcome; grey: the range of the perturbed copies")
+        title = "Largest rotation and outcome; grey: the range of the perturbed copies"
+        axes.set_title("\n".join(filter(None, (title, table.info.get("held")))))
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return figure
 
@@ -123,13 +137,14 @@ def _map(
         grid = column.reshape(table.shape)[tuple(pick.get(k, slice(None)) for k in range(len(table.axes)))]
         return grid.T if swapped else grid
 
-    unsure = table.columns.get("unsure")
+    unsure, sure = table.columns.get("unsure"), table.columns.get("sure")
     panels = [
         Panel(
             values=plane(values, pick),
             title=name,
             overturned=plane(table.outcome == "overturned", pick),
             unsure=None if unsure is None else plane(unsure == 1.0, pick),
+            regime_unsure=None if sure is None else plane(sure == REGIME_UNSURE, pick),
         )
         for name, pick in picks
     ]
@@ -139,7 +154,7 @@ def _map(
         map_axis(across),
         map_axis(up),
         panels,
-        title=f"{title}\n{subject}{more}",
+        title="\n".join(filter(None, (title, f"{subject}{more}", table.info.get("held")))),
         colours=colours,
         norm=norm,
         bar=bar,

@@ -20,9 +20,9 @@ from fem.sweep.cells import CellRows
 from fem.sweep.copies import CellCopies, Copy
 from fem.sweep.neighbours import around, band_width, coarse_cells, kind_of, near_cells
 from fem.sweep.plan import CopyItem, Sweep
+from fem.sweep.table import REGIME_UNSURE, SURE, UNSURE
 
 COLUMNS = ("cell", "member", "change", "status", "outcome", "rotation_ratio", "reason")
-SURENESS = SURE, REGIME_UNSURE, UNSURE = "sure", "regime unsure", "unsure"
 #: cells around one with another outcome that try the same change
 REACH = 2
 

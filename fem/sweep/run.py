@@ -30,10 +30,10 @@ from fem.sweep import perturbed
 from fem.sweep.cells import CellRows
 from fem.sweep.copies import left_out
 from fem.sweep.maps import draw_maps
-from fem.sweep.perturbed import SURENESS, UNSURE, PerturbedRows, band_rows, perturb_cells
+from fem.sweep.perturbed import PerturbedRows, band_rows, perturb_cells
 from fem.sweep.plan import Sweep
 from fem.sweep.refine import refine, table_of_changes
-from fem.sweep.table import FOUND, band_columns, open_sweep
+from fem.sweep.table import FOUND, SURENESS, UNSURE, band_columns, open_sweep
 
 ROWS, TABLE, MEMBERS, TRIED, CHANGES = "rows.csv", "table.csv", "members.csv", "tried.csv", "thresholds.csv"
 #: how often `sweep.json` is updated [s]

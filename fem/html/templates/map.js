@@ -8,12 +8,14 @@
   const canvas = byId("map"), pen = canvas.getContext("2d");
   const shown = byId("quantity"), across = byId("across"), up = byId("up");
   const INK = "#1c2330", QUIET = "#55606f", MARK = "#c2410c";
+  const SURENESS = { sure: "#e3e8ee", "regime unsure": "#f2c879", unsure: MARK, "not tried": "#ffffff" };
 
   const bytes = (text) => Uint8Array.from(atob(text), (sign) => sign.charCodeAt(0)).buffer;
   const sizes = sweep.axes.map((axis) => axis.values.length);
   const strides = sizes.map((_, k) => sizes.slice(k + 1).reduce((a, b) => a * b, 1));
   const columns = Object.fromEntries(sweep.columns.map((column) => [column.name, { ...column,
     values: column.words ? new Uint8Array(bytes(column.values)) : new Float32Array(bytes(column.values)) }]));
+  const unsure = columns.sure || columns.unsure;  // how sure; in folders of before, whether unsure
   const outcome = columns.outcome, fell = sweep.outcomes.findIndex((one) => one.name === "overturned");
 
   const place = sizes.map(() => 0);      // index along every axis: the chosen cell
@@ -32,7 +34,7 @@
   const valueOf = (column, cell) => {
     if (column.words) return sweep.outcomes[column.values[cell]].label;
     const value = column.values[cell];
-    if (column.flag) return Number.isNaN(value) ? "not tried" : value ? "yes" : "no";
+    if (column.names) return column.names[value];
     return withUnit(figures(value * column.factor), column.unit);
   };
   const quoted = (text) => (/^[\w.+\-=,/]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
@@ -53,8 +55,8 @@
   };
   const paint = (column, scale, cell) => {
     const word = sweep.outcomes[outcome.values[cell]];
-    if (column.words || !word.found || (outcome.values[cell] === fell && !column.flag)) return word.colour;
-    if (column.flag) return column.values[cell] ? MARK : "#e3e8ee";
+    if (column.words || !word.found || (outcome.values[cell] === fell && !column.names)) return word.colour;
+    if (column.names) return SURENESS[valueOf(column, cell)];
     const share = (column.values[cell] - scale[0]) / (scale[1] - scale[0]);
     if (!Number.isFinite(share)) return "#ffffff";
     return sweep.colours[Math.round(Math.min(Math.max(share, 0), 1) * (sweep.colours.length - 1))];
@@ -71,14 +73,18 @@
     const left = 62, right = 10, top = 10, bottom = 46;
     frame = { left, top, a, b, columnCount, rowCount, w: (wide - left - right) / columnCount,
       h: Math.min((high - top - bottom) / rowCount, b < 0 ? 60 : Infinity) };
-    const column = columns[shown.value], scale = column.words || column.flag ? null : scaleOf(column), where = [...place];
+    const column = columns[shown.value], scale = column.words || column.names ? null : scaleOf(column), where = [...place];
     for (let i = 0; i < columnCount; i++) for (let j = 0; j < rowCount; j++) {
       where[a] = i; if (b >= 0) where[b] = j;
       const cell = cellAt(where), x = left + i * frame.w, y = top + (rowCount - 1 - j) * frame.h;
       const x0 = Math.round(x), y0 = Math.round(y);  // whole pixels: no seams between cells
       pen.fillStyle = paint(column, scale, cell);
       pen.fillRect(x0, y0, Math.round(x + frame.w) - x0, Math.round(y + frame.h) - y0);
-      if (columns.unsure && columns.unsure.values[cell] === 1 && !column.flag) {  // unsure: crossed out
+      if (unsure && !column.names && valueOf(unsure, cell) === "regime unsure") {  // a dot
+        pen.fillStyle = "#ffffff"; pen.beginPath(); pen.arc(x + 0.5 * frame.w, y + 0.5 * frame.h, 0.2 * Math.min(frame.w, frame.h), 0, 7); pen.fill();
+        pen.strokeStyle = INK; pen.lineWidth = 0.8; pen.stroke();
+      }
+      if (unsure && !column.names && valueOf(unsure, cell) === "unsure") {  // crossed out
         pen.strokeStyle = "rgba(255,255,255,.9)"; pen.lineWidth = Math.min(3, 0.3 * frame.w);
         pen.beginPath(); pen.moveTo(x + 0.15 * frame.w, y + 0.85 * frame.h); pen.lineTo(x + 0.85 * frame.w, y + 0.15 * frame.h); pen.stroke();
         pen.strokeStyle = INK; pen.lineWidth = Math.min(1.2, 0.15 * frame.w); pen.stroke();
@@ -124,7 +130,7 @@
       const item = document.createElement("span"), patch = document.createElement("span");
       patch.className = "swatch"; patch.style.background = colour; item.append(patch, text); box.append(item);
     };
-    if (column.flag) { swatch(MARK, column.label); swatch("#e3e8ee", `not ${column.label}`); return; }
+    if (column.names) { column.names.forEach((name, k) => { if (column.values.includes(k)) swatch(SURENESS[name], name); }); return; }
     const seen = new Set(outcome.values);
     sweep.outcomes.forEach((one, k) => { if (seen.has(k) && (column.words || !one.found || k === fell)) swatch(one.colour, one.label); });
     if (scale) {
@@ -133,7 +139,10 @@
       ramp.style.flex = "0 1 9rem"; ramp.style.height = ".9rem";
       box.append(`${column.label}: ${figures(scale[0] * column.factor, 3)}`, ramp, withUnit(figures(scale[1] * column.factor, 3), column.unit));
     }
-    if (columns.unsure && columns.unsure.values.includes(1)) box.append(" / unsure");
+    if (unsure) [["unsure", "/ unsure"], ["regime unsure", "○ regime unsure"]].forEach(([name, text]) => {
+      if (unsure.values.includes(unsure.names.indexOf(name))) box.append(` ${text}`);
+    });
+    if (columns.sure) box.append(" no sign: sure");
   };
 
   // ---- the chosen cell --------------------------------------------------------------------------------------

@@ -51,8 +51,13 @@ def folder(tmp_path):
         "derived": {"contact.mu_kinetic": f"0.5 * {MU}"},
         "cells": 6,
         "rows": 6,
-        "unsure": 1,
+        "held": "with mu_k = mu_s/2 falling at once",
+        "unsure": 2,
+        "sure": {"sure": 3, "regime unsure": 1, "unsure": 2},
+        "decided_by": {"contact.mu_kinetic": 1, "motion.start": 1},
+        "left_out": "pairs",
         "perturbed": 2,
+        "copies": 7,
         "maps": ["../outside.svg"],
         "sweep_hash": "ab" * 32,
         "versions": {"unanchored": "0.1.0"},
@@ -75,7 +80,9 @@ def folder(tmp_path):
             "reason": "" if outcome else "no <b>balance",
             "rotation_ratio": 0.01 * cell if outcome else "",
             "max_slip_m": 0.001 * cell if outcome else "",
-            "unsure": "true" if cell == 2 else "false",
+            "unsure": "true" if cell in (2, 5) else "false",
+            "sure": ("sure", "regime unsure", "unsure", "sure", "sure", "unsure")[cell],
+            "decided_by": "contact.mu_kinetic motion.start" if cell == 2 else "",
         }
         lines.append(",".join(str(row[name]) for name in columns))
     (place / "table.csv").write_text("\n".join(lines) + "\n")
@@ -94,8 +101,36 @@ def test_cells_carry_their_outcomes_and_values(folder):
     assert words == ["rest", "rest", "slide", "rest", "overturned", "failed"]
     np.testing.assert_allclose(column(data, "max_slip_m")[:5], 0.001 * np.arange(5), rtol=1e-6)
     assert np.isnan(column(data, "rotation_ratio")[5])
-    assert list(column(data, "unsure")) == [0, 0, 1, 0, 0, 0]
+    assert words_in(data, "sure") == ["sure", "regime unsure", "unsure", "sure", "sure", "unsure"]
+    assert words_in(data, "decided_by") == ["-", "-", "mu_kinetic start", "-", "-", "-"]
     assert not [one["name"] for one in data["columns"] if one["name"] == "impacts"]  # nothing was found of it
+
+
+def words_in(data, name):
+    names = next(one["names"] for one in data["columns"] if one["name"] == name)
+    return [names[int(place)] for place in column(data, name)]
+
+
+def test_the_page_says_what_is_held_and_what_decides(folder):
+    page = sweep_report(folder)
+    assert "with mu_k = mu_s/2 falling at once" in page
+    assert "1 are <strong>regime unsure</strong>" in page and "2 are <strong>unsure</strong>" in page
+    assert "<code>contact.mu_kinetic</code> (1), <code>motion.start</code> (1)" in page
+    assert "Left out: pairs." in page
+
+
+def test_a_folder_of_before_still_opens(folder):
+    """Its table has no columns `sure` and `decided_by`, and its sweep.json no counts of them."""
+    header, *rows = (line.split(",") for line in (folder / "table.csv").read_text().splitlines())
+    kept = [k for k, name in enumerate(header) if name not in ("sure", "decided_by")]
+    lines = [",".join(row[k] for k in kept) for row in (header, *rows)]
+    (folder / "table.csv").write_text("\n".join(lines) + "\n")
+    info = json.loads((folder / "sweep.json").read_text())
+    for name in ("held", "sure", "decided_by", "left_out", "copies"):
+        del info[name]
+    (folder / "sweep.json").write_text(json.dumps(info))
+    assert words_in(map_data(open_sweep(folder), folder), "unsure")[2] == "unsure"
+    assert "2 cells are unsure" in sweep_report(folder)
 
 
 def test_the_command_of_a_cell_repeats_it(folder):

@@ -29,8 +29,10 @@ def table_of(*axes):
         "rotation_ratio": np.linspace(0.0, 1.0, count),
         "max_slip_m": np.linspace(0.0, 0.1, count),
         "unsure": (np.arange(count) % 3 == 0).astype(float),
+        "sure": np.array(["unsure", "regime unsure", "sure"], dtype=object)[np.arange(count) % 3],
     }
-    return SweepTable(info={"title": "A <title> & more", "sweep": "try"}, axes=axes, columns=columns)
+    info = {"title": "A <title> & more", "sweep": "try", "held": "with mu_k = mu_s/2"}
+    return SweepTable(info=info, axes=axes, columns=columns)
 
 
 def panels_of(figure):
@@ -41,6 +43,13 @@ def test_keys_are_named_for_people():
     assert axis_label(PEAK) == "peak acceleration [m/s²]"
     assert axis_label(MU) == "mu static [-]"
     assert axis_label(MODEL) == "model"
+
+
+def test_a_map_says_what_it_holds_and_how_sure_its_cells_are():
+    figure = sweep_map(table_of(FREQUENCY, PEAK), "outcome", MapChoice())
+    assert "with mu_k = mu_s/2" in figure.get_suptitle()
+    legend = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert {"sure: no sign", "regime unsure", "unsure"} <= set(legend)
 
 
 def test_two_axes_span_a_map_and_the_rest_has_panels():
