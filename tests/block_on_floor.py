@@ -259,6 +259,7 @@ def _control(block: Block, largest_step: float, fixed_step: bool, energy_scale: 
         slenderness_angle=rigid.slenderness_angle,
         width=block.width,
         stop_when_overturned=True,
+        contents_cutoff=200.0,
         top_monitors=0,
         base_points=2,
     )

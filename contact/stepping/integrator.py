@@ -19,6 +19,7 @@ from contact.interface.solver import Contact
 from contact.jit import compiled
 from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
 from contact.stepping.body import ROTATION, complete, prepared, shift_velocity, sizes_match
+from contact.stepping.contents import follow_contents, shift_contents
 from contact.stepping.control import (
     STEPS_PER_OCTAVE,
     allowed_imbalance,
@@ -122,6 +123,7 @@ def enter_floor_frame(body: Any, run: RunState, floor_velocity: float) -> None:
     The floor is at rest in this frame; the container gets no impulse.
     """
     shift_velocity(body, run.old, floor_velocity)
+    shift_contents(run.contents, floor_velocity)
     complete(body, run.old, run.floor[0, 0])
     for side in range(2):
         run.floor[side, 1], run.floor[side, 2] = 0.0, 0.0
@@ -187,8 +189,9 @@ def advance(body: Any, run: RunState, until: float) -> int:
             dissipated, 0.0
         )
         update_records(run, step, slip_step, slip_velocity, every)
-        clock.samples = sample(body, run, run.history, clock.samples, clock.samples_drained, step, slip_step)
-        clock.frames = sample(body, run, run.frames, clock.frames, clock.frames_drained, step, slip_step)
+        follow_contents(body, run, step)
+        clock.samples = sample(run, run.history, clock.samples, clock.samples_drained, step, slip_step)
+        clock.frames = sample(run, run.frames, clock.frames, clock.frames_drained, step, slip_step)
         close_step(run, step, slip_step, iterations)
         # The imbalance of one step may vanish by chance while it changes sign: remember the last steps.
         recent = max(min(used, 1.0), FADING * clock.allowance_used)

@@ -1,8 +1,5 @@
 """Samples of a run on an exact grid of times, interpolated within the accepted step."""
 
-from typing import Any
-
-import numpy as np
 from numba.extending import register_jitable
 
 from contact.arrays import FloatArray
@@ -16,7 +13,6 @@ from contact.stepping.body import (
     VELOCITY_X,
     VELOCITY_Z,
     State,
-    observe,
 )
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.scheme import hermite
@@ -64,26 +60,6 @@ def write_columns(
 
 
 @compiled(inline=True)
-def follow_contents(run: RunState, s: float, interval: float) -> None:
-    """Largest mean acceleration of the monitored contents over an interval of the history.
-
-    The instantaneous acceleration under a dashpot at a point grows without bound as the step decreases; the mean over
-    a sampling interval, which an accelerometer would record, does not.
-    """
-    old, new, watched = run.old.monitor, run.new.monitor, run.monitor_velocity
-    for i in range(watched.shape[0]):
-        x = (1.0 - s) * old[i, 2] + s * new[i, 2]
-        z = (1.0 - s) * old[i, 3] + s * new[i, 3]
-        if i < run.control.top_monitors:
-            sway = abs((1.0 - s) * old[i, 0] + s * new[i, 0])
-            run.track[0].max_top_displacement = max(run.track[0].max_top_displacement, sway)
-        else:
-            size = np.hypot(x - watched[i, 0], z - watched[i, 1]) / interval
-            run.track[0].max_acceleration = max(run.track[0].max_acceleration, size)
-        watched[i, 0], watched[i, 1] = x, z
-
-
-@compiled(inline=True)
 def write_coordinates(samples: Samples, at: int, old: State, new: State, s: float, step: float) -> None:
     """Coordinates and their rates at the share `s` of the step, where the samples keep them."""
     for j in range(samples.position.shape[1]):
@@ -96,7 +72,7 @@ def write_coordinates(samples: Samples, at: int, old: State, new: State, s: floa
 
 @register_jitable(forceinline=True)
 def sample(
-    body: Any, run: RunState, samples: Samples, written: int, origin: int, step: float, slip_step: float
+    run: RunState, samples: Samples, written: int, origin: int, step: float, slip_step: float
 ) -> int:
     """Write the samples from the old time up to and including the new time; returns the number of samples so far.
 
@@ -104,7 +80,7 @@ def sample(
     interpolated by cubics through positions and velocities of both ends, all else linearly.
     """
     old, new, clock = run.old, run.new, run.clock[0]
-    observed, end = False, clock.time + step
+    end = clock.time + step
     while written - origin < samples.mode.size:
         time = written * samples.interval if written > 0 else 0.0
         if time - end > SAME_INSTANT * end:  # 12 x 0.1 s is more than 1.2 s by rounding
@@ -118,10 +94,5 @@ def sample(
         samples.mode[at] = run.track[0].mode
         if samples.columns.shape[1] > 0:
             write_columns(run, samples.columns[at], samples.force[at], time, s, step, slip_step)
-            if not observed:
-                observe(body, old, run.floor[0, 0])
-                observe(body, new, run.floor[1, 0])
-                observed = True
-            follow_contents(run, s, samples.interval if written > 0 else np.inf)
         written += 1
     return written

@@ -62,6 +62,7 @@ class Control(NamedTuple):
     slenderness_angle: float  #: [rad]
     width: float  #: [m]
     stop_when_overturned: bool
+    contents_cutoff: float  #: of the filter of the acceleration of the contents [rad/s]
     top_monitors: int  #: number of monitored points at the top; they come first
     base_points: int  #: number of contact points of the base; they come first
 
@@ -98,6 +99,7 @@ STEP_RECORD = np.dtype(
         ("rest_since", "f8"),  # at every look since then the container was at rest
         ("next_look", "f8"),
         # samples
+        ("unobserved", "f8"),  # time since the contents were observed last
         ("samples", "i8"),  # of the history, so far
         ("samples_drained", "i8"),  # of these no longer in the arrays
         ("frames", "i8"),
@@ -153,7 +155,7 @@ class RunState(NamedTuple):
     ledger: FloatArray  #: (5,) [J]
     clock: Any  #: (1,) of STEP_RECORD
     track: Any  #: (1,) of `observables.OBSERVABLES`
-    monitor_velocity: FloatArray  #: (n_m, 2) velocities of the monitored points at the last sample [m/s]
+    contents: FloatArray  #: (8, 2 n_m) filter of the contents, see `contact.stepping.contents`
     history: Samples
     frames: Samples
 
@@ -192,7 +194,7 @@ def make_run(
         ledger=np.zeros(LEDGER_ROWS),
         clock=clock,
         track=make_observables(),
-        monitor_velocity=np.zeros((old.monitor.shape[0], 2)),
+        contents=np.zeros((8, 2 * (old.monitor.shape[0] - control.top_monitors))),
         history=history,
         frames=frames,
     )

@@ -26,6 +26,7 @@ from fem.runtime.arrays import FloatArray
 MODE_NAMES = {REST: "rest", SLIDE: "slide", ROCK: "rock", SLIDE_ROCK: "slide-rock", FALLEN: "overturned"}
 RotationT = TypeVar("RotationT", float, FloatArray)
 
+CONTENTS_FILTER = "Butterworth low-pass of two poles, causal"  #: `contact.stepping.contents`
 SLIDING = 1e-4  #: slip over the width that counts as sliding
 
 
@@ -155,7 +156,8 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
         elastic_frequencies_Hz=tuple(model.frequencies[:elastic].tolist()),
         attachment_frequencies_Hz=tuple(model.frequencies[elastic:].tolist()),
         corner_force_window_s=FORCE_WINDOW / run.control.frequency_parameter,
-        acceleration_window_s=run.history.interval,
+        contents_filter=CONTENTS_FILTER,
+        contents_filter_Hz=model.case.output.contents_filter_Hz,
     )
 
 

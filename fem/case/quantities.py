@@ -195,6 +195,7 @@ ENERGY_TOLERANCE = Quantity(unit="", least=1e-3, most=30.0, advice="1 is usual, 
 STEP = Quantity(unit="s", least=1e-9, most=10.0, advice='"auto" chooses it')
 DURATION = Quantity(unit="s", least=1e-3, most=1e4, typical=20.0, slips={"milliseconds": 1e-3})
 SAMPLING = Quantity(unit="s", least=1e-7, most=1e4)
+CONTENTS_FILTER = Quantity(unit="Hz", least=1.0, most=1000.0, advice="33 is usual")
 FRAME_INTERVAL = Quantity(unit="s", least=0.0, most=1e4, advice="0 writes no fields")
 
 BOXES = Quantity(unit="", least=1, most=50)

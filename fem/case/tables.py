@@ -319,6 +319,9 @@ class OutputTable(CaseTable):
 
     history_s: Annotated[float, q.SAMPLING] = _key("interval of the history", 0.005)
     fields_s: Annotated[float, q.FRAME_INTERVAL] = _key("interval of the fields for ParaView; 0: none", 0.05)
+    contents_filter_Hz: Annotated[float, q.CONTENTS_FILTER] = _key(  # noqa: N815
+        "acceleration of the contents: cut-off of its low-pass filter, Butterworth of two poles", 33.0
+    )
     figures: bool = _key("draw the figures of a run, as SVG", True)
     stop_when_overturned: bool = _key("end the run when the container lies on its side", True)
 

@@ -135,6 +135,7 @@ def control_of(
         slenderness_angle=static.slenderness_angle,
         width=mesh.width,
         stop_when_overturned=case.output.stop_when_overturned,
+        contents_cutoff=2.0 * math.pi * case.output.contents_filter_Hz,
         top_monitors=2,
         base_points=base,
     )

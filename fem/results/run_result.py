@@ -255,7 +255,9 @@ class Numerics(JsonBlock):
     elastic_frequencies_Hz: tuple[float, ...] = ()
     attachment_frequencies_Hz: tuple[float, ...] = ()
     corner_force_window_s: float | None = None
-    acceleration_window_s: float | None = None
+    acceleration_window_s: float | None = None  #: former versions: a mean in place of the filter
+    contents_filter: str | None = None  #: kind and order
+    contents_filter_Hz: float | None = None  #: its cut-off
 
 
 @dataclass(frozen=True, kw_only=True)

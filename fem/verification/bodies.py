@@ -126,6 +126,7 @@ def free_run(
             mass=body.mass,
             gravity=body.gravity,
             base_points=points,
+            contents_cutoff=200.0,
             top_monitors=0,
         ),
         old=old,
