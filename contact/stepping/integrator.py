@@ -74,7 +74,8 @@ def update_records(run: RunState, step: float, slip_step: float, slip_velocity: 
         every,
         clock.slip + slip_step,
         slip_step,
-        run.floor[1, 2],
+        run.floor,
+        run.change[FRICTION],
     )
 
 

@@ -2,8 +2,8 @@
 
 A side is open, and the body turns about the other one, when only the outer part of the base at the other side is in
 contact: a flat base on an elastic bed opens at one edge long before that. The corners are the first and the last
-base point. An impact counts if a corner closes whose gap had exceeded a thousandth of width times slenderness angle
-while the other corner was the pivot.
+base point. An impact counts if the container has rocked and a corner closes whose gap had exceeded a thousandth of
+width times slenderness angle while the other corner was the pivot.
 """
 
 import math
@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 from numba.extending import register_jitable
 
-from contact.stepping.body import ANGULAR_VELOCITY, POTENTIAL, ROTATION, State
+from contact.arrays import FloatArray
+from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, POTENTIAL, ROTATION, State
 from contact.stepping.scheme import hermite
 
 NEVER = math.inf  #: time of an event that has not happened
@@ -21,14 +22,18 @@ NEVER = math.inf  #: time of an event that has not happened
 OPENING = 1e-9
 #: gap whose closing counts as an impact, over width times slenderness angle
 IMPACT_GAP = 1e-3
-#: averaging time of the angular velocity after an impact, which rings, over 1/p
-AVERAGED = 0.1
 #: averaging time of corner forces, over 1/p: dashpots make the instantaneous force meaningless
 FORCE_WINDOW = 0.01
 #: outer part of the base about which the body turns when the rest is open, over the width
 PIVOT = 0.15
 #: rotation ratio above which motion with an open side is rocking
 ROCKING = 0.01
+
+#: path over the width that counts as sliding
+SLIDING = 1e-4
+#: friction heat between the turning points around an impact, over the energy before it, from which it slides: unloading
+#: points slip a little at every impact
+SLIDING_HEAT = 0.02
 
 #: modes of motion as stored in a history, and as bits in `modes`
 REST, SLIDE, ROCK, SLIDE_ROCK, FALLEN = 0, 1, 2, 3, 4
@@ -61,15 +66,14 @@ OBSERVABLES = np.dtype(
         ("right_open", "i8"),
         ("left_gap", "f8"),  # largest gap of this corner since it opened with the other as pivot
         ("right_gap", "f8"),
-        ("peak_energy", "f8"),  # potential energy above rest at the last turning point
-        ("restitution_by_peaks", "f8"),
-        ("angular_acceleration", "f8"),  # angular acceleration over the last step
-        ("rigid_gain", "f8"),  # change of a rigid block's angular velocity since the first impact
-        ("averaging_time", "f8"),  # over which the angular velocity has been averaged
-        ("mean_velocity", "f8"),
-        ("velocity_before", "f8"),  # angular velocity just before the first impact
-        ("new_pivot", "i8"),  # pivot before the first impact: -1 left, +1 right, 0 none
-        ("restitution_by_velocity", "f8"),
+        (
+            "turning_energy",
+            "f8",
+        ),  # potential energy above rest at the last turning point before the first impact
+        ("work_before", "f8"),  # of the floor's motion, from there to the first impact
+        ("work_after", "f8"),  # .. and since
+        ("heat", "f8"),  # of friction, since that turning point
+        ("restitution", "f8"),  # of the first impact
     ],
     align=True,
 )
@@ -80,7 +84,7 @@ def make_observables() -> Any:
     track = np.zeros(1, OBSERVABLES).view(np.recarray)
     for name in ("first_opening", "first_uplift", "overturned_at", "first_impact"):
         track[name] = NEVER
-    for name in ("restitution_by_peaks", "restitution_by_velocity", "peak_energy", "velocity_before"):
+    for name in ("restitution", "turning_energy"):
         track[name] = np.nan
     return track
 
@@ -129,7 +133,8 @@ def update_observables(
     sliding: bool,
     slip: float,
     slip_step: float,
-    floor_acceleration: float,
+    floor: FloatArray,
+    heat: float,
 ) -> None:
     """Update the observables with the accepted step from `old` to `new`.
 
@@ -140,7 +145,8 @@ def update_observables(
         time: at its end [s]; step: its length [s].
         sliding: every loaded point slides.
         slip: container against floor so far, signed [m]; slip_step: of this step [m].
-        floor_acceleration: at the end of the step [m/s2].
+        floor: (2, 3) displacement, velocity, acceleration of the floor before and after the step.
+        heat: of friction in this step [J].
     """
     n = control.base_points
     rotation = new.pose[ROTATION]
@@ -189,14 +195,15 @@ def update_observables(
         track.mode = FALLEN
     track.modes |= 1 << track.mode
     track.left_open, track.right_open = left_open, right_open
-    struck = find_impact(track, control, old, new, step)
-    follow_restitution(track, control, old, new, time, step, struck, floor_acceleration)
-    track.angular_acceleration = (new.pose[ANGULAR_VELOCITY] - old.pose[ANGULAR_VELOCITY]) / step
+    if has_impact(track, control, old, new):
+        track.impacts += 1
+        track.first_impact = min(track.first_impact, time)
+    follow_restitution(track, control, old, new, step, floor, heat)
 
 
 @register_jitable(forceinline=True)
-def find_impact(track: Any, control: Any, old: State, new: State, step: float) -> int:
-    """Corner of a counted impact in this step: -1 left, +1 right, 0 none."""
+def has_impact(track: Any, control: Any, old: State, new: State) -> bool:
+    """Whether an impact that counts falls in this step."""
     last = control.base_points - 1
     counts = IMPACT_GAP * control.width * control.slenderness_angle
     left, right = new.point[0, 1], new.point[last, 1]
@@ -204,64 +211,45 @@ def find_impact(track: Any, control: Any, old: State, new: State, step: float) -
         track.left_gap = max(track.left_gap, left)
     if right > 0.0 and left <= 0.0:
         track.right_gap = max(track.right_gap, right)
-    struck = 0
+    struck = False
     if left <= 0.0 and old.point[0, 1] > 0.0:
-        if track.left_gap > counts:
-            struck = -1
+        struck = track.left_gap > counts
         track.left_gap = 0.0
     if right <= 0.0 and old.point[last, 1] > 0.0:
-        if track.right_gap > counts:
-            struck = 1
+        struck = struck or track.right_gap > counts
         track.right_gap = 0.0
-    if struck != 0:
-        track.impacts += 1
-    return struck
+    return struck and track.modes & (1 << ROCK | 1 << SLIDE_ROCK) != 0
 
 
 @register_jitable(forceinline=True)
 def follow_restitution(
-    track: Any,
-    control: Any,
-    old: State,
-    new: State,
-    time: float,
-    step: float,
-    struck: int,
-    floor_acceleration: float,
+    track: Any, control: Any, old: State, new: State, step: float, floor: FloatArray, heat: float
 ) -> None:
-    """Restitution of the first impact, from angular velocities and from the heights of the peaks around it.
+    """Restitution of the first impact: root of the energy of rocking after it over that before.
 
-    The impact has a duration and causes ringing. So the velocity after it is a mean over `AVERAGED`, after subtracting
-    the change that a rigid block rocking about the new pivot would have had since the impact.
+    Energy of rocking is the potential energy above rest at a turning point. The work of the floor's motion between a
+    turning point and the impact is added to it, so both energies are those at the impact: of a rigid block, half its
+    inertia about the pivot times the angular velocity squared. Vibration of the container or its contact does not
+    enter. Bounces on the way from one turning point to the other belong to the impact. There is no restitution if the
+    container slides on the way (`SLIDING_HEAT`), or if it does not turn.
     """
-    velocity = new.pose[ANGULAR_VELOCITY]
-    if struck != 0 and track.impacts == 1:
-        corner = 0 if struck < 0 else control.base_points - 1
-        gap, depth = old.point[corner, 1], -new.point[corner, 1]
-        track.first_impact = time
-        track.velocity_before = old.pose[ANGULAR_VELOCITY] + track.angular_acceleration * step * gap / (
-            gap + depth
-        )
-        track.new_pivot = -struck
-    elif track.new_pivot != 0:
-        corner = control.base_points - 1 if track.new_pivot > 0 else 0
-        lean = -track.new_pivot * control.slenderness_angle - new.pose[ROTATION]
-        pull = math.sin(lean) + floor_acceleration / control.gravity * math.cos(lean)
-        track.rigid_gain -= step * control.frequency_parameter**2 * pull
-        if new.point[corner, 1] > IMPACT_GAP * control.width * control.slenderness_angle:
-            track.mean_velocity += step * (velocity - track.rigid_gain)
-            track.averaging_time += step
-        if struck != 0 or track.averaging_time >= AVERAGED / control.frequency_parameter:
-            if track.averaging_time >= 0.5 * AVERAGED / control.frequency_parameter:
-                ratio = track.mean_velocity / (track.averaging_time * track.velocity_before)
-                if ratio > 0.0:  # otherwise it did not change to the new pivot, and there is no ratio
-                    track.restitution_by_velocity = ratio
-            track.new_pivot = 0
-    turned = old.pose[ANGULAR_VELOCITY] * velocity < 0.0 or old.pose[ANGULAR_VELOCITY] == 0.0
+    moved = new.pose[CENTRE_X] - old.pose[CENTRE_X] - (floor[1, 0] - floor[0, 0])
+    work = -control.mass * (floor[1, 1] - floor[0, 1]) / step * moved
+    track.heat += heat
+    if track.impacts == 0:
+        track.work_before += work
+    else:
+        track.work_after += work
+    before, after = old.pose[ANGULAR_VELOCITY], new.pose[ANGULAR_VELOCITY]
     aside = abs(new.pose[ROTATION]) > ROCKING * control.slenderness_angle
-    if turned and aside and track.left_open + track.right_open == 1:
-        energy = max(old.energy[POTENTIAL], new.energy[POTENTIAL]) - control.resting_energy
-        if track.impacts == 1 and not track.restitution_by_peaks >= 0.0 and track.peak_energy > 0.0:
-            track.restitution_by_peaks = math.sqrt(max(energy, 0.0) / track.peak_energy)
-        if track.impacts == 0:
-            track.peak_energy = energy
+    if not (before * after < 0.0 or before == 0.0) or not aside or track.left_open + track.right_open != 1:
+        return
+    energy = max(old.energy[POTENTIAL], new.energy[POTENTIAL]) - control.resting_energy
+    if track.impacts == 0:
+        track.turning_energy = energy
+        track.work_before, track.work_after, track.heat = 0.0, 0.0, 0.0
+    elif track.turning_energy > 0.0:
+        before, after = track.turning_energy + track.work_before, energy - track.work_after
+        if before > 0.0 and track.heat <= SLIDING_HEAT * before:
+            track.restitution = math.sqrt(max(after, 0.0) / before)
+        track.turning_energy = np.nan

@@ -71,9 +71,7 @@ def write_coordinates(samples: Samples, at: int, old: State, new: State, s: floa
 
 
 @register_jitable(forceinline=True)
-def sample(
-    run: RunState, samples: Samples, written: int, origin: int, step: float, slip_step: float
-) -> int:
+def sample(run: RunState, samples: Samples, written: int, origin: int, step: float, slip_step: float) -> int:
     """Write the samples from the old time up to and including the new time; returns the number of samples so far.
 
     `written` samples exist before, and the first `origin` of them are no longer in the arrays. Positions are

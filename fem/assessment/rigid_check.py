@@ -19,8 +19,7 @@ from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 from contact.reference.planar_motion import PlanarImpact, PlanarMode
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import RockingImpact, simulate_rocking
-from contact.stepping.observables import IMPACT_GAP, ROCKING
-from fem.assessment.verdict import SLIDING
+from contact.stepping.observables import ROCKING, SLIDING
 from fem.case.case import Case
 from fem.model.model import Model
 from fem.results.history import ANALYTIC_COLUMN, History
@@ -139,7 +138,7 @@ def follow_block(model: Model, end: float) -> Reference:
 
     def had_tilted(at: RotationAt, impact: PlanarImpact | RockingImpact) -> bool:
         before, _ = at(np.linspace(0.0, impact.time, 512))
-        return bool(np.nanmax(np.abs(before)) > IMPACT_GAP * model.static.slenderness_angle)
+        return bool(np.nanmax(np.abs(before)) > ROCKING * model.static.slenderness_angle)
 
     sliding = simulate_planar_block(
         PlanarBlock(body=block, mu_static=case.contact.mu_static, mu_kinetic=case.contact.mu_kinetic),

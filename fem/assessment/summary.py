@@ -210,7 +210,7 @@ def result_rows(result: RunResult) -> list[tuple[str, str]]:
         ("displacement of the top", _lengths(verdict.max_top_displacement_m)),
         (
             "acceleration of the contents",
-            _mean(verdict.max_acceleration_m_s2, 1.0, "m/s2", numerics.acceleration_window_s),
+            _filtered(verdict.max_acceleration_m_s2, numerics),
         ),
         ("von Mises stress", _unit(verdict.max_von_mises_Pa, 1e-6, "MPa")),
         ("outcomes of the band", _band(verdict.band)),
@@ -232,6 +232,7 @@ def numerics_rows(result: RunResult) -> list[tuple[str, str]]:
     rows = [
         ("energy balance error", _balance(result.energy or Energy())),
         ("steps", _steps(numerics)),
+        ("filters", _filters(numerics)),
         ("computing time", _times(result, numerics)),
     ]
     return [(name, value) for name, value in rows if value]
@@ -255,7 +256,7 @@ def ratio_in_words(ratio: float) -> str:
 def _restitution(verdict: Verdict, static: StaticResult) -> str:
     found, housner = verdict.restitution_first, static.housner_restitution
     if found is None:
-        return ""
+        return "-" if verdict.impacts else ""
     return f"{found:.3f}" + (f" (Housner {housner:.3f})" if housner is not None else "")
 
 
@@ -383,6 +384,23 @@ def _mean(value: float | None, factor: float, unit: str, window: float | None) -
     """A value that is a mean over a window [s]: the instantaneous value in an impact means nothing."""
     mean = "" if value is None or window is None else f", mean over {1e3 * window:.2g} ms"
     return _unit(value, factor, unit) + mean
+
+
+def _filtered(acceleration: float | None, numerics: Numerics) -> str:
+    """An acceleration [m/s2] with its filter; former versions took a mean."""
+    cutoff = numerics.contents_filter_Hz
+    if acceleration is None or cutoff is None:
+        return _mean(acceleration, 1.0, "m/s2", numerics.acceleration_window_s)
+    return f"{_number(acceleration, 1.0)} m/s2, low-pass {cutoff:g} Hz"
+
+
+def _filters(numerics: Numerics) -> str:
+    """How forces and accelerations of an impact, whose instantaneous values mean nothing, are averaged."""
+    if numerics.contents_filter is None or numerics.contents_filter_Hz is None:
+        return ""
+    window = numerics.corner_force_window_s
+    force = "" if window is None else f"; corner force: mean over {1e3 * window:.2g} ms"
+    return f"contents: {numerics.contents_filter}, {numerics.contents_filter_Hz:g} Hz{force}"
 
 
 def _number(value: float | None, factor: float, form: str = ".4g") -> str:

@@ -17,7 +17,7 @@ from contact.stepping.ledger import (
     LOSS_SHARE_LIMIT,
     MATERIAL_DAMPING,
 )
-from contact.stepping.observables import FALLEN, FORCE_WINDOW, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
+from contact.stepping.observables import FALLEN, FORCE_WINDOW, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK, SLIDING
 from fem.model.model import Model
 from fem.results.history import History
 from fem.results.run_result import Energy, Numerics, Verdict
@@ -27,7 +27,7 @@ MODE_NAMES = {REST: "rest", SLIDE: "slide", ROCK: "rock", SLIDE_ROCK: "slide-roc
 RotationT = TypeVar("RotationT", float, FloatArray)
 
 CONTENTS_FILTER = "Butterworth low-pass of two poles, causal"  #: `contact.stepping.contents`
-SLIDING = 1e-4  #: slip over the width that counts as sliding
+MOST_RESTITUTION = 1.05
 
 
 def outcome_of(model: Model) -> str:
@@ -68,7 +68,6 @@ def verdict_from(
     track = SimpleNamespace(**dict(zip(run.track.dtype.names, run.track[0].item(), strict=True)))
     sampled = end is not None and end > 0.0
     rocked = outcome in ("rock", "slide-rock")
-    still = model.case.motion.kind == "none"
     return Verdict(
         outcome=outcome,
         modes=_modes_seen(model, track, outcome),
@@ -86,7 +85,7 @@ def verdict_from(
         overturned_at_s=_finite(track.overturned_at),
         restored=rocked and abs(float(run.old.pose[0])) < ROCKING * angle,
         at_rest_s=_finite(float(run.clock[0].rest_since)),
-        restitution_first=_finite(track.restitution_by_peaks if still else track.restitution_by_velocity),
+        restitution_first=_restitution(track),
         max_corner_force_N=track.max_corner_force,
         max_top_displacement_m=track.max_top_displacement if sampled else None,
         max_acceleration_m_s2=track.max_acceleration if sampled else None,
@@ -163,6 +162,11 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
 
 def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
+
+
+def _restitution(track: SimpleNamespace) -> float | None:
+    """Restitution of the first impact; None where it has none, or where other energy entered (`MOST_RESTITUTION`)."""
+    return track.restitution if 0.0 < track.restitution < MOST_RESTITUTION else None
 
 
 def _modes_seen(model: Model, track: SimpleNamespace, outcome: str) -> tuple[str, ...]:

@@ -107,4 +107,4 @@ def released(case: Case, stiffer: float = 1.0, container: Container | None = Non
 
 def peaks(done: Finished) -> float:
     """Velocity ratio of the first impact, by the peaks around it."""
-    return float(done.track.restitution_by_peaks)
+    return float(done.track.restitution)

@@ -82,7 +82,7 @@ def restitution(model: Model) -> float | None:
     """Of the first impact by the peaks around it; None if the run fails its audit."""
     if simulate(model, Recorder(model)).status != "completed":
         return None
-    value = float(model.run.track[0].restitution_by_peaks)
+    value = float(model.run.track[0].restitution)
     return value if math.isfinite(value) else None
 
 

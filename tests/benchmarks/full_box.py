@@ -46,7 +46,7 @@ def rocking(name: str, step: float | str, limit: float) -> list[Figure]:
 
     cost, run = median_of(REPEATS, once), runs[-1]
     track, clock = run.model.run.track[0], run.model.run.clock[0]
-    ratio = float(track.restitution_by_velocity)
+    ratio = float(track.restitution)
     found = f"{ratio:.4f}" if math.isfinite(ratio) else "none, it rebounds"
     exact = f"{quarter_period(BLOCK, 0.25 * BLOCK.slenderness_angle):.4f}, {BLOCK.housner_restitution:.4f}"
     details = f"{run.steps}, {int(clock.rejected)}, {clock.iterations / max(run.steps, 1):.2f}"

@@ -1,0 +1,110 @@
+"""The filter of the acceleration of the contents against scipy, and in runs."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import scipy.signal
+
+from contact.stepping.contents import ACCELERATION, begin_contents, filter_contents, shift_contents
+from fem.batch.runner import run_cases
+from fem.case.case import load_case
+from fem.verification.runs import run
+
+CUTOFF, END = 2.0 * math.pi * 33.0, 0.3
+Motion = tuple[Callable[[np.ndarray], np.ndarray], Callable[[np.ndarray], np.ndarray]]
+SMOOTH: Motion = (lambda t: -np.cos(40.0 * t) / 40.0, lambda t: np.sin(40.0 * t))
+#: 1 Ns on 1 kg at 0.1003 s, within a step
+IMPULSE: Motion = (lambda t: np.maximum(0.0, t - 0.1003), lambda t: np.where(t >= 0.1003, 1.0, 0.0))
+#: vibration at 1 kHz of 1 m/s, above the rate of observation
+VIBRATION: Motion = (lambda t: -np.cos(6283.0 * t) / 6283.0, lambda t: np.sin(6283.0 * t))
+
+
+def uneven(step: float) -> np.ndarray:
+    """Instants of steps that vary by 30 % about a size [s]."""
+    steps = step * np.random.default_rng(1).uniform(0.7, 1.3, int(1.4 * END / step))
+    times = np.concatenate([[0.0], np.cumsum(steps)])
+    return times[times <= END]
+
+
+def filtered(motion: Motion, times: np.ndarray) -> tuple[np.ndarray, float]:
+    """Filtered acceleration at the instants, and the largest one."""
+    contents, largest, found = np.zeros((8, 2)), 0.0, [0.0]
+    monitor = np.column_stack([motion[0](times), 0.0 * times, motion[1](times), 0.0 * times])
+    begin_contents(contents, monitor[:1], 0.0)
+    for k, step in enumerate(np.diff(times)):
+        largest = filter_contents(contents, monitor[k + 1 : k + 2], 0.0, step, CUTOFF, largest)
+        found.append(contents[ACCELERATION, 0])
+    return np.array(found), largest
+
+
+def by_scipy(motion: Motion, times: np.ndarray) -> tuple[np.ndarray, float]:
+    """The same by a Butterworth filter of scipy on a fine grid."""
+    dense = np.linspace(0.0, END, 300_001)
+    numerator, denominator = scipy.signal.butter(2, CUTOFF, analog=True)
+    differentiated = (np.append(numerator, 0.0), denominator)
+    _, found, _ = scipy.signal.lsim(differentiated, motion[1](dense) - motion[1](dense[:1]), dense)
+    return np.interp(times, dense, found), float(np.abs(found[dense <= times[-1]]).max())
+
+
+@pytest.mark.parametrize(
+    ("motion", "step", "within"),
+    [(SMOOTH, 5e-3, 1e-2), (SMOOTH, 1.5e-3, 1e-4), (IMPULSE, 1.5e-3, 1e-2), (IMPULSE, 1e-4, 1e-3)],
+)
+def test_the_filter_is_butterworths_of_second_order(motion: Motion, step: float, within: float) -> None:
+    times = uneven(step)
+    found, largest = filtered(motion, times)
+    expected, peak = by_scipy(motion, times)
+    assert found == pytest.approx(expected, abs=within * peak)
+    assert largest == pytest.approx(peak, rel=max(within, 2e-3))
+
+
+def test_an_impulse_gives_the_impulse_response_whatever_the_step() -> None:
+    # Largest value of the impulse response w^2 t exp(..): sqrt(2) w sin(pi/4) exp(-pi/4) for 1 m/s
+    peak = math.sqrt(2.0) * CUTOFF * math.sin(0.25 * math.pi) * math.exp(-0.25 * math.pi)
+    for step in (1e-3, 3e-4, 1e-4):
+        assert filtered(IMPULSE, uneven(step))[1] == pytest.approx(peak, rel=3e-3)
+
+
+def test_vibration_faster_than_the_observations_is_not_aliased() -> None:
+    # It passes with (33/1000)^2 of 6283 m/s2, and as much again of the start at t = 0.
+    assert filtered(VIBRATION, uneven(1.5e-3))[1] < 20.0
+
+
+def test_the_error_is_of_fourth_order_in_the_step() -> None:
+    errors = []
+    for step in (4e-3, 2e-3, 1e-3):
+        times = np.arange(0.0, END, step)
+        errors.append(np.abs(filtered(SMOOTH, times)[0] - by_scipy(SMOOTH, times)[0]).max())
+    assert errors[1] < errors[0] / 8.0
+    assert errors[2] < errors[1] / 8.0
+
+
+def test_a_moving_frame_changes_nothing() -> None:
+    contents = np.zeros((8, 2))
+    begin_contents(contents, np.array([[0.0, 0.0, 1.0, 0.0]]), 0.0)
+    shift_contents(contents, 1.0)
+    assert filter_contents(contents, np.zeros((1, 4)), 0.0, 1e-3, CUTOFF, 0.0) == 0.0
+
+
+@pytest.mark.parametrize("model", ["rigid", "reduced"])
+def test_the_acceleration_does_not_depend_on_the_intervals_of_the_output(model: str) -> None:
+    case = load_case("rocking", (f"solver.model={model}", "solver.duration_s=1.5", "output.fields_s=0"))
+    found = [
+        float(run(case, {"output.history_s": interval}).track.max_acceleration) for interval in (2e-2, 1e-3)
+    ]
+    assert found[0] == found[1] > 10.0
+    finer = run(case, {"solver.energy_tolerance": 0.1})
+    assert float(finer.track.max_acceleration) == pytest.approx(found[0], rel=1e-2)
+    (row,) = run_cases([case], jobs=1)  # without a history: the same number
+    assert row["max_acceleration_m_s2"] == found[0]
+
+
+def test_a_lower_cut_off_gives_less() -> None:
+    case = load_case("rocking", ("solver.model=rigid", "solver.duration_s=1.5"))
+    found = [
+        run(case, {"output.contents_filter_Hz": cutoff}).track.max_acceleration
+        for cutoff in (10.0, 33.0, 100.0)
+    ]
+    assert found[0] < found[1] < found[2]
