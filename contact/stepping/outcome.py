@@ -101,7 +101,6 @@ def run_to_end(
     if status == REACHED and not is_over.py_func(run, UNDECIDED):
         displacement, velocity, _ = floor_motion(run.motion, clock["time"])
         enter_floor_frame_compiled(own, run, velocity)
-        run.monitor_velocity[:, 0] -= velocity
         still = as_floor_motion(UNIFORM, (float(clock["time"]), displacement, 0.0))
         run = run._replace(motion=still, breaks=np.full(1, np.inf))
         status = advance_in_slices(own, run, kept, AFTERMATH_SLICE, duration + aftermath, UNDECIDED)

@@ -193,7 +193,6 @@ def _leave_alone(model: Model, run: RunState, recorder: Recorder) -> tuple[float
     since = float(run.clock[0].time)
     displacement, velocity, _ = floor_motion(run.motion, since)
     leave_body_alone(model.body, run, velocity)
-    run.monitor_velocity[:, 0] -= velocity  # of the last sample: the change of frame is no acceleration
     recorder.change_frame(velocity)
     return since, float(displacement)
 
