@@ -6,6 +6,7 @@ of magnitude: a container that rocks and slips 2 mm at its impacts does not move
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 
@@ -31,8 +32,23 @@ ANOTHER_SIZE = 10.0
 LARGE_SLIP, LARGE_ROTATION = 0.01, 0.1
 #: how a member differs from the run
 SAME, OTHER_REGIME, OTHER_END = 0, 1, 2
+ORDER = {key: k for k, key in enumerate(INPUTS)}
 MOST_DRAWN = 3  #: inputs named where only draws differ
 ROCKING = ("rock", "slide-rock")
+
+
+class Standing(Protocol):
+    """What a run shows that is compared with another."""
+
+    @property
+    def outcome(self) -> str | None:
+        """None where it failed."""
+
+    @property
+    def rotation_ratio(self) -> float | None: ...
+
+    @property
+    def max_slip_m(self) -> float | None: ...
 
 
 def judged(
@@ -53,7 +69,7 @@ def judged(
         width: of the container [m].
     """
     own, others = members[0], members[1:]
-    levels = [_difference(own, one, width) for one in others]
+    levels = [difference(own, one, width) for one in others]
     missing = [one for one in left_out if one.kind != "draw"]
     no_outcome = any(one.outcome is None for one in others)
     if no_outcome or missing or OTHER_END in levels or below_uplift(members):
@@ -73,7 +89,7 @@ def judged(
         members=tuple(members),
         **{name: _reach(getattr(one, name) for one in alike) for name in FIGURES},
     )
-    return replace(verdict, sure=sure, decided_by=tuple(_deciding(levels, changes)), band=band)
+    return replace(verdict, sure=sure, decided_by=tuple(deciding_inputs(levels, changes)), band=band)
 
 
 def below_uplift(members: Sequence[BandMember]) -> bool:
@@ -125,12 +141,17 @@ def _drawn(band: Band) -> str:
     return f"overturned in {band.draws_overturned} of {band.draws} draws{left_out}"
 
 
-def _stands(member: BandMember) -> bool:
+def _stands(member: Standing) -> bool:
     return member.outcome != "overturned"
 
 
-def _difference(own: BandMember, other: BandMember, width: float) -> int:
-    """How another member differs from the run; a failed one does not say."""
+def difference(own: Standing, other: Standing, width: float) -> int:
+    """How another run differs from a run, of SAME, OTHER_REGIME, OTHER_END; a failed one does not say.
+
+    Args:
+        own, other: what the two show.
+        width: of the container [m].
+    """
     if other.outcome is None:
         return SAME
     if _stands(own) != _stands(other):
@@ -155,7 +176,7 @@ def _reach(values: Iterator[float | None]) -> tuple[float, float] | None:
     return (min(known), max(known)) if known else None
 
 
-def _deciding(levels: Sequence[int], changes: Sequence[InputChange]) -> Iterator[str]:
+def deciding_inputs(levels: Sequence[int], changes: Sequence[InputChange]) -> Iterator[str]:
     """Inputs that change the outcome: overturning before the regime, then the smallest change first.
 
     Where no change of one input does, those of the pair that does; where only draws do, those that differ most between
@@ -169,7 +190,7 @@ def _deciding(levels: Sequence[int], changes: Sequence[InputChange]) -> Iterator
             for one in differing if not smallest else ():
                 if one.kind in kind:
                     smallest |= {key: min(one.share, smallest.get(key, 1.0)) for key in one.inputs}
-        found = sorted(smallest, key=lambda key: (smallest[key], INPUTS.index(key)))
+        found = sorted(smallest, key=lambda key: (smallest[key], ORDER.get(key, -1)))
         named += found or _drawn_together(changes, [one == level for one in levels])
     yield from dict.fromkeys(named)
 

@@ -16,6 +16,7 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import NDArray
 
+from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.case.case import load_case
 from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html.page import Signature, render_page, svg_element
@@ -23,7 +24,7 @@ from fem.html.units import number, short, typeset
 from fem.report.animation import colour_scale, packed
 from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions
 from fem.results.errors import FolderError
-from fem.sweep.table import SURENESS, SweepTable, open_sweep
+from fem.sweep.table import SweepTable, open_sweep
 
 #: what can be shown: column, words for it, unit, factor
 QUANTITIES = (
@@ -199,7 +200,7 @@ def _sureness(table: SweepTable) -> list[dict[str, Any]]:
         " ".join(name.rpartition(".")[2] for name in str(one).split()) or "-" for one in table["decided_by"]
     ]
     return [
-        _words("sure", "how sure", sure, [*SURENESS, "not tried"]),
+        _words("sure", "how sure", sure, [SURE, REGIME_UNSURE, UNSURE, "not tried"]),
         _words("decided_by", "decided by", np.array(deciding), sorted(set(deciding))),
     ]
 

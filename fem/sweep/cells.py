@@ -1,6 +1,7 @@
 """The rows of a sweep's cells so far."""
 
 from collections import Counter
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,30 +12,51 @@ from fem.sweep.plan import Sweep
 from fem.sweep.table import row_columns
 
 
+@dataclass(frozen=True, kw_only=True)
+class Shown:
+    """What a cell, or a copy of it, shows."""
+
+    kind: int  #: see `neighbours`
+    outcome: str | None  #: None where it failed
+    rotation_ratio: float | None
+    max_slip_m: float | None
+
+
+def shown_in(status: str, outcome: str, ratio: str, slip: str) -> Shown:
+    """What the fields of a row show."""
+    kind = kind_of(status, outcome)
+    return Shown(
+        kind=kind,
+        outcome=outcome if kind in (STANDING, OVERTURNED) else None,
+        rotation_ratio=number_in(ratio),
+        max_slip_m=number_in(slip),
+    )
+
+
 class CellRows:
     """The rows of the cells, and what follows from them, cell by cell."""
 
     def __init__(self, sweep: Sweep) -> None:
         self.columns = row_columns(sweep.axes, (one.key for one in sweep.derived))
         self.lines: dict[int, str] = {}  #: row of each cell, as in the log
+        self.shown: dict[int, Shown] = {}
         self.kind: IntArray = np.full(sweep.count, UNKNOWN)  #: (n_cells,) see `neighbours`
-        self.outcome: list[str] = [""] * sweep.count  #: "" where there is none
         self.rotation_ratio: FloatArray = np.full(sweep.count, np.nan)  #: (n_cells,)
         self.outcomes = Counter[str]()  #: how often there is each; "failed" too
-        self._places = [self.columns.index(name) for name in ("status", "outcome", "rotation_ratio")]
+        names = ("status", "outcome", "rotation_ratio", "max_slip_m")
+        self._places = [self.columns.index(name) for name in names]
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
         fields = fields_of(line)
-        status, outcome, ratio = (fields[place] for place in self._places)
-        cell, found = int(fields[0]), number_in(ratio)
+        cell = int(fields[0])
         if cell in self.lines:
             return
-        self.lines[cell] = line
-        self.kind[cell] = kind_of(status, outcome)
-        self.outcome[cell] = outcome
-        self.rotation_ratio[cell] = np.nan if found is None else found
-        self.outcomes[outcome if outcome and status != "failed" else "failed"] += 1
+        shown = shown_in(*(fields[place] for place in self._places))
+        self.lines[cell], self.shown[cell], self.kind[cell] = line, shown, shown.kind
+        if shown.rotation_ratio is not None:
+            self.rotation_ratio[cell] = shown.rotation_ratio
+        self.outcomes[shown.outcome or "failed"] += 1
 
     @property
     def decided(self) -> BoolArray:

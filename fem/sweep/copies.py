@@ -59,15 +59,23 @@ class CellCopies:
     def __init__(self, sweep: Sweep) -> None:
         self._sweep = sweep
         self._axes = {axis.key for axis in sweep.axes}
-        self._known: dict[int, tuple[Copy, ...]] = {}
+        self._known: dict[int, tuple[float, tuple[Copy, ...]]] = {}
         self._penalties: dict[object, float] = {}
 
     def of(self, cell: int) -> tuple[Copy, ...]:
         """The copies of a cell: each change once, the draws last."""
+        return self._of(cell)[1]
+
+    def width(self, cell: int) -> float:
+        """Width of the container of a cell [m]."""
+        return self._of(cell)[0]
+
+    def _of(self, cell: int) -> tuple[float, tuple[Copy, ...]]:
         if cell not in self._known:
             if len(self._known) >= REMEMBERED:
                 self._known.clear()
-            self._known[cell] = tuple(self._copies(self._sweep.case(cell)))
+            case = self._sweep.case(cell)
+            self._known[cell] = case.container.width_m, tuple(self._copies(case))
         return self._known[cell]
 
     def _copies(self, case: Case) -> Iterator[Copy]:
@@ -92,7 +100,9 @@ class CellCopies:
         else:
             changes = tuple(one for one in changes if one.share == 1.0 and TOLERANCE not in one.values)
         for change in changes:
-            yield replace(change, values={k: v for k, v in change.values.items() if k not in self._axes})
+            kept = {key: value for key, value in change.values.items() if key not in self._axes}
+            places = zip(change.values, change.place, strict=False)
+            yield replace(change, values=kept, place=tuple(one for key, one in places if key in kept))
 
     def _penalty(self, case: Case) -> float:
         key = container_key(case), case.contact.normal_penalty_Pa_m

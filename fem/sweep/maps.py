@@ -16,12 +16,13 @@ from matplotlib.colors import Colormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from fem.assessment.sureness import REGIME_UNSURE
 from fem.batch.axes import Axis, axis_label
 from fem.figures.heat_map import MapAxis, Panel, draw_heat_map, value_label
 from fem.figures.style import BLACK, GREY, STATE_COLOURS, VERMILLION, WIDTH, house_style, number, svg_of
 from fem.results.files import write_atomically
 from fem.sweep.plan import MapChoice
-from fem.sweep.table import REGIME_UNSURE, SweepTable
+from fem.sweep.table import SweepTable
 
 OUTCOME_COLOURS = {**STATE_COLOURS, "failed": VERMILLION, "": "#FFFFFF"}
 MOST_PANELS = 12

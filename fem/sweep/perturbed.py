@@ -7,22 +7,31 @@ cell over. Which copies there are depends on the outcomes alone, not on the orde
 
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from fem.batch.log import LoggedRuns, fields_of, number_in
+from fem.assessment.sureness import (
+    OTHER_END,
+    OTHER_REGIME,
+    REGIME_UNSURE,
+    SAME,
+    SURE,
+    UNSURE,
+    deciding_inputs,
+    difference,
+)
+from fem.batch.log import LoggedRuns, fields_of
 from fem.batch.runner import Row, Runner
 from fem.runtime.arrays import BoolArray
-from fem.sweep.cells import CellRows
+from fem.sweep.cells import CellRows, Shown, shown_in
 from fem.sweep.copies import CellCopies, Copy
-from fem.sweep.neighbours import around, band_width, coarse_cells, kind_of, near_cells
+from fem.sweep.neighbours import around, band_width, coarse_cells, near_cells
 from fem.sweep.plan import CopyItem, Sweep
-from fem.sweep.table import REGIME_UNSURE, SURE, UNSURE
 
-COLUMNS = ("cell", "member", "change", "status", "outcome", "rotation_ratio", "reason")
+COLUMNS = ("cell", "member", "change", "status", "outcome", "rotation_ratio", "reason", "max_slip_m")
 #: cells around one with another outcome that try the same change
 REACH = 2
 
@@ -33,9 +42,8 @@ class PerturbedRow:
 
     line: str  #: as in the log
     copy: Copy
-    kind: int  #: see `neighbours`
-    outcome: str
-    ratio: float | None  #: rotation ratio
+    shown: Shown
+    level: int  #: how it differs from the cell, see `fem.assessment.sureness`; a failed one as if it ended otherwise
 
 
 class PerturbedRows:
@@ -50,15 +58,16 @@ class PerturbedRows:
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
-        cell_text, number, _, status, outcome, ratio, _ = fields_of(line)
-        cell = int(cell_text)
-        copy = self.copies.of(cell)[int(number)]
-        kind = kind_of(status, outcome)
-        row = PerturbedRow(line=line, copy=copy, kind=kind, outcome=outcome, ratio=number_in(ratio))
-        self.rows.setdefault(cell, {})[int(number)] = row
-        turned = kind != self._cells.kind[cell]
+        cell_text, number_text, _, status, outcome, ratio, _, slip = fields_of(line)
+        cell, number = int(cell_text), int(number_text)
+        copy, own = self.copies.of(cell)[number], self._cells.shown[cell]
+        shown = shown_in(status, outcome, ratio, slip)
+        level = OTHER_END
+        if shown.outcome is not None:
+            level = difference(own, shown, self.copies.width(cell))
+        self.rows.setdefault(cell, {})[number] = PerturbedRow(line=line, copy=copy, shown=shown, level=level)
         # Draws are to find what overturns; half of them turn rest to sliding, by the start alone.
-        if turned or (not copy.drawn and outcome != self._cells.outcome[cell]):
+        if level == OTHER_END or (shown.outcome != own.outcome and not copy.drawn):
             nowhere: BoolArray = np.zeros(self._cells.kind.size, dtype=bool)
             self.turned.setdefault(copy.name, (copy, nowhere))[1][cell] = True
 
@@ -68,7 +77,7 @@ class PerturbedRows:
             yield from (copy.line for _, copy in sorted(copies.items()))
 
     def unsure(self, *, drawn: bool = True) -> BoolArray:
-        """Which cells are unsure, (n_cells,): those that failed, or have a copy of another kind.
+        """Which cells are unsure, (n_cells,): those that failed, or have a copy that ends otherwise or fails.
 
         Args:
             drawn: whether draws of all inputs count.
@@ -76,44 +85,34 @@ class PerturbedRows:
         found = ~self._cells.decided
         for cell, copies in self.rows.items():
             found[cell] |= any(
-                copy.kind != self._cells.kind[cell]
-                for copy in copies.values()
-                if drawn or not copy.copy.drawn
+                one.level == OTHER_END for one in copies.values() if drawn or not one.copy.drawn
             )
         return found
 
     def sureness(self, cell: int) -> tuple[str, tuple[str, ...]]:
-        """How sure a cell is, and the inputs that decide: the smallest change that turns its outcome first."""
-        kind, outcome = self._cells.kind[cell], self._cells.outcome[cell]
-        copies = [copy for _, copy in sorted(self.rows.get(cell, {}).items())]
+        """How sure a cell is, and the inputs that decide: the smallest change that turns its outcome first.
+
+        Both coefficients of friction moved a little at once count as the first of them.
+        """
         if not self._cells.decided[cell]:
             return UNSURE, ()
-        turning = [one for one in copies if one.kind != kind]
-        if turning:
-            return UNSURE, deciding(turning)
-        turning = [one for one in copies if one.outcome != outcome]
-        return (REGIME_UNSURE, deciding(turning)) if turning else (SURE, ())
+        copies = [one for _, one in sorted(self.rows.get(cell, {}).items())]
+        most = max((one.level for one in copies), default=SAME)
+        levels = [one.level if one.level == most else SAME for one in copies]
+        changes = [one.copy.change for one in copies]
+        alone = [
+            replace(one, values=dict([*one.values.items()][:1])) if copy.copy.small else one
+            for one, copy in zip(changes, copies, strict=True)
+        ]
+        word = {SAME: SURE, OTHER_REGIME: REGIME_UNSURE, OTHER_END: UNSURE}[most]
+        return word, tuple(deciding_inputs(levels, alone))
 
     def ratios(self, cell: int) -> tuple[float | None, float | None]:
         """Least and largest rotation ratio of a cell and its copies; None where there is none."""
-        found = [copy.ratio for copy in self.rows.get(cell, {}).values() if copy.ratio is not None]
+        copies = self.rows.get(cell, {}).values()
+        found = [one.shown.rotation_ratio for one in copies if one.shown.rotation_ratio is not None]
         own = float(self._cells.rotation_ratio[cell])
         return (min(own, *found), max(own, *found)) if found and np.isfinite(own) else (None, None)
-
-
-def deciding(turning: list[PerturbedRow]) -> tuple[str, ...]:
-    """The inputs of the copies that turn an outcome, the smallest change first.
-
-    Where only pairs or draws turn it, all their inputs do so together. Both coefficients of friction moved at once
-    count as `contact.mu_static`.
-    """
-    kinds = {one.copy.change.kind for one in turning}
-    first = next(kind for kind in ("one", "pair", "draw") if kind in kinds)
-    changes = [one.copy.change for one in turning if one.copy.change.kind == first]
-    if first == "one":
-        ordered = sorted(changes, key=lambda one: one.share)
-        return tuple(dict.fromkeys(one.inputs[0] for one in ordered))
-    return tuple(dict.fromkeys(key for one in changes for key in one.inputs))
 
 
 def band_rows(

@@ -11,6 +11,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
+from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.batch.held import held_inputs
 from fem.batch.log import LoggedRuns, fields_of, line_of, read_lines, table_of_lines
 from fem.batch.runner import Row, Runner, motion_left_out
@@ -33,7 +34,7 @@ from fem.sweep.maps import draw_maps
 from fem.sweep.perturbed import PerturbedRows, band_rows, perturb_cells
 from fem.sweep.plan import Sweep
 from fem.sweep.refine import refine, table_of_changes
-from fem.sweep.table import FOUND, SURENESS, UNSURE, band_columns, open_sweep
+from fem.sweep.table import FOUND, band_columns, open_sweep
 
 ROWS, TABLE, MEMBERS, TRIED, CHANGES = "rows.csv", "table.csv", "members.csv", "tried.csv", "thresholds.csv"
 #: how often `sweep.json` is updated [s]
@@ -227,7 +228,10 @@ class _Work:
         if copies is not None:
             counts, deciding, values = band_rows(self.sweep, self.cells, copies)
             bands = [line_of(values(cell)) for cell in range(self.sweep.count)]
-            self.info |= {"unsure": counts[UNSURE], "sure": {word: counts[word] for word in SURENESS}}
+            self.info |= {
+                "unsure": counts[UNSURE],
+                "sure": {word: counts[word] for word in (SURE, REGIME_UNSURE, UNSURE)},
+            }
             self.info["decided_by"] = dict(deciding.most_common())
         lines = (f"{self.cells.lines[cell]},{band}" for cell, band in enumerate(bands))
         self.place.write_text(TABLE, table_of_lines((*self.cells.columns, *columns), lines))

@@ -23,8 +23,6 @@ from fem.results.kinds import SWEEP, read_result
 FOUND = ("status", *SCALARS, "reason", "wall_s")
 #: columns of the perturbed copies of a cell; the width of the band along each numeric axis follows
 BAND = ("perturbed", "unsure", "sure", "decided_by", "band_rotation_ratio_low", "band_rotation_ratio_high")
-#: how sure a cell is: no copy has another outcome; none overturns, or all do, but regimes differ; some overturn
-SURENESS = SURE, REGIME_UNSURE, UNSURE = "sure", "regime unsure", "unsure"
 WIDTH = "band_width."  #: before the key of an axis
 WORDS = frozenset({"status", "outcome", "reason", "sure", "decided_by"})
 
