@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fem.assessment.summary import outcome_sentence, plain_summary, ratio_in_words
+from fem.assessment.summary import outcome_sentence, plain_summary, ratio_in_words, result_rows
 from fem.assessment.warnings import warnings_for
 from fem.case.case import Case, load_case
 from fem.model.geometry import build_container
@@ -311,3 +311,18 @@ def test_a_contact_that_creeps_under_the_weight_raises_a_warning():
     creeping = case("contact.damping_ratio=20")
     (warning,) = [text for text in warnings_for(result, creeping) if "relaxes" in text]
     assert "in 0.18 s" in warning and "1/p = 0.5 s" in warning
+
+
+def test_an_acceleration_of_an_impact_has_its_filter_and_a_former_one_its_mean():
+    new = text_of(changed(numerics__contents_filter="Butterworth", numerics__contents_filter_Hz=33.0))
+    assert "12 m/s2, low-pass 33 Hz" in new and "contents: Butterworth, 33 Hz" in new
+    former = text_of(changed(numerics__acceleration_window_s=0.005))
+    assert "12 m/s2, mean over 5 ms" in former and "low-pass" not in former
+
+
+def test_an_impact_without_restitution_is_a_dash():
+    rows = dict(result_rows(changed(verdict__restitution_first=None)))
+    assert rows["velocity ratio, first impact"] == "-"
+    assert "velocity ratio, first impact" not in dict(
+        result_rows(changed(verdict__restitution_first=None, verdict__impacts=0))
+    )

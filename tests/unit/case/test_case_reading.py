@@ -68,7 +68,13 @@ def test_least_case_has_the_documented_defaults():
             "element_size_m": 0.1,
             "order": 2,
         },
-        "output": {"history_s": 0.005, "fields_s": 0.05, "figures": True, "stop_when_overturned": True},
+        "output": {
+            "history_s": 0.005,
+            "fields_s": 0.05,
+            "contents_filter_Hz": 33.0,
+            "figures": True,
+            "stop_when_overturned": True,
+        },
         "uncertainty": {"draws": 32},
     }
 
@@ -263,6 +269,7 @@ least    | solver.duration_s=-5 | [solver] duration_s must be between 0.001 and 
 least    | solver.duration_s=5 & output.history_s=1e-7 | makes 5e+07 samples of duration_s = 5 s
 least    | solver.step_s=fast | [solver] step_s must be a number or "auto", got the text 'fast'
 least    | solver.step_s=1e-9 | [solver] step_s = 1e-09 s makes 2e+10 steps
+least    | output.contents_filter_Hz=0.5 | contents_filter_Hz must be between 1 and 1000 Hz, got 0.5 Hz; 33 is usual
 least    | output.history_s=1e-7 | [output] history_s = 1e-07 s makes 2e+08 samples of duration_s = "auto", up to 20 s
 least    | output.fields_s=1e-6 | [output] fields_s = 1e-06 s makes 2e+07 frames
 least    | output.fields_s=-1.0 | [output] fields_s must be between 0 and 10000 s, got -1 s; 0 writes no fields

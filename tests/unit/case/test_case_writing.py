@@ -54,6 +54,7 @@ def test_a_resolved_case_writes_out_every_default():
     assert resolved["output"] == {
         "history_s": 0.005,
         "fields_s": 0.05,
+        "contents_filter_Hz": 33.0,
         "figures": True,
         "stop_when_overturned": True,
     }
