@@ -6,22 +6,34 @@ and is shown below it. A summary states what happened under this motion and noth
 """
 
 import io
-import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from rich.box import SIMPLE
 from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
 from fem.assessment.code_note import code_note
+from fem.assessment.joint_tables import joint_tables, titled_table
 from fem.assessment.motion_words import covered_in_words, missing_peak, motion_in_words
+from fem.assessment.ranges import (
+    LEAST_LENGTH,
+    LEAST_RATIO,
+    bolt_forces,
+    contents_acceleration,
+    corner_force,
+    largest_slip,
+    largest_stress,
+    of_band,
+    residual_slip,
+    rotation_in_words,
+    rotation_ratio,
+)
+from fem.assessment.rule_or_run import believed
 from fem.assessment.sureness import sureness_in_words
 from fem.results.run_result import (
     Band,
     Energy,
-    JointDemand,
     MotionResult,
     Numerics,
     RigidCheckResult,
@@ -33,10 +45,6 @@ from fem.results.run_result import (
 
 TEXT_WIDTH = 80
 INVISIBLE = 1e-9  #: in the units of people: smaller numbers are rounding
-#: values below these are shown as "< limit": lengths [m], rotations [degrees], rotation ratios
-LEAST_LENGTH, LEAST_DEGREES, LEAST_RATIO = 1e-5, 0.01, 1e-3
-LEAST_N = 1e-6  #: smaller joint forces [N] and moments [Nm] are rounding
-MOST_JOINTS = 8  #: joints shown; of more, those with a largest value
 BAND_NOTE = (
     "The band repeats the run with changed inputs: one at a time to the ends of the ranges that [uncertainty] states "
     "or that follow from the case, and with all of them drawn at once. Numbers in parentheses are the least and the "
@@ -47,12 +55,6 @@ MARGIN_NOTE = (
     "The rotation ratio is not a margin. The margin is the factor on the motion at which the container overturns; a "
     "sweep over motions finds it."
 )
-JOINTS_NOTE = (
-    "The boxes are bolted and move as one. The table gives the forces in their joints (means over output.history_s), "
-    "the tension in the bolts along one edge, the shear in the bolts beyond friction with the floor's mu_static, and "
-    "when a joint without bolts would open at an edge or slide."
-)
-LARGEST = ("max_shear_N", "max_moment_Nm", "bolt_tension_left_N", "bolt_tension_right_N", "bolt_shear_N")
 VERBS = {"rest": "rested", "slide": "slid", "rock": "rocked", "slide-rock": "slid, rocked"}
 
 
@@ -77,12 +79,11 @@ def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
     yield from _table_of_pairs("The run", result_rows(result))
     if result.static is not None:
         yield _static_table(result.static, verdict)
+        yield from (Text(f"{sentence}\n") for sentence in believed(result))
         if note := code_note(result.static):
             yield Text(f"{note}\n")
     if result.joints:
-        yield from _joint_tables(_shown(result.joints))
-        left_out = len(result.joints) - len(_shown(result.joints))
-        yield Text(JOINTS_NOTE + (f" {left_out} more joints are in run.json." if left_out else "") + "\n")
+        yield from joint_tables(result.joints)
     if verdict.outcome in ("rock", "slide-rock"):
         yield Text(f"{MARGIN_NOTE}\n")
     if verdict.band is not None:
@@ -117,7 +118,7 @@ def _found(verdict: Verdict, motion: MotionResult) -> str:
 def _static_table(static: StaticResult, verdict: Verdict) -> Table:
     """Sliding and overturning under each action, one below the other."""
     columns = ("action", "check", "demand / limit", "use", "rule says", "run found")
-    table = _table(f"Static rules, {own_motion_name(static)}", *columns)
+    table = titled_table(f"Static rules, {own_motion_name(static)}", *columns)
     sliding, restoring = static.sliding_limit_static_N, static.restoring_moment_Nm
     for action, name in (
         (static.own_motion, "own peak"),
@@ -156,7 +157,7 @@ def run_slid(verdict: Verdict) -> str:
     if verdict.max_slip_m is None:
         return "-"
     sliding = {"slide", "slide-rock"} & {verdict.outcome, *verdict.modes}
-    return f"{'slid' if sliding else 'held'}, slip {_millimetres(verdict.max_slip_m)} mm"
+    return f"{'slid' if sliding else 'held'}, slip {largest_slip(verdict)}"
 
 
 def run_tilted(verdict: Verdict) -> str:
@@ -164,22 +165,12 @@ def run_tilted(verdict: Verdict) -> str:
     if verdict.outcome == "overturned":
         return "overturned"
     ratio = verdict.rotation_ratio
-    return "-" if ratio is None else f"stood, ratio {ratio_in_words(ratio)}"
-
-
-def _table(title: str, *columns: str) -> Table:
-    """An empty table; the numbers of a column that begins with > are aligned at the right."""
-    table = Table(
-        title=title, title_justify="left", box=SIMPLE, padding=(0, 1, 0, 0), show_header=any(columns)
-    )
-    for name in columns:
-        table.add_column(name.removeprefix(">"), justify="right" if name.startswith(">") else "left")
-    return table
+    return "-" if ratio is None else f"stood, ratio {rotation_ratio(verdict)}"
 
 
 def _table_of_pairs(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[Table]:
     if rows:
-        table = _table(title, "", "")
+        table = titled_table(title, "", "")
         for row in rows:
             table.add_row(*map(Text, row))
         yield table
@@ -194,25 +185,22 @@ def result_rows(result: RunResult) -> list[tuple[str, str]]:
         ("floor motion", motion_in_words(result.motion or MotionResult())),
         ("simulated time", _simulated(verdict, numerics)),
         ("states seen", ", ".join(verdict.modes)),
-        ("largest rotation", _rotation(verdict)),
-        (
-            "slip: largest, at the end, path",
-            _lengths(verdict.max_slip_m, verdict.residual_slip_m, verdict.slip_travel_m),
-        ),
-        ("largest uplift", _lengths(verdict.max_uplift_m)),
-        (
-            "largest corner force",
-            _mean(verdict.max_corner_force_N, 1e-3, "kN", numerics.corner_force_window_s),
-        ),
+        ("largest rotation", rotation_in_words(verdict)),
+        ("largest slip", largest_slip(verdict)),
+        ("slip at the end", residual_slip(verdict)),
+        ("path of slip", _lengths(verdict.slip_travel_m)),
+        ("largest uplift", of_band(verdict, "max_uplift_m", "mm", 1e3, LEAST_LENGTH)),
+        ("largest corner force", corner_force(verdict, numerics)),
         ("first uplift", _unit(verdict.first_uplift_s, 1.0, "s")),
         ("impacts", "" if impacts is None else str(impacts)),
         ("velocity ratio, first impact", _restitution(verdict, static)),
         ("displacement of the top", _lengths(verdict.max_top_displacement_m)),
         (
             "acceleration of the contents",
-            _filtered(verdict.max_acceleration_m_s2, numerics),
+            contents_acceleration(verdict, numerics),
         ),
-        ("von Mises stress", _unit(verdict.max_von_mises_Pa, 1e-6, "MPa")),
+        ("von Mises stress", largest_stress(verdict)),
+        ("bolts, largest tension and shear", bolt_forces(result)),
         ("outcomes of the band", _band(verdict.band)),
         *_rigid_rows(result.rigid_check, static.slenderness_angle_rad),
     ]
@@ -236,14 +224,6 @@ def numerics_rows(result: RunResult) -> list[tuple[str, str]]:
         ("computing time", _times(result, numerics)),
     ]
     return [(name, value) for name, value in rows if value]
-
-
-def _rotation(verdict: Verdict) -> str:
-    if verdict.max_rotation_rad is None or verdict.rotation_ratio is None:
-        return ""
-    degrees = math.degrees(verdict.max_rotation_rad)
-    turned = f"< {LEAST_DEGREES:g}" if 0.0 < degrees < LEAST_DEGREES else f"{degrees:.3g}"
-    return f"{turned} degrees, {ratio_in_words(verdict.rotation_ratio)} of the slenderness angle"
 
 
 def ratio_in_words(ratio: float) -> str:
@@ -326,45 +306,6 @@ def _files(folder: Path) -> str:
     return f"ParaView: {paraview}\nTables: {folder / 'history.csv'}; all results: {folder / 'run.json'}"
 
 
-def _joint_tables(joints: Sequence[JointDemand]) -> Iterator[Table]:
-    """Forces, and what bolts carry; one row a joint, from the floor up."""
-    forces = _table(
-        "Forces in the joints between boxes", "joint at", ">normal kN", ">shear kN", ">moment kNm"
-    )
-    bolts = _table(
-        "Bolts", "joint at", ">tension left, right kN", ">shear kN", ">mu needed", "without bolts it"
-    )
-    for joint in joints:
-        place, normal = f"{joint.height_m:.4g} m", (joint.min_normal_N, joint.max_normal_N)
-        tension = (joint.bolt_tension_left_N, joint.bolt_tension_right_N)
-        needed = "no mu" if joint.friction_needed is None else f"{joint.friction_needed:.3g}"
-        forces.add_row(
-            place, " .. ".join(map(_kilo, normal)), _kilo(joint.max_shear_N), _kilo(joint.max_moment_Nm)
-        )
-        bolts.add_row(
-            place, ", ".join(map(_kilo, tension)), _kilo(joint.bolt_shear_N), needed, unbolted(joint)
-        )
-    yield from (forces, bolts)
-
-
-def _shown(joints: Sequence[JointDemand]) -> Sequence[JointDemand]:
-    if len(joints) <= MOST_JOINTS:
-        return joints
-    chosen = {max(range(len(joints)), key=lambda j: getattr(joints[j], key)) for key in LARGEST}
-    return [joints[j] for j in sorted(chosen)]
-
-
-def unbolted(joint: JointDemand) -> str:
-    """What the joint would do without bolts."""
-    events = (("opens", joint.opens_at_s), ("slides", joint.slides_at_s))
-    found = [f"{verb} at {instant:.3g} s" for verb, instant in events if instant is not None]
-    return ", ".join(found) or "stays closed, sticks"
-
-
-def _kilo(value: float) -> str:
-    return f"{1e-3 * value:.4g}" if abs(value) >= LEAST_N else "0"
-
-
 def _lengths(*values: float | None) -> str:
     return "" if values[0] is None else f"{', '.join(map(_millimetres, values))} mm"
 
@@ -378,20 +319,6 @@ def _millimetres(value: float | None) -> str:
 
 def _unit(value: float | None, factor: float, unit: str) -> str:
     return "" if value is None else f"{_number(value, factor)} {unit}"
-
-
-def _mean(value: float | None, factor: float, unit: str, window: float | None) -> str:
-    """A value that is a mean over a window [s]: the instantaneous value in an impact means nothing."""
-    mean = "" if value is None or window is None else f", mean over {1e3 * window:.2g} ms"
-    return _unit(value, factor, unit) + mean
-
-
-def _filtered(acceleration: float | None, numerics: Numerics) -> str:
-    """An acceleration [m/s2] with its filter; former versions took a mean."""
-    cutoff = numerics.contents_filter_Hz
-    if acceleration is None or cutoff is None:
-        return _mean(acceleration, 1.0, "m/s2", numerics.acceleration_window_s)
-    return f"{_number(acceleration, 1.0)} m/s2, low-pass {cutoff:g} Hz"
 
 
 def _filters(numerics: Numerics) -> str:

@@ -31,7 +31,6 @@ SMALL_STRAIN = 0.01
 #: relaxation time of the contact over the time scale of rocking 1/p, from which the dashpot is more than a loss at
 #: impacts: the rotation ratio of a rigid `rocking` on its flat base is 0.85 at 0.006, 0.68 at 0.15, 0.49 at 0.31
 FAST_RELAXATION = 0.1
-YIELD_STRENGTH = 235e6  #: [Pa], S235, EN 1993-1-1 Table 3.1
 
 
 def warnings_for(result: RunResult, case: Case) -> list[str]:
@@ -151,9 +150,8 @@ def rest_proves_nothing(result: RunResult, case: Case) -> str | None:
 
 def stress_is_beyond_yield(result: RunResult, case: Case) -> str | None:
     """The model is elastic; a steel shell past its yield strength is not."""
-    stress = _verdict(result).max_von_mises_Pa
-    steel = case.container.section == "shell" and case.container.youngs_modulus_Pa > 1.5e11
-    if not steel or stress is None or stress <= YIELD_STRENGTH:
+    stress, limit = _verdict(result).max_von_mises_Pa, _verdict(result).yield_strength_Pa
+    if limit is None or stress is None or stress <= limit:
         return None
     return (
         f"von Mises stress reached {stress / 1e6:.0f} MPa, beyond the yield strength of S235 (235 MPa): the "

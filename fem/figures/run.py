@@ -12,7 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from contact.stepping.observables import ROCKING
-from fem.assessment.summary import LEAST_DEGREES, ratio_in_words
+from fem.assessment.ranges import LEAST_DEGREES
+from fem.assessment.summary import ratio_in_words
 from fem.assessment.verdict import SLIDING
 from fem.figures.checks import band_figure, rigid_check_figure
 from fem.figures.energy import energy_figure

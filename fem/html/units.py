@@ -6,7 +6,8 @@ A trailing zero that is known is kept: 98.10, not 98.1.
 import math
 import re
 
-from fem.assessment.summary import LEAST_DEGREES, LEAST_LENGTH, ratio_in_words
+from fem.assessment.ranges import LEAST_DEGREES, LEAST_LENGTH
+from fem.assessment.summary import ratio_in_words
 
 ABSENT = "–"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")

@@ -7,10 +7,11 @@ from importlib import metadata
 
 from contact.reference.event_driven import EventError
 from fem.assessment.code_note import code_note
+from fem.assessment.joint_tables import JOINTS_NOTE
 from fem.assessment.rigid_check import check_against_rigid_block
+from fem.assessment.rule_or_run import believed
 from fem.assessment.summary import (
     BAND_NOTE,
-    JOINTS_NOTE,
     MARGIN_NOTE,
     outcome_sentence,
     result_rows,
@@ -124,6 +125,7 @@ def _page(
         exclusions=EXCLUSIONS,
         compared=compared_rows(static, verdict, case),
         sheet=static_sheet(static, case),
+        believed=[typeset(sentence) for sentence in believed(result)],
         found=[(name, typeset(value)) for name, value in result_rows(result)],
         warnings=[typeset(warning) for warning in result.warnings or ()],
         shown=shown,

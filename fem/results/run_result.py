@@ -195,6 +195,7 @@ class Verdict(JsonBlock):
     max_top_displacement_m: float | None = None  #: relative to the floor
     max_acceleration_m_s2: float | None = None  #: of the contents
     max_von_mises_Pa: float | None = None  #: None of a rigid container
+    yield_strength_Pa: float | None = None  #: that of S235 of a steel shell; None of another container
     basis: str = "study"
     first_line: str | None = None  #: the verdict in one sentence, as on the page
     sure: str | None = None  #: sure | regime unsure | unsure; None: not tried

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from itertools import count
 
 from fem.assessment.joint_demands import joint_demands
+from fem.assessment.joint_tables import largest_bolt_forces
 from fem.assessment.sureness import judged, static_use
 from fem.assessment.verdict import verdict_of
 from fem.case.case import Case
@@ -211,6 +212,7 @@ def _member(
     joints: Sequence[JointDemand] | None,
 ) -> BandMember:
     """The member of a verdict; without a change, the run itself."""
+    tension, shear = largest_bolt_forces(joints) if joints else (None, None)
     return replace(
         _without_outcome(change, status),
         normal_penalty_Pa_m=model.penalty,
@@ -223,10 +225,8 @@ def _member(
         max_corner_force_N=verdict.max_corner_force_N,
         max_acceleration_m_s2=verdict.max_acceleration_m_s2,
         max_von_mises_Pa=verdict.max_von_mises_Pa,
-        bolt_tension_N=max(
-            (max(one.bolt_tension_left_N, one.bolt_tension_right_N) for one in joints or ()), default=None
-        ),
-        bolt_shear_N=max((one.bolt_shear_N for one in joints or ()), default=None),
+        bolt_tension_N=tension,
+        bolt_shear_N=shear,
     )
 
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from fem.assessment.joint_demands import edge_forces, joint_demands
-from fem.assessment.summary import plain_summary, unbolted
+from fem.assessment.joint_tables import unbolted
+from fem.assessment.summary import plain_summary
 from fem.results.history import NUMBERS, History
 from fem.results.run_result import RunResult
 

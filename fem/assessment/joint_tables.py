@@ -1,0 +1,77 @@
+"""What the joints of a stack must carry, as tables of a summary."""
+
+from collections.abc import Iterator, Sequence
+
+from rich.box import SIMPLE
+from rich.console import RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from fem.results.run_result import JointDemand
+
+LEAST_N = 1e-6  #: smaller joint forces [N] and moments [Nm] are rounding
+MOST_JOINTS = 8  #: joints shown; of more, those with a largest value
+JOINTS_NOTE = (
+    "The boxes are bolted and move as one. The table gives the forces in their joints (means over output.history_s), "
+    "the tension in the bolts along one edge, the shear in the bolts beyond friction with the floor's mu_static, and "
+    "when a joint without bolts would open at an edge or slide."
+)
+LARGEST = ("max_shear_N", "max_moment_Nm", "bolt_tension_left_N", "bolt_tension_right_N", "bolt_shear_N")
+
+
+def largest_bolt_forces(joints: Sequence[JointDemand]) -> tuple[float, float]:
+    """Largest tension along an edge, of all joints and both sides, and largest shear [N]."""
+    tension = max(max(one.bolt_tension_left_N, one.bolt_tension_right_N) for one in joints)
+    return tension, max(one.bolt_shear_N for one in joints)
+
+
+def titled_table(title: str, *columns: str) -> Table:
+    """An empty table; the numbers of a column that begins with > are aligned at the right."""
+    table = Table(
+        title=title, title_justify="left", box=SIMPLE, padding=(0, 1, 0, 0), show_header=any(columns)
+    )
+    for name in columns:
+        table.add_column(name.removeprefix(">"), justify="right" if name.startswith(">") else "left")
+    return table
+
+
+def joint_tables(every: Sequence[JointDemand]) -> Iterator[RenderableType]:
+    """Forces, and what bolts carry; one row a joint, from the floor up."""
+    forces = titled_table(
+        "Forces in the joints between boxes", "joint at", ">normal kN", ">shear kN", ">moment kNm"
+    )
+    bolts = titled_table(
+        "Bolts", "joint at", ">tension left, right kN", ">shear kN", ">mu needed", "without bolts it"
+    )
+    joints = _shown(every)
+    for joint in joints:
+        place, normal = f"{joint.height_m:.4g} m", (joint.min_normal_N, joint.max_normal_N)
+        tension = (joint.bolt_tension_left_N, joint.bolt_tension_right_N)
+        needed = "no mu" if joint.friction_needed is None else f"{joint.friction_needed:.3g}"
+        forces.add_row(
+            place, " .. ".join(map(_kilo, normal)), _kilo(joint.max_shear_N), _kilo(joint.max_moment_Nm)
+        )
+        bolts.add_row(
+            place, ", ".join(map(_kilo, tension)), _kilo(joint.bolt_shear_N), needed, unbolted(joint)
+        )
+    yield from (forces, bolts)
+    left_out = len(every) - len(joints)
+    yield Text(JOINTS_NOTE + (f" {left_out} more joints are in run.json." if left_out else "") + "\n")
+
+
+def _shown(joints: Sequence[JointDemand]) -> Sequence[JointDemand]:
+    if len(joints) <= MOST_JOINTS:
+        return joints
+    chosen = {max(range(len(joints)), key=lambda j: getattr(joints[j], key)) for key in LARGEST}
+    return [joints[j] for j in sorted(chosen)]
+
+
+def unbolted(joint: JointDemand) -> str:
+    """What the joint would do without bolts."""
+    events = (("opens", joint.opens_at_s), ("slides", joint.slides_at_s))
+    found = [f"{verb} at {instant:.3g} s" for verb, instant in events if instant is not None]
+    return ", ".join(found) or "stays closed, sticks"
+
+
+def _kilo(value: float) -> str:
+    return f"{1e-3 * value:.4g}" if abs(value) >= LEAST_N else "0"

@@ -1,0 +1,57 @@
+"""Which is to be believed where the static rule says that the container holds or stands, and the run moves it."""
+
+from collections.abc import Sequence
+
+from fem.assessment.sureness import ROCKING, below_uplift
+from fem.case.uncertainty import MU_KINETIC, STRIBECK, WEAKENING
+from fem.results.run_result import ActionResult, BandMember, RunResult, StaticResult, Verdict
+
+FRICTION = {MU_KINETIC, WEAKENING, STRIBECK}
+SLIDING = ("slide", "slide-rock")
+WITHOUT_BAND = "; which of the two is to be believed, only the band can say (--band)."
+
+
+def believed(result: RunResult) -> tuple[str, ...]:
+    """A sentence for sliding and one for rocking, as far as the rule and the run disagree."""
+    verdict = result.verdict or Verdict()
+    own = (result.static or StaticResult()).own_motion or ActionResult()
+    members = verdict.band.members if verdict.band is not None else ()
+    said = []
+    use = own.utilisation_sliding
+    if use and use <= 1.0 and verdict.outcome in SLIDING:
+        said.append(f"Sliding: the static rule holds at {use:.3f} and the run slid{_on_sliding(members)}")
+    use = own.utilisation_overturning
+    if use and use <= 1.0 and verdict.outcome in (*ROCKING, "overturned"):
+        said.append(f"Rocking: the static rule stands at {use:.3f} and the run rocked{_on_rocking(members)}")
+    return tuple(said)
+
+
+def _on_sliding(members: Sequence[BandMember]) -> str:
+    """Friction that falls at once lets an instant of vibration decide, of which a static rule knows nothing."""
+    if not members:
+        return WITHOUT_BAND
+    laws = [one for one in members if one.values and one.outcome and set(one.values) <= FRICTION]
+    held = [one.change for one in laws if one.outcome not in SLIDING]
+    if held:
+        return (
+            f". Believe the rule: with {held[0]} the container does not slide. The run slid because friction fell to "
+            "mu_kinetic in an instant of vibration and stayed there."
+        )
+    tried = (
+        f"it slides with every law of friction tried ({len(laws)})" if laws else "its friction does not fall"
+    )
+    return f". Believe the run: {tried}."
+
+
+def _on_rocking(members: Sequence[BandMember]) -> str:
+    if not members:
+        return WITHOUT_BAND
+    if below_uplift(members):
+        return (
+            ". Believe the rule: it is below uplift of a rigid block, and on a floor thirty times as stiff it does not "
+            "rock. The run rocked because its soft bed opens from the edge."
+        )
+    held = [one.change for one in members[1:] if one.kind == "one" and one.outcome in ("rest", *SLIDING[:1])]
+    if held:
+        return f". Neither is to be believed without {held[0].partition(' = ')[0]}: with {held[0]} it does not rock."
+    return ". Believe the run: it rocks with every single change tried."

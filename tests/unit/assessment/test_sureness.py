@@ -1,0 +1,190 @@
+"""How sure a verdict is, which inputs decide, numbers with their ranges, and the static rule or the run."""
+
+from dataclasses import replace
+
+import pytest
+
+from fem.assessment.ranges import IMPACT, in_figures, largest_stress, residual_slip, with_range
+from fem.assessment.rule_or_run import believed
+from fem.assessment.sureness import judged, sureness_in_words
+from fem.case.uncertainty import InputChange
+from fem.results.run_result import ActionResult, Band, BandMember, RunResult, StaticResult, Verdict
+
+MU, SLIP, PENALTY = "contact.mu_kinetic", "contact.weakening_m", "contact.normal_penalty_Pa_m"
+OWN = {"outcome": "slide-rock", "rotation_ratio": 0.2, "max_slip_m": 0.2, "residual_slip_m": -0.2}
+HALF = InputChange(kind="one", values={MU: 0.3}, share=0.5)
+EQUAL = InputChange(kind="one", values={MU: 0.4}, share=1.0)
+SLOW = InputChange(kind="one", values={SLIP: 1e-3}, share=0.2)
+STIFF = InputChange(kind="one", values={PENALTY: 3e9}, share=1.0)
+FLOOR = InputChange(kind="floor", values={PENALTY: 3e10}, share=1.0)
+BOTH = InputChange(kind="pair", values={MU: 0.3, SLIP: 5e-3}, share=1.0)
+
+
+def draw(mu, stiffness):
+    """A draw at these places of its ranges."""
+    return InputChange(kind="draw", values={MU: mu, PENALTY: stiffness}, share=1.0, place=(mu, stiffness))
+
+
+def member(change=None, **found):
+    values = {"status": "completed"} | OWN | found
+    if change is None:
+        return BandMember(**values)
+    return BandMember(change=change.label, kind=change.kind, values=change.values, **values)
+
+
+def verdict(*found, left_out=(), **own):
+    """The verdict of a run with members of these changes and figures."""
+    changes = [change for change, _ in found]
+    members = [member(**own), *(member(change, **(own | figures)) for change, figures in found)]
+    given = Verdict(**(OWN | own))
+    return judged(given, members, changes, left_out, width=1.1)
+
+
+FELL = {"outcome": "overturned", "rotation_ratio": 5.9}
+RESTS = {"outcome": "rest", "rotation_ratio": 1e-4, "max_slip_m": 1e-6}
+FAILED = {"outcome": None, "status": "failed", "rotation_ratio": None}
+
+
+@pytest.mark.parametrize(
+    ("found", "sure", "decided_by"),
+    [
+        ([(HALF, {}), (STIFF, {"max_slip_m": 0.1})], "sure", ()),
+        ([(HALF, {}), (STIFF, {"outcome": "rock"})], "regime unsure", (PENALTY,)),
+        ([(HALF, {"max_slip_m": 0.05}), (EQUAL, {"max_slip_m": 2e-3})], "regime unsure", (MU,)),
+        ([(STIFF, {"rotation_ratio": 0.01})], "regime unsure", (PENALTY,)),
+        ([(HALF, {}), (STIFF, FELL)], "unsure", (PENALTY,)),
+        ([(SLOW, {"outcome": "rock"}), (STIFF, FELL)], "unsure", (PENALTY, SLIP)),
+        ([(STIFF, FELL), (HALF, FELL), (SLOW, FELL)], "unsure", (SLIP, MU, PENALTY)),
+        ([(EQUAL, FELL), (STIFF, FELL)], "unsure", (MU, PENALTY)),
+        ([(HALF, {}), (BOTH, FELL)], "unsure", (MU, SLIP)),
+        ([(HALF, FAILED)], "unsure", ()),
+        ([(draw(0.1, 0.5), {}), (draw(0.9, 0.4), FELL), (draw(0.2, 0.6), {})], "unsure", (MU,)),
+    ],
+    ids=[
+        "one outcome of one size",
+        "another regime",
+        "a hundred times the slip",
+        "a twentieth of the rotation",
+        "overturning",
+        "overturning before the regime",
+        "the smallest change first",
+        "equal changes in the order of the inputs",
+        "a pair",
+        "a failure",
+        "what most tells the draws apart that fall",
+    ],
+)
+def test_the_members_say_how_sure_a_verdict_is_and_what_decides(found, sure, decided_by):
+    judgement = verdict(*found)
+    assert (judgement.sure, judgement.decided_by) == (sure, decided_by)
+    assert judgement.band.unsure is (sure == "unsure")
+
+
+def test_a_run_that_overturns_is_sure_only_where_all_do():
+    assert verdict((HALF, FELL), (STIFF, FELL), **FELL).sure == "sure"
+    stands = {"outcome": "rock", "rotation_ratio": 0.3}
+    assert verdict((HALF, stands), **FELL).decided_by == (MU,)
+
+
+def test_changes_left_out_leave_it_unsure_but_draws_do_not():
+    assert verdict((HALF, {}), left_out=(draw(0.5, 0.5),)).sure == "sure"
+    found = verdict((HALF, {}), left_out=(STIFF, draw(0.5, 0.5)))
+    assert (found.sure, found.band.left_out, found.band.draws_left_out) == ("unsure", (STIFF.label,), 1)
+
+
+def test_below_uplift_of_a_rigid_block_is_unsure():
+    rocks = {"outcome": "rock", "rotation_ratio": 0.27, "max_slip_m": 0.0}
+    found = verdict((FLOOR, RESTS), (STIFF, {}), **rocks)
+    assert (found.sure, found.decided_by) == ("unsure", (PENALTY,))
+    words = sureness_in_words(RunResult(status="completed", verdict=found))
+    assert "below uplift of a rigid block" in words
+    assert verdict((FLOOR, {}), **rocks).sure == "sure"
+
+
+def test_ranges_are_those_of_the_members_that_end_as_the_run():
+    found = verdict((HALF, {"rotation_ratio": 0.4, "residual_slip_m": 0.1}), (STIFF, FELL)).band
+    assert found.rotation_ratio == (0.2, 0.4) and found.residual_slip_m == (-0.2, 0.1)
+    assert found.max_von_mises_Pa is None
+    fallen = verdict((HALF, {"outcome": "rock", "rotation_ratio": 0.3}), **FELL).band
+    assert fallen.rotation_ratio == (5.9, 5.9)
+
+
+def test_draws_that_overturn_are_counted():
+    found = verdict((draw(0.1, 0.1), FELL), (draw(0.9, 0.9), {}), (HALF, FELL))
+    assert (found.band.draws, found.band.draws_overturned) == (2, 1)
+    words = sureness_in_words(RunResult(status="completed", verdict=found))
+    assert words == f"Unsure: overturned in 1 of 2 draws; what decides is {MU}."
+
+
+@pytest.mark.parametrize(
+    ("value", "reach", "words"),
+    [
+        (0.2217, (0.00134, 0.3965), "0.22 (0.0013 to 0.40) kN"),
+        (1400.3, (102.2, 1524.9), "1400 (100 to 1500) kN"),
+        (192.13, (190.0, 195.0), "192.1 (190 to 195) kN"),
+        (192.13, (192.13, 192.13), "192.1 kN"),
+        (192.13, None, "192.1 kN"),
+        (-0.0996, (-0.0996, -0.05), "-0.10 (-0.10 to -0.050) kN"),
+        (None, (1.0, 2.0), ""),
+    ],
+)
+def test_a_number_has_the_figures_that_its_range_allows(value, reach, words):
+    assert with_range(value, reach, "kN") == words
+
+
+@pytest.mark.parametrize(
+    ("value", "figures", "words"),
+    [(9.96, 2, "10"), (0.0996, 2, "0.10"), (123456.0, 2, "120000"), (0.0, 2, "0"), (2e-5, 4, "0.00002")],
+)
+def test_figures_are_rounded_without_an_exponent(value, figures, words):
+    assert in_figures(value, figures) == words
+
+
+def test_a_slip_whose_sign_changes_is_about_zero():
+    known = Verdict(residual_slip_m=-0.184, band=Band(residual_slip_m=(-0.339, 0.008)))
+    assert residual_slip(known) == "about zero, up to 340 mm"
+    one_way = replace(known, band=Band(residual_slip_m=(-0.339, -0.008)))
+    assert residual_slip(one_way) == "-180 (-340 to -8.0) mm"
+
+
+def test_an_elastic_stress_beyond_yield_is_no_bare_number():
+    beyond = Verdict(
+        max_von_mises_Pa=1107e6, yield_strength_Pa=235e6, impacts=3, band=Band(max_von_mises_Pa=(7e8, 1.3e9))
+    )
+    assert largest_stress(beyond) == (
+        f"beyond yield (235 MPa); the elastic model has 1100 (700 to 1300) MPa; {IMPACT}"
+    )
+    within = replace(beyond, max_von_mises_Pa=1e8, band=Band(max_von_mises_Pa=(5e7, 3e8)), impacts=0)
+    assert largest_stress(within).startswith("beyond yield within the band (235 MPa)")
+    assert largest_stress(replace(within, band=None)) == "100 MPa"
+
+
+@pytest.mark.parametrize(
+    ("own", "members", "words"),
+    [
+        ({"outcome": "slide"}, None, "only the band can say"),
+        ({"outcome": "slide"}, [(EQUAL, RESTS)], "Believe the rule: with contact.mu_kinetic = 0.4"),
+        (
+            {"outcome": "slide"},
+            [(EQUAL, {})],
+            "Believe the run: it slides with every law of friction tried (1)",
+        ),
+        ({"outcome": "slide"}, [(STIFF, {})], "Believe the run: its friction does not fall"),
+        ({"outcome": "rock"}, None, "only the band can say"),
+        ({"outcome": "rock"}, [(FLOOR, RESTS)], "Believe the rule: it is below uplift of a rigid block"),
+        ({"outcome": "rock"}, [(STIFF, {})], "Believe the run: it rocks with every single change"),
+        (
+            {"outcome": "rock"},
+            [(STIFF, RESTS)],
+            "Neither is to be believed without contact.normal_penalty_Pa_m",
+        ),
+        ({"outcome": "rest"}, [(STIFF, {})], None),
+    ],
+)
+def test_where_rule_and_run_disagree_it_is_said_which_is_to_be_believed(own, members, words):
+    static = StaticResult(own_motion=ActionResult(utilisation_sliding=0.8, utilisation_overturning=0.95))
+    given = Verdict(**own) if members is None else verdict(*members, **own)
+    said = believed(RunResult(status="completed", verdict=given, static=static))
+    assert [words in one for one in said] == ([] if words is None else [True])
+    over = replace(static, own_motion=ActionResult(utilisation_sliding=1.1, utilisation_overturning=1.1))
+    assert believed(RunResult(status="completed", verdict=given, static=over)) == ()
