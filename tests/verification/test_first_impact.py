@@ -43,7 +43,7 @@ def test_ringing_does_not_enter_under_a_moving_floor(model, expected, within):
     assert found.restitution_first == pytest.approx(expected, abs=within)
 
 
-@pytest.mark.parametrize("changes", [(), ("container.section=solid",)])
+@pytest.mark.parametrize("changes", [(), ("contact.mu_kinetic=0.4",), ("container.section=solid",)])
 def test_a_container_that_slides_at_the_impact_has_no_restitution(changes):
     found = verdict("seed_stack_plateau", "solver.duration_s=2", *changes)
     assert found.impacts > 0
