@@ -20,7 +20,8 @@ from fem.assessment.joint_tables import largest_bolt_forces
 from fem.assessment.sureness import judged, static_use
 from fem.assessment.verdict import verdict_of
 from fem.case.case import Case
-from fem.case.uncertainty import InputChange, Value, changes_of, draws_of, pairs_of, stiff_floor
+from fem.case.uncertainty import TOLERANCE, InputChange, Value, changes_of, draws_of, pairs_of, stiff_floor
+from fem.model.joints import Joints, joints_of
 from fem.model.model import Model, build_model
 from fem.model.recovery import Recovery, recovery_of
 from fem.model.validity import runs_in_memory
@@ -51,6 +52,7 @@ MEMBER_COST = 1.2  #: of a member over the run: stiffer floors and tighter toler
 #: processor time of one attempted step of a modal model: fixed, by (base points)^2, by unknowns x 2 base points [s].
 #: Measured: 0.42e-6 (rigid) and 0.87e-6 (20 modes) on corners, 4.3e-6 (feet), 5.6e-6 and 25e-6 (flat)
 STEP_COST = (0.4e-6, 7e-9, 5e-9)
+DRAWN_TOLERANCE = 3.0  #: energy tolerance of draws at least: 0.01 to 10 give the same outcomes
 STORED_S = 1.0  #: wall time between two notes of finished members
 
 
@@ -61,6 +63,14 @@ class Plan:
     changes: tuple[InputChange, ...]
     left_out: tuple[InputChange, ...]  #: for which there is no time
     short: bool  #: members are so short that none needs a checkpoint
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shared:
+    """What all members take from the container that they share."""
+
+    recovery: Recovery | None  #: of stresses
+    joints: Joints | None  #: of a stack
 
 
 def wants_band(asked: bool | None, case: Case, result: RunResult) -> bool:
@@ -128,7 +138,10 @@ def with_band(
     plan = plan_of(model, result)
     found = {_key(one.values): one for one in checkpoint.read_members()}
     one_at_a_time, broken, stored = threading.Lock(), threading.Event(), time.monotonic()
-    recovery = recovery_of(model) if model.case.solver.model == "reduced" else None
+    shared = Shared(
+        recovery=recovery_of(model) if model.case.solver.model == "reduced" else None,
+        joints=joints_of(model) if plan.short else None,
+    )
 
     def halted() -> bool:
         return stop() or broken.is_set()
@@ -141,7 +154,7 @@ def with_band(
         if halted():
             return _without_outcome(change, "interrupted")
         try:
-            member = _run_member(model, plan, number, change, recovery, halted, checkpoint)
+            member = _run_member(model, plan, number, change, shared, halted, checkpoint)
             with one_at_a_time:
                 if member.status != "interrupted":
                     found[key] = member
@@ -171,21 +184,24 @@ def _run_member(
     plan: Plan,
     number: int,
     change: InputChange,
-    recovery: Recovery | None,
+    shared: Shared,
     stop: Callable[[], bool],
     checkpoint: BandCheckpoint,
 ) -> BandMember:
     """One member; a problem of any kind is its error, never an outcome."""
     try:
-        case = run.case.with_values({**change.values, "output.fields_s": 0.0})
+        values = {**change.values, "output.fields_s": 0.0}
+        if change.kind == "draw":
+            values[TOLERANCE] = max(DRAWN_TOLERANCE, run.case.solver.energy_tolerance)
+        case = run.case.with_values(values)
         model = build_model(case, run.container)
         if plan.short and (change.kind != "one" or case.container.boxes == 1):
-            verdict, error = run_without_history(model, recovery)
+            verdict, error = run_without_history(model, shared.recovery)
             status = "overturned" if verdict.outcome == "overturned" else "completed"
             if error is not None:
                 return _without_outcome(change, "failed", error)
             return _member(change, case, model, status, verdict, None)
-        recorder = Recorder(model, recovery)
+        recorder = Recorder(model, shared.recovery, joints=shared.joints)
         if plan.short:
             ending = simulate(model, recorder, stop=stop)
         else:

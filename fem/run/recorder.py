@@ -57,6 +57,7 @@ class Recorder:
         recovery: of its fields; None leaves fields and stresses out.
         history_sink: called with new rows (k, 20 + 3 joints) and their modes.
         frame_sink: called with every frame.
+        joints: of its container, where they are built already.
     """
 
     def __init__(
@@ -65,6 +66,7 @@ class Recorder:
         recovery: Recovery | None = None,
         history_sink: HistorySink | None = None,
         frame_sink: FrameSink | None = None,
+        joints: Joints | None = None,
     ) -> None:
         self._model = model
         self._recovery = recovery
@@ -79,7 +81,7 @@ class Recorder:
         self.joint_motion = np.zeros((0, 0))
         self._joint_forces = np.zeros((0, len(JOINT_COLUMNS)))
         self.joints: Joints | None = None
-        self.take_joints(joints_of(model), model.run.old)
+        self.take_joints(joints or joints_of(model), model.run.old)
 
     def take_joints(self, joints: Joints | None, initial: State) -> None:
         """Follow the forces in these joints, from the initial state on."""

@@ -1,0 +1,92 @@
+"""Verdicts that must not be sure: where friction, its fall or the stiffness of the floor decides, the run says so.
+
+The runs are those in which an independent review found verdicts that were sure and hung on what nobody knows.
+"""
+
+import pytest
+from cases import named_case
+
+from fem.run.run import RunOptions, run_case
+
+QUICK = {"output.fields_s": 0.0, "output.figures": False, "uncertainty.draws": 4}
+FLAT = {
+    "support.kind": "flat",
+    "contact.mu_kinetic": 0.4,
+    "solver.duration_s": 15.0,
+    "uncertainty.normal_penalty_Pa_m": "known",
+    "uncertainty.damping_ratio": "known",
+    "uncertainty.material_damping_ratio": "known",
+    "uncertainty.start": "known",
+    "uncertainty.ramp": "known",
+}
+UPLIFT = 2.698  # m/s2, of the stack as a rigid block: g a/h
+
+
+def verdict_of(folder, name, values):
+    case = named_case(name, QUICK | values)
+    return run_case(case, case_text=case.text, folder=folder, options=RunOptions()).typed_result
+
+
+def pulse(model="reduced", **values):
+    """A box of steel under a rectangular pulse of 0.80 of what breaks it loose."""
+    given = {
+        "motion.kind": "pulse",
+        "motion.shape": "rectangular",
+        "motion.pulse_s": 0.5,
+        "motion.delay_s": 0.1,
+        "motion.peak_acceleration_m_s2": 3.14,
+        "solver.duration_s": 1.5,
+        "solver.model": model,
+    }
+    return given | {key.replace("__", "."): value for key, value in values.items()}
+
+
+def test_a_pull_below_stiction_that_slides_a_shell_is_not_sure(tmp_path):
+    # A block under 0.80 of mu_s g rests. The shell's overshoot of some milliseconds drops the support to mu_kinetic.
+    found = verdict_of(tmp_path, "seed_box", pulse())
+    verdict = found.verdict
+    assert verdict.outcome == "slide" and verdict.max_slip_m > 0.2
+    assert verdict.sure == "regime unsure"
+    assert {"contact.mu_kinetic", "contact.weakening_m"} <= set(verdict.decided_by)
+    assert set(verdict.band.outcomes) == {"rest", "slide"}
+    page = " ".join((tmp_path / "summary.txt").read_text().split())
+    assert "the static rule holds at 0.800 and the run slid. Believe the rule" in page
+    assert found.warnings[0].startswith("regime unsure: overturned in 0 of 4 draws; what decides is contact.")
+
+
+@pytest.mark.parametrize("section", ["shell", "solid"])
+def test_the_default_motion_hangs_on_the_fall_of_friction(tmp_path, section):
+    values = {"container.section": section, "solver.duration_s": 8.0}
+    verdict = verdict_of(tmp_path, "seed_stack_plateau", values).verdict
+    assert verdict.sure == "regime unsure" and verdict.decided_by[0] == "contact.mu_kinetic"
+    low, high = verdict.band.rotation_ratio
+    assert low < 0.25 and high == pytest.approx(0.39, abs=0.02)  # the block without slip: 0.399
+    assert verdict.first_line.endswith(
+        "and others." if len(verdict.decided_by) > 4 else f"{verdict.decided_by[-1]}."
+    )
+
+
+@pytest.mark.parametrize(("model", "share"), [("rigid", 0.98), ("reduced", 0.95)])
+def test_a_flat_base_that_rocks_below_uplift_is_not_sure(tmp_path, model, share):
+    # Exact rigid block: rests below its uplift. A soft bed opens from the edge and is pulled into rocking.
+    values = {"solver.model": model, "motion.peak_acceleration_m_s2": share * UPLIFT, "uncertainty.draws": 0}
+    verdict = verdict_of(tmp_path, "seed_stack_plateau", FLAT | values).verdict
+    assert verdict.rotation_ratio > 0.1
+    assert verdict.sure == "unsure" and verdict.decided_by[0] == "contact.normal_penalty_Pa_m"
+    (floor,) = (one for one in verdict.band.members if one.kind == "floor")
+    assert floor.rotation_ratio < 0.01
+    assert "below uplift of a rigid block" in verdict.first_line
+    page = " ".join((tmp_path / "summary.txt").read_text().split())
+    assert f"the static rule stands at {share:.3f} and the run rocked. Believe the rule" in page
+
+
+def test_corners_below_uplift_rest_and_are_sure(tmp_path):
+    values = {
+        "solver.model": "rigid",
+        "contact.mu_kinetic": 0.4,
+        "motion.peak_acceleration_m_s2": 0.95 * UPLIFT,
+        "uncertainty.start": "known",
+    }
+    verdict = verdict_of(tmp_path, "seed_stack_plateau", values).verdict
+    assert (verdict.outcome, verdict.sure, verdict.decided_by) == ("rest", "sure", ())
+    assert verdict.band.draws_overturned == 0
