@@ -7,8 +7,10 @@ from weakref import WeakKeyDictionary
 
 from fem.case.case import Case
 from fem.model.container import Container, discretise
+from fem.model.geometry import build_container
 from fem.model.model import Model
 from fem.model.recovery import Recovery, recovery_of
+from fem.model.support import normal_penalty
 
 
 def container_key(case: Case) -> Hashable:
@@ -63,3 +65,24 @@ class ContainerCache:
         if found is None:
             found = self._recoveries[model.container] = recovery_of(model)
         return found
+
+
+class PenaltyCache:
+    """Normal penalties of cases, by container and without its modes."""
+
+    def __init__(self, most: int = 4096) -> None:
+        self._most = most
+        self._held: dict[Hashable, float] = {}
+
+    def of(self, case: Case) -> float:
+        """Normal penalty of a case, chosen where it says "auto" [Pa/m].
+
+        Raises:
+            CaseError, MeshError: bad input.
+        """
+        key = container_key(case), case.contact.normal_penalty_Pa_m
+        if key not in self._held:
+            while len(self._held) >= self._most:
+                del self._held[next(iter(self._held))]
+            self._held[key] = normal_penalty(case, build_container(case))
+        return self._held[key]

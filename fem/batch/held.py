@@ -53,9 +53,9 @@ def _beginning(cases: Sequence[Case], varied: Collection[str]) -> Iterator[str]:
         return
     ramps, starts = {one.ramp_cycles for one in motions}, {one.start for one in motions}
     if START not in varied and starts == {"moving"}:
-        yield "started with the floor"
+        yield "a start with the floor"
     elif START not in varied and starts == {"rest"}:
-        yield "started at rest"
+        yield "a start at rest"
     if RAMP not in varied and len(ramps) == 1:
         cycles = ramps.pop()
         yield f"a ramp of {cycles:g} cycles" if cycles else "no ramp"

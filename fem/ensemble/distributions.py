@@ -102,25 +102,28 @@ def read_random(key: str, given: Any) -> RandomQuantity:
 
 
 def draw_shares(
-    sampling: Sampling, *, seed: int, cell: int, dimensions: int, draws: int, replicates: int
+    sampling: Sampling, *, seed: int, cell: int, dimensions: int, draws: int, replicates: int, stream: int = 0
 ) -> FloatArray:
     """Points of the unit cube for one cell, shape (draws, dimensions), replicate after replicate.
 
     Every cell and every replicate has a separate stream of random numbers, given by seed, cell and replicate alone: it
-    does not depend on what else is computed, in what order and on how many cores.
+    does not depend on what else is computed, in what order and on how many cores. A further stream has random numbers
+    of its own, and its points in random order: two scrambled sequences in their own order depend on each other.
     """
     if sampling == "independent":
-        return _generator(seed, cell, 0).random((draws, dimensions))
+        return _generator(seed, cell, 0, stream).random((draws, dimensions))
     size = draws // replicates
     blocks = []
     for replicate in range(replicates):
-        generator = _generator(seed, cell, replicate)
+        generator = _generator(seed, cell, replicate, stream)
         if sampling == "sobol":
-            blocks.append(qmc.Sobol(dimensions, scramble=True, seed=generator).random(size))
+            block = qmc.Sobol(dimensions, scramble=True, seed=generator).random(size)
         else:
-            blocks.append(qmc.LatinHypercube(dimensions, seed=generator).random(size))
+            block = qmc.LatinHypercube(dimensions, seed=generator).random(size)
+        blocks.append(generator.permutation(block) if stream else block)
     return np.concatenate(blocks)
 
 
-def _generator(seed: int, cell: int, replicate: int) -> np.random.Generator:
-    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(cell, replicate)))
+def _generator(seed: int, cell: int, replicate: int, stream: int) -> np.random.Generator:
+    key = (cell, replicate, stream) if stream else (cell, replicate)
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))

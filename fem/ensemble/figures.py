@@ -11,6 +11,7 @@ from fem.batch.axes import axis_label
 from fem.ensemble.fragility import Lognormal
 from fem.ensemble.plan import Ensemble
 from fem.ensemble.statistics import PointResult
+from fem.ensemble.unknown import UnknownInputs
 from fem.figures.heat_map import Panel, draw_heat_map
 from fem.figures.style import (
     BLACK,
@@ -34,20 +35,28 @@ MOST_NUMBERS = 320  #: cells of a panel up to which each holds its number
 
 
 def ensemble_figures(
-    ensemble: Ensemble, points: Sequence[PointResult], fragility: Mapping[str, Any] | None
+    ensemble: Ensemble,
+    unknown: UnknownInputs,
+    points: Sequence[PointResult],
+    fragility: Mapping[str, Any] | None,
 ) -> dict[str, str]:
     """Figures as SVG documents, by name."""
     with house_style():
         if len(ensemble.axes) == 1:
-            return {"fragility": svg_of(draw_fragility(ensemble, points, fragility or {}))}
-        return {"boundary": svg_of(draw_boundary(ensemble, points))}
+            return {"fragility": svg_of(draw_fragility(ensemble, unknown, points, fragility or {}))}
+        return {"boundary": svg_of(draw_boundary(ensemble, unknown, points))}
 
 
-def draw_fragility(ensemble: Ensemble, points: Sequence[PointResult], fragility: Mapping[str, Any]) -> Figure:
+def draw_fragility(
+    ensemble: Ensemble,
+    unknown: UnknownInputs,
+    points: Sequence[PointResult],
+    fragility: Mapping[str, Any],
+) -> Figure:
     """Counts with their intervals, and the lognormal curve with its band."""
     figure, (axes,) = panels((3.2,), header=3)
     axis = ensemble.axes[0]
-    head(figure, ensemble.title or ensemble.name, _statement(ensemble))
+    head(figure, ensemble.title or ensemble.name, _statement(ensemble, unknown))
     fitted = fragility.get("lognormal")
     if fitted is not None:
         strengths = np.linspace(float(axis.values[0]), float(axis.values[-1]), FINE)
@@ -84,7 +93,7 @@ def draw_fragility(ensemble: Ensemble, points: Sequence[PointResult], fragility:
     return figure
 
 
-def draw_boundary(ensemble: Ensemble, points: Sequence[PointResult]) -> Figure:
+def draw_boundary(ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[PointResult]) -> Figure:
     """Which points overturn with at most the probability asked for, which with more, which is undecided."""
     *outer, down, across = ensemble.axes
     outside = outer[0].values if outer else (None,)
@@ -112,7 +121,7 @@ def draw_boundary(ensemble: Ensemble, points: Sequence[PointResult]) -> Figure:
         x,
         map_axis(down),
         panels,
-        title=f"{ensemble.title or ensemble.name}\n{_statement(ensemble)}",
+        title=f"{ensemble.title or ensemble.name}\n{_statement(ensemble, unknown)}",
         colours={words[region]: colour for region, colour in COLOURS.items()},
     )
 
@@ -132,8 +141,11 @@ def band_of(
     return low, high
 
 
-def _statement(ensemble: Ensemble) -> str:
+def _statement(ensemble: Ensemble, unknown: UnknownInputs) -> str:
     names = ", ".join(
         one.key.rpartition(".")[2].removesuffix("_rad").replace("_", " ") for one in ensemble.random
     )
-    return f"{ensemble.draws} draws a point ({ensemble.sampling}); random: {names}; not the floor's motion"
+    ranges = f"; {len(unknown.keys)} unknown inputs drawn over their ranges" if unknown.keys else ""
+    held = f"; {unknown.held}" if unknown.held else ""
+    drawn = f"{ensemble.draws} draws a point ({ensemble.sampling})"
+    return f"{drawn}; random: {names}{ranges}{held}; not the floor's motion"

@@ -19,7 +19,7 @@ from fem.case.tables import CaseTable
 from fem.case.validation import CaseError
 from fem.ensemble.distributions import RandomQuantity, Sampling, read_random
 from fem.ensemble.intervals import least_draws
-from fem.ensemble.plan import Ensemble
+from fem.ensemble.plan import Ensemble, Unknown
 
 TABLES = ("set", "axes", "random", "derived")
 MOST_AXES, MOST_RANDOM = 3, 8
@@ -42,6 +42,10 @@ class EnsembleHeading(CaseTable):
     confidence: float = Field(default=0.95, ge=0.5, le=0.9999, description="of the intervals, two-sided")
     probability: float = Field(
         default=0.05, gt=0.0, lt=1.0, description="of overturning, to which the points are compared"
+    )
+    unknown_inputs: Unknown = Field(
+        default="drawn",
+        description='inputs that this file does not vary: "drawn" over [uncertainty] of the case | "held"',
     )
 
 
@@ -83,6 +87,7 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
         replicates=1 if heading.sampling == "independent" else heading.replicates,
         confidence=heading.confidence,
         probability=heading.probability,
+        unknown_inputs=heading.unknown_inputs,
     )
     _check_draws(ensemble)
     _try_cases(ensemble)

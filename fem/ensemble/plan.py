@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -12,7 +12,11 @@ from fem.batch.axes import Axis, point_of, shape_of
 from fem.batch.case_maker import CaseMaker
 from fem.batch.derived import FREE, Derived, number_of, with_derived
 from fem.case.case import Case
+from fem.case.uncertainty import Value
 from fem.ensemble.distributions import RandomQuantity, Sampling, draw_shares
+
+#: inputs that nobody knows, and that the file does not vary: drawn over [uncertainty] of the case, or held
+Unknown = Literal["drawn", "held"]
 
 
 class Draw(NamedTuple):
@@ -21,6 +25,7 @@ class Draw(NamedTuple):
     cell: int  #: number of the point, the last axis the fastest
     number: int  #: at this point, replicate after replicate
     values: tuple[float, ...]  #: of the random quantities, relative ones as factors
+    unknown: Mapping[str, Value] = {}  #: of the unknown inputs, by key
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,6 +45,7 @@ class Ensemble:
     replicates: int  #: 1 for independent draws
     confidence: float
     probability: float  #: of overturning, to which the points are compared
+    unknown_inputs: Unknown = "drawn"
 
     @property
     def count(self) -> int:
@@ -69,9 +75,11 @@ class Ensemble:
         Raises:
             CaseError: it cannot be used.
         """
-        return self.case_of(self.point(draw.cell), draw.values)
+        return self.case_of(self.point(draw.cell), draw.values, draw.unknown)
 
-    def case_of(self, point: Mapping[str, Any], drawn: Sequence[float]) -> Case:
+    def case_of(
+        self, point: Mapping[str, Any], drawn: Sequence[float], unknown: Mapping[str, Value] | None = None
+    ) -> Case:
         """The case at a point, of values drawn.
 
         Raises:
@@ -82,7 +90,8 @@ class Ensemble:
             scale = number_of(one.key, values, self.base) if one.spread.relative else 1.0
             values[one.key] = value * scale
         values = with_derived(values, self.derived, self.base)
-        return self._make({key: value for key, value in values.items() if not key.startswith(FREE)})
+        keys = {key: value for key, value in values.items() if not key.startswith(FREE)}
+        return self._make(keys | dict(unknown or {}))
 
     @cached_property
     def _make(self) -> CaseMaker:

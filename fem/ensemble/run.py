@@ -29,6 +29,7 @@ from fem.ensemble.statistics import (
     count_point,
     fragility_of,
 )
+from fem.ensemble.unknown import UnknownInputs
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
 from fem.results.kinds import ENSEMBLE
 from fem.runtime.progress import Reporter, SilentReporter
@@ -45,10 +46,10 @@ CODES = {word: code for code, word in WORDS.items()}
 class DrawRows:
     """The rows of the draws so far."""
 
-    def __init__(self, ensemble: Ensemble) -> None:
-        self._ensemble = ensemble
+    def __init__(self, ensemble: Ensemble, unknown: UnknownInputs) -> None:
+        self._ensemble, self._unknown = ensemble, unknown
         keys = [f"{one.key}{' factor' if one.spread.relative else ''}" for one in ensemble.random]
-        self.columns = ("point", "draw", "replicate", *keys, "outcome", "rotation_ratio")
+        self.columns = ("point", "draw", "replicate", *keys, *unknown.keys, "outcome", "rotation_ratio")
         self.codes = np.full((ensemble.count, ensemble.draws), MISSING, dtype=np.int8)
         self._lines: dict[tuple[int, int], str] = {}
 
@@ -58,7 +59,8 @@ class DrawRows:
         ratio = row["rotation_ratio"]
         known = ratio is not None and np.isfinite(ratio)
         found = WORDS[code_of(row)], ratio if known else None
-        return draw.cell, draw.number, replicate, *draw.values, *found
+        unknown = (draw.unknown.get(key) for key in self._unknown.keys)
+        return draw.cell, draw.number, replicate, *draw.values, *unknown, *found
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
@@ -73,7 +75,7 @@ class DrawRows:
     def missing(self) -> list[Draw]:
         """The draws that have no row."""
         cells = np.flatnonzero((self.codes == MISSING).any(axis=1)).tolist()
-        draws = (draw for cell in cells for draw in self._ensemble.draws_at(cell))
+        draws = (draw for cell in cells for draw in self._unknown.draws_at(cell))
         return [draw for draw in draws if self.codes[draw.cell, draw.number] == MISSING]
 
 
@@ -107,10 +109,11 @@ def run_ensemble(
             return place.found
         if place.resuming:
             place.require_same_program()
-        place.require_room(required_disk(ensemble), "the ensemble", "take fewer draws")
+        unknown = UnknownInputs(ensemble)
+        place.require_room(required_disk(ensemble, unknown), "the ensemble", "take fewer draws")
         texts = {"ensemble.toml": ensemble.text, "base.toml": to_toml(ensemble.base)}
         place.begin({"status": "running", "asked": asked} | program_of_results(), texts)
-        draws = DrawRows(ensemble)
+        draws = DrawRows(ensemble, unknown)
         with LocalWorkers(jobs or cores()) as workers_of:
             LoggedRuns(
                 what="draws",
@@ -121,10 +124,12 @@ def run_ensemble(
                 values=draws.values,
                 note=draws.note,
             ).run(Runner(workers_of=workers_of, reporter=reporter, stop=stop), iter(draws.missing, []))
-        return _finish(ensemble, place, draws)
+        return _finish(ensemble, unknown, place, draws)
 
 
-def _finish(ensemble: Ensemble, place: ResultFolder, draws: DrawRows) -> dict[str, Any]:
+def _finish(
+    ensemble: Ensemble, unknown: UnknownInputs, place: ResultFolder, draws: DrawRows
+) -> dict[str, Any]:
     """Count what there is, and write it."""
     complete = (draws.codes != MISSING).all(axis=1)
     points = [count_point(ensemble, int(k), draws.codes[k]) for k in np.flatnonzero(complete)]
@@ -136,16 +141,16 @@ def _finish(ensemble: Ensemble, place: ResultFolder, draws: DrawRows) -> dict[st
     place.write_text("points.csv", csv_of_points(ensemble, points))
     place.write_text(DRAWS, draws.table())
     if complete.all():
-        for name, svg in ensemble_figures(ensemble, points, fragility).items():
+        for name, svg in ensemble_figures(ensemble, unknown, points, fragility).items():
             place.write_text(f"figures/{name}.svg", svg)
-    result = result_of(ensemble, points, fragility, status)
+    result = result_of(ensemble, unknown, points, fragility, status)
     place.write_result(result)
     return result
 
 
-def required_disk(ensemble: Ensemble) -> float:
+def required_disk(ensemble: Ensemble, unknown: UnknownInputs) -> float:
     """Size of the folder of an ensemble [bytes]: the rows of the draws twice, a row a point, figures."""
-    row = BYTES_OF_A_DRAW + BYTES_OF_A_NUMBER * len(ensemble.random)
+    row = BYTES_OF_A_DRAW + BYTES_OF_A_NUMBER * (len(ensemble.random) + len(unknown.keys))
     return ensemble.count * (2 * ensemble.draws * row + BYTES_OF_A_POINT) + BYTES_BESIDE
 
 
@@ -162,12 +167,16 @@ def ensemble_hash(ensemble: Ensemble) -> str:
 
 def asked_of(ensemble: Ensemble) -> dict[str, Any]:
     """How the draws are made and counted."""
-    names = ("draws", "seed", "sampling", "replicates", "confidence", "probability")
+    names = ("draws", "seed", "sampling", "replicates", "confidence", "probability", "unknown_inputs")
     return {name: getattr(ensemble, name) for name in names}
 
 
 def result_of(
-    ensemble: Ensemble, points: Sequence[PointResult], fragility: dict[str, Any] | None, status: str
+    ensemble: Ensemble,
+    unknown: UnknownInputs,
+    points: Sequence[PointResult],
+    fragility: dict[str, Any] | None,
+    status: str,
 ) -> dict[str, Any]:
     """The content of `ensemble.json`."""
     regions = [point.region for point in points]
@@ -186,6 +195,8 @@ def result_of(
             one.key: one.spread.model_dump(by_alias=True, exclude_none=True) for one in ensemble.random
         },
         "derived": {one.key: one.expression.text for one in ensemble.derived},
+        "drawn_over_uncertainty": list(unknown.keys),
+        "held": unknown.held,
         "points": [point.row() for point in points],
         "regions": {name: regions.count(name) for name in ("below", "undecided", "above")},
         "failed": sum(point.failed for point in points),
@@ -206,6 +217,10 @@ def page_of(result: dict[str, Any], folder: Path) -> str:
         *([f"  under {result['motion_covered']}"] if result.get("motion_covered") else []),
         f"  random: {', '.join(result['random'])}; the floor's motion is not random",
     ]
+    if drawn := result.get("drawn_over_uncertainty"):
+        lines.append(f"  drawn over [uncertainty]: {', '.join(drawn)}")
+    if held := result.get("held"):
+        lines.append(f"  held: {held}")
     for name, count in result["regions"].items():
         lines.append(
             f"  {name:10} {count:>6} points  "

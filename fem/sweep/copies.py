@@ -8,15 +8,13 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from fem.batch.container_cache import container_key
+from fem.batch.container_cache import PenaltyCache
 from fem.case.case import Case
 from fem.case.uncertainty import TOLERANCE, InputChange, changes_of, draws_of, pairs_of
-from fem.model.geometry import build_container
-from fem.model.support import normal_penalty
 from fem.sweep.perturbation import SMALL
 from fem.sweep.plan import Sweep
 
-#: cells and containers of which the copies and the penalty are remembered
+#: cells of which the copies are remembered
 REMEMBERED = 4096
 #: draws of a cell over those of the band of a run
 SHARE_OF_DRAWS = 0.25
@@ -60,7 +58,7 @@ class CellCopies:
         self._sweep = sweep
         self._axes = {axis.key for axis in sweep.axes}
         self._known: dict[int, tuple[float, tuple[Copy, ...]]] = {}
-        self._penalties: dict[object, float] = {}
+        self._penalties = PenaltyCache()
 
     def of(self, cell: int) -> tuple[Copy, ...]:
         """The copies of a cell: each change once, the draws last."""
@@ -90,7 +88,7 @@ class CellCopies:
 
     def _over_ranges(self, case: Case) -> Iterator[InputChange]:
         """The changes of a run's band, without the inputs that are axes."""
-        penalty = self._penalty(case)
+        penalty = self._penalties.of(case)
         changes = changes_of(case, penalty)
         if case.solver.model == "rigid":
             draws = self._sweep.perturbation.draws
@@ -103,11 +101,3 @@ class CellCopies:
             kept = {key: value for key, value in change.values.items() if key not in self._axes}
             places = zip(change.values, change.place, strict=False)
             yield replace(change, values=kept, place=tuple(one for key, one in places if key in kept))
-
-    def _penalty(self, case: Case) -> float:
-        key = container_key(case), case.contact.normal_penalty_Pa_m
-        if key not in self._penalties:
-            if len(self._penalties) >= REMEMBERED:
-                self._penalties.clear()
-            self._penalties[key] = normal_penalty(case, build_container(case))
-        return self._penalties[key]

@@ -44,7 +44,7 @@ MOST_CELLS = 1_000_000
 #: rough CPU time of a simulated second [s]
 SECONDS_PER_SECOND = {"rigid": 3e-4, "reduced": 3e-3, "full": 6.0}
 #: room on the disk [bytes]: a cell in the log, the table, the copies and the maps; all else
-BYTES_OF_A_CELL, BYTES_BESIDE = 3000, 500_000
+BYTES_OF_A_CELL, BYTES_BESIDE = 5000, 500_000
 
 
 def run_sweep(

@@ -14,6 +14,7 @@ from fem.ensemble.file import load_ensemble
 from fem.ensemble.plan import Ensemble
 from fem.ensemble.run import code_of, run_ensemble
 from fem.ensemble.statistics import FAILED, OVERTURNED, STOOD, count_point
+from fem.ensemble.unknown import UnknownInputs
 
 FILE = """
 case = "seed_stack_plateau"
@@ -62,6 +63,50 @@ def test_the_same_seed_gives_the_same_files_on_any_number_of_cores(tmp_path):
     for k, point in enumerate(one["points"]):
         found = [row["outcome"] for row in rows[8 * k : 8 * k + 8]]
         assert found.count("overturned") == point["overturned"]
+
+
+def test_unknown_inputs_are_drawn_beside_those_of_the_file(tmp_path):
+    drawn = load_ensemble(changed(tmp_path))
+    unknown = UnknownInputs(drawn)
+    assert unknown.keys == (
+        "contact.weakening_m",
+        "contact.stribeck_velocity_m_s",
+        "motion.start",
+        "motion.ramp_cycles",
+        "contact.normal_penalty_Pa_m",
+        "contact.damping_ratio",
+    )
+    assert unknown.held == ""
+    draws = unknown.draws_at(1)
+    assert [draw.values for draw in draws] == [draw.values for draw in drawn.draws_at(1)]
+    assert {draw.unknown["motion.start"] for draw in draws} == {"moving", "rest"}
+    for draw in draws:
+        case = drawn.case(draw)
+        assert case.motion.start == draw.unknown["motion.start"]
+        assert 0.0 <= case.contact.weakening_m <= 5e-3
+        assert 1.0 <= case.contact.damping_ratio <= 4.0
+    head = "seed = 4\n"
+    held = load_ensemble(changed(tmp_path, (head, head + 'unknown_inputs = "held"\n')))
+    assert UnknownInputs(held).keys == ()
+    assert UnknownInputs(held).held == "with friction falling at once, a start with the floor, no ramp"
+    assert UnknownInputs(held).draws_at(1) == held.draws_at(1)
+
+
+def test_known_inputs_are_held(tmp_path):
+    known = '"solver.duration_s" = 3.0\n"uncertainty.start" = "known"\n"uncertainty.weakening_m" = "known"'
+    unknown = UnknownInputs(load_ensemble(changed(tmp_path, ('"solver.duration_s" = 3.0', known))))
+    assert not {"motion.start", "contact.weakening_m"} & set(unknown.keys)
+    assert unknown.held == "with a start with the floor"
+
+
+@pytest.mark.parametrize("sampling", ["latin-hypercube", "sobol"])
+def test_unknown_inputs_do_not_follow_the_others(sampling):
+    """Over many replicates, the first column of the one stream and of the other are independent."""
+    given = {"seed": 1, "cell": 0, "draws": 4096, "replicates": 512, "dimensions": 2}
+    one, other = draw_shares(sampling, **given), draw_shares(sampling, **given, stream=1)
+    assert abs(np.corrcoef(one[:, 0], other[:, 0])[0, 1]) < 4.0 / np.sqrt(4096)
+    both = np.mean((one[:, 0] < 0.5) & (other[:, 0] < 0.5))
+    assert both == pytest.approx(0.25, abs=4.0 * np.sqrt(0.25 * 0.75 / 4096))
 
 
 def test_another_seed_draws_others_and_a_point_does_not_depend_on_its_neighbours():

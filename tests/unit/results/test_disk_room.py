@@ -110,7 +110,7 @@ WITHOUT_A_RESULT_FOLDER = {"modes": "modes seed_box --count 1", "verify": "verif
 def command(request, tmp_path, monkeypatch) -> list[str]:
     """Something that writes a folder of results."""
     monkeypatch.chdir(tmp_path)
-    Path("small.toml").write_text(SMALL)
+    Path("small.toml").write_text(SMALL + '[perturbation]\ncells = "none"\n')
     Path("ensemble.toml").write_text(ENSEMBLE)
     if request.param in COMMANDS:
         return [*COMMANDS[request.param].split(), "-q"]

@@ -152,9 +152,9 @@ def test_cells_that_are_not_tried_are_not_called_sure(sweep_of, tmp_path):
 @pytest.mark.parametrize(
     ("changes", "varied", "words"),
     [
-        ([], (), "with mu_k = mu_s/2 falling at once, started with the floor, no ramp"),
+        ([], (), "with mu_k = mu_s/2 falling at once, a start with the floor, no ramp"),
         (["contact.weakening_m=0.001"], ("motion.start",), "with mu_k = mu_s/2 falling over 1 mm, no ramp"),
-        (["contact.mu_kinetic=0.4"], ("motion.ramp_cycles",), "with mu_k = mu_s, started with the floor"),
+        (["contact.mu_kinetic=0.4"], ("motion.ramp_cycles",), "with mu_k = mu_s, a start with the floor"),
         (
             ["motion.kind=pulse", "motion.shape=sine", "motion.pulse_s=1.0"],
             ("contact.mu_kinetic",),

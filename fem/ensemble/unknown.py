@@ -1,0 +1,78 @@
+"""The inputs that nobody knows, drawn over their ranges at every draw of an ensemble.
+
+What the file varies itself, by [axes], [random] or [derived], is as the file has it; the rest follows [uncertainty] of
+the case. These draws have random numbers of their own, so those of [random] do not depend on them.
+"""
+
+from collections.abc import Iterator
+from contextlib import suppress
+from itertools import product
+
+import numpy as np
+
+from fem.batch.container_cache import PenaltyCache
+from fem.batch.held import held_inputs
+from fem.case.case import Case
+from fem.case.uncertainty import INPUTS, Value, ranges_of
+from fem.case.validation import CaseError
+from fem.ensemble.distributions import draw_shares
+from fem.ensemble.plan import Draw, Ensemble
+
+STREAM = 1  #: of random numbers
+
+
+class UnknownInputs:
+    """The unknown inputs of an ensemble, and their values in each draw."""
+
+    def __init__(self, ensemble: Ensemble) -> None:
+        self._ensemble = ensemble
+        self._penalties = PenaltyCache()
+        cases = list(_cases(ensemble))
+        given = {axis.key for axis in ensemble.axes} | {one.key for one in ensemble.random}
+        fixed = given | {one.key for one in ensemble.derived}
+        drawn = {one.key for case in cases for one in ranges_of(case, self._penalties.of(case))} - fixed
+        #: keys of the inputs that are drawn
+        self.keys = tuple(key for key in INPUTS if key in drawn) if ensemble.unknown_inputs == "drawn" else ()
+        #: what is held fixed of the others, in words
+        self.held = held_inputs(cases, given | set(self.keys))
+
+    def draws_at(self, cell: int) -> list[Draw]:
+        """The draws of a point, with the values of the unknown inputs."""
+        ensemble = self._ensemble
+        draws = ensemble.draws_at(cell)
+        if not self.keys:
+            return draws
+        places = draw_shares(
+            ensemble.sampling,
+            seed=ensemble.seed,
+            cell=cell,
+            dimensions=len(self.keys),
+            draws=ensemble.draws,
+            replicates=ensemble.replicates,
+            stream=STREAM,
+        )
+        return [
+            draw._replace(unknown=self._values(draw, row))
+            for draw, row in zip(draws, places.tolist(), strict=True)
+        ]
+
+    def _values(self, draw: Draw, places: list[float]) -> dict[str, Value]:
+        """Values at places in the ranges that a draw has; none for a draw that cannot be made."""
+        try:
+            case = self._ensemble.case(draw)
+            place = dict(zip(self.keys, places, strict=True))
+            ranges = ranges_of(case, self._penalties.of(case))
+        except (CaseError, ValueError):
+            return {}
+        return {one.key: one.drawn(place[one.key]) for one in ranges if one.key in place}
+
+
+def _cases(ensemble: Ensemble) -> Iterator[Case]:
+    """The cases in the middle and at the ends of all distributions, at the ends of the axes, those that can be made."""
+    corners = product(*((axis.values[0], axis.values[-1]) for axis in ensemble.axes))
+    shares = np.array([0.5, 0.0, 1.0])
+    drawn = np.column_stack([one.values(shares) for one in ensemble.random]).tolist()
+    for corner, values in product(corners, drawn):
+        with suppress(CaseError):
+            point = {axis.key: value for axis, value in zip(ensemble.axes, corner, strict=True)}
+            yield ensemble.case_of(point, values)
