@@ -64,6 +64,12 @@ class Workspace(NamedTuple):
     matrix: FloatArray  #: (2 n, 2 n) factors of the tangent over the active points
     change: FloatArray  #: (2 n,)
     solution: FloatArray  #: (2 n,)
+    excess: (
+        FloatArray  #: (n, 2) what friction cuts off the tangential force [N]; minus d/dx of the whole [N/m]
+    )
+    side: (
+        IntArray  #: (n,) limit of friction that each point had reached in the last iteration: -1, 1; 0: none
+    )
     pivot: IntArray  #: (2 n,) pivots of `matrix`
     factored_slope: FloatArray  #: (n, 3) tangents for which `matrix` was factored
     factored_step: FloatArray  #: (1,) and step size; < 0: none [s]
@@ -87,6 +93,8 @@ def make_workspace(points: int) -> Workspace:
         matrix=np.zeros((2 * n, 2 * n)),
         change=np.zeros(2 * n),
         solution=np.zeros(2 * n),
+        excess=np.zeros((n, 2)),
+        side=np.zeros(n, dtype=np.int64),
         pivot=np.zeros(2 * n, dtype=np.int64),
         factored_slope=np.zeros((n, 3)),
         factored_step=np.full(1, -1.0),
@@ -116,7 +124,7 @@ def evaluate_laws(
             slip velocity instead, between the two coefficients in `contact`.
         start: (n, 2) points at the beginning of the step, relative to the floor [m].
         stick: (n,) elongation of the stuck tangential springs at the beginning of the step [m].
-        work: point and velocity are read, law and slope are written.
+        work: point and velocity are read, law, slope and excess are written.
     """
     for i in range(work.point.shape[0]):
         normal, by_gap, by_rate = normal_force(
@@ -132,6 +140,7 @@ def evaluate_laws(
             work.law[i, 0] = 0.0
             work.slope[i, 0] = 0.0
             work.slope[i, 1] = 0.0
+            work.excess[i, 0] = 0.0
         elif contact.friction == ELASTIC_STICK:
             stiffness = contact.tangential_stiffness[i]
             trial = -stiffness * contact.relaxation_time * work.velocity[i, 0]
@@ -143,6 +152,7 @@ def evaluate_laws(
                 mu, contact.mu_kinetic, contact.stribeck_velocity, work.velocity[i, 0]
             )
             force, by_trial, by_limit = stick_friction(trial, present_mu * normal)
+            work.excess[i, 0], work.excess[i, 1] = trial - force, trial_slope
             work.law[i, 0] = force
             work.slope[i, 0] = by_trial * trial_slope - by_limit * normal * by_velocity * velocity_slope
             work.slope[i, 1] = by_limit * present_mu * work.slope[i, 2]
@@ -154,6 +164,7 @@ def evaluate_laws(
                 contact.mu_kinetic,
                 contact.regularisation_velocity,
             )
+            work.excess[i, 0] = 0.0
             work.law[i, 0] = force
             work.slope[i, 0] = -by_velocity * velocity_slope
             work.slope[i, 1] = by_normal * work.slope[i, 2]
@@ -311,6 +322,24 @@ def extrapolate_laws(work: Workspace) -> None:
 
 
 @compiled(inline=True)
+def stick_where_turned(iteration: int, work: Workspace) -> bool:
+    """Linearise as stuck what has changed from one limit of friction to the other since the last iteration.
+
+    Such a point sticks or nearly so. Its stick may cover so small a range of positions (a stiff dashpot, a short step)
+    that iterations between the two limits never meet it. Returns whether there is such a point.
+    """
+    turned = False
+    for i in range(work.law.shape[0]):
+        side = int(np.sign(work.excess[i, 0]))
+        if iteration > 0 and side * work.side[i] < 0:
+            work.law[i, 0] += work.excess[i, 0]
+            work.slope[i, 0], work.slope[i, 1] = work.excess[i, 1], 0.0
+            side, turned = 0, True
+        work.side[i] = side
+    return turned
+
+
+@compiled(inline=True)
 def solve_contact(
     contact: Contact,
     step: float,
@@ -346,6 +375,7 @@ def solve_contact(
                 largest = max(largest, abs(work.force[i, k]))
         if not placed and residual <= FORCE_TOLERANCE * largest + contact.resolution * stiffest:
             return iteration
+        turned = stick_where_turned(iteration, work)
         # Keep old factors while they converge well: usually the contact has not changed.
         if not factor_is_current(step, work) or residual > 0.1 * before:
             if not factor_tangent(step, work):
@@ -362,7 +392,7 @@ def solve_contact(
             for i in range(n):
                 for k in range(2):
                     work.force[i, k] = work.trial[i, k] + share * work.change[2 * i + k]
-            if iteration < FULL_STEPS or share < 1e-3:
+            if iteration < FULL_STEPS or turned or share < 1e-3:
                 break
             move_points(velocity_slope, work.force, work)
             evaluate_laws(contact, step, velocity_slope, mu, start, stick, work)
