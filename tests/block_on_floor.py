@@ -253,6 +253,7 @@ def _control(block: Block, largest_step: float, fixed_step: bool, energy_scale: 
         recent_time=0.1 / rigid.frequency_parameter,
         closing_share=scale * 2e-3 * max(1.0 - rigid.housner_restitution**2, 0.02),
         mass=block.mass,
+        inertia=block.inertia,
         gravity=GRAVITY,
         frequency_parameter=rigid.frequency_parameter,
         resting_energy=block.mass * block.gravity * 0.5 * block.height,

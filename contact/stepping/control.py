@@ -25,6 +25,7 @@ from contact.stepping.state import Control, RunState
 
 STEPS_PER_OCTAVE = 3  #: sizes per factor of two
 OCTAVE = tuple(2.0 ** (-level / STEPS_PER_OCTAVE) for level in range(STEPS_PER_OCTAVE))  #: the first of them
+AT_LIMIT = 1e-6  #: share of static friction that is left, below which the support has reached its limit
 NEIGHBOUR = 0.25  #: base points nearer than this, over the width, close together
 #: the whole ledger aims at these shares of the final limits of gain and loss; above `AIM_SHARE` of the aim, one step ..
 GAIN_AIM, LOSS_AIM, AIM_SHARE = 0.3, 0.9, 0.4
@@ -70,6 +71,8 @@ def switching_time(clock: Any, horizon: float) -> float:
     """Time until the sticking support reaches its limit or the sliding support stops [s], at most the horizon."""
     if clock.sliding == 0:
         left, rate = 1.0 - clock.utilisation, clock.utilisation_rate
+        if left < AT_LIMIT:  # it slides at its limit, without having broken loose
+            return horizon
     else:
         left, rate = abs(clock.slip_velocity), -clock.slip_acceleration
         if clock.slip_velocity < 0.0:

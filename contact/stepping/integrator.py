@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numba.extending import register_jitable
 
-from contact.interface.laws import weakened_mu
+from contact.interface.laws import ELASTIC_STICK, weakened_mu
 from contact.interface.solver import Contact
 from contact.jit import compiled
 from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
@@ -33,10 +33,21 @@ from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.observables import FALLEN, NEVER, update_observables
 from contact.stepping.sampling import sample
 from contact.stepping.state import RunState
-from contact.stepping.step import account, attempt, copy_state, slide
+from contact.stepping.step import (
+    AIRBORNE,
+    ALL,
+    NO_POINT,
+    account,
+    attempt,
+    copy_state,
+    holding_force,
+    slide,
+)
 
 WEAKENING_LIMIT = 8  #: repetitions of a step for friction that weakens with its slip
 WEAKENING_TOLERANCE = 1e-9  #: change of the coefficient at which they end
+IMPACT_LOAD = 2.0  #: normal force over the weight from which there is an impact
+SLIDING = 1e-4  #: slip over the width that counts as sliding
 HELD_STEPS = 6  #: after a rejection
 FADING = 0.8  #: of the remembered imbalance, per step
 
@@ -49,10 +60,14 @@ AFTERMATH_SLICE = 0.05  #: interval of the checks after the end of the floor mot
 
 
 @compiled(inline=True)
-def update_records(run: RunState, step: float, slip_step: float, slip_velocity: float, every: bool) -> None:
+def update_records(
+    run: RunState, step: float, sliding: int, slip_step: float, slip_velocity: float, every: bool
+) -> None:
     """Update friction state and observables from the step about to be accepted."""
     clock = run.clock[0]
-    clock.slip_since_break = clock.slip_since_break + abs(slip_step) if clock.sliding == 1 or every else 0.0
+    clock.slip_since_break = (
+        clock.slip_since_break + abs(slip_step) if clock.sliding == 1 or sliding == ALL else 0.0
+    )
     clock.sliding = 1 if every else 0
     tangential, normal = 0.0, 0.0
     for i in range(run.new.force.shape[0]):
@@ -131,6 +146,36 @@ def enter_floor_frame(body: Any, run: RunState, floor_velocity: float) -> None:
     run.clock[0].next_break = 0
 
 
+@compiled(inline=True)
+def breaks_loose(run: RunState, slip_step: float) -> bool:
+    """Whether a support whose points all slide at the limit of static friction breaks loose as a whole.
+
+    A rigid body would slide, or the points have slid as far as counts as sliding. Less is the overshoot of an elastic
+    swing, which lasts milliseconds and slides micrometres: too little for friction to fall.
+    """
+    holding, normal = holding_force(run)
+    slid = run.clock[0].slip_since_break + abs(slip_step)
+    return abs(holding) > run.contact.mu_static * normal or slid > SLIDING * run.control.width
+
+
+@compiled(inline=True)
+def slides_on(run: RunState, step: float, sliding: int, slip_step: float, turned: bool) -> tuple[bool, float]:
+    """Whether a sliding support slides on after the attempted step, and its sliding in it [m].
+
+    It stops where its slip has `turned` round, or none of its points slides, and static friction can hold it. A slip
+    that turns round without a stop goes on: kinetic friction remains, and the path since the support broke loose.
+    """
+    if turned or sliding == NO_POINT:
+        holding, normal = holding_force(run)
+        if abs(holding) <= run.contact.mu_static * normal:
+            if (
+                turned and normal < IMPACT_LOAD * run.contact.force_scale
+            ):  # a stop within an impact is none that lasts
+                _, slip_step, _ = slide(run, step, True, holding)
+            return False, slip_step
+    return True, slip_step
+
+
 def advance(body: Any, run: RunState, until: float) -> int:
     """Step the body to the time `until` [s] or just beyond (no step is shortened for it); changes `run` in place.
 
@@ -152,12 +197,12 @@ def advance(body: Any, run: RunState, until: float) -> int:
         mu = run.contact.mu_static
         if clock.sliding == 1:
             mu = _kinetic_friction(run.contact, clock.slip_since_break)
-        iterations, every, slip_step, slip_velocity = 0, False, 0.0, 0.0
+        iterations, sliding, slip_step, slip_velocity = 0, NO_POINT, 0.0, 0.0
         for _ in range(WEAKENING_LIMIT):  # friction that weakens with the slip of this step
             iterations = attempt(body, run, step, mu)
             if iterations < 0:
                 break
-            every, slip_step, slip_velocity = slide(run, step)
+            sliding, slip_step, slip_velocity = slide(run, step, False, 0.0)
             if clock.sliding == 0 or run.contact.weakening <= 0.0:
                 break
             weakened = _kinetic_friction(run.contact, clock.slip_since_break + abs(slip_step))
@@ -171,11 +216,20 @@ def advance(body: Any, run: RunState, until: float) -> int:
                 return FAILED
             clock.level += STEPS_PER_OCTAVE
             continue
+        every = sliding == ALL or (sliding == AIRBORNE and clock.sliding == 1)
+        turned = False
+        if clock.sliding == 1 and run.contact.friction == ELASTIC_STICK and sliding != AIRBORNE:
+            turned = slip_velocity * clock.slip_velocity < 0.0
+            every, slip_step = slides_on(run, step, sliding, slip_step, turned)
+        elif every and clock.sliding == 0 and run.contact.friction == ELASTIC_STICK:
+            every = breaks_loose(run, slip_step)
         dissipated = account(run)
         allowed = allowed_imbalance(run, step, dissipated)
         allowed = min(allowed, ledger_allowance(run, step))
         used = abs(run.change[IMBALANCE]) / allowed
-        switches = (clock.sliding == 1) != every and run.contact.mu_static > 0.0
+        overshoots = clock.sliding == 0 and (sliding == ALL) != (clock.slip_since_break > 0.0)
+        switches = turned or overshoots or (clock.sliding == 1) != every
+        switches = switches and run.contact.mu_static > 0.0
         if switches and step > 1.01 * control.event_step:
             used = max(used, 9.0 if step > 4.0 * control.event_step else 2.0)
         if used > 1.0 and step > control.smallest_step:
@@ -189,7 +243,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
         clock.recent_dissipation = clock.recent_dissipation / (1.0 + late * (1.0 + 0.5 * late)) + max(
             dissipated, 0.0
         )
-        update_records(run, step, slip_step, slip_velocity, every)
+        update_records(run, step, sliding, slip_step, slip_velocity, every)
         follow_contents(body, run, step)
         clock.samples = sample(run, run.history, clock.samples, clock.samples_drained, step, slip_step)
         clock.frames = sample(run, run.frames, clock.frames, clock.frames_drained, step, slip_step)

@@ -56,6 +56,7 @@ class Control(NamedTuple):
     recent_time: float  #: decay time of the recent dissipation [s]
     closing_share: float  #: imbalance allowed as a gap closes, over the kinetic energy against the floor [-]
     mass: float  #: [kg]
+    inertia: float  #: about the mass centre [kg m2]
     gravity: float  #: [m/s2]
     frequency_parameter: float  #: of rocking [1/s]
     resting_energy: float  #: gravity potential of the container at rest [J]

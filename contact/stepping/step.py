@@ -14,7 +14,19 @@ from contact.interface.laws import ELASTIC_STICK, relaxed_stick
 from contact.interface.solver import Workspace, solve_contact
 from contact.jit import compiled
 from contact.motion.kernel import floor_motion
-from contact.stepping.body import KINETIC, POTENTIAL, STRAIN, State, complete, predict, release, respond
+from contact.stepping.body import (
+    ANGULAR_VELOCITY,
+    CENTRE_X,
+    CENTRE_Z,
+    KINETIC,
+    POTENTIAL,
+    STRAIN,
+    State,
+    complete,
+    predict,
+    release,
+    respond,
+)
 from contact.stepping.ledger import (
     BASE_WORK,
     CONTACT_DAMPING,
@@ -28,6 +40,7 @@ from contact.stepping.scheme import Scheme
 from contact.stepping.state import RunState
 
 ITERATION_LIMIT = 12  #: of free motion, contact, response within one step
+NO_POINT, SOME, ALL, AIRBORNE = 0, 1, 2, 3  #: sliding of the loaded points
 
 
 @compiled(inline=True)
@@ -89,14 +102,48 @@ def attempt(body: Any, run: RunState, step: float, mu: float) -> int:
 
 
 @compiled(inline=True)
-def slide(run: RunState, step: float) -> tuple[bool, float, float]:
+def holding_force(run: RunState) -> tuple[float, float]:
+    """Tangential force that holds the support at the end of the attempted step, and the normal force for it [N].
+
+    The forces of a rigid body that stands on both sides of its base, or rocks about the resultant of its normal
+    forces. The springs of the contact, and an elastic body, swing around them. In an impact the normal force is larger.
+    """
+    new, track, control, acceleration = run.new, run.track[0], run.control, run.floor[1, 2]
+    normal, x, z = 0.0, 0.0, 0.0
+    for i in range(new.point.shape[0]):
+        normal += new.force[i, 1]
+        x += new.force[i, 1] * new.point[i, 0]
+        z += new.force[i, 1] * new.point[i, 1]
+    push, load = acceleration, control.gravity
+    if normal > 0.0 and track.left_open != track.right_open:
+        arm_x = new.pose[CENTRE_X] - run.floor[1, 0] - x / normal
+        arm_z = new.pose[CENTRE_Z] - z / normal
+        inertia = control.inertia / control.mass + arm_x * arm_x + arm_z * arm_z
+        turning = (control.gravity * arm_x - acceleration * arm_z) / inertia
+        spin = new.pose[ANGULAR_VELOCITY] ** 2
+        push += turning * arm_z - spin * arm_x
+        load -= turning * arm_x + spin * arm_z
+    return control.mass * push, max(normal, control.mass * load)
+
+
+@compiled(inline=True)
+def slide(run: RunState, step: float, stops: bool, holding: float) -> tuple[int, float, float]:
     """Sliding of the base points and elongation of their springs after a converged step.
 
-    Returns whether every loaded point slides, all in one direction, the force-weighted sliding [m], and the
-    force-weighted velocity of the loaded points at the end of the step [m/s].
+    Args:
+        run: with a converged step in `new`.
+        step: [s].
+        stops: the support stops sliding in this step.
+        holding: tangential force with which its springs start then [N]. With the forces of the slide, the motion would
+            have to wind them up first, and the dashpots make that overshoot.
+
+    Returns:
+        The sliding of the loaded points: ALL slide in one direction, SOME or NO_POINT; AIRBORNE without a load. The
+        force-weighted sliding [m], and the force-weighted velocity of the loaded points at the end of the step [m/s].
     """
     contact, old, new, work = run.contact, run.old, run.new, run.work
-    every, direction, weighted, total, velocity = True, 0.0, 0.0, 0.0, 0.0
+    every, any_slides, direction, weighted, total, velocity = True, False, 0.0, 0.0, 0.0, 0.0
+    loaded = new.force[:, 1].sum()
     for i in range(new.point.shape[0]):
         normal, tangential = new.force[i, 1], new.force[i, 0]
         moved = new.point[i, 0] - old.point[i, 0]
@@ -111,6 +158,10 @@ def slide(run: RunState, step: float) -> tuple[bool, float, float]:
         if contact.friction != ELASTIC_STICK:
             new.stick[i] = 0.0
             run.slip[i] = moved
+        elif stops and normal > 0.0:
+            start = -holding * normal / loaded / contact.tangential_stiffness[i]
+            new.stick[i] = start - contact.relaxation_time * work.velocity[i, 0]
+            run.slip[i] = moved - (new.stick[i] - stick)
         elif normal <= 0.0 or work.slope[i, 0] <= 0.0:
             new.stick[i] = relaxed_stick(
                 stick, -tangential, contact.tangential_stiffness[i], contact.relaxation_time, step
@@ -125,13 +176,17 @@ def slide(run: RunState, step: float) -> tuple[bool, float, float]:
             velocity += normal * work.velocity[i, 0]
             total += normal
             if contact.friction != ELASTIC_STICK:
-                every = every and abs(work.velocity[i, 0]) > contact.regularisation_velocity
-            elif work.slope[i, 0] > 0.0 or direction * work.law[i, 0] < 0.0:
-                every = False
+                slides = abs(work.velocity[i, 0]) > contact.regularisation_velocity
+                every = every and slides
+            else:
+                slides = work.slope[i, 0] <= 0.0
+                every = every and slides and direction * work.law[i, 0] >= 0.0
+            any_slides = any_slides or slides
             direction = work.law[i, 0]
-    if total <= 0.0:  # in flight: sliding or sticking as before
-        return run.clock[0].sliding == 1, 0.0, 0.0
-    return every, weighted / total, velocity / total
+    if total <= 0.0:
+        return AIRBORNE, 0.0, 0.0
+    sliding = ALL if every else (SOME if any_slides else NO_POINT)
+    return sliding, weighted / total, velocity / total
 
 
 @compiled(inline=True)

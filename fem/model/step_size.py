@@ -129,6 +129,7 @@ def control_of(
         recent_time=TRAIL_TIME / rate,
         closing_share=loose * CLOSING_SHARE * max(1.0 - static.housner_restitution**2, LEAST_LOSS),
         mass=mesh.mass,
+        inertia=mesh.inertia,
         gravity=case.gravity_m_s2,
         frequency_parameter=rate,
         resting_energy=mesh.mass * case.gravity_m_s2 * mesh.centroid[1],

@@ -179,7 +179,7 @@ def galilei() -> Iterator[Row]:
     still, travelling = (
         finish(
             with_motion(
-                with_steps_of(build_model(STACK.with_values(VIOLENT | {"solver.duration_s": 2.0})), 2e-5),
+                with_steps_of(build_model(STACK.with_values(VIOLENT | {"solver.duration_s": 2.0})), 1e-5),
                 *stepped_floor(drift),
             )
         )
