@@ -113,7 +113,7 @@ MUTATIONS = (
     Mutation(
         name="friction that does not know the normal force's tangent",
         file="contact/interface/solver.py",
-        old="work.slope[i, 1] = by_limit * mu * work.slope[i, 2]",
+        old="work.slope[i, 1] = by_limit * present_mu * work.slope[i, 2]",
         new="work.slope[i, 1] = 0.0 * by_limit",
         tests=LAWS,
     ),
