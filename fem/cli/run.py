@@ -27,7 +27,7 @@ def run(
         bool | None,
         Parameter(
             show_default=False,
-            help="Sensitivity to contact stiffness and damping; default: where it rocks or overturns.",
+            help="Repeat it over what is not known of its inputs; default: yes, but for a plain rest and the full model.",
         ),
     ] = None,
     resume: Resume = False,
