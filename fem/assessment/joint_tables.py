@@ -35,13 +35,13 @@ def titled_table(title: str, *columns: str) -> Table:
     return table
 
 
-def joint_tables(every: Sequence[JointDemand]) -> Iterator[RenderableType]:
-    """Forces, and what bolts carry; one row a joint, from the floor up."""
+def joint_tables(every: Sequence[JointDemand], note: str = "") -> Iterator[RenderableType]:
+    """Forces, and what bolts carry; one row a joint, from the floor up; the note stands in the titles."""
     forces = titled_table(
-        "Forces in the joints between boxes", "joint at", ">normal kN", ">shear kN", ">moment kNm"
+        f"Forces in the joints between boxes{note}", "joint at", ">normal kN", ">shear kN", ">moment kNm"
     )
     bolts = titled_table(
-        "Bolts", "joint at", ">tension left, right kN", ">shear kN", ">mu needed", "without bolts it"
+        f"Bolts{note}", "joint at", ">tension left, right kN", ">shear kN", ">mu needed", "without bolts it"
     )
     joints = _shown(every)
     for joint in joints:

@@ -158,10 +158,20 @@ def rotation_in_words(verdict: Verdict) -> str:
     """The largest rotation, and over the slenderness angle with its range."""
     if verdict.max_rotation_rad is None or verdict.rotation_ratio is None:
         return ""
-    degrees = math.degrees(verdict.max_rotation_rad)
+    return f"{largest_rotation(verdict)}, {rotation_ratio(verdict)} of the slenderness angle"
+
+
+def largest_rotation(verdict: Verdict) -> str:
+    """The largest rotation alone, with the figures that the range of its ratio leaves."""
+    if verdict.max_rotation_rad is None:
+        return ""
     figures = figures_of(reach_of(verdict, "rotation_ratio"), RATIO_FIGURES)
-    turned = in_figures(degrees, figures, least=LEAST_DEGREES)
-    return f"{turned} degrees, {rotation_ratio(verdict)} of the slenderness angle"
+    return f"{in_figures(math.degrees(verdict.max_rotation_rad), figures, least=LEAST_DEGREES)} degrees"
+
+
+def largest_uplift(verdict: Verdict) -> str:
+    """The largest uplift with its range."""
+    return of_band(verdict, "max_uplift_m", "mm", 1e3, LEAST_LENGTH)
 
 
 def rotation_ratio(verdict: Verdict) -> str:

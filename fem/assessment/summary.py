@@ -22,9 +22,10 @@ from fem.assessment.ranges import (
     bolt_forces,
     contents_acceleration,
     corner_force,
+    impact_note,
     largest_slip,
     largest_stress,
-    of_band,
+    largest_uplift,
     residual_slip,
     rotation_in_words,
     rotation_ratio,
@@ -83,7 +84,7 @@ def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
         if note := code_note(result.static):
             yield Text(f"{note}\n")
     if result.joints:
-        yield from joint_tables(result.joints)
+        yield from joint_tables(result.joints, impact_note(verdict))
     if verdict.outcome in ("rock", "slide-rock"):
         yield Text(f"{MARGIN_NOTE}\n")
     if verdict.band is not None:
@@ -189,7 +190,7 @@ def result_rows(result: RunResult) -> list[tuple[str, str]]:
         ("largest slip", largest_slip(verdict)),
         ("slip at the end", residual_slip(verdict)),
         ("path of slip", _lengths(verdict.slip_travel_m)),
-        ("largest uplift", of_band(verdict, "max_uplift_m", "mm", 1e3, LEAST_LENGTH)),
+        ("largest uplift", largest_uplift(verdict)),
         ("largest corner force", corner_force(verdict, numerics)),
         ("first uplift", _unit(verdict.first_uplift_s, 1.0, "s")),
         ("impacts", "" if impacts is None else str(impacts)),

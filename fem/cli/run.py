@@ -27,7 +27,7 @@ def run(
         bool | None,
         Parameter(
             show_default=False,
-            help="Repeat it over what is not known of its inputs; default: yes, but for a plain rest and the full model.",
+            help="Repeat it over what is not known; default: all but a plain rest and the full model.",
         ),
     ] = None,
     resume: Resume = False,

@@ -6,7 +6,7 @@ A trailing zero that is known is kept: 98.10, not 98.1.
 import math
 import re
 
-from fem.assessment.ranges import LEAST_DEGREES, LEAST_LENGTH
+from fem.assessment.ranges import LEAST_LENGTH
 from fem.assessment.summary import ratio_in_words
 
 ABSENT = "–"
@@ -48,12 +48,6 @@ def millimetres(value: float | None, figures: int = 3) -> str:
 def degrees(value: float | None, figures: int = 4) -> str:
     """An angle given in radians."""
     return quantity(value, "°", 180.0 / math.pi, figures).replace("\u00a0", "")
-
-
-def turned(value: float) -> str:
-    """A largest rotation given in radians."""
-    small = 0.0 < math.degrees(value) < LEAST_DEGREES
-    return f"< {LEAST_DEGREES:g}°" if small else degrees(value, 3)
 
 
 def rotation_ratio(value: float | None) -> str:

@@ -8,6 +8,14 @@ from importlib import metadata
 from contact.reference.event_driven import EventError
 from fem.assessment.code_note import code_note
 from fem.assessment.joint_tables import JOINTS_NOTE
+from fem.assessment.ranges import (
+    IMPACT,
+    largest_rotation,
+    largest_slip,
+    largest_uplift,
+    residual_slip,
+    rotation_ratio,
+)
 from fem.assessment.rigid_check import check_against_rigid_block
 from fem.assessment.rule_or_run import believed
 from fem.assessment.summary import (
@@ -18,7 +26,8 @@ from fem.assessment.summary import (
 )
 from fem.figures.cache import drawings_of
 from fem.html.page import Signature, render_page, svg_element
-from fem.html.units import millimetres, number, quantity, rotation_ratio, short, turned, typeset
+from fem.html.units import ABSENT, millimetres, number, quantity, short, typeset
+from fem.html.units import rotation_ratio as ratio_alone
 from fem.model.model import Model, build_model
 from fem.report.animation import (
     COLOURS,
@@ -125,6 +134,7 @@ def _page(
         exclusions=EXCLUSIONS,
         compared=compared_rows(static, verdict, case),
         sheet=static_sheet(static, case),
+        head=_head(verdict),
         believed=[typeset(sentence) for sentence in believed(result)],
         found=[(name, typeset(value)) for name, value in result_rows(result)],
         warnings=[typeset(warning) for warning in result.warnings or ()],
@@ -149,9 +159,9 @@ def _page(
             "margin": MARGIN_NOTE,
             "band": BAND_NOTE,
             "joints": JOINTS_NOTE,
+            "impact": f"; {IMPACT}" if verdict.impacts else "",
         },
-        turned=turned,
-        rotation_ratio=rotation_ratio,
+        rotation_ratio=ratio_alone,
         millimetres=millimetres,
         number=number,
         quantity=quantity,
@@ -171,6 +181,18 @@ def rigid_check(run: OpenedRun, model: Model, history: History) -> RigidCheckRes
         return check_against_rigid_block(model, history, result.verdict).result
     except (ValueError, EventError) as error:
         return RigidCheckResult(reasons=(str(error),))
+
+
+def _head(verdict: Verdict) -> dict[str, str]:
+    """The first figures of the page, with their ranges."""
+    figures = {
+        "rotation": largest_rotation(verdict),
+        "ratio": rotation_ratio(verdict),
+        "slip": largest_slip(verdict),
+        "residual": residual_slip(verdict),
+        "uplift": largest_uplift(verdict),
+    }
+    return {name: typeset(words or ABSENT) for name, words in figures.items()}
 
 
 def _history(run: OpenedRun, message: Callable[[str], None]) -> History:
