@@ -24,6 +24,7 @@ ELASTICITY = (
 )
 MODAL = ("unit/contact/test_modal_body.py",)
 LAWS = ("unit/contact/test_contact_laws.py", "unit/contact/test_contact_solver.py")
+SLIDING = ("validation/test_verification_checks.py", "-k")
 
 MUTATIONS = (
     Mutation(
@@ -116,6 +117,41 @@ MUTATIONS = (
         old="work.slope[i, 1] = by_limit * present_mu * work.slope[i, 2]",
         new="work.slope[i, 1] = 0.0 * by_limit",
         tests=LAWS,
+    ),
+    Mutation(
+        name="friction that does not fall with the velocity",
+        file="contact/interface/laws.py",
+        old="    return mu_kinetic + fall, -2.0 * fall * ratio / stribeck_velocity\n",
+        new="    return mu_static, 0.0 * fall\n",
+        tests=LAWS,
+    ),
+    Mutation(
+        name="friction that falls with the velocity, without the tangent of it",
+        file="contact/interface/solver.py",
+        old=" - by_limit * normal * by_velocity * velocity_slope",
+        new="",
+        tests=LAWS,
+    ),
+    Mutation(
+        name="a stop with the springs of the slide",
+        file="contact/stepping/integrator.py",
+        old="if turned and normal < IMPACT_LOAD * run.contact.force_scale:",
+        new="if turned and normal < 0.0:",
+        tests=(*SLIDING, "short and stop"),
+    ),
+    Mutation(
+        name="an elastic swing over the limit of friction that breaks the support loose",
+        file="contact/stepping/integrator.py",
+        old="return abs(holding) > run.contact.mu_static * normal or slid",
+        new="return slid >= 0.0 or slid",
+        tests=(*SLIDING, "pull and stiction"),
+    ),
+    Mutation(
+        name="a turn without a stop that restores static friction",
+        file="contact/stepping/integrator.py",
+        old="        if abs(holding) <= run.contact.mu_static * normal:\n",
+        new="        if normal >= 0.0:\n",
+        tests=(*SLIDING, "turn and without"),
     ),
     Mutation(
         name="elastic stick that forgets its elongation",

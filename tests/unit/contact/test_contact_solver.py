@@ -53,7 +53,9 @@ class Problem:
         return work
 
 
-def random_problem(seed: int, points: int, *, friction: int = ELASTIC_STICK) -> Problem:
+def random_problem(
+    seed: int, points: int, *, friction: int = ELASTIC_STICK, stribeck_velocity: float = 0.0
+) -> Problem:
     """A block on `points` points with local elasticity: compliances, gaps and speeds over a decade or two."""
     draw = np.random.default_rng(seed)
     mass, width, height = 1e4, draw.uniform(0.5, 2.0), draw.uniform(0.5, 5.0)
@@ -75,9 +77,9 @@ def random_problem(seed: int, points: int, *, friction: int = ELASTIC_STICK) -> 
         tangential_stiffness=stiffness * draw.uniform(0.5, 2.0, points),
         relaxation_time=draw.choice([0.0, 0.1, 1.0]) * step * 10.0 ** draw.uniform(-1.0, 1.0),
         mu_static=mu,
-        mu_kinetic=mu,
+        mu_kinetic=0.5 * mu if stribeck_velocity else mu,
         weakening=0.0,
-        stribeck_velocity=0.0,
+        stribeck_velocity=stribeck_velocity,
         friction=friction,
         regularisation_velocity=1e-3,
         force_scale=weight,
@@ -210,11 +212,13 @@ def test_points_and_velocities_follow_from_the_forces(seed, points):
     assert work.velocity.ravel() == pytest.approx(expected, abs=1e-12 * scale)
 
 
-@pytest.mark.parametrize("friction", [ELASTIC_STICK, REGULARISED])
-def test_slopes_are_minus_the_derivatives_of_the_laws(friction):
+@pytest.mark.parametrize(
+    ("friction", "stribeck_velocity"), [(ELASTIC_STICK, 0.0), (ELASTIC_STICK, 0.01), (REGULARISED, 0.0)]
+)
+def test_slopes_are_minus_the_derivatives_of_the_laws(friction, stribeck_velocity):
     compared = 0
     for seed in range(60):
-        problem = random_problem(seed, 4, friction=friction)
+        problem = random_problem(seed, 4, friction=friction, stribeck_velocity=stribeck_velocity)
         laws = []
         work = problem.workspace()
         point = problem.free + np.array([0.0, -np.abs(problem.free).max()])
