@@ -168,9 +168,8 @@ def slides_on(run: RunState, step: float, sliding: int, slip_step: float, turned
     if turned or sliding == NO_POINT:
         holding, normal = holding_force(run)
         if abs(holding) <= run.contact.mu_static * normal:
-            if (
-                turned and normal < IMPACT_LOAD * run.contact.force_scale
-            ):  # a stop within an impact is none that lasts
+            # a stop within an impact does not last
+            if turned and normal < IMPACT_LOAD * run.contact.force_scale:
                 _, slip_step, _ = slide(run, step, True, holding)
             return False, slip_step
     return True, slip_step
