@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from fem.assessment.sureness import ROCKING, below_uplift
+from fem.assessment.sureness import ROCKING, below_uplift, rests_on_stiff_floor
 from fem.case.uncertainty import MU_KINETIC, STRIBECK, WEAKENING
 from fem.results.run_result import ActionResult, BandMember, RunResult, StaticResult, Verdict
 
@@ -46,10 +46,15 @@ def _on_sliding(members: Sequence[BandMember]) -> str:
 def _on_rocking(members: Sequence[BandMember]) -> str:
     if not members:
         return WITHOUT_BAND
-    if below_uplift(members):
+    if rests_on_stiff_floor(members):
         return (
             ". Believe the rule: it is below uplift of a rigid block, and on a floor thirty times as stiff it does not "
             "rock. The run rocked because its soft bed opens from the edge."
+        )
+    if below_uplift(members):
+        return (
+            ". Neither is to be believed: it is below uplift of a rigid block, and rocks on a floor thirty times as "
+            "stiff, too, because the container itself opens from the edge of its base."
         )
     held = [one.change for one in members[1:] if one.kind == "one" and one.outcome in ("rest", *SLIDING[:1])]
     if held:

@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from fem.assessment.verdict import MODE_NAMES
-from fem.case.uncertainty import INPUTS, InputChange
+from fem.case.uncertainty import INPUTS, PENALTY, InputChange
 from fem.results.run_result import Band, BandMember, RunResult, StaticResult, Verdict
 
 SURE, REGIME_UNSURE, UNSURE = "sure", "regime unsure", "unsure"
@@ -89,16 +89,19 @@ def judged(
         members=tuple(members),
         **{name: _reach(getattr(one, name) for one in alike) for name in FIGURES},
     )
-    return replace(verdict, sure=sure, decided_by=tuple(deciding_inputs(levels, changes)), band=band)
+    deciding = [*deciding_inputs(levels, changes), *([PENALTY] if below_uplift(members) else [])]
+    return replace(verdict, sure=sure, decided_by=tuple(dict.fromkeys(deciding)), band=band)
 
 
 def below_uplift(members: Sequence[BandMember]) -> bool:
-    """Whether the run rocks and, on a floor so stiff that it is rigid, does not."""
-    return (
-        bool(members)
-        and members[0].outcome in ROCKING
-        and any(one.kind == "floor" and one.outcome not in (None, *ROCKING, "overturned") for one in members)
-    )
+    """Whether a run rocks although a rigid block on a rigid floor would rest; it has a member on a stiff floor."""
+    return bool(members) and members[0].outcome in ROCKING and any(one.kind == "floor" for one in members)
+
+
+def rests_on_stiff_floor(members: Sequence[BandMember]) -> bool:
+    """Whether a floor so stiff that it is rigid lets the container rest or slide without rocking."""
+    still = ("rest", "slide")
+    return any(one.kind == "floor" and one.outcome in still for one in members)
 
 
 def static_use(result: RunResult) -> float | None:
@@ -124,7 +127,10 @@ def sureness_in_words(result: RunResult) -> str:
         named = ", ".join(verdict.decided_by[:4]) + (" and others" if len(verdict.decided_by) > 4 else "")
         reasons.append(f"what decides is {named}")
     if below_uplift(band.members):
-        reasons.append("it is below uplift of a rigid block, and on a floor thirty times as stiff it rests")
+        found = "rests" if rests_on_stiff_floor(band.members) else "still rocks"
+        reasons.append(
+            f"it is below uplift of a rigid block, and on a floor thirty times as stiff it {found}"
+        )
     failed = sum(one.outcome is None for one in band.members)
     if failed:
         reasons.append(f"{failed} of {len(band.members)} runs of the band failed")

@@ -41,16 +41,23 @@ def pulse(model="reduced", **values):
     return given | {key.replace("__", "."): value for key, value in values.items()}
 
 
-def test_a_pull_below_stiction_that_slides_a_shell_is_not_sure(tmp_path):
-    # A block under 0.80 of mu_s g rests. The shell's overshoot of some milliseconds drops the support to mu_kinetic.
-    found = verdict_of(tmp_path, "seed_box", pulse())
+def test_a_pull_below_stiction_does_not_slide_a_shell_surely(tmp_path):
+    # A block under 0.80 of mu_s g rests. A shell's overshoot of some milliseconds must not drop its support to
+    # mu_kinetic for good (it slid 233 mm); where a law of friction of the band does, the verdict names it.
+    verdict = verdict_of(tmp_path, "seed_box", pulse()).verdict
+    assert verdict.outcome == "rest" and verdict.max_slip_m < 1e-4
+    others = set(verdict.band.outcomes) - {"rest"}
+    assert (verdict.sure == "sure") == (not others)
+    assert not others or "contact.mu_kinetic" in verdict.decided_by
+
+
+def test_a_pull_beyond_stiction_slides_and_friction_decides_how_far(tmp_path):
+    found = verdict_of(tmp_path, "seed_box", pulse(motion__peak_acceleration_m_s2=4.2))
     verdict = found.verdict
-    assert verdict.outcome == "slide" and verdict.max_slip_m > 0.2
-    assert verdict.sure == "regime unsure"
-    assert {"contact.mu_kinetic", "contact.weakening_m"} <= set(verdict.decided_by)
-    assert set(verdict.band.outcomes) == {"rest", "slide"}
-    page = " ".join((tmp_path / "summary.txt").read_text().split())
-    assert "the static rule holds at 0.800 and the run slid. Believe the rule" in page
+    assert verdict.outcome == "slide" and verdict.sure == "regime unsure"
+    assert verdict.decided_by[0] == "contact.mu_kinetic"
+    low, high = verdict.band.max_slip_m
+    assert high > 10.0 * low
     assert found.warnings[0].startswith("regime unsure: overturned in 0 of 4 draws; what decides is contact.")
 
 
@@ -66,7 +73,7 @@ def test_the_default_motion_hangs_on_the_fall_of_friction(tmp_path, section):
     )
 
 
-@pytest.mark.parametrize(("model", "share"), [("rigid", 0.98), ("reduced", 0.95)])
+@pytest.mark.parametrize(("model", "share"), [("rigid", 0.98), ("reduced", 0.92)])
 def test_a_flat_base_that_rocks_below_uplift_is_not_sure(tmp_path, model, share):
     # Exact rigid block: rests below its uplift. A soft bed opens from the edge and is pulled into rocking.
     values = {"solver.model": model, "motion.peak_acceleration_m_s2": share * UPLIFT, "uncertainty.draws": 0}
@@ -75,7 +82,9 @@ def test_a_flat_base_that_rocks_below_uplift_is_not_sure(tmp_path, model, share)
     assert verdict.sure == "unsure" and verdict.decided_by[0] == "contact.normal_penalty_Pa_m"
     (floor,) = (one for one in verdict.band.members if one.kind == "floor")
     assert floor.rotation_ratio < 0.01
-    assert "below uplift of a rigid block" in verdict.first_line
+    assert (
+        "below uplift of a rigid block, and on a floor thirty times as stiff it rests" in verdict.first_line
+    )
     page = " ".join((tmp_path / "summary.txt").read_text().split())
     assert f"the static rule stands at {share:.3f} and the run rocked. Believe the rule" in page
 

@@ -97,8 +97,13 @@ def test_below_uplift_of_a_rigid_block_is_unsure():
     found = verdict((FLOOR, RESTS), (STIFF, {}), **rocks)
     assert (found.sure, found.decided_by) == ("unsure", (PENALTY,))
     words = sureness_in_words(RunResult(status="completed", verdict=found))
-    assert "below uplift of a rigid block" in words
-    assert verdict((FLOOR, {}), **rocks).sure == "sure"
+    assert words.endswith(
+        "it is below uplift of a rigid block, and on a floor thirty times as stiff it rests."
+    )
+    still = verdict((FLOOR, {}), **rocks)
+    assert (still.sure, still.decided_by) == ("unsure", (PENALTY,))
+    assert "it still rocks" in sureness_in_words(RunResult(status="completed", verdict=still))
+    assert verdict((FLOOR, {}), **RESTS).sure == "sure"
 
 
 def test_ranges_are_those_of_the_members_that_end_as_the_run():
@@ -172,6 +177,7 @@ def test_an_elastic_stress_beyond_yield_is_no_bare_number():
         ({"outcome": "slide"}, [(STIFF, {})], "Believe the run: its friction does not fall"),
         ({"outcome": "rock"}, None, "only the band can say"),
         ({"outcome": "rock"}, [(FLOOR, RESTS)], "Believe the rule: it is below uplift of a rigid block"),
+        ({"outcome": "rock"}, [(FLOOR, {})], "Neither is to be believed: it is below uplift"),
         ({"outcome": "rock"}, [(STIFF, {})], "Believe the run: it rocks with every single change"),
         (
             {"outcome": "rock"},
