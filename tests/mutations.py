@@ -149,8 +149,9 @@ MUTATIONS = (
     Mutation(
         name="a turn without a stop that restores static friction",
         file="contact/stepping/integrator.py",
-        old="        if abs(holding) <= run.contact.mu_static * normal:\n",
-        new="        if normal >= 0.0:\n",
+        old="            every, slip_step = slides_on(run, step, sliding, slip_step, turned)\n",
+        new="            every, slip_step = slides_on(run, step, sliding, slip_step, turned)\n"
+        "            clock.slip_since_break *= not turned\n",
         tests=(*SLIDING, "turn and without"),
     ),
     Mutation(

@@ -253,8 +253,8 @@ def short_stops() -> Iterator[Row]:
     """
     stiff: Keys = {"contact.normal_penalty_Pa_m": 1e11}
     bodies: dict[str, tuple[Keys, float]] = {
-        "rigid box": ({}, 0.01),
-        "rigid box, 1e11 Pa/m": (stiff, 0.01),
+        "rigid box": ({}, 0.004),
+        "rigid box, 1e11 Pa/m": (stiff, 0.004),
         "shell, 20 modes": (SHELL, 0.03),
         "shell, 20 modes, 1e11 Pa/m": (SHELL | stiff, 0.03),
     }
