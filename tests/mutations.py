@@ -343,4 +343,32 @@ MUTATIONS = (
         new="if gained > 1e9 * GAIN_LIMIT * reference:",
         tests=("validation/test_verification_checks.py", "-k", "audit"),
     ),
+    Mutation(
+        name="a band that does not try mu_kinetic up to mu_static",
+        file="fem/case/uncertainty.py",
+        old="friction = (contact.mu_kinetic, contact.mu_static)",
+        new="friction = (contact.mu_kinetic, contact.mu_kinetic)",
+        tests=("verification/test_sure_verdicts.py", "unit/case/test_case_uncertainty.py"),
+    ),
+    Mutation(
+        name="a material damping of a member that stays the run's",
+        file="fem/model/equilibrium.py",
+        old="damping = container.damping(case.container.damping_ratio)",
+        new="damping = container.damping(0.02)",
+        tests=("unit/batch/test_runner.py", "-k", "damping"),
+    ),
+    Mutation(
+        name="sure although changes were left out",
+        file="fem/assessment/sureness.py",
+        old="if no_outcome or missing or OTHER_END in levels",
+        new="if no_outcome or OTHER_END in levels",
+        tests=("unit/assessment/test_sureness.py", "-k", "left_out"),
+    ),
+    Mutation(
+        name="a flat base below uplift without its stiff floor",
+        file="fem/run/band.py",
+        old="soft = case.support.kind != ",
+        new="soft = case.support.foot is not None and case.support.kind != ",
+        tests=("verification/test_sure_verdicts.py", "-k", "flat"),
+    ),
 )
