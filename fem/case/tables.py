@@ -169,6 +169,12 @@ class ContactTable(CaseTable):
 
     rules = CONTACT_RULES
 
+    @property
+    def drops_at_once(self) -> bool:
+        """Whether mu_static falls to mu_kinetic at once when the support breaks loose."""
+        gradual = self.weakening_m > 0.0 or self.stribeck_velocity_m_s > 0.0
+        return self.mu_kinetic < self.mu_static and self.friction == "elastic-stick" and not gradual
+
 
 class MotionTable(CaseTable):
     """How the floor moves; accelerations and displacements are positive toward +x."""

@@ -120,6 +120,12 @@ class Preview:
                 "friction regularised in velocity creeps under constant load; elastic-stick does not",
             ),
             (
+                case.solver.model != "rigid" and case.contact.drops_at_once,
+                "mu_kinetic < mu_static with a drop at once: an elastic container rings after impacts, and an instant of "
+                "that may decide whether it slides or rocks; contact.stribeck_velocity_m_s = 0.3 or contact.weakening_m "
+                "= 0.005 lets friction fall as measured friction does, and the band shows what depends on it",
+            ),
+            (
                 case.motion.start == "rest" and case.motion.kind == "harmonic",
                 f'start = "rest": the floor begins with a jerk of {kick:.3g} m/s',
             ),
