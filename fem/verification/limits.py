@@ -9,7 +9,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from contact.reference.floor_acceleration import still_floor
+from contact.reference.floor_acceleration import sine_floor, still_floor
+from contact.reference.planar_block import PlanarBlock, simulate_planar_block
+from contact.reference.planar_motion import PlanarMode
+from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.model.model import build_model
 from fem.runtime.arrays import FloatArray
@@ -158,6 +161,95 @@ def full_model() -> Iterator[Row]:
     yield computed(case, compared, ratio - other, source=source, absolute=1e-2)
     compared = "rotation before the impact, largest difference from the reduced model over al"
     yield computed(case, compared, largest(difference[before]), source=source, absolute=1e-3)
+
+
+@check("limits", "a shell refined")
+def refined_shell() -> Iterator[Row]:
+    """The default motion of the stack, a shell: it depends on no number of the discretisation.
+
+    Its friction does not fall: with mu_k below mu_s the regime after an impact is chance.
+    """
+    motion = harmonic(4.0 / 6.928**2, 6.928) | SHELL | {"contact.mu_static": 0.4, "solver.duration_s": 12.0}
+    fine: Keys = {"element_size_m": 0.1, "elastic_modes": 100, "energy_tolerance": 0.1, "step_s": 2e-4}
+
+    def largest_of(solver: Keys) -> float:
+        keys = {f"solver.{key}": value for key, value in solver.items()}
+        return float(run(STACK, motion | keys).track.max_rotation) / SLENDERNESS
+
+    exact = largest_of(fine)
+    variations: dict[str, tuple[Keys, ...]] = {
+        "elements of 0.1 and 0.3 m": ({"element_size_m": 0.1}, {"element_size_m": 0.3}),
+        "linear elements of 0.05 m": ({"order": 1, "element_size_m": 0.05},),
+        "4 and 100 modes": ({"elastic_modes": 4}, {"elastic_modes": 100}),
+        "tolerance 0.01 and 10": ({"energy_tolerance": 0.01}, {"energy_tolerance": 10.0}),
+        "steps of 0.05 and 1 ms": ({"step_s": 5e-5}, {"step_s": 1e-3}),
+        "spectral radius 0, 0.8 and 0.9": tuple({"spectral_radius": radius} for radius in (0.0, 0.8, 0.9)),
+    }
+    for name, changes in variations.items():
+        yield computed(
+            f"shell stack of 8 mm, peak 4.0 m/s2 at 6.928 rad/s, mu 0.4/0.4, {name}",
+            "largest rotation in 12 s over al, the farther from the reference",
+            max((largest_of(change) for change in changes), key=lambda found: abs(found - exact)),
+            exact,
+            source="elements of 0.1 m, 100 modes, tolerance 0.1, steps of 0.2 ms",
+            relative=0.01,
+        )
+
+
+@check("limits", "friction that decides")
+def friction_decides() -> Iterator[Row]:
+    """A strong fast floor: with mu_k = mu_s/2 the stack slides and stands, with mu_k = mu_s it overturns."""
+    floor = sine_floor(amplitude=10.3333 / 36.0, angular_frequency=6.0)
+    motion = harmonic(10.3333 / 36.0, 6.0) | {"contact.mu_static": 0.4, "solver.duration_s": 20.0}
+    body, default = RigidBlock.homogeneous(width=1.1, height=4.0), build_model(STACK).penalty
+    sliding = PlanarBlock(body=body, mu_static=0.4, mu_kinetic=0.2)
+    exact = simulate_planar_block(sliding, floor, duration=20.0).largest_rotation / SLENDERNESS
+    found = {}
+    for factor in (1.0 / 3.0, 1.0, 3.0):
+        changed = {"contact.mu_kinetic": 0.2, "contact.normal_penalty_Pa_m": factor * default}
+        found[1.0 / factor] = float(run(STACK, motion | changed).track.max_rotation) / SLENDERNESS
+    errors = {size: abs(value - exact) for size, value in found.items()}
+    yield computed(
+        "rigid stack, peak 10.333 m/s2 at 6 rad/s, mu 0.4/0.2",
+        "largest rotation in 20 s over al, at 3 x the default penalty",
+        found[1.0 / 3.0],
+        exact,
+        source=PLANAR_BLOCK,
+        relative=0.02,
+        convergence=convergence("default penalty/penalty", errors, order=1.0, within=0.25),
+    )
+    gripping = PlanarBlock(body=body, mu_static=0.4, mu_kinetic=0.4)
+    over = simulate_planar_block(gripping, floor, duration=20.0)
+    done = run(STACK, motion)
+    yield computed(
+        "rigid stack, peak 10.333 m/s2 at 6 rad/s, mu 0.4/0.4",
+        "lies on its side at [s]",
+        done.history["time_s"][-1] if done.status == "overturned" else math.inf,
+        over.end if over.outcome is PlanarMode.OVERTURNED else math.nan,
+        source=PLANAR_BLOCK,
+        relative=0.01,
+    )
+
+
+@check("limits", "full model through an impact", quick=False)
+def full_model_through_an_impact() -> Iterator[Row]:
+    """Every node of the shell free to move, through its first impact: the same motion as with 20 modes."""
+    motion = harmonic(4.0 / 6.928**2, 6.928) | SHELL | {"contact.mu_static": 0.4, "solver.duration_s": 1.0}
+    for kinetic in (0.4, 0.2):
+        full, reduced = (
+            run(STACK, motion | {"contact.mu_kinetic": kinetic, "solver.model": model})
+            for model in ("full", "reduced")
+        )
+        case = f"shell stack of 8 mm, peak 4.0 m/s2 at 6.928 rad/s, mu 0.4/{kinetic}, 1.0 s"
+        source, impact = "reduced model, 20 modes", "first impact [s]"
+        first, other = (float(done.track.first_impact) for done in (full, reduced))
+        yield computed(case, impact, first, other, source=source, relative=1e-3)
+        difference = largest(full.history["rotation_rad"] - reduced.history["rotation_rad"])
+        compared = "rotation, largest difference from the reduced model over al"
+        yield computed(case, compared, difference, source=source, absolute=2e-3)
+        difference = float(np.abs(full.history["slip_m"] - reduced.history["slip_m"]).max())
+        compared = "slip, largest difference from the reduced model [m]"
+        yield computed(case, compared, difference, source=source, absolute=1e-3)
 
 
 def rotation(keys: Keys) -> FloatArray:

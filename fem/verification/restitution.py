@@ -2,7 +2,8 @@
 
 Measured by the peaks around the first impact, as the square root of the ratio of the potential energies. The
 reference is e = 1 - (M R^2/I_O)(1 - cos 2 al), Housner, BSSA 53 (1963). Claimed for corners, c/a of 1.5 and more,
-and an elastic frequency f1 far above the bounce frequency f_c; a shell of thin plates is outside.
+and an elastic frequency f1 far above the bounce frequency f_c; a shell of thin plates is outside. A flat base has no
+closed form; its reference is `fem.verification.block_on_springs`.
 """
 
 import itertools
@@ -10,15 +11,21 @@ import math
 from collections.abc import Iterator
 from functools import partial
 
+import numpy as np
+
 from contact.interface.penalty import contact_frequency
+from contact.reference.rigid_block import RigidBlock
 from fem.case.case import Case
 from fem.model.container import Container, discretise
 from fem.model.model import build_model
-from fem.verification.rows import Row, analytic, check, convergence
+from fem.verification.block_on_springs import evenly_spaced, next_turning_point
+from fem.verification.rocking import turning_points
+from fem.verification.rows import Row, analytic, check, computed, convergence
 from fem.verification.runs import GRAVITY, SOLID, STACK, Finished, Keys, finish
 
 RIGID_TOLERANCE, SOLID_TOLERANCE = 5e-3, 1e-2
 DENSITY = 2066.0  #: [kg/m3]
+STACKED = 4.0 / 1.1  #: slenderness of the stack
 COMPARED = "velocity ratio at the first impact"
 housner = partial(analytic, source="1 - 1.5 sin^2 al, Housner 1963")
 
@@ -81,6 +88,108 @@ def stiffness_of_the_container() -> Iterator[Row]:
         bounce = contact_frequency(done.model.container.mesh.mass, done.model.base_stiffness)
         case = f"solid stack, 20 modes, f1/f_c = {done.model.frequencies[0] / bounce:.1f}"
         yield housner(case, COMPARED, peaks(done), 0.8945, absolute=SOLID_TOLERANCE)
+
+
+@check("restitution", "centroids and columns")
+def centroids_and_columns() -> Iterator[Row]:
+    """Boxes filled below and above their middle, two boxes and eight, and a column 1:20: as Housner's."""
+    for centroid in (0.25, 0.35, 0.5, 0.65):
+        filled = {"container.centroid_m": centroid, "container.section": "shell", "container.wall_m": 0.008}
+        done = released(boxes(4, filled))
+        case, exact = f"four boxes, centroids at {centroid} m of 1.0 m", done.block.housner_restitution
+        source = "1 - (M R^2/I_O)(1 - cos 2 al), Housner 1963"
+        yield analytic(case, COMPARED, peaks(done), exact, source=source, absolute=RIGID_TOLERANCE)
+    for count in (2, 8):
+        exact = 1.0 - 1.5 / (1.0 + (count / 1.1) ** 2)
+        yield housner(
+            f"{count} boxes", COMPARED, peaks(released(boxes(count))), exact, absolute=RIGID_TOLERANCE
+        )
+    found = peaks(released(block(20.0, {"solver.duration_s": 6.0})))
+    yield housner("column, c/a = 20", COMPARED, found, 1.0 - 1.5 / 401.0, absolute=1e-3)
+
+
+@check("restitution", "tolerances and steps of time stepping")
+def tolerances_and_steps() -> Iterator[Row]:
+    """Restitution depends on neither the tolerance of the energy balance nor the largest step."""
+    for kind in ("corners", "flat"):
+        found = [
+            peaks(
+                released(
+                    block(
+                        STACKED,
+                        {
+                            "support.kind": kind,
+                            "solver.element_size_m": 0.1,
+                            "solver.energy_tolerance": tolerance,
+                            "solver.step_s": step,
+                        },
+                    )
+                )
+            )
+            for tolerance, step in itertools.product((0.01, 1.0, 10.0), (1e-4, 1e-2))
+        ]
+        yield analytic(
+            f"rigid stack on {kind}, tolerance 0.01 to 10, steps of 0.1 to 10 ms",
+            f"{COMPARED}, largest minus least",
+            max(found) - min(found),
+            source="a property of the support",
+            absolute=1e-3,
+        )
+
+
+@check("restitution", "a bed of springs")
+def bed_of_springs() -> Iterator[Row]:
+    """A flat base keeps more than Housner's: as a rigid block on springs that shares no code, by two turning points."""
+    beds: tuple[tuple[str, Keys, tuple[float, ...]], ...] = (
+        ("corners", {}, (0.05,)),
+        ("flat", {}, (0.1, 0.05, 0.02)),
+        ("flat", {"contact.damping_ratio": 0.5}, (0.05,)),
+        ("flat", {"contact.normal_penalty_Pa_m": 1e9}, (0.05,)),
+        ("flat", {"contact.normal_penalty_Pa_m": 1e10}, (0.05,)),
+        ("flat", {"contact.normal_penalty_Pa_m": 1e11}, (0.05,)),
+    )
+    for kind, values, sizes in beds:
+        keys = {"support.kind": kind, "output.history_s": 1e-3} | values
+        runs = {size: released(block(STACKED, keys | {"solver.element_size_m": size})) for size in sizes}
+        exact = kept(runs[0.05].block, turning_point_on_springs(runs[0.05], kind))
+        changed = "".join(f", {key.split('.')[1]} = {value:g}" for key, value in values.items())
+        for size, done in runs.items():
+            yield computed(
+                f"rigid stack on {kind}{changed}, elements of {size} m",
+                "velocity ratio by the turning points before and after the first impact",
+                kept(done.block, turning_points(done.history)[0]),
+                exact,
+                source="rigid block on springs, 2 for corners and 111 for a flat base",
+                absolute=2e-3,
+            )
+
+
+def turning_point_on_springs(done: Finished, kind: str) -> float:
+    """|rotation| at the turning point after the first impact, by the reference on the same floor [rad]."""
+    contact, width = done.model.run.contact, 2.0 * done.block.half_width
+    return next_turning_point(
+        done.block,
+        places=np.array([-0.5, 0.5]) * width if kind == "corners" else evenly_spaced(width, 111),
+        stiffness=float(contact.normal_stiffness.sum()) / done.model.container.mesh.mass,
+        relaxation_time=contact.relaxation_time,
+        rotation=0.5 * done.block.slenderness_angle,
+        duration=done.model.duration,
+    )
+
+
+def kept(block: RigidBlock, rotation: float) -> float:
+    """Velocity ratio of the first impact, by potential energies, from the turning point after it [rad]."""
+    angle = block.slenderness_angle
+    energy, left = (math.cos(angle - turned) - math.cos(angle) for turned in (0.5 * angle, rotation))
+    return math.sqrt(left / energy)
+
+
+def boxes(count: int, values: Keys | None = None) -> Case:
+    """Boxes of 1.1 x 1.0 m on top of each other, released as `block`."""
+    box = {"container.boxes": count, "container.height_m": 1.0, "container.weight_N": 24525.0}
+    return block(
+        count / 1.1, box | {"solver.duration_s": 4.0, "solver.element_size_m": 0.25} | (values or {})
+    )
 
 
 def block(slenderness: float, values: Keys | None = None) -> Case:

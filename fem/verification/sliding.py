@@ -8,7 +8,7 @@ Dyn. 11 (1983); Newmark, Geotechnique 15 (1965).
 
 import math
 from collections.abc import Iterator
-from itertools import groupby
+from itertools import groupby, product
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from contact.reference.closed_forms_sliding import (
     pulse_slip,
     steady_stroke,
 )
-from contact.reference.floor_acceleration import sine_floor
+from contact.reference.floor_acceleration import half_sine_pulse, sine_floor
 from contact.reference.sliding import RigidSlider, simulate_sliding
 from contact.stepping.ledger import FRICTION as FRICTION_HEAT
 from fem.runtime.arrays import FloatArray
@@ -28,6 +28,7 @@ from fem.verification.runs import (
     FRICTION,
     GRAVITY,
     SOLID,
+    STACK,
     STIFF_SOLID,
     Finished,
     Keys,
@@ -47,6 +48,11 @@ SHELL: Keys = {
     "solver.order": 2,
     "container.section": "shell",
     "container.wall_m": 0.008,
+}
+SUPPORTS: dict[str, Keys] = {
+    "corners": {"support.kind": "corners", "solver.element_size_m": 0.2},
+    "feet": {"support.kind": "feet", "support.foot_m": 0.1, "solver.element_size_m": 0.2},
+    "flat": {"support.kind": "flat", "solver.element_size_m": 0.1},
 }
 #: over the period: a spring needs a few thousandths of it to reverse
 SHORTEST_STOP = 5e-3
@@ -143,6 +149,51 @@ def friction_heat() -> Iterator[Row]:
     yield analytic(case, compared, heat, 1.0, source="Coulomb", absolute=STROKE_TOLERANCE)
     path = 2.0**2 / (2.0 * 0.2 * GRAVITY)
     yield analytic(case, "path [m]", slip, path, source="v^2/(2 mu_k g)", relative=STROKE_TOLERANCE)
+
+
+@check("sliding", "a push on every support")
+def push_on_every_support() -> Iterator[Row]:
+    """Path of a box and of the stack pushed at 1 m/s, on corners, feet and flat base, rigid and as a shell."""
+    path = 1.0 / (2.0 * 0.2 * GRAVITY)
+    pushed: Keys = {"contact.mu_static": 0.2, "initial.velocity_m_s": 1.0, "solver.duration_s": 1.0}
+    for (name, case, tolerance), kind in product((("box", BOX, 1e-3), ("stack", STACK, 5e-3)), SUPPORTS):
+        for model, values in {"rigid": {}, "shell": SHELL}.items():
+            done = run(case, SUPPORTS[kind] | pushed | values)
+            yield analytic(
+                f"{model} {name} on {kind}, pushed at 1 m/s, mu 0.2",
+                "path [m]",
+                done.history["slip_m"][-1],
+                path,
+                source="v^2/(2 mu g)",
+                relative=tolerance,
+            )
+
+
+@check("sliding", "half-sine pulse")
+def half_sine() -> Iterator[Row]:
+    """Slip under half a sine of 2.65 m/s2 and 2 s, little above stiction.
+
+    2.65 m/s2 are 0.98 of the stack's uplift: on feet and a flat base it tilts and slides further than the slider.
+    """
+    models: dict[str, Keys] = {"rigid": {}, "shell": SHELL}
+    runs = [
+        (f"{model} box on {kind}", BOX, SUPPORTS[kind] | values)
+        for kind, (model, values) in product(SUPPORTS, models.items())
+    ]
+    runs.append(("rigid stack on corners", STACK, {}))
+    for mu in (0.25, 0.26):
+        slider = RigidSlider(mu_static=mu, mu_kinetic=mu, gravity=GRAVITY)
+        exact = simulate_sliding(slider, half_sine_pulse(peak=2.65, duration=2.0), duration=3.0).largest_slip
+        motion = pulse(2.65, 2.0, "half-sine") | {"contact.mu_static": mu, "solver.duration_s": 3.0}
+        for name, case, values in runs:
+            yield computed(
+                f"{name}, half-sine of 2.65 m/s2 and 2 s, mu {mu}",
+                "largest slip [m]",
+                run(case, motion | values).track.max_slip,
+                exact,
+                source=SLIDER,
+                relative=STROKE_TOLERANCE,
+            )
 
 
 @check("sliding", "steady strokes")
