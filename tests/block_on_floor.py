@@ -14,7 +14,7 @@ from contact.arrays import FloatArray
 from contact.interface.equilibrium import Stance, standing
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.penalty import relaxation_time
-from contact.interface.solver import Contact, make_workspace
+from contact.interface.workspace import Contact, make_workspace
 from contact.motion.base_motion import HarmonicMotion, NoMotion, PulseMotion
 from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion, floor_motion
 from contact.reference.rigid_block import RigidBlock

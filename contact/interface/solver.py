@@ -10,11 +10,9 @@ Arrays: points (n, 2) with columns x [m] and z [m], both relative to the floor, 
 the container with columns tangential (along +x) and normal (> 0 in compression) [N].
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
-from contact.arrays import FloatArray, IntArray
+from contact.arrays import FloatArray
 from contact.interface.dense import factor_dense, substitute_dense
 from contact.interface.laws import (
     ELASTIC_STICK,
@@ -23,6 +21,7 @@ from contact.interface.laws import (
     stick_friction,
     stribeck_mu,
 )
+from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled
 
 FULL_STEPS = 1  #: full Newton steps before the line search begins; problems with friction tend to cycle
@@ -30,78 +29,6 @@ NEWTON_LIMIT = 40
 WORTH_KEEPING = 5  #: active points from which an old factorisation is reused before a new one is computed
 FORCE_TOLERANCE = 1e-11  #: residual force over the largest force at which the contact problem is solved
 SLIDING = 1.0 - 1e-6  #: tangential force over its limit above which a point counts as sliding
-
-
-class Contact(NamedTuple):
-    """Properties of the contact with the floor: constants of one run, n base points."""
-
-    normal_stiffness: FloatArray  #: [N/m]
-    tangential_stiffness: FloatArray  #: [N/m]
-    relaxation_time: float  #: dashpot over spring, of the normal and of the stuck tangential direction [s]
-    mu_static: float
-    mu_kinetic: float
-    weakening: float  #: slip over which static falls to kinetic friction [m]
-    stribeck_velocity: float  #: slip velocity over which it falls; 0: not with velocity [m/s]
-    friction: int  #: ELASTIC_STICK or REGULARISED
-    regularisation_velocity: float  #: [m/s]
-    force_scale: float  #: weight of the container [N], the scale of negligible forces
-    resolution: (
-        float  #: rounding of a base point's position; times the slope, the smallest force resolved [m]
-    )
-
-
-class Workspace(NamedTuple):
-    """Arrays of one contact problem, shapes in terms of the n base points."""
-
-    free: FloatArray  #: (n, 2) positions of the points without contact force [m]
-    free_velocity: FloatArray  #: (n, 2) and their velocities, relative to the floor [m/s]
-    compliance: FloatArray  #: (2 n, 2 n) G [m/N], x and z of a point in turn
-    point: FloatArray  #: (n, 2) [m]
-    velocity: FloatArray  #: (n, 2) [m/s]
-    force: FloatArray  #: (n, 2) [N]
-    law: FloatArray  #: (n, 2) force of the laws at `point` [N]
-    slope: FloatArray  #: (n, 3) minus its derivatives: tangential by x, tangential by z, normal by z [N/m]
-    matrix: FloatArray  #: (2 n, 2 n) factors of the tangent over the active points
-    change: FloatArray  #: (2 n,)
-    solution: FloatArray  #: (2 n,)
-    excess: (
-        FloatArray  #: (n, 2) what friction cuts off the tangential force [N]; minus d/dx of the whole [N/m]
-    )
-    side: (
-        IntArray  #: (n,) limit of friction that each point had reached in the last iteration: -1, 1; 0: none
-    )
-    pivot: IntArray  #: (2 n,) pivots of `matrix`
-    factored_slope: FloatArray  #: (n, 3) tangents for which `matrix` was factored
-    factored_step: FloatArray  #: (1,) and step size; < 0: none [s]
-    factored_count: IntArray  #: (1,) and number of active points
-    trial: FloatArray  #: (n, 2)
-    active: IntArray  #: (n,) active points, the first `factored_count` entries
-
-
-def make_workspace(points: int) -> Workspace:
-    """Allocate the arrays for so many base points."""
-    n = points
-    return Workspace(
-        free=np.zeros((n, 2)),
-        free_velocity=np.zeros((n, 2)),
-        compliance=np.zeros((2 * n, 2 * n)),
-        point=np.zeros((n, 2)),
-        velocity=np.zeros((n, 2)),
-        force=np.zeros((n, 2)),
-        law=np.zeros((n, 2)),
-        slope=np.zeros((n, 3)),
-        matrix=np.zeros((2 * n, 2 * n)),
-        change=np.zeros(2 * n),
-        solution=np.zeros(2 * n),
-        excess=np.zeros((n, 2)),
-        side=np.zeros(n, dtype=np.int64),
-        pivot=np.zeros(2 * n, dtype=np.int64),
-        factored_slope=np.zeros((n, 3)),
-        factored_step=np.full(1, -1.0),
-        factored_count=np.zeros(1, dtype=np.int64),
-        trial=np.zeros((n, 2)),
-        active=np.zeros(n, dtype=np.int64),
-    )
 
 
 @compiled(inline=True)

@@ -15,7 +15,7 @@ import numpy as np
 from numba.extending import overload
 
 from contact.arrays import FloatArray
-from contact.interface.solver import Workspace
+from contact.interface.workspace import Workspace
 from contact.stepping.scheme import Scheme
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])

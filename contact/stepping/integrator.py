@@ -15,7 +15,7 @@ import numpy as np
 from numba.extending import register_jitable
 
 from contact.interface.laws import ELASTIC_STICK, weakened_mu
-from contact.interface.solver import Contact
+from contact.interface.workspace import Contact
 from contact.jit import compiled
 from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
 from contact.stepping.body import ROTATION, complete, prepared, shift_velocity, sizes_match

@@ -8,7 +8,7 @@ both ends of a step. The imbalance is the remainder: > 0 numerical loss, < 0 num
 """
 
 from contact.arrays import FloatArray
-from contact.interface.solver import Contact
+from contact.interface.workspace import Contact
 from contact.jit import compiled
 
 #: rows of the ledger [J]

@@ -8,7 +8,8 @@ from numba.extending import register_jitable
 
 from contact.arrays import FloatArray
 from contact.interface.equilibrium import Stance
-from contact.interface.solver import Workspace, add_turned
+from contact.interface.solver import add_turned
+from contact.interface.workspace import Workspace
 from contact.jit import compiled
 from contact.stepping import body as interface
 from contact.stepping.body import (

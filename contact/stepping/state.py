@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from contact.arrays import FloatArray
-from contact.interface.solver import Contact, Workspace
+from contact.interface.workspace import Contact, Workspace
 from contact.motion.kernel import FloorMotion, floor_motion
 from contact.stepping.body import State
 from contact.stepping.ledger import ROWS as LEDGER_ROWS

@@ -11,7 +11,8 @@ from numba.extending import register_jitable
 
 from contact.arrays import FloatArray
 from contact.interface.laws import ELASTIC_STICK, relaxed_stick
-from contact.interface.solver import Workspace, solve_contact
+from contact.interface.solver import solve_contact
+from contact.interface.workspace import Workspace
 from contact.jit import compiled
 from contact.motion.kernel import floor_motion
 from contact.stepping.body import (

@@ -7,7 +7,7 @@ import numpy as np
 from contact.interface.equilibrium import SettlingError, Stance, standing, tilted
 from contact.interface.laws import ELASTIC_STICK, REGULARISED
 from contact.interface.penalty import relaxation_time
-from contact.interface.solver import Contact
+from contact.interface.workspace import Contact
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from fem.case.case import Case, CaseError
 from fem.model.container import Container

@@ -11,7 +11,7 @@ import numpy as np
 
 from contact.interface.equilibrium import Stance
 from contact.interface.laws import ELASTIC_STICK
-from contact.interface.solver import Contact, make_workspace
+from contact.interface.workspace import Contact, make_workspace
 from contact.motion.base_motion import BaseMotion
 from contact.motion.kernel import floor_motion
 from contact.stepping import modal_kernels

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from contact.interface.solver import Contact
+from contact.interface.workspace import Contact
 from contact.motion.base_motion import BaseMotion
 from contact.stepping.scheme import Scheme, generalised_alpha, newmark
 from contact.stepping.state import Control

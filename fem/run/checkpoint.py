@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contact.interface.solver import Workspace
+from contact.interface.workspace import Workspace
 from contact.stepping.body import State
 from contact.stepping.state import RunState
 from fem.model.model import Model

@@ -121,9 +121,9 @@ class Preview:
             ),
             (
                 case.solver.model != "rigid" and case.contact.drops_at_once,
-                "mu_kinetic < mu_static with a drop at once: an elastic container rings after impacts, and an instant of "
-                "that may decide whether it slides or rocks; contact.stribeck_velocity_m_s = 0.3 or contact.weakening_m "
-                "= 0.005 lets friction fall as measured friction does, and the band shows what depends on it",
+                "friction drops at once from mu_static to mu_kinetic: an elastic container rings after impacts, and an "
+                "instant of that may decide whether it slides or rocks; contact.stribeck_velocity_m_s = 0.3 or "
+                "contact.weakening_m = 0.005 lets friction fall gradually, and the band shows what depends on it",
             ),
             (
                 case.motion.start == "rest" and case.motion.kind == "harmonic",

@@ -14,7 +14,7 @@ import scipy.sparse.linalg
 from scipy.sparse import csr_array
 
 from contact.interface.equilibrium import Stance
-from contact.interface.solver import Workspace
+from contact.interface.workspace import Workspace
 from contact.stepping.body import State
 from contact.stepping.integrator import UNPREPARED, advance, advance_compiled, enter_floor_frame_compiled
 from contact.stepping.modal_body import ModalBody

@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import fem.solid.elasticity
-from contact.interface.solver import Workspace, add_turned
+from contact.interface.solver import add_turned
+from contact.interface.workspace import Workspace
 from contact.jit import compiled
 from contact.stepping import body as interface
 from contact.stepping.body import (

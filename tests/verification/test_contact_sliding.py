@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from block_on_floor import GRAVITY, Block, Rig, piecewise_motion, rig
 
-from contact.interface.solver import FloatArray
+from contact.arrays import FloatArray
 from contact.motion.base_motion import HarmonicMotion, PulseMotion
 from contact.stepping.state import ROW_CENTRE_X
 

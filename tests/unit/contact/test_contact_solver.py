@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 
 from contact.interface.dense import factor_dense, substitute_dense
 from contact.interface.laws import ELASTIC_STICK, REGULARISED
-from contact.interface.solver import Contact, Workspace, evaluate_laws, make_workspace, solve_contact
+from contact.interface.solver import evaluate_laws, solve_contact
+from contact.interface.workspace import Contact, Workspace, make_workspace
 
 OPEN, CLOSED, TOUCHED = "open", "closed", "touched"
 STUCK, FORWARD, BACKWARD = "stuck", "forward", "backward"

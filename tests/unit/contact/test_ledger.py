@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contact.interface.laws import ELASTIC_STICK
-from contact.interface.solver import Contact
+from contact.interface.workspace import Contact
 from contact.stepping.ledger import contact_losses, spring_energy
 
 CONTACT = Contact(

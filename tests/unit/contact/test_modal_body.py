@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from contact.interface.solver import Workspace, make_workspace
+from contact.interface.workspace import Workspace, make_workspace
 from contact.stepping.body import KINETIC, POTENTIAL, STRAIN, State, make_state
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from contact.stepping.modal_kernels import complete, gather_force, observe, predict, release, respond
