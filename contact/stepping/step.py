@@ -106,8 +106,9 @@ def attempt(body: Any, run: RunState, step: float, mu: float) -> int:
 def holding_force(run: RunState) -> tuple[float, float]:
     """Tangential force that holds the support at the end of the attempted step, and the normal force for it [N].
 
-    The forces of a rigid body that stands on both sides of its base, or rocks about the resultant of its normal
-    forces. The springs of the contact, and an elastic body, swing around them. In an impact the normal force is larger.
+    The forces of a rigid body that stands on both sides of its base, or rocks about the resultant of its normal forces,
+    or begins to rock about a corner because it cannot stand. The springs of the contact, and an elastic body, swing
+    around them. In an impact the normal force is larger.
     """
     new, track, control, acceleration = run.new, run.track[0], run.control, run.floor[1, 2]
     normal, x, z = 0.0, 0.0, 0.0
@@ -115,12 +116,18 @@ def holding_force(run: RunState) -> tuple[float, float]:
         normal += new.force[i, 1]
         x += new.force[i, 1] * new.point[i, 0]
         z += new.force[i, 1] * new.point[i, 1]
+    stands = normal <= 0.0 or track.left_open == track.right_open
+    if stands:
+        corner = 0 if acceleration > 0.0 else control.base_points - 1
+        x, z = new.point[corner, 0], new.point[corner, 1]
+    else:
+        x, z = x / normal, z / normal
+    arm_x = new.pose[CENTRE_X] - run.floor[1, 0] - x
+    arm_z = new.pose[CENTRE_Z] - z
+    inertia = control.inertia / control.mass + arm_x * arm_x + arm_z * arm_z
+    turning = (control.gravity * arm_x - acceleration * arm_z) / inertia
     push, load = acceleration, control.gravity
-    if normal > 0.0 and track.left_open != track.right_open:
-        arm_x = new.pose[CENTRE_X] - run.floor[1, 0] - x / normal
-        arm_z = new.pose[CENTRE_Z] - z / normal
-        inertia = control.inertia / control.mass + arm_x * arm_x + arm_z * arm_z
-        turning = (control.gravity * arm_x - acceleration * arm_z) / inertia
+    if not stands or turning * acceleration < 0.0:
         spin = new.pose[ANGULAR_VELOCITY] ** 2
         push += turning * arm_z - spin * arm_x
         load -= turning * arm_x + spin * arm_z
