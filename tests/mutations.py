@@ -147,6 +147,13 @@ MUTATIONS = (
         tests=(*SLIDING, "pull and stiction"),
     ),
     Mutation(
+        name="a support that cannot stand held as if it stood",
+        file="contact/stepping/step.py",
+        old="    if not stands or turning * acceleration < 0.0:\n",
+        new="    if not stands:\n",
+        tests=(*SLIDING, "start and rest"),
+    ),
+    Mutation(
         name="a turn without a stop that restores static friction",
         file="contact/stepping/integrator.py",
         old="            every, slip_step = slides_on(run, step, sliding, slip_step, turned)\n",
