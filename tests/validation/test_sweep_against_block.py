@@ -22,6 +22,12 @@ case = "seed_stack_plateau"
 "container.section" = "solid"
 "solver.duration_s" = {duration}
 "output.history_s" = 0.02
+# the block has this friction and this start
+"uncertainty.mu_kinetic" = "known"
+"uncertainty.weakening_m" = "known"
+"uncertainty.stribeck_velocity_m_s" = "known"
+"uncertainty.start" = "known"
+"uncertainty.ramp" = "known"
 [axes]
 "motion.angular_frequency_rad_s" = {{ from = 1.5, to = 10.0, count = {count}, scale = "log" }}
 "motion.peak_acceleration_m_s2" = {{ from = 1.7, to = 13.3, count = {count} }}

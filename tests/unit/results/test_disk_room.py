@@ -58,7 +58,7 @@ def unforeseen() -> Iterator[None]:
 
 def told_of(name: str) -> float:
     case = load_case(name, COMMON)
-    return required_disk(case, node_count(build_container(case), case.solver.order))
+    return required_disk(case, node_count(build_container(case), case.solver.order), duration=2.0)
 
 
 def test_what_a_run_writes_is_told_ahead(tmp_path, capsys):
