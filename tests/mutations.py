@@ -114,22 +114,15 @@ MUTATIONS = (
     Mutation(
         name="friction that does not know the normal force's tangent",
         file="contact/interface/solver.py",
-        old="work.slope[i, 1] = by_limit * present_mu * work.slope[i, 2]",
+        old="work.slope[i, 1] = by_limit * mu[i] * work.slope[i, 2]",
         new="work.slope[i, 1] = 0.0 * by_limit",
         tests=LAWS,
     ),
     Mutation(
         name="friction that does not fall with the velocity",
         file="contact/interface/laws.py",
-        old="    return mu_kinetic + fall, -2.0 * fall * ratio / stribeck_velocity\n",
-        new="    return mu_static, 0.0 * fall\n",
-        tests=LAWS,
-    ),
-    Mutation(
-        name="friction that falls with the velocity, without the tangent of it",
-        file="contact/interface/solver.py",
-        old=" - by_limit * normal * by_velocity * velocity_slope",
-        new="",
+        old="    return mu_kinetic + (mu_static - mu_kinetic) * math.exp(-ratio * ratio)\n",
+        new="    return mu_static\n",
         tests=LAWS,
     ),
     Mutation(

@@ -95,20 +95,17 @@ def regularised_friction(
 
 
 @compiled(inline=True)
-def stribeck_mu(
-    mu_static: float, mu_kinetic: float, stribeck_velocity: float, slip_velocity: float
-) -> tuple[float, float]:
-    """Coefficient of friction at a slip velocity [m/s], and its derivative by that velocity [s/m].
+def stribeck_mu(mu_static: float, mu_kinetic: float, stribeck_velocity: float, slip_velocity: float) -> float:
+    """Coefficient of friction at a slip velocity [m/s].
 
     mu_k + (mu_s - mu_k) exp(-(v/v_s)^2), v_s the Stribeck velocity [m/s] (Armstrong-Helouvry, Dupont and Canudas de
     Wit, Automatica 30 (1994) 1083, Eq. 7 with exponent 2). Where v_s = 0 the coefficient does not depend on the
     velocity: it is `mu_static`, which the caller lowers once the support slides.
     """
     if stribeck_velocity <= 0.0:
-        return mu_static, 0.0
+        return mu_static
     ratio = slip_velocity / stribeck_velocity
-    fall = (mu_static - mu_kinetic) * math.exp(-ratio * ratio)
-    return mu_kinetic + fall, -2.0 * fall * ratio / stribeck_velocity
+    return mu_kinetic + (mu_static - mu_kinetic) * math.exp(-ratio * ratio)
 
 
 @compiled

@@ -19,7 +19,6 @@ from contact.interface.laws import (
     normal_force,
     regularised_friction,
     stick_friction,
-    stribeck_mu,
 )
 from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled
@@ -36,7 +35,7 @@ def evaluate_laws(
     contact: Contact,
     step: float,
     velocity_slope: float,
-    mu: float,
+    mu: FloatArray,
     start: FloatArray,
     stick: FloatArray,
     work: Workspace,
@@ -47,7 +46,7 @@ def evaluate_laws(
         contact: the floor.
         step: the time step [s].
         velocity_slope: derivative of an end velocity by an end position, gamma/(beta h) [1/s].
-        mu: coefficient of friction of the elastic-stick law in this step; the regularised law depends on the
+        mu: (n,) coefficients of friction of the elastic-stick law in this step; the regularised law depends on the
             slip velocity instead, between the two coefficients in `contact`.
         start: (n, 2) points at the beginning of the step, relative to the floor [m].
         stick: (n,) elongation of the stuck tangential springs at the beginning of the step [m].
@@ -75,14 +74,11 @@ def evaluate_laws(
             if start[i, 1] < 0.0:  # closed at the beginning: the spring acts over the whole step
                 trial -= stiffness * (stick[i] + work.point[i, 0] - start[i, 0])
                 trial_slope += stiffness
-            present_mu, by_velocity = stribeck_mu(
-                mu, contact.mu_kinetic, contact.stribeck_velocity, work.velocity[i, 0]
-            )
-            force, by_trial, by_limit = stick_friction(trial, present_mu * normal)
+            force, by_trial, by_limit = stick_friction(trial, mu[i] * normal)
             work.excess[i, 0], work.excess[i, 1] = trial - force, trial_slope
             work.law[i, 0] = force
-            work.slope[i, 0] = by_trial * trial_slope - by_limit * normal * by_velocity * velocity_slope
-            work.slope[i, 1] = by_limit * present_mu * work.slope[i, 2]
+            work.slope[i, 0] = by_trial * trial_slope
+            work.slope[i, 1] = by_limit * mu[i] * work.slope[i, 2]
         else:
             force, by_normal, by_velocity = regularised_friction(
                 normal,
@@ -209,7 +205,7 @@ def newton_change(work: Workspace) -> None:
 
 @compiled(inline=True)
 def return_held_points(
-    contact: Contact, velocity_slope: float, mu: float, start: FloatArray, work: Workspace
+    contact: Contact, velocity_slope: float, mu: FloatArray, start: FloatArray, work: Workspace
 ) -> bool:
     """Move points that were held by the floor back to where they were before the step, to linearise there first.
 
@@ -223,10 +219,7 @@ def return_held_points(
     for i in range(work.force.shape[0]):
         tangential, normal = work.force[i, 0], work.force[i, 1]
         closed = normal > 0.0 and start[i, 1] < 0.0
-        limit = (
-            normal * stribeck_mu(mu, contact.mu_kinetic, contact.stribeck_velocity, work.velocity[i, 0])[0]
-        )
-        stuck = closed and contact.friction == ELASTIC_STICK and abs(tangential) < SLIDING * limit
+        stuck = closed and contact.friction == ELASTIC_STICK and abs(tangential) < SLIDING * mu[i] * normal
         for k in range(2):
             stiffness = contact.tangential_stiffness[i] if k == 0 else contact.normal_stiffness[i]
             held = stuck if k == 0 else closed
@@ -271,7 +264,7 @@ def solve_contact(
     contact: Contact,
     step: float,
     velocity_slope: float,
-    mu: float,
+    mu: FloatArray,
     start: FloatArray,
     stick: FloatArray,
     work: Workspace,

@@ -20,9 +20,7 @@ class Contact(NamedTuple):
     friction: int  #: ELASTIC_STICK or REGULARISED
     regularisation_velocity: float  #: [m/s]
     force_scale: float  #: weight of the container [N], the scale of negligible forces
-    resolution: (
-        float  #: rounding of a base point's position; times the slope, the smallest force resolved [m]
-    )
+    resolution: float  #: rounding of a point's position; times the slope, the least force resolved [m]
 
 
 class Workspace(NamedTuple):
@@ -39,12 +37,9 @@ class Workspace(NamedTuple):
     matrix: FloatArray  #: (2 n, 2 n) factors of the tangent over the active points
     change: FloatArray  #: (2 n,)
     solution: FloatArray  #: (2 n,)
-    excess: (
-        FloatArray  #: (n, 2) what friction cuts off the tangential force [N]; minus d/dx of the whole [N/m]
-    )
-    side: (
-        IntArray  #: (n,) limit of friction that each point had reached in the last iteration: -1, 1; 0: none
-    )
+    excess: FloatArray  #: (n, 2) what friction cuts off [N]; minus d/dx of the uncut force [N/m]
+    mu: FloatArray  #: (n,) coefficients of friction in this step
+    side: IntArray  #: (n,) limit of friction reached in the last iteration: -1, 1; 0: none
     pivot: IntArray  #: (2 n,) pivots of `matrix`
     factored_slope: FloatArray  #: (n, 3) tangents for which `matrix` was factored
     factored_step: FloatArray  #: (1,) and step size; < 0: none [s]
@@ -69,6 +64,7 @@ def make_workspace(points: int) -> Workspace:
         change=np.zeros(2 * n),
         solution=np.zeros(2 * n),
         excess=np.zeros((n, 2)),
+        mu=np.zeros(n),
         side=np.zeros(n, dtype=np.int64),
         pivot=np.zeros(2 * n, dtype=np.int64),
         factored_slope=np.zeros((n, 3)),

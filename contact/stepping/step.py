@@ -10,7 +10,7 @@ from typing import Any
 from numba.extending import register_jitable
 
 from contact.arrays import FloatArray
-from contact.interface.laws import ELASTIC_STICK, relaxed_stick
+from contact.interface.laws import ELASTIC_STICK, relaxed_stick, stribeck_mu
 from contact.interface.solver import solve_contact
 from contact.interface.workspace import Workspace
 from contact.jit import compiled
@@ -72,6 +72,7 @@ def store_rates(step: float, old: State, new: State, work: Workspace) -> None:
     for i in range(new.descent.shape[0]):
         new.descent[i, 0] = -work.velocity[i, 1]
         new.descent[i, 1] = (new.descent[i, 0] - old.descent[i, 0]) * per_second
+        new.drift[i] = work.velocity[i, 0]
     for j in range(new.jerk.size):
         new.jerk[j] = (new.acceleration[j] - old.acceleration[j]) * per_second
 
@@ -88,9 +89,13 @@ def attempt(body: Any, run: RunState, step: float, mu: float) -> int:
     clock.lag_step = step
     predict(body, scheme, step, old, new)
     copy_rows(work.force, old.force)
+    # Friction follows the velocity one step behind: its fall is a negative damping, not to be solved implicitly.
+    contact = run.contact
+    for i in range(work.mu.size):
+        work.mu[i] = stribeck_mu(mu, contact.mu_kinetic, contact.stribeck_velocity, old.drift[i])
     for iteration in range(ITERATION_LIMIT):
         release(body, scheme, step, old, new, work, floor, floor_velocity)
-        solved = solve_contact(run.contact, step, slope, mu, old.point, old.stick, work)
+        solved = solve_contact(contact, step, slope, work.mu, old.point, old.stick, work)
         if solved < 0:
             return -1
         clock.contact_iterations += solved
@@ -170,7 +175,7 @@ def slide(run: RunState, step: float, stops: bool, holding: float) -> tuple[int,
             start = -holding * normal / loaded / contact.tangential_stiffness[i]
             new.stick[i] = start - contact.relaxation_time * work.velocity[i, 0]
             run.slip[i] = moved - (new.stick[i] - stick)
-        elif normal <= 0.0 or work.slope[i, 0] <= 0.0:
+        elif normal <= 0.0 or work.slope[i, 0] == 0.0:
             new.stick[i] = relaxed_stick(
                 stick, -tangential, contact.tangential_stiffness[i], contact.relaxation_time, step
             )
@@ -187,7 +192,7 @@ def slide(run: RunState, step: float, stops: bool, holding: float) -> tuple[int,
                 slides = abs(work.velocity[i, 0]) > contact.regularisation_velocity
                 every = every and slides
             else:
-                slides = work.slope[i, 0] <= 0.0
+                slides = work.slope[i, 0] == 0.0
                 every = every and slides and direction * work.law[i, 0] >= 0.0
             any_slides = any_slides or slides
             direction = work.law[i, 0]

@@ -159,16 +159,10 @@ def test_without_a_distance_friction_weakens_at_once():
 
 
 def test_friction_falls_with_the_slip_velocity_from_static_to_kinetic():
-    assert stribeck_mu(0.4, 0.2, 0.3, 0.0)[0] == 0.4
-    assert stribeck_mu(0.4, 0.2, 0.3, 0.3)[0] == pytest.approx(0.2 + 0.2 / math.e, rel=1e-14)
-    assert stribeck_mu(0.4, 0.2, 0.3, -3.0)[0] == pytest.approx(0.2, rel=1e-12)
+    assert stribeck_mu(0.4, 0.2, 0.3, 0.0) == 0.4
+    assert stribeck_mu(0.4, 0.2, 0.3, 0.3) == pytest.approx(0.2 + 0.2 / math.e, rel=1e-14)
+    assert stribeck_mu(0.4, 0.2, 0.3, -3.0) == pytest.approx(0.2, rel=1e-12)
 
 
 def test_without_a_stribeck_velocity_friction_does_not_depend_on_the_velocity():
-    assert stribeck_mu(0.4, 0.2, 0.0, 1.0) == (0.4, 0.0)
-
-
-@pytest.mark.parametrize("velocity", [-1.0, -0.3, -1e-3, 1e-6, 0.05, 0.2, 0.9])
-def test_the_slope_of_friction_over_velocity_is_its_difference_quotient(velocity):
-    low, high = (stribeck_mu(0.4, 0.2, 0.3, velocity + step)[0] for step in (-1e-6, 1e-6))
-    assert stribeck_mu(0.4, 0.2, 0.3, velocity)[1] == pytest.approx((high - low) / 2e-6, abs=1e-9)
+    assert stribeck_mu(0.4, 0.2, 0.0, 1.0) == 0.4
