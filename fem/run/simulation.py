@@ -31,7 +31,7 @@ from fem.solid.elasticity import least_volume_ratio
 from fem.solid.nodal_body import FullBody, advance_body, leave_body_alone
 
 #: length of a slice in simulated seconds
-SLICE_REDUCED, SLICE_FULL = 0.25, 0.01
+SLICE_REDUCED, SLICE_FULL = 1.0, 0.01
 #: .. and in attempted steps
 LOOK_REDUCED, LOOK_FULL = 100_000, 2000
 #: wall time between pauses [s]; attempted steps until the first one; how many times more until the next, at most

@@ -43,6 +43,7 @@ def run(folder: Path, name: str, overrides: tuple[str, ...], **options) -> Run:
 @pytest.mark.parametrize("kind", CASES)
 def test_a_run_cut_off_after_every_slice_is_the_run_left_alone(tmp_path, monkeypatch, kind):
     name, overrides = CASES[kind]
+    monkeypatch.setattr(fem.run.simulation, "SLICE_REDUCED", 0.25)
     monkeypatch.setattr(fem.run.simulation, "SLICE_FULL", 0.03)
     monkeypatch.setattr(fem.run.simulation, "FIRST_PAUSE", 400)
     monkeypatch.setattr(fem.run.simulation, "AFTERMATH_SLICE", 0.15)
