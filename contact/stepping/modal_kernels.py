@@ -290,7 +290,7 @@ def _state_of_block_on_corners(state: State) -> bool:
         return False
     if state.point.shape[0] != 2 or state.force.shape[0] != 2 or state.descent.shape[0] != 2:
         return False
-    if state.drift.size != 2 or state.numbers.size != 46:
+    if state.drift.shape[0] != 2 or state.drift.shape[1] != 2 or state.numbers.size != 48:
         return False
     return bool(state.point.shape[1] == 2 and state.force.shape[1] == 2 and state.descent.shape[1] == 2)
 

@@ -72,7 +72,8 @@ def store_rates(step: float, old: State, new: State, work: Workspace) -> None:
     for i in range(new.descent.shape[0]):
         new.descent[i, 0] = -work.velocity[i, 1]
         new.descent[i, 1] = (new.descent[i, 0] - old.descent[i, 0]) * per_second
-        new.drift[i] = work.velocity[i, 0]
+        new.drift[i, 0] = work.velocity[i, 0]
+        new.drift[i, 1] = (new.drift[i, 0] - old.drift[i, 0]) * per_second
     for j in range(new.jerk.size):
         new.jerk[j] = (new.acceleration[j] - old.acceleration[j]) * per_second
 
@@ -89,10 +90,11 @@ def attempt(body: Any, run: RunState, step: float, mu: float) -> int:
     clock.lag_step = step
     predict(body, scheme, step, old, new)
     copy_rows(work.force, old.force)
-    # Friction follows the velocity one step behind: its fall is a negative damping, not to be solved implicitly.
+    # Friction follows the extrapolated velocity: its fall is a negative damping, not to be solved implicitly.
     contact = run.contact
     for i in range(work.mu.size):
-        work.mu[i] = stribeck_mu(mu, contact.mu_kinetic, contact.stribeck_velocity, old.drift[i])
+        velocity = old.drift[i, 0] + step * old.drift[i, 1]
+        work.mu[i] = stribeck_mu(mu, contact.mu_kinetic, contact.stribeck_velocity, velocity)
     for iteration in range(ITERATION_LIMIT):
         release(body, scheme, step, old, new, work, floor, floor_velocity)
         solved = solve_contact(contact, step, slope, work.mu, old.point, old.stick, work)

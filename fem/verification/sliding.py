@@ -258,6 +258,21 @@ def turn_without_a_stop() -> Iterator[Row]:
     )
 
 
+@check("sliding", "friction that falls with the velocity")
+def falling_friction() -> Iterator[Row]:
+    """Steady stroke of the paper's box where friction falls from 0.4 to 0.2 like exp(-(v/v_s)^2)."""
+    for stribeck, stroke in ((0.1, 37.222e-3), (0.3, 12.522e-3)):
+        changed = {"contact.stribeck_velocity_m_s": stribeck, "solver.duration_s": 20.0}
+        yield computed(
+            f"rigid box, A = 0.05 m, Omega = 10 rad/s, v_s = {stribeck:g} m/s",
+            "steady slip, peak to peak [m]",
+            stroke_of(run(BOX, PAPER_BOX | changed)),
+            stroke,
+            source="rigid slider in steps of 10 us, explicit",
+            relative=STROKE_TOLERANCE,
+        )
+
+
 @check("sliding", "the paper's box on a fast floor")
 def paper_slider() -> Iterator[Row]:
     """Steady stroke of the box with 0.4/0.2 on a floor of 50 mm at 10 rad/s: rigid, and elastic."""
