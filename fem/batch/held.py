@@ -1,4 +1,4 @@
-"""What a study of many cases holds fixed of the inputs that nobody knows, in words for its title and page."""
+"""What a study of many cases holds fixed of the unknown inputs, in words for its title and page."""
 
 import math
 from collections.abc import Collection, Iterator, Sequence

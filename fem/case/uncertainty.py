@@ -1,8 +1,8 @@
-"""What nobody knows of a case: the range of each input, and the changed cases that try them.
+"""The unknown inputs of a case: the range of each, and the changed cases that try them.
 
 This module alone knows the ranges. A run repeats itself over these changes (its band); a sweep takes its perturbed
 copies from them. Where the case says nothing in its table [uncertainty], a range follows the case: friction falls from
-`mu_static` by an amount and in a way that nobody has measured for this floor; its stiffness is known within a factor of
+`mu_static` by an amount and a way not measured for this floor; its stiffness is known within a factor of
 nine downwards (the point of a corner) and three upwards (a casting); damping within a factor of two either way; and
 a harmonic motion begins in one of several ways. The numerics are no input and are always tried, ten times tighter.
 """

@@ -15,7 +15,7 @@ from fem.case.case import Case
 from fem.case.uncertainty import Value
 from fem.ensemble.distributions import RandomQuantity, Sampling, draw_shares
 
-#: inputs that nobody knows, and that the file does not vary: drawn over [uncertainty] of the case, or held
+#: unknown inputs that the file does not vary: drawn over [uncertainty] of the case, or held
 Unknown = Literal["drawn", "held"]
 
 

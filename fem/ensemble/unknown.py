@@ -1,4 +1,4 @@
-"""The inputs that nobody knows, drawn over their ranges at every draw of an ensemble.
+"""The unknown inputs, drawn over their ranges at every draw of an ensemble.
 
 What the file varies itself, by [axes], [random] or [derived], is as the file has it; the rest follows [uncertainty] of
 the case. These draws have random numbers of their own, so those of [random] do not depend on them.

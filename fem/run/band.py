@@ -1,4 +1,4 @@
-"""The band of a run: what it does when the inputs that nobody knows change.
+"""The band of a run: what it does when the unknown inputs change.
 
 `fem.case.uncertainty` says which inputs these are, in which ranges, and makes the changed cases; here they are run, and
 `fem.assessment.sureness` says what they show. All have the container of the run. Members of rigid and reduced models

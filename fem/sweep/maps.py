@@ -2,7 +2,7 @@
 
 Two axes span a map; there is a panel for each combination of the others, unless they are held at one value. A line
 encloses the cells that overturn; unsure cells are hatched, those unsure in their regime alone are dotted. The title
-says what the map holds fixed of the inputs that nobody knows.
+says what the map holds fixed of the unknown inputs.
 """
 
 from collections.abc import Mapping

@@ -291,24 +291,14 @@ def paper_slider_position() -> Iterator[Row]:
     times, slip = done.history["time_s"], done.history["slip_m"]
     exact = slip_of_the_papers_slider(times)
     case = "rigid box, A = 0.05 m, Omega = 10 rad/s, mu 0.4/0.2"
-    yield computed(
-        case, "largest slip [m]", done.track.max_slip, LARGEST, source=SLIDER, relative=STROKE_TOLERANCE
-    )
-    yield computed(
-        case,
-        "slip after ten periods over the largest",
-        float(slip[-1]) / LARGEST,
-        LAST / LARGEST,
-        source=f"{SLIDER}, 19.893 of 79.144 mm",
-        absolute=STROKE_TOLERANCE,
-    )
-    yield computed(
-        case,
-        "slip in ten periods, largest difference over the largest slip",
-        np.abs(slip - exact).max() / LARGEST,
-        source=SLIDER,
-        absolute=STROKE_TOLERANCE,
-    )
+    largest = done.track.max_slip
+    yield computed(case, "largest slip [m]", largest, LARGEST, source=SLIDER, relative=STROKE_TOLERANCE)
+    compared, source = "slip after ten periods over the largest", f"{SLIDER}, 19.893 of 79.144 mm"
+    last = float(slip[-1]) / LARGEST
+    yield computed(case, compared, last, LAST / LARGEST, source=source, absolute=STROKE_TOLERANCE)
+    compared = "slip in ten periods, largest difference over the largest slip"
+    difference = float(np.abs(slip - exact).max()) / LARGEST
+    yield computed(case, compared, difference, source=SLIDER, absolute=STROKE_TOLERANCE)
 
 
 @check("sliding", "a short stop")

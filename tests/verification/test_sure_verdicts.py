@@ -1,6 +1,6 @@
 """Verdicts that must not be sure: where friction, its fall or the stiffness of the floor decides, the run says so.
 
-The runs are those in which an independent review found verdicts that were sure and hung on what nobody knows.
+The runs are those in which an independent review found verdicts that were sure and depended on unknown inputs.
 """
 
 import pytest

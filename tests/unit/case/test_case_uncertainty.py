@@ -1,4 +1,4 @@
-"""What nobody knows of a case: ranges that follow it or are stated, changed cases, Sobol's points, bad ranges."""
+"""The unknown inputs of a case: ranges that follow it or are stated, changed cases, Sobol's points, bad ranges."""
 
 import warnings
 

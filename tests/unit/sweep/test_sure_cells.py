@@ -47,7 +47,7 @@ def test_every_copy_of_a_cell_is_another_case(sweep_of):
     assert all(values.count(one) == 1 for one in values)
 
 
-def test_the_copies_of_the_shipped_case_try_all_that_nobody_knows(sweep_of):
+def test_the_copies_of_the_shipped_case_try_all_unknown_inputs(sweep_of):
     assert keys_of(sweep_of(SMALL)) == {
         "motion.peak_acceleration_m_s2",
         "contact.mu_static",
