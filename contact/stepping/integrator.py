@@ -30,7 +30,7 @@ from contact.stepping.control import (
 )
 from contact.stepping.ledger import CONTACT_DAMPING, FRICTION, IMBALANCE, MATERIAL_DAMPING
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
-from contact.stepping.observables import FALLEN, NEVER, update_observables
+from contact.stepping.observables import FALLEN, NEVER, SLIDING, update_observables
 from contact.stepping.sampling import sample
 from contact.stepping.state import RunState
 from contact.stepping.step import (
@@ -47,7 +47,6 @@ from contact.stepping.step import (
 WEAKENING_LIMIT = 8  #: repetitions of a step for friction that weakens with its slip
 WEAKENING_TOLERANCE = 1e-9  #: change of the coefficient at which they end
 IMPACT_LOAD = 2.0  #: normal force over the weight from which there is an impact
-SLIDING = 1e-4  #: slip over the width that counts as sliding
 HELD_STEPS = 6  #: after a rejection
 FADING = 0.8  #: of the remembered imbalance, per step
 
