@@ -20,6 +20,8 @@ LAYERS = (
     ("contact.interface",),
     ("contact.stepping",),
     ("fem.runtime",),
+    ("fem.records",),
+    ("fem.site",),
     ("fem.case",),
     ("fem.results",),
     ("fem.solid",),

@@ -1,0 +1,283 @@
+"""Seismic action at a site: elastic and design spectra, ground displacement, factors.
+
+EN 1998-1:2004, 3.2.2.2 to 3.2.2.5 and Annex A, recommended values of tables 3.2 to 3.4; the zones and subsoils of
+DIN EN 1998-1/NA:2011; or parameters of another annex. Accelerations are magnitudes in m/s2, periods in s, damping
+ratios of critical damping.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fem.runtime.arrays import FloatArray
+
+#: damping of the spectra to which motions are matched (3.2.3.1.2)
+DAMPING_RATIO = 0.05
+#: amplification of the plateau, horizontal (3.3) and vertical (3.9)
+PLATEAU, VERTICAL_PLATEAU = 2.5, 3.0
+#: (3.6)
+LEAST_DAMPING_CORRECTION = 0.55
+#: beta, the least value of the design spectrum over a_g (3.15), recommended
+LEAST_DESIGN_SHARE = 0.2
+#: q of the vertical design spectrum, at most (3.2.2.5(6))
+MOST_VERTICAL_BEHAVIOUR_FACTOR = 1.5
+#: range of the formulas (3.2) to (3.5); Annex A goes on from there
+LAST_PERIOD_S, LAST_PERIOD_ANNEX_A_S = 4.0, 10.0
+#: gamma_I and gamma_a that are accepted
+FACTORS = (0.5, 2.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpectrumShape:
+    """Parameters of the elastic spectra of a ground.
+
+    Raises:
+        ValueError: a number out of range, or corner periods that do not rise.
+    """
+
+    soil_factor: float  #: S [-]
+    corner_periods: tuple[float, float, float]  #: T_B, T_C, T_D [s]
+    vertical_ratio: float  #: a_vg / a_g [-]
+    vertical_corner_periods: tuple[float, float, float]  #: [s]
+    annex_a_corner: float | None = None  #: T_E [s]; None: constant displacement beyond T_D
+    source: str = "given"  #: where the numbers stand
+
+    def __post_init__(self) -> None:
+        for name, value in (("soil factor", self.soil_factor), ("vertical ratio", self.vertical_ratio)):
+            if not 0.0 < value < 10.0:
+                raise ValueError(f"the {name} must be positive and below 10, got {value:g}")
+        for periods in (self.corner_periods, self.vertical_corner_periods):
+            if not 0.0 < periods[0] < periods[1] < periods[2] <= LAST_PERIOD_S:
+                shown = ", ".join(f"{period:g}" for period in periods)
+                raise ValueError(
+                    f"corner periods T_B, T_C, T_D must rise from above 0 to at most 4 s, got {shown}"
+                )
+
+
+#: T_E of Annex A, by ground [s]
+_ANNEX_A = {"A": 4.5, "B": 5.0, "C": 6.0, "D": 6.0, "E": 6.0}
+#: tables 3.2 and 3.3: S, T_B, T_C, T_D by type and ground
+_EUROCODE = {
+    1: {
+        "A": (1.0, 0.15, 0.4, 2.0),
+        "B": (1.2, 0.15, 0.5, 2.0),
+        "C": (1.15, 0.20, 0.6, 2.0),
+        "D": (1.35, 0.20, 0.8, 2.0),
+        "E": (1.4, 0.15, 0.5, 2.0),
+    },
+    2: {
+        "A": (1.0, 0.05, 0.25, 1.2),
+        "B": (1.35, 0.05, 0.25, 1.2),
+        "C": (1.5, 0.10, 0.25, 1.2),
+        "D": (1.8, 0.10, 0.30, 1.2),
+        "E": (1.6, 0.05, 0.25, 1.2),
+    },
+}
+#: table 3.4
+_EUROCODE_VERTICAL_RATIO = {1: 0.90, 2: 0.45}
+_EUROCODE_VERTICAL_PERIODS = (0.05, 0.15, 1.0)
+
+#: a_gR of the zones of DIN EN 1998-1/NA:2011 [m/s2]
+GERMAN_ZONES = {1: 0.4, 2: 0.6, 3: 0.8}
+#: subsoil: S, horizontal T_B, T_C, T_D; vertical T_B
+_GERMAN = {
+    "A-R": ((1.00, 0.05, 0.20, 2.0), 0.05),
+    "B-R": ((1.25, 0.05, 0.25, 2.0), 0.05),
+    "C-R": ((1.50, 0.05, 0.30, 2.0), 0.05),
+    "B-T": ((1.00, 0.10, 0.30, 2.0), 0.10),
+    "C-T": ((1.25, 0.10, 0.40, 2.0), 0.10),
+    "C-S": ((0.75, 0.10, 0.50, 2.0), 0.10),
+}
+
+
+def eurocode_shape(kind: int, ground: str) -> SpectrumShape:
+    """Spectra of EN 1998-1:2004, tables 3.2 to 3.4.
+
+    Args:
+        kind: type 1 or 2 (3.2.2.2(2)P); ground: type A to E (3.1.2).
+
+    Raises:
+        ValueError: another type, or a ground that needs a special study or does not exist.
+    """
+    if kind not in _EUROCODE:
+        raise ValueError(f"spectrum type {kind}: EN 1998-1 has types 1 and 2")
+    if ground in ("S1", "S2"):
+        raise ValueError(
+            f"ground type {ground} needs a special study (EN 1998-1, 3.1.2(4)P); give its spectrum with "
+            'spectrum = "custom"'
+        )
+    if ground not in _EUROCODE[kind]:
+        raise ValueError(f"ground type {ground!r}: EN 1998-1 has A, B, C, D, E")
+    soil, *periods = _EUROCODE[kind][ground]
+    return SpectrumShape(
+        soil_factor=soil,
+        corner_periods=(periods[0], periods[1], periods[2]),
+        vertical_ratio=_EUROCODE_VERTICAL_RATIO[kind],
+        vertical_corner_periods=_EUROCODE_VERTICAL_PERIODS,
+        annex_a_corner=_ANNEX_A[ground],
+        source=f"EN 1998-1:2004, table 3.{kind + 1}, type {kind}, ground {ground}; vertical: table 3.4",
+    )
+
+
+def german_shape(subsoil: str, vertical_ratio: float) -> SpectrumShape:
+    """Spectra of DIN EN 1998-1/NA:2011.
+
+    Args:
+        subsoil: ground and geology, such as "C-R"; vertical_ratio: a_vg/a_g, as the annex in force gives it.
+
+    Raises:
+        ValueError: an unknown subsoil.
+    """
+    if subsoil not in _GERMAN:
+        raise ValueError(f"subsoil {subsoil!r}: DIN EN 1998-1/NA:2011 has {', '.join(_GERMAN)}")
+    (soil, *periods), vertical_first = _GERMAN[subsoil]
+    return SpectrumShape(
+        soil_factor=soil,
+        corner_periods=(periods[0], periods[1], periods[2]),
+        vertical_ratio=vertical_ratio,
+        vertical_corner_periods=(vertical_first, 0.20, 2.0),
+        source=f"DIN EN 1998-1/NA:2011, subsoil {subsoil}",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class SiteAction:
+    """The seismic action on an element that stands at a site.
+
+    Raises:
+        ValueError: an acceleration that is not positive, or a factor outside 0.5 to 2.
+    """
+
+    shape: SpectrumShape
+    reference_acceleration: float  #: a_gR, on rock [m/s2]
+    importance_factor: float = 1.0  #: gamma_I of the building (4.2.5) [-]
+    element_importance_factor: float = 1.0  #: gamma_a of the element (4.3.5.3); 1.5 for toxic content [-]
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.reference_acceleration < 30.0:
+            raise ValueError(
+                f"the reference acceleration must be positive and below 30 m/s2, got "
+                f"{self.reference_acceleration:g} m/s2"
+            )
+        for name, value in (
+            ("importance factor", self.importance_factor),
+            ("importance factor of the element", self.element_importance_factor),
+        ):
+            if not FACTORS[0] <= value <= FACTORS[1]:
+                raise ValueError(
+                    f"the {name} must lie between {FACTORS[0]:g} and {FACTORS[1]:g}, got {value:g}"
+                )
+
+    @property
+    def ground_acceleration(self) -> float:
+        """a_g gamma_a = gamma_I gamma_a a_gR (3.2.1(3); 4.24 for gamma_a) [m/s2]."""
+        return self.importance_factor * self.element_importance_factor * self.reference_acceleration
+
+    @property
+    def surface_acceleration(self) -> float:
+        """a_g S, the horizontal spectrum at T = 0 [m/s2]."""
+        return self.ground_acceleration * self.shape.soil_factor
+
+    @property
+    def vertical_acceleration(self) -> float:
+        """a_vg [m/s2]; the soil factor does not apply to it (3.2.2.3)."""
+        return self.ground_acceleration * self.shape.vertical_ratio
+
+    @property
+    def ground_displacement(self) -> float:
+        """d_g = 0.025 a_g S T_C T_D (3.12) [m]."""
+        _, third, fourth = self.shape.corner_periods
+        return 0.025 * self.surface_acceleration * third * fourth
+
+    def times(self, factor: float) -> "SiteAction":
+        """This action with its accelerations multiplied by a factor."""
+        return replace(self, reference_acceleration=factor * self.reference_acceleration)
+
+    def horizontal(self, periods: FloatArray, damping_ratio: float = DAMPING_RATIO) -> FloatArray:
+        """Horizontal elastic spectrum S_e (3.2) to (3.5), beyond 4 s Annex A, at the periods (n,) [s]; (n,) [m/s2].
+
+        Where no T_E is known, the displacement stays constant beyond 4 s, which is not below Annex A.
+        """
+        corners, eta = self.shape.corner_periods, damping_correction(damping_ratio)
+        found = _elastic(periods, self.surface_acceleration, PLATEAU, corners, eta)
+        if self.shape.annex_a_corner is None:
+            return found
+        displacement = self._annex_a(periods, self.shape.annex_a_corner, eta)
+        begin = self.shape.annex_a_corner
+        beyond = periods >= begin
+        found[beyond] = displacement[beyond] * (2.0 * math.pi / periods[beyond]) ** 2
+        return found
+
+    def vertical(self, periods: FloatArray, damping_ratio: float = DAMPING_RATIO) -> FloatArray:
+        """Vertical elastic spectrum S_ve (3.8) to (3.11) at the periods (n,) [s], shape (n,) [m/s2]."""
+        corners, eta = self.shape.vertical_corner_periods, damping_correction(damping_ratio)
+        return _elastic(periods, self.vertical_acceleration, VERTICAL_PLATEAU, corners, eta)
+
+    def design(self, periods: FloatArray, behaviour_factor: float) -> FloatArray:
+        """Horizontal design spectrum S_d (3.13) to (3.16) at the periods (n,) [s], shape (n,) [m/s2].
+
+        Raises:
+            ValueError: a behaviour factor below 1.
+        """
+        least = LEAST_DESIGN_SHARE * self.ground_acceleration  # without the soil factor
+        return _design(periods, self.surface_acceleration, self.shape.corner_periods, behaviour_factor, least)
+
+    def vertical_design(self, periods: FloatArray, behaviour_factor: float) -> FloatArray:
+        """Vertical design spectrum at the periods (n,) [s], shape (n,) [m/s2]: with a_vg, S = 1 (3.2.2.5(5)).
+
+        Raises:
+            ValueError: a behaviour factor below 1 or above 1.5 (3.2.2.5(6)).
+        """
+        if behaviour_factor > MOST_VERTICAL_BEHAVIOUR_FACTOR:
+            raise ValueError(
+                f"the vertical behaviour factor must be at most {MOST_VERTICAL_BEHAVIOUR_FACTOR:g} "
+                f"(EN 1998-1, 3.2.2.5(6)), got {behaviour_factor:g}"
+            )
+        least = LEAST_DESIGN_SHARE * self.vertical_acceleration
+        return _design(
+            periods, self.vertical_acceleration, self.shape.vertical_corner_periods, behaviour_factor, least
+        )
+
+    def _annex_a(self, periods: FloatArray, begin: float, eta: float) -> FloatArray:
+        """Elastic displacement spectrum from T_E on, Annex A (A.1), (A.2), shape (n,) [m]."""
+        share = np.clip((periods - begin) / (LAST_PERIOD_ANNEX_A_S - begin), 0.0, 1.0)
+        return self.ground_displacement * (PLATEAU * eta + share * (1.0 - PLATEAU * eta))
+
+
+def damping_correction(damping_ratio: float) -> float:
+    """eta of (3.6): 1 at 5 % damping, at least 0.55.
+
+    Raises:
+        ValueError: a damping ratio that is negative or 1 and more.
+    """
+    if not 0.0 <= damping_ratio < 1.0:
+        raise ValueError(f"the damping ratio must lie between 0 and 1, got {damping_ratio:g}")
+    return max(math.sqrt(10.0 / (5.0 + 100.0 * damping_ratio)), LEAST_DAMPING_CORRECTION)
+
+
+def _elastic(
+    periods: FloatArray, peak: float, plateau: float, corners: tuple[float, float, float], eta: float
+) -> FloatArray:
+    """(3.2) to (3.5), or (3.8) to (3.11), at the periods (n,); `peak` at T = 0 [m/s2]."""
+    first, second, third = corners
+    flat = plateau * peak * eta
+    rising = peak * (1.0 + periods / first * (plateau * eta - 1.0))
+    with np.errstate(divide="ignore"):
+        falling = flat * np.where(periods <= third, second / periods, second * third / periods**2)
+    return np.where(periods < first, rising, np.where(periods <= second, flat, falling))
+
+
+def _design(
+    periods: FloatArray, peak: float, corners: tuple[float, float, float], behaviour: float, least: float
+) -> FloatArray:
+    """(3.13) to (3.16) at the periods (n,); `peak` is a_g S or a_vg [m/s2]."""
+    if not behaviour >= 1.0:
+        raise ValueError(f"the behaviour factor must be at least 1, got {behaviour:g}")
+    first, second, third = corners
+    flat = PLATEAU * peak / behaviour
+    rising = peak * (2.0 / 3.0 + periods / first * (PLATEAU / behaviour - 2.0 / 3.0))
+    with np.errstate(divide="ignore"):
+        falling = flat * np.where(periods <= third, second / periods, second * third / periods**2)
+    falling = np.maximum(falling, least)
+    return np.where(periods < first, rising, np.where(periods <= second, flat, falling))

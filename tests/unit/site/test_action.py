@@ -1,0 +1,183 @@
+"""Spectra of EN 1998-1:2004 and of the German zones, against their tables."""
+
+import numpy as np
+import pytest
+
+from fem.site.action import SiteAction, SpectrumShape, damping_correction, eurocode_shape, german_shape
+
+PERIODS = np.array([0.0, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 0.8, 1.0, 1.5, 2.0, 3.0, 4.0])
+#: S_e/a_g at 5 % damping, evaluated by hand from (3.2) to (3.5) with tables 3.2 and 3.3, and d_g/a_g (3.12)
+HORIZONTAL = {
+    (1, "A"): "1 1.5 2 2.5 2.5 2.5 2 1.25 1 .6667 .5 .2222 .125 .02",
+    (1, "B"): "1.2 1.8 2.4 3 3 3 3 1.875 1.5 1 .75 .3333 .1875 .03",
+    (1, "C"): "1.15 1.5812 2.0125 2.4437 2.875 2.875 2.875 2.1562 1.725 1.15 .8625 .3833 .2156 .0345",
+    (1, "D"): "1.35 1.8563 2.3625 2.8688 3.375 3.375 3.375 3.375 2.7 1.8 1.35 .6 .3375 .054",
+    (1, "E"): "1.4 2.1 2.8 3.5 3.5 3.5 3.5 2.1875 1.75 1.1667 .875 .3889 .2188 .035",
+    (2, "B"): "1.35 3.375 3.375 3.375 3.375 2.8125 1.6875 1.0547 .8438 .45 .2531 .1125 .0633 .01013",
+    (2, "D"): "1.8 3.15 4.5 4.5 4.5 4.5 2.7 1.6875 1.35 .72 .405 .18 .1012 .0162",
+}
+#: S_ve/a_g, (3.8) to (3.11) with table 3.4
+VERTICAL = {
+    1: ".9 2.7 2.7 2.7 2.025 1.35 .81 .5062 .405 .18 .1013 .045 .0253",
+    2: ".45 1.35 1.35 1.35 1.0125 .675 .405 .2531 .2025 .09 .0506 .0225 .0127",
+}
+#: S_d/a_g of type 1, ground D
+DESIGN = {
+    1.5: ".9 1.2375 1.575 1.9125 2.25 2.25 2.25 2.25 1.8 1.2 .9 .4 .225",
+    2.0: ".9 1.0969 1.2937 1.4906 1.6875 1.6875 1.6875 1.6875 1.35 .9 .675 .3 .2",
+}
+#: a_g S, plateau, S_e(1 s) in zone 3 with gamma_I = 1.6 [m/s2]
+GERMAN = {
+    "A-R": (1.28, 3.2, 0.64),
+    "B-R": (1.60, 4.0, 1.00),
+    "C-R": (1.92, 4.8, 1.44),
+    "B-T": (1.28, 3.2, 0.96),
+    "C-T": (1.60, 4.0, 1.60),
+    "C-S": (0.96, 2.4, 1.20),
+}
+
+
+def numbers(row: str) -> np.ndarray:
+    return np.array([float(word) for word in row.split()])
+
+
+def unit_action(kind: int, ground: str) -> SiteAction:
+    return SiteAction(shape=eurocode_shape(kind, ground), reference_acceleration=1.0)
+
+
+@pytest.mark.parametrize(("kind", "ground"), HORIZONTAL)
+def test_horizontal_spectra_and_ground_displacement_follow_the_tables(kind, ground):
+    action, expected = unit_action(kind, ground), numbers(HORIZONTAL[kind, ground])
+    np.testing.assert_allclose(action.horizontal(PERIODS), expected[:-1], atol=5.1e-5)
+    assert action.ground_displacement == pytest.approx(expected[-1], abs=5.1e-6)
+
+
+@pytest.mark.parametrize(("kind", "ground"), [(1, "A"), (1, "D"), (2, "C"), (2, "E")])
+def test_vertical_spectra_follow_the_table_on_every_ground(kind, ground):
+    np.testing.assert_allclose(
+        unit_action(kind, ground).vertical(PERIODS), numbers(VERTICAL[kind]), atol=5.1e-5
+    )
+
+
+@pytest.mark.parametrize(
+    ("kind", "ground", "expected"),
+    [(2, "A", (1.0, 0.05, 0.25, 1.2)), (2, "C", (1.5, 0.1, 0.25, 1.2)), (2, "E", (1.6, 0.05, 0.25, 1.2))],
+)
+def test_grounds_of_type_2_that_public_programs_confuse(kind, ground, expected):
+    shape = eurocode_shape(kind, ground)
+    assert (shape.soil_factor, *shape.corner_periods) == expected
+
+
+@pytest.mark.parametrize("behaviour_factor", DESIGN)
+def test_design_spectra_follow_the_table(behaviour_factor):
+    found = unit_action(1, "D").design(PERIODS, behaviour_factor)
+    np.testing.assert_allclose(found, numbers(DESIGN[behaviour_factor]), atol=5.1e-5)
+
+
+def test_the_vertical_design_spectrum_has_no_soil_factor_and_a_limit_on_q():
+    found = unit_action(1, "D").vertical_design(np.array([0.0, 0.1, 1.0]), 1.5)
+    np.testing.assert_allclose(found, [0.6, 1.5, 0.225])  # 2/3, 2.5/1.5 and 2.5/1.5 0.15 of 0.9
+    with pytest.raises(ValueError, match=r"at most 1\.5"):
+        unit_action(1, "D").vertical_design(PERIODS, 2.0)
+
+
+@pytest.mark.parametrize(
+    ("damping_ratio", "eta"),
+    [
+        (0.02, 1.1952),
+        (0.03545, 1.0818),
+        (0.05, 1.0),
+        (0.10, 0.8165),
+        (0.20, 0.6325),
+        (0.28, 0.5505),
+        (0.4, 0.55),
+    ],
+)
+def test_damping_correction(damping_ratio, eta):
+    assert damping_correction(damping_ratio) == pytest.approx(eta, abs=5.1e-5)
+    action = unit_action(1, "D")
+    assert action.horizontal(np.array([0.5]), damping_ratio)[0] == pytest.approx(3.375 * eta, rel=1e-4)
+    assert action.horizontal(np.array([0.0]), damping_ratio)[0] == 1.35
+
+
+@pytest.mark.parametrize("subsoil", GERMAN)
+def test_german_zones(subsoil):
+    action = SiteAction(shape=german_shape(subsoil, 0.5), reference_acceleration=0.8, importance_factor=1.6)
+    found = action.horizontal(np.array([0.0, 0.15, 1.0]))
+    np.testing.assert_allclose(found, GERMAN[subsoil], rtol=1e-12)
+    vertical = action.vertical(np.array([0.0, 0.2, 2.0]))
+    np.testing.assert_allclose(vertical, [0.64, 1.92, 0.192], rtol=1e-12)
+
+
+def test_factors_multiply_the_reference_acceleration():
+    shape = eurocode_shape(1, "D")
+    action = SiteAction(
+        shape=shape, reference_acceleration=1.6, importance_factor=1.2, element_importance_factor=1.5
+    )
+    assert action.ground_acceleration == pytest.approx(2.88)
+    assert action.surface_acceleration == pytest.approx(2.88 * 1.35)
+    assert action.vertical_acceleration == pytest.approx(0.9 * 2.88)
+
+
+def test_the_running_example():
+    """Ground D, type 1, a_g S = 2.4 m/s2: 2.4, 6.0, 4.8, 2.4, 0.6 m/s2 at 0, plateau, 1, 2, 4 s; d_g 0.096 m."""
+    action = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=2.4 / 1.35)
+    np.testing.assert_allclose(
+        action.horizontal(np.array([0.0, 0.4, 1.0, 2.0, 4.0])), [2.4, 6.0, 4.8, 2.4, 0.6]
+    )
+    assert action.ground_displacement == pytest.approx(0.096)
+    assert action.vertical_acceleration == pytest.approx(1.6)
+
+
+def test_displacement_beyond_four_seconds_falls_to_that_of_the_ground():
+    """Annex A: 2.5 d_g at T_E, d_g from 10 s on, linear between; the code rounds 1/(4 pi^2) to 0.025."""
+    action = unit_action(1, "D")
+    periods = np.array([4.0, 5.0, 6.0, 8.0, 10.0, 15.0])
+    displacement = action.horizontal(periods) * (periods / (2.0 * np.pi)) ** 2
+    exact = 2.5 * 1.35 * 0.8 * 2.0 / (4.0 * np.pi**2)
+    np.testing.assert_allclose(displacement, [exact, exact, 0.135, 0.0945, 0.054, 0.054], rtol=1e-12)
+
+
+def test_without_annex_a_the_displacement_stays_constant():
+    shape = SpectrumShape(
+        soil_factor=1.2,
+        corner_periods=(0.1, 0.4, 2.0),
+        vertical_ratio=0.7,
+        vertical_corner_periods=(0.05, 0.2, 1.2),
+    )
+    action = SiteAction(shape=shape, reference_acceleration=2.0)
+    assert action.horizontal(np.array([8.0]))[0] == pytest.approx(2.5 * 2.4 * 0.4 * 2.0 / 64.0)
+    assert action.vertical(np.array([0.1]))[0] == pytest.approx(3.0 * 0.7 * 2.0)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: eurocode_shape(1, "S1"), "special study"),
+        (lambda: eurocode_shape(2, "S2"), "special study"),
+        (lambda: eurocode_shape(1, "F"), "has A, B, C, D, E"),
+        (lambda: eurocode_shape(3, "A"), "types 1 and 2"),
+        (lambda: german_shape("D-R", 0.5), "has A-R, B-R"),
+        (lambda: SiteAction(shape=eurocode_shape(1, "A"), reference_acceleration=0.0), "positive"),
+        (
+            lambda: SiteAction(
+                shape=eurocode_shape(1, "A"), reference_acceleration=1.0, importance_factor=2.1
+            ),
+            "between 0.5 and 2",
+        ),
+        (lambda: damping_correction(1.0), "between 0 and 1"),
+        (lambda: unit_action(1, "A").design(PERIODS, 0.9), "at least 1"),
+        (
+            lambda: SpectrumShape(
+                soil_factor=1.0,
+                corner_periods=(0.2, 0.1, 2.0),
+                vertical_ratio=0.9,
+                vertical_corner_periods=(0.05, 0.15, 1.0),
+            ),
+            "must rise",
+        ),
+    ],
+)
+def test_what_no_spectrum_has_is_refused(make, message):
+    with pytest.raises(ValueError, match=message):
+        make()
