@@ -17,6 +17,8 @@ from fem.case.validation import TOP, choices_of, did_you_mean, known_keys, quant
 NO_AXIS = {
     "schema": "it says how a file is read",
     "title": "it changes no result",
+    "document": "it changes no result",
+    "uncertainty": "it changes the band of a run, not what happens",
     "output.fields_s": "no fields are kept",
 }
 MOST_VALUES = 1_000_000
@@ -83,10 +85,9 @@ def check_varied(key: str) -> FieldInfo:
         AxisError: an unknown key, or one that does not change a result.
     """
     field = field_of(key)
-    if key.startswith("uncertainty."):
-        raise AxisError("cannot vary: it changes the band of a run, not what happens")
-    if key in NO_AXIS:
-        raise AxisError(f"cannot vary: {NO_AXIS[key]}")
+    for fixed in (key, key.partition(".")[0]):
+        if fixed in NO_AXIS:
+            raise AxisError(f"cannot vary: {NO_AXIS[fixed]}")
     return field
 
 

@@ -21,6 +21,7 @@ from fem.case.tables import (
     CaseHeading,
     ContactTable,
     ContainerTable,
+    DocumentTable,
     InitialTable,
     MotionTable,
     OutputTable,
@@ -31,6 +32,9 @@ from fem.case.tables import (
 )
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError, problem_lines, read_case_tables
+
+#: key and table that name a case and are no part of what is computed
+LABELS = ("title", "document")
 
 
 class Case(CaseHeading):
@@ -49,6 +53,7 @@ class Case(CaseHeading):
     solver: SolverTable = Field(default_factory=SolverTable)
     output: OutputTable = Field(default_factory=OutputTable)
     uncertainty: UncertaintyTable = Field(default_factory=UncertaintyTable)
+    document: DocumentTable | None = None  #: None: the pages bear no names
 
     _origin: Origin = PrivateAttr(default_factory=Origin)
 
@@ -80,9 +85,11 @@ class Case(CaseHeading):
         box = self.container
         if box.weight_N is not None:
             return box.weight_N / self.gravity_m_s2
+        if box.mass_kg is not None:
+            return box.mass_kg
         if box.density_kg_m3 is not None:
             return box.density_kg_m3 * box.box_volume
-        raise CaseError("[container] weight_N or density_kg_m3 is missing")  # excluded by a rule
+        raise CaseError("[container] weight_N, mass_kg or density_kg_m3 is missing")  # excluded by a rule
 
     @property
     def mass(self) -> float:
@@ -216,14 +223,14 @@ def to_toml(case: Case) -> str:
 
 
 def case_hash(case: Case) -> str:
-    """SHA-256 of the resolved case without its title, and of the files that it reads.
+    """SHA-256 of the resolved case without its title and [document], and of the files that it reads.
 
     Comments, written-out defaults, keys of options that are not chosen and `output.figures` do not change it.
 
     Raises:
         CaseError: if a mesh or motion file cannot be read.
     """
-    document = {key: value for key, value in case.resolved().items() if key != "title"}
+    document = {key: value for key, value in case.resolved().items() if key not in LABELS}
     document["output"] = {key: value for key, value in document["output"].items() if key != "figures"}
     digest = hashlib.sha256(toml_document(document).encode())
     for key, path in sorted(case.data_files.items()):

@@ -69,7 +69,7 @@ def _replace_alternatives(data: dict[str, Any], dotted: Any) -> None:
     """Remove the alternatives of the keys just set; keys that were set together stay."""
     container, motion = data.get("container"), data.get("motion")
     if isinstance(container, dict):
-        _drop_others(container, ("weight_N", "density_kg_m3"), _keys_set("container", dotted))
+        _drop_others(container, ("weight_N", "mass_kg", "density_kg_m3"), _keys_set("container", dotted))
     if isinstance(motion, dict):
         explicit = _keys_set("motion", dotted)
         _drop_others(motion, FREQUENCIES, explicit)

@@ -121,6 +121,7 @@ FOOT = Quantity(unit="m", least=1e-6, most=100.0, typical=0.1, slips=MILLI_AND_C
 ELEMENT_SIZE = Quantity(unit="m", least=1e-5, most=100.0, typical=0.1, slips=MILLI_AND_CENTI)
 GRAVITY = Quantity(unit="m/s2", least=1e-2, most=100.0, typical=9.81, slips={"cm/s2": 1e-2, "mm/s2": 1e-3})
 WEIGHT = Quantity(unit="N", above=0.0, typical=25e3, slips={"kilonewtons": 1e3, "meganewtons": 1e6})
+MASS = Quantity(unit="kg", above=0.0, typical=2.5e3, slips={"tonnes": 1e3})
 # From the lightest foam to heavier than osmium: the mean of walls, fill and what is empty.
 DENSITY = Quantity(unit="kg/m3", least=5.0, most=25e3, typical=2e3, slips=TONNES)
 WALL_DENSITY = Quantity(unit="kg/m3", least=50.0, most=25e3, typical=7850.0, slips=TONNES)

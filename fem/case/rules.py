@@ -22,17 +22,26 @@ def _smallest(box: Any) -> float:
     return float(min(box.width_m, box.height_m, box.depth_m))
 
 
-def _mass_given(box: Any) -> str:
-    if box.weight_N is None:
-        return "none is given"
-    return f"both are given ({box.weight_N:g} N, {box.density_kg_m3:g} kg/m3)"
+#: keys of which one gives the mass of a box, and their quantities
+MASSES = {"weight_N": q.WEIGHT, "mass_kg": q.MASS, "density_kg_m3": q.DENSITY}
+
+
+def _masses(box: Any) -> dict[str, float]:
+    """The keys of `MASSES` that are given."""
+    return {key: value for key in MASSES if (value := getattr(box, key)) is not None}
+
+
+def _not_one_mass(box: Any) -> str:
+    given = [f"{key} = {value:g} {MASSES[key].unit}" for key, value in _masses(box).items()]
+    rule = ", mass_kg, density_kg_m3: exactly one of the three must be given, "
+    return rule + (f"got {', '.join(given)}; keep one of them" if given else "none is given")
 
 
 CONTAINER_RULES = (
     Rule(
         "container.weight_N",
-        lambda box: (box.weight_N is None) != (box.density_kg_m3 is None),
-        lambda box: f"or density_kg_m3: exactly one of the two must be given, {_mass_given(box)}",
+        lambda box: len(_masses(box)) == 1,
+        _not_one_mass,
     ),
     Rule(
         "container.wall_m",
@@ -134,24 +143,34 @@ def _range_refused(key: str) -> Rule:
 UNCERTAINTY_RULES = tuple(map(_range_refused, RANGES))
 
 
-def _density(case: Any, weight: float) -> float:
-    """Mean density of a box of such a weight [kg/m3]."""
-    box = case.container
-    return float(weight / (case.gravity_m_s2 * (box.width_m * box.height_m * box.depth_m)))
+def _plausible_density(key: str) -> Rule:
+    """The mean density that follows from the weight or the mass of a box is that of some material."""
 
+    def per_kilogram(case: Any) -> float:
+        return float(case.gravity_m_s2) if key == "weight_N" else 1.0
 
-def _density_refused(case: Any) -> str:
-    box, gravity = case.container, case.gravity_m_s2
-    slips = {"kilonewtons": 1e3, "tonnes": 1e3 * gravity, "kilograms": gravity}
-    typical = 2e3 * gravity * (box.width_m * box.height_m * box.depth_m)
-    guess = q.Quantity(unit="N", typical=typical, slips=slips).guess(
-        box.weight_N, lambda weight: q.DENSITY.allows(_density(case, weight))
-    )
-    return (
-        f"= {box.weight_N:g} N on {box.width_m:g} x {box.depth_m:g} x {box.height_m:g} m is a mean density of "
-        f"{_density(case, box.weight_N):.3g} kg/m3, it must be {q.DENSITY.range_in_words} kg/m3; "
-        + (guess or "are all dimensions in metres?")
-    )
+    def density(case: Any, value: float) -> float:
+        box = case.container
+        return float(value / (per_kilogram(case) * (box.width_m * box.height_m * box.depth_m)))
+
+    def reason(case: Any) -> str:
+        box, value, one = case.container, getattr(case.container, key), per_kilogram(case)
+        slips = {"tonnes": 1e3 * one} | ({"kilonewtons": 1e3, "kilograms": one} if key == "weight_N" else {})
+        typical = 2e3 * one * (box.width_m * box.height_m * box.depth_m)
+        guess = q.Quantity(unit=MASSES[key].unit, typical=typical, slips=slips).guess(
+            value, lambda meant: q.DENSITY.allows(density(case, meant))
+        )
+        return (
+            f"= {value:g} {MASSES[key].unit} on {box.width_m:g} x {box.depth_m:g} x {box.height_m:g} m is a mean "
+            f"density of {density(case, value):.3g} kg/m3, it must be {q.DENSITY.range_in_words} kg/m3; "
+            + (guess or "are all dimensions in metres?")
+        )
+
+    def holds(case: Any) -> bool:
+        value = getattr(case.container, key)
+        return value is None or q.DENSITY.allows(density(case, value))
+
+    return Rule(f"container.{key}", holds, reason)
 
 
 def _largest(case: Any) -> float:
@@ -214,13 +233,8 @@ def _frames(case: Any) -> float:
 
 
 CASE_RULES = (
-    Rule(
-        "container.weight_N",
-        lambda case: (
-            case.container.weight_N is None or q.DENSITY.allows(_density(case, case.container.weight_N))
-        ),
-        _density_refused,
-    ),
+    _plausible_density("weight_N"),
+    _plausible_density("mass_kg"),
     Rule(
         "support.foot_m",
         lambda case: case.support.kind != "feet" or case.support.foot_m < 0.5 * case.container.width_m,

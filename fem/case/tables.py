@@ -82,7 +82,10 @@ class ContainerTable(CaseTable):
     )
     boxes: Annotated[int, Strict(), q.BOXES] = _key("number of boxes bolted together", 1)
     weight_N: Annotated[float, q.WEIGHT] | None = _key(  # noqa: N815
-        "of one box with its fill; or density_kg_m3", None, example=24525.0
+        "of one box with its fill; or mass_kg, or density_kg_m3", None, example=24525.0
+    )
+    mass_kg: Annotated[float, q.MASS] | None = _key(
+        "of one box with its fill, in place of weight_N", None, example=2500.0
     )
     density_kg_m3: Annotated[float, q.DENSITY] | None = _key(
         "mean density of one box with its fill, in place of weight_N", None, example=2066.0
@@ -362,6 +365,20 @@ class UncertaintyTable(CaseTable):
     rules = UNCERTAINTY_RULES
 
 
+Text = Annotated[str, Field(max_length=200)] | None
+
+
+class DocumentTable(CaseTable):
+    """What identifies the pages made of a case; no part of its hash."""
+
+    project: Text = _key("for every page", None, example="Store of chemicals, hall 3")
+    company: Text = _key("for every page", None, example="Example Ltd")
+    number: Text = _key("of the document", None, example="2417-ST-03")
+    revision: Text = _key("of the document", None, example="A")
+    author: Text = _key("who made it", None, example="A. Author")
+    checker: Text = _key("who checked it", None, example="C. Checker")
+
+
 TABLES: dict[str, type[CaseTable]] = {
     "container": ContainerTable,
     "support": SupportTable,
@@ -372,11 +389,12 @@ TABLES: dict[str, type[CaseTable]] = {
     "solver": SolverTable,
     "output": OutputTable,
     "uncertainty": UncertaintyTable,
+    "document": DocumentTable,
 }
 
 
 #: tables that mean something by standing in a case file; the others have their defaults where they do not
-OPTIONAL = frozenset({"static"})
+OPTIONAL = frozenset({"static", "document"})
 
 
 class CaseHeading(CaseTable):

@@ -62,9 +62,10 @@ def test_amplitude_keeps_a_peak_acceleration_that_stands_in_for_the_frequency():
     assert first.with_values({"motion.amplitude_m": 0.25}).angular_frequency == pytest.approx(2.0)
 
 
-def test_density_replaces_the_weight_and_back():
+def test_density_and_mass_replace_the_weight_and_back():
     case = load_case(BASE, ["container.density_kg_m3=1000"])
     assert case.box_mass == pytest.approx(1210.0)
+    assert case.with_values({"container.mass_kg": 2400.0}).box_mass == 2400.0
     assert case.with_values({"container.weight_N": 24525.0}).box_mass == pytest.approx(2500.0)
 
 

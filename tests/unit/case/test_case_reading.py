@@ -92,6 +92,9 @@ def test_mass_follows_from_weight_or_density():
     assert from_weight.weight == pytest.approx(75e3)
     assert from_weight.mean_areal_density == pytest.approx(2500.0 / 1.1)
     assert from_density.box_mass == pytest.approx(2000.0 * 1.1 * 1.0 * 2.0)
+    from_mass = case_of("least", "container.boxes=3 & gravity_m_s2=10 & container.mass_kg=2500")
+    assert (from_mass.container.weight_N, from_mass.box_mass) == (None, 2500.0)
+    assert from_mass.weight == pytest.approx(75e3)
 
 
 PEAK, HERTZ = 0.05 * 6.928**2, 6.928 / 6.283185307179586
@@ -172,6 +175,10 @@ least    | container.weight_N=25 |
            [container] weight_N = 25 N on 1.1 x 1.1 x 1 m is a mean density of 2.11 kg/m3, it must be
 least    | container.weight_N=25 | looks like kilonewtons: 25000 N?
 least    | container.weight_N=2.5 | looks like tonnes: 24525 N?
+least    | container.mass_kg=2.5 |
+           [container] mass_kg = 2.5 kg on 1.1 x 1.1 x 1 m is a mean density of 2.07 kg/m3, it must be between 5
+least    | container.mass_kg=2.5 | looks like tonnes: 2500 kg?
+least    | container.mass_kg=0 | [container] mass_kg must be positive kg, got 0 kg
 least    | container.density_kg_m3=2.066 | got 2.066 kg/m3; looks like t/m3 (g/cm3): 2066 kg/m3?
 least    | container.wall_density_kg_m3=7.85 | got 7.85 kg/m3; looks like t/m3 (g/cm3): 7850 kg/m3?
 least    | container.damping_ratio=2.0 |
@@ -202,6 +209,8 @@ least    | schema=2 | schema must be 1, got 2; this program reads schema 1
 least    | schema=true | schema must be a whole number, got true
 least    | title=3 | title must be text in quotes, got 3
 least    | title=2024-01-01 | title must be text in quotes, got the date or time 2024-01-01
+least    | document.author=3 | [document] author must be text in quotes, got 3
+least    | document.autor=me | [document] unknown key 'autor'; did you mean 'author'?
 least    | container.width_m=true | [container] width_m must be a number, got true
 least    | container.width_m=1.1 m | width_m must be a number, got the text '1.1 m'; give the bare number in m
 least    | container.width_m="1.1" | width_m must be a number, got the text '1.1'; write 1.1
@@ -214,7 +223,8 @@ least    | container.boxes=4.0 | [container] boxes must be a whole number, got 4
 least    | container.boxes=true | [container] boxes must be a whole number, got true
 least    | container.boxes=51 | [container] boxes must be between 1 and 50, got 51
 least    | container.weight_N=24525 & container.density_kg_m3=2066 |
-           exactly one of the two must be given, both are given
+           [container] weight_N, mass_kg, density_kg_m3: exactly one of the three must be given, got weight_N = 24525 N,
+           density_kg_m3 = 2066 kg/m3; keep one of them
 least    | container.weight_N=1e9 | [container] weight_N = 1e+09 N on 1.1 x 1.1 x 1 m is a mean density of
 least    | container.section=shell | [container] wall_m is missing: section = "shell" needs
 least    | container.section=box | [container] section must be "shell" or "solid", got the text 'box'
@@ -286,7 +296,7 @@ def test_what_cannot_be_is_refused_with_place_value_and_way_out(name, changes, e
     ("line", "expected"),
     [
         ("width_m = 1.1", "[container] width_m is missing: outer width, along x, for instance 1.1 m"),
-        ("weight_N = 24525.0", "exactly one of the two must be given, none is given"),
+        ("weight_N = 24525.0", "exactly one of the three must be given, none is given"),
         ("mu_static = 0.4", "[contact] mu_static is missing"),
         ('kind = "none"', '[motion] kind is missing: "none" | "harmonic" | "pulse" | "table"'),
     ],
