@@ -29,6 +29,7 @@ from fem.case.tables import (
     StaticTable,
     SupportTable,
     UncertaintyTable,
+    VerticalTable,
 )
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError, problem_lines, read_case_tables
@@ -48,6 +49,7 @@ class Case(CaseHeading):
     support: SupportTable = Field(default_factory=SupportTable)
     contact: ContactTable
     motion: MotionTable
+    vertical: VerticalTable = Field(default_factory=VerticalTable)
     initial: InitialTable = Field(default_factory=InitialTable)
     static: StaticTable | None = None  #: None: no rows of the code
     solver: SolverTable = Field(default_factory=SolverTable)
@@ -107,6 +109,16 @@ class Case(CaseHeading):
         return self.box_mass / (self.container.width_m * self.container.height_m)
 
     @property
+    def has_vertical(self) -> bool:
+        """Whether the floor moves up and down."""
+        return self.vertical.kind != "none"
+
+    @property
+    def starts_moving(self) -> bool:
+        """Whether the container has the velocity of the floor at t = 0, along x and vertically."""
+        return self.motion.kind == "none" or self.motion.start == "moving"
+
+    @property
     def amplitude(self) -> float:
         """A of a harmonic floor x = A sin(Omega t + phase) [m]; 0 for every other kind."""
         return self.motion.amplitude
@@ -133,13 +145,14 @@ class Case(CaseHeading):
 
     @property
     def data_files(self) -> dict[str, Path]:
-        """Mesh and motion file, as far as the case has them, by dotted key.
+        """Mesh and motion files, as far as the case has them, by dotted key.
 
         Raises:
             CaseError: a file is missing or outside the folder of the case file.
         """
         named = {"container.mesh_file": self.container.mesh_file}
-        named["motion.file"] = self.motion.file if self.motion.kind == "table" else None
+        for table, motion in (("motion", self.motion), ("vertical", self.vertical)):
+            named[f"{table}.file"] = motion.file if motion.kind == "table" else None
         return {key: _file_beside(self.folder, key, name) for key, name in named.items() if name is not None}
 
     def given(self) -> dict[str, Any]:
@@ -154,8 +167,8 @@ class Case(CaseHeading):
         document = self.model_dump(by_alias=True, exclude=set(TABLES))
         for name in TABLES:
             table = getattr(self, name)
-            if table is None:
-                continue
+            if table is None or (name == "vertical" and not self.has_vertical):
+                continue  # a case without vertical motion keeps its file and its hash
             idle = table.idle_keys()
             document[name] = {
                 key: value

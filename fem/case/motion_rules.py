@@ -1,9 +1,10 @@
-"""What ties the keys of a base motion together: the rules of the table [motion].
+"""What ties the keys of a base motion together: the rules of the tables [motion] and [vertical].
 
 x = A sin(Omega t + phase); any two of amplitude, peak acceleration A Omega^2 and frequency determine the third.
 """
 
 import math
+from dataclasses import replace
 from typing import Any
 
 from fem.case import quantities as q
@@ -47,6 +48,13 @@ def _peak(motion: Any) -> float:
     if frequency is None or motion.amplitude_m is None or motion.peak_acceleration_m_s2 is not None:
         return 0.0
     return float(motion.amplitude_m * frequency**2)
+
+
+def _nominal_peak(motion: Any) -> float:
+    """Peak acceleration of a harmonic motion or a pulse by its keys [m/s2]; 0 of every other motion."""
+    if motion.kind in ("harmonic", "pulse") and motion.peak_acceleration_m_s2 is not None:
+        return abs(float(motion.peak_acceleration_m_s2))
+    return _peak(motion)
 
 
 def _given(motion: Any) -> tuple[list[str], list[str]]:
@@ -189,5 +197,23 @@ MOTION_RULES = (
         "motion.file",
         lambda motion: stays_in_the_folder(motion.file),
         lambda motion: outside_the_folder(motion.file),
+    ),
+)
+
+#: the same rules for the keys of the same names, and what concerns a scale of every kind
+VERTICAL_RULES = (
+    *(replace(rule, place=rule.place.replace("motion.", "vertical.", 1)) for rule in MOTION_RULES),
+    Rule(
+        "vertical.scale",
+        lambda vertical: vertical.kind not in ("harmonic", "pulse") or vertical.scale != 0.0,
+        'must not be 0; for a floor that does not move up and down take kind = "none"',
+    ),
+    Rule(
+        "vertical.scale",
+        lambda vertical: abs(vertical.scale) * _nominal_peak(vertical) <= MOST_PEAK,
+        lambda vertical: (
+            f"= {vertical.scale:g} makes a peak acceleration of {abs(vertical.scale) * _nominal_peak(vertical):.4g} "
+            f"m/s2; it must be at most {MOST_PEAK:g} m/s2"
+        ),
     ),
 )

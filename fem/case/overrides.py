@@ -67,11 +67,13 @@ def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
 
 def _replace_alternatives(data: dict[str, Any], dotted: Any) -> None:
     """Remove the alternatives of the keys just set; keys that were set together stay."""
-    container, motion = data.get("container"), data.get("motion")
+    container = data.get("container")
     if isinstance(container, dict):
         _drop_others(container, ("weight_N", "mass_kg", "density_kg_m3"), _keys_set("container", dotted))
-    if isinstance(motion, dict):
-        explicit = _keys_set("motion", dotted)
+    for table in ("motion", "vertical"):
+        motion, explicit = data.get(table), _keys_set(table, dotted)
+        if not isinstance(motion, dict):
+            continue
         _drop_others(motion, FREQUENCIES, explicit)
         strengths = {"amplitude_m", "peak_acceleration_m_s2"}
         if strengths <= explicit:

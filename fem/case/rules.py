@@ -179,18 +179,19 @@ def _largest(case: Any) -> float:
 
 
 def ends_at_rest(case: Any) -> bool:
-    """Whether a run ends where the container comes to rest after its motion, and not at a given time."""
-    return case.solver.duration_s == "auto" and case.motion.kind in ("pulse", "table")
+    """Whether a run ends where the container comes to rest after its motions, and not at a given time."""
+    kinds = {case.motion.kind, case.vertical.kind} - {"none"}
+    return case.solver.duration_s == "auto" and bool(kinds) and kinds <= {"pulse", "table"}
 
 
 def longest_time(case: Any) -> float:
     """Simulated time of a case, at most [s]; of a table without duration, the free motion after it alone."""
-    motion, given = case.motion, case.solver.duration_s
-    if given != "auto":
-        return float(given)
-    if motion.kind == "pulse":
-        return float(motion.delay_s + (motion.pulse_s or 0.0) + MOST_FREE_MOTION)
-    return MOST_FREE_MOTION if motion.kind == "table" else USUAL_DURATION
+    if case.solver.duration_s != "auto":
+        return float(case.solver.duration_s)
+    if not ends_at_rest(case):
+        return USUAL_DURATION
+    pulses = [one for one in (case.motion, case.vertical) if one.kind == "pulse"]
+    return max([0.0, *(one.delay_s + (one.pulse_s or 0.0) for one in pulses)]) + MOST_FREE_MOTION
 
 
 def duration_in_words(case: Any) -> str:
@@ -201,12 +202,38 @@ def duration_in_words(case: Any) -> str:
     )
 
 
-def _tapered(case: Any) -> float:
+def _tapered(case: Any, motion: Any) -> float:
     """Time of both tapers of a harmonic motion that ends with the run [s]; 0 for every other motion."""
-    frequency = harmonic_angular_frequency(case.motion)
-    if frequency is None or case.motion.cycles is not None:
+    frequency = harmonic_angular_frequency(motion)
+    if frequency is None or motion.cycles is not None:
         return 0.0
-    return float(2.0 * case.motion.ramp_cycles * 2.0 * math.pi / frequency)
+    return float(2.0 * motion.ramp_cycles * 2.0 * math.pi / frequency)
+
+
+def _within_the_run(table: str) -> tuple[Rule, Rule]:
+    """The tapers of a harmonic motion, and the beginning of a pulse, lie within the run."""
+
+    def motion(case: Any) -> Any:
+        return getattr(case, table)
+
+    return (
+        Rule(
+            f"{table}.ramp_cycles",
+            lambda case: _tapered(case, motion(case)) <= longest_time(case),
+            lambda case: (
+                f"= {motion(case).ramp_cycles:g} tapers {_tapered(case, motion(case)):g} s in all, more than "
+                f"{duration_in_words(case)}; take fewer or a longer run"
+            ),
+        ),
+        Rule(
+            f"{table}.delay_s",
+            lambda case: motion(case).kind != "pulse" or motion(case).delay_s < longest_time(case),
+            lambda case: (
+                f"must be less than {duration_in_words(case)}, got {motion(case).delay_s:g} s: "
+                "the pulse would begin after the end of the run"
+            ),
+        ),
+    )
 
 
 def _samples(case: Any) -> float:
@@ -267,20 +294,8 @@ CASE_RULES = (
             f'{duration_in_words(case)}, more than {MOST_STEPS:.0e}; take a longer step or "auto"'
         ),
     ),
-    Rule(
-        "motion.ramp_cycles",
-        lambda case: _tapered(case) <= longest_time(case),
-        lambda case: (
-            f"= {case.motion.ramp_cycles:g} tapers {_tapered(case):g} s in all, more than "
-            f"{duration_in_words(case)}; take fewer or a longer run"
-        ),
-    ),
-    Rule(
-        "motion.delay_s",
-        lambda case: case.motion.kind != "pulse" or case.motion.delay_s < longest_time(case),
-        "must be less than duration_s = {solver.duration_s:g} s, got {motion.delay_s:g} s: "
-        "the pulse would begin after the end of the run",
-    ),
+    *_within_the_run("motion"),
+    *_within_the_run("vertical"),
     Rule(
         "uncertainty.mu_kinetic",
         lambda case: (

@@ -4,112 +4,57 @@ A key carries its unit. The type, range and unit of one key are checked by its `
 rules of `fem.case.rules` and `fem.case.motion_rules`. Keys of an option that is not chosen are checked and not used.
 """
 
-import math
-from functools import cache
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, Strict, model_validator
-from pydantic_core import PydanticUndefined
+from pydantic import Field, Strict
 
 from fem.case import quantities as q
-from fem.case.motion_rules import MOTION_RULES, harmonic_amplitude, harmonic_angular_frequency
-from fem.case.problem import BrokenRulesError, Rule, broken
+from fem.case.motion_tables import MotionTable, VerticalTable
 from fem.case.rules import CONTACT_RULES, CONTAINER_RULES, SOLVER_RULES, UNCERTAINTY_RULES
+from fem.case.table import CaseTable, case_key
 
 #: a range [low, high], or that the value of the case is known
 Unknown = Annotated[list[float], Field(min_length=2, max_length=2)] | Literal["known"] | None
 
 
-class CaseTable(BaseModel):
-    """A frozen table of a case file, with the rules between its keys."""
-
-    model_config = ConfigDict(strict=True, frozen=True, extra="forbid", allow_inf_nan=False)
-    rules: ClassVar[tuple[Rule, ...]] = ()
-
-    @model_validator(mode="after")
-    def _obey_rules(self) -> Self:
-        """Refuse a table that breaks rules, with every reason at once."""
-        if problems := broken(self.rules, self):
-            raise BrokenRulesError(problems)
-        return self
-
-    def idle_keys(self) -> frozenset[str]:
-        """Keys that are not used because another option is chosen."""
-        return frozenset(
-            name for name, (key, options) in _options(type(self)).items() if getattr(self, key) not in options
-        )
-
-
-@cache
-def _options(table: type[CaseTable]) -> dict[str, tuple[str, list[str]]]:
-    """Of each key that belongs to some options only: the key that chooses, and those options."""
-    extras: dict[str, Any] = {name: field.json_schema_extra for name, field in table.model_fields.items()}
-    return {name: next(iter(extra["x-only-for"].items())) for name, extra in extras.items() if extra}
-
-
-def _key(
-    description: str,
-    default: Any = PydanticUndefined,
-    *,
-    follows: Any = None,
-    example: Any = None,
-    only: Any = None,
-) -> Any:
-    """A key of a table.
-
-    Args:
-        description: for the template of a case and the JSON schema.
-        default: left out where the key must be given or its default follows others.
-        follows: function of the keys above it that gives the default.
-        example: for the template, where there is no default.
-        only: the key that chooses whether this one is used, and the options for which it is.
-    """
-    given: dict[str, Any] = {"default_factory": follows} if follows else {"default": default}
-    if example is not None:
-        given["examples"] = [example]
-    if only is not None:
-        given["json_schema_extra"] = {"x-only-for": {only[0]: list(only[1:])}}
-    return Field(description=description, **given)
-
-
 class ContainerTable(CaseTable):
     """One box of the container, and how many of them are bolted together."""
 
-    width_m: Annotated[float, q.LENGTH] = _key("outer width, along x", example=1.1)
-    height_m: Annotated[float, q.LENGTH] = _key("outer height of one box", example=1.0)
-    depth_m: Annotated[float, q.LENGTH] = _key(
+    width_m: Annotated[float, q.LENGTH] = case_key("outer width, along x", example=1.1)
+    height_m: Annotated[float, q.LENGTH] = case_key("outer height of one box", example=1.0)
+    depth_m: Annotated[float, q.LENGTH] = case_key(
         "outer depth, out of the plane; default: the width", follows=lambda values: values["width_m"]
     )
-    boxes: Annotated[int, Strict(), q.BOXES] = _key("number of boxes bolted together", 1)
-    weight_N: Annotated[float, q.WEIGHT] | None = _key(  # noqa: N815
+    boxes: Annotated[int, Strict(), q.BOXES] = case_key("number of boxes bolted together", 1)
+    weight_N: Annotated[float, q.WEIGHT] | None = case_key(  # noqa: N815
         "of one box with its fill; or mass_kg, or density_kg_m3", None, example=24525.0
     )
-    mass_kg: Annotated[float, q.MASS] | None = _key(
+    mass_kg: Annotated[float, q.MASS] | None = case_key(
         "of one box with its fill, in place of weight_N", None, example=2500.0
     )
-    density_kg_m3: Annotated[float, q.DENSITY] | None = _key(
+    density_kg_m3: Annotated[float, q.DENSITY] | None = case_key(
         "mean density of one box with its fill, in place of weight_N", None, example=2066.0
     )
-    centroid_m: Annotated[float, q.LENGTH] = _key(
+    centroid_m: Annotated[float, q.LENGTH] = case_key(
         "height of the mass centre in the box; default: half the height",
         follows=lambda values: 0.5 * values["height_m"],
     )
-    wall_m: Annotated[float, q.WALL] | None = _key(
+    wall_m: Annotated[float, q.WALL] | None = case_key(
         "wall thickness, shell only", None, example=0.008, only=("section", "shell")
     )
-    wall_density_kg_m3: Annotated[float, q.WALL_DENSITY] = _key(
+    wall_density_kg_m3: Annotated[float, q.WALL_DENSITY] = case_key(
         "density of the walls, shell only", 7850.0, only=("section", "shell")
     )
-    section: Literal["shell", "solid"] = _key(
+    section: Literal["shell", "solid"] = case_key(
         '"shell" | "solid"; default: shell where wall_m is given',
         follows=lambda values: "solid" if values["wall_m"] is None else "shell",
     )
-    youngs_modulus_Pa: Annotated[float, q.STIFFNESS] = _key("Young's modulus", 2.1e11)  # noqa: N815
-    poisson_ratio: Annotated[float, q.POISSON] = _key("Poisson's ratio", 0.3)
-    damping_ratio: Annotated[float, q.MATERIAL_DAMPING] = _key(
+    youngs_modulus_Pa: Annotated[float, q.STIFFNESS] = case_key("Young's modulus", 2.1e11)  # noqa: N815
+    poisson_ratio: Annotated[float, q.POISSON] = case_key("Poisson's ratio", 0.3)
+    damping_ratio: Annotated[float, q.MATERIAL_DAMPING] = case_key(
         "of the first elastic mode; it grows with frequency, zeta_n = zeta f_n/f_1", 0.02
     )
-    mesh_file: str | None = _key(
+    mesh_file: str | None = case_key(
         "a mesh to use in place of the structured one", None, example="container.msh"
     )
 
@@ -129,8 +74,8 @@ class ContainerTable(CaseTable):
 class SupportTable(CaseTable):
     """Where the base may touch the floor."""
 
-    kind: Literal["corners", "feet", "flat"] = _key('"corners" | "feet" | "flat"', "corners")
-    foot_m: Annotated[float, q.FOOT] = _key(
+    kind: Literal["corners", "feet", "flat"] = case_key('"corners" | "feet" | "flat"', "corners")
+    foot_m: Annotated[float, q.FOOT] = case_key(
         "length of each foot from its corner, feet only", 0.15, only=("kind", "feet")
     )
 
@@ -143,30 +88,30 @@ class SupportTable(CaseTable):
 class ContactTable(CaseTable):
     """Friction and the penalty contact of the base with the floor."""
 
-    mu_static: Annotated[float, q.FRICTION] = _key("coefficient of static friction", example=0.4)
-    mu_kinetic: Annotated[float, q.FRICTION] = _key(
+    mu_static: Annotated[float, q.FRICTION] = case_key("coefficient of static friction", example=0.4)
+    mu_kinetic: Annotated[float, q.FRICTION] = case_key(
         "of kinetic friction; default: mu_static", follows=lambda values: values["mu_static"]
     )
-    friction: Literal["elastic-stick", "regularised"] = _key(
+    friction: Literal["elastic-stick", "regularised"] = case_key(
         '"elastic-stick" (regularised in displacement) | "regularised" (in velocity; it creeps)',
         "elastic-stick",
     )
-    regularisation_velocity_m_s: Annotated[float, q.SLIP_VELOCITY] = _key(
+    regularisation_velocity_m_s: Annotated[float, q.SLIP_VELOCITY] = case_key(
         "of regularised friction", 1e-3, only=("friction", "regularised")
     )
-    normal_penalty_Pa_m: Annotated[float, q.PENALTY] | Literal["auto"] = _key(  # noqa: N815
+    normal_penalty_Pa_m: Annotated[float, q.PENALTY] | Literal["auto"] = case_key(  # noqa: N815
         'normal stiffness of the whole base over width x depth, or "auto"', "auto"
     )
-    tangential_ratio: Annotated[float, q.RATIO] = _key("tangential over normal penalty", 1.0)
-    weakening_m: Annotated[float, q.WEAKENING] = _key(
+    tangential_ratio: Annotated[float, q.RATIO] = case_key("tangential over normal penalty", 1.0)
+    weakening_m: Annotated[float, q.WEAKENING] = case_key(
         "slip over which mu_static falls to mu_kinetic; 0: at once", 0.0
     )
-    stribeck_velocity_m_s: Annotated[float, q.STRIBECK_VELOCITY] = _key(
+    stribeck_velocity_m_s: Annotated[float, q.STRIBECK_VELOCITY] = case_key(
         "slip velocity over which mu_static falls to mu_kinetic, like exp(-(v/v_s)^2); 0: not with velocity",
         0.0,
         only=("friction", "elastic-stick"),
     )
-    damping_ratio: Annotated[float, q.CONTACT_DAMPING] = _key(
+    damping_ratio: Annotated[float, q.CONTACT_DAMPING] = case_key(
         "c/(2 sqrt(k m)), the whole mass m on the spring k of one corner", 2.0
     )
 
@@ -179,146 +124,62 @@ class ContactTable(CaseTable):
         return self.mu_kinetic < self.mu_static and self.friction == "elastic-stick" and not gradual
 
 
-class MotionTable(CaseTable):
-    """How the floor moves; accelerations and displacements are positive toward +x."""
-
-    kind: Literal["none", "harmonic", "pulse", "table"] = _key(
-        '"none" | "harmonic" | "pulse" | "table"', example="harmonic"
-    )
-    amplitude_m: Annotated[float, q.AMPLITUDE] | None = _key(
-        "harmonic: exactly two of amplitude, peak acceleration and frequency",
-        None,
-        example=0.05,
-        only=("kind", "harmonic"),
-    )
-    peak_acceleration_m_s2: Annotated[float, q.PEAK_ACCELERATION] | None = _key(
-        "harmonic: A Omega^2; pulse: its peak, > 0 toward +x",
-        None,
-        example=4.0,
-        only=("kind", "harmonic", "pulse"),
-    )
-    angular_frequency_rad_s: Annotated[float, q.ANGULAR_FREQUENCY] | None = _key(
-        "harmonic: Omega", None, example=6.928, only=("kind", "harmonic")
-    )
-    frequency_Hz: Annotated[float, q.FREQUENCY] | None = _key(  # noqa: N815
-        "harmonic: Omega/2 pi, in place of angular_frequency_rad_s",
-        None,
-        example=1.1026,
-        only=("kind", "harmonic"),
-    )
-    phase_rad: Annotated[float, q.PHASE] = _key(
-        "harmonic: x = A sin(Omega t + phase)", 0.0, only=("kind", "harmonic")
-    )
-    ramp_cycles: Annotated[float, q.RAMP_CYCLES] = _key(
-        "harmonic: cycles over which the beginning and the end are tapered", 0.0, only=("kind", "harmonic")
-    )
-    cycles: Annotated[float, q.CYCLES] | None = _key(
-        "harmonic: the floor stops when it next comes to rest after so many cycles; default: never",
-        None,
-        example=10.0,
-        only=("kind", "harmonic"),
-    )
-    start: Literal["moving", "rest"] = _key(
-        '"moving": the container moves with the floor at t = 0 | "rest": it does not',
-        "moving",
-        only=("kind", "harmonic", "pulse", "table"),
-    )
-    shape: Literal["rectangular", "half-sine", "sine"] | None = _key(
-        'pulse: "rectangular" | "half-sine" | "sine"', None, example="half-sine", only=("kind", "pulse")
-    )
-    pulse_s: Annotated[float, q.PULSE_DURATION] | None = _key(
-        "pulse: its length", None, example=0.5, only=("kind", "pulse")
-    )
-    delay_s: Annotated[float, q.DELAY] = _key("pulse: when it begins", 0.0, only=("kind", "pulse"))
-    file: str | None = _key(
-        "table: two columns, time and value, beside the case file",
-        None,
-        example="floor.csv",
-        only=("kind", "table"),
-    )
-    quantity: Literal["acceleration", "displacement"] | None = _key(
-        'table: "acceleration" | "displacement"', None, example="acceleration", only=("kind", "table")
-    )
-    unit: Literal["m/s2", "g", "m"] | None = _key(
-        'table: unit of its values, "m/s2" | "g" | "m"', None, example="m/s2", only=("kind", "table")
-    )
-    scale: Annotated[float, q.SCALE] = _key("table: factor on its values", 1.0, only=("kind", "table"))
-    baseline: Literal["none", "mean", "linear"] = _key(
-        'table: removed from the acceleration, "none" | "mean" | "linear"', "none", only=("kind", "table")
-    )
-
-    rules = MOTION_RULES
-
-    @property
-    def angular_frequency(self) -> float:
-        """Omega of a harmonic motion [rad/s]; 0 for every other kind."""
-        return harmonic_angular_frequency(self) or 0.0
-
-    @property
-    def amplitude(self) -> float:
-        """A of a harmonic motion x = A sin(Omega t + phase) [m]; 0 for every other kind."""
-        return harmonic_amplitude(self) or 0.0
-
-    @property
-    def period(self) -> float:
-        """Time of one cycle of a harmonic motion [s]; infinite for every other kind."""
-        return 2.0 * math.pi / self.angular_frequency if self.angular_frequency else math.inf
-
-
 class InitialTable(CaseTable):
     """Where the container starts, beside the motion of the floor."""
 
-    rotation_rad: Annotated[float, q.ROTATION] = _key("> 0 about the right corner, < 0 about the left", 0.0)
-    angular_velocity_rad_s: Annotated[float, q.ANGULAR_VELOCITY] = _key(
+    rotation_rad: Annotated[float, q.ROTATION] = case_key(
+        "> 0 about the right corner, < 0 about the left", 0.0
+    )
+    angular_velocity_rad_s: Annotated[float, q.ANGULAR_VELOCITY] = case_key(
         "rigid, about that corner; at rotation 0 its sign chooses the corner", 0.0
     )
-    velocity_m_s: Annotated[float, q.VELOCITY] = _key("relative to the floor, added", 0.0)
+    velocity_m_s: Annotated[float, q.VELOCITY] = case_key("relative to the floor, added", 0.0)
 
 
 class StaticTable(CaseTable):
     """The lateral force method, EN 1998-1:2004, 4.3.3.2, beside the run; without this table it is left out."""
 
-    ground_acceleration_m_s2: Annotated[float, q.GROUND_ACCELERATION] = _key(
+    ground_acceleration_m_s2: Annotated[float, q.GROUND_ACCELERATION] = case_key(
         "reference peak ground acceleration a_gR", 1.6
     )
-    soil_factor: Annotated[float, q.SOIL_FACTOR] = _key("S", 1.5)
-    corner_period_s: Annotated[float, q.CORNER_PERIOD] = _key(
+    soil_factor: Annotated[float, q.SOIL_FACTOR] = case_key("S", 1.5)
+    corner_period_s: Annotated[float, q.CORNER_PERIOD] = case_key(
         "T_C, up to which the spectrum is level; 0.8 s: ground type D, as the paper has it", 0.8
     )
-    behaviour_factor: Annotated[float, q.BEHAVIOUR_FACTOR] = _key("q", 1.5)
-    importance_factor: Annotated[float, q.IMPORTANCE_FACTOR] = _key("gamma_I", 1.0)
+    behaviour_factor: Annotated[float, q.BEHAVIOUR_FACTOR] = case_key("q", 1.5)
+    importance_factor: Annotated[float, q.IMPORTANCE_FACTOR] = case_key("gamma_I", 1.0)
 
 
 class SolverTable(CaseTable):
     """Model of the container, mesh, time steps and duration."""
 
-    model: Literal["full", "reduced", "rigid"] = _key(
+    model: Literal["full", "reduced", "rigid"] = case_key(
         '"full" (every node) | "reduced" (elastic modes) | "rigid"', "reduced"
     )
-    elastic_modes: Annotated[int, Strict(), q.MODE_COUNT] = _key("kept by the reduced model", 20)
-    scheme: Literal["generalised-alpha", "newmark"] = _key(
+    elastic_modes: Annotated[int, Strict(), q.MODE_COUNT] = case_key("kept by the reduced model", 20)
+    scheme: Literal["generalised-alpha", "newmark"] = case_key(
         '"generalised-alpha" | "newmark"', "generalised-alpha"
     )
-    spectral_radius: Annotated[float, q.SPECTRAL_RADIUS] = _key(
+    spectral_radius: Annotated[float, q.SPECTRAL_RADIUS] = case_key(
         "generalised-alpha: damping of what the step does not resolve",
         0.5,
         only=("scheme", "generalised-alpha"),
     )
-    newmark_beta: Annotated[float, q.NEWMARK_BETA] = _key("newmark", 0.25, only=("scheme", "newmark"))
-    newmark_gamma: Annotated[float, q.NEWMARK_GAMMA] = _key("newmark", 0.5, only=("scheme", "newmark"))
-    step_s: Annotated[float, q.STEP] | Literal["auto"] = _key('largest step, or "auto"', "auto")
-    energy_tolerance: Annotated[float, q.ENERGY_TOLERANCE] = _key(
+    newmark_beta: Annotated[float, q.NEWMARK_BETA] = case_key("newmark", 0.25, only=("scheme", "newmark"))
+    newmark_gamma: Annotated[float, q.NEWMARK_GAMMA] = case_key("newmark", 0.5, only=("scheme", "newmark"))
+    step_s: Annotated[float, q.STEP] | Literal["auto"] = case_key('largest step, or "auto"', "auto")
+    energy_tolerance: Annotated[float, q.ENERGY_TOLERANCE] = case_key(
         "factor on the energy that a step may lose; 10: coarser and faster, for maps", 1.0
     )
-    duration_s: Annotated[float, q.DURATION] | Literal["auto"] = _key(
+    duration_s: Annotated[float, q.DURATION] | Literal["auto"] = case_key(
         'simulated time, or "auto": pulse and table: their end and free motion until rest or a fall, '
         "at most 60 s more; else 20 s",
         "auto",
     )
-    element_size_m: Annotated[float, q.ELEMENT_SIZE] = _key(
+    element_size_m: Annotated[float, q.ELEMENT_SIZE] = case_key(
         "of the structured mesh; mesh lines also at wall_m and foot_m", 0.1
     )
-    order: Annotated[int, Strict(), q.ORDER] = _key("of the elements: 1 bilinear, 2 quadratic", 2)
+    order: Annotated[int, Strict(), q.ORDER] = case_key("of the elements: 1 bilinear, 2 quadratic", 2)
 
     rules = SOLVER_RULES
 
@@ -326,41 +187,43 @@ class SolverTable(CaseTable):
 class OutputTable(CaseTable):
     """Files to write, and their intervals."""
 
-    history_s: Annotated[float, q.SAMPLING] = _key("interval of the history", 0.005)
-    fields_s: Annotated[float, q.FRAME_INTERVAL] = _key("interval of the fields for ParaView; 0: none", 0.05)
-    contents_filter_Hz: Annotated[float, q.CONTENTS_FILTER] = _key(  # noqa: N815
+    history_s: Annotated[float, q.SAMPLING] = case_key("interval of the history", 0.005)
+    fields_s: Annotated[float, q.FRAME_INTERVAL] = case_key(
+        "interval of the fields for ParaView; 0: none", 0.05
+    )
+    contents_filter_Hz: Annotated[float, q.CONTENTS_FILTER] = case_key(  # noqa: N815
         "acceleration of the contents: cut-off of its low-pass filter, Butterworth of two poles", 33.0
     )
-    figures: bool = _key("draw the figures of a run, as SVG", True)
-    stop_when_overturned: bool = _key("end the run when the container lies on its side", True)
+    figures: bool = case_key("draw the figures of a run, as SVG", True)
+    stop_when_overturned: bool = case_key("end the run when the container lies on its side", True)
 
 
 class UncertaintyTable(CaseTable):
     """What is not known of the inputs: [low, high], or "known" as given. The band of a run covers it."""
 
-    mu_kinetic: Unknown = _key(
+    mu_kinetic: Unknown = case_key(
         "of kinetic friction; default: as given to mu_static", None, example=[0.2, 0.4]
     )
-    weakening_m: Unknown = _key(
+    weakening_m: Unknown = case_key(
         "of the contact; default: 0 to 5 mm where mu_kinetic < mu_static", None, example=[0.0, 0.005]
     )
-    stribeck_velocity_m_s: Unknown = _key(
+    stribeck_velocity_m_s: Unknown = case_key(
         "of the contact; default: 0 to 0.3 m/s where mu_kinetic < mu_static", None, example=[0.0, 0.3]
     )
-    normal_penalty_Pa_m: Unknown = _key(  # noqa: N815
+    normal_penalty_Pa_m: Unknown = case_key(  # noqa: N815
         "of the contact; default: a ninth to three times", None, example=[1e9, 3e10]
     )
-    damping_ratio: Unknown = _key("of the contact; default: half to twice", None, example=[1.0, 4.0])
-    material_damping_ratio: Unknown = _key(
+    damping_ratio: Unknown = case_key("of the contact; default: half to twice", None, example=[1.0, 4.0])
+    material_damping_ratio: Unknown = case_key(
         "of the container; default: half to twice", None, example=[0.01, 0.04]
     )
-    start: bool | Literal["known"] | None = _key(
+    start: bool | Literal["known"] | None = case_key(
         "harmonic: whether motion.start may be the other one; default: true", None, example=True
     )
-    ramp: bool | Literal["known"] | None = _key(
+    ramp: bool | Literal["known"] | None = case_key(
         "harmonic: whether a ramp of two cycles may begin it, or none; default: true", None, example=True
     )
-    draws: Annotated[int, Strict(), q.DRAWS] = _key("runs in which all of these are drawn at once", 32)
+    draws: Annotated[int, Strict(), q.DRAWS] = case_key("runs in which all of these are drawn at once", 32)
 
     rules = UNCERTAINTY_RULES
 
@@ -371,12 +234,12 @@ Text = Annotated[str, Field(max_length=200)] | None
 class DocumentTable(CaseTable):
     """What identifies the pages made of a case; no part of its hash."""
 
-    project: Text = _key("for every page", None, example="Store of chemicals, hall 3")
-    company: Text = _key("for every page", None, example="Example Ltd")
-    number: Text = _key("of the document", None, example="2417-ST-03")
-    revision: Text = _key("of the document", None, example="A")
-    author: Text = _key("who made it", None, example="A. Author")
-    checker: Text = _key("who checked it", None, example="C. Checker")
+    project: Text = case_key("for every page", None, example="Store of chemicals, hall 3")
+    company: Text = case_key("for every page", None, example="Example Ltd")
+    number: Text = case_key("of the document", None, example="2417-ST-03")
+    revision: Text = case_key("of the document", None, example="A")
+    author: Text = case_key("who made it", None, example="A. Author")
+    checker: Text = case_key("who checked it", None, example="C. Checker")
 
 
 TABLES: dict[str, type[CaseTable]] = {
@@ -384,6 +247,7 @@ TABLES: dict[str, type[CaseTable]] = {
     "support": SupportTable,
     "contact": ContactTable,
     "motion": MotionTable,
+    "vertical": VerticalTable,
     "initial": InitialTable,
     "static": StaticTable,
     "solver": SolverTable,
@@ -403,5 +267,7 @@ class CaseHeading(CaseTable):
     schema_version: Annotated[int, Strict(), q.SCHEMA] = Field(
         default=1, alias="schema", description="of this file's keys"
     )
-    title: Annotated[str, Field(max_length=500)] = _key("for people", "")
-    gravity_m_s2: Annotated[float, q.GRAVITY] = _key("g; the paper (Knoedel and Hrabowski) takes 10", 9.81)
+    title: Annotated[str, Field(max_length=500)] = case_key("for people", "")
+    gravity_m_s2: Annotated[float, q.GRAVITY] = case_key(
+        "g; the paper (Knoedel and Hrabowski) takes 10", 9.81
+    )

@@ -23,6 +23,7 @@ def case_template(case: Case) -> str:
         case: gives the values; the file reads back to an equal case.
     """
     resolved = case.resolved()
+    resolved.setdefault("vertical", {"kind": case.vertical.kind})  # "none" is not in a resolved case
     lines = [
         "# Every key of a case file, with its meaning and [unit]. Keys in comments are alternatives.",
         "",

@@ -1,9 +1,9 @@
-"""The base motion of a case, how long a run follows it, its numbers, and doubts about a recorded one."""
+"""The motions of the floor of a case, along x and vertical: how long a run follows them, their numbers, doubts."""
 
 import math
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import TypeVar
+from typing import Any, Literal
 
 import numpy as np
 
@@ -26,21 +26,34 @@ CYCLE_SAMPLES, MOST_CYCLES = 256, 4000  #: samples of a cycle for its peaks, of 
 #: rules of a case that limit what a long run makes
 BOUNDED = frozenset({"solver.step_s", "output.history_s", "output.fields_s"})
 
-ValueT = TypeVar("ValueT")
+Direction = Literal["motion", "vertical"]  #: the table of a motion: along x, or vertical
 
 
 def build_motion(case: Case) -> BaseMotion:
-    """How the floor of the case moves.
+    """How the floor of the case moves along x.
 
     Raises:
         CaseError: the file of a table is missing or is no table of motion; an impossible motion.
     """
+    return _built(case, "motion")
+
+
+def build_vertical(case: Case) -> BaseMotion:
+    """How the floor of the case moves up and down, positive upward.
+
+    Raises:
+        CaseError: as `build_motion`.
+    """
+    return _built(case, "vertical")
+
+
+def _built(case: Case, table: Direction) -> BaseMotion:
     try:
-        return _build(case)
+        return _build(case, table)
     except CaseError:
         raise
     except ValueError as error:
-        raise CaseError(f"[motion] {error}") from error
+        raise CaseError(f"[{table}] {error}") from error
 
 
 def motion_span(motion: BaseMotion) -> tuple[float, float]:
@@ -52,26 +65,32 @@ def motion_span(motion: BaseMotion) -> tuple[float, float]:
     return 0.0, math.inf
 
 
-def longest_run(case: Case, motion: BaseMotion) -> float:
-    """Simulated time of a run on its motion, at most [s].
+def motions_end(*motions: BaseMotion) -> float:
+    """When the last of them ends; infinite where none has an end [s]."""
+    return max((motion_span(one)[1] for one in motions if not isinstance(one, NoMotion)), default=math.inf)
+
+
+def longest_run(case: Case, *motions: BaseMotion) -> float:
+    """Simulated time of a run on its motions, at most [s].
 
     Raises:
         CaseError: a record so long that its samples, frames or steps would be too many.
     """
-    if case.motion.kind != "table" or not ends_at_rest(case):
+    if "table" not in (case.motion.kind, case.vertical.kind) or not ends_at_rest(case):
         return longest_time(case)
-    longest = motion_span(motion)[1] + MOST_FREE_MOTION
+    longest = motions_end(*motions) + MOST_FREE_MOTION
     solver = case.solver.model_copy(update={"duration_s": longest})
-    tables = {"motion": case.motion, "output": case.output, "container": case.container}
+    names = ("motion", "vertical", "output", "container")
+    tables = {name: getattr(case, name) for name in names}
     bounds = [rule for rule in CASE_RULES if rule.place in BOUNDED]
     if problems := broken(bounds, SimpleNamespace(**tables, solver=solver)):
         raise CaseError("\n".join(problem_lines(problems)))
     return longest
 
 
-def rest_sought_from(case: Case, motion: BaseMotion) -> float:
+def rest_sought_from(case: Case, *motions: BaseMotion) -> float:
     """Time from which a run ends where the container is at rest or has fallen [s]; infinite with a given duration."""
-    return motion_span(motion)[1] if ends_at_rest(case) else math.inf
+    return motions_end(*motions) if ends_at_rest(case) else math.inf
 
 
 def motion_result(case: Case, motion: BaseMotion) -> MotionResult:
@@ -165,10 +184,10 @@ def motion_notes(motion: BaseMotion) -> list[str]:
     return notes
 
 
-def _plausible(motion: TableMotion) -> TableMotion:
+def _plausible(motion: TableMotion, table: Direction) -> TableMotion:
     if motion.times[-1] <= 0.0:
         raise CaseError(
-            f"[motion] file: its times end at {motion.times[-1]:g} s, and the run begins at t = 0; shift them"
+            f"[{table}] file: its times end at {motion.times[-1]:g} s, and the run begins at t = 0; shift them"
         )
     peak = motion.peak_acceleration
     if q.PEAK_ACCELERATION.allows(peak):
@@ -177,46 +196,47 @@ def _plausible(motion: TableMotion) -> TableMotion:
         q.PEAK_ACCELERATION.guess(peak) or "is its unit right, and are displacements sampled closely enough?"
     )
     raise CaseError(
-        f"[motion] file: its accelerations reach {peak:.4g} m/s2, at most {q.PEAK_ACCELERATION.most:g} m/s2 are "
+        f"[{table}] file: its accelerations reach {peak:.4g} m/s2, at most {q.PEAK_ACCELERATION.most:g} m/s2 are "
         f"accepted; {guess}"
     )
 
 
-def _build(case: Case) -> BaseMotion:
-    motion = case.motion
+def _build(case: Case, table: Direction) -> BaseMotion:
+    motion = case.vertical if table == "vertical" else case.motion
+    scale = 1.0 if "scale" in motion.idle_keys() else motion.scale
+
+    def given(key: str) -> Any:
+        """A key that the rules of the case file require for this kind of motion."""
+        value = getattr(motion, key)
+        if value is None:
+            raise CaseError(f"[{table}] {key} is missing")
+        return value
+
     match motion.kind:
         case "none":
             return NoMotion()
         case "harmonic":
             return HarmonicMotion(
-                amplitude=motion.amplitude,
+                amplitude=abs(scale) * motion.amplitude,
                 angular_frequency=motion.angular_frequency,
                 duration=longest_time(case),
-                phase=motion.phase_rad,
+                phase=motion.phase_rad + (0.0 if scale > 0.0 else math.pi),
                 ramp_cycles=motion.ramp_cycles,
                 cycles=motion.cycles,
             )
         case "pulse":
             return PulseMotion(
-                shape=_given(motion.shape, "shape"),
-                acceleration=_given(motion.peak_acceleration_m_s2, "peak_acceleration_m_s2"),
-                pulse=_given(motion.pulse_s, "pulse_s"),
+                shape=given("shape"),
+                acceleration=scale * given("peak_acceleration_m_s2"),
+                pulse=given("pulse_s"),
                 delay=motion.delay_s,
             )
         case "table":
-            return _plausible(
-                read_motion_table(
-                    case.data_files["motion.file"],
-                    quantity=_given(motion.quantity, "quantity"),
-                    unit=_given(motion.unit, "unit"),
-                    scale=motion.scale,
-                    baseline=motion.baseline,
-                )
+            found = read_motion_table(
+                case.data_files[f"{table}.file"],
+                quantity=given("quantity"),
+                unit=given("unit"),
+                scale=scale,
+                baseline=motion.baseline,
             )
-
-
-def _given(value: ValueT | None, key: str) -> ValueT:
-    """A key that the rules of the case file require for this kind of motion."""
-    if value is None:
-        raise CaseError(f"[motion] {key} is missing")
-    return value
+            return _plausible(found, table)

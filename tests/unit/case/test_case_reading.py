@@ -267,6 +267,13 @@ table    | motion.file=../floor.csv | [motion] file must name a file in the fold
 table    | motion.file="" | [motion] file must name a file in the folder of the case file
 table    | motion.quantity=displacement & motion.unit=m & motion.baseline=mean |
            baseline must be "none" for quantity = "displacement", got "mean"
+least    | vertical.kind=harmonic & vertical.frequency_Hz=1 | [vertical] amplitude_m, peak_acceleration_m_s2, frequency
+least    | vertical.start=rest | [vertical] unknown key 'start'; it belongs into [motion]
+least    | vertical.kind=table | [vertical] file and quantity and unit are missing
+least    | vertical.kind=pulse & vertical.scale=0.0 | [vertical] scale must not be 0
+least    | vertical.kind=harmonic & vertical.frequency_Hz=1 & vertical.peak_acceleration_m_s2=9 & vertical.scale=1e3 |
+           [vertical] scale = 1000 makes a peak acceleration of 9000 m/s2; it must be at most 1000
+least    | vertical.file=../floor.csv | [vertical] file must name a file in the folder of the case file
 least    | motion.amplitude_m=-1.0 | [motion] amplitude_m must be between 0 and 10 m
 least    | motion.kind=quake | [motion] kind must be "none" or "harmonic" or "pulse" or "table"
 least    | initial.rotation_rad=1.6 | [initial] rotation_rad must be more than -1.5708 and less than 1.5708 rad

@@ -48,7 +48,7 @@ def test_a_resolved_case_reads_back_to_itself(name):
 
 def test_a_resolved_case_writes_out_every_default():
     resolved = load_case("seed_box").resolved()
-    assert set(resolved) == {"schema", "title", "gravity_m_s2", *TABLES} - {"document"}
+    assert set(resolved) == {"schema", "title", "gravity_m_s2", *TABLES} - {"document", "vertical"}
     assert resolved["container"]["wall_density_kg_m3"] == 7850.0
     assert resolved["solver"]["spectral_radius"] == 0.5
     assert resolved["output"] == {
@@ -72,6 +72,20 @@ def test_a_resolved_case_leaves_out_what_plays_no_part():
     assert "wall_density_kg_m3" not in resolved["container"]
     assert "foot_m" not in resolved["support"]
     assert "newmark_beta" not in resolved["solver"]
+
+
+VERTICAL = {"kind": "pulse", "shape": "sine", "peak_acceleration_m_s2": 2.0, "pulse_s": 0.5, "scale": -1.0}
+
+
+def test_a_vertical_motion_is_a_part_of_the_case_only_where_there_is_one():
+    plain = load_case("seed_box")
+    idle = plain.with_values({"vertical.kind": "none", "vertical.pulse_s": 0.5})
+    assert to_toml(idle) == to_toml(plain)
+    assert case_hash(idle) == case_hash(plain)
+    shaken = plain.with_values({f"vertical.{key}": value for key, value in VERTICAL.items()})
+    assert shaken.resolved()["vertical"] == VERTICAL | {"delay_s": 0.0}
+    assert case_hash(shaken) != case_hash(plain)
+    assert case_hash(read_case(to_toml(shaken))) == case_hash(shaken)
 
 
 class TestHash:

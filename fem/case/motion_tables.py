@@ -1,0 +1,132 @@
+"""The tables [motion] and [vertical]: how the floor moves along x and along z, by the same keys.
+
+Keys that both tables have stand in the shared bases; the order of the bases is the order of the keys in a resolved
+case, on which its hash depends.
+"""
+
+import math
+from typing import Annotated, Literal
+
+from fem.case import quantities as q
+from fem.case.motion_rules import (
+    MOTION_RULES,
+    VERTICAL_RULES,
+    harmonic_amplitude,
+    harmonic_angular_frequency,
+)
+from fem.case.table import CaseTable, case_key
+
+
+class FloorMotionTable(CaseTable):
+    """The kind of a motion, and the keys of a harmonic one."""
+
+    kind: Literal["none", "harmonic", "pulse", "table"] = case_key(
+        '"none" | "harmonic" | "pulse" | "table"', example="harmonic"
+    )
+    amplitude_m: Annotated[float, q.AMPLITUDE] | None = case_key(
+        "harmonic: exactly two of amplitude, peak acceleration and frequency",
+        None,
+        example=0.05,
+        only=("kind", "harmonic"),
+    )
+    peak_acceleration_m_s2: Annotated[float, q.PEAK_ACCELERATION] | None = case_key(
+        "harmonic: A Omega^2; pulse: its peak, > 0 toward +x or upward",
+        None,
+        example=4.0,
+        only=("kind", "harmonic", "pulse"),
+    )
+    angular_frequency_rad_s: Annotated[float, q.ANGULAR_FREQUENCY] | None = case_key(
+        "harmonic: Omega", None, example=6.928, only=("kind", "harmonic")
+    )
+    frequency_Hz: Annotated[float, q.FREQUENCY] | None = case_key(  # noqa: N815
+        "harmonic: Omega/2 pi, in place of angular_frequency_rad_s",
+        None,
+        example=1.1026,
+        only=("kind", "harmonic"),
+    )
+    phase_rad: Annotated[float, q.PHASE] = case_key(
+        "harmonic: x = A sin(Omega t + phase)", 0.0, only=("kind", "harmonic")
+    )
+    ramp_cycles: Annotated[float, q.RAMP_CYCLES] = case_key(
+        "harmonic: cycles over which the beginning and the end are tapered", 0.0, only=("kind", "harmonic")
+    )
+    cycles: Annotated[float, q.CYCLES] | None = case_key(
+        "harmonic: the floor stops when it next comes to rest after so many cycles; default: never",
+        None,
+        example=10.0,
+        only=("kind", "harmonic"),
+    )
+
+    @property
+    def angular_frequency(self) -> float:
+        """Omega of a harmonic motion [rad/s]; 0 for every other kind."""
+        return harmonic_angular_frequency(self) or 0.0
+
+    @property
+    def amplitude(self) -> float:
+        """A of a harmonic motion x = A sin(Omega t + phase) [m], before any scale; 0 for every other kind."""
+        return harmonic_amplitude(self) or 0.0
+
+    @property
+    def period(self) -> float:
+        """Time of one cycle of a harmonic motion [s]; infinite for every other kind."""
+        return 2.0 * math.pi / self.angular_frequency if self.angular_frequency else math.inf
+
+
+class StartKey(CaseTable):
+    """How the container begins; it holds for the motion along x and the vertical one."""
+
+    start: Literal["moving", "rest"] = case_key(
+        '"moving": the container moves with the floor at t = 0 | "rest": it does not',
+        "moving",
+        only=("kind", "harmonic", "pulse", "table"),
+    )
+
+
+class PulseAndTableKeys(CaseTable):
+    """The keys of a pulse and of a table."""
+
+    shape: Literal["rectangular", "half-sine", "sine"] | None = case_key(
+        'pulse: "rectangular" | "half-sine" | "sine"', None, example="half-sine", only=("kind", "pulse")
+    )
+    pulse_s: Annotated[float, q.PULSE_DURATION] | None = case_key(
+        "pulse: its length", None, example=0.5, only=("kind", "pulse")
+    )
+    delay_s: Annotated[float, q.DELAY] = case_key("pulse: when it begins", 0.0, only=("kind", "pulse"))
+    file: str | None = case_key(
+        "table: two columns, time and value, beside the case file",
+        None,
+        example="floor.csv",
+        only=("kind", "table"),
+    )
+    quantity: Literal["acceleration", "displacement"] | None = case_key(
+        'table: "acceleration" | "displacement"', None, example="acceleration", only=("kind", "table")
+    )
+    unit: Literal["m/s2", "g", "m"] | None = case_key(
+        'table: unit of its values, "m/s2" | "g" | "m"', None, example="m/s2", only=("kind", "table")
+    )
+    scale: Annotated[float, q.SCALE] = case_key("table: factor on its values", 1.0, only=("kind", "table"))
+    baseline: Literal["none", "mean", "linear"] = case_key(
+        'table: removed from the acceleration, "none" | "mean" | "linear"', "none", only=("kind", "table")
+    )
+
+
+class MotionTable(PulseAndTableKeys, StartKey, FloorMotionTable):
+    """How the floor moves; accelerations and displacements are positive toward +x."""
+
+    rules = MOTION_RULES
+
+
+class VerticalTable(PulseAndTableKeys, FloorMotionTable):
+    """How the floor moves up and down, with the keys of [motion]; positive upward."""
+
+    kind: Literal["none", "harmonic", "pulse", "table"] = case_key(
+        '"none" | "harmonic" | "pulse" | "table"', "none"
+    )
+    scale: Annotated[float, q.SCALE] = case_key(
+        "factor on the motion of any kind; -1: the other sign",
+        1.0,
+        only=("kind", "harmonic", "pulse", "table"),
+    )
+
+    rules = VERTICAL_RULES

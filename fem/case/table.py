@@ -1,0 +1,61 @@
+"""What every table of a case file is: frozen, strict, with rules between its keys, and keys that say what they mean."""
+
+from functools import cache
+from typing import Any, ClassVar, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic_core import PydanticUndefined
+
+from fem.case.problem import BrokenRulesError, Rule, broken
+
+
+class CaseTable(BaseModel):
+    """A frozen table of a case file, with the rules between its keys."""
+
+    model_config = ConfigDict(strict=True, frozen=True, extra="forbid", allow_inf_nan=False)
+    rules: ClassVar[tuple[Rule, ...]] = ()
+
+    @model_validator(mode="after")
+    def _obey_rules(self) -> Self:
+        """Refuse a table that breaks rules, with every reason at once."""
+        if problems := broken(self.rules, self):
+            raise BrokenRulesError(problems)
+        return self
+
+    def idle_keys(self) -> frozenset[str]:
+        """Keys that are not used because another option is chosen."""
+        return frozenset(
+            name for name, (key, options) in _options(type(self)).items() if getattr(self, key) not in options
+        )
+
+
+@cache
+def _options(table: type[CaseTable]) -> dict[str, tuple[str, list[str]]]:
+    """Of each key that belongs to some options only: the key that chooses, and those options."""
+    extras: dict[str, Any] = {name: field.json_schema_extra for name, field in table.model_fields.items()}
+    return {name: next(iter(extra["x-only-for"].items())) for name, extra in extras.items() if extra}
+
+
+def case_key(
+    description: str,
+    default: Any = PydanticUndefined,
+    *,
+    follows: Any = None,
+    example: Any = None,
+    only: Any = None,
+) -> Any:
+    """A key of a table.
+
+    Args:
+        description: for the template of a case and the JSON schema.
+        default: left out where the key must be given or its default follows others.
+        follows: function of the keys above it that gives the default.
+        example: for the template, where there is no default.
+        only: the key that chooses whether this one is used, and the options for which it is.
+    """
+    given: dict[str, Any] = {"default_factory": follows} if follows else {"default": default}
+    if example is not None:
+        given["examples"] = [example]
+    if only is not None:
+        given["json_schema_extra"] = {"x-only-for": {only[0]: list(only[1:])}}
+    return Field(description=description, **given)
