@@ -1,0 +1,114 @@
+"""What the simplified methods know: a loose body, the motion below it, and the limits.
+
+Lengths in m, accelerations in m/s2, magnitudes throughout. The motion is that of the floor below the body: on
+the ground that of the site, in a building that of the floor.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from contact.reference.rigid_block import RigidBlock
+from fem.runtime.arrays import FloatArray
+from fem.site.action import DAMPING_RATIO, LAST_PERIOD_S, SiteAction
+
+#: periods (n,) [s] and damping ratio [-] -> elastic pseudo-accelerations (n,) [m/s2]
+Spectrum = Callable[[FloatArray, float], FloatArray]
+#: periods over which the largest spectral velocity and displacement are looked for [s]
+PERIODS = np.geomspace(0.02, LAST_PERIOD_S, 800)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LooseBody:
+    """A rigid body that stands loose on the floor, symmetric about the vertical through its mass centre."""
+
+    block: RigidBlock  #: half width of the support, height of the mass centre, inertia, gravity
+    width: float  #: of the shell, along the motion [m]
+    height: float  #: of the shell [m]
+    depth: float  #: of the shell, across the motion [m]
+    mass: float  #: [kg]
+    mu_static: float
+    mu_kinetic: float
+
+    def __post_init__(self) -> None:
+        for name in ("width", "height", "depth", "mass", "mu_static", "mu_kinetic"):
+            if not 0.0 < getattr(self, name) < math.inf:  # also refuses nan
+                raise ValueError(f"loose body {name} must be positive and finite, got {getattr(self, name)}")
+
+    @property
+    def weight(self) -> float:
+        """[N]."""
+        return self.mass * self.block.gravity
+
+    @property
+    def slenderness(self) -> float:
+        """Half width over height of the mass centre, tan of the slenderness angle [-]."""
+        return self.block.half_width / self.block.centroid_height
+
+
+@dataclass(frozen=True, kw_only=True)
+class FloorAction:
+    """The motion of the floor below the body, and of the ground below the building, in a few numbers."""
+
+    peak: float  #: of the floor, horizontal; on the ground gamma_a a_g S [m/s2]
+    vertical_peak: float  #: of the floor; on the ground gamma_a a_vg [m/s2]
+    peak_velocity: float  #: of the floor, horizontal [m/s]
+    spectrum: Spectrum  #: of the floor, elastic, horizontal
+    vertical_spectrum: Spectrum  #: of the floor, elastic
+    ground_peak: float  #: gamma_a a_g S of the site [m/s2]
+
+    def __post_init__(self) -> None:
+        for name in ("peak", "vertical_peak", "peak_velocity", "ground_peak"):
+            if not 0.0 <= getattr(self, name) < math.inf:
+                raise ValueError(f"action {name} must be finite and not negative, got {getattr(self, name)}")
+
+    def scaled(self, factor: float) -> Self:
+        """The same motion, times a factor."""
+        return replace(
+            self,
+            peak=factor * self.peak,
+            vertical_peak=factor * self.vertical_peak,
+            peak_velocity=factor * self.peak_velocity,
+            spectrum=lambda periods, damping: factor * self.spectrum(periods, damping),
+            vertical_spectrum=lambda periods, damping: factor * self.vertical_spectrum(periods, damping),
+            ground_peak=factor * self.ground_peak,
+        )
+
+    @classmethod
+    def on_ground(cls, site: SiteAction, peak_velocity: float) -> Self:
+        """The action of a site; EN 1998-1:2004 gives no peak velocity, take that of the motions [m/s]."""
+        return cls(
+            peak=site.surface_acceleration,
+            vertical_peak=site.vertical_acceleration,
+            peak_velocity=peak_velocity,
+            spectrum=site.horizontal,
+            vertical_spectrum=site.vertical,
+            ground_peak=site.surface_acceleration,
+        )
+
+    @property
+    def spectral_velocity(self) -> float:
+        """Largest pseudo-velocity, 5 % damping, up to 4 s [m/s]."""
+        return float(np.max(self.spectrum(PERIODS, DAMPING_RATIO) * PERIODS / (2.0 * math.pi)))
+
+    @property
+    def spectral_displacement(self) -> float:
+        """Largest spectral displacement, 5 % damping, up to 4 s [m]."""
+        return float(np.max(self.spectrum(PERIODS, DAMPING_RATIO) * (PERIODS / (2.0 * math.pi)) ** 2))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limits:
+    """What the user allows."""
+
+    rotation_ratio: float = 0.5  #: largest |rotation| over the slenderness angle [-]
+    slip: float  #: [m]
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.rotation_ratio <= 1.0:
+            raise ValueError(f"rotation_ratio must be above 0 and at most 1, got {self.rotation_ratio}")
+        if not 0.0 < self.slip < math.inf:
+            raise ValueError(f"slip must be positive and finite, got {self.slip} m")

@@ -1,0 +1,71 @@
+"""A row of a simplified method: what it demands, what the body has, what it says, and where it comes from."""
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class SourceStanding(StrEnum):
+    """How far a formula may be cited."""
+
+    CLAUSE = "clause"  #: a clause of a standard
+    LITERATURE = "literature"  #: published, as cited
+    DERIVED = "derived"  #: derived here, or filled in where the source is incomplete
+    UNCHECKED = "unchecked"  #: after a source whose text was not seen
+
+
+class MethodQuantity(StrEnum):
+    """What a method is about."""
+
+    OVERTURNING = "overturning"
+    SLIDING = "sliding"  #: whether it slides at all
+    SLIP = "slip"  #: how far it slides
+
+
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """Where a method comes from. Only a clause that was checked is called one."""
+
+    work: str  #: standard with its year, or authors with the year
+    clause: str = ""  #: only with SourceStanding.CLAUSE
+    standing: SourceStanding
+
+    def __post_init__(self) -> None:
+        if (self.standing is SourceStanding.CLAUSE) != bool(self.clause):
+            raise ValueError(f"{self.work}: a clause is given where, and only where, it may be cited")
+
+    def __str__(self) -> str:
+        return {
+            SourceStanding.CLAUSE: f"{self.work}, {self.clause}",
+            SourceStanding.LITERATURE: self.work,
+            SourceStanding.DERIVED: f"after {self.work}; derived here, not the text of a clause",
+            SourceStanding.UNCHECKED: f"after {self.work}; not checked against its text",
+        }[self.standing]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MethodRow:
+    """One simplified method, applied."""
+
+    name: str
+    quantity: MethodQuantity
+    formula: str  #: symbols; an index after an underscore
+    numbers: str  #: the formula with the numbers put in
+    demand: float  #: infinite where the method finds no position of rest below overturning
+    capacity: float
+    unit: str
+    says: str
+    source: Source
+    validity: str
+
+    @property
+    def utilisation(self) -> float:
+        """Demand over capacity [-]; infinite where a demand meets no capacity, 0 without demand."""
+        if self.demand == 0.0:
+            return 0.0
+        return self.demand / self.capacity if self.capacity > 0.0 else math.inf
+
+    @property
+    def fulfilled(self) -> bool:
+        """Whether the demand is at most the capacity."""
+        return self.utilisation <= 1.0

@@ -1,0 +1,88 @@
+"""All simplified methods side by side, and how far the action may grow by each."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from fem.site.asce_43 import rocking_row, sliding_row
+from fem.site.body import FloorAction, Limits, LooseBody
+from fem.site.method import MethodQuantity, MethodRow
+from fem.site.sliding_rules import sliding_rows
+from fem.site.static_rules import COMBINATIONS, element_rows, peak_rows, plateau_rows
+from fem.site.velocity_rules import velocity_rows
+
+#: factors on the action between which a capacity is looked for
+SMALLEST_FACTOR, LARGEST_FACTOR = 0.01, 100.0
+BISECTIONS = 30
+#: a method, or methods that share their numbers, for one body: action of its floor -> rows
+Method = Callable[[FloorAction], Sequence[MethodRow]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MethodCapacity:
+    """The action at which a method is used up, over the action given: capacity over strength."""
+
+    name: str
+    quantity: MethodQuantity
+    factor: float  #: SMALLEST_FACTOR where it is used up by less, LARGEST_FACTOR where not by that
+
+
+def methods_of(
+    body: LooseBody, limits: Limits, *, behaviour_factor: float, height_ratio: float = 0.0
+) -> list[Method]:
+    """Every method but the wind, for one body on one floor.
+
+    Args:
+        behaviour_factor: q of the plateau of the design spectrum; q = 1 stands beside it.
+        height_ratio: z/H of the floor in its building; 0: on the ground.
+    """
+    pairs = [partial(peak_rows, body, horizontal=one, vertical=other) for one, other in COMBINATIONS]
+    elements = [
+        partial(element_rows, body, height_ratio=height_ratio, period_ratio=period_ratio)
+        for period_ratio in ((0.0, 1.0) if height_ratio > 0.0 else (0.0,))
+    ]
+    plateaus = [
+        partial(plateau_rows, body, behaviour_factor=q) for q in sorted({behaviour_factor, 1.0})[::-1]
+    ]
+    rocking = [partial(rocking_row, body, limits, vertical=vertical) for vertical in (False, True)]
+    return [
+        *pairs,
+        *elements,
+        *plateaus,
+        *(lambda action, row=row: [row(action)] for row in rocking),
+        partial(velocity_rows, body),
+        lambda action: [sliding_row(body, limits, action)],
+        partial(sliding_rows, body, limits),
+    ]
+
+
+def method_rows(methods: Sequence[Method], action: FloorAction) -> list[MethodRow]:
+    """What each method says of an action."""
+    return [row for method in methods for row in method(action)]
+
+
+def method_capacities(methods: Sequence[Method], action: FloorAction) -> list[MethodCapacity]:
+    """For each row of `method_rows`, the factor on the action at which its utilisation reaches 1.
+
+    A method that is fulfilled under a motion is fulfilled under a weaker one, so bisection finds it.
+    """
+    return [
+        MethodCapacity(name=row.name, quantity=row.quantity, factor=_limit(method, k, action))
+        for method in methods
+        for k, row in enumerate(method(action))
+    ]
+
+
+def _limit(method: Method, row: int, action: FloorAction) -> float:
+    def fulfilled(factor: float) -> bool:
+        return method(action.scaled(factor))[row].fulfilled
+
+    low, high = SMALLEST_FACTOR, LARGEST_FACTOR
+    if not fulfilled(low):
+        return low
+    if fulfilled(high):
+        return high
+    for _ in range(BISECTIONS):
+        middle = (low * high) ** 0.5
+        low, high = (middle, high) if fulfilled(middle) else (low, middle)
+    return (low * high) ** 0.5

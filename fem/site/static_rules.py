@@ -1,0 +1,137 @@
+"""Static rules: the peak, the plateau, or the code's force on an element, as a static force at the mass centre.
+
+Overturning is a h/((g - a_v) b) with the height h of the mass centre and the half width b, sliding is
+a/(mu (g - a_v)) with static friction. EN 1998-1:2004, 4.4.2.4 (1)P asks for the equilibrium.
+"""
+
+import math
+
+from fem.site.body import FloorAction, LooseBody
+from fem.site.method import MethodQuantity, MethodRow, Source, SourceStanding
+
+#: shares of the horizontal and vertical peak, after EN 1998-1:2004, 4.3.3.5.2
+COMBINATIONS = ((1.0, 0.0), (1.0, 0.3), (1.0, 1.0), (0.3, 1.0))
+ELEMENT_BEHAVIOUR_FACTOR = 1.0  #: q_a: no row of table 4.4 is for an unanchored body
+
+PEAK = Source(
+    work="EN 1998-1:2004, 4.4.2.4 (1)P and 4.3.3.5.2, with the peak as a static force",
+    standing=SourceStanding.DERIVED,
+)
+PLATEAU = Source(
+    work="EN 1998-1:2004",
+    clause="4.4.2.4 (1)P with 4.3.3.2.2 and 3.2.2.5 (4)P, Eq. (3.14)",
+    standing=SourceStanding.CLAUSE,
+)
+ELEMENT = Source(
+    work="EN 1998-1:2004", clause="4.3.5.2, Eqs. (4.24) and (4.25)", standing=SourceStanding.CLAUSE
+)
+
+
+def peak_rows(body: LooseBody, action: FloorAction, *, horizontal: float, vertical: float) -> list[MethodRow]:
+    """The peaks of the floor, times shares of the two components, as static forces."""
+    return _rows(
+        f"static rule, {horizontal:g} horizontal, {vertical:g} vertical",
+        body,
+        "λ a",
+        acceleration=horizontal * action.peak,
+        put_in=f"{horizontal:g} × {action.peak:.4g}",
+        lift=vertical * action.vertical_peak,
+        lift_put_in=f"{vertical:g} × {action.vertical_peak:.4g}",
+        source=PEAK,
+        validity="rest before uplift or slip; a peak lasts an instant, the rule takes it as lasting",
+    )
+
+
+def plateau_rows(body: LooseBody, action: FloorAction, *, behaviour_factor: float) -> list[MethodRow]:
+    """The plateau of the design spectrum of the ground, 2.5 a_g S/q, without the vertical component."""
+    return _rows(
+        f"plateau of the design spectrum, q = {behaviour_factor:g}",
+        body,
+        "2.5 a_g S/q",
+        acceleration=2.5 * action.ground_peak / behaviour_factor,
+        put_in=f"2.5 × {action.ground_peak:.4g} / {behaviour_factor:g}",
+        source=PLATEAU,
+        validity="elastic buildings on the ground; an unanchored body has no period and no behaviour factor",
+    )
+
+
+def floor_factor(height_ratio: float, period_ratio: float) -> float:
+    """Acceleration of an element over a_g S, EN 1998-1:2004, 4.3.5.2, Eq. (4.25) [-].
+
+    Args:
+        height_ratio: z/H, of the floor over the building's height above the foundation.
+        period_ratio: T_a/T_1, of the element over that of the building.
+    """
+    return max(3.0 * (1.0 + height_ratio) / (1.0 + (1.0 - period_ratio) ** 2) - 0.5, 1.0)
+
+
+def element_rows(
+    body: LooseBody, action: FloorAction, *, height_ratio: float, period_ratio: float
+) -> list[MethodRow]:
+    """The force on a non-structural element, with q_a = 1."""
+    factor = floor_factor(height_ratio, period_ratio)
+    return _rows(
+        f"element on a floor, z/H = {height_ratio:g}, T_a/T_1 = {period_ratio:g}",
+        body,
+        "a_g S max(3 (1 + z/H)/(1 + (1 − T_a/T_1)²) − 0.5, 1)/q_a",
+        acceleration=factor * action.ground_peak / ELEMENT_BEHAVIOUR_FACTOR,
+        put_in=f"{action.ground_peak:.4g} × {factor:.4g} / {ELEMENT_BEHAVIOUR_FACTOR:g}",
+        source=ELEMENT,
+        validity="non-structural elements; not for elements of a particularly dangerous nature, which need a "
+        "model of the building (4.3.5.1 (2)P); no q_a for an unanchored body: 1",
+    )
+
+
+def _rows(
+    name: str,
+    body: LooseBody,
+    symbol: str,
+    *,
+    acceleration: float,
+    put_in: str,
+    source: Source,
+    validity: str,
+    lift: float = 0.0,
+    lift_put_in: str = "",
+) -> list[MethodRow]:
+    """Overturning and sliding under a static acceleration [m/s2], `lift` reducing gravity."""
+    block = body.block
+    gravity = max(block.gravity - lift, 0.0)
+    less, less_put_in = (
+        ("(g − m a_v)", f"({block.gravity:g} − {lift_put_in})")
+        if lift_put_in
+        else (
+            "g",
+            f"{block.gravity:g}",
+        )
+    )
+    return [
+        MethodRow(
+            name=name,
+            quantity=MethodQuantity.OVERTURNING,
+            formula=f"{symbol} ≤ {less} b/h",
+            numbers=f"{put_in} ≤ {less_put_in} × {block.half_width:.4g} / {block.centroid_height:.4g}",
+            demand=acceleration,
+            capacity=gravity * body.slenderness,
+            unit="m/s²",
+            says=_says(acceleration, gravity * body.slenderness, "stands", "uplifts"),
+            source=source,
+            validity=validity,
+        ),
+        MethodRow(
+            name=name,
+            quantity=MethodQuantity.SLIDING,
+            formula=f"{symbol} ≤ {less} μ_s",
+            numbers=f"{put_in} ≤ {less_put_in} × {body.mu_static:.4g}",
+            demand=acceleration,
+            capacity=gravity * body.mu_static,
+            unit="m/s²",
+            says=_says(acceleration, gravity * body.mu_static, "does not slide", "slides"),
+            source=source,
+            validity=validity,
+        ),
+    ]
+
+
+def _says(demand: float, capacity: float, within: str, beyond: str) -> str:
+    return within if demand <= capacity and math.isfinite(demand) else beyond

@@ -1,0 +1,165 @@
+"""Rules that ask for the velocity, the displacement or the energy of a motion to overturn a body.
+
+Most are for homogeneous rectangles: their widths and heights are those of the rectangle with the same half width of
+the support and the same height of the mass centre. Units inside the empirical rules are cm and cm/s2, as published.
+"""
+
+import math
+
+from scipy.special import ndtr
+
+from fem.site.body import FloorAction, LooseBody
+from fem.site.method import MethodQuantity, MethodRow, Source, SourceStanding
+
+SPREAD = 0.5  #: logarithmic standard deviation of Kaneko and Hayashi's curve
+ULTIMATE_SHARE = (
+    2.0 / 3.0
+)  #: of the width: displacement at which a body overturns, at two thirds of its height
+ALLOWED_SHARE = 0.5  #: of that displacement
+
+
+def velocity_rows(body: LooseBody, action: FloorAction) -> list[MethodRow]:
+    """Housner, velocity step, Ishiyama, Kaneko and Hayashi, displacement."""
+    return [
+        housner_row(body, action),
+        velocity_step_row(body, action),
+        ishiyama_row(body, action),
+        kaneko_hayashi_row(body, action),
+        displacement_row(body, action),
+    ]
+
+
+def housner_row(body: LooseBody, action: FloorAction) -> MethodRow:
+    """Spectral velocity at which about half of random motions overturn a slender body."""
+    block, velocity = body.block, action.spectral_velocity
+    capacity = block.slenderness_angle * block.gravity / block.frequency_parameter
+    return _row(
+        "Housner, spectral velocity",
+        "S_v ≤ α g/p",
+        f"{velocity:.4g} ≤ {block.slenderness_angle:.4g} × {block.gravity:g} / {block.frequency_parameter:.4g}",
+        velocity,
+        capacity,
+        "m/s",
+        f"{'less' if velocity < capacity else 'more'} than half of such motions overturn it",
+        Source(work="Housner (1963)", standing=SourceStanding.DERIVED),
+        "slender body, random motion with a constant velocity spectrum; about 50 % overturn at 1: no limit state",
+    )
+
+
+def velocity_step(body: LooseBody) -> float:
+    """Step of the floor's velocity that just overturns the body, without slip [m/s].
+
+    Angular momentum about the corner, then energy: dV = sqrt(2 g R (1 - cos alpha) I_O/(M R^2))/cos alpha.
+    """
+    block = body.block
+    return math.sqrt(2.0 * block.overturning_energy * block.inertia_ratio) / math.cos(block.slenderness_angle)
+
+
+def velocity_step_row(body: LooseBody, action: FloorAction) -> MethodRow:
+    """Peak velocity against the step that overturns."""
+    block, capacity = body.block, velocity_step(body)
+    lift = 1.0 - math.cos(block.slenderness_angle)
+    return _row(
+        "velocity step (West)",
+        "PGV ≤ √(2 g R (1 − cos α) I_O/(M R²))/cos α",
+        f"{action.peak_velocity:.4g} ≤ √(2 × {block.gravity:g} × {block.radius:.4g} × {lift:.4g} × "
+        f"{block.inertia_ratio:.4g}) / {math.cos(block.slenderness_angle):.4g}",
+        action.peak_velocity,
+        capacity,
+        "m/s",
+        "stands" if action.peak_velocity <= capacity else "overturns",
+        Source(work="energy and angular momentum of a block", standing=SourceStanding.DERIVED),
+        "one pulse, no slip; more pulses need less",
+    )
+
+
+def ishiyama_row(body: LooseBody, action: FloorAction) -> MethodRow:
+    """Overturning needs both an acceleration and a velocity: the smaller of the two ratios counts."""
+    width, height = _rectangle_cm(body)
+    needed = body.block.uplift_acceleration, 0.1 * width / math.sqrt(height)
+    by_velocity = action.peak_velocity * needed[0] <= action.peak * needed[1]
+    demand, capacity = (action.peak_velocity, needed[1]) if by_velocity else (action.peak, needed[0])
+    return _row(
+        "Ishiyama, acceleration and velocity",
+        "a ≤ g B/H or v ≤ 10 B/√H (cm, cm/s)",
+        f"{action.peak:.4g} m/s² to {needed[0]:.4g} m/s²; {100.0 * action.peak_velocity:.4g} cm/s to 10 × "
+        f"{width:.4g} / √{height:.4g} = {100.0 * needed[1]:.4g} cm/s",
+        demand,
+        capacity,
+        "m/s" if by_velocity else "m/s²",
+        "stands" if demand <= capacity else "may overturn",
+        Source(work="Ishiyama (1982)", standing=SourceStanding.UNCHECKED),
+        "rectangle, no slip; lower bounds, both of which must be exceeded",
+    )
+
+
+def kaneko_hayashi_row(body: LooseBody, action: FloorAction) -> MethodRow:
+    """Median acceleration of overturning of furniture, and the share that overturns."""
+    width, height = _rectangle_cm(body)
+    ratio, peak, velocity = width / height, 100.0 * action.peak, 100.0 * action.peak_velocity
+    frequency = peak / (2.0 * math.pi * velocity) if velocity > 0.0 else math.inf
+    bound = 15.6 / math.sqrt(height) * (1.0 + ratio) ** -1.5
+    if frequency <= bound:
+        median, put_in = ratio * 980.0 * (1.0 + ratio), f"{ratio:.4g} × 980 × {1.0 + ratio:.4g}"
+    else:
+        median = 10.0 * width / math.sqrt(height) * (1.0 + ratio) ** 2.5 * 2.0 * math.pi * frequency
+        put_in = f"10 × {width:.4g} / √{height:.4g} × {1.0 + ratio:.4g}^2.5 × 2π × {frequency:.4g}"
+    share = float(ndtr(math.log(peak / median) / SPREAD)) if 0.0 < median < math.inf and peak > 0.0 else 0.0
+    return _row(
+        "Kaneko and Hayashi, furniture",
+        "A_50 = 980 (B/H) (1 + B/H), F_e ≤ F_b; else 10 B/√H (1 + B/H)^2.5 2π F_e (cm, cm/s²)",
+        f"{peak:.4g} ≤ {put_in} = {median:.4g} cm/s²; F_e = {frequency:.4g} Hz, F_b = {bound:.4g} Hz",
+        0.01 * peak,
+        0.01 * median,
+        "m/s²",
+        f"{100.0 * share:.2g} % overturn",
+        Source(work="Kaneko and Hayashi (2004)", standing=SourceStanding.UNCHECKED),
+        "furniture on floors, slip included in the data; half of them overturn at 1",
+    )
+
+
+def displacement_row(body: LooseBody, action: FloorAction) -> MethodRow:
+    """Largest spectral displacement against half of the displacement that overturns."""
+    width, demand = 2.0 * body.block.half_width, action.spectral_displacement
+    capacity = ALLOWED_SHARE * ULTIMATE_SHARE * width
+    return _row(
+        "displacement rule",
+        "S_d ≤ 0.5 (2/3 B)",
+        f"{demand:.4g} ≤ 0.5 × 2 / 3 × {width:.4g}",
+        demand,
+        capacity,
+        "m",
+        "stands" if demand <= capacity else "may overturn",
+        Source(work="Al Abadi, Lam and Gad (2006)", standing=SourceStanding.UNCHECKED),
+        "slender body; displacement at two thirds of the height, up to 4 s",
+    )
+
+
+def _rectangle_cm(body: LooseBody) -> tuple[float, float]:
+    """Width and height [cm] of the rectangle on this support with this mass centre."""
+    return 200.0 * body.block.half_width, 200.0 * body.block.centroid_height
+
+
+def _row(
+    name: str,
+    formula: str,
+    numbers: str,
+    demand: float,
+    capacity: float,
+    unit: str,
+    says: str,
+    source: Source,
+    validity: str,
+) -> MethodRow:
+    return MethodRow(
+        name=name,
+        quantity=MethodQuantity.OVERTURNING,
+        formula=formula,
+        numbers=numbers,
+        demand=demand,
+        capacity=capacity,
+        unit=unit,
+        says=says,
+        source=source,
+        validity=validity,
+    )
