@@ -33,6 +33,7 @@ LAYERS = (
     ("fem.batch",),
     ("fem.sweep", "fem.response"),
     ("fem.ensemble", "fem.report"),
+    ("fem.site_check",),
     ("fem.verification",),
     ("fem.paper",),
     ("fem.cli",),

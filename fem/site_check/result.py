@@ -1,0 +1,254 @@
+"""The result of `assess` as typed data: what `assess.json` holds, and what its page shows.
+
+Every field has the name of its key in the file, with its SI unit. Accelerations are magnitudes.
+"""
+# ruff: noqa: N815 - a field is named as its key in the file, unit and all
+
+from dataclasses import dataclass
+
+from fem.results.run_result import JsonBlock
+
+RESULT_FILE = "assess.json"
+MOTIONS = "motions"  #: folder of the motions: motion_01_h.csv, motion_01_v.csv, ..
+
+
+@dataclass(frozen=True, kw_only=True)
+class SiteActionResult(JsonBlock):
+    """The action of the site, at the level of the ground, and the target and mean spectra there (5 %)."""
+
+    source: str  #: where the numbers of the spectrum stand
+    reference_acceleration_m_s2: float  #: a_gR
+    importance_factor: float  #: gamma_I
+    element_importance_factor: float  #: gamma_a
+    ag_m_s2: float  #: gamma_I gamma_a a_gR
+    soil_factor: float
+    ag_S_m_s2: float
+    avg_m_s2: float
+    vertical_ratio: float
+    corner_periods_s: tuple[float, ...]
+    vertical_corner_periods_s: tuple[float, ...]
+    displacement_m: float  #: d_g
+    periods_s: tuple[float, ...]
+    target_m_s2: tuple[float, ...]
+    mean_m_s2: tuple[float, ...]
+    vertical_target_m_s2: tuple[float, ...] = ()
+    vertical_mean_m_s2: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class FloorResult(JsonBlock):
+    """The floor of a building on which the container stands, and what the motions are there."""
+
+    z_over_h: float
+    building_periods_s: tuple[float, ...]  #: the one given, and varied both ways
+    damping_ratio: float
+    peak_m_s2: float  #: mean of the peaks of the floor, of the period with the largest
+    mean_m_s2: tuple[float, ...]  #: its mean spectrum at the periods of the action
+
+
+@dataclass(frozen=True, kw_only=True)
+class SetCheck(JsonBlock):
+    """One demand on the set of motions."""
+
+    name: str
+    found: float | None = None
+    demanded: str  #: in words, such as "at least 2.4 m/s2"
+    unit: str = ""
+    fulfilled: bool
+    clause: str = ""  #: empty where it is this program's own
+
+
+@dataclass(frozen=True, kw_only=True)
+class SiteMotion(JsonBlock):
+    """One motion of the set, at the level of the ground; its curves are in the folder of the motions."""
+
+    number: int  #: from 1
+    origin: str  #: "seed 1", or the names of the record's files
+    scale: float = 1.0  #: on the record, or of the whole set
+    pga_m_s2: float
+    pgv_m_s: float
+    pgd_m: float
+    d5_95_s: float
+    vertical_pga_m_s2: float | None = None
+    end_velocity_m_s: float
+    end_displacement_m: float
+    spectrum_m_s2: tuple[float, ...]  #: at the periods of the action
+    vertical_spectrum_m_s2: tuple[float, ...] = ()
+    files: tuple[str, ...]  #: in the folder of results
+    sha256: tuple[str, ...]  #: of these files
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionSet(JsonBlock):
+    """The set of motions and its checks; a set that is not valid is not used."""
+
+    source: str  #: artificial | records | matched
+    count: int
+    seed: int | None = None
+    stationary_s: float | None = None
+    band_s: tuple[float, ...]  #: periods of the comparison with the target, shortest and longest
+    mean_pga_m_s2: float
+    least_ratio: float  #: of mean over target in the band
+    least_ratio_period_s: float
+    vertical_least_ratio: float | None = None
+    vertical_least_ratio_period_s: float | None = None
+    largest_correlation: float
+    valid: bool
+    reasons: tuple[str, ...] = ()  #: why not
+    checks: tuple[SetCheck, ...]
+    motions: tuple[SiteMotion, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SiteBody(JsonBlock):
+    """The container, full or empty, in one elevation."""
+
+    mass: str  #: full | empty
+    elevation: str  #: width | depth: the dimension along the motion
+    mass_kg: float
+    centroid_m: float
+    support_width_m: float  #: between the outer points of the support
+    width_m: float  #: of the shell along the motion
+    height_m: float
+    depth_m: float
+    slenderness_angle_rad: float
+    frequency_parameter_1_s: float
+    uplift_acceleration_m_s2: float
+    housner_restitution: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class SiteRun(JsonBlock):
+    """One run."""
+
+    motion: int
+    vertical_sign: int  #: 1, -1; 0: no vertical component
+    mu_static: float
+    mu_kinetic: float
+    mass: str
+    elevation: str = "width"
+    model: str
+    building_period_s: float | None = None
+    factor: float = 1.0
+    outcome: str | None = None  #: None: it failed
+    rotation_ratio: float | None = None
+    max_slip_m: float | None = None
+    residual_slip_m: float | None = None
+    max_uplift_m: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ScanPoint(JsonBlock):
+    """All motions of the set times one factor."""
+
+    factor: float
+    runs: int
+    overturned: int
+    rotation_ratio: float | None = None  #: by the rule
+    slip_m: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class FurtherMotions(JsonBlock):
+    """Motions beyond the set: how often the container overturned."""
+
+    motions: int
+    overturned: int
+    interval: tuple[float, ...]  #: of the probability, 95 %, two-sided
+    not_fulfilled: int | None = None  #: beyond a limit, or overturned
+
+
+@dataclass(frozen=True, kw_only=True)
+class ConfirmedRun(JsonBlock):
+    """A run that decides, again with another model and over the inputs that are not known."""
+
+    run: SiteRun
+    model: str
+    outcome: str | None = None
+    rotation_ratio: float | None = None
+    max_slip_m: float | None = None
+    sure: str = ""  #: of the verdict: sure | regime unsure | unsure
+    outcomes: tuple[str, ...] = ()  #: over the band
+
+
+@dataclass(frozen=True, kw_only=True)
+class SiteAnswer(JsonBlock):
+    """The answer, under the rule that is printed with it."""
+
+    fulfilled: bool | None = None  #: None: the set is not valid, or runs failed
+    rule: str
+    sentence: str
+    overturned: int
+    runs: int
+    rotation_ratio: float | None = None
+    slip_m: float | None = None
+    rotation_fulfilled: bool | None = None
+    slip_fulfilled: bool | None = None
+    governing: SiteRun | None = None
+    factor_at_first_overturning: float | None = None
+    scan: tuple[ScanPoint, ...] = ()
+    further: FurtherMotions | None = None
+    confirmed: tuple[ConfirmedRun, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class SiteMethod(JsonBlock):
+    """One simplified method; `says` is what it says, `found` what the runs found for the same action."""
+
+    name: str
+    quantity: str
+    mass: str
+    elevation: str = "width"
+    formula: str
+    numbers: str
+    demand: float | None = None
+    capacity: float | None = None
+    unit: str
+    utilisation: float | None = None
+    says: str
+    source: str
+    validity: str
+    found: str = ""
+    factor: float | None = None  #: capacity over strength: on the action, at which the method is used up
+
+
+@dataclass(frozen=True, kw_only=True)
+class SiteInputs(JsonBlock):
+    """What was asked, for the page."""
+
+    container: str
+    mu_static: tuple[float, ...]
+    mu_kinetic_over_static: tuple[float, ...]
+    rotation_ratio_limit: float
+    slip_limit_m: float
+    wind_pressure_Pa: float | None = None
+    model: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class SiteProvenance(JsonBlock):
+    """What is needed to compute it again."""
+
+    command: str
+    site_hash: str
+    case_hash: str
+    versions: tuple[tuple[str, str], ...] = ()
+    wall_s: float | None = None
+    cpu_s: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class SiteResult(JsonBlock):
+    """Everything `assess` found."""
+
+    status: str
+    title: str = ""
+    inputs: SiteInputs
+    action: SiteActionResult
+    floor: FloorResult | None = None
+    set: MotionSet
+    bodies: tuple[SiteBody, ...]
+    runs: tuple[SiteRun, ...] = ()
+    result: SiteAnswer
+    methods: tuple[SiteMethod, ...] = ()
+    provenance: SiteProvenance
