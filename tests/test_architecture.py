@@ -44,6 +44,7 @@ NARROW = {
     "contact.motion": {"contact.arrays", "contact.jit"},
     "contact.interface": {"contact.arrays", "contact.jit", "contact.motion"},
     "contact.stepping": {"contact.arrays", "contact.jit", "contact.motion", "contact.interface"},
+    "fem.records": {"contact.arrays", "contact.motion", "fem.runtime"},
     "fem": {"fem.runtime", "fem.results"},  # what the package offers by name
     "fem.__main__": {"fem.runtime", "fem.cli"},
 }

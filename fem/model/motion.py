@@ -3,18 +3,18 @@
 import math
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from contact.motion.base_motion import BaseMotion, HarmonicMotion, NoMotion, PulseMotion, TableMotion
-from contact.motion.table_file import read_motion_table
 from fem.case import quantities as q
 from fem.case.case import Case, CaseError
 from fem.case.problem import broken
 from fem.case.rules import CASE_RULES, MOST_FREE_MOTION, ends_at_rest, longest_time
 from fem.case.validation import problem_lines
 from fem.model.motion_summary import summary_from_keys
+from fem.model.recorded import Direction, recorded_motion
 from fem.results.run_result import MotionResult
 from fem.runtime.arrays import FloatArray
 
@@ -25,8 +25,6 @@ CYCLE_SAMPLES, MOST_CYCLES = 256, 4000  #: samples of a cycle for its peaks, of 
 
 #: rules of a case that limit what a long run makes
 BOUNDED = frozenset({"solver.step_s", "output.history_s", "output.fields_s"})
-
-Direction = Literal["motion", "vertical"]  #: the table of a motion: along x, or vertical
 
 
 def build_motion(case: Case) -> BaseMotion:
@@ -232,11 +230,4 @@ def _build(case: Case, table: Direction) -> BaseMotion:
                 delay=motion.delay_s,
             )
         case "table":
-            found = read_motion_table(
-                case.data_files[f"{table}.file"],
-                quantity=given("quantity"),
-                unit=given("unit"),
-                scale=scale,
-                baseline=motion.baseline,
-            )
-            return _plausible(found, table)
+            return _plausible(recorded_motion(case, table), table)

@@ -29,10 +29,9 @@ def integrated(motion: TableMotion, until: float) -> np.ndarray:
     return state
 
 
-@pytest.mark.parametrize("baseline", ["none", "mean", "linear"])
 @pytest.mark.parametrize("until", [3.21, 8.5])
-def test_displacement_and_velocity_are_exact_integrals_of_the_acceleration(baseline, until):
-    motion = TableMotion(times=TIMES, values=VALUES, baseline=baseline)
+def test_displacement_and_velocity_are_exact_integrals_of_the_acceleration(until):
+    motion = TableMotion(times=TIMES, values=VALUES)
     x, v, a = motion.evaluate(np.array([until]))[:, 0]
     assert [x, v] == pytest.approx(integrated(motion, until), rel=1e-10, abs=1e-12)
     assert a == pytest.approx(np.interp(until, TIMES, motion.accelerations), rel=1e-12)
@@ -46,34 +45,8 @@ def test_floor_is_at_rest_before_the_table_and_coasts_after_it():
     assert later[:2] == pytest.approx([end[0] + 3.0 * end[1], end[1]], rel=1e-14)
 
 
-def test_mean_baseline_brings_the_floor_to_rest():
-    x, v, _ = TableMotion(times=TIMES, values=VALUES + 0.3, baseline="mean").evaluate(TIMES[-1:])[:, 0]
-    assert v == pytest.approx(0.0, abs=1e-13)
-    assert abs(x) > 1e-3  # it does not bring it back: that is what `linear` is for
-
-
-def test_linear_baseline_brings_the_floor_to_rest_where_it_began():
-    drifting = VALUES + 0.3 - 0.2 * TIMES
-    x, v, _ = TableMotion(times=TIMES, values=drifting, baseline="linear").evaluate(TIMES[-1:])[:, 0]
-    assert [x, v] == pytest.approx([0.0, 0.0], abs=1e-12)
-
-
-def test_linear_baseline_is_the_least_squares_line():
-    residual = TableMotion(times=TIMES, values=VALUES, baseline="linear").accelerations
-    fine = np.linspace(TIMES[0], TIMES[-1], 200_001)
-
-    def squares(offset: float, slope: float) -> float:
-        return float(np.sum((np.interp(fine, TIMES, residual) + offset + slope * (fine - fine.mean())) ** 2))
-
-    best = squares(0.0, 0.0)
-    for offset, slope in ((1e-3, 0.0), (-1e-3, 0.0), (0.0, 1e-3), (0.0, -1e-3)):
-        assert squares(offset, slope) > best
-
-
-def test_peak_acceleration_is_the_largest_sample_after_the_baseline():
+def test_peak_acceleration_is_the_largest_sample():
     assert TableMotion(times=TIMES, values=VALUES).peak_acceleration == np.abs(VALUES).max()
-    shifted = TableMotion(times=np.array([0.0, 1.0, 2.0]), values=np.array([1.0, 3.0, 1.0]), baseline="mean")
-    assert shifted.peak_acceleration == pytest.approx(1.0, rel=1e-14)  # the mean over time is 2
 
 
 @pytest.mark.parametrize("count", [2, 3, 40])
@@ -103,11 +76,6 @@ def test_bad_samples_are_refused_each_with_its_own_message(times, values, words)
         TableMotion(times=np.array(times), values=np.array(values))
 
 
-def test_unknown_words_and_a_baseline_for_displacements_are_refused():
-    for change, word in (
-        ({"quantity": "velocity"}, "quantity"),
-        ({"baseline": "cubic"}, "baseline"),
-        ({"quantity": "displacement", "baseline": "mean"}, "corrects accelerations"),
-    ):
-        with pytest.raises(ValueError, match=word):
-            TableMotion(times=TIMES, values=VALUES, **change)
+def test_an_unknown_quantity_is_refused():
+    with pytest.raises(ValueError, match="quantity"):
+        TableMotion(times=TIMES, values=VALUES, quantity="velocity")

@@ -1,0 +1,171 @@
+"""Columns of numbers: values with a sampling interval; time and value; or time, horizontal and vertical value.
+
+Columns are separated by semicolons, tabs, commas or blanks; decimals by points, or by commas where these do not
+separate. `#` starts a comment. Lines before the first number are a header, whose units must be those that are given.
+"""
+
+import re
+from collections.abc import Iterator
+
+import numpy as np
+
+from fem.records.record import Component, Direction, Record
+from fem.records.source import Source, as_numbers
+from fem.records.units import UNITS, settled_unit, unit_spelled
+from fem.runtime.arrays import FloatArray
+
+NAME = "columns"
+MOST_COLUMNS = 3
+NOT_NUMBERS = ("nan", "inf", "+inf", "-inf")
+DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(\s+[-+]?\d+,\d+)+\s*", re.ASCII)
+DIRECTIONS: dict[int, tuple[Direction | None, ...]] = {
+    1: (None,),
+    2: (None,),
+    3: ("horizontal", "vertical"),
+}
+
+
+def read_columns(source: Source, *, unit: str | None, sample_interval: float | None) -> Record:
+    """Read a file of one, two or three columns.
+
+    Raises:
+        RecordError: by line: no numbers, another number of columns, a unit that contradicts; no unit.
+    """
+    numbered = list(_contents(source))
+    begin = next((k for k, (_, line) in enumerate(numbered) if _is_data(line)), len(numbered))
+    if begin == len(numbered):
+        raise source.refused("no numbers were found; a motion file is needed")
+    header, data = numbered[:begin], numbered[begin:]
+    separator, decimal_comma = _separators(data[0][1])
+    table = _table(source, data, separator, decimal_comma)
+    count = table.shape[1]
+    if count == 1 and sample_interval is None:
+        raise source.refused("one column without times: give the interval as sample_interval_s")
+    if count > 1 and sample_interval is not None:
+        raise source.refused(
+            f"sample_interval_s is for a file of one column, and {count} were found"
+            + ("; write decimals with a point" if separator == "," else "")
+        )
+    has_time = count > 1
+    stated = _stated_units(source, header, count)
+    if has_time and stated[0] not in (None, "s"):
+        raise source.refused(f"the header gives times in {stated[0]!r}; they must be in s", header[-1][0])
+    times: FloatArray = (
+        table[:, 0] if has_time else np.arange(len(table), dtype=np.float64) * (sample_interval or 1.0)
+    )
+    _require_increasing(source, times, data)
+    components = []
+    for column, direction in enumerate(DIRECTIONS[count], start=int(has_time)):
+        found, by_file = settled_unit(stated[column], unit, source.name)
+        components.append(
+            Component(
+                times=times,
+                readings=table[:, column],
+                factor=UNITS[found].factor,
+                quantity=UNITS[found].quantity,
+                unit=found,
+                unit_stated=by_file,
+                name="" if direction is None else direction,
+                direction=direction,
+            )
+        )
+    return Record(components=tuple(components), name=source.name, format=NAME)
+
+
+def _contents(source: Source) -> Iterator[tuple[int, str]]:
+    """Lines that are not empty, without comments, with their numbers."""
+    for number, line in enumerate(source.lines, start=1):
+        content = (line.partition("#")[0] if "#" in line else line).strip()
+        if content:
+            yield number, content
+
+
+def _is_data(line: str) -> bool:
+    """Whether a line is meant as numbers: its first field is one, or none of them is a word."""
+    fields = re.split(r"[;,\s]+", line)
+    return as_numbers(fields[:1]) is not None or all(
+        field.lower() in NOT_NUMBERS or as_numbers([field]) is not None for field in fields
+    )
+
+
+def _separators(line: str) -> tuple[str | None, bool]:
+    """What separates columns (None: blanks), and whether a comma is the decimal mark, from the first line of data."""
+    for mark in (";", "\t"):
+        if mark in line:
+            return mark, "," in line
+    if DECIMAL_COMMA.fullmatch(line):
+        return None, True
+    return ("," if "," in line else None), False
+
+
+def _table(
+    source: Source, data: list[tuple[int, str]], separator: str | None, decimal_comma: bool
+) -> FloatArray:
+    """The numbers, shape (n, columns)."""
+    if decimal_comma:
+        mixed = next((number for number, line in data if "." in line), None)
+        if mixed is not None:
+            raise source.refused("decimal commas and decimal points in one file; use one of them", mixed)
+        data = [(number, line.replace(",", ".")) for number, line in data]
+    rows = [line.split(separator) for _, line in data]
+    count = len(rows[0])
+    if count > MOST_COLUMNS:
+        raise source.refused(
+            f"{count} columns; a motion has one (with sample_interval_s), two (time, value) or three (time, "
+            "horizontal, vertical)",
+            data[0][0],
+        )
+    for (number, _), row in zip(data, rows, strict=True):
+        if len(row) != count:
+            raise source.refused(
+                f"{count} columns are needed as in line {data[0][0]}, found {len(row)}", number
+            )
+    numbers = as_numbers([field for row in rows for field in row])
+    if numbers is None:
+        wrong = next(number for (number, _), row in zip(data, rows, strict=True) if as_numbers(row) is None)
+        raise source.refused("not a number, or too large for one (no unit, no text)", wrong)
+    return numbers.reshape(-1, count)
+
+
+def _require_increasing(source: Source, times: FloatArray, data: list[tuple[int, str]]) -> None:
+    back = np.flatnonzero(np.diff(times) <= 0.0)
+    if back.size:
+        row = int(back[0])
+        how = "occurs twice" if times[row] == times[row + 1] else "is earlier than that of the line before"
+        raise source.refused(f"times must increase, but time {times[row + 1]:g} s {how}", data[row + 1][0])
+
+
+def _stated_units(source: Source, header: list[tuple[int, str]], count: int) -> list[str | None]:
+    """Unit of each column as the header states it; None where it does not."""
+    units: list[str | None] = [None] * count
+    for number, line in header:
+        for column, unit in enumerate(_units_in(line, count)):
+            if column >= count:
+                raise source.refused(f"the header names more units than the {count} columns have", number)
+            if unit is not None and units[column] not in (None, unit):
+                raise source.refused(f"the header gives two units for column {column + 1}", number)
+            units[column] = unit or units[column]
+    return units
+
+
+def _units_in(line: str, count: int) -> list[str | None]:
+    """Units in a line of the header, by column."""
+    fields = re.split(r"[;,\t]" if re.search(r"[;,\t]", line) else r"\s+", line)
+    if len(fields) == count:
+        return [_unit_of(field) for field in fields]
+    # "time (s) acc (g)" splits at its blanks; only what stands in brackets matters.
+    spelled = (unit_spelled(text) for text in re.findall(r"[\[(]([^\])]*)[\])]", line))
+    units = [unit for unit in spelled if unit is not None]
+    if len(units) == 1 and units != ["s"]:  # one unit, of all values
+        return [None] * (count > 1) + units * max(1, count - 1)
+    return list(units)
+
+
+def _unit_of(field: str) -> str | None:
+    """The unit in the name of a column: in brackets, behind an underscore, or the whole name."""
+    bracketed = re.search(r"[\[(]([^\])]*)[\])]", field)
+    if bracketed:
+        return unit_spelled(bracketed.group(1))
+    parts = field.split("_")
+    spelled = (unit_spelled("_".join(parts[k:])) for k in range(len(parts)))
+    return next((unit for unit in spelled if unit is not None), None)

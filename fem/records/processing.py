@@ -1,0 +1,137 @@
+"""Trim, scale and correct the baseline of a component, and integrate it: linear between samples, as the run takes it.
+
+First the component is trimmed, then scaled by a factor, then its baseline is removed, then it is scaled to a peak.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
+
+import numpy as np
+
+from contact.motion.samples import sampled_motion
+from fem.records.record import Component, RecordError
+from fem.runtime.arrays import FloatArray
+
+Baseline = Literal["none", "mean", "linear", "zero-end"]
+BASELINES: tuple[Baseline, ...] = get_args(Baseline)
+#: of the acceleration that `zero-end` removes: displacements of t^2 to t^7
+DEGREE = 5
+
+
+@dataclass(frozen=True, kw_only=True)
+class Processing:
+    """What is done to a component before it moves the floor.
+
+    `mean` subtracts the mean over time of the acceleration, so that the floor ends at rest; `linear` the straight line
+    fitted by least squares (to the interpolated acceleration, not to the samples), so that the floor ends at rest
+    where it began: the fit makes final velocity and displacement zero. `zero-end` subtracts the polynomial of degree
+    5 whose displacement fits that of the floor best among those that end with its velocity and displacement.
+    """
+
+    start: float | None = None  #: of the part to take; it becomes t = 0 [s]
+    end: float | None = None  #: of the part to take, in the times of the file [s]
+    scale: float = 1.0  #: factor
+    peak: float | None = None  #: that the largest |acceleration| is scaled to, behind the baseline [m/s2]
+    baseline: Baseline = "none"
+
+
+def processed(component: Component, processing: Processing) -> Component:
+    """The component as the floor follows it, in SI.
+
+    Raises:
+        RecordError: nothing remains of it, velocities, a baseline or a peak for what has none, or a number that is
+            not finite.
+    """
+    if component.quantity == "velocity":
+        raise RecordError("velocities do not move a floor; accelerations or displacements are needed")
+    if not math.isfinite(processing.scale):
+        raise RecordError(f"scale must be finite, got {processing.scale}")
+    if component.quantity == "displacement" and processing.baseline != "none":
+        raise RecordError(
+            f"baseline {processing.baseline!r} corrects accelerations; displacements take 'none'"
+        )
+    times, readings = _trimmed(component, processing)
+    values = readings * (component.factor * processing.scale)
+    if component.quantity == "acceleration":
+        values = values - _baseline(times, values, processing.baseline)
+    if processing.peak is not None:
+        largest = float(np.abs(sampled_motion(times, values, component.quantity)[2]).max())
+        if largest == 0.0:
+            raise RecordError("its accelerations are all zero, so that they cannot be scaled to a peak")
+        values = values * (processing.peak / largest)
+    return replace(component, times=times, readings=values, factor=1.0)
+
+
+def motion_of(component: Component) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Displacement [m], velocity [m/s] and acceleration [m/s2] of the floor at the samples, each of shape (n,)."""
+    if component.quantity == "velocity":
+        raise RecordError("velocities do not move a floor; accelerations or displacements are needed")
+    return sampled_motion(component.times, component.values, component.quantity)
+
+
+def _trimmed(component: Component, processing: Processing) -> tuple[FloatArray, FloatArray]:
+    """Times and readings of the part taken; accelerations are interpolated at its ends, displacements are not."""
+    times, readings = component.times, component.readings
+    if processing.start is None and processing.end is None:
+        return times, readings
+    low = times[0] if processing.start is None else max(processing.start, times[0])
+    high = times[-1] if processing.end is None else min(processing.end, times[-1])
+    inside = (times >= low) & (times <= high)
+    if component.quantity == "acceleration" and low < high:
+        ends = np.array([low, high])
+        kept = np.unique(np.concatenate([times[inside], ends]))
+        readings, times = np.interp(kept, times, readings), kept
+    else:
+        times, readings = times[inside], readings[inside]
+    if times.size < 2:
+        raise RecordError(
+            f"from start_s to end_s nothing is left of it: its times are {component.times[0]:g} to "
+            f"{component.times[-1]:g} s"
+        )
+    return times - (processing.start or 0.0), readings
+
+
+def _baseline(times: FloatArray, a: FloatArray, kind: Baseline) -> FloatArray:
+    """Baseline to subtract from a piecewise linear acceleration, at its samples, shape (n,) [m/s2].
+
+    Least squares over time of the linear interpolant: with s in [-1, 1] over the table, the fit is
+    m_0/2 + 3 m_1/2 s, where m_0 and m_1 are the exact integrals of a and a s (Legendre polynomials).
+    """
+    if kind not in BASELINES:
+        raise RecordError(f"unknown baseline {kind!r}; known: {', '.join(BASELINES)}")
+    if kind == "none":
+        return np.zeros_like(a)
+    s = (times - 0.5 * (times[0] + times[-1])) / (0.5 * (times[-1] - times[0]))
+    if kind == "zero-end":
+        return _zero_end(times, a, s)
+    steps = np.diff(s)
+    m_0 = math.fsum(0.5 * steps * (a[:-1] + a[1:]))
+    if kind == "mean":
+        return np.full_like(a, 0.5 * m_0)
+    # Simpson's rule is exact for the product of two linear functions.
+    middle = (a[:-1] + a[1:]) * (s[:-1] + s[1:])
+    m_1 = math.fsum(steps / 6.0 * (a[:-1] * s[:-1] + middle + a[1:] * s[1:]))
+    return 0.5 * m_0 + 1.5 * m_1 * s
+
+
+def _zero_end(times: FloatArray, a: FloatArray, s: FloatArray) -> FloatArray:
+    """Baseline of `zero-end`: least squares of the displacement over time, under two constraints at the end.
+
+    Every polynomial is interpolated linearly between samples and integrated as the motion is, so that the floor ends at
+    rest where it began to the rounding of these sums, whatever the interval.
+    """
+    length = times[-1] - times[0]
+    shapes = np.polynomial.legendre.legvander(s, DEGREE)
+    integrals = [sampled_motion(times, shape, "acceleration")[:2] for shape in shapes.T]
+    x, v, _ = sampled_motion(times, a, "acceleration")
+    ends = np.array([[xs[-1] / length**2, vs[-1] / length] for xs, vs in integrals]).T
+    wanted = np.array([x[-1] / length**2, v[-1] / length])
+    # What meets the constraints, and of all that changes nothing about them, the best fit.
+    meets = np.linalg.lstsq(ends, wanted, rcond=None)[0]
+    free = np.linalg.svd(ends)[2][2:].T
+    steps = np.diff(times)
+    weights = np.sqrt(0.5 * (np.append(steps, 0.0) + np.append(0.0, steps)))
+    moved = np.array([xs for xs, _ in integrals]).T * weights[:, None]
+    best = np.linalg.lstsq(moved @ free, x * weights - moved @ meets, rcond=None)[0]
+    return shapes @ (meets + free @ best)

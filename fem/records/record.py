@@ -1,0 +1,171 @@
+"""A recorded motion: one or more components, each with its times, values, quantity and unit. SI units.
+
+What the file says of itself (format, station, event, date, names and directions of components) is kept; what it does
+not say stays empty. Values are positive as in the file.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from fem.runtime.arrays import FloatArray
+
+Quantity = Literal["acceleration", "velocity", "displacement"]
+Direction = Literal["horizontal", "vertical"]
+
+#: largest difference of two sampling times that count as one, over the interval: what seven printed digits leave
+SAME_TIME = 1e-3
+
+
+class RecordError(ValueError):
+    """A file that is no motion, or a motion that cannot be used; the message names the file."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)  # arrays have no single truth value
+class Component:
+    """One component of a recorded motion.
+
+    Raises:
+        RecordError: fewer than two samples, lengths that differ, numbers that are not finite, times that do not
+            increase.
+    """
+
+    times: FloatArray  #: increasing, shape (n,) [s]
+    readings: FloatArray  #: in the unit of the file, shape (n,)
+    factor: float = 1.0  #: that makes the readings SI
+    quantity: Quantity = "acceleration"
+    unit: str = "m/s2"  #: of the readings
+    unit_stated: bool = True  #: by the file; else by who reads it
+    name: str = ""  #: as the file calls it, such as "HNE" or "Chan 2: 360 Deg"
+    direction: Direction | None = None  #: None where the file does not say
+
+    def __post_init__(self) -> None:
+        if self.times.ndim != 1 or self.times.shape != self.readings.shape:
+            raise RecordError(
+                f"{self.times.size} times and {self.readings.size} values: they must be as many"
+            )
+        if self.times.size < 2:
+            raise RecordError(f"two samples or more are needed, found {self.times.size}")
+        for what, column in (("time", self.times), ("value", self.readings)):
+            if not np.isfinite(column).all():
+                row = int(np.flatnonzero(~np.isfinite(column))[0])
+                raise RecordError(f"{what} of sample {row + 1} is not a finite number")
+        steps = np.diff(self.times)
+        if (steps <= 0.0).any():
+            row = int(np.flatnonzero(steps <= 0.0)[0])
+            how = "is the same as" if steps[row] == 0.0 else "is earlier than"
+            raise RecordError(
+                f"times must increase, but that of sample {row + 2}, {self.times[row + 1]:g} s, {how} "
+                f"that of sample {row + 1}, {self.times[row]:g} s"
+            )
+
+    @property
+    def values(self) -> FloatArray:
+        """The readings in SI, shape (n,) [m/s2], [m/s] or [m]."""
+        return self.readings * self.factor
+
+    @property
+    def step(self) -> float:
+        """Median interval of the samples [s]."""
+        return float(np.median(np.diff(self.times)))
+
+    @property
+    def described(self) -> str:
+        """Name, direction and quantity for a message."""
+        parts = (self.name, self.direction, self.quantity)
+        return ", ".join(part for part in parts if part) or "unnamed"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Record:
+    """A recorded motion as its file holds it."""
+
+    components: tuple[Component, ...]  #: in the order of the file, at least one
+    name: str = "record"  #: of the file
+    format: str = ""  #: such as "PEER AT2"
+    station: str = ""
+    event: str = ""
+    date: str = ""
+
+    def component(self, direction: Direction, *, quantity: Quantity, channel: str = "") -> Component:
+        """The component that moves the floor in a direction.
+
+        The file decides where it says which component is vertical. A file of one component serves any direction
+        unless it says that it is the other one.
+
+        Args:
+            direction: of the floor.
+            quantity: that is needed; components of another one are not looked at.
+            channel: number from 1, or name, of the component to take whatever its direction; empty: by direction.
+
+        Raises:
+            RecordError: there is none, or more than one to choose from; the message names the channels.
+        """
+        if channel:
+            return self._by_channel(channel, quantity)
+        of_quantity = [one for one in self.components if one.quantity == quantity]
+        if not of_quantity:
+            held = " and ".join(sorted({f"{one.quantity}s" for one in self.components}))
+            raise RecordError(
+                f"{self.name}: it holds {held}, and {quantity}s are needed; take the file of {quantity}s"
+                + ('; or set quantity = "displacement"' if "displacement" in held else "")
+            )
+        found = [one for one in of_quantity if one.direction == direction] or [
+            one for one in of_quantity if one.direction is None
+        ]
+        if len(found) == 1:
+            return found[0]
+        problem = (
+            f"no {direction} component"
+            if not found
+            else f"{len(found)} components may be the {direction} one"
+        )
+        raise RecordError(
+            f"{self.name}: {problem} ({self._channels()}); choose one as {self.name}#NUMBER or {self.name}#NAME"
+        )
+
+    def _by_channel(self, channel: str, quantity: Quantity) -> Component:
+        number = int(channel) if channel.isascii() and channel.isdigit() and len(channel) < 4 else 0
+        if 1 <= number <= len(self.components):
+            found = [self.components[number - 1]]
+        else:
+            found = [one for one in self.components if one.name.casefold() == channel.casefold()]
+        if len(found) != 1:
+            raise RecordError(f"{self.name}: no channel {channel[:40]!r} ({self._channels()})")
+        if found[0].quantity != quantity:
+            raise RecordError(
+                f"{self.name}: channel {channel[:40]!r} holds {found[0].quantity}s, and {quantity}s are needed"
+            )
+        return found[0]
+
+    def _channels(self) -> str:
+        return "; ".join(f"#{number} {one.described}" for number, one in enumerate(self.components, start=1))
+
+
+def require_together(components: Sequence[Component], names: Sequence[str]) -> None:
+    """Refuse components of one motion that were not sampled together.
+
+    Raises:
+        RecordError: number of samples, begin or interval differ; with both.
+    """
+    first = components[0]
+    for other, name in zip(components[1:], names[1:], strict=True):
+        pairs = (
+            ("samples", first.times.size, other.times.size),
+            ("s between samples", first.step, other.step),
+        )
+        for what, one, two in pairs:
+            if abs(one - two) > SAME_TIME * min(one, two):
+                raise RecordError(
+                    f"{names[0]} and {name} do not belong together: {one:g} and {two:g} {what}; "
+                    "both components must be of one recording, with the same interval and length"
+                )
+        apart = (
+            float(np.abs(first.times - other.times).max()) if first.times.size == other.times.size else np.inf
+        )
+        if apart > SAME_TIME * first.step:
+            raise RecordError(
+                f"{names[0]} and {name} do not belong together: their samples are up to {apart:g} s apart in time"
+            )

@@ -1,0 +1,89 @@
+"""The text of a motion file, from bytes in any of the usual encodings; binary, empty and huge files are refused.
+
+Messages name the line and never quote it: a file that is no motion may hold what is not for everyone to see.
+"""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from fem.records.record import RecordError
+from fem.runtime.arrays import FloatArray
+
+LARGEST_FILE = 64 * 2**20  #: [bytes]: three million samples and more
+LARGEST_NUMBER = 1e12  #: of seconds or of any unit: above it the integrals of the motion are meaningless
+CONTROL = re.compile(r"[\x00-\x08\x0e-\x19\x1b-\x1f\x7f]")
+NUMERIC = re.compile(r"[-+.0-9eE \t]*", re.ASCII)
+TWO_BYTES = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
+
+
+@dataclass(frozen=True)
+class Source:
+    """Lines of a file, and the name by which messages call it."""
+
+    name: str
+    lines: list[str]
+
+    def line(self, number: int) -> str:
+        """A line, from 1; empty behind the end."""
+        return self.lines[number - 1] if number <= len(self.lines) else ""
+
+    def refused(self, why: str, number: int | None = None) -> RecordError:
+        """The error that names the file and the line."""
+        return RecordError(f"{self.name}{f', line {number}' if number else ''}: {why}")
+
+
+def read_source(path: Path) -> Source:
+    """Read the text of a file.
+
+    Raises:
+        RecordError: no such file, empty, too large, or no text.
+    """
+    if not path.is_file():
+        raise RecordError(f"motion file {path} does not exist or is not a file")
+    try:
+        size = path.stat().st_size
+        if size > LARGEST_FILE:
+            raise RecordError(
+                f"{path.name}: {size} bytes; a motion file may have at most {LARGEST_FILE >> 20} MB"
+            )
+        content = path.read_bytes()
+    except OSError as error:
+        raise RecordError(f"{path.name}: cannot be read ({error.strerror})") from None
+    if not content.strip():
+        raise RecordError(f"{path.name}: the file is empty")
+    text = _decoded(content)
+    if text is None or CONTROL.search(text):
+        raise RecordError(f"{path.name}: not a text file; a motion file holds numbers as text")
+    return Source(path.name, text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a \n").split("\n"))
+
+
+def _decoded(content: bytes) -> str | None:
+    """UTF-16 with its mark, UTF-8, else Latin-1, which every sequence of bytes is."""
+    encodings = [TWO_BYTES[content[:2]]] if content[:2] in TWO_BYTES else ["utf-8-sig", "latin-1"]
+    for encoding in encodings:
+        try:
+            return content.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+    return None
+
+
+def as_numbers(fields: list[str]) -> FloatArray | None:
+    """Fields as numbers, shape (n,); None where one is no finite number of a moderate size.
+
+    Stricter than float(), which takes "1_000", "nan" and digits of other scripts; a Fortran exponent D is taken.
+    """
+    text = " ".join(fields)
+    if not NUMERIC.fullmatch(text):
+        text = text.replace("D", "E").replace("d", "e")
+        if not NUMERIC.fullmatch(text):
+            return None
+        fields = [field.replace("D", "E").replace("d", "e") for field in fields]
+    try:
+        numbers = np.array([float(field) for field in fields], dtype=np.float64)
+    except ValueError:
+        return None
+    return numbers if (np.abs(numbers) <= LARGEST_NUMBER).all() else None
