@@ -18,10 +18,10 @@ from scipy.integrate import DOP853
 from scipy.optimize import brentq, minimize_scalar
 
 from contact.arrays import FloatArray
-from contact.reference.floor_acceleration import FloorAcceleration, FloorSegment
+from contact.reference.floor_acceleration import Acceleration, FloorAcceleration, FloorSegment
 
-Rate = Callable[[FloatArray, float], FloatArray]  #: state, floor acceleration -> time derivative
-Margin = Callable[[FloatArray, float], float]  #: state, floor acceleration -> positive while it holds
+Rate = Callable[[FloatArray, Acceleration], FloatArray]  #: state, floor acceleration -> time derivative
+Margin = Callable[[FloatArray, Acceleration], float]  #: state, floor acceleration -> positive while it holds
 Interpolant = Callable[[float | FloatArray], FloatArray]  #: time -> state, times in the last axis
 
 RELATIVE_TOLERANCE = 1e-12
@@ -112,7 +112,7 @@ def flow(
 def first_crossing(
     guards: Sequence[Guard],
     interpolant: Interpolant,
-    acceleration: Callable[[float], float],
+    acceleration: Callable[[float], Acceleration],
     start: float,
     end: float,
 ) -> tuple[float, str] | None:
@@ -220,7 +220,7 @@ def _rest(
         yield start, end, interpolant
 
 
-def _fallen(guards: Sequence[Guard], state: FloatArray, acceleration: float) -> str | None:
+def _fallen(guards: Sequence[Guard], state: FloatArray, acceleration: Acceleration) -> str | None:
     return next((guard.name for guard in guards if guard.margin(state, acceleration) < 0.0), None)
 
 

@@ -1,13 +1,26 @@
 """Floor accelerations for the analytic references, with the instants of jumps and kinks.
 
-Positive toward +x. The references use the frame of the floor, so they need the acceleration only; the velocity at the
-start is the initial slip velocity of the block.
+Positive toward +x, and upward. The references use the frame of the floor, so they need the accelerations only: in that
+frame gravity is g + a_v, with a_v the vertical acceleration. The velocity at the start is the initial slip velocity of
+the block.
 """
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import NamedTuple
+
+
+class Acceleration(NamedTuple):
+    """Acceleration of the floor at an instant."""
+
+    x: float  #: positive toward +x [m/s2]
+    z: float = 0.0  #: positive upward [m/s2]
+
+
+def _still(time: float) -> float:
+    return 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,10 +32,12 @@ class FloorSegment:
     first: float  #: earliest time at which the function is evaluated [s]
     last: float  #: latest time at which the function is evaluated [s]
     function: Callable[[float], float]
+    vertical: Callable[[float], float] = _still
 
-    def acceleration(self, time: float) -> float:
+    def acceleration(self, time: float) -> Acceleration:
         """Floor acceleration at a time of the segment, ends included [m/s2]."""
-        return float(self.function(min(max(time, self.first), self.last)))
+        inside = min(max(time, self.first), self.last)
+        return Acceleration(float(self.function(inside)), float(self.vertical(inside)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,6 +51,7 @@ class FloorAcceleration:
     function: Callable[[float], float]  #: time [s] -> acceleration, positive toward +x [m/s2]
     break_times: tuple[float, ...] = ()  #: increasing instants of jumps and kinks [s]
     longest_step: float  #: an eighth of a period; inf if piecewise linear [s]
+    vertical: Callable[[float], float] = _still  #: time [s] -> acceleration, positive upward [m/s2]
 
     def __post_init__(self) -> None:
         if not all(math.isfinite(t) for t in self.break_times):
@@ -46,6 +62,15 @@ class FloorAcceleration:
         if not self.longest_step > 0.0:
             raise ValueError(f"floor acceleration: longest_step must be positive, got {self.longest_step} s")
 
+    def with_vertical(self, vertical: "FloorAcceleration") -> "FloorAcceleration":
+        """This motion along x together with another one, positive upward."""
+        return replace(
+            self,
+            vertical=vertical.function,
+            break_times=tuple(sorted({*self.break_times, *vertical.break_times})),
+            longest_step=min(self.longest_step, vertical.longest_step),
+        )
+
     def segments(self, start: float, end: float) -> Iterator[FloorSegment]:
         """The intervals between breaks from start to end [s]."""
         inner = [t for t in self.break_times if start < t < end]
@@ -55,9 +80,16 @@ class FloorAcceleration:
             nudge = 1e-14 * max(abs(left), abs(right), right - left)
             first = left + nudge if left in breaks else left
             last = right - nudge if right in breaks else right
-            yield FloorSegment(start=left, end=right, first=first, last=last, function=self.function)
+            yield FloorSegment(
+                start=left,
+                end=right,
+                first=first,
+                last=last,
+                function=self.function,
+                vertical=self.vertical,
+            )
 
-    def just_after(self, time: float) -> float:
+    def just_after(self, time: float) -> Acceleration:
         """Acceleration immediately after a time, the limit from the right at a break [m/s2]."""
         later = next((t for t in self.break_times if t > time), math.inf)
         segment = next(self.segments(time, min(later, time + 1.0)))
@@ -66,7 +98,7 @@ class FloorAcceleration:
 
 def still_floor() -> FloorAcceleration:
     """A floor that does not move, or moves at constant velocity."""
-    return FloorAcceleration(function=lambda time: 0.0, longest_step=math.inf)
+    return FloorAcceleration(function=_still, longest_step=math.inf)
 
 
 def sine_floor(*, amplitude: float, angular_frequency: float, phase: float = 0.0) -> FloorAcceleration:

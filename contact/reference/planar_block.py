@@ -2,7 +2,8 @@
 
 Event-driven: in each state the equations of `contact.reference.planar_equations` are integrated to 1e-12 until the
 contact changes (slip begins or ends, a corner meets the floor, the base lifts). Rotation and slip are
-positive toward +x. Free flight is detected and reported, but not integrated.
+positive toward +x. A floor that moves up and down changes gravity in its frame to g + a_v. Free flight is detected and
+reported, but not integrated.
 Shenton and Jones, J. Engng Mech. ASCE 117 (1991), parts I and II; Shenton, Criteria for initiation of slide,
 rock, and slide-rock rigid-body modes, ibid. 122 (1996).
 """
@@ -15,7 +16,7 @@ import numpy as np
 
 from contact.arrays import FloatArray
 from contact.reference.event_driven import EventError, Guard, Passage, Piece, Rate, flow, turning_point
-from contact.reference.floor_acceleration import FloorAcceleration
+from contact.reference.floor_acceleration import Acceleration, FloorAcceleration
 from contact.reference.planar_equations import CornerContact, corner_impact, rock, slide_rock
 from contact.reference.planar_motion import (
     PlanarImpact,
@@ -50,7 +51,7 @@ class PlanarBlock:
         """Whether it can slide with its whole base on the floor: mu_k H <= B."""
         return self.mu_kinetic * self.body.centroid_height <= self.body.half_width
 
-    def select(self, values: FloatArray, side: int, acceleration: float) -> PlanarState:
+    def select(self, values: FloatArray, side: int, acceleration: Acceleration) -> PlanarState:
         """The next state of a block with given position and velocities.
 
         Args:
@@ -62,29 +63,39 @@ class PlanarBlock:
         direction = int(np.sign(slip_velocity))
         if side:
             return self._on_corner(values, side, direction, acceleration)
+        if self.pressure(acceleration) < 0.0:  # the floor falls away
+            return PlanarState(mode=PlanarMode.OUTSIDE)
         if direction:
             if self.slides_flat:
                 return PlanarState(mode=PlanarMode.SLIDE, direction=direction)
             return self._on_corner(values, direction, direction, acceleration)
         if self.rest_margin(acceleration) >= 0.0:
             return PlanarState(mode=PlanarMode.REST)
-        pushed = -int(np.sign(acceleration))  # against the acceleration of the floor
-        if abs(acceleration) > self.body.uplift_acceleration:
+        pushed = -int(np.sign(acceleration.x))  # against the acceleration of the floor
+        if abs(acceleration.x) > self.body.uplift_acceleration * self._share_of_gravity(acceleration):
             rocking = self._on_corner(values, pushed, 0, acceleration)
             if rocking.mode is PlanarMode.ROCK or not self.slides_flat:
                 return rocking
         return PlanarState(mode=PlanarMode.SLIDE, direction=pushed)
 
-    def rest_margin(self, acceleration: float) -> float:
+    def pressure(self, acceleration: Acceleration) -> float:
+        """Normal force on the whole base per mass; negative: the floor falls faster than the block [m/s2]."""
+        return self.body.gravity + acceleration.z
+
+    def rest_margin(self, acceleration: Acceleration) -> float:
         """Margin of the floor acceleration for rest on the whole base [m/s2]."""
         limit = min(self.mu_static * self.body.gravity, self.body.uplift_acceleration)
-        return limit - abs(acceleration)
+        return limit * self._share_of_gravity(acceleration) - abs(acceleration.x)
+
+    def _share_of_gravity(self, acceleration: Acceleration) -> float:
+        """(g + a_v)/g [-]."""
+        return 1.0 + acceleration.z / self.body.gravity
 
     def stick_margin(self, contact: CornerContact) -> float:
         """Margin of friction at a sticking corner, per mass [m/s2]."""
         return self.mu_static * contact.normal - abs(contact.friction)
 
-    def contact(self, state: PlanarState, values: FloatArray, acceleration: float) -> CornerContact:
+    def contact(self, state: PlanarState, values: FloatArray, acceleration: Acceleration) -> CornerContact:
         """Accelerations and reactions of a block on one corner."""
         tilt, rate = float(values[2]), float(values[3])
         if state.direction == 0:
@@ -99,7 +110,9 @@ class PlanarBlock:
             direction=state.direction,
         )
 
-    def _on_corner(self, values: FloatArray, side: int, direction: int, acceleration: float) -> PlanarState:
+    def _on_corner(
+        self, values: FloatArray, side: int, direction: int, acceleration: Acceleration
+    ) -> PlanarState:
         state = PlanarState(mode=PlanarMode.ROCK, side=side)
         if direction == 0:
             sticking = self.contact(state, values, acceleration)
@@ -236,12 +249,11 @@ def _follow(
 
 
 def _rate(block: PlanarBlock, state: PlanarState) -> Rate:
-    friction = -state.direction * block.mu_kinetic * block.body.gravity
+    def slide(values: FloatArray, acceleration: Acceleration) -> FloatArray:
+        friction = -state.direction * block.mu_kinetic * block.pressure(acceleration)
+        return np.array([values[1], friction - acceleration.x, 0.0, 0.0])
 
-    def slide(values: FloatArray, acceleration: float) -> FloatArray:
-        return np.array([values[1], friction - acceleration, 0.0, 0.0])
-
-    def turn(values: FloatArray, acceleration: float) -> FloatArray:
+    def turn(values: FloatArray, acceleration: Acceleration) -> FloatArray:
         contact = block.contact(state, values, acceleration)
         return np.array([values[1], contact.slip_acceleration, values[3], contact.tilt_acceleration])
 
@@ -253,12 +265,12 @@ def _guards(block: PlanarBlock, state: PlanarState) -> tuple[Guard, ...]:
         return (Guard(name="breaks loose", margin=lambda values, a: block.rest_margin(a)),)
     stops = Guard(name="stops", margin=lambda values, a: state.direction * float(values[1]))
     if state.mode is PlanarMode.SLIDE:
-        return (stops,)
+        return (stops, Guard(name="leaves the floor", margin=lambda values, a: block.pressure(a)))
 
-    def stick(values: FloatArray, acceleration: float) -> float:
+    def stick(values: FloatArray, acceleration: Acceleration) -> float:
         return block.stick_margin(block.contact(state, values, acceleration))
 
-    def normal(values: FloatArray, acceleration: float) -> float:
+    def normal(values: FloatArray, acceleration: Acceleration) -> float:
         return block.contact(state, values, acceleration).normal
 
     corner = (
@@ -270,7 +282,7 @@ def _guards(block: PlanarBlock, state: PlanarState) -> tuple[Guard, ...]:
     return (*corner, stops, Guard(name="leaves the floor", margin=normal))
 
 
-def _can_lie(block: PlanarBlock, slip_velocity: float, acceleration: float) -> bool:
+def _can_lie(block: PlanarBlock, slip_velocity: float, acceleration: Acceleration) -> bool:
     """Whether the base of a block that does not turn may lie on the floor."""
     if slip_velocity != 0.0:
         return block.slides_flat

@@ -4,6 +4,7 @@ Frame of the floor; all forces per unit mass of the block. The state is (slip, s
 rate): `slip` is the sliding of the supporting corner over the floor, positive along +x; `tilt` >= 0 is the
 angle from the base about the corner on `side` (+1 right, -1 left), so that rotation = side x tilt. Friction
 is positive where it pushes the block toward +x; a slide's direction is the sign of the slip velocity.
+A floor that moves up and down changes gravity in its frame to g + a_v.
 Shenton and Jones, Base excitation of rigid bodies I: formulation, J. Engng Mech. ASCE 117 (1991).
 """
 
@@ -13,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.arrays import FloatArray
+from contact.reference.floor_acceleration import Acceleration
 from contact.reference.rigid_block import RigidBlock
 
 
@@ -31,23 +33,20 @@ def centroidal_ratio(block: RigidBlock) -> float:
     return 1.0 / ((block.inertia_ratio - 1.0) * block.radius**2)
 
 
-def rock(
-    block: RigidBlock, side: int, tilt: float, tilt_rate: float, floor_acceleration: float
-) -> CornerContact:
+def rock(block: RigidBlock, side: int, tilt: float, tilt_rate: float, floor: Acceleration) -> CornerContact:
     """The corner does not slide; friction follows from the equations of motion.
 
     Shenton and Jones (1991), rock mode; equals the rocking equation of `contact.reference.rocking`.
     """
     lean = block.slenderness_angle - tilt
-    radius, gravity = block.radius, block.gravity
-    pull = gravity * math.sin(lean) + side * floor_acceleration * math.cos(lean)
+    radius, gravity = block.radius, block.gravity + floor.z
+    pull = gravity * math.sin(lean) + side * floor.x * math.cos(lean)
     acceleration = -pull / (block.inertia_ratio * radius)
     return CornerContact(
         tilt_acceleration=acceleration,
         slip_acceleration=0.0,
         normal=gravity + radius * (math.sin(lean) * acceleration - math.cos(lean) * tilt_rate**2),
-        friction=floor_acceleration
-        + side * radius * (math.cos(lean) * acceleration + math.sin(lean) * tilt_rate**2),
+        friction=floor.x + side * radius * (math.cos(lean) * acceleration + math.sin(lean) * tilt_rate**2),
     )
 
 
@@ -56,7 +55,7 @@ def slide_rock(
     side: int,
     tilt: float,
     tilt_rate: float,
-    floor_acceleration: float,
+    floor: Acceleration,
     *,
     mu_kinetic: float,
     direction: int,
@@ -69,15 +68,13 @@ def slide_rock(
     """
     lean = block.slenderness_angle - tilt
     sine, cosine = math.sin(lean), math.cos(lean)
-    radius, gravity = block.radius, block.gravity
+    radius, gravity = block.radius, block.gravity + floor.z
     arm = sine - side * direction * mu_kinetic * cosine  # of the reaction about the centroid, over R
     factor = 1.0 + arm * sine / (block.inertia_ratio - 1.0)
     normal = (gravity - radius * cosine * tilt_rate**2) / factor if factor > 0.0 else math.nan
     acceleration = -radius * arm * normal * centroidal_ratio(block)
     friction = -direction * mu_kinetic * normal
-    slip_acceleration = (
-        friction - floor_acceleration - side * radius * (cosine * acceleration + sine * tilt_rate**2)
-    )
+    slip_acceleration = friction - floor.x - side * radius * (cosine * acceleration + sine * tilt_rate**2)
     return CornerContact(
         tilt_acceleration=acceleration,
         slip_acceleration=slip_acceleration,

@@ -4,7 +4,9 @@ Large rotation, any floor acceleration, impacts by restitution; between impacts 
 integrated to 1e-12 and impacts, uplift and overturning are located to rounding. Rotation is positive
 toward +x (about the right corner); a floor that accelerates toward +x tilts the block toward -x:
 
-    rotation'' = -p^2 [sin(s al - rotation) + (a_g/g) cos(s al - rotation)],   s = sign of the rotation.
+    rotation'' = -p^2 [(1 + a_v/g) sin(s al - rotation) + (a_g/g) cos(s al - rotation)],   s = sign of the rotation.
+
+A floor that falls with more than g leaves the block, and the motion ends there.
 
 Housner, BSSA 53 (1963); Yim, Chopra, Penzien, Earthquake Engng Struct. Dyn. 8 (1980).
 """
@@ -18,7 +20,7 @@ import numpy as np
 
 from contact.arrays import FloatArray
 from contact.reference.event_driven import EventError, Guard, Piece, Rate, flow, sample, turning_point
-from contact.reference.floor_acceleration import FloorAcceleration
+from contact.reference.floor_acceleration import Acceleration, FloorAcceleration
 from contact.reference.rigid_block import RigidBlock
 
 MAX_EVENTS = 100_000
@@ -28,6 +30,7 @@ class RockingOutcome(Enum):
     """How the motion of a block that cannot slide ended."""
 
     REST, ROCK, OVERTURNED = "rest", "rock", "overturned"
+    OUTSIDE = "outside the model"  #: the floor left the block
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +60,7 @@ class RockingMotion:
     impacts: tuple[RockingImpact, ...]
     peaks: tuple[RockingPeak, ...]
     uplifts: tuple[float, ...]  #: instants at which the block left the rest on its base [s]
-    end: float  #: duration asked for, or earlier: overturned or stopped at the first impact [s]
+    end: float  #: duration asked for, or earlier: overturned, left the floor, stopped at the first impact [s]
     overturned_at: float | None  #: rotation of 90 degrees reached [s]
     largest_rotation: float  #: largest |rotation| [rad]
     pieces: tuple[Piece, ...]
@@ -116,6 +119,7 @@ def simulate_rocking(
     impacts: list[RockingImpact] = []
     uplifts: list[float] = []
     overturned_at = None
+    left = False
 
     time, side = 0.0, int(np.sign(rotation)) or int(np.sign(angular_velocity))
     state = side * np.array([rotation, angular_velocity])  # angle from the base, and its rate
@@ -138,14 +142,17 @@ def simulate_rocking(
         if passage.event == "overturned":
             overturned_at = time
             break
+        if passage.event == "leaves the floor":
+            left = True
+            break
         acceleration = floor.just_after(time)
         if passage.event == "uplift":
             uplifts.append(time)
-            side, state = -int(np.sign(acceleration)), np.zeros(2)
+            side, state = -int(np.sign(acceleration.x)), np.zeros(2)
             continue
         before = float(state[1])
         after = -used * before
-        stays = after < least_velocity and abs(acceleration) <= block.uplift_acceleration
+        stays = after < least_velocity and _rest_margin(block, acceleration) >= 0.0
         after = 0.0 if stays else after
         impacts.append(RockingImpact(time=time, velocity_before=side * before, velocity_after=-side * after))
         if stop_at_impact:
@@ -161,6 +168,8 @@ def simulate_rocking(
     moved = bool(impacts or uplifts or rotation or angular_velocity)
     if overturned_at is not None:
         outcome = RockingOutcome.OVERTURNED
+    elif left:
+        outcome = RockingOutcome.OUTSIDE
     else:
         outcome = RockingOutcome.ROCK if moved else RockingOutcome.REST
     return RockingMotion(
@@ -215,24 +224,32 @@ def first_swing_threshold(
 def _rate(block: RigidBlock, side: int) -> Rate:
     squared, slenderness, gravity = block.frequency_parameter**2, block.slenderness_angle, block.gravity
 
-    def rate(state: FloatArray, acceleration: float) -> FloatArray:
+    def rate(state: FloatArray, acceleration: Acceleration) -> FloatArray:
         lean = slenderness - state[0]
-        pull = math.sin(lean) + side * acceleration / gravity * math.cos(lean)
+        weight = 1.0 + acceleration.z / gravity
+        pull = weight * math.sin(lean) + side * acceleration.x / gravity * math.cos(lean)
         return np.array([state[1], -squared * pull])
 
     return rate
 
 
+def _rest_margin(block: RigidBlock, acceleration: Acceleration) -> float:
+    """Margin of the floor acceleration for rest on the whole base [m/s2]."""
+    return block.uplift_acceleration * (1.0 + acceleration.z / block.gravity) - abs(acceleration.x)
+
+
 def _guards(block: RigidBlock, side: int) -> tuple[Guard, ...]:
+    leaves = Guard(name="leaves the floor", margin=lambda state, a: block.gravity + a.z)
     if side == 0:
-        return (Guard(name="uplift", margin=lambda state, a: block.uplift_acceleration - abs(a)),)
+        return (leaves, Guard(name="uplift", margin=lambda state, a: _rest_margin(block, a)))
     return (
+        leaves,
         Guard(name="impact", margin=lambda state, a: float(state[0])),
         Guard(name="overturned", margin=lambda state, a: 0.5 * math.pi - float(state[0])),
     )
 
 
-def _first_step(block: RigidBlock, side: int, state: FloatArray, acceleration: float) -> float | None:
+def _first_step(block: RigidBlock, side: int, state: FloatArray, acceleration: Acceleration) -> float | None:
     """A step well inside the hop that follows an impact [s]."""
     if side == 0 or state[0] > 0.0:
         return None

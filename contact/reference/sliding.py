@@ -2,7 +2,8 @@
 
 A body that does not rotate on a floor with acceleration a_g, in the frame of the floor. It sticks while
 |a_g| <= mu_s g; it slides with slip'' = -a_g - mu_k g sign(slip'); where the slip velocity vanishes it sticks
-again if it can. Slip is positive toward +x. The law is set-valued: no creep, no regularisation.
+again if it can. On a floor that moves up and down g is g + a_v; one that falls with more than g leaves the body, and
+the motion ends there. Slip is positive toward +x. The law is set-valued: no creep, no regularisation.
 Den Hartog, Trans. ASME APM-53-9 (1931); Westermo and Udwadia, Earthquake Engng Struct. Dyn. 11 (1983).
 """
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from contact.arrays import FloatArray
 from contact.reference.event_driven import EventError, Guard, Piece, Rate, flow, sample
-from contact.reference.floor_acceleration import FloorAcceleration
+from contact.reference.floor_acceleration import Acceleration, FloorAcceleration
 
 MAX_EVENTS = 100_000
 
@@ -51,7 +52,7 @@ class SlidingMotion:
     """Motion of a slider."""
 
     intervals: tuple[SlipInterval, ...]
-    end: float  #: [s]
+    end: float  #: duration asked for, or when it left the floor [s]
     pieces: tuple[Piece, ...]
 
     def at(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -129,8 +130,10 @@ def simulate_sliding(
         time, state = passage.time, passage.state
         if passage.event is None:
             break
+        if passage.event == "leaves the floor":
+            break
         if passage.event == "breaks loose":
-            direction = -int(np.sign(floor.just_after(time)))
+            direction = -int(np.sign(floor.just_after(time).x))
         else:
             state = np.array([state[0], 0.0])
             direction = 0  # the next interval checks at once whether it sticks
@@ -152,12 +155,19 @@ def check_friction(mu_static: float, mu_kinetic: float) -> None:
 
 
 def _rate(slider: RigidSlider, direction: int) -> Rate:
-    friction = -direction * slider.mu_kinetic * slider.gravity
-    return lambda state, acceleration: np.array([state[1], friction - acceleration])
+    def rate(state: FloatArray, acceleration: Acceleration) -> FloatArray:
+        friction = -direction * slider.mu_kinetic * (slider.gravity + acceleration.z)
+        return np.array([state[1], friction - acceleration.x])
+
+    return rate
 
 
 def _guards(slider: RigidSlider, direction: int) -> tuple[Guard, ...]:
+    leaves = Guard(name="leaves the floor", margin=lambda state, a: slider.gravity + a.z)
     if direction == 0:
-        limit = slider.mu_static * slider.gravity
-        return (Guard(name="breaks loose", margin=lambda state, a: limit - abs(a)),)
-    return (Guard(name="stops", margin=lambda state, a: direction * float(state[1])),)
+
+        def holds(state: FloatArray, acceleration: Acceleration) -> float:
+            return slider.mu_static * (slider.gravity + acceleration.z) - abs(acceleration.x)
+
+        return (leaves, Guard(name="breaks loose", margin=holds))
+    return (leaves, Guard(name="stops", margin=lambda state, a: direction * float(state[1])))

@@ -17,6 +17,7 @@ from contact.reference.closed_forms_overturning import (
     velocity_step_threshold,
 )
 from contact.reference.floor_acceleration import (
+    Acceleration,
     half_sine_pulse,
     one_sine_pulse,
     rectangular_pulse,
@@ -129,7 +130,7 @@ GRAVITY = 9.81
 def test_friction_to_begin_rocking_is_that_of_the_equations_of_motion(slenderness, surplus):
     ratio = surplus / slenderness
     block = RigidBlock.homogeneous(width=1.0, height=slenderness)
-    contact = rock(block, 1, 0.0, 0.0, -ratio * GRAVITY)
+    contact = rock(block, 1, 0.0, 0.0, Acceleration(-ratio * GRAVITY))
     assert abs(contact.friction) / contact.normal == pytest.approx(
         rocking_friction(ratio, slenderness), rel=1e-12
     )

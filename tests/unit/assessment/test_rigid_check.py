@@ -171,7 +171,7 @@ class TestMovingFloor:
         floor = floor_of(model.motion, driven_until=3.0)
         assert set(np.round(times[1:], 6)) <= set(np.round(floor.break_times, 6))
         assert floor.function(0.025) == pytest.approx(0.5 * 3.5 * math.sin(7.0 * 0.05), rel=1e-6)
-        assert floor.just_after(2.5) == 0.0
+        assert floor.just_after(2.5).x == 0.0
         _, check = checked(str(tmp_path / "case.toml"))
         assert check.result.meaningful is True
         assert check.result.first_impact_s.run == pytest.approx(check.result.first_impact_s.block, rel=3e-3)

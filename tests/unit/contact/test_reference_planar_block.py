@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from contact.reference.floor_acceleration import FloorAcceleration, sine_floor, still_floor
+from contact.reference.floor_acceleration import Acceleration, FloorAcceleration, sine_floor, still_floor
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 from contact.reference.planar_equations import energy
 from contact.reference.planar_motion import PlanarMode
@@ -66,7 +66,7 @@ def test_sliding_on_a_corner_turns_energy_into_friction_heat():
     values = np.concatenate(
         [p.interpolant(times[(times >= p.start) & (times < p.end)]).T for p in motion.pieces]
     )
-    normal = np.array([block.contact(state, y, 0.0).normal for y in values])
+    normal = np.array([block.contact(state, y, Acceleration(0.0)).normal for y in values])
     power = 0.3 * normal * np.abs(values[:, 1])
     heat = np.trapezoid(power, dx=times[1])
     loss = energy(STACK, state.side, values[0]) - energy(STACK, state.side, values[-1])
@@ -122,7 +122,11 @@ def test_a_jump_of_the_floor_that_exceeds_friction_for_an_instant_is_not_missed(
     block = PlanarBlock(body=STACK, mu_static=0.4, mu_kinetic=0.4)
     calm = simulate_planar_block(block, still_floor(), duration=0.05, rotation=0.1)
     values, state = calm.pieces[-1].interpolant(0.05), calm.states[-1]
-    limit = brentq(lambda a: block.stick_margin(block.contact(state, values, a)), 0.0, 20.0, xtol=1e-14)
+
+    def margin(peak):
+        return block.stick_margin(block.contact(state, values, Acceleration(peak)))
+
+    limit = brentq(margin, 0.0, 20.0, xtol=1e-14)
     times = (0.0, 0.05, 0.1)
     for factor, slips in ((1.0 + 1e-6, True), (1.0 - 1e-6, False)):
 

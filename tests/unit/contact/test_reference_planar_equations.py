@@ -7,11 +7,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from contact.reference.floor_acceleration import Acceleration
 from contact.reference.planar_equations import corner_impact, energy, rock, slide_rock
 from contact.reference.rigid_block import RigidBlock
 
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
 ODD = RigidBlock(half_width=0.5, centroid_height=0.8, gravity=9.81, inertia_ratio=1.25)
+
+
+#: tilt, its rate, and the floor's acceleration along x and upward
+MOTIONS = [
+    (0.0, 0.0, Acceleration(4.0)),
+    (0.1, 0.6, Acceleration(-3.0, 2.5)),
+    (0.7, -1.1, Acceleration(2.0, -4.0)),
+]
 
 
 def centroid(block, side, slip, tilt):
@@ -37,15 +46,15 @@ def newton_euler_residual(block, side, tilt, rate, floor, contact):
     clockwise = corner[1] * force[0] - corner[0] * force[1]
     inertia = (block.inertia_ratio - 1.0) * block.radius**2
     return [
-        acceleration[0] + floor - force[0],
-        acceleration[1] + block.gravity - force[1],
+        acceleration[0] + floor.x - force[0],
+        acceleration[1] + block.gravity + floor.z - force[1],
         inertia * side * contact.tilt_acceleration - clockwise,
     ]
 
 
 @pytest.mark.parametrize("block", [STACK, ODD])
 @pytest.mark.parametrize("side", [1, -1])
-@pytest.mark.parametrize(("tilt", "rate", "floor"), [(0.0, 0.0, 4.0), (0.1, 0.6, -3.0), (0.7, -1.1, 2.0)])
+@pytest.mark.parametrize(("tilt", "rate", "floor"), MOTIONS)
 def test_rocking_obeys_newton_and_euler(block, side, tilt, rate, floor):
     contact = rock(block, side, tilt, rate, floor)
     assert newton_euler_residual(block, side, tilt, rate, floor, contact) == pytest.approx(
@@ -56,7 +65,7 @@ def test_rocking_obeys_newton_and_euler(block, side, tilt, rate, floor):
 @pytest.mark.parametrize("block", [STACK, ODD])
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("direction", [1, -1])
-@pytest.mark.parametrize(("tilt", "rate", "floor"), [(0.0, 0.0, 4.0), (0.1, 0.6, -3.0), (0.7, -1.1, 2.0)])
+@pytest.mark.parametrize(("tilt", "rate", "floor"), MOTIONS)
 def test_slide_rocking_obeys_newton_euler_and_coulomb(block, side, direction, tilt, rate, floor):
     contact = slide_rock(block, side, tilt, rate, floor, mu_kinetic=0.35, direction=direction)
     assert newton_euler_residual(block, side, tilt, rate, floor, contact) == pytest.approx(
@@ -66,10 +75,10 @@ def test_slide_rocking_obeys_newton_euler_and_coulomb(block, side, direction, ti
 
 
 def test_slide_rocking_with_the_friction_that_rocking_needs_does_not_slide():
-    needed = rock(STACK, 1, 0.05, 0.2, -3.0)
+    needed = rock(STACK, 1, 0.05, 0.2, Acceleration(-3.0))
     mu = abs(needed.friction) / needed.normal
     direction = -int(math.copysign(1.0, needed.friction))
-    sliding = slide_rock(STACK, 1, 0.05, 0.2, -3.0, mu_kinetic=mu, direction=direction)
+    sliding = slide_rock(STACK, 1, 0.05, 0.2, Acceleration(-3.0), mu_kinetic=mu, direction=direction)
     assert sliding.slip_acceleration == pytest.approx(0.0, abs=1e-13)
     assert sliding.tilt_acceleration == pytest.approx(needed.tilt_acceleration, rel=1e-13)
 
@@ -77,8 +86,8 @@ def test_slide_rocking_with_the_friction_that_rocking_needs_does_not_slide():
 def test_painleve_is_reported_and_begins_at_four_thirds():
     # homogeneous: 1 + 3 sin^2 - 3 mu sin cos vanishes first at tan(lean) = 1/2, mu = 4/3.
     block = RigidBlock.homogeneous(width=1.0, height=2.0)
-    below = slide_rock(block, 1, 0.0, 0.0, -20.0, mu_kinetic=1.33, direction=1)
-    above = slide_rock(block, 1, 0.0, 0.0, -20.0, mu_kinetic=1.34, direction=1)
+    below = slide_rock(block, 1, 0.0, 0.0, Acceleration(-20.0), mu_kinetic=1.33, direction=1)
+    above = slide_rock(block, 1, 0.0, 0.0, Acceleration(-20.0), mu_kinetic=1.34, direction=1)
     assert below.normal > 0.0
     assert math.isnan(above.normal)
 

@@ -1,0 +1,120 @@
+"""The references on a floor that moves up and down: gravity in its frame is g + a_v."""
+
+import math
+
+import numpy as np
+import pytest
+
+from contact.reference.floor_acceleration import (
+    FloorAcceleration,
+    half_sine_pulse,
+    rectangular_pulse,
+    sine_floor,
+    still_floor,
+)
+from contact.reference.planar_block import PlanarBlock, simulate_planar_block
+from contact.reference.planar_motion import PlanarMode
+from contact.reference.rigid_block import RigidBlock
+from contact.reference.rocking import RockingOutcome, simulate_rocking
+from contact.reference.sliding import RigidSlider, simulate_sliding
+
+GRAVITY = 9.81
+TIMES = np.linspace(0.0, 4.0, 201)
+SHAKING = sine_floor(amplitude=0.1, angular_frequency=8.0)
+
+
+def stack(gravity=GRAVITY):
+    return RigidBlock.homogeneous(width=1.1, height=4.0, gravity=gravity)
+
+
+def planar(gravity=GRAVITY, mu=0.32):
+    return PlanarBlock(body=stack(gravity), mu_static=mu, mu_kinetic=0.9 * mu)
+
+
+def constant(acceleration):
+    """A constant vertical acceleration, in addition to the horizontal one."""
+    return SHAKING.with_vertical(FloorAcceleration(function=lambda t: acceleration, longest_step=math.inf))
+
+
+@pytest.mark.parametrize("vertical", [-4.0, 3.0])
+class TestAConstantVerticalAccelerationIsAnotherGravity:
+    def test_of_the_rocking_block(self, vertical):
+        heavier = simulate_rocking(stack(GRAVITY + vertical), SHAKING, duration=4.0)
+        moved = simulate_rocking(stack(), constant(vertical), duration=4.0)
+        assert len(moved.impacts) == len(heavier.impacts)
+        assert moved.at(TIMES)[0] == pytest.approx(heavier.at(TIMES)[0], abs=1e-9, nan_ok=True)
+        assert heavier.largest_rotation > 0.01
+
+    def test_of_the_slider(self, vertical):
+        heavier = simulate_sliding(
+            RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=GRAVITY + vertical), SHAKING, duration=4.0
+        )
+        slider = RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=GRAVITY)
+        moved = simulate_sliding(slider, constant(vertical), duration=4.0)
+        assert moved.at(TIMES)[0] == pytest.approx(heavier.at(TIMES)[0], abs=1e-11)
+        assert heavier.largest_slip > 0.01
+
+    def test_of_the_block_that_slides_and_rocks(self, vertical):
+        heavier = simulate_planar_block(planar(GRAVITY + vertical), SHAKING, duration=4.0)
+        moved = simulate_planar_block(planar(), constant(vertical), duration=4.0)
+        assert moved.outcome is heavier.outcome is PlanarMode.SLIDE_ROCK
+        assert heavier.largest_rotation > 0.02
+        assert moved.at(TIMES).rotation == pytest.approx(heavier.at(TIMES).rotation, abs=1e-8, nan_ok=True)
+        assert moved.at(TIMES).slip == pytest.approx(heavier.at(TIMES).slip, abs=1e-8, nan_ok=True)
+
+
+def test_a_slider_loses_what_friction_takes_of_a_changing_weight():
+    # v' = -mu (g + a_v): with one sine pulse upward the velocity falls by mu (g T + 2 peak L/pi).
+    floor = still_floor().with_vertical(half_sine_pulse(peak=5.0, duration=0.3, delay=0.1))
+    slider = RigidSlider(mu_static=0.25, mu_kinetic=0.25, gravity=GRAVITY)
+    motion = simulate_sliding(slider, floor, duration=0.5, slip_velocity=3.0)
+    velocity = float(motion.at(np.array([0.5]))[1][0])
+    assert velocity == pytest.approx(3.0 - 0.25 * (GRAVITY * 0.5 + 5.0 * 0.6 / math.pi), rel=1e-11)
+
+
+def test_uplift_and_slip_begin_where_the_weight_of_the_moment_allows_it():
+    # |a| against (g + a_v) B/H and mu (g + a_v): a ramp of a_v downward under a constant push.
+    push = 2.0
+    ramp = FloorAcceleration(function=lambda t: -10.0 * t, longest_step=math.inf)
+    floor = rectangular_pulse(peak=push, duration=2.0).with_vertical(ramp)
+    rocking = simulate_rocking(stack(), floor, duration=0.5)
+    assert rocking.uplifts[0] == pytest.approx((GRAVITY - push * 4.0 / 1.1) / 10.0, rel=1e-10)
+    sliding = simulate_sliding(
+        RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=GRAVITY), floor, duration=0.5
+    )
+    assert sliding.intervals[0].end == pytest.approx((GRAVITY - push / 0.4) / 10.0, rel=1e-10)
+    both = simulate_planar_block(planar(mu=1.0), floor, duration=0.5)
+    assert both.transitions[1].time == pytest.approx(rocking.uplifts[0], rel=1e-12)
+    assert both.transitions[1].state.mode is PlanarMode.ROCK
+
+
+@pytest.mark.parametrize("push", [0.0, 1.0])
+@pytest.mark.parametrize("slip_velocity", [0.0, 0.5])
+def test_a_floor_that_falls_faster_than_the_block_leaves_it(push, slip_velocity):
+    fall = rectangular_pulse(peak=-1.01 * GRAVITY, duration=1.0, delay=0.1)
+    floor = rectangular_pulse(peak=push, duration=2.0).with_vertical(fall)
+    block = PlanarBlock(body=RigidBlock.homogeneous(width=1.1, height=1.0), mu_static=0.4, mu_kinetic=0.4)
+    motion = simulate_planar_block(block, floor, duration=1.0, slip_velocity=slip_velocity)
+    assert motion.outcome is PlanarMode.OUTSIDE
+    assert motion.end == pytest.approx(0.1, abs=1e-12)
+    slider = RigidSlider(mu_static=0.4, mu_kinetic=0.4, gravity=GRAVITY)
+    assert simulate_sliding(slider, floor, duration=1.0, slip_velocity=slip_velocity).end == motion.end
+    rocking = simulate_rocking(block.body, floor, duration=1.0)
+    assert rocking.outcome is RockingOutcome.OUTSIDE
+    assert rocking.end == motion.end
+
+
+def test_energy_of_rocking_grows_by_the_work_of_the_vertical_floor():
+    # In the frame of the floor the force -m a_v acts at the centroid: its work is that on the centroid's height.
+    floor = still_floor().with_vertical(sine_floor(amplitude=0.1, angular_frequency=6.0))
+    block = stack()
+    motion = simulate_rocking(block, floor, duration=0.5, rotation=0.8 * block.slenderness_angle)
+    assert not motion.impacts
+    times = np.linspace(0.0, 0.5, 20001)
+    rotation, rate = motion.at(times)
+    lean = block.slenderness_angle - rotation
+    height, rise = block.radius * np.cos(lean), block.radius * np.sin(lean) * rate
+    vertical = -0.1 * 36.0 * np.sin(6.0 * times)
+    energy = 0.5 * block.inertia_ratio * block.radius**2 * rate**2 + GRAVITY * height
+    assert energy[-1] - energy[0] == pytest.approx(np.trapezoid(-vertical * rise, times), rel=1e-7)
+    assert abs(energy[-1] - energy[0]) > 1e-3
