@@ -1,7 +1,7 @@
 """The axes of a study: each is one key of a case and its values."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Annotated, Any, Literal, TypeVar, get_args
 
@@ -22,6 +22,9 @@ NO_AXIS = {
     "output.fields_s": "no fields are kept",
 }
 MOST_VALUES = 1_000_000
+#: the key whose values are motions: files, or pairs of a horizontal and a vertical file
+MOTION_FILE = "motion.file"
+A_PAIR = 'a pair is ["horizontal file", "vertical file"]'
 
 ModelT = TypeVar("ModelT", bound=BaseModel)
 
@@ -45,6 +48,8 @@ class Axis:
     values: tuple[Any, ...]
     scale: str = "list"  #: linear | log | list
     unit: str = ""  #: of the key
+    #: further keys that each value sets, and what to; None: not set
+    following: Mapping[str, tuple[str | None, ...]] = field(default_factory=dict)
 
     @cached_property
     def is_numeric(self) -> bool:
@@ -62,6 +67,26 @@ def point_of(axes: Sequence[Axis], number: int) -> dict[str, Any]:
     """Values of the axes at a point, by key."""
     places = np.unravel_index(number, shape_of(axes))
     return {axis.key: axis.values[k] for axis, k in zip(axes, places, strict=True)}
+
+
+def with_following(axes: Iterable[Axis], point: Mapping[str, Any]) -> dict[str, Any]:
+    """Values at a point, those of the keys that follow the axes added."""
+    found = dict(point)
+    for axis in axes:
+        if axis.following:
+            place = axis.values.index(point[axis.key])
+            found |= {key: some[place] for key, some in axis.following.items() if some[place] is not None}
+    return found
+
+
+def first_motion(axes: Iterable[Axis]) -> dict[str, Any]:
+    """The keys that set the first motion of a set, the first pair if there is one; none without a set."""
+    for axis in axes:
+        if axis.key == MOTION_FILE:
+            verticals = axis.following.get("vertical.file", ())
+            place = next((k for k, name in enumerate(verticals) if name), 0)
+            return with_following([axis], {axis.key: axis.values[place]})
+    return {}
 
 
 def axis_label(axis: Axis) -> str:
@@ -125,6 +150,9 @@ def read_axis(key: str, given: Any) -> Axis:
     field = check_varied(key)
     quantity = quantity_of(field.annotation, field.metadata)
     unit = quantity.unit if quantity else ""
+    if key == MOTION_FILE:
+        names, following = read_motion_files(given)
+        return Axis(key=key, values=names, following=following)
     if isinstance(given, list):
         values, scale = _listed(given), "list"
     elif isinstance(given, Mapping):
@@ -139,6 +167,47 @@ def read_axis(key: str, given: Any) -> Axis:
     for value in values:
         _check(field, quantity, unit, value)
     return Axis(key=key, values=values, scale=scale, unit=unit)
+
+
+def read_motion_files(given: Any) -> tuple[tuple[str, ...], dict[str, tuple[str | None, ...]]]:
+    """Read a set of motions: file names, and pairs of a horizontal and a vertical file.
+
+    Returns:
+        The horizontal files, and the keys that go with each; none where no motion has a vertical component.
+
+    Raises:
+        AxisError: no list of names and pairs, a pair that lacks a file, a file named twice.
+    """
+    if not isinstance(given, list) or not given:
+        raise AxisError(
+            f'must be a list of files or pairs, such as ["a.at2", ["b_h.at2", "b_v.at2"]], got {given!r}'
+        )
+    pairs = [_pair(one) for one in given]
+    named = [name for horizontal, vertical in pairs for name in {horizontal, vertical} if name is not None]
+    if twice := [name for name in dict.fromkeys(named) if named.count(name) > 1]:
+        raise AxisError(
+            f"names {twice[0]!r} twice; the motions of a set are of different files: leave one out"
+        )
+    following: dict[str, tuple[str | None, ...]] = {}
+    if any(vertical for _, vertical in pairs):
+        following["vertical.kind"] = tuple("table" if vertical else "none" for _, vertical in pairs)
+        following["vertical.file"] = tuple(vertical for _, vertical in pairs)
+    return tuple(horizontal for horizontal, _ in pairs), following
+
+
+def _pair(given: Any) -> tuple[str, str | None]:
+    """A horizontal and, if there is one, a vertical file."""
+    if isinstance(given, str) and given.strip():
+        return given, None
+    names = given if isinstance(given, list) else []
+    if not 1 <= len(names) <= 2 or not all(isinstance(name, str) for name in names):
+        raise AxisError(f"must hold file names and pairs of file names, got {given!r}; {A_PAIR}")
+    horizontal, vertical = (*names, "")[:2]
+    if not horizontal.strip():
+        raise AxisError(f"has a vertical motion without a horizontal one, {given!r}; {A_PAIR}")
+    if not vertical.strip():
+        raise AxisError(f"has a pair without its vertical motion, {given!r}; {A_PAIR}")
+    return horizontal, vertical
 
 
 def hint(name: object, known: Iterable[str]) -> str:

@@ -1,6 +1,7 @@
 """What the file of a study of many cases has: a heading, tables, the case it starts from, the keys that vary."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -81,10 +82,18 @@ def flat(name: str, content: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
-def base_case(name: str, changes: Mapping[str, Any], origin: Origin) -> Case:
+def base_case(
+    name: str, changes: Mapping[str, Any], origin: Origin, motion: Mapping[str, Any] | None = None
+) -> Case:
     """The case that is varied, with the keys of [set] changed.
 
     A file is looked for beside the one that names it, and wins over a shipped case.
+
+    Args:
+        name: of the case.
+        changes: the table [set].
+        origin: of the study.
+        motion: keys of the first of a set of motions; the files of a shipped case are then beside the study.
 
     Raises:
         CaseError: there is neither, it is outside that folder, or it cannot be used.
@@ -101,6 +110,10 @@ def base_case(name: str, changes: Mapping[str, Any], origin: Origin) -> Case:
         )
     base = load_case(path if is_file else name)
     values = flat("set", changes)
+    if motion:
+        values = {"motion.kind": "table"} | values | dict(motion)
+        if not is_file:
+            base = base.from_origin(replace(base.origin_with({}), folder=origin.folder))
     return base.with_values(values) if values else base
 
 

@@ -13,12 +13,12 @@ from pydantic import Field, Strict
 
 from fem.batch.axes import Axis, AxisError, check_varied, read_axis
 from fem.batch.derived import FREE, Derived, read_derived
+from fem.batch.intervals import least_draws
 from fem.batch.study_file import base_case, read_as, read_axes, read_study, require_once, split_tables
 from fem.case.files import DEFAULT_CASE, ENSEMBLES, Origin
 from fem.case.tables import CaseTable
 from fem.case.validation import CaseError
 from fem.ensemble.distributions import RandomQuantity, Sampling, read_random
-from fem.ensemble.intervals import least_draws
 from fem.ensemble.plan import Ensemble, Unknown
 
 TABLES = ("set", "axes", "random", "derived")

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from fem.batch.intervals import Estimate, estimate
 from fem.ensemble.fragility import (
     BOOTSTRAPS,
     bootstrap_fits,
@@ -14,7 +15,6 @@ from fem.ensemble.fragility import (
     misses,
     misses_by_chance,
 )
-from fem.ensemble.intervals import Estimate, estimate
 from fem.ensemble.plan import Ensemble
 from fem.runtime.arrays import FloatArray
 

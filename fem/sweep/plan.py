@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from pydantic import Field
 
-from fem.batch.axes import Axis, point_of, shape_of
+from fem.batch.axes import Axis, point_of, shape_of, with_following
 from fem.batch.case_maker import CaseMaker
 from fem.batch.derived import Derived, with_derived
 from fem.case.case import Case
@@ -87,7 +87,7 @@ class Sweep:
         Raises:
             CaseError: an expression has no value there.
         """
-        return with_derived(point, self.derived, self.base)
+        return with_derived(with_following(self.axes, point), self.derived, self.base)
 
     def model_of(self, cell: int) -> str:
         """The model of a cell."""

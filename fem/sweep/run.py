@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
+from fem.batch.axes import with_following
 from fem.batch.held import held_inputs
 from fem.batch.log import LoggedRuns, fields_of, line_of, read_lines, table_of_lines
 from fem.batch.runner import Row, Runner, motion_left_out
@@ -207,8 +208,10 @@ class _Work:
 
     def _values(self, cell: int, row: Row) -> Iterator[Any]:
         point = self.sweep.point(cell)
+        following = with_following(self.sweep.axes, point)
         yield cell
         yield from point.values()
+        yield from (following.get(key) for axis in self.sweep.axes for key in axis.following)
         if self.sweep.derived:
             try:
                 values = self.sweep.values(point)
@@ -278,6 +281,7 @@ def _asked(sweep: Sweep) -> dict[str, Any]:
         "motion_covered": motion_left_out(sweep.base),
         "axes": [
             {"key": axis.key, "values": axis.values, "scale": axis.scale, "unit": axis.unit}
+            | ({"following": dict(axis.following)} if axis.following else {})
             for axis in sweep.axes
         ],
         "derived": {one.key: one.expression.text for one in sweep.derived},

@@ -29,7 +29,8 @@ WORDS = frozenset({"status", "outcome", "reason", "sure", "decided_by"})
 
 def row_columns(axes: Sequence[Axis], derived: Iterable[str]) -> tuple[str, ...]:
     """Columns of the row of a run."""
-    return ("cell", *(axis.key for axis in axes), *derived, *FOUND)
+    following = (key for axis in axes for key in axis.following)
+    return ("cell", *(axis.key for axis in axes), *following, *derived, *FOUND)
 
 
 def band_columns(axes: Sequence[Axis]) -> tuple[str, ...]:
@@ -77,7 +78,13 @@ def open_sweep(folder: Path | str) -> SweepTable:
     info = read_result(folder / SWEEP.mark, SWEEP)
     try:
         axes = tuple(
-            Axis(key=one["key"], values=tuple(one["values"]), scale=one["scale"], unit=one["unit"])
+            Axis(
+                key=one["key"],
+                values=tuple(one["values"]),
+                scale=one["scale"],
+                unit=one["unit"],
+                following={key: tuple(some) for key, some in one.get("following", {}).items()},
+            )
             for one in info["axes"]
         )
         source = folder / "table.csv"
@@ -112,9 +119,10 @@ def _columns(
     count = math.prod(shape_of(axes))
     cells = np.array([int(fields[0]) for fields in lines], dtype=np.int64)
     columns: dict[str, NDArray[Any]] = {}
+    words = WORDS.union(*(axis.following for axis in axes))
     grids = np.meshgrid(*(np.array(axis.values, dtype=object) for axis in axes), indexing="ij")
     for name, text in zip(names, zip(*lines, strict=True) if lines else [()] * len(names), strict=True):
-        if name in WORDS:
+        if name in words:
             column = np.full(count, "", dtype=object)
             column[cells] = text
         else:
@@ -123,8 +131,8 @@ def _columns(
         columns[name] = column
     columns["cell"] = np.arange(count)
     for axis, grid in zip(axes, grids, strict=True):
-        words = any(isinstance(value, str | bool) for value in axis.values)
-        columns[axis.key] = grid.ravel() if words else grid.ravel().astype(float)
+        has_words = any(isinstance(value, str | bool) for value in axis.values)
+        columns[axis.key] = grid.ravel() if has_words else grid.ravel().astype(float)
     return columns
 
 
