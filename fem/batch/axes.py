@@ -89,16 +89,6 @@ def first_motion(axes: Iterable[Axis]) -> dict[str, Any]:
     return {}
 
 
-def axis_label(axis: Axis) -> str:
-    """A key for people: `motion.peak_acceleration_m_s2` is "peak acceleration [m/s²]"."""
-    name = axis.key.rpartition(".")[2]
-    if axis.unit:
-        name = name.removesuffix("_" + axis.unit.replace("/", "_").replace(" ", "_"))
-    shown = axis.unit.replace("s2", "s²").replace("m3", "m³") or "-"
-    words = all(isinstance(value, bool | str) for value in axis.values)
-    return name.replace("_", " ") + ("" if words else f" [{shown}]")
-
-
 class AxisError(ValueError):
     """A key or an axis that cannot be used; the message is the reason, without the key."""
 

@@ -2,6 +2,7 @@
 
 import importlib
 import json
+from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from types import ModuleType
@@ -14,6 +15,8 @@ from fem.cli.console import EXIT_CODES, Folder, Force, Jobs, Quiet, Resume, flag
 from fem.results.files import to_json
 from fem.runtime.progress import ScreenReporter
 from fem.sweep.file import load_sweep
+
+MOST_ROWS = 40  #: of the answers, on the screen
 
 
 def sweep(
@@ -98,4 +101,18 @@ def page_of(info: dict[str, Any], folder: Path) -> str:
         )
     if info["status"] == "interrupted":
         lines.append("  --resume continues")
-    return "\n".join(lines)
+    return "\n".join([*lines, *_answer_lines(info, folder)])
+
+
+def _answer_lines(info: dict[str, Any], folder: Path) -> Iterator[str]:
+    """The sentence, and a row for each combination of values of the other axes."""
+    if not info.get("answer"):
+        return
+    tables = importlib.import_module("fem.sweep.table")
+    answer = importlib.import_module("fem.sweep.answers").sweep_answer(tables.open_sweep(folder), folder)
+    rows = list(answer.lines()) if answer and answer.others else []
+    widest = max((len(where) for where, _ in rows), default=0)
+    yield from (f"  {where:{widest}}  {sentence}" for where, sentence in rows[:MOST_ROWS])
+    if len(rows) > MOST_ROWS:
+        yield f"  answers.csv has all {len(rows)} rows"
+    yield info["answer"]

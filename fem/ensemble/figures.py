@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from fem.batch.axes import axis_label
+from fem.batch.labels import axis_label
 from fem.ensemble.fragility import Lognormal
 from fem.ensemble.plan import Ensemble
 from fem.ensemble.statistics import PointResult

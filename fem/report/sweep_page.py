@@ -17,13 +17,16 @@ from markupsafe import Markup
 from numpy.typing import NDArray
 
 from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
+from fem.batch.answers import ranges_in_words
+from fem.batch.labels import axis_label, in_words
 from fem.case.case import load_case
 from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html.page import Signature, render_page, svg_element
-from fem.html.units import number, short, typeset
+from fem.html.units import ABSENT, millimetres, number, short, typeset
 from fem.report.animation import colour_scale, packed
 from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions
 from fem.results.errors import FolderError
+from fem.sweep.answers import SweepAnswer, place_in_words, sweep_answer
 from fem.sweep.table import SweepTable, open_sweep
 
 #: what can be shown: column, words for it, unit, factor
@@ -71,6 +74,7 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
     info, case = table.info, load_case(str(folder / "base.toml"))
     data = map_data(table, folder)
     known = {column["name"] for column in data["columns"]}
+    answer = sweep_answer(table, folder)
     return render_page(
         "sweep.html.j2",
         scripts=["map.js", "signature.js"],
@@ -79,11 +83,13 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
         name=str(info.get("sweep") or folder.name),
         hash=str(info.get("sweep_hash") or ""),
         info=info,
+        answer=typeset(answer.sentence) if answer else None,
+        answers=answer_rows(answer) if answer and answer.others else None,
         case=case,
         signature=signature or Signature(),
         asked=asked_rows(case),
         axes=[_axis_row(axis.key, axis.unit, axis.values, axis.scale) for axis in table.axes],
-        labels=[axis_label(axis.key, axis.unit) for axis in table.axes],
+        labels=[axis_label(axis) for axis in table.axes],
         longest=_longest(table),
         quantities=[(name, label) for name, label, *_ in QUANTITIES if name in known],
         flags=[(name, label) for name, label in FLAGS if name in known],
@@ -100,6 +106,29 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
         number=number,
         short=short,
     )
+
+
+def answer_rows(answer: SweepAnswer) -> tuple[list[str], list[list[str]]]:
+    """Head and rows of the table of answers: where, the two values, the slip, what else there is to say."""
+    up_to, first = (
+        ("stood up to", "first overturned at") if answer.rising else ("stood from", "overturned up to")
+    )
+    head = ["", up_to, first, "slip there", "stood again", "no outcome", "unsure"]
+    rows = []
+    for point, found, _ in answer.rows:
+        ends = (
+            in_words(answer.axis, [one]) if one is not None else ""
+            for one in (found.stood_to, found.overturned_from)
+        )
+        slip = f"{millimetres(found.slip)} mm" if found.slip is not None else ""
+        ranges = (
+            ranges_in_words(one, answer.axis) for one in (found.stood_again, found.failed, found.unsure)
+        )
+        rows.append(
+            [typeset(one) or ABSENT for one in (place_in_words(answer.others, point), *ends, slip, *ranges)]
+        )
+    shown = [k for k in range(len(head)) if k < 3 or any(row[k] != ABSENT for row in rows)]
+    return [head[k] for k in shown], [[row[k] for k in shown] for row in rows]
 
 
 def _axis_row(key: str, unit: str, values: tuple[object, ...], scale: str) -> tuple[str, str, str]:
@@ -176,8 +205,7 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
             columns.append(column)
     return {
         "axes": [
-            {"key": axis.key, "label": axis_label(axis.key, axis.unit), "values": list(axis.values)}
-            for axis in table.axes
+            {"key": axis.key, "label": axis_label(axis), "values": list(axis.values)} for axis in table.axes
         ],
         "columns": columns,
         "derived": [{"key": key, "values": _plain(table[key])} for key in table.info["derived"]],
@@ -210,15 +238,6 @@ def _words(name: str, label: str, values: NDArray[Any], names: list[str]) -> dic
     places = np.array([names.index(str(one)) for one in values], dtype="<f4")
     column = {"name": name, "label": label, "unit": "", "factor": 1.0, "names": names}
     return column | {"values": packed(places, "<f4")}
-
-
-def axis_label(key: str, unit: str) -> str:
-    """A key as people read it: contact.mu_static as `mu static`, with its unit."""
-    name = key.rpartition(".")[2]
-    plain = unit.replace("/", "_").replace("^", "").replace("·", "_")
-    stem = name.removesuffix(f"_{plain}") if plain else name
-    words = stem.replace("_", " ")
-    return f"{words} [{unit.replace('m/s2', 'm/s²')}]" if unit else words
 
 
 def counts(table: SweepTable) -> list[tuple[str, str, int, float]]:

@@ -59,7 +59,7 @@ SWEEP = ResultKind(
     mark="sweep.json",
     request="sweep_hash",
     results="table.csv",
-    own=("rows.csv", "members.csv", "tried.csv", "thresholds.csv", "table.csv", "maps/*.svg"),
+    own=("rows.csv", "members.csv", "tried.csv", "thresholds.csv", "answers.csv", "table.csv", "maps/*.svg"),
 )
 ENSEMBLE = ResultKind(
     name="ensemble",

@@ -17,7 +17,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from fem.assessment.sureness import REGIME_UNSURE
-from fem.batch.axes import Axis, axis_label
+from fem.batch.axes import Axis
+from fem.batch.labels import axis_label, axis_name
 from fem.figures.heat_map import MapAxis, Panel, draw_heat_map, value_label
 from fem.figures.style import BLACK, GREY, STATE_COLOURS, VERMILLION, WIDTH, house_style, number, svg_of
 from fem.results.files import write_atomically
@@ -193,7 +194,7 @@ def _picks(
     for indices in islice(product(*choices), MOST_PANELS):
         pairs = list(zip(others, indices, strict=True))
         name = ", ".join(
-            f"{axis_label(axis).partition(' [')[0]} {value_label(axis.values[index])} {axis.unit}".strip()
+            f"{axis_name(axis)} {value_label(axis.values[index])} {axis.unit}".strip()
             for (_, axis), index in pairs
         )
         picks.append((name, {k: index for (k, _), index in pairs}))

@@ -13,7 +13,7 @@ from fem.sweep.neighbours import KIND_NAMES, kind_of
 from fem.sweep.plan import Sweep
 from fem.sweep.threshold import Change, changes_of, least_width, values_to_try
 
-COLUMNS = ("cell", "value", "status", "outcome", "rotation_ratio", "reason")
+COLUMNS = ("cell", "value", "status", "outcome", "rotation_ratio", "reason", "max_slip_m")
 
 #: outcomes by value along the axis, by the first cell of each line of cells
 Lines = dict[int, dict[float, str]]

@@ -29,6 +29,7 @@ from fem.runtime.progress import Reporter, SilentReporter, clock_time
 from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
 from fem.sweep import perturbed
+from fem.sweep.answers import TRIED, sweep_answer
 from fem.sweep.cells import CellRows
 from fem.sweep.copies import left_out
 from fem.sweep.maps import draw_maps
@@ -37,7 +38,13 @@ from fem.sweep.plan import Sweep
 from fem.sweep.refine import refine, table_of_changes
 from fem.sweep.table import FOUND, band_columns, open_sweep
 
-ROWS, TABLE, MEMBERS, TRIED, CHANGES = "rows.csv", "table.csv", "members.csv", "tried.csv", "thresholds.csv"
+ROWS, TABLE, MEMBERS, CHANGES, ANSWERS = (
+    "rows.csv",
+    "table.csv",
+    "members.csv",
+    "thresholds.csv",
+    "answers.csv",
+)
 #: how often `sweep.json` is updated [s]
 UPDATE_S = 10.0
 #: cells that a sweep may have unless it is forced
@@ -158,7 +165,7 @@ class _Work:
         if keep and not same_band:
             # The mark first: a kill must not leave the copies of another band beside the hash of this one.
             place.write_result(self.info | {"band_hash": None})
-            place.remove(MEMBERS, TRIED, CHANGES)
+            place.remove(MEMBERS, TRIED, CHANGES, ANSWERS)
         base = toml_document(self.sweep.base.given())
         place.begin(self.info, {"sweep.toml": self.sweep.text, "base.toml": base}, keep=keep)
         copy_data_files(self.sweep.base, place.path)
@@ -177,6 +184,7 @@ class _Work:
                 place.write_text(CHANGES, table_of_changes(self.sweep, changes))
                 self.info["changes"] = len(changes)
             self.info["status"] = "failed" if set(self.cells.outcomes) == {"failed"} else "completed"
+            self._answer()
             self.info["maps"] = _draw(place, self.sweep)
         self.info["wall_s"] = time.perf_counter() - self._began
         self._update()
@@ -239,6 +247,12 @@ class _Work:
         lines = (f"{self.cells.lines[cell]},{band}" for cell, band in enumerate(bands))
         self.place.write_text(TABLE, table_of_lines((*self.cells.columns, *columns), lines))
 
+    def _answer(self) -> None:
+        answer = sweep_answer(open_sweep(self.place.path), self.place.path)
+        self.info["answer"] = answer.sentence if answer else None
+        if answer:
+            self.place.write_text(ANSWERS, answer.table())
+
     def _update(self) -> None:
         """Write into `sweep.json` how many rows there are."""
         self._updated = time.perf_counter()
@@ -299,6 +313,7 @@ def _asked(sweep: Sweep) -> dict[str, Any]:
         "sure": None,
         "decided_by": None,
         "changes": None,
+        "answer": None,
         "map_axes": sweep.maps.model_dump(),
         "maps": [],
         **program_of_results(),

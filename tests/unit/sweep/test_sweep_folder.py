@@ -45,6 +45,11 @@ def test_the_table_does_not_depend_on_the_jobs(small, tmp_path):
     assert one["status"] == two["status"] == "completed"
     assert rows_without_wall(tmp_path / "one") == rows_without_wall(tmp_path / "two")
     assert one["outcomes"] == two["outcomes"]
+    assert one["answer"] == two["answer"]
+    assert one["answer"].startswith("peak acceleration: stood in every motion tried up to ")
+    answers = [(tmp_path / name / "answers.csv").read_bytes() for name in ("one", "two")]
+    assert answers[0] == answers[1]
+    assert answers[0].count(b"\n") == 1 + 4  # a row for each frequency
     assert {"overturned", "rest"} <= set(one["outcomes"])
     assert not (tmp_path / "one" / "rows.csv").exists()
 

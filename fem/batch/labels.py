@@ -1,0 +1,51 @@
+"""Keys and values of axes as people read them: "peak acceleration [m/s²]", "0.42 g"."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from fem.assessment.motion_words import STANDARD_GRAVITY
+from fem.batch.axes import Axis
+
+#: units in which people say the values of a key: from which value on, the unit, the factor
+PEOPLE = {
+    "m": ((0.1, "m", 1.0), (0.0, "mm", 1e3)),
+    "N": ((1e3, "kN", 1e-3),),
+    "Pa": ((1e9, "GPa", 1e-9), (1e6, "MPa", 1e-6)),
+}
+
+
+def axis_name(axis: Axis) -> str:
+    """A key for people: `motion.peak_acceleration_m_s2` is "peak acceleration"."""
+    name = axis.key.rpartition(".")[2]
+    return name.removesuffix("_" + axis.unit.replace("/", "_").replace(" ", "_")).replace("_", " ")
+
+
+def axis_label(axis: Axis) -> str:
+    """A key for people with the unit of its numbers: "peak acceleration [m/s²]"."""
+    shown = axis.unit.replace("s2", "s²").replace("m3", "m³") or "-"
+    words = all(isinstance(value, bool | str) for value in axis.values)
+    return axis_name(axis) + ("" if words else f" [{shown}]")
+
+
+def in_words(axis: Axis, values: Sequence[Any], figures: int = 3) -> str:
+    """Values on an axis in the unit in which people say them: "0.5 to 0.55 g", "steel, wood"."""
+    if any(isinstance(value, bool | str) for value in values):
+        return ", ".join(str(value) for value in values)
+    numbers = [value for value in axis.values if not isinstance(value, bool | str)]
+    unit, factor = _unit_of_people(axis, max((abs(value) for value in numbers), default=0.0))
+    return f"{' to '.join(plain_number(factor * value, figures) for value in values)} {unit}".strip()
+
+
+def plain_number(value: float, figures: int = 3) -> str:
+    """A number for text on a screen: 1350 for 1.35e+03."""
+    return f"{float(f'{value:.{figures}g}'):.{max(figures, 6)}g}"
+
+
+def _unit_of_people(axis: Axis, largest: float) -> tuple[str, float]:
+    """A unit, and the factor from that of the key, which depends on the largest value."""
+    if axis.unit == "m/s2" and axis.key.startswith(("motion.", "vertical.")):
+        return "g", 1.0 / STANDARD_GRAVITY
+    for least, unit, factor in PEOPLE.get(axis.unit, ()):
+        if largest >= least:
+            return unit, factor
+    return axis.unit, 1.0
