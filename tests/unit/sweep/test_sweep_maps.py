@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from fem.batch.axes import Axis
+from fem.batch.labels import axis_label
 from fem.figures.style import svg_of
-from fem.sweep.maps import axis_label, draw_maps, sweep_map
+from fem.sweep.maps import draw_maps, sweep_map
 from fem.sweep.plan import MapChoice
 from fem.sweep.table import SweepTable
 
