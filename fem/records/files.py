@@ -2,10 +2,14 @@
 
 from pathlib import Path
 
+from fem.records import cosmos, csmip, esm, knet, peer, smc
 from fem.records.columns import read_columns
 from fem.records.record import Record, RecordError
 from fem.records.source import read_source
 from fem.records.units import STATED
+
+#: formats with a header of their own, each a module with `recognises` and `read`; every other text is columns
+FORMATS = (peer, esm, knet, smc, cosmos, csmip)
 
 
 def read_record(path: Path, *, unit: str | None = None, sample_interval: float | None = None) -> Record:
@@ -22,8 +26,15 @@ def read_record(path: Path, *, unit: str | None = None, sample_interval: float |
     if unit is not None and unit not in STATED:
         raise RecordError(f"unknown unit {unit!r}; known: {', '.join(STATED)}")
     source = read_source(path)
+    found = next((form for form in FORMATS if form.recognises(source)), None)
     try:
-        return read_columns(source, unit=unit, sample_interval=sample_interval)
+        if found is None:
+            return read_columns(source, unit=unit, sample_interval=sample_interval)
+        if sample_interval is not None:
+            raise source.refused(
+                f"sample_interval_s is for a file of one column, and this is a {found.NAME} file"
+            )
+        return found.read(source, unit)
     except RecordError as error:
         named = str(error).startswith(source.name)
         raise error if named else RecordError(f"{source.name}: {error}") from None

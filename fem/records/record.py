@@ -14,6 +14,11 @@ from fem.runtime.arrays import FloatArray
 
 Quantity = Literal["acceleration", "velocity", "displacement"]
 Direction = Literal["horizontal", "vertical"]
+PLURALS: dict[Quantity, str] = {
+    "acceleration": "accelerations",
+    "velocity": "velocities",
+    "displacement": "displacements",
+}
 
 #: largest difference of two sampling times that count as one, over the interval: what seven printed digits leave
 SAME_TIME = 1e-3
@@ -88,6 +93,7 @@ class Record:
     station: str = ""
     event: str = ""
     date: str = ""
+    notes: tuple[str, ...] = ()  #: doubts that the file itself states
 
     def component(self, direction: Direction, *, quantity: Quantity, channel: str = "") -> Component:
         """The component that moves the floor in a direction.
@@ -107,9 +113,10 @@ class Record:
             return self._by_channel(channel, quantity)
         of_quantity = [one for one in self.components if one.quantity == quantity]
         if not of_quantity:
-            held = " and ".join(sorted({f"{one.quantity}s" for one in self.components}))
+            held = " and ".join(sorted({PLURALS[one.quantity] for one in self.components}))
+            needed = PLURALS[quantity]
             raise RecordError(
-                f"{self.name}: it holds {held}, and {quantity}s are needed; take the file of {quantity}s"
+                f"{self.name}: it holds {held}, and {needed} are needed; take the file of {needed}"
                 + ('; or set quantity = "displacement"' if "displacement" in held else "")
             )
         found = [one for one in of_quantity if one.direction == direction] or [
@@ -136,7 +143,8 @@ class Record:
             raise RecordError(f"{self.name}: no channel {channel[:40]!r} ({self._channels()})")
         if found[0].quantity != quantity:
             raise RecordError(
-                f"{self.name}: channel {channel[:40]!r} holds {found[0].quantity}s, and {quantity}s are needed"
+                f"{self.name}: channel {channel[:40]!r} holds {PLURALS[found[0].quantity]}, and "
+                f"{PLURALS[quantity]} are needed"
             )
         return found[0]
 

@@ -71,8 +71,8 @@ def _decoded(content: bytes) -> str | None:
     return None
 
 
-def as_numbers(fields: list[str]) -> FloatArray | None:
-    """Fields as numbers, shape (n,); None where one is no finite number of a moderate size.
+def as_numbers(fields: list[str], largest: float = LARGEST_NUMBER) -> FloatArray | None:
+    """Fields as numbers, shape (n,); None where one is no number or larger than it may be.
 
     Stricter than float(), which takes "1_000", "nan" and digits of other scripts; a Fortran exponent D is taken.
     """
@@ -86,4 +86,4 @@ def as_numbers(fields: list[str]) -> FloatArray | None:
         numbers = np.array([float(field) for field in fields], dtype=np.float64)
     except ValueError:
         return None
-    return numbers if (np.abs(numbers) <= LARGEST_NUMBER).all() else None
+    return numbers if (np.abs(numbers) <= largest).all() else None

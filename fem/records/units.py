@@ -3,7 +3,8 @@
 import re
 from dataclasses import dataclass
 
-from fem.records.record import Quantity, RecordError
+from fem.records.record import PLURALS, Quantity, RecordError
+from fem.records.source import Source
 
 STANDARD_GRAVITY = 9.80665  #: of a record in g (ISO 80000-3), not the gravity of the case [m/s2]
 
@@ -27,6 +28,7 @@ UNITS = {
     "gal": _unit("acceleration", 1e-2),
     "mm/s2": _unit("acceleration", 1e-3),
     "mg": _unit("acceleration", 1e-3 * STANDARD_GRAVITY),
+    "g/10": _unit("acceleration", 0.1 * STANDARD_GRAVITY),
     "m/s": _unit("velocity", 1.0),
     "cm/s": _unit("velocity", 1e-2),
     "mm/s": _unit("velocity", 1e-3),
@@ -75,3 +77,19 @@ def settled_unit(stated: str | None, wanted: str | None, place: str) -> tuple[st
         )
     unit = stated or wanted or ""
     return unit, stated is not None
+
+
+def unit_in_header(source: Source, spelled: str, quantity: Quantity) -> str:
+    """The unit that the header of a file spells for a quantity.
+
+    Raises:
+        RecordError: it is none that is known, or measures something else.
+    """
+    unit = unit_spelled(spelled)
+    if unit is None:
+        raise source.refused(f"the header gives {PLURALS[quantity]} in a unit that is not known")
+    if unit in UNITS and UNITS[unit].quantity != quantity:
+        raise source.refused(
+            f"the header gives {PLURALS[quantity]} in {unit!r}, which measures {PLURALS[UNITS[unit].quantity]}"
+        )
+    return unit

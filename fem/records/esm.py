@@ -1,0 +1,60 @@
+"""ASCII files of the Engineering Strong-Motion database: lines "KEY: value", then one number in a line."""
+
+import re
+
+from fem.records.directions import stream_direction
+from fem.records.fixed_width import positive_number, read_separated, regular_times, whole_number
+from fem.records.record import PLURALS, Component, Record
+from fem.records.source import Source
+from fem.records.units import UNITS, settled_unit, unit_in_header
+
+NAME = "ESM ASCII"
+KEY = re.compile(r"([A-Z][A-Z0-9_/]*)\s*:\s*(.*)")
+MOST_LINES = 200  #: of a header; it has 64
+
+
+def recognises(source: Source) -> bool:
+    """Whether the first two lines name the event."""
+    return source.line(1).startswith("EVENT_NAME:") and source.line(2).startswith("EVENT_ID:")
+
+
+def read(source: Source, unit: str | None) -> Record:
+    """Read the one component of a file.
+
+    Raises:
+        RecordError: a key that is missing, counts, units or numbers that do not fit; with the line.
+    """
+    header: dict[str, str] = {}
+    first = 1
+    while first <= MOST_LINES and (found := KEY.match(source.line(first))):
+        header[found[1]] = found[2].strip()
+        first += 1
+    for key in ("SAMPLING_INTERVAL_S", "NDATA", "DATA_TYPE"):
+        if not header.get(key):
+            raise source.refused(f"the header has no {key}")
+    count = whole_number(source, header["NDATA"], "number of samples (NDATA)")
+    step = positive_number(source, header["SAMPLING_INTERVAL_S"], "interval (SAMPLING_INTERVAL_S)")
+    spelled = header.get("UNITS", "")
+    quantity = next((known for known in PLURALS if known == header["DATA_TYPE"].lower()), None)
+    if quantity is None:
+        raise source.refused("its DATA_TYPE is no acceleration and no displacement")
+    stated = unit_in_header(source, spelled, quantity) if spelled else None
+    unit, by_file = settled_unit(stated, unit, source.name)
+    component = Component(
+        times=regular_times(count, step),
+        readings=read_separated(source, first, count)[0],
+        factor=UNITS[unit].factor,
+        quantity=UNITS[unit].quantity,
+        unit=unit,
+        unit_stated=by_file,
+        name=header.get("STREAM", ""),
+        direction=stream_direction(header.get("STREAM", "")),
+    )
+    return Record(
+        components=(component,),
+        name=source.name,
+        format=NAME,
+        station=header.get("STATION_CODE", ""),
+        event=header.get("EVENT_NAME", "") or header.get("EVENT_ID", ""),
+        date=header.get("EVENT_DATE_YYYYMMDD", ""),
+    )

@@ -1,0 +1,119 @@
+"""Blocks of numbers of a fixed width, as Fortran writes them: negative numbers may touch without a blank."""
+
+import re
+
+import numpy as np
+
+from fem.records.source import LARGEST_NUMBER, Source, as_numbers
+from fem.runtime.arrays import FloatArray
+
+#: such as (8f10.6), (5E15.7), (10I8), (1P8E10.3)
+FORMAT = re.compile(r"\(\s*(?:1P\s*,?\s*)?(\d+)\s*[FEGDI]\s*(\d+)(?:\.\d+)?(?:E\d+)?\s*\)", re.IGNORECASE)
+
+
+def fortran_format(text: str) -> tuple[int, int] | None:
+    """Numbers a line and their width from a Fortran format in a line of text; None where there is none."""
+    found = FORMAT.search(text)
+    if found is None or not 0 < int(found[1]) <= 100 or not 0 < int(found[2]) <= 100:
+        return None
+    return int(found[1]), int(found[2])
+
+
+def read_block(
+    source: Source,
+    first: int,
+    count: int,
+    *,
+    per_line: int,
+    width: int,
+    largest: float = LARGEST_NUMBER,
+) -> tuple[FloatArray, int]:
+    """Numbers that fill whole lines but for the last.
+
+    Args:
+        source: the file.
+        first: line of the first number, from 1.
+        count: numbers by the header.
+        per_line: numbers in a full line.
+        width: columns of each.
+        largest: magnitude that a number may have; headers write what they do not know as 1.7e38.
+
+    Returns:
+        The numbers, shape (count,), and the line behind them.
+
+    Raises:
+        RecordError: fewer or more numbers than the header says, or a field that is no number.
+    """
+    behind = first + -(-count // per_line)
+    lines = [line.rstrip() for line in source.lines[first - 1 : behind - 1]]
+    rows = [[line[at : at + width] for at in range(0, len(line), width)] for line in lines]
+    for number, row in enumerate(rows, start=first):
+        expected = per_line if number < behind - 1 else count - per_line * (len(rows) - 1)
+        if len(row) != expected:
+            found = per_line * (number - first) + len(row)
+            raise source.refused(
+                f"the header says {count} values, {per_line} in a line of {width} columns each; found {len(row)} in "
+                f"this line, {found} up to it",
+                number,
+            )
+    if len(rows) < behind - first:
+        raise source.refused(f"the header says {count} values, found {sum(map(len, rows))}")
+    return _checked(source, rows, first, largest), behind
+
+
+def read_separated(source: Source, first: int, count: int) -> tuple[FloatArray, int]:
+    """Numbers separated by blanks, any number of them in a line, up to the end of the file.
+
+    Returns and raises as `read_block`.
+    """
+    rows = [line.split() for line in source.lines[first - 1 :]]
+    found = sum(map(len, rows))
+    if found != count:
+        raise source.refused(f"the header says {count} values, found {found}")
+    return _checked(source, rows, first, LARGEST_NUMBER), len(source.lines) + 1
+
+
+def require_end(source: Source, line: int, count: int) -> None:
+    """Refuse a file that goes on behind its numbers."""
+    for number in range(line, len(source.lines) + 1):
+        if source.line(number).strip():
+            raise source.refused(f"the header says {count} values, and the file goes on behind them", number)
+
+
+def _checked(source: Source, rows: list[list[str]], first: int, largest: float) -> FloatArray:
+    numbers = as_numbers([field for row in rows for field in row], largest)
+    if numbers is None:
+        wrong = next(
+            number for number, row in enumerate(rows, start=first) if as_numbers(row, largest) is None
+        )
+        raise source.refused("a field is not a number, or too large for one", wrong)
+    return numbers
+
+
+def whole_number(source: Source, text: str, what: str, number: int | None = None) -> int:
+    """A count of a header.
+
+    Raises:
+        RecordError: it is no whole number above zero, or more than a file of the largest size can hold.
+    """
+    stripped = text.strip()
+    if not stripped.isascii() or not stripped.isdigit() or len(stripped) > 9 or int(stripped) < 1:
+        raise source.refused(f"the header gives no {what}", number)
+    return int(stripped)
+
+
+def positive_number(source: Source, text: str, what: str, number: int | None = None) -> float:
+    """A number of a header above zero.
+
+    Raises:
+        RecordError: it is none.
+    """
+    found = as_numbers([text])
+    if found is None or not found[0] > 0.0:
+        raise source.refused(f"the header gives no {what}", number)
+    return float(found[0])
+
+
+def regular_times(count: int, step: float) -> FloatArray:
+    """Times of evenly spaced samples from zero, shape (count,) [s]."""
+    return np.arange(count, dtype=np.float64) * step
