@@ -43,7 +43,7 @@ class OscillatorHistory:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Oscillator:
+class OscillatorStep:
     """Exact step of an oscillator under an acceleration that is linear within the step."""
 
     rate: float  #: angular frequency times the step [rad]
@@ -114,7 +114,7 @@ def oscillator_response(
     parts = _parts(step_s, period_s)
     step = step_s / parts
     x, v = _displacement_and_velocity(
-        _oscillator(step, period_s, damping_ratio), step, _denser(values, parts)
+        exact_oscillator(step, period_s, damping_ratio), step, _denser(values, parts)
     )
     x, v, rate = x[::parts], v[::parts] / step, 2.0 * math.pi / period_s
     return OscillatorHistory(
@@ -161,14 +161,14 @@ def _denser(values: FloatArray, parts: int) -> FloatArray:
     return np.asarray(np.interp(np.arange(count * parts + 1) / parts, np.arange(count + 1), values))
 
 
-def _oscillator(step: float, period: float, damping_ratio: float) -> _Oscillator:
+def exact_oscillator(step: float, period: float, damping_ratio: float) -> OscillatorStep:
     """The step from the exponential of the system of displacement, velocity, forcing and its slope over one step."""
     rate = 2.0 * math.pi * step / period
     system = np.zeros((4, 4))
     system[0, 1] = system[1, 2] = system[2, 3] = 1.0
     system[1, :2] = -(rate**2), -2.0 * damping_ratio * rate
     (a11, a12, b1, s1), (a21, a22, b2, s2) = expm(system)[:2].tolist()
-    return _Oscillator(
+    return OscillatorStep(
         rate=rate,
         damping_ratio=damping_ratio,
         displacement=(a11, a12, b1 - s1, s1),
@@ -177,7 +177,7 @@ def _oscillator(step: float, period: float, damping_ratio: float) -> _Oscillator
 
 
 def _displacement_and_velocity(
-    oscillator: _Oscillator, step: float, values: FloatArray
+    oscillator: OscillatorStep, step: float, values: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Displacement, and velocity times the step, at the samples [m], shapes (n,)."""
     force = -(step**2) * values
@@ -195,7 +195,7 @@ def _displacement_and_velocity(
 
 def _peaks(step: float, values: FloatArray, period: float, damping_ratio: float) -> tuple[float, float]:
     """Largest |relative displacement| [m] and |absolute acceleration| [m/s2] of an oscillator."""
-    oscillator = _oscillator(step, period, damping_ratio)
+    oscillator = exact_oscillator(step, period, damping_ratio)
     x, v = _displacement_and_velocity(oscillator, step, values)
     rate = oscillator.rate
     # Absolute acceleration times the step squared, and its slope over a step.
@@ -217,7 +217,7 @@ def _largest(values: FloatArray, slopes: FloatArray) -> float:
     return float(max(np.abs(values).max(), np.abs(peaks).max(initial=0.0)))
 
 
-def _largest_free(oscillator: _Oscillator, value: float, slope: float) -> float:
+def _largest_free(oscillator: OscillatorStep, value: float, slope: float) -> float:
     """Magnitude at the first turning point of free vibration; `slope` over one step."""
     decay = oscillator.damping_ratio * oscillator.rate
     damped = oscillator.rate * math.sqrt(1.0 - oscillator.damping_ratio**2)

@@ -1,0 +1,231 @@
+"""Artificial motions whose spectra match a target: random phases, amplitudes found by iteration.
+
+A motion is a sum of harmonics with random phases under an envelope. Its spectrum is computed with exact oscillators,
+each Fourier amplitude is multiplied by target over spectrum at its period, and so on; the phases stay. Peaks beyond
+the target's own at zero period are rounded off in each pass, and the baseline is removed, so that velocity and
+displacement end at zero. After D. A. Gasparini, E. H. Vanmarcke, Simulated earthquake motions compatible with
+prescribed response spectra, MIT R76-4 (1976), with the amplitudes found by iteration alone.
+
+The same seed gives the same bits: phases are made of the raw output of a bit generator whose stream numpy keeps.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
+
+from fem.runtime.arrays import FloatArray
+from fem.site.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S, SiteAction
+from fem.site.ground_motion import GroundMotion
+from fem.site.motion_set import MOST_CORRELATION, largest_correlation
+from fem.site.oscillators import pseudo_accelerations
+from fem.site.zero_end import without_drift
+
+#: of what follows here: motions of another version have other samples
+ALGORITHM = 1
+STEP_S = 0.005
+#: parts of the envelope beside the stationary one [s]; what the last one ends at, before the taper
+RISE_S, DECAY_S = 2.0, 6.0
+END_SHARE = 0.05
+TAPER_S = 0.5
+#: EN 1998-1, 3.2.3.1.2(3)
+LEAST_STATIONARY_S = 10.0
+MOST_STATIONARY_S = 60.0
+SHORTEST_PERIOD_S = 0.02
+#: the longest period is matched from beyond it
+BEYOND = 1.05
+PERIODS_PER_DECADE = 43
+PASSES = 25
+#: over the length of the motion: that of the transform. Finer harmonics than those of the motion itself shape the
+#: longest periods; without them the spectrum is 5 % off there
+TRANSFORMED = 3.0
+HIGHEST_HZ = 80.0
+#: below this frequency times the longest period the first amplitudes fall off
+LOW = 0.4
+#: of the target at zero period: where peaks are rounded off from, and what they never reach
+KNEE, CEILING = 1.045, 1.1
+
+#: periods (n,) [s] -> pseudo-accelerations (n,) [m/s2]
+Target = Callable[[FloatArray], FloatArray]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shaper:
+    """What motions of one length have in common while they are matched."""
+
+    stationary: float  #: stationary part [s]
+    longest: float = LAST_PERIOD_S  #: period up to which they are matched [s]
+
+    def __post_init__(self) -> None:
+        if not LEAST_STATIONARY_S <= self.stationary <= MOST_STATIONARY_S:
+            raise ValueError(
+                f"the stationary part must last {LEAST_STATIONARY_S:g} s (EN 1998-1, 3.2.3.1.2(3)) to "
+                f"{MOST_STATIONARY_S:g} s, got {self.stationary:g} s"
+            )
+        if not 1.0 <= self.longest <= LAST_PERIOD_ANNEX_A_S:
+            raise ValueError(
+                f"motions are matched up to a period of 1 to {LAST_PERIOD_ANNEX_A_S:g} s, got {self.longest:g} s"
+            )
+
+    @cached_property
+    def times(self) -> FloatArray:
+        """Of the samples, shape (n,) [s]."""
+        length = RISE_S + self.stationary + DECAY_S
+        return np.arange(math.ceil(length / STEP_S - 1e-9) + 1, dtype=np.float64) * STEP_S
+
+    @cached_property
+    def periods(self) -> FloatArray:
+        """Of the oscillators, shape (k,) [s]."""
+        last = BEYOND * self.longest
+        count = math.ceil(PERIODS_PER_DECADE * math.log10(last / SHORTEST_PERIOD_S))
+        return np.asarray(np.geomspace(SHORTEST_PERIOD_S, last, count), dtype=np.float64)
+
+    @cached_property
+    def envelope(self) -> FloatArray:
+        """Rise as t^2, one, exponential decay, shape (n,) [-]."""
+        t, fall = self.times, self.times - RISE_S - self.stationary
+        decay = np.exp(math.log(END_SHARE) * np.maximum(fall, 0.0) / DECAY_S)
+        return np.minimum(t / RISE_S, 1.0) ** 2 * decay
+
+    @cached_property
+    def taper(self) -> FloatArray:
+        """Half a cosine at both ends, shape (n,) [-]."""
+        edge = np.minimum(self.times, self.times[::-1]) / TAPER_S
+        return 0.5 - 0.5 * np.cos(np.pi * np.minimum(edge, 1.0))
+
+    @cached_property
+    def transformed(self) -> int:
+        """Samples of the Fourier transform."""
+        return int(next_fast_len(math.ceil(TRANSFORMED * self.times.size), real=True))
+
+    @cached_property
+    def log_periods(self) -> FloatArray:
+        """Of the harmonics, logarithms of their periods within `periods`, shape (h,)."""
+        with np.errstate(divide="ignore"):
+            periods = 1.0 / np.fft.rfftfreq(self.transformed, STEP_S)
+        return np.log(np.clip(periods, self.periods[0], self.periods[-1]))
+
+    def motion(self, target: Target, stream: Sequence[int]) -> FloatArray:
+        """One component whose spectrum matches a target, shape (n,) [m/s2].
+
+        Args:
+            target: elastic spectrum at 5 %; at zero period, the peak.
+            stream: of the random numbers.
+        """
+        peak = float(target(np.zeros(1))[0])
+        wanted = target(self.periods)
+        spectrum = self._amplitudes(wanted) * np.exp(2j * np.pi * _uniform(stream, self.log_periods.size))
+        motion = irfft(spectrum, self.transformed)[: self.times.size] * self.envelope
+        motion *= peak / np.abs(motion).max()
+        motion = self._finished(motion, peak)
+        best, least = motion, math.inf
+        for _ in range(PASSES):
+            ratios = wanted / pseudo_accelerations(STEP_S, motion, self.periods)
+            error = float(np.mean((ratios - 1.0) ** 2))
+            if error < least:
+                best, least = motion, error
+            motion = self._amplified(motion, ratios, peak)
+        return best
+
+    def _amplified(self, motion: FloatArray, ratios: FloatArray, peak: float) -> FloatArray:
+        """The motion (n,) with each harmonic times the ratio (k,) at its period."""
+        gains = np.exp(np.interp(self.log_periods, np.log(self.periods), np.log(ratios)))
+        changed = irfft(rfft(motion, self.transformed) * gains, self.transformed)
+        return self._finished(changed[: self.times.size], peak)
+
+    def _finished(self, motion: FloatArray, peak: float) -> FloatArray:
+        """The motion (n,) as it may be used: peaks rounded off, tapered, ending at rest where it began."""
+        return without_drift(self.taper * rounded_off(motion, peak))
+
+    def _amplitudes(self, wanted: FloatArray) -> FloatArray:
+        """First guess of the amplitudes of the harmonics, up to a factor, shape (h,)."""
+        frequencies = np.fft.rfftfreq(self.transformed, STEP_S)
+        low = LOW / self.longest
+        shape = np.interp(self.log_periods, np.log(self.periods), wanted) / np.sqrt(
+            np.maximum(frequencies, low)
+        )
+        return np.where(frequencies <= HIGHEST_HZ, shape * np.minimum(frequencies / low, 1.0) ** 2, 0.0)
+
+
+def rounded_off(motion: FloatArray, peak: float) -> FloatArray:
+    """The motion with its values beyond KNEE times the peak bent towards CEILING times the peak."""
+    beyond = np.abs(motion) / peak - KNEE
+    room = CEILING - KNEE
+    bent = np.sign(motion) * peak * (KNEE + room * np.tanh(beyond / room))
+    return np.where(beyond > 0.0, bent, motion)
+
+
+def artificial_motions(
+    action: SiteAction,
+    *,
+    count: int,
+    seed: int,
+    stationary: float = 12.0,
+    longest: float = LAST_PERIOD_S,
+    vertical: bool = True,
+    first: int = 1,
+) -> list[GroundMotion]:
+    """Motions that match the elastic spectra of a site, each with phases of its own and by itself.
+
+    Args:
+        count: how many; seed: of all of them.
+        stationary: stationary part of their envelope, at least 10 s.
+        longest: period up to which they are matched [s].
+        vertical: with a vertical component of other phases, matched to the vertical spectrum.
+        first: number of the first one. Motion k of a seed does not depend on how many are made.
+
+    Raises:
+        ValueError: a stationary part that is too short or too long, or a period beyond Annex A.
+    """
+    shaper = Shaper(stationary=stationary, longest=longest)
+    return [
+        GroundMotion(
+            name=f"motion_{number:02d}",
+            step=STEP_S,
+            horizontal=shaper.motion(action.horizontal, (seed, number, 0)),
+            vertical=shaper.motion(action.vertical, (seed, number, 1)) if vertical else None,
+            origin=f"artificial, seed {seed}, number {number}",
+            stationary=stationary,
+        )
+        for number in range(first, first + count)
+    ]
+
+
+def artificial_set(
+    action: SiteAction,
+    *,
+    count: int,
+    seed: int,
+    stationary: float = 12.0,
+    longest: float = LAST_PERIOD_S,
+    vertical: bool = True,
+) -> list[GroundMotion]:
+    """Motions to be used together, none correlated with another: one that is, is left out and the next one taken.
+
+    Arguments and errors as for `artificial_motions`.
+    """
+    kept: list[GroundMotion] = []
+    number = 0
+    while len(kept) < count:
+        number += 1
+        (motion,) = artificial_motions(
+            action,
+            count=1,
+            seed=seed,
+            stationary=stationary,
+            longest=longest,
+            vertical=vertical,
+            first=number,
+        )
+        if largest_correlation([*kept, motion]) <= MOST_CORRELATION:
+            kept.append(replace(motion, name=f"motion_{len(kept) + 1:02d}"))
+    return kept
+
+
+def _uniform(stream: Sequence[int], count: int) -> FloatArray:
+    """Random numbers from 0 to 1, shape (count,)."""
+    raw = np.random.PCG64(np.random.SeedSequence(list(stream))).random_raw(count)
+    return np.asarray((raw >> np.uint64(11)) * 2.0**-53)

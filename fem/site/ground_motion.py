@@ -1,0 +1,74 @@
+"""A motion of the ground or of a floor: two components sampled together, linear between samples, SI units."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fem.records.intensity import Intensity, intensity
+from fem.runtime.arrays import FloatArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)  # arrays have no single truth value
+class GroundMotion:
+    """A horizontal and a vertical acceleration.
+
+    Raises:
+        ValueError: components of different length, fewer than two samples, numbers that are not finite, no step.
+    """
+
+    name: str
+    step: float  #: between samples [s]
+    horizontal: FloatArray  #: (n,) [m/s2]
+    vertical: FloatArray | None = None  #: upward positive, (n,) [m/s2]
+    origin: str = ""  #: seed or files
+    factor: float = 1.0  #: by which both components of the origin were multiplied
+    event: str = ""  #: of a record, where its file names it
+    stationary: float | None = None  #: stationary part of an artificial motion [s]
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.step < 1.0:
+            raise ValueError(f"{self.name}: the step must be positive and below 1 s, got {self.step:g} s")
+        for component in self.components:
+            if component.shape != self.horizontal.shape or component.ndim != 1 or component.size < 2:
+                raise ValueError(
+                    f"{self.name}: two components of one length, with two samples or more, are needed"
+                )
+            if not np.isfinite(component).all():
+                raise ValueError(f"{self.name}: a sample is not a finite number")
+
+    @property
+    def components(self) -> tuple[FloatArray, ...]:
+        """Horizontal, and vertical if there is one."""
+        return (self.horizontal,) if self.vertical is None else (self.horizontal, self.vertical)
+
+    @property
+    def times(self) -> FloatArray:
+        """Of the samples, from 0, shape (n,) [s]."""
+        return np.arange(self.horizontal.size, dtype=np.float64) * self.step
+
+    @property
+    def duration(self) -> float:
+        """From the first to the last sample [s]."""
+        return (self.horizontal.size - 1) * self.step
+
+    @property
+    def peak(self) -> float:
+        """Largest |horizontal acceleration| [m/s2]."""
+        return float(np.abs(self.horizontal).max())
+
+    @property
+    def intensities(self) -> tuple[Intensity, ...]:
+        """Of each component."""
+        return tuple(intensity(self.times, component) for component in self.components)
+
+    def scaled(self, horizontal: float, vertical: float | None = None) -> "GroundMotion":
+        """The motion with its components multiplied; one factor for both unless a second one is given."""
+        upward = None
+        if self.vertical is not None:
+            upward = self.vertical * (horizontal if vertical is None else vertical)
+        return replace(
+            self,
+            horizontal=self.horizontal * horizontal,
+            vertical=upward,
+            factor=self.factor * horizontal,
+        )
