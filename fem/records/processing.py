@@ -11,12 +11,11 @@ import numpy as np
 
 from contact.motion.samples import sampled_motion
 from fem.records.record import Component, RecordError
+from fem.records.zero_end import ZeroEnd
 from fem.runtime.arrays import FloatArray
 
 Baseline = Literal["none", "mean", "linear", "zero-end"]
 BASELINES: tuple[Baseline, ...] = get_args(Baseline)
-#: of the acceleration that `zero-end` removes: displacements of t^2 to t^7
-DEGREE = 5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,9 +101,9 @@ def _baseline(times: FloatArray, a: FloatArray, kind: Baseline) -> FloatArray:
         raise RecordError(f"unknown baseline {kind!r}; known: {', '.join(BASELINES)}")
     if kind == "none":
         return np.zeros_like(a)
-    s = (times - 0.5 * (times[0] + times[-1])) / (0.5 * (times[-1] - times[0]))
     if kind == "zero-end":
-        return _zero_end(times, a, s)
+        return ZeroEnd(times=times).baseline(a)
+    s = (times - 0.5 * (times[0] + times[-1])) / (0.5 * (times[-1] - times[0]))
     steps = np.diff(s)
     m_0 = math.fsum(0.5 * steps * (a[:-1] + a[1:]))
     if kind == "mean":
@@ -113,25 +112,3 @@ def _baseline(times: FloatArray, a: FloatArray, kind: Baseline) -> FloatArray:
     middle = (a[:-1] + a[1:]) * (s[:-1] + s[1:])
     m_1 = math.fsum(steps / 6.0 * (a[:-1] * s[:-1] + middle + a[1:] * s[1:]))
     return 0.5 * m_0 + 1.5 * m_1 * s
-
-
-def _zero_end(times: FloatArray, a: FloatArray, s: FloatArray) -> FloatArray:
-    """Baseline of `zero-end`: least squares of the displacement over time, under two constraints at the end.
-
-    Every polynomial is interpolated linearly between samples and integrated as the motion is, so that the floor ends at
-    rest where it began to the rounding of these sums, whatever the interval.
-    """
-    length = times[-1] - times[0]
-    shapes = np.polynomial.legendre.legvander(s, DEGREE)
-    integrals = [sampled_motion(times, shape, "acceleration")[:2] for shape in shapes.T]
-    x, v, _ = sampled_motion(times, a, "acceleration")
-    ends = np.array([[xs[-1] / length**2, vs[-1] / length] for xs, vs in integrals]).T
-    wanted = np.array([x[-1] / length**2, v[-1] / length])
-    # What meets the constraints, and of all that changes nothing about them, the best fit.
-    meets = np.linalg.lstsq(ends, wanted, rcond=None)[0]
-    free = np.linalg.svd(ends)[2][2:].T
-    steps = np.diff(times)
-    weights = np.sqrt(0.5 * (np.append(steps, 0.0) + np.append(0.0, steps)))
-    moved = np.array([xs for xs, _ in integrals]).T * weights[:, None]
-    best = np.linalg.lstsq(moved @ free, x * weights - moved @ meets, rcond=None)[0]
-    return shapes @ (meets + free @ best)

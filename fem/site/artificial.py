@@ -17,12 +17,12 @@ from functools import cached_property
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 
+from fem.records.zero_end import ZeroEnd
 from fem.runtime.arrays import FloatArray
 from fem.site.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S, SiteAction
 from fem.site.ground_motion import GroundMotion
 from fem.site.motion_set import MOST_CORRELATION, largest_correlation
 from fem.site.oscillators import pseudo_accelerations
-from fem.site.zero_end import without_drift
 
 #: of what follows here: motions of another version have other samples
 ALGORITHM = 1
@@ -108,6 +108,10 @@ class Shaper:
             periods = 1.0 / np.fft.rfftfreq(self.transformed, STEP_S)
         return np.log(np.clip(periods, self.periods[0], self.periods[-1]))
 
+    @cached_property
+    def _zero_end(self) -> ZeroEnd:
+        return ZeroEnd(times=self.times)
+
     def motion(self, target: Target, stream: Sequence[int]) -> FloatArray:
         """One component whose spectrum matches a target, shape (n,) [m/s2].
 
@@ -138,7 +142,8 @@ class Shaper:
 
     def _finished(self, motion: FloatArray, peak: float) -> FloatArray:
         """The motion (n,) as it may be used: peaks rounded off, tapered, ending at rest where it began."""
-        return without_drift(self.taper * rounded_off(motion, peak))
+        tapered = self.taper * rounded_off(motion, peak)
+        return tapered - self._zero_end.baseline(tapered)
 
     def _amplitudes(self, wanted: FloatArray) -> FloatArray:
         """First guess of the amplitudes of the harmonics, up to a factor, shape (h,)."""

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from contact.motion.samples import sampled_motion
 from fem.records.intensity import Intensity, intensity
 from fem.runtime.arrays import FloatArray
 
@@ -60,6 +61,12 @@ class GroundMotion:
     def intensities(self) -> tuple[Intensity, ...]:
         """Of each component."""
         return tuple(intensity(self.times, component) for component in self.components)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Velocity [m/s] and displacement [m] of the floor at the last sample, largest magnitude of the components."""
+        moved = [sampled_motion(self.times, component, "acceleration") for component in self.components]
+        return max(abs(float(v[-1])) for _, v, _ in moved), max(abs(float(x[-1])) for x, _, _ in moved)
 
     def scaled(self, horizontal: float, vertical: float | None = None) -> "GroundMotion":
         """The motion with its components multiplied; one factor for both unless a second one is given."""

@@ -51,7 +51,7 @@ class ComponentSpectra:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SetCheck:
+class MotionSetCheck:
     """What the checks of a set found."""
 
     periods: FloatArray  #: of the spectra, shape (k,) [s]
@@ -77,7 +77,7 @@ class SetCheck:
 
 def check_set(
     motions: Sequence[GroundMotion], action: SiteAction, *, longest: float = LAST_PERIOD_S
-) -> SetCheck:
+) -> MotionSetCheck:
     """Check a set of motions against the elastic spectra of a site.
 
     Args:
@@ -138,7 +138,7 @@ def check_set(
         for one, other in combinations(motions, 2)
         if (copied := copy_correlation(one, other)) >= COPY_CORRELATION
     ]
-    return SetCheck(
+    return MotionSetCheck(
         periods=periods,
         band=(FIRST_PERIOD_S, longest),
         horizontal=horizontal,
