@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from fem.records.record import Component, Direction, Record
-from fem.records.source import Source, as_numbers
+from fem.records.source import MotionText, as_numbers
 from fem.records.units import UNITS, settled_unit, unit_spelled
 from fem.runtime.arrays import FloatArray
 
@@ -25,7 +25,7 @@ DIRECTIONS: dict[int, tuple[Direction | None, ...]] = {
 }
 
 
-def read_columns(source: Source, *, unit: str | None, sample_interval: float | None) -> Record:
+def read_columns(source: MotionText, *, unit: str | None, sample_interval: float | None) -> Record:
     """Read a file of one, two or three columns.
 
     Raises:
@@ -72,7 +72,7 @@ def read_columns(source: Source, *, unit: str | None, sample_interval: float | N
     return Record(components=tuple(components), name=source.name, format=NAME)
 
 
-def _contents(source: Source) -> Iterator[tuple[int, str]]:
+def _contents(source: MotionText) -> Iterator[tuple[int, str]]:
     """Lines that are not empty, without comments, with their numbers."""
     for number, line in enumerate(source.lines, start=1):
         content = (line.partition("#")[0] if "#" in line else line).strip()
@@ -99,7 +99,7 @@ def _separators(line: str) -> tuple[str | None, bool]:
 
 
 def _table(
-    source: Source, data: list[tuple[int, str]], separator: str | None, decimal_comma: bool
+    source: MotionText, data: list[tuple[int, str]], separator: str | None, decimal_comma: bool
 ) -> FloatArray:
     """The numbers, shape (n, columns)."""
     if decimal_comma:
@@ -127,7 +127,7 @@ def _table(
     return numbers.reshape(-1, count)
 
 
-def _require_increasing(source: Source, times: FloatArray, data: list[tuple[int, str]]) -> None:
+def _require_increasing(source: MotionText, times: FloatArray, data: list[tuple[int, str]]) -> None:
     back = np.flatnonzero(np.diff(times) <= 0.0)
     if back.size:
         row = int(back[0])
@@ -135,7 +135,7 @@ def _require_increasing(source: Source, times: FloatArray, data: list[tuple[int,
         raise source.refused(f"times must increase, but time {times[row + 1]:g} s {how}", data[row + 1][0])
 
 
-def _stated_units(source: Source, header: list[tuple[int, str]], count: int) -> list[str | None]:
+def _stated_units(source: MotionText, header: list[tuple[int, str]], count: int) -> list[str | None]:
     """Unit of each column as the header states it; None where it does not."""
     units: list[str | None] = [None] * count
     for number, line in header:

@@ -10,7 +10,7 @@ import re
 from fem.records.directions import direction_of
 from fem.records.fixed_width import fortran_format, read_block, regular_times, whole_number
 from fem.records.record import Component, Direction, Record
-from fem.records.source import Source
+from fem.records.source import MotionText
 from fem.records.units import UNITS, settled_unit, unit_spelled
 from fem.runtime.arrays import FloatArray
 
@@ -35,12 +35,12 @@ INTERVAL, LENGTH = 61, 62
 UNIT, AZIMUTH = 2, 53
 
 
-def recognises(source: Source) -> bool:
+def recognises(source: MotionText) -> bool:
     """Whether the first line names the format and its lines of text."""
     return TITLE.search(source.line(1)) is not None
 
 
-def read(source: Source, unit: str | None) -> Record:
+def read(source: MotionText, unit: str | None) -> Record:
     """Read all channels of a file.
 
     Raises:
@@ -63,7 +63,7 @@ def read(source: Source, unit: str | None) -> Record:
     )
 
 
-def _channel(source: Source, line: int, unit: str | None) -> tuple[Component, int]:
+def _channel(source: MotionText, line: int, unit: str | None) -> tuple[Component, int]:
     """One channel that begins at a line, and the line behind it."""
     title = TITLE.search(source.line(line))
     text = int(title[1]) if title and len(title[1]) < 3 else 13
@@ -97,7 +97,7 @@ def _channel(source: Source, line: int, unit: str | None) -> tuple[Component, in
     ), line
 
 
-def _numbers(source: Source, line: int, what: str) -> tuple[FloatArray, int]:
+def _numbers(source: MotionText, line: int, what: str) -> tuple[FloatArray, int]:
     """A block of the header with its opening line."""
     opening, layout = BLOCK.match(source.line(line)), fortran_format(source.line(line))
     if opening is None or layout is None:
@@ -109,7 +109,7 @@ def _numbers(source: Source, line: int, what: str) -> tuple[FloatArray, int]:
     return numbers, behind
 
 
-def _unit(source: Source, whole: FloatArray, opening: str, line: int) -> str | None:
+def _unit(source: MotionText, whole: FloatArray, opening: str, line: int) -> str | None:
     """The unit by its code and as the line that opens the data spells it."""
     by_code = UNIT_CODES.get(int(whole[UNIT]))
     spelled = SPELLED.search(opening)
@@ -122,7 +122,7 @@ def _unit(source: Source, whole: FloatArray, opening: str, line: int) -> str | N
     return by_code or by_name
 
 
-def _interval(source: Source, real: FloatArray, count: int, line: int) -> float:
+def _interval(source: MotionText, real: FloatArray, count: int, line: int) -> float:
     """Interval of the samples, which must fit the length that the header gives [s]."""
     step = 1e-3 * float(real[INTERVAL])
     if not step > 0.0:

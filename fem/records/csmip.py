@@ -17,7 +17,7 @@ from fem.records.fixed_width import (
     whole_number,
 )
 from fem.records.record import Component, Quantity, Record
-from fem.records.source import Source
+from fem.records.source import MotionText
 from fem.records.units import UNITS, settled_unit, unit_in_header
 
 NAME = "CSMIP"
@@ -40,12 +40,12 @@ QUANTITIES: dict[str, Quantity] = {
 }
 
 
-def recognises(source: Source) -> bool:
+def recognises(source: MotionText) -> bool:
     """Whether the first line is a title of the format."""
     return TITLE.match(source.line(1)) is not None
 
 
-def read(source: Source, unit: str | None) -> Record:
+def read(source: MotionText, unit: str | None) -> Record:
     """Read the accelerations of all channels of a file.
 
     Raises:
@@ -104,7 +104,7 @@ class _Opening:
     layout: tuple[int, int]
 
 
-def _opening(source: Source, line: int) -> _Opening | None:
+def _opening(source: MotionText, line: int) -> _Opening | None:
     if found := SPACED.match(source.line(line)):
         return _Opening(
             count=whole_number(source, found[1], "number of samples", line),
@@ -124,6 +124,6 @@ def _opening(source: Source, line: int) -> _Opening | None:
     return None
 
 
-def _station(source: Source) -> str:
+def _station(source: MotionText) -> str:
     found = (line.partition("Station No.")[2] for line in source.lines[:13] if "station no." in line.lower())
     return next(found, "").strip().partition(" ")[0]

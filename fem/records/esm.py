@@ -5,7 +5,7 @@ import re
 from fem.records.directions import stream_direction
 from fem.records.fixed_width import positive_number, read_separated, regular_times, whole_number
 from fem.records.record import PLURALS, Component, Record
-from fem.records.source import Source
+from fem.records.source import MotionText
 from fem.records.units import UNITS, settled_unit, unit_in_header
 
 NAME = "ESM ASCII"
@@ -13,12 +13,12 @@ KEY = re.compile(r"([A-Z][A-Z0-9_/]*)\s*:\s*(.*)")
 MOST_LINES = 200  #: of a header; it has 64
 
 
-def recognises(source: Source) -> bool:
+def recognises(source: MotionText) -> bool:
     """Whether the first two lines name the event."""
     return source.line(1).startswith("EVENT_NAME:") and source.line(2).startswith("EVENT_ID:")
 
 
-def read(source: Source, unit: str | None) -> Record:
+def read(source: MotionText, unit: str | None) -> Record:
     """Read the one component of a file.
 
     Raises:

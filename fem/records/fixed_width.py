@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from fem.records.source import LARGEST_NUMBER, Source, as_numbers
+from fem.records.source import LARGEST_NUMBER, MotionText, as_numbers
 from fem.runtime.arrays import FloatArray
 
 #: such as (8f10.6), (5E15.7), (10I8), (1P8E10.3)
@@ -20,7 +20,7 @@ def fortran_format(text: str) -> tuple[int, int] | None:
 
 
 def read_block(
-    source: Source,
+    source: MotionText,
     first: int,
     count: int,
     *,
@@ -61,7 +61,7 @@ def read_block(
     return _checked(source, rows, first, largest), behind
 
 
-def read_separated(source: Source, first: int, count: int) -> tuple[FloatArray, int]:
+def read_separated(source: MotionText, first: int, count: int) -> tuple[FloatArray, int]:
     """Numbers separated by blanks, any number of them in a line, up to the end of the file.
 
     Returns and raises as `read_block`.
@@ -73,14 +73,14 @@ def read_separated(source: Source, first: int, count: int) -> tuple[FloatArray, 
     return _checked(source, rows, first, LARGEST_NUMBER), len(source.lines) + 1
 
 
-def require_end(source: Source, line: int, count: int) -> None:
+def require_end(source: MotionText, line: int, count: int) -> None:
     """Refuse a file that goes on behind its numbers."""
     for number in range(line, len(source.lines) + 1):
         if source.line(number).strip():
             raise source.refused(f"the header says {count} values, and the file goes on behind them", number)
 
 
-def _checked(source: Source, rows: list[list[str]], first: int, largest: float) -> FloatArray:
+def _checked(source: MotionText, rows: list[list[str]], first: int, largest: float) -> FloatArray:
     numbers = as_numbers([field for row in rows for field in row], largest)
     if numbers is None:
         wrong = next(
@@ -90,7 +90,7 @@ def _checked(source: Source, rows: list[list[str]], first: int, largest: float) 
     return numbers
 
 
-def whole_number(source: Source, text: str, what: str, number: int | None = None) -> int:
+def whole_number(source: MotionText, text: str, what: str, number: int | None = None) -> int:
     """A count of a header.
 
     Raises:
@@ -102,7 +102,7 @@ def whole_number(source: Source, text: str, what: str, number: int | None = None
     return int(stripped)
 
 
-def positive_number(source: Source, text: str, what: str, number: int | None = None) -> float:
+def positive_number(source: MotionText, text: str, what: str, number: int | None = None) -> float:
     """A number of a header above zero.
 
     Raises:

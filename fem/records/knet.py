@@ -8,7 +8,7 @@ import re
 from fem.records.directions import direction_of
 from fem.records.fixed_width import positive_number, read_block, read_separated, regular_times, require_end
 from fem.records.record import Component, Record
-from fem.records.source import Source, as_numbers
+from fem.records.source import MotionText, as_numbers
 from fem.records.units import UNITS, settled_unit
 from fem.runtime.arrays import FloatArray
 
@@ -20,12 +20,12 @@ SCALE = re.compile(r"([\d.]+)\s*\(gal\)\s*/\s*([\d.]+)", re.IGNORECASE | re.ASCI
 SENSORS = {"1": "N-S", "2": "E-W", "3": "U-D", "4": "N-S", "5": "E-W", "6": "U-D"}
 
 
-def recognises(source: Source) -> bool:
+def recognises(source: MotionText) -> bool:
     """Whether the header has the labels of NIED."""
     return source.line(1).startswith("Origin Time") and source.line(6).startswith("Station Code")
 
 
-def read(source: Source, unit: str | None) -> Record:
+def read(source: MotionText, unit: str | None) -> Record:
     """Read the one component of a file.
 
     Raises:
@@ -63,11 +63,11 @@ def read(source: Source, unit: str | None) -> Record:
     )
 
 
-def _value(source: Source, number: int) -> str:
+def _value(source: MotionText, number: int) -> str:
     return source.line(number)[LABEL:].strip()
 
 
-def _counts(source: Source, count: int) -> FloatArray:
+def _counts(source: MotionText, count: int) -> FloatArray:
     first = LINES + 1
     line = source.line(first).rstrip()
     fields = [line[at : at + WIDTH] for at in range(0, len(line), WIDTH)]

@@ -16,7 +16,7 @@ from fem.records.fixed_width import (
     whole_number,
 )
 from fem.records.record import PLURALS, Component, Quantity, Record
-from fem.records.source import Source, as_numbers
+from fem.records.source import MotionText, as_numbers
 from fem.records.units import UNITS, settled_unit, unit_in_header
 from fem.runtime.arrays import FloatArray
 
@@ -33,12 +33,12 @@ QUANTITY = re.compile(
 QUANTITIES: dict[str, Quantity] = {name: name for name in PLURALS}
 
 
-def recognises(source: Source) -> bool:
+def recognises(source: MotionText) -> bool:
     """Whether one of the first lines gives number and interval of the samples as PEER does."""
     return _sampling_line(source) is not None
 
 
-def read(source: Source, unit: str | None) -> Record:
+def read(source: MotionText, unit: str | None) -> Record:
     """Read the one component of a file.
 
     Raises:
@@ -76,14 +76,14 @@ def read(source: Source, unit: str | None) -> Record:
     )
 
 
-def _sampling_line(source: Source) -> int | None:
+def _sampling_line(source: MotionText) -> int | None:
     for number, line in enumerate(source.lines[:HEADING], start=1):
         if LABELLED.search(line) or BEFORE.match(line):
             return number
     return None
 
 
-def _numbers(source: Source, first: int, count: int) -> FloatArray:
+def _numbers(source: MotionText, first: int, count: int) -> FloatArray:
     line = source.line(first).rstrip()
     fields = [line[at : at + WIDTH] for at in range(0, len(line), WIDTH)]
     full = len(fields) == min(PER_LINE, count) and len(line) % WIDTH == 0 and as_numbers(fields) is not None

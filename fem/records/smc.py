@@ -10,7 +10,7 @@ import re
 from fem.records.directions import direction_of
 from fem.records.fixed_width import read_block, regular_times, require_end
 from fem.records.record import Component, Direction, Record
-from fem.records.source import Source
+from fem.records.source import MotionText
 from fem.records.units import UNITS, settled_unit
 
 NAME = "SMC"
@@ -28,12 +28,12 @@ PER_LINE, WIDTH = 8, 10
 FASTEST = 1e5  #: samples in a second, above which the rate is none
 
 
-def recognises(source: Source) -> bool:
+def recognises(source: MotionText) -> bool:
     """Whether the first line is a title of the format."""
     return TITLE.fullmatch(source.line(1)) is not None
 
 
-def read(source: Source, unit: str | None) -> Record:
+def read(source: MotionText, unit: str | None) -> Record:
     """Read the one component of a file.
 
     Raises:

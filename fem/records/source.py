@@ -20,7 +20,7 @@ TWO_BYTES = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 
 
 @dataclass(frozen=True)
-class Source:
+class MotionText:
     """Lines of a file, and the name by which messages call it."""
 
     name: str
@@ -35,7 +35,7 @@ class Source:
         return RecordError(f"{self.name}{f', line {number}' if number else ''}: {why}")
 
 
-def read_source(path: Path) -> Source:
+def read_source(path: Path) -> MotionText:
     """Read the text of a file.
 
     Raises:
@@ -57,7 +57,7 @@ def read_source(path: Path) -> Source:
     text = _decoded(content)
     if text is None or CONTROL.search(text):
         raise RecordError(f"{path.name}: not a text file; a motion file holds numbers as text")
-    return Source(path.name, text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a \n").split("\n"))
+    return MotionText(path.name, text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a \n").split("\n"))
 
 
 def _decoded(content: bytes) -> str | None:

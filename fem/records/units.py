@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 
 from fem.records.record import PLURALS, Quantity, RecordError
-from fem.records.source import Source
+from fem.records.source import MotionText
 
 STANDARD_GRAVITY = 9.80665  #: of a record in g (ISO 80000-3), not the gravity of the case [m/s2]
 
@@ -79,7 +79,7 @@ def settled_unit(stated: str | None, wanted: str | None, place: str) -> tuple[st
     return unit, stated is not None
 
 
-def unit_in_header(source: Source, spelled: str, quantity: Quantity) -> str:
+def unit_in_header(source: MotionText, spelled: str, quantity: Quantity) -> str:
     """The unit that the header of a file spells for a quantity.
 
     Raises:
