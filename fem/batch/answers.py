@@ -25,6 +25,7 @@ STRENGTHS = (
 #: axes along which the larger value is the safer one
 LARGER_IS_SAFER = frozenset({"container.width_m"})
 MOST_RANGES = 4  #: of values that a sentence names
+MOST_ROWS = 40  #: on a screen
 MOST_FIGURES = 17  #: of a number in double precision
 
 Range = tuple[float, float]  #: first and last of neighbouring values, from the safe side
@@ -161,6 +162,15 @@ def ranges_in_words(ranges: Sequence[Range], axis: Axis) -> str:
     shown = [in_words(axis, sorted({*one})) for one in ranges[:MOST_RANGES]]
     more = len(ranges) - len(shown)
     return ", ".join(shown) + (f" and {more} more" if more else "")
+
+
+def table_lines(rows: Iterable[tuple[str, str]], file: str = "") -> Iterator[str]:
+    """Rows for a screen, each where and the answer; beyond the first forty their number, and the file of all."""
+    listed = list(rows)
+    widest = max((len(where) for where, _ in listed), default=0)
+    yield from (f"  {where:{widest}}  {sentence}" for where, sentence in listed[:MOST_ROWS])
+    if more := len(listed[MOST_ROWS:]):
+        yield f"  {more} more rows" + (f" in {file}" if file else "")
 
 
 def _slip_in_words(slip: float) -> str:

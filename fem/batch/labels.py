@@ -1,6 +1,6 @@
 """Keys and values of axes as people read them: "peak acceleration [m/s²]", "0.42 g"."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from fem.assessment.motion_words import STANDARD_GRAVITY
@@ -34,6 +34,11 @@ def in_words(axis: Axis, values: Sequence[Any], figures: int = 3) -> str:
     numbers = [value for value in axis.values if not isinstance(value, bool | str)]
     unit, factor = _unit_of_people(axis, max((abs(value) for value in numbers), default=0.0))
     return f"{' to '.join(plain_number(factor * value, figures) for value in values)} {unit}".strip()
+
+
+def place_in_words(axes: Iterable[Axis], point: Mapping[str, Any]) -> str:
+    """Where on some axes a point is: "mu static 0.3, width 1.1 m"."""
+    return ", ".join(f"{axis_name(axis)} {in_words(axis, [point[axis.key]], 4)}" for axis in axes)
 
 
 def plain_number(value: float, figures: int = 3) -> str:

@@ -10,13 +10,12 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
+from fem.batch.answers import table_lines
 from fem.case.case import CaseError
 from fem.cli.console import EXIT_CODES, Folder, Force, Jobs, Quiet, Resume, flag
 from fem.results.files import to_json
 from fem.runtime.progress import ScreenReporter
 from fem.sweep.file import load_sweep
-
-MOST_ROWS = 40  #: of the answers, on the screen
 
 
 def sweep(
@@ -110,9 +109,6 @@ def _answer_lines(info: dict[str, Any], folder: Path) -> Iterator[str]:
         return
     tables = importlib.import_module("fem.sweep.table")
     answer = importlib.import_module("fem.sweep.answers").sweep_answer(tables.open_sweep(folder), folder)
-    rows = list(answer.lines()) if answer and answer.others else []
-    widest = max((len(where) for where, _ in rows), default=0)
-    yield from (f"  {where:{widest}}  {sentence}" for where, sentence in rows[:MOST_ROWS])
-    if len(rows) > MOST_ROWS:
-        yield f"  answers.csv has all {len(rows)} rows"
+    if answer:
+        yield from table_lines(answer.lines(), "answers.csv")
     yield info["answer"]

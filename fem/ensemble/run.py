@@ -12,11 +12,13 @@ from typing import Any
 
 import numpy as np
 
+from fem.batch.answers import table_lines
 from fem.batch.log import LoggedRuns, fields_of, table_of_lines, table_text
 from fem.batch.runner import Row, Runner, motion_left_out
 from fem.batch.workers import LocalWorkers
 from fem.case.case import case_hash, to_toml
 from fem.case.rules import ends_at_rest, longest_time
+from fem.ensemble.answers import ensemble_answer
 from fem.ensemble.figures import ensemble_figures
 from fem.ensemble.plan import Draw, Ensemble
 from fem.ensemble.statistics import (
@@ -144,6 +146,8 @@ def _finish(
         for name, svg in ensemble_figures(ensemble, unknown, points, fragility).items():
             place.write_text(f"figures/{name}.svg", svg)
     result = result_of(ensemble, unknown, points, fragility, status)
+    answer = ensemble_answer(result)
+    result["answer"] = answer.sentence if answer else None
     place.write_result(result)
     return result
 
@@ -238,6 +242,9 @@ def page_of(result: dict[str, Any], folder: Path) -> str:
     lines.append(f"  files      {folder}")
     if result["status"] == "interrupted":
         lines.append("  --resume continues")
+    if answer := ensemble_answer(result):
+        lines += table_lines(answer.lines())
+        lines.append(answer.sentence)
     return "\n".join(lines)
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.batch.answers import ranges_in_words
-from fem.batch.labels import axis_label, in_words
+from fem.batch.labels import axis_label, in_words, place_in_words
 from fem.case.case import load_case
 from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html.page import Signature, render_page, svg_element
@@ -26,7 +26,7 @@ from fem.html.units import ABSENT, millimetres, number, short, typeset
 from fem.report.animation import colour_scale, packed
 from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions
 from fem.results.errors import FolderError
-from fem.sweep.answers import SweepAnswer, place_in_words, sweep_answer
+from fem.sweep.answers import SweepAnswer, sweep_answer
 from fem.sweep.table import SweepTable, open_sweep
 
 #: what can be shown: column, words for it, unit, factor

@@ -16,6 +16,7 @@ import numpy as np
 from fem.assessment.verdict import MODE_NAMES
 from fem.case.case import Case, to_toml
 from fem.model.container import Container, discretise
+from fem.response.answer import found_at, response_answer
 from fem.response.branches import branches_of
 from fem.response.curve import PORTRAYED, case_at, plan_of, sweep_points
 from fem.response.figures import response_figures
@@ -95,7 +96,7 @@ def required_disk(request: ResponseRequest) -> float:
 
 def result_of(request: ResponseRequest, records: Sequence[PointRecord], status: str) -> dict[str, Any]:
     """The content of `response.json`."""
-    return {
+    result = {
         "status": status,
         "asked": request.hash,
         "case": request.case.name,
@@ -104,7 +105,8 @@ def result_of(request: ResponseRequest, records: Sequence[PointRecord], status: 
         "points": [asdict(record.row) for record in records],
         **branches_of(records),
         "stable_everywhere": all(record.row.stable for record in records) if records else None,
-    } | program_of_results()
+    }
+    return result | {"answer": response_answer(result)} | program_of_results()
 
 
 def page_of(request: ResponseRequest, result: Mapping[str, Any], folder: Path) -> str:
@@ -125,18 +127,18 @@ def page_of(request: ResponseRequest, result: Mapping[str, Any], folder: Path) -
         difference = found["largest_difference"]
         by = f", rotation ratios up to {difference:.3f} apart" if difference is not None else ""
         lines.append(
-            f"  coexist     {_range(found)}: {' or '.join(found['up'])} going up, "
+            f"  coexist     {found_at(found)}: {' or '.join(found['up'])} going up, "
             f"{' or '.join(found['down'])} going down{by}"
         )
     for found in result["jumps"]:
         before, after = found["rotation_ratio"]
         lines.append(
-            f"  jump        {found['direction']}, {_range(found)}: {found['what']}, "
+            f"  jump        {found['direction']}, {found_at(found)}: {found['what']}, "
             f"rotation ratio {before:.3f} to {after:.3f}"
         )
     for found in result["drop_outs"]:
         how = "carried there" if found["carried"] else "from its start"
-        lines.append(f"  overturns   {found['direction']}, {_range(found)}, {how}")
+        lines.append(f"  overturns   {found['direction']}, {found_at(found)}, {how}")
     judged = [point for point in points if point["stable"] is not None]
     stable = sum(point["stable"] for point in judged)
     lines.append(
@@ -148,7 +150,8 @@ def page_of(request: ResponseRequest, result: Mapping[str, Any], folder: Path) -
         f"  failed      {point['direction']}, {point['frequency_Hz']:.4g} Hz: {point['reason']}"
         for point in failed
     ]
-    return "\n".join([*lines, f"  files       {folder}"])
+    lines.append(f"  files       {folder}")
+    return "\n".join([*lines, *filter(None, [response_answer(result)])])
 
 
 def read_state(place: ResultFolder) -> tuple[list[PointRecord], dict[str, np.ndarray]]:
@@ -231,8 +234,3 @@ def _sweep(
             return "interrupted"
     reporter.finish()
     return "failed" if any(record.row.status == "failed" for record in records) else "completed"
-
-
-def _range(found: Mapping[str, Any]) -> str:
-    low, high = found["from_Hz"], found["to_Hz"]
-    return f"{low:.4g} Hz" if low == high else f"{low:.4g} to {high:.4g} Hz"

@@ -4,7 +4,7 @@ A line holds the cells that differ along one axis alone, and the values that a t
 """
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ from fem.batch.answers import (
     sentence_of,
 )
 from fem.batch.axes import Axis, point_of
-from fem.batch.labels import axis_name, in_words
+from fem.batch.labels import axis_name, place_in_words
 from fem.batch.log import fields_of, number_in, table_text
 from fem.sweep.neighbours import KIND_NAMES, kind_of
 from fem.sweep.table import SweepTable
@@ -47,8 +47,8 @@ class SweepAnswer:
         return table_text((*(axis.key for axis in self.others), *COLUMNS), map(self._row, self.rows))
 
     def lines(self) -> Iterator[tuple[str, str]]:
-        """The values of the other axes in words, and the answer."""
-        for point, _, sentence in self.rows:
+        """The values of the other axes in words, and the answer; nothing where there are no other axes."""
+        for point, _, sentence in self.rows if self.others else ():
             yield place_in_words(self.others, point), sentence
 
     def _row(self, row: tuple[Mapping[str, Any], Answer, str]) -> Iterator[Any]:
@@ -89,11 +89,6 @@ def sweep_answer(table: SweepTable, folder: Path) -> SweepAnswer | None:
         others=others,
         rows=tuple(rows),
     )
-
-
-def place_in_words(axes: Iterable[Axis], point: Mapping[str, Any]) -> str:
-    """Where on some axes a point is: "mu static 0.3, width 1.1 m"."""
-    return ", ".join(f"{axis_name(axis)} {in_words(axis, [point[axis.key]], 4)}" for axis in axes)
 
 
 def _lines_of(table: SweepTable, axis: Axis, tried: Path) -> dict[int, list[Trial]]:

@@ -1,0 +1,160 @@
+"""The answer of an ensemble: where half of the draws overturn, and up to where few enough do, from its result alone.
+
+The shares counted at the points are joined by straight lines, and so are the ends of their intervals: half of the draws
+overturn where the line of the shares first passes one half, from the side on which fewer do; the interval of that value
+ends where the lines of the upper and of the lower ends pass it.
+"""
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise, takewhile
+from typing import Any
+
+from fem.batch.answers import LARGER_IS_SAFER, STRENGTHS, answer_axis
+from fem.batch.axes import Axis
+from fem.batch.labels import axis_name, in_words, place_in_words
+
+HALF = 0.5
+Row = Mapping[str, Any]  #: of a point, as `ensemble.json` holds it
+
+
+@dataclass(frozen=True, kw_only=True)
+class HalfPoint:
+    """Where half of the draws overturn along one line of points."""
+
+    value: float | None  #: None where fewer do at every point
+    low: float | None  #: end of its interval; None: not reached
+    high: float | None
+    at_once: bool  #: half or more do so at the first point already
+    few_to: float | None  #: up to here the interval ends at the probability asked for, or below
+
+
+@dataclass(frozen=True, kw_only=True)
+class EnsembleAnswer:
+    """What an ensemble found along one axis."""
+
+    axis: Axis
+    sentence: str  #: of the line of points on which half overturn first
+    others: tuple[Axis, ...]  #: the axes that tell its lines apart
+    rows: tuple[tuple[Row, HalfPoint, str], ...]  #: a point of each line, its answer, and that in words
+
+    def lines(self) -> Iterator[tuple[str, str]]:
+        """The values of the other axes in words, and the answer; nothing where there are no other axes."""
+        for point, _, sentence in self.rows if self.others else ():
+            yield place_in_words(self.others, point), sentence
+
+
+def axes_of(result: Mapping[str, Any]) -> tuple[Axis, ...]:
+    """The axes of an ensemble, from the content of `ensemble.json`."""
+    return tuple(
+        Axis(key=one["key"], values=tuple(one["values"]), unit=one.get("unit", "")) for one in result["axes"]
+    )
+
+
+def ensemble_answer(result: Mapping[str, Any]) -> EnsembleAnswer | None:
+    """The answer along a strength, else along the axis with the most values.
+
+    Args:
+        result: the content of `ensemble.json`.
+
+    Returns:
+        None of an unfinished ensemble, and where no axis has several numbers.
+    """
+    axes = axes_of(result)
+    numeric = sorted((axis for axis in axes if axis.is_numeric), key=lambda axis: -len(axis.values))
+    axis = answer_axis(axes) or next(iter(numeric), None)
+    if axis is None or result["status"] != "completed":
+        return None
+    others = tuple(one for one in axes if one is not axis and len(one.values) > 1)
+    rising = _is_rising(axis, result["points"])
+    lines: dict[tuple[Any, ...], list[Row]] = defaultdict(list)
+    for point in sorted(result["points"], key=lambda one: one[axis.key], reverse=not rising):
+        lines[tuple(point[one.key] for one in others)].append(point)
+    rows = []
+    for values in sorted(lines):
+        found = half_point(axis, lines[values])
+        rows.append((lines[values][0], found, _sentence(result, axis, lines[values], found, rising=rising)))
+    safest = min if rising else max
+    reached = [(found.value, k) for k, (_, found, _) in enumerate(rows) if found.value is not None]
+    point, _, sentence = rows[safest(reached)[1] if reached else 0]
+    if others:
+        where = f"first with {place_in_words(others, point)}: {sentence}"
+        sentence = (
+            where if reached else f"fewer than half of {result['draws']} draws overturned at every point"
+        )
+    return EnsembleAnswer(
+        axis=axis, sentence=f"{axis_name(axis)}: {sentence}", others=others, rows=tuple(rows)
+    )
+
+
+def half_point(axis: Axis, points: Sequence[Row]) -> HalfPoint:
+    """Where half of the draws overturn along a line of points, which begins on the side on which fewer do."""
+    known = [point for point in points if point["probability"] is not None]
+    values = [float(point[axis.key]) for point in known]
+    value, low, high = (
+        _crossing(values, [float(point[name]) for point in known]) for name in ("probability", "high", "low")
+    )
+    few = list(takewhile(lambda point: point["region"] == "below", points))
+    return HalfPoint(
+        value=value,
+        low=low,
+        high=high,
+        at_once=bool(known) and known[0]["probability"] >= HALF,
+        few_to=float(few[-1][axis.key]) if few else None,
+    )
+
+
+def _crossing(values: Sequence[float], shares: Sequence[float]) -> float | None:
+    """Where straight lines through the points first pass one half; the first value where it lies above already."""
+    if shares and shares[0] >= HALF:
+        return values[0]
+    for (before, less), (after, more) in pairwise(zip(values, shares, strict=True)):
+        if less < HALF <= more:
+            return before + (after - before) * (HALF - less) / (more - less)
+    return None
+
+
+def _is_rising(axis: Axis, points: Sequence[Row]) -> bool:
+    """Whether more overturn at larger values: by the key, else by the shares at the ends of the axis."""
+    if axis.key in LARGER_IS_SAFER:
+        return False
+    low, high = (
+        [point["probability"] or 0.0 for point in points if point[axis.key] == end]
+        for end in (axis.values[0], axis.values[-1])
+    )
+    return axis.key in STRENGTHS or sum(high) >= sum(low)
+
+
+def _sentence(result: Row, axis: Axis, points: Sequence[Row], found: HalfPoint, *, rising: bool) -> str:
+    draws = f"half of {result['draws']} draws overturned"
+    if found.at_once:
+        end = "least" if rising else "largest"
+        parts = [f"{draws} or more at the {end} tried, {in_words(axis, [points[0][axis.key]])}"]
+    elif found.value is None:
+        most = max(points, key=lambda point: point["probability"] or 0.0)
+        share = f"{100.0 * (most['probability'] or 0.0):.2g} %"
+        parts = [
+            f"fewer than {draws} at every value tried, at most {share} at {in_words(axis, [most[axis.key]])}"
+        ]
+    else:
+        interval = (
+            f"{100.0 * result['confidence']:g} % interval {_interval(axis, points, found, rising=rising)}"
+        )
+        parts = [f"{draws} at {in_words(axis, [found.value])} ({interval})"]
+    if found.few_to is not None:
+        limit = f"{100.0 * result['probability']:g} %"
+        few = in_words(axis, [found.few_to])
+        parts.append(
+            f"at most {limit} {f'up to {few}' if rising else f'from {few} on'}, by the upper end of the interval"
+        )
+    return "; ".join(parts)
+
+
+def _interval(axis: Axis, points: Sequence[Row], found: HalfPoint, *, rising: bool) -> str:
+    """The ends of the interval of the value; an end that no point shows is said to lie beyond them."""
+    first, last = (in_words(axis, [points[k][axis.key]]) for k in (0, -1))
+    before, after = ("below", "beyond") if rising else ("beyond", "below")
+    low, high = ("" if end is None else in_words(axis, [end]) for end in (found.low, found.high))
+    ends = [f"{before} {first}" if low == first else low, high or f"{after} {last}"]
+    return " to ".join(ends if rising else reversed(ends))

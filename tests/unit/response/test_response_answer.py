@@ -1,0 +1,54 @@
+"""The sentence of a response curve: where it overturned, how far it turned, where two motions coexist."""
+
+import pytest
+
+from fem.response.answer import response_answer
+
+
+def point(frequency, direction, ratio, long_time="periodic", status="completed"):
+    stands = ratio is not None
+    return {
+        "frequency_Hz": frequency,
+        "direction": direction,
+        "rotation_ratio": ratio,
+        "long_time": long_time if stands else None,
+        "status": status if stands or status == "failed" else "overturned",
+    }
+
+
+def curve(*points, status="completed", **found):
+    return {"status": status, "points": list(points), "coexisting": [], "drop_outs": [], **found}
+
+
+STANDS = (point(0.5, "up", 0.1), point(1.0, "up", 0.62), point(1.0, "down", 0.3), point(0.5, "down", 0.1))
+FALL = {"direction": "down", "from_Hz": 0.9, "to_Hz": 0.5}
+
+
+@pytest.mark.parametrize(
+    ("result", "sentence"),
+    [
+        (
+            curve(*STANDS, coexisting=[{"from_Hz": 1.0, "to_Hz": 1.0}]),
+            "frequency: stood at every frequency tried, 0.5 to 1 Hz, up and down; largest rotation 0.62 of the "
+            "slenderness angle, at 1 Hz going up; two motions coexist at 1 Hz",
+        ),
+        (
+            curve(*STANDS[:3], point(0.5, "down", None), drop_outs=[FALL]),
+            "frequency: overturned at 0.9 to 0.5 Hz going down; stood at the other 3 points; largest rotation 0.62 of "
+            "the slenderness angle, at 1 Hz going up",
+        ),
+        (
+            curve(point(0.5, "up", None), point(0.5, "down", None), drop_outs=[FALL]),
+            "frequency: overturned at every frequency tried, 0.5 Hz",
+        ),
+        (
+            curve(point(0.5, "up", 0.0, "rest"), point(1.0, "up", None, status="failed"), status="failed"),
+            "frequency: stood at every frequency with an outcome, 0.5 Hz, up and down; at rest there; "
+            "no outcome at 1 of 2 points",
+        ),
+        (curve(*STANDS, status="interrupted"), None),
+        (curve(point(0.5, "up", None, status="failed"), status="failed"), None),
+    ],
+)
+def test_a_curve_has_one_sentence(result, sentence):
+    assert response_answer(result) == sentence
