@@ -197,10 +197,10 @@ def rig(
     floor, floor_velocity, _ = floor_motion(compiled_motion, 0.0)
     contact = block.contact()
     old, new = (make_state(3 + body.stiffness.size, 2, 0) for _ in range(2))
-    stance = (block.standing() if stance is None else stance).moved(floor)
+    stance = (block.standing() if stance is None else stance).moved(floor).moving(floor_velocity)
     old.force[:] = stance.force
     old.stick[:] = -stance.force[:, 0] / contact.tangential_stiffness
-    place(body, old, stance, floor_velocity)
+    place(body, old, stance)
     old.position[3:] += amplitudes
     old.velocity[3:] = rates
     start(body, old, floor)

@@ -283,8 +283,8 @@ MUTATIONS = (
     Mutation(
         name="velocities of the contents in the old frame after a change of frame",
         file="contact/stepping/integrator.py",
-        old="shift_contents(run.contents, floor_velocity)",
-        new="shift_contents(run.contents, 0.0 * floor_velocity)",
+        old="shift_contents(run.contents, (floor_velocity, lift_velocity))",
+        new="shift_contents(run.contents, (0.0, lift_velocity))",
         tests=("unit/run/test_motion_ends.py", "-k", "no_jerk"),
     ),
     Mutation(

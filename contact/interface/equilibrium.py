@@ -38,13 +38,13 @@ class Stance:
         velocity = (-angular_velocity * float(arm[1]), angular_velocity * float(arm[0]))
         return replace(self, velocity=velocity, angular_velocity=angular_velocity)
 
-    def sliding(self, velocity: float) -> "Stance":
-        """The same stance with an additional velocity along the floor [m/s]."""
-        return replace(self, velocity=(self.velocity[0] + velocity, self.velocity[1]))
+    def moving(self, velocity: float, upward: float = 0.0) -> "Stance":
+        """The same stance with additional velocities along the floor and upward [m/s]."""
+        return replace(self, velocity=(self.velocity[0] + velocity, self.velocity[1] + upward))
 
-    def moved(self, distance: float) -> "Stance":
-        """The same stance shifted along x [m]."""
-        return replace(self, centre=(self.centre[0] + distance, self.centre[1]))
+    def moved(self, distance: float, upward: float = 0.0) -> "Stance":
+        """The same stance shifted along x and upward [m]."""
+        return replace(self, centre=(self.centre[0] + distance, self.centre[1] + upward))
 
     def with_points(self, count: int) -> "Stance":
         """The same stance with `count` contact points; the added points carry no force."""

@@ -114,6 +114,12 @@ def floor_motion(motion: FloorMotion, time: float) -> tuple[float, float, float]
 
 
 @compiled
+def move_floor(motion: FloorMotion, time: float, floor: FloatArray) -> None:
+    """Write displacement, velocity and acceleration of the floor at `time` [s] to `floor`, shape (3,)."""
+    floor[0], floor[1], floor[2] = floor_motion(motion, time)
+
+
+@compiled
 def _fill_history(motion: FloorMotion, times: FloatArray, history: FloatArray) -> None:
     for i in range(times.size):
         history[0, i], history[1, i], history[2, i] = floor_motion(motion, times[i])

@@ -44,7 +44,8 @@ class State(NamedTuple):
     )
     stick: FloatArray  #: (n,) elongation of the stuck tangential springs [m]
     pose: FloatArray  #: (6,) best-fit rotation, its rate, mass centre and its velocity (absolute)
-    energy: FloatArray  #: (3,) kinetic, strain, gravity potential [J]
+    #: (3,) kinetic, strain, gravity potential [J], of heights and vertical velocities relative to the floor
+    energy: FloatArray
     monitor: FloatArray  #: (n_m, 4) monitored points: displacement relative to the floor [m], velocity [m/s]
     numbers: FloatArray  #: all but the monitored points; the fields above are views of it
 
@@ -92,12 +93,15 @@ def release(
     work: Workspace,
     floor: float,
     floor_velocity: float,
+    lift: float,
+    lift_velocity: float,
 ) -> None:
     """Base points without contact force, and their compliance, from the iterate in `new`.
 
-    Writes `work.free`, `work.free_velocity` (relative to the floor) and `work.compliance`.
+    Writes `work.free`, `work.free_velocity` (relative to the floor) and `work.compliance`. Displacement and velocity
+    of the floor: `floor` along x, `lift` upward.
     """
-    body.release(scheme, step, old, new, work, floor, floor_velocity)
+    body.release(scheme, step, old, new, work, floor, floor_velocity, lift, lift_velocity)
 
 
 def respond(body: Any, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
@@ -105,19 +109,19 @@ def respond(body: Any, scheme: Scheme, step: float, old: State, new: State, work
     return float(body.respond(scheme, step, old, new, work))
 
 
-def complete(body: Any, new: State, floor: float) -> None:
+def complete(body: Any, new: State, floor: float, lift: float, lift_velocity: float) -> None:
     """Compute internal forces, base points, pose and energy from the converged coordinates."""
-    body.complete(new, floor)
+    body.complete(new, floor, lift, lift_velocity)
 
 
-def observe(body: Any, state: State, floor: float) -> None:
+def observe(body: Any, state: State, floor: float, lift: float) -> None:
     """Compute displacement and velocity of the monitored points; called for samples only."""
-    body.observe(state, floor)
+    body.observe(state, floor, lift)
 
 
-def shift_velocity(body: Any, state: State, velocity: float) -> None:
-    """Change to a frame that moves with this velocity along x [m/s]."""
-    body.shift_velocity(state, velocity)
+def shift_velocity(body: Any, state: State, velocity: float, lift_velocity: float) -> None:
+    """Change to a frame that moves with these velocities, along x and upward [m/s]."""
+    body.shift_velocity(state, velocity, lift_velocity)
 
 
 def prepared(body: Any, step: float) -> bool:

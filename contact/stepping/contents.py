@@ -37,20 +37,22 @@ def follow_contents(body: Any, run: RunState, step: float) -> None:
     if run.history.columns.shape[1] == 0:
         return
     if clock.steps == 0:
-        observe(body, run.old, run.floor[0, 0])
-        begin_contents(run.contents, run.old.monitor[control.top_monitors :], run.floor[0, 0])
+        observe(body, run.old, run.floor[0, 0], run.lift[0, 0])
+        begin_contents(
+            run.contents, run.old.monitor[control.top_monitors :], (run.floor[0, 0], run.lift[0, 0])
+        )
         run.track[0].max_top_displacement = largest_sway(run.old.monitor[: control.top_monitors], 0.0)
     clock.unobserved += step
     if clock.unobserved * control.contents_cutoff < OBSERVED:
         return
-    observe(body, run.new, run.floor[1, 0])
+    observe(body, run.new, run.floor[1, 0], run.lift[1, 0])
     monitor, top = run.new.monitor, control.top_monitors
     track = run.track[0]
     track.max_top_displacement = largest_sway(monitor[:top], track.max_top_displacement)
     track.max_acceleration = filter_contents(
         run.contents,
         monitor[top:],
-        run.floor[1, 0],
+        (run.floor[1, 0], run.lift[1, 0]),
         clock.unobserved,
         control.contents_cutoff,
         track.max_acceleration,
@@ -67,34 +69,39 @@ def largest_sway(monitor: FloatArray, largest: float) -> float:
 
 
 @compiled
-def begin_contents(contents: FloatArray, monitor: FloatArray, floor: float) -> None:
-    """Start the filter from the monitored points at t = 0; `floor` is its displacement [m]."""
+def begin_contents(contents: FloatArray, monitor: FloatArray, floor: tuple[float, float]) -> None:
+    """Start the filter from the monitored points at t = 0; `floor` is its displacement along x and upward [m]."""
     for i in range(monitor.shape[0]):
         for k in range(2):
-            contents[POSITION, 2 * i + k] = monitor[i, k] + (floor if k == 0 else 0.0)
+            contents[POSITION, 2 * i + k] = monitor[i, k] + floor[k]
             contents[VELOCITY, 2 * i + k] = monitor[i, 2 + k]
             contents[FILTERED, 2 * i + k] = monitor[i, 2 + k]
             contents[ACCELERATION, 2 * i + k] = 0.0
 
 
 @compiled
-def shift_contents(contents: FloatArray, velocity: float) -> None:
-    """Change to a frame that moves with this velocity along x [m/s]."""
-    for j in range(0, contents.shape[1], 2):
-        contents[VELOCITY, j] -= velocity
-        contents[FILTERED, j] -= velocity
+def shift_contents(contents: FloatArray, velocity: tuple[float, float]) -> None:
+    """Change to a frame that moves with this velocity along x and upward [m/s]."""
+    for j in range(contents.shape[1]):
+        contents[VELOCITY, j] -= velocity[j % 2]
+        contents[FILTERED, j] -= velocity[j % 2]
 
 
 @compiled
 def filter_contents(
-    contents: FloatArray, monitor: FloatArray, floor: float, step: float, cutoff: float, largest: float
+    contents: FloatArray,
+    monitor: FloatArray,
+    floor: tuple[float, float],
+    step: float,
+    cutoff: float,
+    largest: float,
 ) -> float:
     """Advance the filter by one interval, in place; returns the largest filtered acceleration so far [m/s2].
 
     Args:
         contents: (8, 2 n) of x and z of each point in turn: rows `POSITION` and the following, the last four scratch.
         monitor: (n, 4) displacement relative to the floor [m] and velocity [m/s] of the points at its end.
-        floor: displacement of the floor then [m].
+        floor: displacement of the floor then, along x and upward [m].
         step: length of the interval [s].
         cutoff: w [rad/s].
         largest: size of the acceleration, horizontal and vertical together, up to its beginning [m/s2].
@@ -114,7 +121,7 @@ def filter_contents(
         reach = 0.0
         for k in range(2):
             j = 2 * i + k
-            x = monitor[i, k] + (floor if k == 0 else 0.0)
+            x = monitor[i, k] + floor[k]
             before, after = contents[VELOCITY, j], monitor[i, 2 + k]
             filtered, acceleration = contents[FILTERED, j], contents[ACCELERATION, j]
             slope = (after - before) * per_step

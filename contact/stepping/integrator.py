@@ -17,6 +17,7 @@ from numba.extending import register_jitable
 from contact.interface.laws import ELASTIC_STICK, weakened_mu
 from contact.interface.workspace import Contact
 from contact.jit import compiled
+from contact.motion.kernel import UNIFORM
 from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
 from contact.stepping.body import ROTATION, complete, prepared, shift_velocity, sizes_match
 from contact.stepping.contents import follow_contents, shift_contents
@@ -89,6 +90,7 @@ def update_records(
         clock.slip + slip_step,
         slip_step,
         run.floor,
+        run.lift,
         run.change[FRICTION],
     )
 
@@ -111,6 +113,9 @@ def close_step(run: RunState, step: float, slip_step: float, iterations: int) ->
     copy_state(run.old, run.new)
     for k in range(3):
         run.floor[0, k] = run.floor[1, k]
+    if run.vertical.kind != UNIFORM:
+        for k in range(3):
+            run.lift[0, k] = run.lift[1, k]
 
 
 @register_jitable(forceinline=True)
@@ -132,16 +137,17 @@ def _is_full(run: RunState) -> bool:
 
 
 @register_jitable(forceinline=True)
-def enter_floor_frame(body: Any, run: RunState, floor_velocity: float) -> None:
-    """Change to the frame of the floor at the end of its motion, where its velocity is `floor_velocity` [m/s].
+def enter_floor_frame(body: Any, run: RunState, floor_velocity: float, lift_velocity: float) -> None:
+    """Change to the frame of the floor at the end of its motion, where its velocity is this, along x and upward [m/s].
 
     The floor is at rest in this frame; the container gets no impulse.
     """
-    shift_velocity(body, run.old, floor_velocity)
-    shift_contents(run.contents, floor_velocity)
-    complete(body, run.old, run.floor[0, 0])
+    shift_velocity(body, run.old, floor_velocity, lift_velocity)
+    shift_contents(run.contents, (floor_velocity, lift_velocity))
+    complete(body, run.old, run.floor[0, 0], run.lift[0, 0], 0.0)
     for side in range(2):
         run.floor[side, 1], run.floor[side, 2] = 0.0, 0.0
+        run.lift[side, 1], run.lift[side, 2] = 0.0, 0.0
     run.clock[0].next_break = 0
 
 
@@ -168,7 +174,8 @@ def slides_on(run: RunState, step: float, sliding: int, slip_step: float, turned
         holding, normal = holding_force(run)
         if abs(holding) <= run.contact.mu_static * normal:
             # a stop within an impact does not last
-            if turned and normal < IMPACT_LOAD * run.contact.force_scale:
+            weight = run.control.mass * (run.control.gravity + run.lift[1, 2])
+            if turned and normal < IMPACT_LOAD * weight:
                 _, slip_step, _ = slide(run, step, True, holding)
             return False, slip_step
     return True, slip_step
@@ -221,7 +228,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
             every, slip_step = slides_on(run, step, sliding, slip_step, turned)
         elif every and clock.sliding == 0 and run.contact.friction == ELASTIC_STICK:
             every = breaks_loose(run, slip_step)
-        dissipated = account(run)
+        dissipated = account(run, step)
         allowed = allowed_imbalance(run, step, dissipated)
         allowed = min(allowed, ledger_allowance(run, step))
         used = abs(run.change[IMBALANCE]) / allowed

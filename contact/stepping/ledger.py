@@ -3,13 +3,16 @@
     change of (kinetic + strain + gravity + contact springs)
         = base work - friction - contact damping - material damping - imbalance
 
-Each term on the right but the last is integrated independently, by the trapezoidal rule over forces and motions at
-both ends of a step. The imbalance is the remainder: > 0 numerical loss, < 0 numerical gain.
+Heights and vertical velocities are relative to the floor: in the frame that moves up and down with it gravity is
+g + a_v, and the work of the vertical floor motion is that of -m a_v. Along x the frame is at rest, and the work of the
+floor is that of its friction. Each term on the right but the last is integrated independently, by the trapezoidal rule
+over forces and motions at both ends of a step. The imbalance is the remainder: > 0 numerical loss, < 0 numerical gain.
 """
 
 from contact.arrays import FloatArray
 from contact.interface.workspace import Contact
 from contact.jit import compiled
+from contact.stepping.body import CENTRE_Z
 
 #: rows of the ledger [J]
 BASE_WORK, FRICTION, CONTACT_DAMPING, MATERIAL_DAMPING, IMBALANCE = 0, 1, 2, 3, 4
@@ -30,6 +33,22 @@ def spring_energy(contact: Contact, point: FloatArray, stick: FloatArray) -> flo
             energy += 0.5 * contact.normal_stiffness[i] * point[i, 1] ** 2
             energy += 0.5 * contact.tangential_stiffness[i] * stick[i] ** 2
     return energy
+
+
+@compiled(inline=True)
+def work_of_lift(mass: float, pose: FloatArray, pose_new: FloatArray, lift: FloatArray, step: float) -> float:
+    """Work of the vertical floor motion in a step [J]: of the inertia force -m a_v over the rise above the floor.
+
+    Args:
+        mass: of the container [kg].
+        pose, pose_new: (6,) of the container before and after the step, see `contact.stepping.body`.
+        lift: (2, 3) height, velocity and acceleration of the floor before and after it.
+        step: [s].
+    """
+    gained = lift[1, 1] - lift[0, 1]
+    if gained == 0.0:
+        return 0.0
+    return -mass * gained / step * (pose_new[CENTRE_Z] - pose[CENTRE_Z] - lift[1, 0] + lift[0, 0])
 
 
 @compiled(inline=True)

@@ -85,6 +85,8 @@ def place_points(
     work: Workspace,
     floor: float,
     floor_velocity: float,
+    lift: float,
+    lift_velocity: float,
     cosine: float,
     sine: float,
 ) -> None:
@@ -102,11 +104,13 @@ def place_points(
         body.arm[i, 0] = cosine * x + sine * z
         body.arm[i, 1] = -sine * x + cosine * z
         work.free[i, 0] = state.position[0] + body.arm[i, 0] - floor
-        work.free[i, 1] = state.position[1] + body.arm[i, 1]
+        work.free[i, 1] = state.position[1] + body.arm[i, 1] - lift
         work.free_velocity[i, 0] = (
             state.velocity[0] + body.arm[i, 1] * rate + cosine * u + sine * w - floor_velocity
         )
-        work.free_velocity[i, 1] = state.velocity[1] - body.arm[i, 0] * rate - sine * u + cosine * w
+        work.free_velocity[i, 1] = (
+            state.velocity[1] - body.arm[i, 0] * rate - sine * u + cosine * w - lift_velocity
+        )
 
 
 @implements(interface.release, *MODAL, inline=True)
@@ -119,6 +123,8 @@ def release(
     work: Workspace,
     floor: float,
     floor_velocity: float,
+    lift: float,
+    lift_velocity: float,
 ) -> None:
     """Base points at the end of the step without contact force, and their compliance."""
     m = body.stiffness.size
@@ -127,7 +133,7 @@ def release(
     inverse = body.inverse[slot]
     now, before = 1.0 - scheme.alpha_f, scheme.alpha_f
     cosine, sine = math.cos(new.position[2]), math.sin(new.position[2])
-    place_points(body, new, work, floor, floor_velocity, cosine, sine)
+    place_points(body, new, work, floor, floor_velocity, lift, lift_velocity, cosine, sine)
     for j in range(3 + m):
         mass, force = 1.0, before * (old.external[j] - old.internal[j])
         if j < 2:
@@ -210,7 +216,7 @@ def respond(body: ModalBody, scheme: Scheme, step: float, old: State, new: State
 
 @compiled
 @implements(interface.complete, *MODAL, inline=True)
-def complete(body: ModalBody, new: State, floor: float) -> None:
+def complete(body: ModalBody, new: State, floor: float, lift: float, lift_velocity: float) -> None:
     """Internal forces, base points, pose and energy at the converged coordinates."""
     m = body.stiffness.size
     position, velocity = new.position, new.velocity
@@ -222,9 +228,10 @@ def complete(body: ModalBody, new: State, floor: float) -> None:
             z += body.shape[i, 1, k] * position[3 + k]
         body.arm[i, 0], body.arm[i, 1] = cosine * x + sine * z, -sine * x + cosine * z
         new.point[i, 0] = position[0] + body.arm[i, 0] - floor
-        new.point[i, 1] = position[1] + body.arm[i, 1]
+        new.point[i, 1] = position[1] + body.arm[i, 1] - lift
     new.internal[0], new.internal[1], new.internal[2] = 0.0, body.mass * body.gravity, 0.0
-    kinetic = body.mass * (velocity[0] ** 2 + velocity[1] ** 2) + body.inertia * velocity[2] ** 2
+    rise = velocity[1] - lift_velocity
+    kinetic = body.mass * (velocity[0] ** 2 + rise**2) + body.inertia * velocity[2] ** 2
     strain = 0.0
     for k in range(m):
         q, rate = position[3 + k], velocity[3 + k]
@@ -234,14 +241,14 @@ def complete(body: ModalBody, new: State, floor: float) -> None:
         strain += body.stiffness[k] * q * q
     new.energy[KINETIC] = 0.5 * kinetic
     new.energy[STRAIN] = 0.5 * strain
-    new.energy[POTENTIAL] = body.mass * body.gravity * position[1]
+    new.energy[POTENTIAL] = body.mass * body.gravity * (position[1] - lift)
     new.pose[ROTATION], new.pose[ANGULAR_VELOCITY] = position[2], velocity[2]
     new.pose[CENTRE_X], new.pose[CENTRE_Z] = position[0], position[1]
     new.pose[VELOCITY_X], new.pose[VELOCITY_Z] = velocity[0], velocity[1]
 
 
 @implements(interface.observe, *MODAL, inline=True)
-def observe(body: ModalBody, new: State, floor: float) -> None:
+def observe(body: ModalBody, new: State, floor: float, lift: float) -> None:
     """Displacement and velocity of the monitored points."""
     m = body.stiffness.size
     position, velocity = new.position, new.velocity
@@ -257,15 +264,16 @@ def observe(body: ModalBody, new: State, floor: float) -> None:
             w += body.monitor_shape[i, 1, k] * velocity[3 + k]
         arm_x, arm_z = cosine * x + sine * z, -sine * x + cosine * z
         new.monitor[i, 0] = position[0] + arm_x - floor - body.rest[0] - body.monitor[i, 0]
-        new.monitor[i, 1] = position[1] + arm_z - body.rest[1] - body.monitor[i, 1]
+        new.monitor[i, 1] = position[1] + arm_z - lift - body.rest[1] - body.monitor[i, 1]
         new.monitor[i, 2] = velocity[0] + arm_z * rate + cosine * u + sine * w
         new.monitor[i, 3] = velocity[1] - arm_x * rate - sine * u + cosine * w
 
 
 @implements(interface.shift_velocity, *MODAL, inline=True)
-def shift_velocity(body: ModalBody, state: State, velocity: float) -> None:
-    """Subtract the velocity of a new frame along x."""
+def shift_velocity(body: ModalBody, state: State, velocity: float, lift_velocity: float) -> None:
+    """Subtract the velocity of a new frame."""
     state.velocity[0] -= velocity
+    state.velocity[1] -= lift_velocity
 
 
 @implements(interface.sizes_match, ModalBody, inline=True)
@@ -312,19 +320,19 @@ def sizes_of_block_on_corners(body: ModalBody, run: Any) -> bool:
     return bool(_state_of_block_on_corners(run.new))
 
 
-def place(body: ModalBody, state: State, stance: Stance, floor_velocity: float) -> None:
+def place(body: ModalBody, state: State, stance: Stance) -> None:
     """Write the initial coordinates: the stance's rigid pose, strained by its contact forces."""
     cosine, sine = math.cos(stance.rotation), math.sin(stance.rotation)
     turn = np.array([[cosine, sine], [-sine, cosine]])
     state.position[:2], state.position[2] = stance.centre, stance.rotation
     state.velocity[:] = 0.0
-    state.velocity[:3] = stance.velocity[0] + floor_velocity, stance.velocity[1], stance.angular_velocity
+    state.velocity[:3] = *stance.velocity, stance.angular_velocity
     state.position[3:] = np.einsum("ij,ijk->k", stance.force @ turn, body.shape) / body.stiffness
 
 
-def start(body: ModalBody, state: State, floor: float) -> None:
+def start(body: ModalBody, state: State, floor: float, lift: float = 0.0, lift_velocity: float = 0.0) -> None:
     """Complete the initial state from its coordinates and contact forces, with the acceleration."""
-    complete(body, state, floor)
+    complete(body, state, floor, lift, lift_velocity)
     gather_force(body, state.force, state.position[2], body.arm, state.external)
     masses = np.concatenate([[body.mass, body.mass, body.inertia], np.ones(body.stiffness.size)])
     state.acceleration[:] = (state.external - state.internal) / masses

@@ -14,6 +14,7 @@ from numba.extending import register_jitable
 
 from contact.arrays import FloatArray
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, POTENTIAL, ROTATION, State
+from contact.stepping.ledger import work_of_lift
 from contact.stepping.scheme import hermite
 
 NEVER = math.inf  #: time of an event that has not happened
@@ -134,6 +135,7 @@ def update_observables(
     slip: float,
     slip_step: float,
     floor: FloatArray,
+    lift: FloatArray,
     heat: float,
 ) -> None:
     """Update the observables with the accepted step from `old` to `new`.
@@ -145,7 +147,8 @@ def update_observables(
         time: at its end [s]; step: its length [s].
         sliding: every loaded point slides.
         slip: container against floor so far, signed [m]; slip_step: of this step [m].
-        floor: (2, 3) displacement, velocity, acceleration of the floor before and after the step.
+        floor, lift: (2, 3) displacement, velocity, acceleration of the floor before and after the step, along x and
+            upward.
         heat: of friction in this step [J].
     """
     n = control.base_points
@@ -198,7 +201,7 @@ def update_observables(
     if has_impact(track, control, old, new):
         track.impacts += 1
         track.first_impact = min(track.first_impact, time)
-    follow_restitution(track, control, old, new, step, floor, heat)
+    follow_restitution(track, control, old, new, step, floor, lift, heat)
 
 
 @register_jitable(forceinline=True)
@@ -223,7 +226,14 @@ def has_impact(track: Any, control: Any, old: State, new: State) -> bool:
 
 @register_jitable(forceinline=True)
 def follow_restitution(
-    track: Any, control: Any, old: State, new: State, step: float, floor: FloatArray, heat: float
+    track: Any,
+    control: Any,
+    old: State,
+    new: State,
+    step: float,
+    floor: FloatArray,
+    lift: FloatArray,
+    heat: float,
 ) -> None:
     """Restitution of the first impact: root of the energy of rocking after it over that before.
 
@@ -235,6 +245,7 @@ def follow_restitution(
     """
     moved = new.pose[CENTRE_X] - old.pose[CENTRE_X] - (floor[1, 0] - floor[0, 0])
     work = -control.mass * (floor[1, 1] - floor[0, 1]) / step * moved
+    work += work_of_lift(control.mass, old.pose, new.pose, lift, step)
     track.heat += heat
     if track.impacts == 0:
         track.work_before += work

@@ -11,6 +11,7 @@ stresses can be computed.
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -99,14 +100,21 @@ def run_to_end(
     if status == REACHED and rest_from < duration:
         status = advance_in_slices(own, run, kept, AFTERMATH_SLICE, duration, FREE)
     if status == REACHED and not is_over.py_func(run, UNDECIDED):
-        displacement, velocity, _ = floor_motion(run.motion, clock["time"])
-        enter_floor_frame_compiled(own, run, velocity)
-        still = as_floor_motion(UNIFORM, (float(clock["time"]), displacement, 0.0))
-        run = run._replace(motion=still, breaks=np.full(1, np.inf))
+        since = float(clock["time"])
+        x, velocity_x, _ = floor_motion(run.motion, since)
+        z, velocity_z, _ = floor_motion(run.vertical, since)
+        enter_floor_frame_compiled(own, run, velocity_x, velocity_z)
+        run = on_resting_floor(run, since, (x, z))
         status = advance_in_slices(own, run, kept, AFTERMATH_SLICE, duration + aftermath, UNDECIDED)
     if status == REACHED and run.track["overturned_at"][0] < np.inf:
         status = OVERTURNED
     return Outcome(status, kept)
+
+
+def on_resting_floor(run: RunState, since: float, place: Sequence[float]) -> RunState:
+    """The run on a floor that stands still from `since` on [s], at this place along x and upward [m]."""
+    still, level = (as_floor_motion(UNIFORM, (since, one, 0.0)) for one in place)
+    return run._replace(motion=still, vertical=level, breaks=np.full(1, np.inf))
 
 
 @compiled

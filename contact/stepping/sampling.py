@@ -42,11 +42,12 @@ def write_columns(
     old, new = run.old, run.new
     a, b = old.pose, new.pose
     floor, _, _ = floor_motion(run.motion, time)
+    lift, _, _ = floor_motion(run.vertical, time)
     row[ROW_ROTATION] = hermite(s, step, a[ROTATION], a[ANGULAR_VELOCITY], b[ROTATION], b[ANGULAR_VELOCITY])
     row[ROW_ANGULAR_VELOCITY] = (1.0 - s) * a[ANGULAR_VELOCITY] + s * b[ANGULAR_VELOCITY]
     row[ROW_SLIP] = run.clock[0].slip + s * slip_step
     row[ROW_CENTRE_X] = hermite(s, step, a[CENTRE_X], a[VELOCITY_X], b[CENTRE_X], b[VELOCITY_X]) - floor
-    row[ROW_CENTRE_Z] = hermite(s, step, a[CENTRE_Z], a[VELOCITY_Z], b[CENTRE_Z], b[VELOCITY_Z])
+    row[ROW_CENTRE_Z] = hermite(s, step, a[CENTRE_Z], a[VELOCITY_Z], b[CENTRE_Z], b[VELOCITY_Z]) - lift
     row[ROW_UPLIFT], row[ROW_NORMAL], row[ROW_SHEAR] = 0.0, 0.0, 0.0
     for i in range(new.point.shape[0]):
         if i < run.control.base_points:

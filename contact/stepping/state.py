@@ -10,13 +10,14 @@ import numpy.typing as npt
 
 from contact.arrays import FloatArray
 from contact.interface.workspace import Contact, Workspace
-from contact.motion.kernel import FloorMotion, floor_motion
+from contact.motion.kernel import UNIFORM, FloorMotion, as_floor_motion, floor_motion
 from contact.stepping.body import State
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.observables import NEVER, make_observables
 from contact.stepping.scheme import Scheme
 
 UNLIMITED = 2**62
+AT_REST = as_floor_motion(UNIFORM, (0.0, 0.0, 0.0))  #: a floor that does not move
 
 #: columns of `RunState.rows`
 (
@@ -144,13 +145,15 @@ class RunState(NamedTuple):
 
     scheme: Scheme
     contact: Contact
-    motion: FloorMotion
+    motion: FloorMotion  #: of the floor along x
+    vertical: FloorMotion  #: .. and upward; of the kind UNIFORM the floor stays at its height
     breaks: FloatArray  #: instants at which a step must end [s], sorted, the last one infinite
     control: Control
     old: State
     new: State
     work: Workspace
-    floor: FloatArray  #: (2, 3) displacement, velocity, acceleration of the floor before and after the step
+    floor: FloatArray  #: (2, 3) displacement, velocity, acceleration of the floor before and after the step, along x
+    lift: FloatArray  #: .. and upward
     slip: FloatArray  #: (n,) sliding of the points in the attempted step [m]
     change: FloatArray  #: (5,) contribution of the attempted step to the ledger [J]
     ledger: FloatArray  #: (5,) [J]
@@ -166,6 +169,7 @@ def make_run(
     scheme: Scheme,
     contact: Contact,
     motion: FloorMotion,
+    vertical: FloorMotion = AT_REST,
     breaks: FloatArray,
     control: Control,
     old: State,
@@ -184,12 +188,14 @@ def make_run(
         scheme=scheme,
         contact=contact,
         motion=motion,
+        vertical=vertical,
         breaks=np.append(np.asarray(breaks, dtype=float), NEVER),
         control=control,
         old=old,
         new=new,
         work=work,
         floor=np.tile(floor_motion(motion, 0.0), (2, 1)),
+        lift=np.tile(floor_motion(vertical, 0.0), (2, 1)),
         slip=np.zeros(n),
         change=np.zeros(LEDGER_ROWS),
         ledger=np.zeros(LEDGER_ROWS),

@@ -14,7 +14,7 @@ from contact.interface.laws import ELASTIC_STICK, relaxed_stick, stribeck_mu
 from contact.interface.solver import solve_contact
 from contact.interface.workspace import Workspace
 from contact.jit import compiled
-from contact.motion.kernel import floor_motion
+from contact.motion.kernel import UNIFORM, floor_motion, move_floor
 from contact.stepping.body import (
     ANGULAR_VELOCITY,
     CENTRE_X,
@@ -36,6 +36,7 @@ from contact.stepping.ledger import (
     MATERIAL_DAMPING,
     contact_losses,
     spring_energy,
+    work_of_lift,
 )
 from contact.stepping.scheme import Scheme
 from contact.stepping.state import RunState
@@ -85,6 +86,11 @@ def attempt(body: Any, run: RunState, step: float, mu: float) -> int:
     clock = run.clock[0]
     floor, floor_velocity, floor_acceleration = floor_motion(run.motion, clock.time + step)
     run.floor[1, 0], run.floor[1, 1], run.floor[1, 2] = floor, floor_velocity, floor_acceleration
+    if (
+        run.vertical.kind != UNIFORM
+    ):  # else it stays where it is, and the call would cost as much as a tenth of a step
+        move_floor(run.vertical, clock.time + step, run.lift[1])
+    lift, lift_velocity = run.lift[1, 0], run.lift[1, 1]
     slope = scheme.newmark_gamma / (scheme.newmark_beta * step)
     rebase_acceleration(scheme, old, clock.lag_step - step)
     clock.lag_step = step
@@ -96,7 +102,7 @@ def attempt(body: Any, run: RunState, step: float, mu: float) -> int:
         velocity = old.drift[i, 0] + step * old.drift[i, 1]
         work.mu[i] = stribeck_mu(mu, contact.mu_kinetic, contact.stribeck_velocity, velocity)
     for iteration in range(ITERATION_LIMIT):
-        release(body, scheme, step, old, new, work, floor, floor_velocity)
+        release(body, scheme, step, old, new, work, floor, floor_velocity, lift, lift_velocity)
         solved = solve_contact(contact, step, slope, work.mu, old.point, old.stick, work)
         if solved < 0:
             return -1
@@ -104,7 +110,7 @@ def attempt(body: Any, run: RunState, step: float, mu: float) -> int:
         if respond(body, scheme, step, old, new, work) <= 1.0:
             copy_rows(new.force, work.force)
             store_rates(step, old, new, work)
-            complete(body, new, floor)
+            complete(body, new, floor, lift, lift_velocity)
             return iteration + 1
     return -1
 
@@ -115,9 +121,10 @@ def holding_force(run: RunState) -> tuple[float, float]:
 
     The forces of a rigid body that stands on both sides of its base, or rocks about the resultant of its normal forces,
     or begins to rock about a corner because it cannot stand. The springs of the contact, and an elastic body, swing
-    around them. In an impact the normal force is larger.
+    around them. In an impact the normal force is larger. On a floor that accelerates upward by a_v gravity is g + a_v.
     """
     new, track, control, acceleration = run.new, run.track[0], run.control, run.floor[1, 2]
+    gravity = control.gravity + run.lift[1, 2]
     normal, x, z = 0.0, 0.0, 0.0
     for i in range(new.point.shape[0]):
         normal += new.force[i, 1]
@@ -130,10 +137,10 @@ def holding_force(run: RunState) -> tuple[float, float]:
     else:
         x, z = x / normal, z / normal
     arm_x = new.pose[CENTRE_X] - run.floor[1, 0] - x
-    arm_z = new.pose[CENTRE_Z] - z
+    arm_z = new.pose[CENTRE_Z] - run.lift[1, 0] - z
     inertia = control.inertia / control.mass + arm_x * arm_x + arm_z * arm_z
-    turning = (control.gravity * arm_x - acceleration * arm_z) / inertia
-    push, load = acceleration, control.gravity
+    turning = (gravity * arm_x - acceleration * arm_z) / inertia
+    push, load = acceleration, gravity
     if not stands or turning * acceleration < 0.0:
         spin = new.pose[ANGULAR_VELOCITY] ** 2
         push += turning * arm_z - spin * arm_x
@@ -205,7 +212,7 @@ def slide(run: RunState, step: float, stops: bool, holding: float) -> tuple[int,
 
 
 @compiled(inline=True)
-def account(run: RunState) -> float:
+def account(run: RunState, step: float) -> float:
     """Write the ledger terms of the attempted step to `run.change`; returns its dissipation [J]."""
     old, new, change = run.old, run.new, run.change
     shear = 0.0
@@ -223,6 +230,7 @@ def account(run: RunState) -> float:
     for row in (KINETIC, STRAIN, POTENTIAL):
         stored += new.energy[row] - old.energy[row]
     change[BASE_WORK] = shear * (run.floor[1, 0] - run.floor[0, 0])
+    change[BASE_WORK] += work_of_lift(run.control.mass, old.pose, new.pose, run.lift, step)
     change[FRICTION] = friction
     change[CONTACT_DAMPING] = damping
     change[MATERIAL_DAMPING] = material

@@ -1,4 +1,4 @@
-"""Static equilibrium of a container on its floor before the floor moves: contact, body, settled stance."""
+"""Static equilibrium of a container on its floor at t = 0: contact, body, settled stance."""
 
 from dataclasses import dataclass
 
@@ -27,19 +27,25 @@ class Equilibrium:
     """A container at rest on its floor, at t = 0 with the floor at x = 0."""
 
     penalty: float  #: normal stiffness over width times depth [Pa/m]
+    gravity: float  #: under which it is settled: g and the upward acceleration of the floor at t = 0 [m/s2]
     contact: Contact
     body: ModalBody | FullBody
     stance: Stance
 
 
-def find_equilibrium(case: Case, container: Container) -> Equilibrium:
-    """Settle the container on the floor under its weight.
+def find_equilibrium(case: Case, container: Container, gravity: float) -> Equilibrium:
+    """Settle the container on the floor under this gravity: that of the case and the floor's acceleration at t = 0.
 
     Models of one equilibrium share the scratch arrays of its body: step one at a time.
 
     Raises:
         CaseError: no equilibrium at the start, or one that sinks or crushes the container.
     """
+    if gravity <= 0.0:
+        raise CaseError(
+            f"[vertical] at t = 0 the floor accelerates downward by {case.gravity_m_s2 - gravity:.4g} m/s2, which "
+            "leaves nothing of gravity to settle the container; begin with a ramp, a delay or another phase"
+        )
     penalty = normal_penalty(case, container.mesh)
     springs = container.support.normal_stiffness(penalty)
     base = springs.size
@@ -47,16 +53,17 @@ def find_equilibrium(case: Case, container: Container) -> Equilibrium:
     springs = np.concatenate([springs, np.full(container.nodes.size - base, 0.5 * springs.sum())])
     contact = _contact(case, container.mesh, springs, base)
     try:
-        stance = _stance(case, container, contact)
+        stance = _stance(case, container, contact, gravity)
     except SettlingError as error:
         raise CaseError(f"[initial] no equilibrium at the start: {error}") from error
     if case.solver.model != "rigid":
         require_stiff_container(case, _compression(container, stance))
-    return Equilibrium(penalty=penalty, contact=contact, body=_body(case, container, contact), stance=stance)
+    body = _body(case, container, contact)
+    return Equilibrium(penalty=penalty, gravity=gravity, contact=contact, body=body, stance=stance)
 
 
 def same_equilibrium(case: Case, other: Case) -> bool:
-    """Whether two cases of one container share an equilibrium."""
+    """Whether two cases of one container share an equilibrium, if their floors begin with one vertical acceleration."""
     return (
         case.contact == other.contact
         and case.initial == other.initial
@@ -114,7 +121,7 @@ def _body(case: Case, container: Container, contact: Contact) -> ModalBody | Ful
     )
 
 
-def _stance(case: Case, container: Container, contact: Contact) -> Stance:
+def _stance(case: Case, container: Container, contact: Contact, gravity: float) -> Stance:
     """Stance of the container at t = 0, with the floor at x = 0."""
     mesh, elements, initial = container.mesh, container.elements, case.initial
     base = container.support.index.size
@@ -124,7 +131,7 @@ def _stance(case: Case, container: Container, contact: Contact) -> Stance:
     compliance = elastic * container.response.compliance[: 2 * base, : 2 * base]
     if initial.rotation_rad == 0.0:
         stance = standing(
-            weight=mesh.mass * case.gravity_m_s2,
+            weight=mesh.mass * gravity,
             centroid=mesh.centroid,
             point=point,
             compliance=compliance,
@@ -139,11 +146,11 @@ def _stance(case: Case, container: Container, contact: Contact) -> Stance:
             angular_velocity=initial.angular_velocity_rad_s,
             mass=mesh.mass,
             inertia=mesh.inertia,
-            gravity=case.gravity_m_s2,
+            gravity=gravity,
             point=point,
             corner_x=float(elements.nodes[corner, 0]),
             compliance=compliance,
             normal_stiffness=contact.normal_stiffness[:base],
             mu_static=contact.mu_static,
         )
-    return stance.with_points(container.nodes.size).sliding(initial.velocity_m_s)
+    return stance.with_points(container.nodes.size).moving(initial.velocity_m_s)

@@ -95,10 +95,10 @@ class Joints:
         rotation = state.pose[ROTATION] + ahead[:, 0] * state.pose[ANGULAR_VELOCITY]
         return self.forces(self.motion(position, velocity, rotation), 2.0 * half)[0]
 
-    def in_moving_frame(self, motion: FloatArray, velocity: float) -> FloatArray:
-        """The same motion, shape (.., J, 8), seen from a frame that moves with `velocity` along x [m/s]."""
+    def in_moving_frame(self, motion: FloatArray, velocity: tuple[float, float]) -> FloatArray:
+        """The same motion, shape (.., J, 8), seen from a frame with this velocity along x and upward [m/s]."""
         seen = motion.copy()
-        seen[..., 0] -= self.mass * velocity
+        seen[..., MOMENTUM] -= self.mass[:, None] * np.asarray(velocity)
         return seen
 
     def _from_nodes(self, position: FloatArray, velocity: FloatArray, out: FloatArray) -> None:

@@ -23,7 +23,13 @@ from contact.stepping.state import RunState, make_run, make_samples
 from fem.case.case import Case
 from fem.model.container import Container, discretise
 from fem.model.equilibrium import Equilibrium, find_equilibrium
-from fem.model.motion import build_motion, longest_run, peak_acceleration_within, rest_sought_from
+from fem.model.motion import (
+    build_motion,
+    build_vertical,
+    longest_run,
+    peak_acceleration_within,
+    rest_sought_from,
+)
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.step_size import control_of, largest_step_of, scheme_of
 from fem.model.validity import require_stiff_corner
@@ -43,7 +49,8 @@ class Model:
     case: Case
     container: Container
     equilibrium: Equilibrium
-    motion: BaseMotion
+    motion: BaseMotion  #: of the floor along x
+    vertical: BaseMotion  #: .. and upward
     static: StaticChecks
     run: RunState
     duration: float  #: simulated time, at most [s]
@@ -81,28 +88,33 @@ def build_model(
 
     Args:
         container: of the case, where it is built already.
-        equilibrium: of that container, where `same_equilibrium` allows its reuse.
+        equilibrium: of that container, where `same_equilibrium` allows its reuse; found anew where the vertical motion
+            begins otherwise.
 
     Raises:
         CaseError, MeshError: bad input, no equilibrium at the start.
     """
-    motion = build_motion(case)
-    container = container or discretise(case)
-    equilibrium = equilibrium or find_equilibrium(case, container)
+    motion, vertical = build_motion(case), build_vertical(case)
+    compiled_motion, compiled_vertical = motion.compiled(), vertical.compiled()
+    z, velocity_z, acceleration_z = floor_motion(compiled_vertical, 0.0)
+    container, gravity = container or discretise(case), case.gravity_m_s2 + acceleration_z
+    if equilibrium is None or equilibrium.gravity != gravity:
+        equilibrium = find_equilibrium(case, container, gravity)
     mesh, nodes = container.mesh, container.nodes
     contact, body = equilibrium.contact, equilibrium.body
-    duration = longest_run(case, motion)
+    duration = longest_run(case, motion, vertical)
     static = static_checks_of(case, mesh, peak_acceleration_within(motion, duration))
-    largest, breaks = largest_step_of(case, static, motion)
+    largest, breaks = largest_step_of(case, static, motion, vertical)
     control = control_of(case, container, static, largest, contact)
     scheme = scheme_of(case, container, equilibrium.penalty, control, contact)
     full = isinstance(body, FullBody)
     coordinates = body.coordinates if isinstance(body, FullBody) else 3 + body.stiffness.size
     old, new = (make_state(coordinates, nodes.size, container.monitors.size) for _ in range(2))
-    compiled_motion = motion.compiled()
-    floor, floor_velocity, _ = floor_motion(compiled_motion, 0.0)
-    drift = floor_velocity if case.motion.start == "moving" else 0.0
-    _place(body, old, equilibrium.stance.moved(floor), container.response, floor, drift, contact)
+    x, velocity_x, _ = floor_motion(compiled_motion, 0.0)
+    stance = equilibrium.stance.moved(x, z)
+    if case.starts_moving:
+        stance = stance.moving(velocity_x, velocity_z)
+    _place(body, old, stance, container.response, (x, z, velocity_z), contact)
     require_stiff_corner(
         case,
         width=mesh.width,
@@ -115,6 +127,7 @@ def build_model(
         scheme=scheme,
         contact=contact,
         motion=compiled_motion,
+        vertical=compiled_vertical,
         breaks=breaks,
         control=control,
         old=old,
@@ -142,10 +155,11 @@ def build_model(
         container=container,
         equilibrium=equilibrium,
         motion=motion,
+        vertical=vertical,
         static=static,
         run=run,
         duration=duration,
-        rest_from=rest_sought_from(case, motion),
+        rest_from=rest_sought_from(case, motion, vertical),
     )
 
 
@@ -159,17 +173,16 @@ def _place(
     state: State,
     stance: Stance,
     response: StaticResponse,
-    floor: float,
-    floor_velocity: float,
+    floor: tuple[float, float, float],
     contact: Contact,
 ) -> None:
-    """Write the initial state: the stance on the floor where it is at t = 0."""
+    """Write the initial state: the stance on the floor, given by its places and its upward velocity."""
     state.force[:] = stance.force
     if contact.friction == ELASTIC_STICK:  # friction regularised in velocity has no springs
         state.stick[:] = -stance.force[:, 0] / contact.tangential_stiffness
     if isinstance(body, FullBody):
-        body.place(state, stance, response, floor_velocity)
-        body.start(state, floor)
+        body.place(state, stance, response)
+        body.start(state, *floor)
     else:
-        modal_kernels.place(body, state, stance, floor_velocity)
-        modal_kernels.start(body, state, floor)
+        modal_kernels.place(body, state, stance)
+        modal_kernels.start(body, state, *floor)

@@ -41,7 +41,7 @@ SOFT_CLOSING = 1e-6
 STIFF_CONTACT, LARGE_CONTACT_STEP = 3.0, 0.7
 
 
-def largest_step_of(case: Case, static: StaticChecks, motion: BaseMotion) -> tuple[float, FloatArray]:
+def largest_step_of(case: Case, static: StaticChecks, *motions: BaseMotion) -> tuple[float, FloatArray]:
     """Largest step of the run [s], and the instants that a step must end on, rising [s].
 
     A pulse or record much shorter than the run sets small steps only while it lasts, by closely spaced instants.
@@ -49,27 +49,29 @@ def largest_step_of(case: Case, static: StaticChecks, motion: BaseMotion) -> tup
     Raises:
         CaseError: a given step that is too long for the motion.
     """
-    solver, output, duration = case.solver, case.output, longest_run(case, motion)
-    free, wanted = STEP_OF_ROCKING / static.frequency_parameter, STEP_OF_MOTION * motion.time_scale
-    ends = [time for time in motion.break_times if 0.0 < time < duration]
-    begin, end = motion_span(motion)
-    pieces = (end - begin) / wanted if math.isfinite(end) else math.inf
-    short = pieces <= MOST_PIECES and end - begin < SHORT_SHARE * duration
-    if short and wanted < (free if solver.step_s == "auto" else solver.step_s):
-        inside = np.linspace(begin, end, math.ceil(pieces) + 1)
-        ends = sorted({*ends, *inside[(inside > 0.0) & (inside < duration)].tolist()})
-        wanted = math.inf
-    largest = min(free, wanted)
+    solver, output, duration = case.solver, case.output, longest_run(case, *motions)
+    largest, ends = STEP_OF_ROCKING / static.frequency_parameter, set[float]()
     if solver.step_s != "auto":
-        if solver.step_s > COARSE_STEP * motion.time_scale and not short:
+        largest = solver.step_s
+    most = largest
+    for motion in motions:
+        wanted, (begin, end) = STEP_OF_MOTION * motion.time_scale, motion_span(motion)
+        pieces = (end - begin) / wanted if math.isfinite(end) else math.inf
+        short = pieces <= MOST_PIECES and end - begin < SHORT_SHARE * duration
+        inside = np.asarray(motion.break_times, dtype=float)
+        if short and wanted < most:
+            inside = np.append(inside, np.linspace(begin, end, math.ceil(pieces) + 1))
+        elif solver.step_s == "auto":
+            largest = min(largest, wanted)
+        elif solver.step_s > COARSE_STEP * motion.time_scale and not short:
             raise CaseError(
                 f"[solver] step_s = {solver.step_s:g} s would step over the motion of the floor, whose shortest period "
                 f'is {motion.time_scale:.3g} s; take at most {COARSE_STEP * motion.time_scale:.2g} s, or "auto"'
             )
-        largest = solver.step_s
+        ends.update(inside[(inside > 0.0) & (inside < duration)].tolist())
     interval = min(output.history_s, output.fields_s or math.inf)
     largest = min(largest, duration, MOST_SAMPLES_A_STEP * interval)
-    return largest, _apart(ends, duration, SMALLEST_SHARE * largest)
+    return largest, _apart(sorted(ends), duration, SMALLEST_SHARE * largest)
 
 
 def _apart(instants: list[float], end: float, least: float) -> FloatArray:

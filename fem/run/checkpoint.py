@@ -29,7 +29,7 @@ from fem.solid.nodal_body import FullBody
 #: wall time between checkpoints [s]; the stepping pauses every five seconds or so, and writing frames takes time, too
 CHECKPOINT_S = 15.0
 #: parts of `contact.stepping.state.RunState` that do not change, and those of which a part is stored
-CONSTANT = frozenset({"scheme", "contact", "motion", "breaks", "control"})
+CONSTANT = frozenset({"scheme", "contact", "motion", "vertical", "breaks", "control"})
 SAMPLES = frozenset({"history", "frames"})
 RECORDED, BODY = "recorder.", "body."
 
@@ -113,7 +113,9 @@ def read_state(path: Path, model: Model, case_hash: str) -> SavedState:
         undriven, under_way = about["undriven"], about["slice"]
         progress = Progress(
             stepping_cpu_s=float(about["stepping_cpu_s"]),
-            undriven=None if undriven is None else (float(undriven[0]), float(undriven[1])),
+            undriven=None
+            if undriven is None
+            else (float(undriven[0]), float(undriven[1]), float(undriven[2])),
             slice=None if under_way is None else (float(under_way[0]), int(under_way[1])),
         )
     except (KeyError, TypeError, ValueError, IndexError) as error:

@@ -121,8 +121,8 @@ class Recorder:
         """Begin with the samples of the run before it was interrupted."""
         self._rows, self._modes = [history.values], list(history.modes)
 
-    def change_frame(self, velocity: float) -> None:
-        """From now on the coordinates of the run are those in a frame that moves with `velocity` along x [m/s]."""
+    def change_frame(self, velocity: tuple[float, float]) -> None:
+        """From now on the coordinates of the run are those in a frame with this velocity along x and upward [m/s]."""
         if self.joints is not None:
             self.joint_motion = self.joints.in_moving_frame(self.joint_motion, velocity)
 

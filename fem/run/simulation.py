@@ -17,11 +17,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from contact.motion.kernel import UNIFORM, as_floor_motion, floor_motion
+from contact.motion.kernel import floor_motion
 from contact.stepping.body import ROTATION
 from contact.stepping.control import most_attempts
 from contact.stepping.integrator import AFTERMATH_SLICE, FAILED, OVERTURNED, REACHED
-from contact.stepping.outcome import DRIVEN, FREE, UNDECIDED, is_over
+from contact.stepping.outcome import DRIVEN, FREE, UNDECIDED, is_over, on_resting_floor
 from contact.stepping.state import RunState
 from fem.assessment.verdict import MODE_NAMES, audit, rotation_ratio
 from fem.model.model import Model
@@ -47,8 +47,8 @@ class Progress:
     """State of a simulation, besides what its model and recorder hold."""
 
     stepping_cpu_s: float = 0.0
-    #: time since which the floor stands still [s], and its place [m]; None while it is driven
-    undriven: tuple[float, float] | None = None
+    #: time since which the floor stands still [s], and its place along x and upward [m]; None while it is driven
+    undriven: tuple[float, float, float] | None = None
     #: of an unfinished slice: the time at its end [s], and the attempted steps at which it ends before that
     slice: tuple[float, int] | None = None
 
@@ -108,7 +108,7 @@ def simulate(
         return Ending(status=status, stepping_cpu_s=progress.stepping_cpu_s, error=error)
 
     if progress.undriven is not None:
-        run = _on_resting_floor(run, progress.undriven)
+        run = on_resting_floor(run, progress.undriven[0], progress.undriven[1:])
     reporter.start(duration, float(clock.time))
     pace = Pace()
     while progress.slice is not None or _goes_on(model):
@@ -123,7 +123,8 @@ def simulate(
             target = float(clock.next_look) if part == FREE else float(clock.time) + ahead
             if part == UNDECIDED and progress.undriven is None:
                 undriven = _leave_alone(model, run, recorder)
-                progress, run = replace(progress, undriven=undriven), _on_resting_floor(run, undriven)
+                progress = replace(progress, undriven=undriven)
+                run = on_resting_floor(run, undriven[0], undriven[1:])
             most = _attempts(run) + (LOOK_FULL if full else LOOK_REDUCED)
             progress = replace(progress, slice=(min(target, until), most))
         code, progress = _advance(model, run, progress, pace)
@@ -188,19 +189,14 @@ def _part_of(model: Model) -> tuple[int, float]:
     return UNDECIDED, duration + AFTERMATH / model.run.control.frequency_parameter
 
 
-def _leave_alone(model: Model, run: RunState, recorder: Recorder) -> tuple[float, float]:
+def _leave_alone(model: Model, run: RunState, recorder: Recorder) -> tuple[float, float, float]:
     """Change to the frame of the floor, which stands still from now on; returns time [s] and place of the floor [m]."""
     since = float(run.clock[0].time)
-    displacement, velocity, _ = floor_motion(run.motion, since)
-    leave_body_alone(model.body, run, velocity)
-    recorder.change_frame(velocity)
-    return since, float(displacement)
-
-
-def _on_resting_floor(run: RunState, undriven: tuple[float, float]) -> RunState:
-    """The run on a floor that stands still, from this time on and at this place."""
-    still = as_floor_motion(UNIFORM, (*undriven, 0.0))
-    return run._replace(motion=still, breaks=np.full(1, np.inf))
+    x, velocity_x, _ = floor_motion(run.motion, since)
+    z, velocity_z, _ = floor_motion(run.vertical, since)
+    leave_body_alone(model.body, run, velocity_x, velocity_z)
+    recorder.change_frame((velocity_x, velocity_z))
+    return since, float(x), float(z)
 
 
 def crushing_failure(model: Model) -> str | None:

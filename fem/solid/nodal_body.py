@@ -83,14 +83,14 @@ class FullBody:
         """Number of coordinates."""
         return 2 * len(self.elements.nodes)
 
-    def place(self, state: State, stance: Stance, response: StaticResponse, floor_velocity: float) -> None:
+    def place(self, state: State, stance: Stance, response: StaticResponse) -> None:
         """Write the initial coordinates: the stance's rigid pose, strained by its contact forces."""
         turn = rotation_matrix(stance.rotation)
         elastic = np.tensordot((stance.force @ turn).ravel(), response.displacement, axes=1)
         arm = (self._arm + elastic) @ turn.T
         position = np.asarray(stance.centre) + arm
         speed = stance.angular_velocity * np.column_stack([arm[:, 1], -arm[:, 0]])
-        velocity = np.asarray(stance.velocity) + np.array([floor_velocity, 0.0]) + speed
+        velocity = np.asarray(stance.velocity) + speed
         state.position[:] = position.ravel()
         state.velocity[:] = velocity.ravel()
         self.evaluate(state)
@@ -100,9 +100,9 @@ class FullBody:
         self.nodal.turn[:] = nodal_kernels.fit(self.nodal, state.position)[2:]
         nodal_kernels.forces(self.nodal, state.position, state.velocity)
 
-    def start(self, state: State, floor: float) -> None:
+    def start(self, state: State, floor: float, lift: float = 0.0, lift_velocity: float = 0.0) -> None:
         """Complete a state with given coordinates and contact forces: forces, energies and acceleration."""
-        self.complete(state, floor)
+        self.complete(state, floor, lift, lift_velocity)
         force = (state.external - state.internal).reshape(-1, 2)
         factor = scipy.sparse.linalg.splu(self.elements.mass.tocsc())
         state.acceleration[:] = factor.solve(force).ravel()
@@ -154,25 +154,29 @@ class FullBody:
         work: Workspace,
         floor: float,
         floor_velocity: float,
+        lift: float,
+        lift_velocity: float,
     ) -> None:
         """See `contact.stepping.body.release`."""
-        nodal_kernels.release(self.nodal, scheme, step, old, new, work, floor, floor_velocity)
+        nodal_kernels.release(
+            self.nodal, scheme, step, old, new, work, floor, floor_velocity, lift, lift_velocity
+        )
 
     def respond(self, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
         """See `contact.stepping.body.respond`; the error is the residual over its tolerance."""
         return float(nodal_kernels.respond(self.nodal, scheme, step, old, new, work))
 
-    def complete(self, new: State, floor: float) -> None:
+    def complete(self, new: State, floor: float, lift: float, lift_velocity: float) -> None:
         """See `contact.stepping.body.complete`; internal forces and strain energy are those of the last residual."""
-        nodal_kernels.complete(self.nodal, new, floor)
+        nodal_kernels.complete(self.nodal, new, floor, lift, lift_velocity)
 
-    def observe(self, new: State, floor: float) -> None:
+    def observe(self, new: State, floor: float, lift: float) -> None:
         """See `contact.stepping.body.observe`."""
-        nodal_kernels.observe(self.nodal, new, floor)
+        nodal_kernels.observe(self.nodal, new, floor, lift)
 
-    def shift_velocity(self, state: State, velocity: float) -> None:
+    def shift_velocity(self, state: State, velocity: float, lift_velocity: float) -> None:
         """See `contact.stepping.body.shift_velocity`."""
-        nodal_kernels.shift_velocity(self.nodal, state, velocity)
+        nodal_kernels.shift_velocity(self.nodal, state, velocity, lift_velocity)
 
     def memory(self) -> dict[str, FloatArray]:
         """Arrays of the last residual by name; everything else follows from the state."""
@@ -202,12 +206,14 @@ def advance_body(body: ModalBody | FullBody, run: RunState, until: float) -> int
         body.prepare(run.scheme, float(run.clock[0].unprepared_step))
 
 
-def leave_body_alone(body: ModalBody | FullBody, run: RunState, floor_velocity: float) -> None:
+def leave_body_alone(
+    body: ModalBody | FullBody, run: RunState, floor_velocity: float, lift_velocity: float
+) -> None:
     """`contact.stepping.integrator.enter_floor_frame` for any body."""
     if isinstance(body, ModalBody):
-        enter_floor_frame_compiled(body, run, floor_velocity)
+        enter_floor_frame_compiled(body, run, floor_velocity, lift_velocity)
     else:
-        enter_floor_frame_nodal(body.nodal, run, floor_velocity)
+        enter_floor_frame_nodal(body.nodal, run, floor_velocity, lift_velocity)
 
 
 def _rounding(elements: FiniteElements) -> float:

@@ -209,6 +209,8 @@ def release(
     work: Workspace,
     floor: float,
     floor_velocity: float,
+    lift: float,
+    lift_velocity: float,
 ) -> None:
     """Base points at the end of the step without contact force, and their compliance."""
     slot = slot_of(body, step)
@@ -231,7 +233,9 @@ def release(
             work.free[a, c] = new.position[j] + body.free_change[j]
             work.free_velocity[a, c] = new.velocity[j] + slope * body.free_change[j]
         work.free[a, 0] -= floor
+        work.free[a, 1] -= lift
         work.free_velocity[a, 0] -= floor_velocity
+        work.free_velocity[a, 1] -= lift_velocity
     work.compliance[:, :] = 0.0
     add_turned(body.base_compliance[slot], cosine, sine, 1.0 - scheme.alpha_f, work.compliance)
 
@@ -279,7 +283,7 @@ def respond(body: NodalBody, scheme: Scheme, step: float, old: State, new: State
 
 @compiled(sources=SOURCES)
 @implements(interface.complete, NodalBody)
-def complete(body: NodalBody, new: State, floor: float) -> None:
+def complete(body: NodalBody, new: State, floor: float, lift: float, lift_velocity: float) -> None:
     """Internal forces, base points, pose and energy at the converged coordinates."""
     position, velocity = new.position, new.velocity
     for i in range(body.nodal_mass.size):
@@ -291,7 +295,7 @@ def complete(body: NodalBody, new: State, floor: float) -> None:
     for a in range(body.base.size):
         j = 2 * body.base[a]
         new.external[j], new.external[j + 1] = new.force[a, 0], new.force[a, 1]
-        new.point[a, 0], new.point[a, 1] = position[j] - floor, position[j + 1]
+        new.point[a, 0], new.point[a, 1] = position[j] - floor, position[j + 1] - lift
     centre_x, centre_z, cosine, sine = fit(body, position)
     along, up, spin, twice = 0.0, 0.0, 0.0, 0.0
     for i in range(body.nodal_mass.size):
@@ -307,14 +311,14 @@ def complete(body: NodalBody, new: State, floor: float) -> None:
     new.pose[ROTATION], new.pose[ANGULAR_VELOCITY] = math.atan2(sine, cosine), spin / body.inertia
     new.pose[CENTRE_X], new.pose[CENTRE_Z] = centre_x, centre_z
     new.pose[VELOCITY_X], new.pose[VELOCITY_Z] = along / body.mass, up / body.mass
-    new.energy[KINETIC] = 0.5 * twice
+    new.energy[KINETIC] = 0.5 * twice + lift_velocity * (0.5 * body.mass * lift_velocity - up)
     new.energy[STRAIN] = body.strain_energy[0]
-    new.energy[POTENTIAL] = body.mass * body.gravity * centre_z
+    new.energy[POTENTIAL] = body.mass * body.gravity * (centre_z - lift)
 
 
 @compiled(sources=SOURCES)
 @implements(interface.observe, NodalBody)
-def observe(body: NodalBody, new: State, floor: float) -> None:
+def observe(body: NodalBody, new: State, floor: float, lift: float) -> None:
     """Displacement and velocity of the monitored points."""
     for a in range(body.watched.size):
         i = body.watched[a]
@@ -322,14 +326,16 @@ def observe(body: NodalBody, new: State, floor: float) -> None:
             new.monitor[a, c] = new.position[2 * i + c] - body.node[i, c]
             new.monitor[a, 2 + c] = new.velocity[2 * i + c]
         new.monitor[a, 0] -= floor
+        new.monitor[a, 1] -= lift
 
 
 @compiled(sources=SOURCES)
 @implements(interface.shift_velocity, NodalBody)
-def shift_velocity(body: NodalBody, state: State, velocity: float) -> None:
-    """Subtract the velocity of a new frame along x."""
+def shift_velocity(body: NodalBody, state: State, velocity: float, lift_velocity: float) -> None:
+    """Subtract the velocity of a new frame."""
     for i in range(body.nodal_mass.size):
         state.velocity[2 * i] -= velocity
+        state.velocity[2 * i + 1] -= lift_velocity
 
 
 @implements(interface.sizes_match, NodalBody)

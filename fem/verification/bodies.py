@@ -106,12 +106,12 @@ def free_run(
     if isinstance(body, FullBody):
         unstrained = np.zeros((2 * points, len(body.elements.nodes), 2))
         compliance = np.zeros((2 * points, 2 * points))
-        body.place(old, stance, StaticResponse(displacement=unstrained, compliance=compliance), 0.0)
+        body.place(old, stance, StaticResponse(displacement=unstrained, compliance=compliance))
         if velocity is not None:
             old.velocity[:] = velocity.ravel()
         body.start(old, 0.0)
     else:
-        modal_kernels.place(body, old, stance, 0.0)
+        modal_kernels.place(body, old, stance)
         old.position[3:] = modal_position
         modal_kernels.start(body, old, 0.0)
     samples = coordinates if isinstance(body, ModalBody) else 0

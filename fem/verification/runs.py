@@ -180,7 +180,7 @@ def lifted(model: Model, height: float, speed: float) -> Model:
         angular_velocity=0.0,
         force=state.force.copy(),
     )
-    modal_kernels.place(_modal(model), state, stance, 0.0)
+    modal_kernels.place(_modal(model), state, stance)
     modal_kernels.start(_modal(model), state, float(model.run.floor[0, 0]))
     return model
 

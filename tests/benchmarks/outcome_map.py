@@ -76,7 +76,8 @@ def cost_of_a_cell() -> Figure:
     """Time to build the model of a cell."""
     sweep = map_of("rigid", RIGID_CELLS, band=False)
     container = discretise(sweep.case(0))
-    equilibrium = find_equilibrium(sweep.case(0), container)  # shared: only the motion differs
+    first = sweep.case(0)
+    equilibrium = find_equilibrium(first, container, first.gravity_m_s2)  # shared: only the motion differs
     times = []
     for cell in range(BUILDS):
         began = time.process_time()

@@ -13,6 +13,7 @@ from fem.case.case import load_case
 from fem.verification.runs import run
 
 CUTOFF, END = 2.0 * math.pi * 33.0, 0.3
+AT_REST = (0.0, 0.0)  # the floor
 Motion = tuple[Callable[[np.ndarray], np.ndarray], Callable[[np.ndarray], np.ndarray]]
 SMOOTH: Motion = (lambda t: -np.cos(40.0 * t) / 40.0, lambda t: np.sin(40.0 * t))
 #: 1 Ns on 1 kg at 0.1003 s, within a step
@@ -32,9 +33,9 @@ def filtered(motion: Motion, times: np.ndarray) -> tuple[np.ndarray, float]:
     """Filtered acceleration at the instants, and the largest one."""
     contents, largest, found = np.zeros((8, 2)), 0.0, [0.0]
     monitor = np.column_stack([motion[0](times), 0.0 * times, motion[1](times), 0.0 * times])
-    begin_contents(contents, monitor[:1], 0.0)
+    begin_contents(contents, monitor[:1], AT_REST)
     for k, step in enumerate(np.diff(times)):
-        largest = filter_contents(contents, monitor[k + 1 : k + 2], 0.0, step, CUTOFF, largest)
+        largest = filter_contents(contents, monitor[k + 1 : k + 2], AT_REST, step, CUTOFF, largest)
         found.append(contents[ACCELERATION, 0])
     return np.array(found), largest
 
@@ -83,9 +84,9 @@ def test_the_error_is_of_fourth_order_in_the_step() -> None:
 
 def test_a_moving_frame_changes_nothing() -> None:
     contents = np.zeros((8, 2))
-    begin_contents(contents, np.array([[0.0, 0.0, 1.0, 0.0]]), 0.0)
-    shift_contents(contents, 1.0)
-    assert filter_contents(contents, np.zeros((1, 4)), 0.0, 1e-3, CUTOFF, 0.0) == 0.0
+    begin_contents(contents, np.array([[0.0, 0.0, 1.0, -2.0]]), AT_REST)
+    shift_contents(contents, (1.0, -2.0))
+    assert filter_contents(contents, np.zeros((1, 4)), AT_REST, 1e-3, CUTOFF, 0.0) == 0.0
 
 
 @pytest.mark.parametrize("model", ["rigid", "reduced"])

@@ -98,7 +98,7 @@ def started(stance: Stance):
     body = make_modal_body(mass=MASS, inertia=INERTIA, gravity=GRAVITY, point=base(2), tolerance=1e-9)
     state = make_state(3, 2, 0)
     state.force[:] = stance.force
-    place(body, state, stance, 0.0)
+    place(body, state, stance)
     start(body, state, 0.0)
     return state
 

@@ -47,7 +47,7 @@ def make_moving_state(body: ModalBody, rotation: float, *, seed: int = 1, speed:
     state.position[:3] = 0.2, 2.1, rotation
     state.position[3:] = 1e-4 * math.sqrt(MASS) * draw.normal(size=body.stiffness.size)
     state.velocity[:] = speed * draw.normal(size=3 + body.stiffness.size)
-    complete(body, state, 0.0)
+    complete(body, state, 0.0, 0.0, 0.0)
     return state
 
 
@@ -72,7 +72,7 @@ def jacobian_by_differences(body: ModalBody, position: np.ndarray) -> np.ndarray
 def test_base_points_are_where_the_kinematics_put_them(rotation):
     body = make_body()
     state = make_moving_state(body, rotation)
-    complete(body, state, 0.05)
+    complete(body, state, 0.05, 0.0, 0.0)
     assert state.point == pytest.approx(points_at(body, state.position) - np.array([0.05, 0.0]), abs=1e-15)
 
 
@@ -80,7 +80,7 @@ def test_a_positive_rotation_moves_the_top_toward_positive_x():
     body = make_body(0)
     state = make_state(3, 3, 2)
     state.position[:] = 0.0, 2.0, 0.1
-    observe(body, state, 0.0)
+    observe(body, state, 0.0, 0.0)
     assert state.monitor[0, 0] == pytest.approx(2.0 * math.sin(0.1) - 0.55 * (math.cos(0.1) - 1.0), rel=1e-12)
 
 
@@ -101,7 +101,7 @@ def test_rigid_motion_causes_no_internal_force(rotation):
     state = make_moving_state(body, rotation)
     state.position[3:] = 0.0
     state.velocity[3:] = 0.0
-    complete(body, state, 0.0)
+    complete(body, state, 0.0, 0.0, 0.0)
     assert state.internal == pytest.approx([0.0, MASS * GRAVITY, 0.0, 0.0, 0.0, 0.0, 0.0], abs=0.0)
     assert not state.damping.any()
     assert state.energy[STRAIN] == 0.0
@@ -129,7 +129,7 @@ def test_internal_forces_are_the_slope_of_the_strain_energy_and_damping_takes_en
         for sign in (1.0, -1.0):
             moved = make_moving_state(body, 0.3)
             moved.position[j] += sign * 1e-4
-            complete(body, moved, 0.0)
+            complete(body, moved, 0.0, 0.0, 0.0)
             energies.append(moved.energy[STRAIN])
         slope = (energies[0] - energies[1]) / 2e-4
         assert state.internal[j] - state.damping[j] == pytest.approx(slope, rel=1e-8)
@@ -138,13 +138,13 @@ def test_internal_forces_are_the_slope_of_the_strain_energy_and_damping_takes_en
 def test_monitored_velocities_are_the_rates_of_monitored_displacements():
     body = make_body()
     state = make_moving_state(body, 0.3)
-    observe(body, state, 0.0)
+    observe(body, state, 0.0, 0.0)
     velocity = state.monitor[:, 2:].copy()
     displacements = []
     for sign in (1.0, -1.0):
         moved = make_moving_state(body, 0.3)
         moved.position[:] += sign * 1e-6 * state.velocity
-        observe(body, moved, 0.0)
+        observe(body, moved, 0.0, 0.0)
         displacements.append(moved.monitor[:, :2].copy())
     assert velocity == pytest.approx((displacements[0] - displacements[1]) / 2e-6, rel=1e-7)
 
@@ -158,9 +158,9 @@ def take(
     work.force[:] = force
     error = math.inf
     for _ in range(iterations):
-        release(body, scheme, STEP, old, new, work, 0.03, 0.2)
+        release(body, scheme, STEP, old, new, work, 0.03, 0.2, 0.0, 0.0)
         error = respond(body, scheme, STEP, old, new, work)
-    complete(body, new, 0.03)
+    complete(body, new, 0.03, 0.0, 0.0)
     return new, work, error
 
 
@@ -245,7 +245,7 @@ def test_the_compliance_follows_a_change_of_step():
     found = []
     for step in (1e-3, 2e-4, 1e-3):
         predict(body, scheme, step, old, new)
-        release(body, scheme, step, old, new, work, 0.0, 0.0)
+        release(body, scheme, step, old, new, work, 0.0, 0.0, 0.0, 0.0)
         found.append(work.compliance.copy())
     assert found[0] == pytest.approx(found[2], rel=1e-3)
     # inertia alone: beta h^2/m; with modes besides it lies between the two limits

@@ -100,7 +100,7 @@ def test_an_iterate_that_has_run_away_is_never_taken_for_converged():
     body.prepare(run.scheme, STEP)
     body.predict(run.scheme, STEP, run.old, run.new)
     run.new.position[::3] = math.nan
-    body.release(run.scheme, STEP, run.old, run.new, run.work, 0.0, 0.0)
+    body.release(run.scheme, STEP, run.old, run.new, run.work, 0.0, 0.0, 0.0, 0.0)
     assert body.respond(run.scheme, STEP, run.old, run.new, run.work) == math.inf
 
 
