@@ -304,8 +304,8 @@ MUTATIONS = (
     Mutation(
         name="the analytic slider slides on mu_s",
         file="contact/reference/sliding.py",
-        old="friction = -direction * slider.mu_kinetic * slider.gravity",
-        new="friction = -direction * slider.mu_static * slider.gravity",
+        old="friction = -direction * slider.mu_kinetic * (slider.gravity",
+        new="friction = -direction * slider.mu_static * (slider.gravity",
         tests=("unit/contact/test_reference_slider.py",),
     ),
     Mutation(
