@@ -71,7 +71,11 @@ def flat(name: str, content: Mapping[str, Any]) -> dict[str, Any]:
     """
     found: dict[str, Any] = {}
     for key, value in content.items():
-        if isinstance(value, dict) and not {"from", "to", "count", "scale"} & value.keys():
+        # A table is a range of one key, but for `vertical.scale = [1, -1]`, which TOML reads as a table, too.
+        is_range = isinstance(value, dict) and (
+            {"from", "to", "count"} & value.keys() or isinstance(value.get("scale"), str)
+        )
+        if isinstance(value, dict) and not is_range:
             inner = {f"{key}.{one}": what for one, what in value.items()}
         else:
             inner = {key: value}

@@ -1,16 +1,16 @@
 """Response spectra and oscillator histories of an acceleration that is linear between its samples.
 
-An oscillator of period T and damping ratio z follows x'' + 2 z w x' + w^2 x = -a, with x relative to the floor; it
-starts at rest. The exact step of Nigam and Jennings (1969) becomes a recursion over two samples, so there is no error
-of integration. The acceleration is zero after its last sample; the free vibration that follows counts.
+An oscillator of period T and damping ratio d follows x'' + 2 d w x' + w^2 x = -a, with x relative to the floor; it
+starts at rest. The step is exact, that of Nigam and Jennings (1969), and written for q = x' - m* x, with m the root
+-d w + i w sqrt(1 - d^2) and m* its conjugate: q' = m q - a. The acceleration is zero after its last sample; the free
+vibration that follows counts.
 """
 
 import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import expm
-from scipy.signal import lfilter
+from numpy.typing import NDArray
 
 from fem.runtime.arrays import FloatArray
 
@@ -19,11 +19,14 @@ SAMPLES_PER_PERIOD = 10.0
 #: steps of the shortest period that the samples describe
 LEAST_STEPS = 2.0
 DAMPING_RATIO = 0.05  #: usual for spectra
+MOST_GROWTH = 7.0  #: exponent by which the sums of a block may grow: three of sixteen digits
+
+ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)  # arrays have no single truth value
 class Spectrum:
-    """Largest magnitudes of the response of oscillators, each of shape (k,)."""
+    """Largest magnitudes of the response of oscillators, each of shape (k,); w = 2 pi / period."""
 
     periods_s: FloatArray
     damping_ratio: float
@@ -40,26 +43,6 @@ class OscillatorHistory:
     displacement_m: FloatArray  #: relative to the floor
     velocity_m_s: FloatArray  #: relative to the floor
     acceleration_m_s2: FloatArray  #: absolute
-
-
-@dataclass(frozen=True, kw_only=True)
-class OscillatorStep:
-    """Exact step of an oscillator under an acceleration that is linear within the step."""
-
-    rate: float  #: angular frequency times the step [rad]
-    damping_ratio: float
-    displacement: tuple[
-        float, float, float, float
-    ]  #: from displacement, velocity x step, forcing before and after
-    velocity: tuple[float, float, float, float]  #: times the step; from the same
-
-    @property
-    def recursion(self) -> tuple[list[float], list[float]]:
-        """Numerator and denominator of displacement over forcing."""
-        a11, a12, b1, c1 = self.displacement
-        a21, a22, b2, c2 = self.velocity
-        numerator = [c1, b1 - a22 * c1 + a12 * c2, a12 * b2 - a22 * b1]
-        return numerator, [1.0, -(a11 + a22), a11 * a22 - a12 * a21]
 
 
 def log_spaced_periods(
@@ -112,11 +95,8 @@ def oscillator_response(
     """Response of one oscillator at the samples; arguments and errors as `response_spectrum`."""
     values, _ = _checked(step_s, acceleration, np.array([period_s]), damping_ratio)
     parts = _parts(step_s, period_s)
-    step = step_s / parts
-    x, v = _displacement_and_velocity(
-        exact_oscillator(step, period_s, damping_ratio), step, _denser(values, parts)
-    )
-    x, v, rate = x[::parts], v[::parts] / step, 2.0 * math.pi / period_s
+    x, v = _response(step_s / parts, _denser(values, parts), period_s, damping_ratio)
+    x, v, rate = x[::parts], v[::parts], 2.0 * math.pi / period_s
     return OscillatorHistory(
         displacement_m=x,
         velocity_m_s=v,
@@ -161,66 +141,83 @@ def _denser(values: FloatArray, parts: int) -> FloatArray:
     return np.asarray(np.interp(np.arange(count * parts + 1) / parts, np.arange(count + 1), values))
 
 
-def exact_oscillator(step: float, period: float, damping_ratio: float) -> OscillatorStep:
-    """The step from the exponential of the system of displacement, velocity, forcing and its slope over one step."""
-    rate = 2.0 * math.pi * step / period
-    system = np.zeros((4, 4))
-    system[0, 1] = system[1, 2] = system[2, 3] = 1.0
-    system[1, :2] = -(rate**2), -2.0 * damping_ratio * rate
-    (a11, a12, b1, s1), (a21, a22, b2, s2) = expm(system)[:2].tolist()
-    return OscillatorStep(
-        rate=rate,
-        damping_ratio=damping_ratio,
-        displacement=(a11, a12, b1 - s1, s1),
-        velocity=(a21, a22, b2 - s2, s2),
-    )
+def exact_recursion(step: float, period: float, damping_ratio: float) -> tuple[list[float], list[float]]:
+    """Numerator and denominator, three numbers each, of the filter that makes relative displacements of accelerations.
+
+    For an acceleration that rises from zero in the step before its first sample.
+    """
+    root, before, after = _step(step, period, damping_ratio)
+    decay = complex(np.exp(root * step))
+    numerator = [after, before - after * decay.conjugate(), -before * decay.conjugate()]
+    return [one.imag / root.imag for one in numerator], [1.0, -2.0 * decay.real, abs(decay) ** 2]
 
 
-def _displacement_and_velocity(
-    oscillator: OscillatorStep, step: float, values: FloatArray
+def _step(step: float, period: float, damping_ratio: float) -> tuple[complex, complex, complex]:
+    """The root m, and the factors of the accelerations before and after a step in its impulse."""
+    rate = 2.0 * math.pi / period
+    root = rate * complex(-damping_ratio, math.sqrt(1.0 - damping_ratio**2))
+    turn = root * step
+    first = complex(np.expm1(turn)) / turn
+    second = (first - 1.0) / turn
+    return root, -step * (first - second), -step * second
+
+
+def _response(
+    step: float, values: FloatArray, period: float, damping_ratio: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Displacement, and velocity times the step, at the samples [m], shapes (n,)."""
-    force = -(step**2) * values
-    numerator, denominator = oscillator.recursion
-    a11, a12, b1, c1 = oscillator.displacement
-    # What the filter holds before the first sample, so that it begins at rest although the acceleration may not.
-    held = [-numerator[0] * force[0], (b1 - numerator[1]) * force[0]]
-    x = lfilter(numerator, denominator, force, zi=held)[0]
-    v = np.empty_like(x)
-    v[:-1] = (x[1:] - a11 * x[:-1] - b1 * force[:-1] - c1 * force[1:]) / a12
-    before = np.array([x[-2], v[-2], force[-2], force[-1]])
-    v[-1] = before @ np.array(oscillator.velocity)
-    return x, v
+    """Displacement [m] and velocity [m/s] at the samples, relative to the floor, shapes (n,)."""
+    root, before, after = _step(step, period, damping_ratio)
+    impulses = np.zeros(values.size, dtype=np.complex128)
+    impulses[1:] = before * values[:-1] + after * values[1:]
+    q = _summed_up(impulses, root * step)
+    x = q.imag / root.imag
+    return x, q.real + root.real * x
+
+
+def _summed_up(impulses: ComplexArray, turn: complex) -> ComplexArray:
+    """q_k = exp(turn) q_k-1 + impulse_k from q = 0, shape (n,).
+
+    Within a block it is exp(k turn) times the sum of the impulses times exp(-k turn), which must not grow too much.
+    """
+    count = impulses.size
+    length = min(count, max(1, int(MOST_GROWTH / max(-turn.real, 1e-300))))
+    blocks = np.zeros((-(-count // length), length), dtype=np.complex128)
+    blocks.reshape(-1)[:count] = impulses
+    turns = np.exp(turn * np.arange(length))
+    np.cumsum(blocks * np.exp(-turn * np.arange(length)), axis=1, out=blocks)
+    before, over = 0.0 + 0.0j, complex(np.exp(turn))
+    for block in blocks:
+        block += before
+        before = over * complex(block[-1] * turns[-1])
+    return (blocks * turns).reshape(-1)[:count]
 
 
 def _peaks(step: float, values: FloatArray, period: float, damping_ratio: float) -> tuple[float, float]:
     """Largest |relative displacement| [m] and |absolute acceleration| [m/s2] of an oscillator."""
-    oscillator = exact_oscillator(step, period, damping_ratio)
-    x, v = _displacement_and_velocity(oscillator, step, values)
-    rate = oscillator.rate
-    # Absolute acceleration times the step squared, and its slope over a step.
-    y = -rate * (rate * x + 2.0 * damping_ratio * v)
-    slope = -rate * (rate * v + 2.0 * damping_ratio * (y - step**2 * values))
+    x, v = _response(step, values, period, damping_ratio)
+    rate = 2.0 * math.pi / period
+    y = -rate * (rate * x + 2.0 * damping_ratio * v)  # absolute acceleration
+    slope = -rate * (rate * v + 2.0 * damping_ratio * (y - values))
     free_slope = -rate * (rate * v[-1] + 2.0 * damping_ratio * y[-1])
-    displacement = max(_largest(x, v), _largest_free(oscillator, float(x[-1]), float(v[-1])))
-    absolute = max(_largest(y, slope), _largest_free(oscillator, float(y[-1]), float(free_slope)))
-    return displacement, absolute / step**2
+    return (
+        max(_largest(step, x, v), _largest_free(rate, damping_ratio, float(x[-1]), float(v[-1]))),
+        max(_largest(step, y, slope), _largest_free(rate, damping_ratio, float(y[-1]), float(free_slope))),
+    )
 
 
-def _largest(values: FloatArray, slopes: FloatArray) -> float:
-    """Largest magnitude of the cubics through values and slopes (over one step) at the samples."""
+def _largest(step: float, values: FloatArray, slopes: FloatArray) -> float:
+    """Largest magnitude of the cubics through values and slopes at the samples."""
     turning = np.flatnonzero(slopes[:-1] * slopes[1:] < 0.0)
     y0, y1, m0, m1 = values[turning], values[turning + 1], slopes[turning], slopes[turning + 1]
     s = m0 / (m0 - m1)  # the slope is nearly linear there, and an error of s counts only squared
     t = 1.0 - s
-    peaks = t * t * ((1.0 + 2.0 * s) * y0 + s * m0) + s * s * ((1.0 + 2.0 * t) * y1 - t * m1)
+    peaks = t * t * ((1.0 + 2.0 * s) * y0 + s * step * m0) + s * s * ((1.0 + 2.0 * t) * y1 - t * step * m1)
     return float(max(np.abs(values).max(), np.abs(peaks).max(initial=0.0)))
 
 
-def _largest_free(oscillator: OscillatorStep, value: float, slope: float) -> float:
-    """Magnitude at the first turning point of free vibration; `slope` over one step."""
-    decay = oscillator.damping_ratio * oscillator.rate
-    damped = oscillator.rate * math.sqrt(1.0 - oscillator.damping_ratio**2)
-    angle = math.atan2(slope * damped, decay * slope + oscillator.rate**2 * value) % math.pi
+def _largest_free(rate: float, damping_ratio: float, value: float, slope: float) -> float:
+    """Magnitude at the first turning point of free vibration."""
+    decay, damped = damping_ratio * rate, rate * math.sqrt(1.0 - damping_ratio**2)
+    angle = math.atan2(slope * damped, decay * slope + rate**2 * value) % math.pi
     swing = value * math.cos(angle) + (slope + decay * value) / damped * math.sin(angle)
     return abs(math.exp(-decay * angle / damped) * swing)

@@ -59,7 +59,10 @@ SWEEP = ResultKind(
     mark="sweep.json",
     request="sweep_hash",
     results="table.csv",
-    own=("rows.csv", "members.csv", "tried.csv", "thresholds.csv", "answers.csv", "table.csv", "maps/*.svg"),
+    own=(
+        *("rows.csv", "members.csv", "tried.csv", "thresholds.csv", "answers.csv", "table.csv", "maps/*.svg"),
+        *("motions.csv", "motion_set.csv", "spectra.csv", "figures/*.svg"),
+    ),
 )
 ENSEMBLE = ResultKind(
     name="ensemble",

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.jit import compiled
-from fem.records.spectrum import exact_oscillator
+from fem.records.spectrum import exact_recursion
 from fem.runtime.arrays import BoolArray, FloatArray
 from fem.site.action import DAMPING_RATIO
 
@@ -39,8 +39,8 @@ def _groups(step: float, periods: tuple[float, ...]) -> tuple[_Group, ...]:
         rows = []
         for period in np.array(periods)[members].tolist():
             # Pseudo-acceleration, so displacement times the square of the rate.
-            numerator, denominator = exact_oscillator(step / count, period, DAMPING_RATIO).recursion
-            square = (2.0 * math.pi * step / (count * period)) ** 2
+            numerator, denominator = exact_recursion(step / count, period, DAMPING_RATIO)
+            square = (2.0 * math.pi / period) ** 2
             rows.append([*(square * one for one in numerator), *denominator[1:]])
         groups.append(_Group(members, count, np.ascontiguousarray(np.array(rows).T)))
     return tuple(groups)

@@ -6,7 +6,7 @@ Every step is logged before the next begins, so an interrupted sweep continues w
 
 import hashlib
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.batch.axes import with_following
 from fem.batch.held import held_inputs
 from fem.batch.log import LoggedRuns, fields_of, line_of, read_lines, table_of_lines
+from fem.batch.motion_set import FloorMotionPair, motion_cases, read_motion_set
 from fem.batch.runner import Row, Runner, motion_left_out
 from fem.batch.workers import LocalWorkers, WorkersOf
 from fem.case.case import case_hash
@@ -36,6 +37,7 @@ from fem.sweep.maps import draw_maps
 from fem.sweep.perturbed import PerturbedRows, band_rows, perturb_cells
 from fem.sweep.plan import Sweep
 from fem.sweep.refine import refine, table_of_changes
+from fem.sweep.set_files import write_set
 from fem.sweep.table import FOUND, band_columns, open_sweep
 
 ROWS, TABLE, MEMBERS, CHANGES, ANSWERS = (
@@ -86,6 +88,7 @@ def run_sweep(
     reporter = reporter or SilentReporter()
     jobs = jobs or cores()
     check_size(sweep, jobs, force)
+    motions = read_motion_set(sweep.base, sweep.axes)
     with (
         open_result_folder(folder, SWEEP, sweep_hash(sweep), force=force, resume=resume) as place,
         interruptible(reporter) as stop,
@@ -109,7 +112,9 @@ def run_sweep(
             workers_of=workers_of or stack.enter_context(LocalWorkers(jobs)), reporter=reporter, stop=stop
         )
         info = _asked(sweep) | {"jobs": jobs}
-        return _Work(sweep=sweep, place=place, runner=runner, info=info).run(same_band=same_band)
+        return _Work(sweep=sweep, motions=motions, place=place, runner=runner, info=info).run(
+            same_band=same_band
+        )
 
 
 def sweep_hash(sweep: Sweep) -> str:
@@ -120,6 +125,8 @@ def sweep_hash(sweep: Sweep) -> str:
     digest.update(toml_document(given).encode())
     digest.update(repr([(axis.key, axis.values) for axis in sweep.axes]).encode())
     digest.update(repr([(one.key, one.expression.tree) for one in sweep.derived]).encode())
+    for case in motion_cases(sweep.base, sweep.axes):
+        digest.update(case_hash(case).encode())
     return digest.hexdigest()
 
 
@@ -153,8 +160,16 @@ def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
 class _Work:
     """A sweep under way."""
 
-    def __init__(self, *, sweep: Sweep, place: ResultFolder, runner: Runner, info: dict[str, Any]) -> None:
-        self.sweep, self.place, self.runner, self.info = sweep, place, runner, info
+    def __init__(
+        self,
+        *,
+        sweep: Sweep,
+        motions: Sequence[FloorMotionPair],
+        place: ResultFolder,
+        runner: Runner,
+        info: dict[str, Any],
+    ) -> None:
+        self.sweep, self.motions, self.place, self.runner, self.info = sweep, motions, place, runner, info
         self.cells = CellRows(sweep)
         self._began = self._updated = time.perf_counter()
 
@@ -168,7 +183,8 @@ class _Work:
             place.remove(MEMBERS, TRIED, CHANGES, ANSWERS)
         base = toml_document(self.sweep.base.given())
         place.begin(self.info, {"sweep.toml": self.sweep.text, "base.toml": base}, keep=keep)
-        copy_data_files(self.sweep.base, place.path)
+        for case in (self.sweep.base, *(one.case for one in self.motions)):
+            copy_data_files(case, place.path)
         self._compute_rows()
         copies = None if stop() else perturb_cells(self.runner, self.sweep, self.cells, place.path / MEMBERS)
         changes = None if stop() else refine(self.runner, self.sweep, self.cells, place.path / TRIED)
@@ -183,6 +199,8 @@ class _Work:
             if changes is not None:
                 place.write_text(CHANGES, table_of_changes(self.sweep, changes))
                 self.info["changes"] = len(changes)
+            if self.motions:
+                self.info |= write_set(place, self.sweep, self.motions, self.cells)
             self.info["status"] = "failed" if set(self.cells.outcomes) == {"failed"} else "completed"
             self._answer()
             self.info["maps"] = _draw(place, self.sweep)
@@ -314,6 +332,9 @@ def _asked(sweep: Sweep) -> dict[str, Any]:
         "decided_by": None,
         "changes": None,
         "answer": None,
+        "motions": None,
+        "motion_set": None,
+        "motion_figures": [],
         "map_axes": sweep.maps.model_dump(),
         "maps": [],
         **program_of_results(),

@@ -113,9 +113,9 @@ def test_a_hundred_periods_of_a_long_record_are_quick():
     values = noise(8001)
     best = math.inf
     for _ in range(3):
-        began = time.perf_counter()
+        began = time.process_time()
         response_spectrum(0.005, values, log_spaced_periods(0.005))
-        best = min(best, time.perf_counter() - began)
+        best = min(best, time.process_time() - began)
     assert best < 0.1
 
 

@@ -1,0 +1,175 @@
+"""The motions of a set: read once, checked against each other, and told in numbers and spectra.
+
+A set is the values of `motion.file` in a study: recorded motions, alone or with a vertical component each.
+"""
+
+import hashlib
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from contact.motion.table import TableMotion
+from fem.batch.axes import MOTION_FILE, Axis, with_following
+from fem.batch.log import table_text
+from fem.case.case import Case, CaseError
+from fem.model.motion import build_motion, build_vertical
+from fem.records.intensity import intensity
+from fem.records.record import Component, RecordError, require_together
+from fem.records.spectrum import Spectrum, log_spaced_periods, response_spectrum
+from fem.runtime.arrays import FloatArray
+
+#: intervals of a motion are equal within this share of their median
+EQUAL = 1e-3
+LONGEST_PERIOD_S = 4.0
+MOST_SAMPLES = 2_000_000  #: of a motion whose intervals differ, sampled for its spectrum
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FloorComponent:
+    """A horizontal or vertical motion, as the runs follow it."""
+
+    name: str  #: of its file
+    motion: TableMotion
+
+    @property
+    def step_s(self) -> float:
+        """Median interval of its samples [s]."""
+        return float(np.median(np.diff(self.motion.times)))
+
+    def numbers(self) -> dict[str, Any]:
+        """Length, interval, peaks and duration, by the names of `run.json`."""
+        times = self.motion.times
+        return {
+            "file": self.name,
+            "duration_s": float(np.ptp(times)),
+            "step_s": self.step_s,
+            "samples": times.size,
+        } | asdict(intensity(times, self.motion.accelerations))
+
+    def spectrum(self, periods_s: FloatArray) -> Spectrum:
+        """Response spectrum for 5 % of damping."""
+        return response_spectrum(*_evenly_sampled(self.motion), periods_s)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FloorMotionPair:
+    """One motion of a set."""
+
+    case: Case  #: the base case with this motion
+    horizontal: FloorComponent
+    vertical: FloorComponent | None
+
+    @property
+    def name(self) -> str:
+        """File of the horizontal motion."""
+        return self.horizontal.name
+
+    @property
+    def components(self) -> tuple[FloorComponent, ...]:
+        """The horizontal motion, and the vertical one where there is one."""
+        return (self.horizontal,) if self.vertical is None else (self.horizontal, self.vertical)
+
+    def numbers(self) -> dict[str, Any]:
+        """Those of the horizontal motion, and of the vertical one as `vertical`; None without one."""
+        vertical = None if self.vertical is None else self.vertical.numbers()
+        return self.horizontal.numbers() | {"vertical": vertical}
+
+
+def set_axis(axes: Iterable[Axis]) -> Axis | None:
+    """The axis that holds a set of motions; None without one."""
+    return next((axis for axis in axes if axis.key == MOTION_FILE), None)
+
+
+def motion_cases(base: Case, axes: Iterable[Axis]) -> list[Case]:
+    """The base case with each motion of a set; none without a set."""
+    axis = set_axis(axes)
+    if axis is None:
+        return []
+    return [base.with_values(with_following([axis], {MOTION_FILE: name})) for name in axis.values]
+
+
+def read_motion_set(base: Case, axes: Iterable[Axis]) -> tuple[FloorMotionPair, ...]:
+    """Read the motions of a set, as the base case takes them; none without a set.
+
+    Raises:
+        CaseError: a file that cannot be used, components that were not sampled together, two files that hold the
+            same motion.
+    """
+    found: list[FloorMotionPair] = []
+    contents: dict[str, str] = {}
+    for case in motion_cases(base, axes):
+        pair = _read_pair(case)
+        for component, content in zip(pair.components, _contents(pair), strict=True):
+            if content in contents:
+                raise CaseError(
+                    f"{MOTION_FILE!r}: {component.name!r} and {contents[content]!r} hold the same motion; those of a "
+                    "set must differ: leave one out"
+                )
+            contents[content] = component.name
+        found.append(pair)
+    return tuple(found)
+
+
+def motion_numbers(motions: Sequence[FloorMotionPair]) -> list[dict[str, Any]]:
+    """The numbers of each motion, for the JSON of a study."""
+    return [one.numbers() for one in motions]
+
+
+def spectra_of(motions: Sequence[FloorMotionPair]) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Periods (k,) [s] that all motions resolve, and pseudo-accelerations (k,) [m/s2] by `file`."""
+    components = [one for motion in motions for one in motion.components]
+    step = max(one.step_s for one in components)
+    periods = log_spaced_periods(step, longest_s=max(LONGEST_PERIOD_S, 10.0 * step))
+    return periods, {one.name: one.spectrum(periods).pseudo_acceleration_m_s2 for one in components}
+
+
+def spectra_table(periods: FloatArray, spectra: dict[str, FloatArray]) -> str:
+    """`spectra.csv`: a row a period, a column of pseudo-acceleration [m/s2] for each file; 5 % of damping."""
+    return table_text(["period_s", *spectra], np.column_stack([periods, *spectra.values()]).tolist())
+
+
+def _read_pair(case: Case) -> FloorMotionPair:
+    horizontal = FloorComponent(name=case.motion.file or "", motion=_table(build_motion(case)))
+    if case.vertical.kind != "table" or case.vertical.file is None:
+        return FloorMotionPair(case=case, horizontal=horizontal, vertical=None)
+    vertical = FloorComponent(name=case.vertical.file, motion=_table(build_vertical(case)))
+    pair = FloorMotionPair(case=case, horizontal=horizontal, vertical=vertical)
+    try:
+        require_together(
+            [Component(times=one.motion.times, readings=one.motion.values) for one in pair.components],
+            [one.name for one in pair.components],
+        )
+    except RecordError as error:
+        raise CaseError(f"{MOTION_FILE!r}: {error}") from None
+    return pair
+
+
+def _table(motion: object) -> TableMotion:
+    if not isinstance(motion, TableMotion):
+        raise CaseError(f'{MOTION_FILE!r}: the case has motion.kind other than "table"; take it out of [set]')
+    return motion
+
+
+def _contents(pair: FloorMotionPair) -> Iterator[str]:
+    """Equal for components that are the same motion, whatever their scale and sign."""
+    for one in pair.components:
+        values = one.motion.accelerations
+        largest = values[np.argmax(np.abs(values))] or 1.0
+        times = one.motion.times - one.motion.times[0]
+        shape = np.round(np.concatenate([times / (times[-1] or 1.0), values / largest]), 6) + 0.0
+        yield hashlib.sha256(shape.tobytes()).hexdigest()
+
+
+def _evenly_sampled(motion: TableMotion) -> tuple[float, FloatArray]:
+    """Step [s] and accelerations of the motion, sampled anew by straight lines where its intervals differ."""
+    times, values = motion.times, motion.accelerations
+    steps, length = np.diff(times), float(np.ptp(times))
+    step = length / steps.size
+    if np.abs(steps - step).max() <= EQUAL * step:
+        return step, values
+    count = min(math.ceil(length / float(steps.min())), MOST_SAMPLES)
+    even = np.linspace(times[0], times[-1], count + 1)
+    return length / count, np.asarray(np.interp(even, times, values))

@@ -1,0 +1,110 @@
+"""Figures of a set of motions: response spectra, and the share that overturns over the strength."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter
+
+from fem.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILLION,
+    head,
+    house_style,
+    legend_above,
+    number,
+    panels,
+)
+from fem.runtime.arrays import FloatArray
+
+COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, SKY, PURPLE, GREY)
+LINES = ("-", "--", ":", "-.")
+MOST_NAMED = 8  #: motions that the legend names
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ShareCurve:
+    """Share of a set of motions that overturns, over the strength to which all are scaled."""
+
+    label: str
+    strengths: FloatArray  #: (n,)
+    share: FloatArray  #: (n,), nan where nothing was computed
+    low: FloatArray  #: (n,)
+    high: FloatArray  #: (n,)
+
+
+def draw_spectra(
+    periods: FloatArray, spectra: Mapping[str, FloatArray], *, vertical: Sequence[str] = ()
+) -> Figure:
+    """Pseudo-acceleration spectra for 5 % of damping, and their mean.
+
+    Args:
+        periods: (k,) [s].
+        spectra: (k,) each [m/s2], by file.
+        vertical: files of vertical motions, which have a panel below the horizontal ones.
+    """
+    groups = [("horizontal", [name for name in spectra if name not in vertical])]
+    if vertical:
+        groups.append(("vertical", list(vertical)))
+    with house_style():
+        gaps = [0.55] * (len(groups) - 1)
+        figure, axes = panels([2.6] * len(groups), gaps=gaps, header=2 + 2 * (len(groups[0][1]) > 3))
+        head(figure, "Response spectra of the motions", "pseudo-acceleration, 5 % damping")
+        for panel, (direction, names) in zip(axes, groups, strict=True):
+            for k, name in enumerate(names):
+                label = name if len(names) <= MOST_NAMED else None
+                colour, line = COLOURS[k % len(COLOURS)], LINES[k // len(COLOURS) % len(LINES)]
+                panel.plot(periods, spectra[name], color=colour, linestyle=line, linewidth=0.8, label=label)
+            if len(names) > 1:
+                mean = np.mean([spectra[name] for name in names], axis=0)
+                panel.plot(periods, mean, color=BLACK, linewidth=1.8, label=f"mean of {len(names)}")
+            panel.set_xscale("log")
+            panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
+            panel.set_ylim(bottom=0.0)
+            panel.set_ylabel(f"{direction} [m/s²]")
+            legend_above(panel, 3)
+        axes[-1].set_xlabel("period [s]")
+        return figure
+
+
+def draw_shares(curves: Sequence[ShareCurve], *, title: str, label: str) -> Figure:
+    """Share of the motions that overturns over their strength, with intervals.
+
+    Args:
+        curves: one for each point of the other axes.
+        title: of the figure.
+        label: of the strength, with its unit.
+    """
+    with house_style():
+        figure, (axes,) = panels((3.0,), header=3 + (len(curves) > 3))
+        head(figure, title, "share of the motions that overturn, worse sign of each, with 95 % intervals")
+        widths = [float(np.ptp(one.strengths)) for one in curves]
+        for k, one in enumerate(curves):
+            known = np.isfinite(one.share)
+            aside = 0.006 * widths[k] * (k - 0.5 * (len(curves) - 1))  # so that no interval hides another
+            axes.errorbar(
+                one.strengths[known] + aside,
+                one.share[known],
+                yerr=[(one.share - one.low)[known], (one.high - one.share)[known]],
+                color=COLOURS[k % len(COLOURS)],
+                linestyle=LINES[k // len(COLOURS) % len(LINES)],
+                marker="o",
+                markersize=3.0,
+                linewidth=0.9,
+                capsize=2.0,
+                label=one.label or None,
+            )
+        axes.set_ylim(-0.02, 1.02)
+        axes.margins(x=0.02)
+        axes.set_ylabel("share that overturns [-]")
+        axes.set_xlabel(label)
+        if any(one.label for one in curves):
+            legend_above(axes, 3)
+        return figure

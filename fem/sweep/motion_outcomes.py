@@ -1,0 +1,167 @@
+"""What a set of motions did: by motion, and of the whole set at each point on the other axes.
+
+A motion that is tried with both signs counts once, with the worse of the two: the signs of one motion are not
+independent. The share of motions that overturn has the interval of as many independent ones. A mean is that of the
+motions under which the container stood, and is told together with how many overturned: no mean includes a fall.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fem.assessment.summary import ratio_in_words
+from fem.batch.axes import MOTION_FILE, Axis
+from fem.batch.intervals import estimate
+from fem.runtime.arrays import IntArray
+from fem.sweep.cells import Shown
+from fem.sweep.neighbours import FAILED, KIND_NAMES, OVERTURNED, STANDING
+from fem.sweep.plan import Sweep
+
+CONFIDENCE = 0.95
+#: keys whose values of one magnitude are the signs of a motion
+SIGNS = ("motion.scale", "vertical.scale")
+#: columns of `motion_set.csv` behind those of the other axes
+SET_COLUMNS = (
+    *("motions", "stood", "overturned", "failed", "overturned_share", "low", "high"),
+    *("worst_motion", "worst_outcome", "worst_rotation_ratio", "worst_slip_motion", "worst_slip_m"),
+    *("mean_rotation_ratio", "mean_slip_m"),
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionOutcome:
+    """What one motion did, with the worse of its signs."""
+
+    motion: str
+    kind: int  #: see `neighbours`
+    outcome: str | None  #: None where it failed
+    rotation_ratio: float | None
+    max_slip_m: float | None
+
+    @property
+    def severity(self) -> tuple[int, float]:
+        """Rises with how bad the outcome is."""
+        return (STANDING, FAILED, OVERTURNED).index(self.kind), self.rotation_ratio or 0.0
+
+
+def sign_axes(axes: Sequence[Axis]) -> list[Axis]:
+    """The axes that turn the sign of a motion and change nothing else."""
+    return [axis for axis in axes if axis.key in SIGNS and len({abs(value) for value in axis.values}) == 1]
+
+
+def motions_at(
+    sweep: Sweep, shown: Mapping[int, Shown]
+) -> Iterator[tuple[dict[str, Any], list[MotionOutcome]]]:
+    """At each point on the axes that are neither motions nor signs: its values, and what each motion did."""
+    keys = [axis.key for axis in sweep.axes]
+    inner = [MOTION_FILE, *(axis.key for axis in sign_axes(sweep.axes))]
+    places = [keys.index(key) for key in inner]
+    cells: IntArray = np.moveaxis(np.arange(sweep.count).reshape(sweep.shape), places, range(-len(places), 0))
+    names = sweep.axes[places[0]].values
+    signs = int(np.prod(cells.shape[cells.ndim - len(places) + 1 :]))
+    for block in cells.reshape(-1, len(names), signs):
+        point = sweep.point(int(block[0, 0]))
+        values = {key: value for key, value in point.items() if key not in inner}
+        yield (
+            values,
+            [
+                _worst(str(name), [shown[int(cell)] for cell in row])
+                for name, row in zip(names, block, strict=True)
+            ],
+        )
+
+
+def set_row(found: Sequence[MotionOutcome]) -> dict[str, Any]:
+    """What a set of motions did at a point, by `SET_COLUMNS`."""
+    kinds = np.array([one.kind for one in found])
+    share = estimate(kinds == OVERTURNED, kinds == FAILED, replicates=1, confidence=CONFIDENCE)
+    computed = [one for one in found if one.kind != FAILED]
+    standing = [one for one in computed if one.kind == STANDING]
+    worst = max(computed, key=lambda one: one.severity, default=None)
+    slipped = max(computed, key=lambda one: one.max_slip_m or 0.0, default=None)
+    return {
+        "motions": len(found),
+        "stood": len(standing),
+        "overturned": int((kinds == OVERTURNED).sum()),
+        "failed": int((kinds == FAILED).sum()),
+        "overturned_share": share.value,
+        "low": share.low,
+        "high": share.high,
+        "worst_motion": worst and worst.motion,
+        "worst_outcome": worst and worst.outcome,
+        "worst_rotation_ratio": worst and worst.rotation_ratio,
+        "worst_slip_motion": slipped and slipped.motion,
+        "worst_slip_m": slipped and slipped.max_slip_m,
+        "mean_rotation_ratio": _mean([one.rotation_ratio for one in standing]),
+        "mean_slip_m": _mean([one.max_slip_m for one in standing]),
+    }
+
+
+def set_in_words(row: Mapping[str, Any]) -> str:
+    """One sentence about a set of motions."""
+    count, overturned, failed = row["motions"], row["overturned"], row["failed"]
+    interval = (
+        f"{100.0 * row['low']:.0f} to {100.0 * row['high']:.0f} % of such motions at {100.0 * CONFIDENCE:g} %"
+    )
+    begin = (
+        f"{overturned or 'none'} of {count} motions overturn{'s' * (overturned < 2)} ({interval} confidence)"
+    )
+    parts = [begin + (f", {failed} failed" if failed else "")]
+    if overturned:
+        parts.append(f"worst {row['worst_motion']}")
+    elif row["worst_rotation_ratio"] is not None:
+        ratio = ratio_in_words(row["worst_rotation_ratio"])
+        parts.append(f"worst {row['worst_motion']}, {row['worst_outcome']}, rotation ratio {ratio}")
+    if row["worst_slip_m"]:
+        parts.append(f"largest slip {1e3 * row['worst_slip_m']:.3g} mm, {row['worst_slip_motion']}")
+    if row["mean_rotation_ratio"] is not None:
+        of = f"mean of {row['stood']}" + (f" that stood, {overturned} overturned" if overturned else "")
+        ratio = ratio_in_words(row["mean_rotation_ratio"])
+        parts.append(f"{of}: rotation ratio {ratio}, slip {1e3 * row['mean_slip_m']:.3g} mm")
+    return "; ".join(parts)
+
+
+def by_motion(points: Sequence[Sequence[MotionOutcome]]) -> dict[str, dict[str, Any]]:
+    """Counts and largest figures of each motion over all points, by its name; the figures where it stood."""
+    found: dict[str, dict[str, Any]] = {}
+    for outcomes in zip(*points, strict=True):
+        standing = [one for one in outcomes if one.kind == STANDING]
+        counts = {
+            KIND_NAMES[kind]: sum(one.kind == kind for one in outcomes)
+            for kind in (STANDING, OVERTURNED, FAILED)
+        }
+        found[outcomes[0].motion] = counts | {
+            "max_rotation_ratio": max((one.rotation_ratio or 0.0 for one in standing), default=None),
+            "max_slip_m": max((one.max_slip_m or 0.0 for one in standing), default=None),
+        }
+    return found
+
+
+def _worst(motion: str, signs: Sequence[Shown]) -> MotionOutcome:
+    """What a motion did, with the worse of its signs; a failed one hides no fall, and is never taken as standing."""
+    each = [
+        MotionOutcome(
+            motion=motion,
+            kind=one.kind,
+            outcome=one.outcome,
+            rotation_ratio=one.rotation_ratio,
+            max_slip_m=one.max_slip_m,
+        )
+        for one in signs
+    ]
+    worst = max(each, key=lambda one: one.severity)
+    slip = max((one.max_slip_m for one in each if one.max_slip_m is not None), default=None)
+    return MotionOutcome(
+        motion=motion,
+        kind=worst.kind,
+        outcome=worst.outcome,
+        rotation_ratio=worst.rotation_ratio,
+        max_slip_m=slip,
+    )
+
+
+def _mean(values: Sequence[float | None]) -> float | None:
+    known = [value for value in values if value is not None]
+    return float(np.mean(known)) if known else None
