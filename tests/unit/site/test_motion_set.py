@@ -1,0 +1,108 @@
+"""The checks of a set of motions, and sets broken on purpose."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fem.site.action import SiteAction, eurocode_shape
+from fem.site.artificial import artificial_set
+from fem.site.ground_motion import GroundMotion
+from fem.site.motion_set import check_set, copy_correlation, largest_correlation
+
+ACTION = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=2.4 / 1.35)
+
+
+@pytest.fixture(scope="module")
+def motions():
+    return artificial_set(ACTION, count=3, seed=1)
+
+
+@pytest.fixture(scope="module")
+def checked(motions):
+    return check_set(motions, ACTION)
+
+
+def test_a_generated_set_is_valid(motions, checked):
+    assert checked.valid and checked.reasons == ()
+    assert checked.count == 3 and checked.stationary == 12.0
+    assert checked.mean_peak == pytest.approx(np.mean([np.abs(m.horizontal).max() for m in motions]))
+    assert checked.mean_peak >= checked.wanted_peak == pytest.approx(2.4)
+    assert 0.9 <= checked.least_ratio <= 1.0
+    mean = checked.horizontal.motions.mean(axis=0)
+    place = int(np.argmin(np.abs(checked.periods - checked.least_ratio_period)))
+    target = ACTION.horizontal(checked.periods[place : place + 1])[0]
+    assert checked.least_ratio == pytest.approx(mean[place] / target)
+    assert checked.vertical_least_ratio >= 0.9
+
+
+def test_a_set_scaled_down_is_not_valid(motions):
+    found = check_set([motion.scaled(0.8) for motion in motions], ACTION)
+    assert not found.valid
+    assert any("mean peak" in reason for reason in found.reasons)
+    assert any("of the target at" in reason for reason in found.reasons)
+    assert any("vertical" in reason for reason in found.reasons)
+
+
+def test_one_motion_twice_is_not_valid(motions, checked):
+    found = check_set([*motions, replace(motions[0], name="again")], ACTION)
+    assert not found.valid
+    assert found.largest_correlation == pytest.approx(1.0)
+    assert checked.largest_correlation <= 0.3
+    assert any("motion_01 and again are one motion" in reason for reason in found.reasons)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [lambda a: np.roll(a, 400), lambda a: a[::-1], lambda a: -1.3 * a],
+    ids=["shifted", "reversed", "scaled"],
+)
+def test_a_copy_in_disguise_is_found(motions, change):
+    copy = replace(motions[1], name="copy", horizontal=change(motions[1].horizontal).copy())
+    assert copy_correlation(motions[1], copy) > 0.95
+    assert copy_correlation(motions[0], copy) < 0.8
+    assert any("one motion" in reason for reason in check_set([*motions, copy], ACTION).reasons)
+
+
+def test_two_motions_are_too_few(motions):
+    assert any("at least 3" in reason for reason in check_set(motions[:2], ACTION).reasons)
+
+
+def test_vertical_like_horizontal_is_correlated(motions):
+    same = [replace(motion, vertical=0.5 * motion.horizontal) for motion in motions]
+    assert largest_correlation(same) == pytest.approx(1.0)
+
+
+def test_motions_of_other_steps_are_compared(motions):
+    coarse = replace(
+        motions[0], step=0.01, horizontal=motions[0].horizontal[::2], vertical=None, name="coarse"
+    )
+    assert copy_correlation(motions[0], coarse) > 0.95
+    assert largest_correlation([motions[0], coarse]) > 0.95
+
+
+def test_recorded_verticals_are_shown_and_not_required(motions):
+    recorded = [replace(motion, stationary=None, vertical=0.2 * motion.vertical) for motion in motions]
+    found = check_set(recorded, ACTION)
+    assert found.valid and found.stationary is None
+    assert found.vertical_least_ratio < 0.3
+
+
+def test_motions_with_and_without_vertical_do_not_mix(motions):
+    found = check_set([replace(motions[0], vertical=None), *motions[1:]], ACTION)
+    assert found.vertical is None
+    assert any("some have none" in reason for reason in found.reasons)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"vertical": np.zeros(9)}, "one length"),
+        ({"horizontal": np.array([0.0, np.nan])}, "not a finite number"),
+        ({"step": 0.0}, "must be positive"),
+        ({"horizontal": np.zeros(1)}, "two samples"),
+    ],
+)
+def test_a_motion_that_is_none_is_refused(given, message):
+    with pytest.raises(ValueError, match=message):
+        GroundMotion(**({"name": "bad", "step": 0.01, "horizontal": np.zeros(10)} | given))
