@@ -48,6 +48,8 @@ def report(
         page = importlib.import_module("fem.report.sweep_page").sweep_report(folder, signature=signature)
     elif (folder / "study.json").is_file():
         page = importlib.import_module("fem.paper.page").paper_report(folder, signature=signature)
+    elif (folder / "assess.json").is_file():
+        page = importlib.import_module("fem.site_check.page").site_report(folder, signature=signature)
     else:
         opened = importlib.import_module("fem.results.reader").open_run(folder)
         with interrupts.interruptible(reporter) as stop:

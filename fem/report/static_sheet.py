@@ -5,7 +5,6 @@ of `fem.model.static_checks`. Weights in kN, moments in kNm, lengths in m.
 """
 
 import math
-import re
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -13,6 +12,7 @@ from markupsafe import Markup
 
 from fem.assessment.summary import rule_says
 from fem.case.case import Case
+from fem.html.formula import formula_markup
 from fem.html.units import number, short
 from fem.model.static_checks import (
     CLAUSE_APPLICABLE,
@@ -25,8 +25,6 @@ from fem.model.static_checks import (
 )
 
 PAPER = "Knoedel and Hrabowski"
-#: a function, which is upright, or a symbol, which is in italics, with its index
-SYMBOL = re.compile(r"\b(arctan|tan|cos)\b|([A-Za-zα-ορ-ωΩ])(?:_([A-Za-z]+))?")
 
 
 class SheetRow(NamedTuple):
@@ -211,7 +209,7 @@ def _line(row: SheetRow, numbers: Numbers, verdict: str = "") -> SheetLine:
     value = numbers[row.value]
     return SheetLine(
         name=row.name.format(**numbers),
-        formula=Markup(SYMBOL.sub(_symbol, row.formula)),  # our own text, never a user's
+        formula=formula_markup(row.formula),
         numbers=row.numbers.format(**numbers),
         value=value,
         result=number(value),
@@ -219,8 +217,3 @@ def _line(row: SheetRow, numbers: Numbers, verdict: str = "") -> SheetLine:
         source=Markup(row.source).format(**numbers),
         verdict=verdict,
     )
-
-
-def _symbol(found: re.Match[str]) -> str:
-    word, letter, index = found.groups()
-    return word or f"<i>{letter}</i>" + (f"<sub>{index}</sub>" if index else "")

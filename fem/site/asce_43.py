@@ -14,12 +14,12 @@ import numpy as np
 from contact.reference.rigid_block import RigidBlock
 from fem.runtime.arrays import FloatArray
 from fem.site.body import PERIODS, FloorAction, Limits, LooseBody, Spectrum
-from fem.site.method import MethodQuantity, MethodRow, Source, SourceStanding
+from fem.site.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
 
 SLIDING_DAMPING = 0.10
 VERTICAL_SHARE = 0.4  #: of the vertical peak that reduces friction, and of a second horizontal component
 ANGLES = 1000  #: tried between upright and the slenderness angle
-SOURCE = Source(work="ASCE/SEI 43-05, Appendix A", standing=SourceStanding.DERIVED)
+SOURCE = MethodSource(work="ASCE/SEI 43-05, Appendix A", standing=SourceStanding.DERIVED)
 
 
 @dataclass(frozen=True, kw_only=True)

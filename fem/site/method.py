@@ -23,7 +23,7 @@ class MethodQuantity(StrEnum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Source:
+class MethodSource:
     """Where a method comes from. Only a clause that was checked is called one."""
 
     work: str  #: standard with its year, or authors with the year
@@ -55,7 +55,7 @@ class MethodRow:
     capacity: float
     unit: str
     says: str
-    source: Source
+    source: MethodSource
     validity: str
 
     @property

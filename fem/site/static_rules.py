@@ -7,22 +7,22 @@ a/(mu (g - a_v)) with static friction. EN 1998-1:2004, 4.4.2.4 (1)P asks for the
 import math
 
 from fem.site.body import FloorAction, LooseBody
-from fem.site.method import MethodQuantity, MethodRow, Source, SourceStanding
+from fem.site.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
 
 #: shares of the horizontal and vertical peak, after EN 1998-1:2004, 4.3.3.5.2
 COMBINATIONS = ((1.0, 0.0), (1.0, 0.3), (1.0, 1.0), (0.3, 1.0))
 ELEMENT_BEHAVIOUR_FACTOR = 1.0  #: q_a: no row of table 4.4 is for an unanchored body
 
-PEAK = Source(
+PEAK = MethodSource(
     work="EN 1998-1:2004, 4.4.2.4 (1)P and 4.3.3.5.2, with the peak as a static force",
     standing=SourceStanding.DERIVED,
 )
-PLATEAU = Source(
+PLATEAU = MethodSource(
     work="EN 1998-1:2004",
     clause="4.4.2.4 (1)P with 4.3.3.2.2 and 3.2.2.5 (4)P, Eq. (3.14)",
     standing=SourceStanding.CLAUSE,
 )
-ELEMENT = Source(
+ELEMENT = MethodSource(
     work="EN 1998-1:2004", clause="4.3.5.2, Eqs. (4.24) and (4.25)", standing=SourceStanding.CLAUSE
 )
 
@@ -89,7 +89,7 @@ def _rows(
     *,
     acceleration: float,
     put_in: str,
-    source: Source,
+    source: MethodSource,
     validity: str,
     lift: float = 0.0,
     lift_put_in: str = "",

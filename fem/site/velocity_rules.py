@@ -9,7 +9,7 @@ import math
 from scipy.special import ndtr
 
 from fem.site.body import FloorAction, LooseBody
-from fem.site.method import MethodQuantity, MethodRow, Source, SourceStanding
+from fem.site.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
 
 SPREAD = 0.5  #: logarithmic standard deviation of Kaneko and Hayashi's curve
 ULTIMATE_SHARE = (
@@ -41,7 +41,7 @@ def housner_row(body: LooseBody, action: FloorAction) -> MethodRow:
         capacity,
         "m/s",
         f"{'less' if velocity < capacity else 'more'} than half of such motions overturn it",
-        Source(work="Housner (1963)", standing=SourceStanding.DERIVED),
+        MethodSource(work="Housner (1963)", standing=SourceStanding.DERIVED),
         "slender body, random motion with a constant velocity spectrum; about 50 % overturn at 1: no limit state",
     )
 
@@ -68,7 +68,7 @@ def velocity_step_row(body: LooseBody, action: FloorAction) -> MethodRow:
         capacity,
         "m/s",
         "stands" if action.peak_velocity <= capacity else "overturns",
-        Source(work="energy and angular momentum of a block", standing=SourceStanding.DERIVED),
+        MethodSource(work="energy and angular momentum of a block", standing=SourceStanding.DERIVED),
         "one pulse, no slip; more pulses need less",
     )
 
@@ -88,7 +88,7 @@ def ishiyama_row(body: LooseBody, action: FloorAction) -> MethodRow:
         capacity,
         "m/s" if by_velocity else "m/s²",
         "stands" if demand <= capacity else "may overturn",
-        Source(work="Ishiyama (1982)", standing=SourceStanding.UNCHECKED),
+        MethodSource(work="Ishiyama (1982)", standing=SourceStanding.UNCHECKED),
         "rectangle, no slip; lower bounds, both of which must be exceeded",
     )
 
@@ -113,7 +113,7 @@ def kaneko_hayashi_row(body: LooseBody, action: FloorAction) -> MethodRow:
         0.01 * median,
         "m/s²",
         f"{100.0 * share:.2g} % overturn",
-        Source(work="Kaneko and Hayashi (2004)", standing=SourceStanding.UNCHECKED),
+        MethodSource(work="Kaneko and Hayashi (2004)", standing=SourceStanding.UNCHECKED),
         "furniture on floors, slip included in the data; half of them overturn at 1",
     )
 
@@ -130,7 +130,7 @@ def displacement_row(body: LooseBody, action: FloorAction) -> MethodRow:
         capacity,
         "m",
         "stands" if demand <= capacity else "may overturn",
-        Source(work="Al Abadi, Lam and Gad (2006)", standing=SourceStanding.UNCHECKED),
+        MethodSource(work="Al Abadi, Lam and Gad (2006)", standing=SourceStanding.UNCHECKED),
         "slender body; displacement at two thirds of the height, up to 4 s",
     )
 
@@ -148,7 +148,7 @@ def _row(
     capacity: float,
     unit: str,
     says: str,
-    source: Source,
+    source: MethodSource,
     validity: str,
 ) -> MethodRow:
     return MethodRow(

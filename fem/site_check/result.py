@@ -42,8 +42,10 @@ class FloorResult(JsonBlock):
     z_over_h: float
     building_periods_s: tuple[float, ...]  #: the one given, and varied both ways
     damping_ratio: float
-    peak_m_s2: float  #: mean of the peaks of the floor, of the period with the largest
-    mean_m_s2: tuple[float, ...]  #: its mean spectrum at the periods of the action
+    #: of the building's period with the largest mean peak; all are means over the motions
+    peak_m_s2: float
+    peak_velocity_m_s: float
+    mean_m_s2: tuple[float, ...]  #: spectrum (5 %) at the periods of the action
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,10 +109,12 @@ class SiteBody(JsonBlock):
     elevation: str  #: width | depth: the dimension along the motion
     mass_kg: float
     centroid_m: float
+    inertia_kg_m2: float  #: polar, in the elevation, about the mass centre
     support_width_m: float  #: between the outer points of the support
     width_m: float  #: of the shell along the motion
     height_m: float
-    depth_m: float
+    depth_m: float  #: of the shell across the motion
+    gravity_m_s2: float
     slenderness_angle_rad: float
     frequency_parameter_1_s: float
     uplift_acceleration_m_s2: float
@@ -209,6 +213,7 @@ class SiteMethod(JsonBlock):
     source: str
     validity: str
     found: str = ""
+    compared: str = ""  #: the method against the runs: agrees | conservative | not conservative
     factor: float | None = None  #: capacity over strength: on the action, at which the method is used up
 
 
@@ -222,7 +227,22 @@ class SiteInputs(JsonBlock):
     rotation_ratio_limit: float
     slip_limit_m: float
     wind_pressure_Pa: float | None = None
+    wind_pressure_source: str = ""
+    gamma_mu: float = 1.0  #: partial factor on friction in the wind rows
+    behaviour_factor: float = 1.5  #: of the plateau rows
     model: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class SiteDocument(JsonBlock):
+    """What identifies the page, as [document] of a case."""
+
+    project: str = ""
+    company: str = ""
+    number: str = ""
+    revision: str = ""
+    author: str = ""
+    checker: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -252,3 +272,4 @@ class SiteResult(JsonBlock):
     result: SiteAnswer
     methods: tuple[SiteMethod, ...] = ()
     provenance: SiteProvenance
+    document: SiteDocument | None = None

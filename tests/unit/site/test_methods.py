@@ -10,7 +10,7 @@ from running_example import ACTION, LIMITS, PEAK_VELOCITY, SITE, k1
 from contact.reference.rigid_block import RigidBlock
 from fem.site.asce_43 import RockingOscillator, rocking_row, slide, sliding_row
 from fem.site.body import FloorAction, Limits, LooseBody
-from fem.site.method import MethodQuantity, MethodRow, Source, SourceStanding
+from fem.site.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
 from fem.site.methods import method_capacities, method_rows, methods_of
 from fem.site.sliding_rules import RULES, sliding_rows
 from fem.site.static_rules import element_rows, floor_factor, peak_rows, plateau_rows
@@ -273,7 +273,7 @@ def test_only_what_may_be_cited_is_called_a_clause():
     asce = [row for row in rows if "ASCE" in row.name]
     assert asce and all("derived here" in str(row.source) for row in asce)
     with pytest.raises(ValueError, match="it may be cited"):
-        Source(work="ASCE/SEI 43-05", clause="A.1", standing=SourceStanding.UNCHECKED)
+        MethodSource(work="ASCE/SEI 43-05", clause="A.1", standing=SourceStanding.UNCHECKED)
 
 
 def test_a_behaviour_factor_of_one_is_one_row():

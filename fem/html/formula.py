@@ -1,0 +1,34 @@
+"""Formulas as text, set for a page: symbols of one letter in italics, with their index; words and numbers upright;
+powers, written as ^2.5, raised."""
+
+import re
+
+from markupsafe import Markup, escape
+
+#: a letter alone, but pi and the s of a unit such as m/s, with what follows its underscore; or a power
+SYMBOL = re.compile(
+    r"(?<![A-Za-zα-ωΩ_])(?<!m/)([A-Za-zα-ορ-ωΩ])(?:_([A-Za-z0-9]+))?(?![A-Za-zα-ωΩ])|\^([−0-9.]+)"
+)
+
+
+def formula_markup(text: str) -> Markup:
+    """A formula, escaped."""
+    return _set(text, indexed_only=False)
+
+
+def symbols_markup(text: str) -> Markup:
+    """Prose, escaped, with the symbols that bear an index set: a letter alone may be a word."""
+    return _set(text, indexed_only=True)
+
+
+def _set(text: str, *, indexed_only: bool) -> Markup:
+    parts, end = [], 0
+    for found in SYMBOL.finditer(text):
+        letter, index, power = found.groups()
+        if indexed_only and letter and index is None:
+            continue
+        parts.append(escape(text[end : found.start()]))
+        parts += [Markup("<sup>{}</sup>").format(power)] if power else [Markup("<i>{}</i>").format(letter)]
+        parts += [Markup("<sub>{}</sub>").format(index)] if index else []
+        end = found.end()
+    return Markup("").join([*parts, escape(text[end:])])

@@ -1,0 +1,243 @@
+"""Figures of a verification at a site: spectra, motions, outcome over strength, capacity by each method."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from fem.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    LEFT,
+    ORANGE,
+    PURPLE,
+    RIGHT,
+    SKY,
+    VERMILLION,
+    WIDTH,
+    curve_panel,
+    head,
+    house_style,
+    legend_above,
+    panels,
+    svg_of,
+    zero_line,
+)
+from fem.runtime.arrays import FloatArray
+from fem.site_check.result import MotionSet, SiteActionResult, SiteAnswer, SiteInputs, SiteMethod, SiteMotion
+
+LEAST_RATIO = 0.9  #: of the mean spectrum over the target, EN 1998-1:2004, 3.2.3.1.2 (4) c)
+TICKS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0)
+COLOURS = {"overturning": VERMILLION, "sliding": BLUE, "slip": GREEN}
+MARKERS = {"overturning": "o", "sliding": "s", "slip": "D"}
+#: factors that are drawn; beyond, an arrow
+FACTORS = (0.1, 10.0)
+
+
+def draw_spectra(action: SiteActionResult, motions: MotionSet) -> str:
+    """Target, mean and every motion, with the 90 % line in the band; horizontal and, where there is one, vertical."""
+    rows = [(action.target_m_s2, action.mean_m_s2, "horizontal")]
+    if action.vertical_target_m_s2:
+        rows.append((action.vertical_target_m_s2, action.vertical_mean_m_s2, "vertical"))
+    with house_style():
+        tall, high = 2.85, 1.7
+        figure = Figure(figsize=(WIDTH, tall))
+        low, last = motions.band_s[0], motions.band_s[-1]
+        head(
+            figure,
+            "Response spectra at the ground, 5 % damping",
+            f"the mean must not be below 90 % of the target from {low:g} to {last:g} s",
+        )
+        periods, gap = np.array(action.periods_s), 0.65
+        width = (WIDTH - LEFT - RIGHT - gap * (len(rows) - 1)) / len(rows)
+        for k, (target, mean, name) in enumerate(rows):
+            place = (LEFT + k * (width + gap)) / WIDTH, 0.45 / tall, width / WIDTH, high / tall
+            spectra = [
+                motion.spectrum_m_s2 if k == 0 else motion.vertical_spectrum_m_s2
+                for motion in motions.motions
+            ]
+            panel = figure.add_axes(place)
+            _draw_spectrum(panel, periods, target, mean, spectra, (low, last), f"{name} [m/s²]")
+            if k == 0:
+                legend_above(panel, columns=5)
+        return svg_of(figure)
+
+
+def draw_motion(
+    motion: SiteMotion,
+    action: SiteActionResult,
+    times: FloatArray,
+    horizontal: FloatArray,
+    vertical: FloatArray | None,
+) -> str:
+    """The curves of a motion over time, and its spectra beside the targets."""
+    with house_style():
+        tall, share = 2.5, 0.6
+        figure = Figure(figsize=(WIDTH, tall))
+        width = share * WIDTH - LEFT
+        count = 1 if vertical is None else 2
+        each = (tall - 0.75 - 0.1 * (count - 1)) / count
+        head(figure, f"Motion {motion.number}: {motion.origin}")
+        for k, (values, name) in enumerate(((horizontal, "horizontal"), (vertical, "vertical"))):
+            if values is None:
+                continue
+            bottom = 0.45 + (count - 1 - k) * (each + 0.1)
+            panel = figure.add_axes((LEFT / WIDTH, bottom / tall, width / WIDTH, each / tall))
+            curve_panel(panel, f"{name}\n[m/s²]", times, (values, BLUE if k == 0 else PURPLE, "-", None))
+            panel.yaxis.set_label_coords(-0.5 / width, 0.5)
+            panel.tick_params(labelbottom=k == count - 1)
+        panel.set_xlabel("time [s]")
+        left = share * WIDTH + 0.65
+        spectra = figure.add_axes(
+            (left / WIDTH, 0.45 / tall, (WIDTH - left - 0.15) / WIDTH, (tall - 0.95) / tall)
+        )
+        periods = np.array(action.periods_s)
+        spectra.plot(periods, action.target_m_s2, color=BLACK, linestyle="--", label="target")
+        spectra.plot(periods, motion.spectrum_m_s2, color=BLUE, label="horizontal")
+        if motion.vertical_spectrum_m_s2:
+            spectra.plot(periods, action.vertical_target_m_s2, color=BLACK, linestyle=":")
+            spectra.plot(periods, motion.vertical_spectrum_m_s2, color=PURPLE, label="vertical")
+        _period_axis(spectra, [0.05, 0.2, 1.0, 4.0])
+        spectra.set_xlabel("period [s]")
+        spectra.set_ylabel("spectrum [m/s²]", labelpad=2)
+        spectra.set_ylim(bottom=0.0)
+        spectra.legend(
+            loc="lower right",
+            bbox_to_anchor=(1.04, 1.0),
+            ncols=3,
+            borderaxespad=0.1,
+            handlelength=1.2,
+            columnspacing=0.9,
+        )
+        return svg_of(figure)
+
+
+def draw_scan(answer: SiteAnswer, inputs: SiteInputs) -> str:
+    """Rotation, slip and the runs that overturned over the factor on the motions."""
+    factors = [point.factor for point in answer.scan]
+    with house_style():
+        figure, (tilt, slip, fell) = panels([1.3, 1.1, 0.9], gaps=[0.12, 0.12], header=3)
+        first = answer.factor_at_first_overturning
+        head(
+            figure,
+            "The set times a factor",
+            "nothing overturned up to the largest factor tried"
+            if first is None
+            else f"first overturned at {first:.3g}; beyond, the body may stand again",
+        )
+        _limited(tilt, factors, [point.rotation_ratio for point in answer.scan], inputs.rotation_ratio_limit)
+        tilt.set_ylabel("rotation ratio [-]")
+        slips = [None if point.slip_m is None else 1e3 * point.slip_m for point in answer.scan]
+        _limited(slip, factors, slips, 1e3 * inputs.slip_limit_m)
+        slip.set_ylabel("slip [mm]")
+        share = [100.0 * point.overturned / max(point.runs, 1) for point in answer.scan]
+        fell.vlines(factors, 0.0, share, color=VERMILLION, linewidth=3.0)
+        fell.plot(factors, share, color=VERMILLION, marker="o", markersize=3.0, linestyle="none")
+        fell.set_ylabel("overturned [%]")
+        fell.set_ylim(-3.0, max(10.0, 1.1 * max(share, default=0.0)))
+        fell.set_xlabel("factor on the motions [-]")
+        for panel in (tilt, slip, fell):
+            panel.set_xlim(0.0, 1.03 * max(factors, default=1.0))
+            panel.axvline(1.0, color=GREY, linewidth=0.9, linestyle="-.")
+            if first is not None:
+                panel.axvline(first, color=VERMILLION, linewidth=0.9, linestyle=":")
+            panel.tick_params(labelbottom=panel is fell)
+        legend_above(tilt)
+        return svg_of(figure)
+
+
+def draw_methods(methods: Sequence[SiteMethod], answer: SiteAnswer, name: str) -> str:
+    """Capacity over strength by each method: the factor on the action at which it is used up."""
+    drawn = sorted(
+        (one for one in methods if one.factor is not None), key=lambda one: list(COLOURS).index(one.quantity)
+    )
+    with house_style():
+        figure, (axes,) = panels([0.17 * len(drawn) + 0.1], header=3, width=WIDTH)
+        box = axes.get_position()
+        axes.set_position((0.47, box.y0, 0.50, box.height))
+        head(
+            figure,
+            f"Capacity over strength by each method, {name}",
+            "factor on the action at which it is used up",
+        )
+        axes.axvline(1.0, color=GREY, linewidth=0.9, linestyle="-.", label="action of the site")
+        if answer.factor_at_first_overturning is not None:
+            axes.axvline(
+                answer.factor_at_first_overturning,
+                color=VERMILLION,
+                linestyle=":",
+                label="runs: first overturned",
+            )
+        for row, one in enumerate(drawn):
+            factor = one.factor or 0.0
+            shown = min(max(factor, FACTORS[0]), FACTORS[1])
+            marker = "<" if factor < FACTORS[0] else ">" if factor > FACTORS[1] else MARKERS[one.quantity]
+            axes.plot([FACTORS[0], shown], [row, row], color="#DDDDDD", linewidth=0.8, zorder=1)
+            axes.plot(
+                shown, row, color=COLOURS[one.quantity], marker=marker, markersize=4.5, linestyle="none"
+            )
+        for quantity, colour in COLOURS.items():
+            axes.plot(
+                [],
+                [],
+                color=colour,
+                marker=MARKERS[quantity],
+                markersize=4.5,
+                linestyle="none",
+                label=quantity,
+            )
+        axes.set_yticks(range(len(drawn)), [f"{one.name}, {one.quantity}" for one in drawn], fontsize=7)
+        axes.set_ylim(len(drawn) - 0.4, -0.6)
+        axes.set_xscale("log")
+        axes.set_xlim(0.95 * FACTORS[0], 1.06 * FACTORS[1])
+        axes.set_xticks([0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0], ["0.1", "0.2", "0.5", "1", "2", "5", "10"])
+        axes.minorticks_off()
+        axes.grid(visible=False, axis="y")
+        axes.set_xlabel("capacity over strength [-]")
+        axes.legend(
+            loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=5, borderaxespad=0.1, handlelength=1.4
+        )
+        return svg_of(figure)
+
+
+def _draw_spectrum(
+    axes: Axes,
+    periods: FloatArray,
+    target: Sequence[float],
+    mean: Sequence[float],
+    spectra: Sequence[Sequence[float]],
+    band: tuple[float, float],
+    label: str,
+) -> None:
+    inside = (periods >= band[0]) & (periods <= band[1])
+    axes.axvspan(*band, color=SKY, alpha=0.12, linewidth=0, label="band")
+    for k, one in enumerate(spectra):
+        axes.plot(periods, one, color=GREY, linewidth=0.6, alpha=0.7, label="motions" if k == 0 else None)
+    axes.plot(periods, target, color=BLACK, linestyle="--", label="target")
+    axes.plot(
+        periods[inside], LEAST_RATIO * np.array(target)[inside], color=VERMILLION, linestyle=":", label="90 %"
+    )
+    axes.plot(periods, mean, color=BLUE, linewidth=1.8, label="mean")
+    _period_axis(axes, list(TICKS))
+    axes.set_xlabel("period [s]")
+    axes.set_ylabel(label, labelpad=2)
+    axes.set_ylim(bottom=0.0)
+
+
+def _period_axis(axes: Axes, ticks: list[float]) -> None:
+    axes.set_xscale("log")
+    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.minorticks_off()
+
+
+def _limited(axes: Axes, factors: Sequence[float], values: Sequence[float | None], limit: float) -> None:
+    """Values over the factor with their limit; a gap where none is known, because something overturned."""
+    known = np.array([np.nan if value is None else value for value in values], dtype=float)
+    axes.plot(factors, known, color=BLUE, marker="o", markersize=3.5, label="by the rule")
+    axes.axhline(limit, color=ORANGE, linestyle="--", label="limit")
+    finite = known[np.isfinite(known)]
+    axes.set_ylim(0.0, 1.1 * max(limit, float(finite.max(initial=0.0))))
+    zero_line(axes)

@@ -1,0 +1,195 @@
+"""The simplified methods for the container of a site, beside what the runs found for the same action."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from contact.reference.rigid_block import RigidBlock
+from contact.stepping.observables import SLIDING
+from fem.runtime.arrays import FloatArray
+from fem.site.action import DAMPING_RATIO, SiteAction, damping_correction
+from fem.site.body import FloorAction, Limits, LooseBody
+from fem.site.method import MethodQuantity, MethodRow
+from fem.site.methods import method_capacities, method_rows, methods_of
+from fem.site.wind import wind_rows
+from fem.site_check.result import FloorResult, SiteBody, SiteInputs, SiteMethod, SiteMotion, SiteRun
+
+
+def site_methods(
+    *,
+    bodies: Sequence[SiteBody],
+    inputs: SiteInputs,
+    site: SiteAction,
+    motions: Sequence[SiteMotion],
+    periods_s: Sequence[float],
+    floor: FloorResult | None,
+    runs: Sequence[SiteRun],
+) -> tuple[SiteMethod, ...]:
+    """Every method for every body, with the least friction, and for the lightest body the wind.
+
+    Args:
+        bodies: full and empty, in the elevations that were computed.
+        site: on the ground.
+        motions: of the set; their mean peak velocity is that of the action on the ground.
+        periods_s: of the spectrum of the floor.
+        floor: of the building; None: on the ground.
+        runs: those of the set, with both signs; other factors than 1 are left out.
+    """
+    limits = Limits(rotation_ratio=inputs.rotation_ratio_limit, slip=inputs.slip_limit_m)
+    action = floor_action(site, motions, periods_s, floor)
+    rows = []
+    for one in bodies:
+        body = loose_body(one, inputs)
+        methods = methods_of(
+            body,
+            limits,
+            behaviour_factor=inputs.behaviour_factor,
+            height_ratio=floor.z_over_h if floor else 0.0,
+        )
+        capacities = method_capacities(methods, action)
+        own = [run for run in runs if (run.mass, run.elevation) == (one.mass, one.elevation)]
+        rows += [
+            _result(
+                row,
+                one,
+                found_by_runs(row, own, width=one.support_width_m, limits=limits),
+                capacity.factor,
+            )
+            for row, capacity in zip(method_rows(methods, action), capacities, strict=True)
+        ]
+    if inputs.wind_pressure_Pa is not None:
+        lightest = min(bodies, key=lambda one: one.mass_kg * one.support_width_m)
+        body = loose_body(lightest, inputs)
+        rows += [
+            _result(row, lightest, Found(words="no run: wind"), None)
+            for row in wind_rows(body, inputs.wind_pressure_Pa, gamma_mu=inputs.gamma_mu)
+        ]
+    return tuple(rows)
+
+
+def loose_body(body: SiteBody, inputs: SiteInputs) -> LooseBody:
+    """The body with the least friction of the range."""
+    half, height = 0.5 * body.support_width_m, body.centroid_m
+    arm = body.mass_kg * (half**2 + height**2)
+    mu = min(inputs.mu_static)
+    return LooseBody(
+        block=RigidBlock(
+            half_width=half,
+            centroid_height=height,
+            gravity=body.gravity_m_s2,
+            inertia_ratio=1.0 + body.inertia_kg_m2 / arm,
+        ),
+        width=body.width_m,
+        height=body.height_m,
+        depth=body.depth_m,
+        mass=body.mass_kg,
+        mu_static=mu,
+        mu_kinetic=mu * min(inputs.mu_kinetic_over_static),
+    )
+
+
+def floor_action(
+    site: SiteAction, motions: Sequence[SiteMotion], periods_s: Sequence[float], floor: FloorResult | None
+) -> FloorAction:
+    """The motion below the body: that of the site, or in a building the mean of the floor motions.
+
+    On a floor only the spectrum at 5 % damping is known; at another damping ratio it is corrected by Eq. (3.6).
+    The vertical motion is that of the ground.
+    """
+    velocity = sum(motion.pgv_m_s for motion in motions) / len(motions)
+    ground = FloorAction.on_ground(site, velocity)
+    if floor is None:
+        return ground
+    known = np.array([0.0, *periods_s])
+    values = np.array([floor.peak_m_s2, *floor.mean_m_s2])
+
+    def spectrum(periods: FloatArray, damping_ratio: float) -> FloatArray:
+        corrected = damping_correction(damping_ratio) / damping_correction(DAMPING_RATIO)
+        return np.asarray(corrected * np.interp(periods, known, values))
+
+    return FloorAction(
+        peak=floor.peak_m_s2,
+        vertical_peak=ground.vertical_peak,
+        peak_velocity=floor.peak_velocity_m_s,
+        spectrum=spectrum,
+        vertical_spectrum=ground.vertical_spectrum,
+        ground_peak=ground.ground_peak,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Found:
+    """What the runs of one body found at factor 1, of one quantity."""
+
+    words: str
+    compared: str = ""
+
+
+def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limits: Limits) -> Found:
+    """What the runs found where a method says something, and how the two compare.
+
+    Overturning: over all frictions; slip: with the least friction, as the methods take it. A method is conservative
+    where it refuses what the runs fulfil, or tells more slip than they find.
+    """
+    done = [run for run in runs if run.factor == 1.0 and run.outcome is not None]
+    if row.quantity is MethodQuantity.OVERTURNING:
+        return _overturning(row, done, limits)
+    least = min(((run.mu_static, run.mu_kinetic) for run in done), default=None)
+    slips = [run.max_slip_m or 0.0 for run in done if (run.mu_static, run.mu_kinetic) == least]
+    if not slips:
+        return Found(words="no runs")
+    most = max(slips)
+    words = f"{1000.0 * min(slips):.2g} to {1000.0 * most:.2g} mm"
+    if row.quantity is MethodQuantity.SLIDING:
+        slid = most > SLIDING * width
+        return Found(words=words, compared=_compared(refused=not row.fulfilled, failed=slid))
+    within = min(row.demand, most) >= 0.9 * max(row.demand, most)
+    return Found(
+        words=words,
+        compared="agrees" if within else "conservative" if row.demand > most else "not conservative",
+    )
+
+
+def _overturning(row: MethodRow, done: Sequence[SiteRun], limits: Limits) -> Found:
+    fell = sum(run.outcome == "overturned" for run in done)
+    stood = [run.rotation_ratio or 0.0 for run in done if run.outcome != "overturned"]
+    if not done:
+        return Found(words="no runs")
+    words = f"{fell or 'none'} of {len(done)} overturned"
+    if stood:
+        words += f"; {'others ' if fell else ''}at most {max(stood):.2g} of the angle"
+    failed = fell > 0 or max(stood) > limits.rotation_ratio
+    return Found(words=words, compared=_compared(refused=not row.fulfilled, failed=failed))
+
+
+def _compared(*, refused: bool, failed: bool) -> str:
+    if refused == failed:
+        return "agrees"
+    return "conservative" if refused else "not conservative"
+
+
+def _result(row: MethodRow, body: SiteBody, found: Found, factor: float | None) -> SiteMethod:
+    return SiteMethod(
+        name=row.name,
+        quantity=row.quantity.value,
+        mass=body.mass,
+        elevation=body.elevation,
+        formula=row.formula,
+        numbers=row.numbers,
+        demand=_finite(row.demand),
+        capacity=row.capacity,
+        unit=row.unit,
+        utilisation=_finite(row.utilisation),
+        says=row.says,
+        source=str(row.source),
+        validity=row.validity,
+        found=found.words,
+        compared=found.compared,
+        factor=factor,
+    )
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None

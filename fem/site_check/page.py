@@ -1,0 +1,278 @@
+"""The page of a verification at a site: the answer first, then what it rests on, then everything to check it by."""
+
+import csv
+import datetime as dt
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from importlib import metadata
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from markupsafe import Markup
+
+from fem.html.formula import formula_markup, symbols_markup
+from fem.html.page import Signature, render_page, svg_element
+from fem.html.units import ABSENT, millimetres, number, quantity, rotation_ratio, short, typeset
+from fem.results.errors import FolderError
+from fem.runtime.arrays import FloatArray
+from fem.site_check.figures import draw_methods, draw_motion, draw_scan, draw_spectra
+from fem.site_check.result import (
+    RESULT_FILE,
+    MotionSet,
+    SetCheck,
+    SiteBody,
+    SiteDocument,
+    SiteMethod,
+    SiteMotion,
+    SiteResult,
+    SiteRun,
+)
+from fem.site_check.rule import RunGroup, groups_of
+
+COPIES = ("site.toml", "container.toml")  #: in the folder, printed on the page
+CODE = (
+    "EN 1998-1:2004, 4.4.2.4 (2) allows the equilibrium to be verified by geometrically non-linear methods with the "
+    "action of 3.2.3.1. It names no number of motions, no limit of rotation or slip and no partial factor. The motions "
+    "follow 3.2.3.1; worst or mean follow 4.3.3.4.3 (3), by analogy; the limits are those of the user. That any "
+    "overturning means not fulfilled is the rule of this program: a mean does not exist where a body has fallen, and "
+    "the code is silent."
+)
+NOT_COVERED = (
+    "two horizontal components at once, torsion, motion out of the plane",
+    "joints of a stack, sloshing of the content, buckling",
+    "strength and stiffness of floor and soil",
+    "neighbouring containers and walls, ropes, stops",
+    "partial factors on friction: its range is computed instead",
+)
+
+
+class RunPair(NamedTuple):
+    """The runs of one motion: with the vertical upward, and the other sign."""
+
+    motion: int
+    group: RunGroup
+    runs: tuple[SiteRun, ...]
+
+
+def site_report(folder: Path, *, signature: Signature | None = None) -> str:
+    """The page, as the text of an HTML file.
+
+    Raises:
+        FolderError: the folder holds no result of `assess`, or it is damaged.
+    """
+    result = read_result(folder)
+    document = result.document or SiteDocument()
+    groups = groups_of(run for run in result.runs if run.factor == 1.0)
+    shown_body = result.result.governing.mass if result.result.governing else result.bodies[0].mass
+    return render_page(
+        "site.html.j2",
+        scripts=["signature.js"],
+        title=result.title or folder.name,
+        name=folder.name,
+        hash=result.provenance.site_hash,
+        version=metadata.version("unanchored"),
+        today=dt.date.today().isoformat(),
+        signature=signature
+        or Signature(author=document.author, checker=document.checker, revision=document.revision),
+        document=document,
+        result=result,
+        answer=result.result,
+        standing={None: "open", True: "stood", False: "fell"}[result.result.fulfilled],
+        site=site_rows(result),
+        container=container_rows(result),
+        checks=[(check, found_in_words(check)) for check in result.set.checks],
+        band=period_sentence(result.set),
+        code=CODE,
+        not_covered=NOT_COVERED,
+        groups=groups,
+        governing=governing_group(result, groups),
+        pairs=[pair for group in groups for pair in pairs_of(group)],
+        pairs_of=pairs_of,
+        signs=sorted({run.vertical_sign for run in result.runs}, reverse=True) or [1],
+        methods=merged_methods(result.methods),
+        spectra=_drawn(draw_spectra(result.action, result.set), "spectra"),
+        scan=_drawn(draw_scan(result.result, result.inputs), "scan") if result.result.scan else "",
+        capacities=[
+            _drawn(draw_methods(one, result.result, shown_body), f"methods-{k}")
+            for k, one in enumerate([[row for row in result.methods if row.mass == shown_body]])
+            if any(row.factor is not None for row in one)
+        ],
+        motions=[
+            (motion, _drawn(motion_figure(folder, motion, result), f"motion-{motion.number}"))
+            for motion in result.set.motions
+        ],
+        copies=[(name, _text(folder / name)) for name in COPIES if (folder / name).is_file()],
+        formula=formula_markup,
+        symbols=symbols_markup,
+        friction=friction,
+        millimetres=millimetres,
+        number=number,
+        quantity=quantity,
+        rotation_ratio=rotation_ratio,
+        short=short,
+        typeset=typeset,
+    )
+
+
+def read_result(folder: Path) -> SiteResult:
+    """The result in a folder.
+
+    Raises:
+        FolderError: there is none, or it is damaged.
+    """
+    place = folder / RESULT_FILE
+    try:
+        return SiteResult.from_json(json.loads(place.read_text(encoding="utf-8")))
+    except OSError as error:
+        raise FolderError(f"{place} cannot be read ({error.strerror or error})") from None
+    except ValueError as error:
+        raise FolderError(f"{place} is damaged ({error}); compute it again") from None
+
+
+def site_rows(result: SiteResult) -> list[tuple[str, str]]:
+    """The action in numbers: name and value."""
+    action, floor = result.action, result.floor
+    factors = f"γ_I = {short(action.importance_factor)}, γ_a = {short(action.element_importance_factor)}"
+    corners = ", ".join(short(period) for period in action.corner_periods_s)
+    vertical = ", ".join(short(period) for period in action.vertical_corner_periods_s)
+    rows = [
+        ("spectrum", action.source),
+        (
+            "reference acceleration",
+            f"a_gR = {quantity(action.reference_acceleration_m_s2, 'm/s²')}, {factors}",
+        ),
+        (
+            "peak, horizontal",
+            f"a_g S = {short(action.ag_m_s2)} × {short(action.soil_factor)} = {quantity(action.ag_S_m_s2, 'm/s²')}",
+        ),
+        (
+            "peak, vertical",
+            f"a_vg = {quantity(action.avg_m_s2, 'm/s²')} ({short(action.vertical_ratio)} a_g)",
+        ),
+        ("corner periods T_B, T_C, T_D", f"{corners} s; vertical {vertical} s"),
+        ("design displacement of the ground", f"d_g = {quantity(action.displacement_m, 'mm', 1e3, 3)}"),
+    ]
+    if floor is None:
+        return [*rows, ("level", "on the ground: the motions of the ground")]
+    periods = ", ".join(short(period) for period in floor.building_periods_s)
+    words = (
+        f"floor at z/H = {short(floor.z_over_h)} of a building with T_1 = {periods} s, damping "
+        f"{short(100.0 * floor.damping_ratio)} %: mean peak there {quantity(floor.peak_m_s2, 'm/s²')}"
+    )
+    return [*rows, ("level", words)]
+
+
+def container_rows(result: SiteResult) -> list[tuple[str, str]]:
+    """Container, friction and model: name and value."""
+    inputs, rows = result.inputs, [("container", result.inputs.container)]
+    rows += [
+        (f"{body.mass}, {body.elevation} {short(body.width_m)} m", _body(body)) for body in result.bodies
+    ]
+    static, share = _range(inputs.mu_static), _range(inputs.mu_kinetic_over_static)
+    rows += [
+        ("friction", f"μ_s = {static}, μ_k/μ_s = {share}; no factor on it"),
+        ("model", inputs.model),
+        (
+            "limits of the user",
+            f"rotation ratio {short(inputs.rotation_ratio_limit)}, slip {quantity(inputs.slip_limit_m, 'mm', 1e3, 3)}",
+        ),
+    ]
+    return rows
+
+
+def _body(body: SiteBody) -> str:
+    return (
+        f"{quantity(body.mass_kg, 't', 1e-3)}, mass centre {short(body.centroid_m)} m high, support "
+        f"{short(body.support_width_m)} m wide, p = {quantity(body.frequency_parameter_1_s, '1/s')}, "
+        f"e = {number(body.housner_restitution, figures=3)}, "
+        f"uplift at {quantity(body.uplift_acceleration_m_s2, 'm/s²')}"
+    )
+
+
+def found_in_words(check: SetCheck) -> str:
+    """What a check of the set found."""
+    if check.found is None:
+        return ABSENT
+    text = short(check.found, figures=4)
+    return f"{text} {typeset(check.unit)}".strip()
+
+
+def period_sentence(motions: MotionSet) -> str:
+    """That a rocking body has no period, and which band was taken."""
+    low, high = motions.band_s[0], motions.band_s[-1]
+    return (
+        "T_1 does not exist for a rocking body: at rest it has no restoring stiffness, and its period grows with its "
+        f"rotation. The mean spectrum is compared from {short(low)} s to {short(high)} s, which holds 0.2 T_1 to 2 T_1 "
+        f"for every T_1 from {short(low / 0.2)} s to {short(high / 2.0)} s."
+    )
+
+
+def governing_group(result: SiteResult, groups: Sequence[RunGroup]) -> RunGroup | None:
+    """The group of the run that governs."""
+    run = result.result.governing
+    return next((group for group in groups if run in group.runs), None)
+
+
+def pairs_of(group: RunGroup) -> list[RunPair]:
+    """The runs of a group, motion by motion, the sign + first."""
+    numbers = sorted({run.motion for run in group.runs})
+    return [
+        RunPair(
+            number,
+            group,
+            tuple(
+                sorted(
+                    (run for run in group.runs if run.motion == number), key=lambda run: -run.vertical_sign
+                )
+            ),
+        )
+        for number in numbers
+    ]
+
+
+def friction(run: SiteRun) -> str:
+    """Both coefficients of a run."""
+    return f"{short(run.mu_static, figures=3)} / {short(run.mu_kinetic, figures=3)}"
+
+
+def merged_methods(methods: Sequence[SiteMethod]) -> list[SiteMethod]:
+    """The methods; those that differ in the weight alone in one row, with the names of the weights."""
+    found: dict[SiteMethod, list[str]] = {}
+    for one in methods:
+        found.setdefault(replace(one, mass=""), []).append(one.mass)
+    return [replace(one, mass=", ".join(masses)) for one, masses in found.items()]
+
+
+def motion_figure(folder: Path, motion: SiteMotion, result: SiteResult) -> str:
+    """The figure of a motion, from its files."""
+    curves = [_curve(folder / name) for name in motion.files]
+    times, horizontal = curves[0]
+    vertical = curves[1][1] if len(curves) > 1 else None
+    return draw_motion(motion, result.action, times, horizontal, vertical)
+
+
+def _curve(path: Path) -> tuple[FloatArray, FloatArray]:
+    try:
+        with open(path, encoding="utf-8", newline="") as file:
+            rows = list(csv.reader(file))[1:]
+        values = np.array(rows, dtype=np.float64)
+    except (OSError, ValueError) as error:
+        raise FolderError(f"{path} cannot be read ({error}); compute it again") from None
+    return values[:, 0], values[:, 1]
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
+        raise FolderError(f"{path} cannot be read ({error})") from None
+
+
+def _range(values: Sequence[float]) -> str:
+    return " to ".join(short(value) for value in dict.fromkeys((min(values), max(values))))
+
+
+def _drawn(svg: str, prefix: str) -> Markup:
+    return svg_element(svg, label=prefix.replace("-", " "), prefix=prefix)

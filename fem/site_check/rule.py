@@ -1,0 +1,81 @@
+"""The rule of a verification: what counts of the runs of a set of motions.
+
+For each weight, elevation, building period and pair of frictions: of each motion the worse sign of the vertical; then
+the largest of fewer than seven motions, or the mean of seven and more (EN 1998-1:2004, 4.3.3.4.3 (3), by analogy). Of
+these groups the largest counts. Any overturning means not fulfilled: the code is silent
+there, so this is the rule of this program.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from fem.site_check.result import SiteRun
+
+MEAN_FROM = 7  #: motions from which the mean counts
+OVERTURNED = "overturned"
+Key = tuple[str, str, float | None, float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunGroup:
+    """The runs of one weight, elevation, building period and pair of frictions, and what counts of them."""
+
+    runs: tuple[SiteRun, ...]
+
+    @property
+    def first(self) -> SiteRun:
+        """One of them: weight, elevation, period and frictions are those of all."""
+        return self.runs[0]
+
+    @property
+    def motions(self) -> int:
+        """How many motions."""
+        return len({run.motion for run in self.runs})
+
+    @property
+    def overturned(self) -> int:
+        """Runs that overturned."""
+        return sum(run.outcome == OVERTURNED for run in self.runs)
+
+    @property
+    def failed(self) -> int:
+        """Runs without an outcome."""
+        return sum(run.outcome is None for run in self.runs)
+
+    @property
+    def rotation_ratio(self) -> float | None:
+        """What counts; None where a run overturned or failed."""
+        return self._counted([(run.motion, run.rotation_ratio) for run in self.runs])
+
+    @property
+    def slip_m(self) -> float | None:
+        """What counts [m]; None where a run overturned or failed."""
+        return self._counted([(run.motion, run.max_slip_m) for run in self.runs])
+
+    def _counted(self, values: Sequence[tuple[int, float | None]]) -> float | None:
+        if self.overturned or self.failed:
+            return None
+        worst: dict[int, float] = {}
+        for motion, value in values:
+            if value is None:
+                return None
+            worst[motion] = max(worst.get(motion, 0.0), value)
+        return sum(worst.values()) / len(worst) if len(worst) >= MEAN_FROM else max(worst.values())
+
+
+def groups_of(runs: Iterable[SiteRun]) -> list[RunGroup]:
+    """Runs by weight, elevation, building period and frictions, in the order of their first runs."""
+    found: dict[Key, list[SiteRun]] = {}
+    for run in runs:
+        key = (run.mass, run.elevation, run.building_period_s, run.mu_static, run.mu_kinetic)
+        found.setdefault(key, []).append(run)
+    return [RunGroup(runs=tuple(members)) for members in found.values()]
+
+
+def rule_in_words(motions: int) -> str:
+    """What counts of a set of so many motions."""
+    share = "the mean" if motions >= MEAN_FROM else "the largest"
+    return (
+        f"of each motion the worse sign of the vertical, then {share} over the {motions} motions; of all weights and "
+        "frictions the largest; any overturning means not fulfilled"
+    )

@@ -1,0 +1,113 @@
+"""Simplified methods beside what the runs found."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from running_example import ACTION, LIMITS, SITE, k1
+from site_example import INPUTS, PERIODS, site_body, site_motion
+
+from fem.site.asce_43 import sliding_row
+from fem.site.static_rules import peak_rows
+from fem.site_check.methods import floor_action, found_by_runs, loose_body, site_methods
+from fem.site_check.result import FloorResult, SiteRun
+
+STOOD = SiteRun(
+    motion=1,
+    vertical_sign=1,
+    mu_static=0.2,
+    mu_kinetic=0.1,
+    mass="full",
+    model="rigid",
+    outcome="rock",
+    rotation_ratio=0.2,
+    max_slip_m=0.004,
+)
+FELL = replace(STOOD, motion=2, outcome="overturned", rotation_ratio=3.0)
+BEYOND = replace(STOOD, rotation_ratio=0.6)  # the limit is 0.5
+OVERTURNING, SLIDING = peak_rows(k1(mu_static=0.2), ACTION, horizontal=1.0, vertical=0.0)
+STRONGER = peak_rows(k1(mu_static=0.2), ACTION.scaled(1.5), horizontal=1.0, vertical=0.0)[0]
+
+
+@pytest.mark.parametrize(
+    ("row", "runs", "words", "compared"),
+    [
+        (OVERTURNING, [STOOD], "none of 1 overturned; at most 0.2 of the angle", "agrees"),
+        (
+            OVERTURNING,
+            [STOOD, FELL],
+            "1 of 2 overturned; others at most 0.2 of the angle",
+            "not conservative",
+        ),
+        (OVERTURNING, [FELL], "1 of 1 overturned", "not conservative"),
+        (OVERTURNING, [BEYOND], "none of 1 overturned; at most 0.6 of the angle", "not conservative"),
+        (STRONGER, [STOOD], "none of 1 overturned; at most 0.2 of the angle", "conservative"),
+        (STRONGER, [FELL], "1 of 1 overturned", "agrees"),
+        (SLIDING, [STOOD], "4 to 4 mm", "agrees"),
+        (SLIDING, [replace(STOOD, max_slip_m=1e-6)], "0.001 to 0.001 mm", "conservative"),
+        (SLIDING, [STOOD, replace(STOOD, mu_static=0.4, max_slip_m=0.5)], "4 to 4 mm", "agrees"),
+        (SLIDING, [replace(STOOD, outcome=None)], "no runs", ""),
+        (OVERTURNING, [replace(FELL, factor=2.0)], "no runs", ""),
+    ],
+)
+def test_what_the_runs_found_beside_a_method(row, runs, words, compared):
+    found = found_by_runs(row, runs, width=1.1, limits=LIMITS)
+    assert (found.words, found.compared) == (words, compared)
+
+
+def test_a_slip_is_compared_with_the_largest_of_the_runs():
+    row = sliding_row(k1(), LIMITS, ACTION)  # 106 mm
+    for slip, compared in ((0.01, "conservative"), (0.11, "agrees"), (0.2, "not conservative")):
+        runs = [replace(STOOD, max_slip_m=slip)]
+        assert found_by_runs(row, runs, width=1.1, limits=LIMITS).compared == compared
+
+
+def test_a_body_keeps_its_inertia_and_has_the_least_friction():
+    body = loose_body(site_body("empty"), INPUTS)
+    assert body.block.inertia_ratio == pytest.approx(4.0 / 3.0)
+    assert (body.mu_static, body.mu_kinetic, body.mass) == (0.2, 0.1, pytest.approx(1600.0))
+
+
+def test_in_a_building_the_methods_take_the_motion_of_the_floor():
+    motions = [site_motion(1)[0]]
+    values = np.full(PERIODS.size, 7.0)
+    floor = FloorResult(
+        z_over_h=1.0,
+        building_periods_s=(0.425, 0.5, 0.575),
+        damping_ratio=0.05,
+        peak_m_s2=5.0,
+        peak_velocity_m_s=0.9,
+        mean_m_s2=tuple(values.tolist()),
+    )
+    action = floor_action(SITE, motions, PERIODS.tolist(), floor)
+    assert (action.peak, action.peak_velocity, action.ground_peak) == (5.0, 0.9, pytest.approx(2.4))
+    found = action.spectrum(np.array([0.0, 0.01, 1.0]), 0.05)
+    np.testing.assert_allclose(found, [5.0, 6.0, 7.0])
+    np.testing.assert_allclose(action.spectrum(np.array([1.0]), 0.1), [7.0 * 0.8165], rtol=1e-4)
+    rows = site_methods(
+        bodies=[site_body("full")],
+        inputs=replace(INPUTS, wind_pressure_Pa=None),
+        site=SITE,
+        motions=motions,
+        periods_s=PERIODS.tolist(),
+        floor=floor,
+        runs=[],
+    )
+    elements = [row for row in rows if row.name.startswith("element") and row.quantity == "overturning"]
+    assert [row.demand for row in elements] == pytest.approx([6.0, 13.2])
+    assert {row.found for row in rows} == {"no runs"}
+
+
+def test_the_wind_is_on_the_lightest_body():
+    rows = site_methods(
+        bodies=[site_body("full"), site_body("empty")],
+        inputs=INPUTS,
+        site=SITE,
+        motions=[site_motion(1)[0]],
+        periods_s=PERIODS.tolist(),
+        floor=None,
+        runs=[],
+    )
+    wind = [row for row in rows if row.name == "wind"]
+    assert [row.mass for row in wind] == ["empty", "empty"]
+    assert wind[0].utilisation == pytest.approx(0.2540 / 0.16, rel=1e-3)

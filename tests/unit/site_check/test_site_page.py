@@ -1,0 +1,138 @@
+"""The page of a verification at a site."""
+
+import json
+import re
+
+import pytest
+from browser import CHROMIUM, FAINT, Browser
+from markupsafe import Markup
+from site_example import example, write_example
+
+from fem.html.formula import formula_markup, symbols_markup
+from fem.results.errors import FolderError
+from fem.results.files import to_json
+from fem.site_check.page import site_report
+from fem.site_check.result import RESULT_FILE, SiteResult
+
+ANSWERS = {
+    "fulfilled": ({}, "Fulfilled under the rule below"),
+    "not fulfilled": ({"overturned": 9}, "Not fulfilled under the rule below: 9 of 112 runs overturned"),
+    "not valid": ({"valid": False}, "Not valid: the set of motions fails its checks"),
+}
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory):
+    place = tmp_path_factory.mktemp("sites")
+    for name, (changes, _) in ANSWERS.items():
+        write_example(place / name, **changes)
+        (place / name / "report.html").write_text(site_report(place / name), encoding="utf-8")
+    return place
+
+
+def page_of(folders, name: str) -> str:
+    return (folders / name / "report.html").read_text(encoding="utf-8")
+
+
+def words_of(page: str) -> str:
+    """The text of a page, without its styles, scripts and drawings."""
+    body = re.sub(r"<(style|script|svg)\b.*?</\1>", " ", page, flags=re.S)
+    return " ".join(Markup(body).striptags().split())
+
+
+def test_the_result_survives_its_file():
+    result, _ = example()
+    assert SiteResult.from_json(json.loads(to_json(result.to_json()))) == result
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_the_first_sentence_is_the_answer_and_never_says_safe(folders, name):
+    words = words_of(page_of(folders, name))
+    assert ANSWERS[name][1] in words
+    assert not re.search(r"\b(safe|safely|verified)\b", words.replace("to be verified by", ""))
+
+
+def test_what_the_answer_rests_on_stands_on_the_page(folders):
+    words = words_of(page_of(folders, "fulfilled"))
+    for statement in (
+        "T1 does not exist for a rocking body",
+        "ag S = 1.778 × 1.35 = 2.400 m/s²",
+        "least mean over target, 0.05 to 4 s",
+        "That any overturning means not fulfilled is the rule of this program",
+        "names no number of motions, no limit of rotation or slip and no partial factor",
+        "two horizontal components",
+        "100 further motions for the same action: 1 overturned it",
+        "python -m fem assess site.toml",
+        "prepared: name, date, signature",
+        'container = "my-stack.toml"',
+    ):
+        assert statement in words, statement
+
+
+def test_every_motion_run_and_method_is_on_the_page(folders):
+    page, (result, _) = page_of(folders, "fulfilled"), example()
+    regions = page.count('aria-label="motion ')
+    outcomes = page.count("<td>slide</td>") + page.count("<td>rest</td>")
+    # a drawing with its region for each, and the table motion by motion
+    assert regions == 2 * 7 + 1
+    # in the appendix, where it governs, and in the confirmed run
+    assert outcomes == 112 + 14 + 2
+    assert {name for motion in result.set.motions for name in motion.sha256 if name not in page} == set()
+    assert {row.name for row in result.methods if row.name.split(",")[0] not in words_of(page)} == set()
+
+
+def test_a_set_that_is_not_valid_shows_no_runs(folders):
+    words = words_of(page_of(folders, "not valid"))
+    assert "The set of motions: not valid" in words
+    assert "Reasons: the mean spectrum is" in words
+    assert "What the runs found" not in words
+    assert "no runs" in words
+
+
+def test_text_of_users_is_escaped(folders):
+    assert "<hall 3>" not in page_of(folders, "fulfilled")
+    assert "Mercury containers &lt;hall 3&gt;" in page_of(folders, "fulfilled")
+
+
+@pytest.mark.parametrize("text", [None, "{", '{"status": "completed"}'])
+def test_a_result_that_is_missing_or_damaged_is_told(tmp_path, text):
+    if text is not None:
+        (tmp_path / RESULT_FILE).write_text(text, encoding="utf-8")
+    with pytest.raises(FolderError, match=r"assess\.json"):
+        site_report(tmp_path)
+
+
+def test_a_motion_that_is_missing_is_told(tmp_path):
+    result = write_example(tmp_path / "site")
+    (tmp_path / "site" / result.set.motions[3].files[1]).unlink()
+    with pytest.raises(FolderError, match="motion_04_v"):
+        site_report(tmp_path / "site")
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("λ a_up ≤ g b/h", "<i>λ</i> <i>a</i><sub>up</sub> ≤ <i>g</i> <i>b</i>/<i>h</i>"),
+        ("max(3, x) r^−4 cm/s", "max(3, <i>x</i>) <i>r</i><sup>−4</sup> cm/s"),
+        ("r < 2π cos α", "<i>r</i> &lt; 2π cos <i>α</i>"),
+    ],
+)
+def test_formulas_are_set(text, expected):
+    assert formula_markup(text) == expected
+
+
+def test_prose_keeps_its_letters():
+    assert symbols_markup("a peak of a_g <b>") == "a peak of <i>a</i><sub>g</sub> &lt;b&gt;"
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium: apt-get install chromium")
+def test_the_page_works_in_a_browser_on_a_desk_on_a_telephone_and_on_paper(folders, tmp_path):
+    with Browser(tmp_path) as browser:
+        for width in (1280, 390):
+            browser.window(width, 900)
+            browser.open(folders / "fulfilled" / "report.html")
+            assert [browser.errors, len(browser.requests)] == [[], 1]
+            assert browser.evaluate("document.documentElement.scrollWidth") <= width
+            assert browser.evaluate(FAINT) == []
+        paper = browser.pdf()
+        assert re.search(rb"/MediaBox ?\[0 0 59[45][.\d]* 84[12][.\d]*\]", paper)
