@@ -27,7 +27,16 @@ from fem.figures.style import (
     zero_line,
 )
 from fem.runtime.arrays import FloatArray
-from fem.site_check.result import MotionSet, SiteActionResult, SiteAnswer, SiteInputs, SiteMethod, SiteMotion
+from fem.site_check.bracket import SizePoint, SizeResult
+from fem.site_check.result import (
+    MotionSet,
+    ScanPoint,
+    SiteActionResult,
+    SiteAnswer,
+    SiteInputs,
+    SiteMethod,
+    SiteMotion,
+)
 
 LEAST_RATIO = 0.9  #: of the mean spectrum over the target, EN 1998-1:2004, 3.2.3.1.2 (4) c)
 TICKS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 4.0)
@@ -117,36 +126,65 @@ def draw_motion(
 
 def draw_scan(answer: SiteAnswer, inputs: SiteInputs) -> str:
     """Rotation, slip and the runs that overturned over the factor on the motions."""
-    factors = [point.factor for point in answer.scan]
+    first = answer.factor_at_first_overturning
+    statement = (
+        "nothing overturned up to the largest factor tried"
+        if first is None
+        else f"first overturned at {first:.3g}; beyond, the body may stand again"
+    )
     with house_style():
-        figure, (tilt, slip, fell) = panels([1.3, 1.1, 0.9], gaps=[0.12, 0.12], header=3)
-        first = answer.factor_at_first_overturning
-        head(
-            figure,
-            "The set times a factor",
-            "nothing overturned up to the largest factor tried"
-            if first is None
-            else f"first overturned at {first:.3g}; beyond, the body may stand again",
+        figure, axes = _over(
+            "The set times a factor", statement, "factor on the motions [-]", answer.scan, inputs
         )
-        _limited(tilt, factors, [point.rotation_ratio for point in answer.scan], inputs.rotation_ratio_limit)
-        tilt.set_ylabel("rotation ratio [-]")
-        slips = [None if point.slip_m is None else 1e3 * point.slip_m for point in answer.scan]
-        _limited(slip, factors, slips, 1e3 * inputs.slip_limit_m)
-        slip.set_ylabel("slip [mm]")
-        share = [100.0 * point.overturned / max(point.runs, 1) for point in answer.scan]
-        fell.vlines(factors, 0.0, share, color=VERMILLION, linewidth=3.0)
-        fell.plot(factors, share, color=VERMILLION, marker="o", markersize=3.0, linestyle="none")
-        fell.set_ylabel("overturned [%]")
-        fell.set_ylim(-3.0, max(10.0, 1.1 * max(share, default=0.0)))
-        fell.set_xlabel("factor on the motions [-]")
-        for panel in (tilt, slip, fell):
-            panel.set_xlim(0.0, 1.03 * max(factors, default=1.0))
+        for panel in axes:
+            panel.set_xlim(0.0, 1.03 * max((point.factor for point in answer.scan), default=1.0))
             panel.axvline(1.0, color=GREY, linewidth=0.9, linestyle="-.")
             if first is not None:
                 panel.axvline(first, color=VERMILLION, linewidth=0.9, linestyle=":")
-            panel.tick_params(labelbottom=panel is fell)
-        legend_above(tilt)
         return svg_of(figure)
+
+
+def draw_size(size: SizeResult, inputs: SiteInputs) -> str:
+    """Rotation, slip and the runs that overturned over the key that was varied; what fulfils the rule is shaded."""
+    label = f"{size.key} [{size.unit or '-'}]"
+    with house_style():
+        figure, axes = _over("Which values fulfil the rule", size.sentence, label, size.points, inputs)
+        for panel in axes:
+            margin = 0.02 * (size.high - size.low)
+            panel.set_xlim(size.low - margin, size.high + margin)
+            for low, high in size.intervals:
+                panel.axvspan(low, high, color=GREEN, alpha=0.12, linewidth=0)
+                panel.axvline(low, color=GREEN, linewidth=0.7)
+                panel.axvline(high, color=GREEN, linewidth=0.7)
+        return svg_of(figure)
+
+
+def _over(
+    title: str,
+    statement: str,
+    label: str,
+    points: Sequence[ScanPoint] | Sequence[SizePoint],
+    inputs: SiteInputs,
+) -> tuple[Figure, list[Axes]]:
+    """Three panels over a value: rotation ratio and slip with their limits, and the share that overturned."""
+    values = [point.factor if isinstance(point, ScanPoint) else point.value for point in points]
+    figure, (tilt, slip, fell) = panels([1.3, 1.1, 0.9], gaps=[0.12, 0.12], header=3)
+    head(figure, title, statement)
+    _limited(tilt, values, [point.rotation_ratio for point in points], inputs.rotation_ratio_limit)
+    tilt.set_ylabel("rotation ratio [-]")
+    slips = [None if point.slip_m is None else 1e3 * point.slip_m for point in points]
+    _limited(slip, values, slips, 1e3 * inputs.slip_limit_m)
+    slip.set_ylabel("slip [mm]")
+    share = [100.0 * point.overturned / max(point.runs, 1) for point in points]
+    fell.vlines(values, 0.0, share, color=VERMILLION, linewidth=3.0)
+    fell.plot(values, share, color=VERMILLION, marker="o", markersize=3.0, linestyle="none")
+    fell.set_ylabel("overturned [%]")
+    fell.set_ylim(-3.0, max(10.0, 1.1 * max(share, default=0.0)))
+    fell.set_xlabel(label)
+    for panel in (tilt, slip):
+        panel.tick_params(labelbottom=False)
+    legend_above(tilt)
+    return figure, [tilt, slip, fell]
 
 
 def draw_methods(methods: Sequence[SiteMethod], answer: SiteAnswer, name: str) -> str:

@@ -1,0 +1,179 @@
+"""Which values of one key fulfil the rule: a range is scanned, every change located, islands and all."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+
+from fem.results.run_result import JsonBlock
+from fem.site_check.result import SiteAnswer
+from fem.sweep.threshold import refine_changes
+
+RESOLUTION = 0.01  #: largest width of a bracket over the value
+INNER = 3  #: values tried within a bracket at a time
+FULFILLED, NOT_FULFILLED, NO_ANSWER = "fulfilled", "not fulfilled", "no answer"
+#: which values a user looks for: the least, the largest, or all
+Wanted = Literal["least", "largest", "window"]
+#: the answers at values of the key, all asked at once
+Answers = Callable[[Sequence[float]], Sequence[SiteAnswer]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SizeAxis:
+    """The key that is varied, and the values of the scan."""
+
+    key: str
+    words: str  #: such as "width"
+    unit: str
+    wanted: Wanted
+    values: tuple[float, ...]  #: rising
+    whole: bool = False  #: whole numbers, which are all tried
+
+    def __post_init__(self) -> None:
+        if len(self.values) < 2 or any(b <= a for a, b in pairwise(self.values)):
+            raise ValueError(f"{self.key}: at least two rising values are needed, got {self.values}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SizePoint(JsonBlock):
+    """The answer at one value."""
+
+    value: float
+    fulfilled: bool | None = None
+    overturned: int
+    runs: int
+    rotation_ratio: float | None = None
+    slip_m: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class SizeResult(JsonBlock):
+    """Which values fulfil the rule: what `size.json` holds."""
+
+    key: str
+    unit: str
+    low: float  #: ends of the range that was tried
+    high: float
+    value: float | None = (
+        None  #: the least or the largest; None where there is none in the range, or a window is asked
+    )
+    intervals: tuple[tuple[float, ...], ...]  #: of the values that fulfil it, by their outermost values tried
+    sentence: str
+    points: tuple[SizePoint, ...]  #: by rising value
+
+
+def size_of(axis: SizeAxis, answers: Answers) -> SizeResult:
+    """Scan the range, locate every change to 1 % of the value, and say which values fulfil the rule."""
+    found: dict[float, SiteAnswer] = {}
+
+    def judge(values: Sequence[float]) -> list[str]:
+        found.update(zip(values, answers(values), strict=True))
+        return [_outcome(found[value]) for value in values]
+
+    outcomes = judge(axis.values)
+    if not axis.whole:
+        refine_changes(axis.values, outcomes, judge, resolution=RESOLUTION, inner=INNER)
+    points = tuple(_point(value, found[value]) for value in sorted(found))
+    intervals = fulfilled_intervals(points)
+    return SizeResult(
+        key=axis.key,
+        unit=axis.unit,
+        low=axis.values[0],
+        high=axis.values[-1],
+        value=wanted_value(axis, intervals),
+        intervals=tuple(intervals),
+        sentence=sentence(axis, intervals),
+        points=points,
+    )
+
+
+def fulfilled_intervals(points: Sequence[SizePoint]) -> list[tuple[float, float]]:
+    """Stretches of neighbouring values tried that all fulfil the rule, by rising value."""
+    stretches: list[list[float]] = []
+    before = False
+    for point in points:
+        if point.fulfilled and before:
+            stretches[-1][1] = point.value
+        elif point.fulfilled:
+            stretches.append([point.value, point.value])
+        before = bool(point.fulfilled)
+    return [(low, high) for low, high in stretches]
+
+
+def wanted_value(axis: SizeAxis, intervals: Sequence[tuple[float, float]]) -> float | None:
+    """The end of the stretch that reaches the good end of the range; an island elsewhere does not count."""
+    if axis.wanted == "least" and intervals and intervals[-1][1] == axis.values[-1]:
+        return intervals[-1][0]
+    if axis.wanted == "largest" and intervals and intervals[0][0] == axis.values[0]:
+        return intervals[0][1]
+    return None
+
+
+def sentence(axis: SizeAxis, intervals: Sequence[tuple[float, float]]) -> str:
+    """The answer in one sentence, with the islands."""
+    low, high = axis.values[0], axis.values[-1]
+    tried = f"from {_value(low, axis)} to {_value(high, axis)}"
+    if not intervals:
+        return f"The rule is not fulfilled at any {axis.words} tried {tried}."
+    if intervals == [(low, high)]:
+        return f"The rule is fulfilled at every {axis.words} tried {tried}."
+    value = wanted_value(axis, intervals)
+    if value is None:
+        return (
+            f"The rule is fulfilled for a {axis.words} {_stretches(intervals, axis)}, of those tried {tried}."
+        )
+    others = intervals[:-1] if axis.wanted == "least" else intervals[1:]
+    island = f"; also {_stretches(others, axis)}, an island that does not count" if others else ""
+    if axis.wanted == "least":
+        return (
+            f"The least {axis.words} is {_value(value, axis, up=True)}: the rule is fulfilled from there to "
+            f"{_value(high, axis)}{island}."
+        )
+    return (
+        f"The largest {axis.words} is {_value(value, axis, up=False)}: the rule is fulfilled from "
+        f"{_value(low, axis)} to there{island}."
+    )
+
+
+def _stretches(intervals: Sequence[tuple[float, float]], axis: SizeAxis) -> str:
+    return " and ".join(
+        f"of {_value(low, axis)}"
+        if low == high
+        else f"from {_value(low, axis, up=True)} to {_value(high, axis, up=False)}"
+        for low, high in intervals
+    )
+
+
+def _value(value: float, axis: SizeAxis, *, up: bool | None = None) -> str:
+    """With three figures, rounded into what fulfils the rule."""
+    if axis.whole or value == 0.0:
+        return f"{value:g} {axis.unit}".strip()
+    if up is not None:
+        step = 10.0 ** (math.floor(math.log10(abs(value))) - 2)
+        steps = value / step
+        value = (math.ceil(steps - 1e-9) if up else math.floor(steps + 1e-9)) * step
+    return f"{value:.3g} {axis.unit}".strip()
+
+
+def _outcome(answer: SiteAnswer) -> str:
+    return {True: FULFILLED, False: NOT_FULFILLED, None: NO_ANSWER}[answer.fulfilled]
+
+
+def _point(value: float, answer: SiteAnswer) -> SizePoint:
+    return SizePoint(
+        value=value,
+        fulfilled=answer.fulfilled,
+        overturned=answer.overturned,
+        runs=answer.runs,
+        rotation_ratio=answer.rotation_ratio,
+        slip_m=answer.slip_m,
+    )
+
+
+def spaced(low: float, high: float, count: int) -> tuple[float, ...]:
+    """Values of a scan, at equal ratios where the range spans more than a factor of four."""
+    even = np.geomspace(low, high, count) if low > 0.0 and high > 4.0 * low else np.linspace(low, high, count)
+    return tuple(float(f"{value:.6g}") for value in even)
