@@ -87,8 +87,8 @@ def test_stacks_are_counted_one_by_one():
     result = size(BOXES, lambda boxes: boxes != 4.0)
     assert (result.value, len(result.points)) == (3.0, 6)
     assert result.sentence == (
-        "The largest number of boxes is 3: the rule is fulfilled from 1 to there; also from 5 to 6, an island that does "
-        "not count."
+        "The largest number of boxes is 3: the rule is fulfilled from 1 to there; also from 5 to 6, an island that "
+        "does not count."
     )
 
 
