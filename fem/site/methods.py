@@ -8,7 +8,7 @@ from fem.site.asce_43 import rocking_row, sliding_row
 from fem.site.body import FloorAction, Limits, LooseBody
 from fem.site.method import MethodQuantity, MethodRow
 from fem.site.sliding_rules import sliding_rows
-from fem.site.static_rules import COMBINATIONS, element_rows, peak_rows, plateau_rows
+from fem.site.static_rules import COMBINATIONS, both_directions_rows, element_rows, peak_rows, plateau_rows
 from fem.site.velocity_rules import velocity_rows
 
 #: factors on the action between which a capacity is looked for
@@ -47,6 +47,7 @@ def methods_of(
     rocking = [partial(rocking_row, body, limits, vertical=vertical) for vertical in (False, True)]
     return [
         *pairs,
+        partial(both_directions_rows, body),
         *elements,
         *plateaus,
         *(lambda action, row=row: [row(action)] for row in rocking),

@@ -5,16 +5,22 @@ a/(mu (g - a_v)) with static friction. EN 1998-1:2004, 4.4.2.4 (1)P asks for the
 """
 
 import math
+from dataclasses import replace
 
 from fem.site.body import FloorAction, LooseBody
 from fem.site.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
 
 #: shares of the horizontal and vertical peak, after EN 1998-1:2004, 4.3.3.5.2
 COMBINATIONS = ((1.0, 0.0), (1.0, 0.3), (1.0, 1.0), (0.3, 1.0))
+ACROSS = 0.3  #: share of the other horizontal component, EN 1998-1:2004, 4.3.3.5.1 (3)
 ELEMENT_BEHAVIOUR_FACTOR = 1.0  #: q_a: no row of table 4.4 is for an unanchored body
 
 PEAK = MethodSource(
     work="EN 1998-1:2004, 4.4.2.4 (1)P and 4.3.3.5.2, with the peak as a static force",
+    standing=SourceStanding.DERIVED,
+)
+DIRECTIONS = MethodSource(
+    work="EN 1998-1:2004, 4.4.2.4 (1)P and 4.3.3.5.1, with the peak as a static force",
     standing=SourceStanding.DERIVED,
 )
 PLATEAU = MethodSource(
@@ -40,6 +46,43 @@ def peak_rows(body: LooseBody, action: FloorAction, *, horizontal: float, vertic
         source=PEAK,
         validity="rest before uplift or slip; a peak lasts an instant, the rule takes it as lasting",
     )
+
+
+def both_directions_rows(body: LooseBody, action: FloorAction) -> list[MethodRow]:
+    """The peak along the width and 30 % of it along the depth, at once, without the vertical component.
+
+    A rigid box on a rectangular base tilts about one edge or the other: the components do not add up there. In friction
+    they do, as vectors.
+    """
+    block, across = body.block, 0.5 * body.depth
+    resultant = math.hypot(1.0, ACROSS) * action.peak
+    edges = {"width": (1.0, block.half_width), "depth": (ACROSS, across)}
+    share, half = max(edges.values(), key=lambda edge: edge[0] / edge[1])
+    overturning, sliding = _rows(
+        f"static rule, 1 along and {ACROSS:g} across",
+        body,
+        "λ a",
+        acceleration=share * action.peak,
+        put_in=f"{share:g} × {action.peak:.4g}",
+        source=DIRECTIONS,
+        validity="rest before uplift or slip; each edge of the base by itself, friction under the vector of both",
+    )
+    capacity = block.gravity * half / block.centroid_height
+    return [
+        replace(
+            overturning,
+            numbers=f"{share:g} × {action.peak:.4g} ≤ {block.gravity:g} × {half:.4g} / {block.centroid_height:.4g}",
+            capacity=capacity,
+            says=_says(overturning.demand, capacity, "stands", "uplifts"),
+        ),
+        replace(
+            sliding,
+            formula="a √(1² + 0.3²) ≤ g μ_s",
+            numbers=f"{action.peak:.4g} × √(1 + {ACROSS:g}²) ≤ {block.gravity:g} × {body.mu_static:.4g}",
+            demand=resultant,
+            says=_says(resultant, sliding.capacity, "does not slide", "slides"),
+        ),
+    ]
 
 
 def plateau_rows(body: LooseBody, action: FloorAction, *, behaviour_factor: float) -> list[MethodRow]:

@@ -13,7 +13,7 @@ from fem.site.body import FloorAction, Limits, LooseBody
 from fem.site.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
 from fem.site.methods import method_capacities, method_rows, methods_of
 from fem.site.sliding_rules import RULES, sliding_rows
-from fem.site.static_rules import element_rows, floor_factor, peak_rows, plateau_rows
+from fem.site.static_rules import both_directions_rows, element_rows, floor_factor, peak_rows, plateau_rows
 from fem.site.velocity_rules import (
     displacement_row,
     housner_row,
@@ -49,6 +49,15 @@ def test_static_rule_with_shares_of_both_components(pair, overturning, sliding, 
         found = utilisations(peak_rows(body, ACTION, horizontal=pair[0], vertical=pair[1]))
         assert found[MethodQuantity.OVERTURNING] == pytest.approx(overturning, abs=5.1e-5)
         assert found[MethodQuantity.SLIDING] == pytest.approx(expected, abs=5.1e-5)
+
+
+def test_both_directions_add_up_in_friction_alone():
+    square = utilisations(both_directions_rows(K1, ACTION))
+    assert square[MethodQuantity.OVERTURNING] == pytest.approx(0.8896, abs=5.1e-5)
+    assert square[MethodQuantity.SLIDING] == pytest.approx(0.6116 * math.sqrt(1.09), abs=1e-4)
+    # a quarter as deep as wide: 0.3/0.25 of the demand about the long edge
+    flat = utilisations(both_directions_rows(replace(K1, depth=0.275), ACTION))
+    assert flat[MethodQuantity.OVERTURNING] == pytest.approx(0.8896 * 1.2, abs=1e-4)
 
 
 def test_a_vertical_peak_of_gravity_leaves_no_capacity():
@@ -259,7 +268,7 @@ def test_a_tall_body_has_no_wind_row():
 
 def test_all_methods_have_their_formula_numbers_source_and_validity():
     rows = method_rows(methods_of(K1, LIMITS, behaviour_factor=1.5, height_ratio=0.5), ACTION)
-    assert len({(row.name, row.quantity) for row in rows}) == len(rows) == 30
+    assert len({(row.name, row.quantity) for row in rows}) == len(rows) == 32
     for row in rows:
         assert row.formula and row.numbers and row.says and row.validity and str(row.source)
         assert row.unit
