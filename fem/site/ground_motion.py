@@ -1,5 +1,9 @@
-"""A motion of the ground or of a floor: two components sampled together, linear between samples, SI units."""
+"""A motion of the ground or of a floor: two components sampled together, linear between samples, SI units.
 
+Its values are float64 in g times 9.80665, by a rounding, so that a file in m/s2 and one in g hold the same motion.
+"""
+
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -7,6 +11,7 @@ import numpy as np
 from contact.motion.samples import sampled_motion
 from fem.records.intensity import Intensity, intensity
 from fem.runtime.arrays import FloatArray
+from fem.site.motion_files import in_whole_g
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)  # arrays have no single truth value
@@ -29,6 +34,9 @@ class GroundMotion:
     def __post_init__(self) -> None:
         if not 0.0 < self.step < 1.0:
             raise ValueError(f"{self.name}: the step must be positive and below 1 s, got {self.step:g} s")
+        for name in ("horizontal", "vertical"):
+            if (component := getattr(self, name)) is not None:
+                object.__setattr__(self, name, in_whole_g(component))
         for component in self.components:
             if component.shape != self.horizontal.shape or component.ndim != 1 or component.size < 2:
                 raise ValueError(
@@ -79,3 +87,11 @@ class GroundMotion:
             vertical=upward,
             factor=self.factor * horizontal,
         )
+
+
+def sampled_at(step: float, present: float, values: FloatArray) -> FloatArray:
+    """Values (n,) at a step `present` sampled at another one, linear between samples, as a run takes them."""
+    if step == present:
+        return values
+    times = np.arange(math.floor((values.size - 1) * present / step * (1.0 + 1e-12)) + 1) * step
+    return np.asarray(np.interp(times, np.arange(values.size) * present, values))

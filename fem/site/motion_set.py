@@ -14,7 +14,7 @@ import numpy as np
 from fem.records.spectrum import response_spectrum
 from fem.runtime.arrays import FloatArray
 from fem.site.action import LAST_PERIOD_S, SiteAction
-from fem.site.ground_motion import GroundMotion
+from fem.site.ground_motion import GroundMotion, sampled_at
 
 #: (4)a, and the number from which the mean of the responses counts (4.3.3.4.3(3))
 LEAST_MOTIONS, MOTIONS_FOR_MEAN = 3, 7
@@ -86,7 +86,7 @@ def check_set(
     The vertical spectrum is required of artificial motions (3.2.3.1.2(1)P) and shown of recorded ones, whose
     components keep their proportion.
     """
-    periods = np.geomspace(SHORTEST_SHOWN_S, max(longest, LAST_PERIOD_S), PERIODS_SHOWN)
+    periods = periods_of_check(longest)
     inside = (periods >= FIRST_PERIOD_S) & (periods <= longest * (1.0 + 1e-9))
     horizontal = ComponentSpectra(
         target=action.horizontal(periods), motions=_spectra(motions, [m.horizontal for m in motions], periods)
@@ -159,6 +159,11 @@ def check_set(
     )
 
 
+def periods_of_check(longest: float) -> FloatArray:
+    """Periods at which spectra are compared, from 0.02 s, shape (k,) [s]."""
+    return np.geomspace(SHORTEST_SHOWN_S, max(longest, LAST_PERIOD_S), PERIODS_SHOWN)
+
+
 def largest_correlation(motions: Sequence[GroundMotion]) -> float:
     """Largest |correlation coefficient| at no shift: between horizontal components, and within a motion [-]."""
     pairs = [(one, one.horizontal, other, other.horizontal) for one, other in combinations(motions, 2)]
@@ -169,7 +174,7 @@ def largest_correlation(motions: Sequence[GroundMotion]) -> float:
 def copy_correlation(one: GroundMotion, other: GroundMotion) -> float:
     """Largest |correlation| of two horizontal components over all shifts, also against one reversed in time [-]."""
     step = min(one.step, other.step)
-    a, b = _sampled(one.horizontal, one.step, step), _sampled(other.horizontal, other.step, step)
+    a, b = sampled_at(step, one.step, one.horizontal), sampled_at(step, other.step, other.horizontal)
     size = math.sqrt(float(a @ a) * float(b @ b))
     if size == 0.0:
         return 0.0
@@ -181,19 +186,11 @@ def copy_correlation(one: GroundMotion, other: GroundMotion) -> float:
 
 def _correlation(step: float, a: FloatArray, other_step: float, b: FloatArray) -> float:
     finest = min(step, other_step)
-    one, two = _sampled(a, step, finest), _sampled(b, other_step, finest)
+    one, two = sampled_at(finest, step, a), sampled_at(finest, other_step, b)
     length = min(one.size, two.size)
     one, two = one[:length] - one[:length].mean(), two[:length] - two[:length].mean()
     size = math.sqrt(float(one @ one) * float(two @ two))
     return abs(float(one @ two)) / size if size > 0.0 else 0.0
-
-
-def _sampled(values: FloatArray, step: float, wanted: float) -> FloatArray:
-    """Values sampled at another step, linear between samples."""
-    if step == wanted:
-        return values
-    times = np.arange(math.floor((values.size - 1) * step / wanted * (1.0 + 1e-12)) + 1) * wanted
-    return np.asarray(np.interp(times, np.arange(values.size) * step, values))
 
 
 def _spectra(

@@ -1,0 +1,192 @@
+"""Recorded motions made to fit a site: scaled, or matched to its spectrum by wavelets.
+
+Scaling keeps a record as it is but for one factor on both components. Matching levels gross differences by a gain that
+is smooth over frequency, then adds short wavelets at the instants of the peaks of oscillators until their spectrum is
+the target: L. Al Atik, N. Abrahamson, An improved method for nonstationary spectral matching, Earthquake Spectra 26
+(2010) 601-617. Their tapered cosine needs no correction of the baseline within a record; one is made where a wavelet is
+cut at its ends.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
+from scipy.signal import lfilter
+
+from fem.records.spectrum import exact_recursion, response_spectrum
+from fem.records.zero_end import ZeroEnd
+from fem.runtime.arrays import FloatArray
+from fem.site.action import DAMPING_RATIO, LAST_PERIOD_S, SiteAction
+from fem.site.artificial import Target
+from fem.site.ground_motion import GroundMotion, sampled_at
+from fem.site.motion_set import FIRST_PERIOD_S, LEAST_SHARE, check_set, periods_of_check
+from fem.site.oscillators import pseudo_accelerations
+
+#: records are sampled at least this densely while they are matched [s]
+LARGEST_STEP_S = 0.005
+SHORTEST_PERIOD_S = 0.02
+MATCHED_PERIODS = 70
+LEVELLING_PASSES, PASSES = 4, 14
+#: periods over which the gain is smooth, and length of its transform over that of the record
+SMOOTHED, LENGTHENED = 7, 2
+#: of the corrections found, in one pass, and of what one wavelet does to the oscillators of others
+SHARE_OF_A_PASS, SHARE_OF_OTHERS = 0.8, 0.7
+
+
+def scaled_records(
+    records: Sequence[GroundMotion], action: SiteAction, *, longest: float = LAST_PERIOD_S
+) -> list[GroundMotion]:
+    """Records scaled so that they fulfil 3.2.3.1.2(4)b and c together, and by no more than that.
+
+    Each record is first scaled to the target in the mean of the logarithms over the band of periods; then one factor
+    for all raises or lowers the set to the least that fulfils both.
+
+    Args:
+        records: as recorded; longest: end of the band of periods [s].
+    """
+    periods = periods_of_check(longest)
+    periods = periods[(periods >= FIRST_PERIOD_S) & (periods <= longest * (1.0 + 1e-9))]
+    target = action.horizontal(periods)
+    scaled = []
+    for record in records:
+        found = response_spectrum(record.step, record.horizontal, periods).pseudo_acceleration_m_s2
+        scaled.append(record.scaled(math.exp(float(np.mean(np.log(target / found))))))
+    needed = _factor_needed(scaled, action, longest)
+    return [record.scaled(needed) for record in scaled]
+
+
+def matched_records(
+    records: Sequence[GroundMotion], action: SiteAction, *, longest: float = LAST_PERIOD_S
+) -> list[GroundMotion]:
+    """Records whose components are matched by wavelets to the horizontal and the vertical spectrum.
+
+    Args:
+        records: as recorded; longest: period up to which they are matched [s].
+
+    A common factor above 1 follows where the set would miss 3.2.3.1.2(4)b or c without it.
+    """
+    matched = []
+    for record in records:
+        step = min(record.step, LARGEST_STEP_S)
+        upward = None
+        if record.vertical is not None:
+            upward = _matched(step, sampled_at(step, record.step, record.vertical), action.vertical, longest)
+        horizontal = sampled_at(step, record.step, record.horizontal)
+        matched.append(
+            replace(
+                record,
+                step=step,
+                horizontal=_matched(step, horizontal, action.horizontal, longest),
+                vertical=upward,
+                origin=f"{record.origin}, matched",
+            )
+        )
+    needed = max(1.0, _factor_needed(matched, action, longest))
+    return [record.scaled(needed) for record in matched]
+
+
+def _factor_needed(motions: Sequence[GroundMotion], action: SiteAction, longest: float) -> float:
+    """Least factor on a set with which its mean peak and mean spectrum fulfil the code."""
+    found = check_set(motions, action, longest=longest)
+    return max(found.wanted_peak / found.mean_peak, LEAST_SHARE / found.least_ratio)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Bank:
+    """Oscillators of all periods matched, and what one sample of acceleration does to them later on."""
+
+    periods: FloatArray  #: (m,) [s]
+    recursions: tuple[tuple[FloatArray, FloatArray], ...]  #: of pseudo-acceleration over acceleration
+    impulses: FloatArray  #: response to a unit sample, (m, n)
+
+
+@lru_cache(maxsize=2)
+def _bank(step: float, count: int, longest: float) -> _Bank:
+    periods = np.geomspace(max(SHORTEST_PERIOD_S, 2.0 * step), longest, MATCHED_PERIODS)
+    recursions, impulses = [], []
+    unit = np.zeros(count)
+    unit[0] = 1.0
+    for period in periods.tolist():
+        numerator, denominator = exact_recursion(step, period, DAMPING_RATIO)
+        square = (2.0 * math.pi / period) ** 2
+        recursions.append((square * np.array(numerator), np.array(denominator)))
+        impulses.append(lfilter(*recursions[-1], unit))
+    return _Bank(periods=periods, recursions=tuple(recursions), impulses=np.array(impulses))
+
+
+def _matched(step: float, acceleration: FloatArray, target: Target, longest: float) -> FloatArray:
+    """The acceleration (n,) with wavelets added until its spectrum is the target."""
+    bank = _bank(step, acceleration.size, longest)
+    times = np.arange(acceleration.size, dtype=np.float64) * step
+    zero_end, wanted = ZeroEnd(times=times), target(bank.periods)
+    present = _levelled(step, acceleration, wanted, bank.periods)
+    present = present - zero_end.baseline(present)
+    best, least = present, math.inf
+    for _ in range(PASSES):
+        responses = np.array([lfilter(*one, present) for one in bank.recursions])
+        places, peaks = _peaks(responses)
+        error = float(np.mean((np.abs(peaks) / wanted - 1.0) ** 2))
+        if error < least:
+            best, least = present, error
+        waves = _wavelets(bank.periods, times, places)
+        influence = _influence(bank, waves, places)
+        own = np.diag(influence).copy()
+        influence = SHARE_OF_OTHERS * influence / own
+        np.fill_diagonal(influence, 1.0)
+        missing = np.sign(peaks) * (wanted - np.abs(peaks))
+        sizes = np.linalg.solve(influence, SHARE_OF_A_PASS * missing) / own
+        present = present + sizes @ waves
+        present = present - zero_end.baseline(present)
+    return best
+
+
+def _levelled(step: float, acceleration: FloatArray, wanted: FloatArray, periods: FloatArray) -> FloatArray:
+    """The acceleration (n,) with a smooth gain over frequency that takes its spectrum near the target (m,).
+
+    A wavelet lowers one peak of an oscillator; where a record has far too much of a frequency, many peaks follow.
+    """
+    length = next_fast_len(LENGTHENED * acceleration.size, real=True)
+    with np.errstate(divide="ignore"):
+        log_periods = np.log(np.clip(1.0 / np.fft.rfftfreq(length, step), periods[0], periods[-1]))
+    weights = np.ones(SMOOTHED) / SMOOTHED
+    for _ in range(LEVELLING_PASSES):
+        ratios = np.log(wanted / pseudo_accelerations(step, acceleration, periods))
+        smooth = np.convolve(np.pad(ratios, SMOOTHED // 2, mode="edge"), weights, mode="valid")
+        gains = np.exp(np.interp(log_periods, np.log(periods), smooth))
+        acceleration = irfft(rfft(acceleration, length) * gains, length)[: acceleration.size]
+    return acceleration
+
+
+def _peaks(responses: FloatArray) -> tuple[np.ndarray, FloatArray]:
+    """Sample of the largest magnitude of each response (m, n), and the peak of the parabola through it, signed."""
+    places = np.argmax(np.abs(responses), axis=1)
+    rows, last = np.arange(len(responses)), responses.shape[1] - 1
+    before, at, after = (responses[rows, np.clip(places + k, 0, last)] for k in (-1, 0, 1))
+    curvature = before - 2.0 * at + after
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rise = np.where(curvature * at < 0.0, -((after - before) ** 2) / (8.0 * curvature), 0.0)
+    return places, at + rise
+
+
+def _wavelets(periods: FloatArray, times: FloatArray, places: np.ndarray) -> FloatArray:
+    """A tapered cosine for each oscillator whose response to it peaks at its sample, shape (m, n) [-]."""
+    damped = 2.0 * math.pi / periods * math.sqrt(1.0 - DAMPING_RATIO**2)
+    lag = math.atan(math.sqrt(1.0 - DAMPING_RATIO**2) / DAMPING_RATIO) / damped
+    width = 1.178 * periods**0.93
+    shifted = times[None, :] - (times[places] - lag)[:, None]
+    waves = np.zeros_like(shifted)
+    near = np.abs(shifted) < 5.0 * width[:, None]
+    rates, widths = (np.broadcast_to(one[:, None], near.shape)[near] for one in (damped, width))
+    waves[near] = np.cos(rates * shifted[near]) * np.exp(-((shifted[near] / widths) ** 2))
+    return waves
+
+
+def _influence(bank: _Bank, waves: FloatArray, places: np.ndarray) -> FloatArray:
+    """Response of oscillator i at its sample to wavelet j, shape (m, m)."""
+    rows = []
+    for impulse, place in zip(bank.impulses, places.tolist(), strict=True):
+        rows.append(waves[:, : place + 1] @ impulse[place::-1])
+    return np.array(rows)

@@ -1,0 +1,71 @@
+"""Motions as files for other programs: CSV in m/s2, and PEER AT2 in g. Both read back to the same bits.
+
+Numbers are written with as many digits as a float64 needs, so an AT2 file has columns wider than the usual 15; programs
+that read it number by number accept that. A value in m/s2 is not in general a float64 in g times 9.80665, so motions
+are made of values that are: `in_whole_g` changes them by a rounding.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from fem.records.files import read_record
+from fem.records.record import RecordError
+from fem.records.units import STANDARD_GRAVITY
+from fem.runtime.arrays import FloatArray
+
+CSV_HEADING = "time_s,acceleration_m_s2"
+AT2_PER_LINE = 5
+
+
+def in_whole_g(acceleration: FloatArray) -> FloatArray:
+    """The nearest accelerations (n,) that are a float64 in g times 9.80665 [m/s2]."""
+    return acceleration / STANDARD_GRAVITY * STANDARD_GRAVITY
+
+
+def write_csv(path: Path, step: float, acceleration: FloatArray) -> None:
+    """Write times and accelerations (n,) [m/s2]."""
+    times = (np.arange(acceleration.size) * step).tolist()
+    rows = (f"{time!r},{value!r}" for time, value in zip(times, acceleration.tolist(), strict=True))
+    path.write_text("\n".join((CSV_HEADING, *rows, "")), encoding="ascii")
+
+
+def write_at2(path: Path, step: float, acceleration: FloatArray, described: str) -> None:
+    """Write an acceleration (n,) [m/s2] as a PEER file.
+
+    Args:
+        described: event, date, station and component of the second line; commas divide them.
+
+    Raises:
+        ValueError: a value that no float64 in g stands for; `in_whole_g` first.
+    """
+    values = acceleration / STANDARD_GRAVITY
+    for neighbour in (-np.inf, np.inf):
+        off = values * STANDARD_GRAVITY != acceleration
+        values[off] = np.nextafter(acceleration[off] / STANDARD_GRAVITY, neighbour)
+    if (values * STANDARD_GRAVITY != acceleration).any():
+        raise ValueError("an acceleration is no float64 in g times 9.80665")
+    rows = [
+        " ".join(f"{value:24.16E}" for value in values[at : at + AT2_PER_LINE].tolist())
+        for at in range(0, values.size, AT2_PER_LINE)
+    ]
+    heading = (
+        "PROGRAM UNANCHORED",
+        described,
+        "ACCELERATION TIME SERIES IN UNITS OF G",
+        f"NPTS= {values.size}, DT= {step!r} SEC",
+    )
+    path.write_text("\n".join((*heading, *rows, "")), encoding="ascii")
+
+
+def read_back(path: Path) -> tuple[float, FloatArray]:
+    """Step [s] and acceleration (n,) [m/s2] of a file written here.
+
+    Raises:
+        RecordError: it is no motion of one acceleration.
+    """
+    record = read_record(path)
+    if len(record.components) != 1 or record.components[0].quantity != "acceleration":
+        raise RecordError(f"{path.name}: one acceleration is needed")
+    component = record.components[0]
+    return float(component.times[1] - component.times[0]), component.values

@@ -1,0 +1,46 @@
+"""Motions written for other programs and read back to the same bits."""
+
+import numpy as np
+import pytest
+
+from fem.records.files import read_record
+from fem.site.motion_files import in_whole_g, read_back, write_at2, write_csv
+
+GENERATOR = np.random.default_rng(7)
+VALUES = in_whole_g(
+    np.concatenate([GENERATOR.standard_normal(4000) * 10.0 ** GENERATOR.integers(-9, 2, 4000), [0.0]])
+)
+
+
+@pytest.mark.parametrize("step", [0.005, 0.01, 1.0 / 3.0])
+def test_csv_and_at2_read_back_to_the_same_bits(tmp_path, step):
+    write_csv(tmp_path / "a.csv", step, VALUES)
+    write_at2(tmp_path / "a.at2", step, VALUES, "ARTIFICIAL, , MOTION 1, H")
+    for name in ("a.csv", "a.at2"):
+        found, values = read_back(tmp_path / name)
+        assert found == step
+        assert values.tobytes() == VALUES.tobytes()
+
+
+def test_rounding_to_a_number_in_g_is_no_more_than_that():
+    values = GENERATOR.standard_normal(100_000)
+    rounded = in_whole_g(values)
+    np.testing.assert_allclose(rounded, values, rtol=4e-16)
+    assert in_whole_g(rounded).tobytes() == rounded.tobytes()
+
+
+def test_the_files_say_what_they_hold(tmp_path):
+    write_csv(tmp_path / "a.csv", 0.01, VALUES)
+    write_at2(tmp_path / "a.at2", 0.01, VALUES, "ARTIFICIAL, , MOTION 1, UP")
+    assert (tmp_path / "a.csv").read_text().splitlines()[0] == "time_s,acceleration_m_s2"
+    lines = (tmp_path / "a.at2").read_text().splitlines()
+    assert lines[2:4] == ["ACCELERATION TIME SERIES IN UNITS OF G", "NPTS= 4001, DT= 0.01 SEC"]
+    record = read_record(tmp_path / "a.at2")
+    assert record.components[0].unit == "g" and record.components[0].direction == "vertical"
+
+
+def test_what_has_no_number_in_g_is_refused(tmp_path):
+    values = GENERATOR.standard_normal(1000)
+    assert (in_whole_g(values) != values).any()
+    with pytest.raises(ValueError, match=r"9\.80665"):
+        write_at2(tmp_path / "a.at2", 0.01, values, "A, B, C, H")
