@@ -1,4 +1,4 @@
-"""The floor's motion of a run in words: its length, samples and peaks, and what of it the run leaves out."""
+"""The floor's motions of a run in words: length, samples and peaks, and what of them the run leaves out."""
 
 from fem.results.run_result import MotionResult
 
@@ -7,7 +7,7 @@ NAMES = {"table": "record", "pulse": "pulse"}
 
 
 def motion_in_words(motion: MotionResult) -> str:
-    """Length, samples and peaks; empty of a floor at rest, and of a result of an older version."""
+    """Length, samples and peaks of one motion; empty of a floor at rest, and of a result of an older version."""
     if motion.duration_s is None or motion.peak_acceleration_m_s2 is None:
         return ""
     length = f"{motion.duration_s:.4g} s"
@@ -23,22 +23,39 @@ def motion_in_words(motion: MotionResult) -> str:
 
 
 def is_cut(motion: MotionResult) -> bool:
-    """Whether the run ends before the motion, or begins after it has."""
-    return motion.covered is not None and motion.covered < 1.0 - 1e-9
+    """Whether the run ends before one of the motions, or begins after it has."""
+    covered = _most_cut(motion).covered
+    return covered is not None and covered < 1.0 - 1e-9
 
 
 def covered_in_words(motion: MotionResult) -> str:
     """The motion under which a verdict holds: "this motion", or the part of it that the run covers."""
-    if not is_cut(motion) or motion.covered is None or motion.duration_s is None:
+    cut = _most_cut(motion)
+    if not is_cut(motion) or cut.covered is None or cut.duration_s is None:
         return "this motion"
-    part = f"{motion.covered * motion.duration_s:.4g} of {motion.duration_s:.4g} s"
-    return f"the first {part}" if motion.begin_s is None else f"{part}, from {-motion.begin_s:.4g} s of it on"
+    part = f"{cut.covered * cut.duration_s:.4g} of {cut.duration_s:.4g} s"
+    words = f"the first {part}" if cut.begin_s is None else f"{part}, from {-cut.begin_s:.4g} s of it on"
+    return words if cut is motion else f"{words} (vertical motion)"
 
 
 def missing_peak(motion: MotionResult) -> str:
-    """That the peak of the motion is not within the run; empty where it is."""
-    whole, within = motion.peak_acceleration_m_s2, motion.peak_in_run_m_s2
-    if not is_cut(motion) or whole is None or within is None or within >= whole * (1.0 - 1e-9):
+    """That the peak of a motion is not within the run; empty where it is."""
+    if not is_cut(motion):
         return ""
-    name = NAMES.get(motion.kind or "", "motion")
+    missing = _missing_peak(motion, NAMES.get(motion.kind or "", "motion"))
+    return missing + (_missing_peak(motion.vertical, "vertical motion") if motion.vertical else "")
+
+
+def _most_cut(motion: MotionResult) -> MotionResult:
+    """The motion of which the run covers the smaller share."""
+    share, vertical = motion.covered, motion.vertical
+    if vertical is None or vertical.covered is None:
+        return motion
+    return vertical if share is None or vertical.covered < share else motion
+
+
+def _missing_peak(motion: MotionResult, name: str) -> str:
+    whole, within = motion.peak_acceleration_m_s2, motion.peak_in_run_m_s2
+    if whole is None or within is None or within >= whole * (1.0 - 1e-9):
+        return ""
     return f"; the {name}'s peak of {whole / STANDARD_GRAVITY:.3g} g is not in it"

@@ -129,11 +129,14 @@ def follow_block(model: Model, end: float) -> Reference:
     """The rigid block under the run's floor, from the run's start to `end` [s].
 
     A floor that starts with a velocity under a container at rest gives the block a slip velocity. Where the
-    block never slides, the block that cannot slide is the reference.
+    block never slides, the block that cannot slide is the reference. In the frame of a floor that moves up and down,
+    gravity is g + a_v.
     """
     case, block = model.case, block_of(model)
     floor = floor_of(model.motion, driven_until=model.duration)
-    jerk = floor_motion(model.motion.compiled(), 0.0)[1] if case.motion.start == "rest" else 0.0
+    if case.has_vertical:
+        floor = floor.with_vertical(floor_of(model.vertical, driven_until=model.duration))
+    jerk = 0.0 if case.starts_moving else floor_motion(model.motion.compiled(), 0.0)[1]
     rotation, rate = case.initial.rotation_rad, case.initial.angular_velocity_rad_s
 
     def had_tilted(at: RotationAt, impact: PlanarImpact | RockingImpact) -> bool:
@@ -148,7 +151,8 @@ def follow_block(model: Model, end: float) -> Reference:
         angular_velocity=rate,
         slip_velocity=case.initial.velocity_m_s - jerk,
     )
-    if sliding.modes & {PlanarMode.SLIDE, PlanarMode.SLIDE_ROCK}:
+    left = case.has_vertical and sliding.outcome is PlanarMode.OUTSIDE
+    if left or sliding.modes & {PlanarMode.SLIDE, PlanarMode.SLIDE_ROCK}:
 
         def at(times: FloatArray) -> tuple[FloatArray, FloatArray]:
             history = sliding.at(times)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from fem.assessment.sureness import ROCKING, below_uplift, rests_on_stiff_floor
 from fem.case.uncertainty import MU_KINETIC, STRIBECK, WEAKENING
-from fem.results.run_result import ActionResult, BandMember, RunResult, StaticResult, Verdict
+from fem.results.run_result import BandMember, RunResult, StaticResult, Verdict
 
 FRICTION = {MU_KINETIC, WEAKENING, STRIBECK}
 SLIDING = ("slide", "slide-rock")
@@ -14,7 +14,7 @@ WITHOUT_BAND = "; which of the two is to be believed, only the band can say (--b
 def believed(result: RunResult) -> tuple[str, ...]:
     """A sentence for sliding and one for rocking, as far as the rule and the run disagree."""
     verdict = result.verdict or Verdict()
-    own = (result.static or StaticResult()).own_motion or ActionResult()
+    own = (result.static or StaticResult()).ruling
     members = verdict.band.members if verdict.band is not None else ()
     said = []
     use = own.utilisation_sliding

@@ -33,6 +33,7 @@ from fem.assessment.ranges import (
 from fem.assessment.rule_or_run import believed
 from fem.assessment.sureness import sureness_in_words
 from fem.results.run_result import (
+    ActionResult,
     Band,
     Energy,
     MotionResult,
@@ -123,18 +124,27 @@ def _static_table(static: StaticResult, verdict: Verdict) -> Table:
     sliding, restoring = static.sliding_limit_static_N, static.restoring_moment_Nm
     for action, name in (
         (static.own_motion, "own peak"),
+        (static.own_motion_vertical, "own, vertical"),
         (static.code, "code, q"),
         (static.code_q1, "q = 1"),
     ):
         if action is not None:
-            slid, tilted = (run_slid(verdict), run_tilted(verdict)) if name == "own peak" else ("", "")
-            demand = f"{_number(action.base_shear_N, 1e-3)} / {_number(sliding, 1e-3)} kN"
+            slid, tilted = (run_slid(verdict), run_tilted(verdict)) if name.startswith("own") else ("", "")
+            factor = 1e-3 * share_of_weight(action, static)
+            demand = f"{_number(action.base_shear_N, 1e-3)} / {_number(sliding, factor)} kN"
             use = action.utilisation_sliding
             table.add_row(name, "sliding", demand, _number(use, 1.0, ".3f"), rule_says("sliding", use), slid)
-            demand = f"{_number(action.tilting_moment_Nm, 1e-3)} / {_number(restoring, 1e-3)} kNm"
+            demand = f"{_number(action.tilting_moment_Nm, 1e-3)} / {_number(restoring, factor)} kNm"
             use, check = action.utilisation_overturning, "overturning"
             table.add_row("", check, demand, _number(use, 1.0, ".3f"), rule_says(check, use), tilted)
     return table
+
+
+def share_of_weight(action: ActionResult, static: StaticResult) -> float:
+    """The least weight under a vertical motion over the weight; 1 of an action without one."""
+    if action.least_weight_N is None or not static.weight_N:
+        return 1.0
+    return action.least_weight_N / static.weight_N
 
 
 def own_motion_name(static: StaticResult) -> str:
@@ -180,10 +190,11 @@ def _table_of_pairs(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[Tab
 def result_rows(result: RunResult) -> list[tuple[str, str]]:
     """Name and value of what the run found, in the order of reading, without what it did not reach."""
     verdict, static = result.verdict or Verdict(), result.static or StaticResult()
-    numerics = result.numerics or Numerics()
+    numerics, motion = result.numerics or Numerics(), result.motion or MotionResult()
     impacts = verdict.impacts
     rows = [
-        ("floor motion", motion_in_words(result.motion or MotionResult())),
+        ("floor motion", motion_in_words(motion)),
+        ("vertical motion", motion_in_words(motion.vertical or MotionResult())),
         ("simulated time", _simulated(verdict, numerics)),
         ("states seen", ", ".join(verdict.modes)),
         ("largest rotation", rotation_in_words(verdict)),

@@ -106,8 +106,8 @@ def rests_on_stiff_floor(members: Sequence[BandMember]) -> bool:
 
 def static_use(result: RunResult) -> float | None:
     """The larger utilisation of the static rule under the peak of this run; None where it is not known."""
-    own = (result.static or StaticResult()).own_motion
-    if own is None or own.utilisation_sliding is None or own.utilisation_overturning is None:
+    own = (result.static or StaticResult()).ruling
+    if own.utilisation_sliding is None or own.utilisation_overturning is None:
         return None
     return max(own.utilisation_sliding, own.utilisation_overturning)
 

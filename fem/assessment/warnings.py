@@ -140,7 +140,8 @@ def rest_proves_nothing(result: RunResult, case: Case) -> str | None:
     own = _own_motion(result)
     if _verdict(result).outcome != "rest" or own == ActionResult():
         return None
-    if max(own.utilisation_sliding or 0.0, own.utilisation_overturning or 0.0) > 1.0:
+    uses = (own.utilisation_sliding, own.utilisation_overturning)
+    if any(use is None or use > 1.0 for use in uses):
         return None
     return (
         "the static rule also says that the container stands under this motion: the run confirms it and "
@@ -229,4 +230,4 @@ def _numerics(result: RunResult) -> Numerics:
 
 
 def _own_motion(result: RunResult) -> ActionResult:
-    return _static(result).own_motion or ActionResult()
+    return _static(result).ruling

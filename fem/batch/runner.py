@@ -19,7 +19,7 @@ from fem.batch.workers import LocalWorkers, WorkersOf, hand_out, never
 from fem.case.case import Case, CaseError
 from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
-from fem.model.motion import build_motion, motion_result
+from fem.model.motion import build_motions, motion_result
 from fem.model.recovery import recovery_of
 from fem.results.run_result import Verdict
 from fem.run.outcome import run_without_history
@@ -166,7 +166,7 @@ def run_cases(
 def motion_left_out(case: Case) -> str | None:
     """The part of its motion that runs of a case are under, where they end before it; None where they do not."""
     try:
-        motion = motion_result(case, build_motion(case))
+        motion = motion_result(case, *build_motions(case))
     except CaseError:  # a row of the study says so
         return None
     return f"{covered_in_words(motion)}{missing_peak(motion)}" if is_cut(motion) else None

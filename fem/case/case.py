@@ -130,18 +130,8 @@ class Case(CaseHeading):
 
     @property
     def nominal_peak_acceleration(self) -> float | None:
-        """A Omega^2 of a harmonic floor, the peak of a pulse, 0 of a floor at rest [m/s2].
-
-        Ramps are ignored, and so is the end of a run before the peak. None for a table, whose file is not read here.
-        """
-        match self.motion.kind:
-            case "none":
-                return 0.0
-            case "harmonic":
-                return self.amplitude * self.angular_frequency**2
-            case "pulse":
-                return abs(self.motion.peak_acceleration_m_s2 or 0.0)
-        return None
+        """Of the floor along x: A Omega^2, the peak of a pulse, 0 at rest [m/s2]; None for a table."""
+        return self.motion.nominal_peak
 
     @property
     def data_files(self) -> dict[str, Path]:

@@ -50,11 +50,12 @@ def _peak(motion: Any) -> float:
     return float(motion.amplitude_m * frequency**2)
 
 
-def _nominal_peak(motion: Any) -> float:
-    """Peak acceleration of a harmonic motion or a pulse by its keys [m/s2]; 0 of every other motion."""
-    if motion.kind in ("harmonic", "pulse") and motion.peak_acceleration_m_s2 is not None:
-        return abs(float(motion.peak_acceleration_m_s2))
-    return _peak(motion)
+def _scaled_peak(motion: Any) -> float:
+    """Peak acceleration of a harmonic motion or a pulse by its keys and its scale [m/s2]; 0 of every other motion."""
+    if motion.kind not in ("harmonic", "pulse"):
+        return 0.0
+    peak = motion.peak_acceleration_m_s2
+    return abs(motion.scale) * (_peak(motion) if peak is None else abs(float(peak)))
 
 
 def _given(motion: Any) -> tuple[list[str], list[str]]:
@@ -210,10 +211,10 @@ VERTICAL_RULES = (
     ),
     Rule(
         "vertical.scale",
-        lambda vertical: abs(vertical.scale) * _nominal_peak(vertical) <= MOST_PEAK,
+        lambda vertical: _scaled_peak(vertical) <= MOST_PEAK,
         lambda vertical: (
-            f"= {vertical.scale:g} makes a peak acceleration of {abs(vertical.scale) * _nominal_peak(vertical):.4g} "
-            f"m/s2; it must be at most {MOST_PEAK:g} m/s2"
+            f"= {vertical.scale:g} makes a peak acceleration of {_scaled_peak(vertical):.4g} m/s2; "
+            f"it must be at most {MOST_PEAK:g} m/s2"
         ),
     ),
 )

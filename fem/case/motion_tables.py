@@ -17,7 +17,7 @@ from fem.case.motion_rules import (
 from fem.case.table import CaseTable, case_key
 
 
-class FloorMotionTable(CaseTable):
+class HarmonicKeys(CaseTable):
     """The kind of a motion, and the keys of a harmonic one."""
 
     kind: Literal["none", "harmonic", "pulse", "table"] = case_key(
@@ -57,24 +57,9 @@ class FloorMotionTable(CaseTable):
         only=("kind", "harmonic"),
     )
 
-    @property
-    def angular_frequency(self) -> float:
-        """Omega of a harmonic motion [rad/s]; 0 for every other kind."""
-        return harmonic_angular_frequency(self) or 0.0
 
-    @property
-    def amplitude(self) -> float:
-        """A of a harmonic motion x = A sin(Omega t + phase) [m], before any scale; 0 for every other kind."""
-        return harmonic_amplitude(self) or 0.0
-
-    @property
-    def period(self) -> float:
-        """Time of one cycle of a harmonic motion [s]; infinite for every other kind."""
-        return 2.0 * math.pi / self.angular_frequency if self.angular_frequency else math.inf
-
-
-class StartKey(CaseTable):
-    """How the container begins; it holds for the motion along x and the vertical one."""
+class StartKey(HarmonicKeys):
+    """How the container begins, behind the keys of a harmonic motion; it holds for the vertical motion, too."""
 
     start: Literal["moving", "rest"] = case_key(
         '"moving": the container moves with the floor at t = 0 | "rest": it does not',
@@ -111,13 +96,52 @@ class PulseAndTableKeys(CaseTable):
     )
 
 
-class MotionTable(PulseAndTableKeys, StartKey, FloorMotionTable):
+class FloorMotionTable(PulseAndTableKeys, HarmonicKeys):
+    """A motion of the floor in one direction."""
+
+    @property
+    def factor(self) -> float:
+        """Factor on the motion, with its sign [-]; 1 where the key `scale` is not used."""
+        return 1.0 if "scale" in self.idle_keys() else self.scale
+
+    @property
+    def nominal_peak(self) -> float | None:
+        """A Omega^2 of a harmonic motion, the peak of a pulse, 0 of no motion [m/s2]; a magnitude.
+
+        Ramps are ignored, and so is the end of a run before the peak. None for a table, whose file is not read here.
+        """
+        match self.kind:
+            case "none":
+                return 0.0
+            case "harmonic":
+                return self.amplitude * self.angular_frequency**2
+            case "pulse":
+                return abs(self.factor * (self.peak_acceleration_m_s2 or 0.0))
+        return None
+
+    @property
+    def angular_frequency(self) -> float:
+        """Omega of a harmonic motion [rad/s]; 0 for every other kind."""
+        return harmonic_angular_frequency(self) or 0.0
+
+    @property
+    def amplitude(self) -> float:
+        """A of a harmonic motion x = A sin(Omega t + phase) [m], with its factor; 0 for every other kind."""
+        return abs(self.factor) * (harmonic_amplitude(self) or 0.0)
+
+    @property
+    def period(self) -> float:
+        """Time of one cycle of a harmonic motion [s]; infinite for every other kind."""
+        return 2.0 * math.pi / self.angular_frequency if self.angular_frequency else math.inf
+
+
+class MotionTable(FloorMotionTable, StartKey):
     """How the floor moves; accelerations and displacements are positive toward +x."""
 
     rules = MOTION_RULES
 
 
-class VerticalTable(PulseAndTableKeys, FloorMotionTable):
+class VerticalTable(FloorMotionTable):
     """How the floor moves up and down, with the keys of [motion]; positive upward."""
 
     kind: Literal["none", "harmonic", "pulse", "table"] = case_key(

@@ -3,17 +3,19 @@
 import importlib
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from textwrap import fill
 from typing import Any
 
 from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak, motion_in_words
 from fem.case.case import Case, case_hash, load_case
+from fem.case.motion_tables import FloorMotionTable
 from fem.case.rules import longest_time
 from fem.cli.console import WIDTH, AsJson, CaseName, Overrides
 from fem.model.geometry import build_container
 from fem.model.motion_summary import summary_from_keys
 from fem.results.disk import in_units
+from fem.results.run_result import MotionResult
 from fem.run.preview import Preview
 
 
@@ -40,8 +42,8 @@ def preview_of(case: Case) -> Preview:
     if summary is not None:
         return Preview(case=case, mesh=mesh, motion=summary, duration=longest_time(case))
     module = importlib.import_module("fem.model.motion")
-    motion = module.build_motion(case)
-    summary, duration = module.motion_result(case, motion), module.longest_run(case, motion)
+    motions = module.build_motions(case)
+    summary, duration = module.motion_result(case, *motions), module.longest_run(case, *motions)
     return Preview(case=case, mesh=mesh, motion=summary, duration=duration)
 
 
@@ -63,17 +65,18 @@ def numerics_lines(numerics: Mapping[str, Any]) -> list[str]:
 
 def _page(preview: Preview, document: dict[str, Any]) -> str:
     case, static, derived, numerics = preview.case, preview.static, document["derived"], document["numerics"]
-    container, support, motion = case.container, case.support, case.motion
+    container, support = case.container, case.support
     boxes = f"{container.boxes} box{'es' if container.boxes > 1 else ''}, {container.section}, {support.kind}"
-    floor = {"none": "at rest", "pulse": f"{motion.shape} pulse", "table": f"table {motion.file}"}.get(
-        motion.kind, f"A = {case.amplitude:.4g} m, Omega = {case.angular_frequency:.4g} rad/s"
-    )
     lines = [
         f"{case.name}: {case.title}" if case.title else case.name,
         f"  container   {derived['width_m']:g} x {derived['height_m']:g} m, "
         f"{derived['mass_kg']:.6g} kg, {boxes}",
-        f"  floor       {floor}, peak {derived['peak_floor_acceleration_m_s2']:.4g} m/s2",
-        *([f"  motion      {length}"] if (length := motion_in_words(preview.motion)) else []),
+        *_motion_lines("floor", "motion", case.motion, preview.motion),
+        *(
+            _motion_lines("vertical", "", case.vertical, upward)
+            if (upward := preview.motion.vertical)
+            else ()
+        ),
         *(
             [f"  run         {covered_in_words(preview.motion)}{missing_peak(preview.motion)}"]
             * is_cut(preview.motion)
@@ -91,6 +94,8 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
         "  static rule                        demand     capacity   utilisation",
     ]
     actions = {"own motion": static.own_motion}
+    if static.own_motion_vertical is not None:
+        actions["own, vertical"] = static.own_motion_vertical
     if (code := static.by_code) is not None:
         actions |= {f"code, q = {code.values.behaviour_factor:g}": code.as_given, "code, q = 1": code.q1}
     for action, result in actions.items():
@@ -104,6 +109,15 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
     for note in document["notes"]:
         lines.append(fill(note, WIDTH, initial_indent="  note: ", subsequent_indent="    "))
     return "\n".join(lines)
+
+
+def _motion_lines(name: str, more: str, keys: FloorMotionTable, motion: MotionResult) -> Iterator[str]:
+    """What moves the floor in one direction, and the numbers of its motion."""
+    kinds = {"none": "at rest", "pulse": f"{keys.shape} pulse", "table": f"table {keys.file}"}
+    harmonic = f"A = {keys.amplitude:.4g} m, Omega = {keys.angular_frequency:.4g} rad/s"
+    yield f"  {name:<11} {kinds.get(keys.kind, harmonic)}, peak {motion.peak_in_run_m_s2 or 0.0:.4g} m/s2"
+    if length := motion_in_words(motion):
+        yield f"  {more:<11} {length}"
 
 
 def _restitution_of_contact(case: Case, document: Mapping[str, Any]) -> str:

@@ -87,6 +87,7 @@ def plan_of(case: Case, folder: Path) -> dict[str, Any]:
         "folder": str(folder),
         "free_bytes": free_disk(folder),
         "peak_floor_acceleration_m_s2": preview.peak,
+        "peak_vertical_acceleration_m_s2": preview.vertical_peak,
         "numerics": preview.numerics,
     }
 
@@ -101,4 +102,6 @@ def page_of_plan(case: Case, plan: dict[str, Any]) -> str:
         f"  folder      {plan['folder']}{there}",
         f"  floor       {case.motion.kind}, peak {plan['peak_floor_acceleration_m_s2']:.4g} m/s2",
     ]
+    if (upward := plan["peak_vertical_acceleration_m_s2"]) is not None:
+        lines.append(f"  vertical    {case.vertical.kind}, peak {upward:.4g} m/s2")
     return "\n".join(lines + numerics_lines(plan["numerics"]))

@@ -91,16 +91,22 @@ def draw_all(run: OpenedRun, container: Container) -> list[Drawing]:
 
 
 def base_motion_figure(run: OpenedRun) -> Figure:
-    """Displacement, velocity and acceleration of the floor."""
+    """Displacement, velocity and acceleration of the floor, along x and upward."""
     history, static = run.history, run.typed_result.static or StaticResult()
     displacement, acceleration = 1e3 * history["base_displacement_m"], history["base_acceleration_m_s2"]
-    figure, axes = time_panels((1.25, 1.25, 1.35), gaps=(GAP, LEGEND_GAP), header=1)
-    for panel, values, label, colour in (
-        (axes[0], displacement, "displacement [mm]", BLUE),
-        (axes[1], history["base_velocity_m_s"], "velocity [m/s]", GREEN),
-        (axes[2], acceleration, "acceleration [m/s²]", VERMILLION),
+    gaps = (LEGEND_GAP if history.vertical else GAP, LEGEND_GAP)
+    figure, axes = time_panels((1.25, 1.25, 1.35), gaps=gaps, header=2 if history.vertical else 1)
+    for panel, column, factor, label, colour in (
+        (axes[0], "displacement_m", 1e3, "displacement [mm]", BLUE),
+        (axes[1], "velocity_m_s", 1.0, "velocity [m/s]", GREEN),
+        (axes[2], "acceleration_m_s2", 1.0, "acceleration [m/s²]", VERMILLION),
     ):
-        curve_panel(panel, label, history["time_s"], (values, colour, "-", None))
+        values = factor * history[f"base_{column}"]
+        name = "along x" if history.vertical and panel is axes[0] else None
+        curve_panel(panel, label, history["time_s"], (values, colour, "-", name))
+        if history.vertical:
+            upward = factor * history[f"base_vertical_{column}"]
+            curve_panel(panel, label, history["time_s"], (upward, GREY, "-", name and "upward"), zero=False)
         keep_visible(panel, LEAST_MOTION)
     peak, moved = float(np.abs(acceleration).max()), float(np.abs(displacement).max())
     for limit, style, name in (
@@ -112,7 +118,14 @@ def base_motion_figure(run: OpenedRun) -> Figure:
     if axes[2].get_legend_handles_labels()[0]:
         legend_above(axes[2])
     title = f"Motion of the floor: {number(moved)} mm and {number(peak)} m/s² at most"
-    head(figure, title if peak or moved else "The floor stands still")
+    if not (peak or moved):
+        title = "The floor stands still"
+    if history.vertical:
+        legend_above(axes[0])
+        vertical = float(np.abs(history["base_vertical_acceleration_m_s2"]).max())
+        along = title if peak or moved else "Motion of the floor"
+        title = f"{along}; {number(vertical)} m/s² upward or downward"
+    head(figure, title)
     return figure
 
 

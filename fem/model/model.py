@@ -23,13 +23,7 @@ from contact.stepping.state import RunState, make_run, make_samples
 from fem.case.case import Case
 from fem.model.container import Container, discretise
 from fem.model.equilibrium import Equilibrium, find_equilibrium
-from fem.model.motion import (
-    build_motion,
-    build_vertical,
-    longest_run,
-    peak_acceleration_within,
-    rest_sought_from,
-)
+from fem.model.motion import build_motions, longest_run, peaks_in_run, rest_sought_from
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.step_size import control_of, largest_step_of, scheme_of
 from fem.model.validity import require_stiff_corner
@@ -94,7 +88,7 @@ def build_model(
     Raises:
         CaseError, MeshError: bad input, no equilibrium at the start.
     """
-    motion, vertical = build_motion(case), build_vertical(case)
+    motion, vertical = build_motions(case)
     compiled_motion, compiled_vertical = motion.compiled(), vertical.compiled()
     z, velocity_z, acceleration_z = floor_motion(compiled_vertical, 0.0)
     container, gravity = container or discretise(case), case.gravity_m_s2 + acceleration_z
@@ -103,7 +97,7 @@ def build_model(
     mesh, nodes = container.mesh, container.nodes
     contact, body = equilibrium.contact, equilibrium.body
     duration = longest_run(case, motion, vertical)
-    static = static_checks_of(case, mesh, peak_acceleration_within(motion, duration))
+    static = static_checks_of(case, mesh, *peaks_in_run(case, motion, vertical))
     largest, breaks = largest_step_of(case, static, motion, vertical)
     control = control_of(case, container, static, largest, contact)
     scheme = scheme_of(case, container, equilibrium.penalty, control, contact)

@@ -10,10 +10,11 @@ import numpy as np
 from contact.motion.base_motion import BaseMotion, HarmonicMotion, NoMotion, PulseMotion, TableMotion
 from fem.case import quantities as q
 from fem.case.case import Case, CaseError
+from fem.case.motion_tables import FloorMotionTable
 from fem.case.problem import broken
 from fem.case.rules import CASE_RULES, MOST_FREE_MOTION, ends_at_rest, longest_time
 from fem.case.validation import problem_lines
-from fem.model.motion_summary import summary_from_keys
+from fem.model.motion_summary import numbers_from_keys
 from fem.model.recorded import Direction, recorded_motion
 from fem.results.run_result import MotionResult
 from fem.runtime.arrays import FloatArray
@@ -43,6 +44,15 @@ def build_vertical(case: Case) -> BaseMotion:
         CaseError: as `build_motion`.
     """
     return _built(case, "vertical")
+
+
+def build_motions(case: Case) -> tuple[BaseMotion, BaseMotion]:
+    """How the floor of the case moves along x, and up and down.
+
+    Raises:
+        CaseError: as `build_motion`.
+    """
+    return build_motion(case), build_vertical(case)
 
 
 def _built(case: Case, table: Direction) -> BaseMotion:
@@ -91,10 +101,16 @@ def rest_sought_from(case: Case, *motions: BaseMotion) -> float:
     return motions_end(*motions) if ends_at_rest(case) else math.inf
 
 
-def motion_result(case: Case, motion: BaseMotion) -> MotionResult:
-    """The motion's numbers, and doubts about it."""
-    found = summary_from_keys(case) or _evaluated(motion, longest_run(case, motion))
-    return replace(found, kind=case.motion.kind, notes=tuple(motion_notes(motion)))
+def motion_result(case: Case, motion: BaseMotion, vertical: BaseMotion) -> MotionResult:
+    """The numbers of both motions, and doubts about them."""
+    duration = longest_run(case, motion, vertical)
+
+    def numbers(keys: FloorMotionTable, one: BaseMotion, table: Direction) -> MotionResult:
+        found = numbers_from_keys(keys, longest_time(case)) or _evaluated(one, duration)
+        return replace(found, kind=keys.kind, notes=tuple(motion_notes(one, table)))
+
+    upward = numbers(case.vertical, vertical, "vertical") if case.has_vertical else None
+    return replace(numbers(case.motion, motion, "motion"), vertical=upward)
 
 
 def _evaluated(motion: BaseMotion, duration: float) -> MotionResult:
@@ -159,8 +175,15 @@ def peak_acceleration_within(motion: BaseMotion, duration: float) -> float:
     return float(np.abs(motion.evaluate(inside)[2]).max())
 
 
-def motion_notes(motion: BaseMotion) -> list[str]:
-    """Doubts about a recorded motion: a drift, samples too far apart."""
+def peaks_in_run(case: Case, motion: BaseMotion, vertical: BaseMotion) -> tuple[float, float | None]:
+    """Largest |acceleration| of the floor in the run, along x and vertical [m/s2]; None: no vertical motion."""
+    duration = longest_run(case, motion, vertical)
+    upward = peak_acceleration_within(vertical, duration) if case.has_vertical else None
+    return peak_acceleration_within(motion, duration), upward
+
+
+def motion_notes(motion: BaseMotion, table: Direction = "motion") -> list[str]:
+    """Doubts about a recorded motion, of this table: a drift, samples too far apart."""
     if not isinstance(motion, TableMotion):
         return []
     notes = []
@@ -168,16 +191,16 @@ def motion_notes(motion: BaseMotion) -> list[str]:
     last, largest = float(velocity[-1]), float(np.abs(velocity).max())
     if motion.quantity == "acceleration" and abs(last) > DRIFT * largest > 0.0:
         notes.append(
-            f"motion.file: its mean acceleration, {last / np.ptp(motion.times):.3g} m/s2, leaves the floor with "
+            f"{table}.file: its mean acceleration, {last / np.ptp(motion.times):.3g} m/s2, leaves the floor with "
             f'{last:.3g} m/s at the end of the table: it drifts; baseline = "mean" ends it at rest, "linear" at '
             "rest where it began"
         )
     size, change = float(np.sqrt(np.mean(values**2))), float(np.sqrt(np.mean(np.diff(values) ** 2)))
     if change > COARSE * size:
         notes.append(
-            f"motion.file: the acceleration changes by {change / size:.2g} of its own size from one sample to the next "
-            f"({COARSE:.2g} is ten samples a period): the samples, {np.median(np.diff(motion.times)):.3g} s apart, are "
-            "too coarse for this motion; use a record with a shorter sampling interval"
+            f"{table}.file: the acceleration changes by {change / size:.2g} of its own size from one sample to the "
+            f"next ({COARSE:.2g} is ten samples a period): the samples, {np.median(np.diff(motion.times)):.3g} s "
+            "apart, are too coarse for this motion; use a record with a shorter sampling interval"
         )
     return notes
 
@@ -201,7 +224,6 @@ def _plausible(motion: TableMotion, table: Direction) -> TableMotion:
 
 def _build(case: Case, table: Direction) -> BaseMotion:
     motion = case.vertical if table == "vertical" else case.motion
-    scale = 1.0 if "scale" in motion.idle_keys() else motion.scale
 
     def given(key: str) -> Any:
         """A key that the rules of the case file require for this kind of motion."""
@@ -215,17 +237,17 @@ def _build(case: Case, table: Direction) -> BaseMotion:
             return NoMotion()
         case "harmonic":
             return HarmonicMotion(
-                amplitude=abs(scale) * motion.amplitude,
+                amplitude=motion.amplitude,
                 angular_frequency=motion.angular_frequency,
                 duration=longest_time(case),
-                phase=motion.phase_rad + (0.0 if scale > 0.0 else math.pi),
+                phase=motion.phase_rad + (math.pi if motion.factor < 0.0 else 0.0),
                 ramp_cycles=motion.ramp_cycles,
                 cycles=motion.cycles,
             )
         case "pulse":
             return PulseMotion(
                 shape=given("shape"),
-                acceleration=scale * given("peak_acceleration_m_s2"),
+                acceleration=motion.factor * given("peak_acceleration_m_s2"),
                 pulse=given("pulse_s"),
                 delay=motion.delay_s,
             )

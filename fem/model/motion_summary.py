@@ -1,12 +1,14 @@
-"""The floor's motion of a run in numbers: length, samples, peaks, and how much of it the run covers.
+"""The floor's motions of a run in numbers: length, samples, peaks, and how much of it the run covers.
 
 Peaks are those of the whole motion used, after its scale and baseline; a run that ends before the motion does not reach
 them all. No kernel is loaded here, so that `check` stays quick where the keys alone determine the motion.
 """
 
 import math
+from dataclasses import replace
 
 from fem.case.case import Case
+from fem.case.motion_tables import FloorMotionTable
 from fem.case.rules import longest_time
 from fem.results.run_result import MotionResult
 
@@ -19,21 +21,29 @@ PULSE_ENDS = {
 
 
 def summary_from_keys(case: Case) -> MotionResult | None:
-    """The motion's numbers where the keys alone determine them.
+    """The numbers of both motions where the keys alone determine them; else None."""
+    found = numbers_from_keys(case.motion, longest_time(case))
+    if found is None or not case.has_vertical:
+        return found
+    vertical = numbers_from_keys(case.vertical, longest_time(case))
+    return None if vertical is None else replace(found, vertical=vertical)
+
+
+def numbers_from_keys(motion: FloorMotionTable, duration: float) -> MotionResult | None:
+    """The numbers of one motion, for a run of at most this duration [s].
 
     None where the motion must be evaluated: a table, ramps, a run that ends before the peaks, or before the motion.
     """
-    motion, duration = case.motion, longest_time(case)
+    peak = motion.nominal_peak or 0.0
     if motion.kind == "none":
         return MotionResult(kind="none", peak_acceleration_m_s2=0.0, peak_in_run_m_s2=0.0)
     if motion.kind == "harmonic":
         if motion.ramp_cycles > 0.0 or motion.cycles is not None or duration < motion.period:
             return None
-        amplitude, rate = case.amplitude, case.angular_frequency
-        peak = case.nominal_peak_acceleration
-        return _covered("harmonic", duration, (peak or 0.0, amplitude * rate, amplitude))
+        amplitude, rate = motion.amplitude, motion.angular_frequency
+        return _covered("harmonic", duration, (peak, amplitude * rate, amplitude))
     if motion.kind == "pulse" and motion.shape is not None and motion.pulse_s is not None:
-        end, peak = motion.delay_s + motion.pulse_s, case.nominal_peak_acceleration or 0.0
+        end = motion.delay_s + motion.pulse_s
         velocity, displacement = PULSE_ENDS[motion.shape]
         if duration < end:
             return None

@@ -6,7 +6,8 @@ method of EN 1998-1:2004, 4.3.3.2. The container stands on z = 0, its mass centr
 the middle of the base; weights, forces and moments are magnitudes. Angles are measured from the vertical:
 the `slenderness_angle` is the complement of the paper's alpha.
 
-A static rule may be compared with a run only under the floor acceleration of that run (`own_motion`).
+A static rule may be compared with a run only under the floor acceleration of that run (`own_motion`). Where the floor
+moves up and down as well, the same rule with the least weight m (g - a_v) stands beside it (`own_motion_vertical`).
 The design base shear of the code (`code`, and `code_q1` with behaviour factor 1) is the amplified and
 reduced response of an elastic building: another question, in rows of its own, where a case gives [static].
 """
@@ -91,6 +92,7 @@ class ActionCheck:
 
     sliding: CheckResult  #: base shear against static friction [N]
     overturning: CheckResult  #: tilting against restoring moment [Nm]
+    least_weight: float | None = None  #: in place of the weight, under a vertical motion [N]
 
     def to_result(self) -> ActionResult:
         """Demands and utilisations; a utilisation without capacity is None."""
@@ -99,6 +101,7 @@ class ActionCheck:
             tilting_moment_Nm=self.overturning.demand,
             utilisation_sliding=_finite(self.sliding.utilisation),
             utilisation_overturning=_finite(self.overturning.utilisation),
+            least_weight_N=self.least_weight,
         )
 
 
@@ -146,6 +149,9 @@ class StaticChecks:
     #: about the new corner is kept, Housner (1963). Negative for a squat block: it would not rise on the other corner
     housner_restitution: float
     own_motion: ActionCheck  #: under the peak floor acceleration of this run
+    #: the same, with the weight m (g - a_v) under the largest vertical acceleration; None where there is none
+    own_motion_vertical: ActionCheck | None
+    peak_vertical_acceleration: float | None  #: of the floor in this run [m/s2]
     by_code: CodeChecks | None  #: None where the case has no [static]
 
     @property
@@ -156,12 +162,18 @@ class StaticChecks:
         return self.by_code.as_given
 
     @property
+    def ruling(self) -> ActionCheck:
+        """What a run is compared with: the rule that takes its vertical motion into account, where it has one."""
+        return self.own_motion_vertical or self.own_motion
+
+    @property
     def housner_credible(self) -> bool:
         """Whether the impact model of the rigid block is credible: a restitution of at least 0.5."""
         return self.housner_restitution >= CREDIBLE_RESTITUTION
 
     def to_result(self) -> StaticResult:
         """The checks as the result of a run holds them."""
+        upward = self.own_motion_vertical
         found = StaticResult(
             weight_N=self.weight,
             centroid_m=self.centroid,
@@ -177,6 +189,7 @@ class StaticChecks:
             housner_restitution=self.housner_restitution,
             housner_credible=self.housner_credible,
             own_motion=self.own_motion.to_result(),
+            own_motion_vertical=None if upward is None else upward.to_result(),
         )
         return found if self.by_code is None else self.by_code.added_to(found)
 
@@ -191,6 +204,7 @@ def static_checks(
     mu_static: float,
     mu_kinetic: float,
     peak_floor_acceleration: float,
+    peak_vertical_acceleration: float | None = None,
     code: StaticTable | None = None,
     initial_rotation: float = 0.0,
 ) -> StaticChecks:
@@ -204,6 +218,7 @@ def static_checks(
         gravity: g [m/s2].
         mu_static, mu_kinetic: coefficients of friction [-].
         peak_floor_acceleration: largest |acceleration| of the floor in this run [m/s2].
+        peak_vertical_acceleration: .. up or down; None: the floor does not move so.
         code: values of the lateral force method; None: it is left out.
         initial_rotation: phi_0 of Eq. (2) [rad]; where it is 0, half the slenderness angle is taken, as an
             ordinary rotation of a rocking container.
@@ -217,11 +232,17 @@ def static_checks(
     friction, restoring = mu_static * weight, weight * 0.5 * width
     period = period_eq3(radius=arm, gravity=gravity)
 
-    def under(base_shear: float) -> ActionCheck:
+    def under(base_shear: float, least_weight: float | None = None) -> ActionCheck:
         moment = base_shear * centroid  # paper, Eq. (9)
+        share = 1.0 if least_weight is None else least_weight / weight
         return ActionCheck(
-            sliding=CheckResult(demand=base_shear, capacity=friction, unit="N", clause=CLAUSE_SLIDING),
-            overturning=CheckResult(demand=moment, capacity=restoring, unit="Nm", clause=CLAUSE_OVERTURNING),
+            sliding=CheckResult(
+                demand=base_shear, capacity=share * friction, unit="N", clause=CLAUSE_SLIDING
+            ),
+            overturning=CheckResult(
+                demand=moment, capacity=share * restoring, unit="Nm", clause=CLAUSE_OVERTURNING
+            ),
+            least_weight=least_weight,
         )
 
     def under_code(values: StaticTable, q: float) -> ActionCheck:
@@ -261,12 +282,21 @@ def static_checks(
         uplift_acceleration=gravity * math.tan(angle),
         housner_restitution=1.0 - mass * arm**2 / about_corner * (1.0 - math.cos(2.0 * angle)),
         own_motion=under(mass * peak_floor_acceleration),
+        own_motion_vertical=None
+        if peak_vertical_acceleration is None
+        else under(mass * peak_floor_acceleration, mass * max(gravity - peak_vertical_acceleration, 0.0)),
+        peak_vertical_acceleration=peak_vertical_acceleration,
         by_code=None if code is None else code_checks(code),
     )
 
 
-def static_checks_of(case: Case, mesh: ContainerMesh, peak_floor_acceleration: float) -> StaticChecks:
-    """Static checks of a case's container on its mesh, under the peak acceleration of its own floor [m/s2]."""
+def static_checks_of(
+    case: Case,
+    mesh: ContainerMesh,
+    peak_floor_acceleration: float,
+    peak_vertical_acceleration: float | None = None,
+) -> StaticChecks:
+    """Static checks of a case's container on its mesh, under the peak accelerations of its own floor [m/s2]."""
     return static_checks(
         mass=mesh.mass,
         centroid=mesh.centroid[1],
@@ -276,6 +306,7 @@ def static_checks_of(case: Case, mesh: ContainerMesh, peak_floor_acceleration: f
         mu_static=case.contact.mu_static,
         mu_kinetic=case.contact.mu_kinetic,
         peak_floor_acceleration=peak_floor_acceleration,
+        peak_vertical_acceleration=peak_vertical_acceleration,
         code=case.static,
         initial_rotation=case.initial.rotation_rad,
     )

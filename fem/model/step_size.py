@@ -47,7 +47,7 @@ def largest_step_of(case: Case, static: StaticChecks, *motions: BaseMotion) -> t
     A pulse or record much shorter than the run sets small steps only while it lasts, by closely spaced instants.
 
     Raises:
-        CaseError: a given step that is too long for the motion.
+        CaseError: a given step that is too long for a motion.
     """
     solver, output, duration = case.solver, case.output, longest_run(case, *motions)
     largest, ends = STEP_OF_ROCKING / static.frequency_parameter, set[float]()

@@ -75,7 +75,7 @@ class Captions:
         self.lines = self._write("", SIDE, height - 41, size=17, align="top")
         self.symbols = self._write("", width - SIDE, 16, size=14, justify="right")
         self._draw_ruler(view)
-        floor = BOTTOM + int(view.depth * view.pixels_per_metre) + 12
+        floor = BOTTOM + int(view.below * view.pixels_per_metre) + 12
         if colours is not None:
             tall = min(BAR_SIZE[1], int(0.6 * (height - floor)))
             self._draw_stress_bar(colours, stress_limit, view, floor, tall)

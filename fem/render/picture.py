@@ -23,8 +23,10 @@ from fem.render.scene import (
     hatches_of,
     mark_of,
     outline_of,
+    slab_of,
     spatial,
     summarise_frames,
+    surface_of,
 )
 from fem.results.errors import FolderError
 from fem.results.fields import Frame
@@ -59,9 +61,11 @@ class Scene:
         self._plotter.enable_anti_aliasing("msaa", multi_samples=SMOOTH)
         self._body, self._outline = body_of(first), outline_of(first, run.case.container.boxes)
         self._arrows = arrows(len(self._pressed))
-        on_floor = hatches_of(self.view), mark_of(self.view)
-        self._on_floor = [(mesh, mesh.points.copy()) for mesh in on_floor]
-        colours = self._add_meshes(*on_floor)
+        moving = hatches_of(self.view), mark_of(self.view)
+        rising = slab_of(self.view), surface_of(self.view)  # they reach across the picture
+        self._on_floor = [(mesh, mesh.points.copy(), 1.0) for mesh in moving]
+        self._on_floor += [(mesh, mesh.points.copy(), 0.0) for mesh in rising]
+        colours = self._add_meshes(*moving, *rising)
         self._captions = Captions(self._plotter, self.view, colours, self._stress_limit)
         self._set_camera()
 
@@ -72,8 +76,8 @@ class Scene:
         self._outline.points = places + np.array([0.0, 0.0, 0.5])  # before the body
         if self._stress_limit > 0.0 and frame.von_mises is not None:
             self._body.point_data["stress"] = 1e-6 * frame.von_mises
-        for mesh, resting in self._on_floor:
-            mesh.points = resting + np.array([frame.floor_displacement, 0.0, 0.0])
+        for mesh, resting, follows in self._on_floor:
+            mesh.points = resting + np.array([follows * frame.floor_displacement, frame.floor_lift, 0.0])
         self._arrows.points = arrow_points(
             places[self._pressed],
             frame.contact_pressure[self._pressed] / self._usual_pressure,
@@ -88,15 +92,19 @@ class Scene:
         """Release the renderer."""
         self._plotter.close()
 
-    def _add_meshes(self, hatches: pyvista.PolyData, mark: pyvista.PolyData) -> Any:
+    def _add_meshes(
+        self,
+        hatches: pyvista.PolyData,
+        mark: pyvista.PolyData,
+        slab: pyvista.PolyData,
+        surface: pyvista.PolyData,
+    ) -> Any:
         """Add all meshes, back to front; return the mapper of the stresses, if any."""
         plotter = self._plotter
-        left, right, low, _ = self.view.edges
-        slab = np.array([[left, low, -3], [right, low, -3], [right, 0, -3], [left, 0, -3]], dtype=float)
-        plotter.add_mesh(pyvista.PolyData(slab, [4, 0, 1, 2, 3]), color=SLAB, lighting=False)
+        plotter.add_mesh(slab, color=SLAB, lighting=False)
         plotter.add_mesh(hatches, color=HATCH, line_width=1.5, lighting=False)
         plotter.add_mesh(mark, color=MARK, lighting=False)
-        plotter.add_lines(np.array([[left, 0, -2], [right, 0, -2]], dtype=float), color=EDGE, width=2)
+        plotter.add_mesh(surface, color=EDGE, line_width=2, lighting=False)
         colours = None
         if self._stress_limit > 0.0:
             self._body.point_data["stress"] = np.zeros(self._body.n_points)

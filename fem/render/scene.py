@@ -32,17 +32,23 @@ class View:
     top: float
     depth: float  #: of the slab [m]
     floor: tuple[float, float]  #: range of the floor's displacement [m]
+    lowest: float = 0.0  #: place of the floor that moves down, at most 0 [m]
+
+    @property
+    def below(self) -> float:
+        """What lies below the place of the floor at rest [m]."""
+        return self.depth - self.lowest
 
     @property
     def pixels_per_metre(self) -> float:
         """Scale of the picture."""
-        return min(CONTENT[0] / (self.right - self.left), CONTENT[1] / (self.top + self.depth))
+        return min(CONTENT[0] / (self.right - self.left), CONTENT[1] / (self.top + self.below))
 
     @property
     def size(self) -> tuple[int, int]:
         """Width and height of the picture, even, as video wants them [pixels]."""
         width = (self.right - self.left) * self.pixels_per_metre + 2 * SIDE + BAR
-        height = (self.top + self.depth) * self.pixels_per_metre + TOP + BOTTOM
+        height = (self.top + self.below) * self.pixels_per_metre + TOP + BOTTOM
         return 2 * math.ceil(0.5 * max(width, LEAST_WIDTH)), 2 * math.ceil(0.5 * height)
 
     @property
@@ -51,7 +57,7 @@ class View:
         (width, height), scale = self.size, self.pixels_per_metre
         spare = (width - 2 * SIDE - BAR) / scale - (self.right - self.left)
         left = self.left - 0.5 * spare - SIDE / scale
-        low = -self.depth - BOTTOM / scale
+        low = -self.below - BOTTOM / scale
         return left, left + width / scale, low, low + height / scale
 
 
@@ -69,7 +75,7 @@ def summarise_frames(frames: Iterable[Frame]) -> FrameSummary:
     """Read every frame once, one at a time."""
     lowest, highest = np.full(2, np.inf), np.full(2, -np.inf)
     size, pressed = 0.0, np.zeros(0, dtype=bool)
-    floors, pressures, stresses = [], [], []
+    floors, lifts, pressures, stresses = [], [0.0], [], []
     for frame in frames:
         places = frame.points + frame.displacement
         lowest, highest = np.minimum(lowest, places.min(axis=0)), np.maximum(highest, places.max(axis=0))
@@ -77,6 +83,7 @@ def summarise_frames(frames: Iterable[Frame]) -> FrameSummary:
         carries = frame.contact_pressure > 0.0
         pressed = carries | pressed if len(pressed) else carries
         floors.append(frame.floor_displacement)
+        lifts.append(frame.floor_lift)
         pressures.append(float(frame.contact_pressure.max()))
         if frame.von_mises is not None:
             stresses.append(float(np.quantile(frame.von_mises, STRESSED)))
@@ -87,6 +94,7 @@ def summarise_frames(frames: Iterable[Frame]) -> FrameSummary:
             top=float(highest[1]) + 0.02 * size,
             depth=SLAB_SHARE * size,
             floor=(min(floors), max(floors)),
+            lowest=min(lifts),
         ),
         pressed=np.flatnonzero(pressed),
         usual_pressure=float(np.median([pressure for pressure in pressures if pressure > 0.0] or [1.0])),
@@ -106,6 +114,20 @@ def outline_of(frame: Frame, boxes: int) -> pyvista.PolyData:
     return pyvista.PolyData(
         spatial(frame.points), lines=np.concatenate([[len(line), *line] for line in lines])
     )
+
+
+def slab_of(view: View) -> pyvista.PolyData:
+    """The floor, down to below the picture wherever it moves."""
+    left, right, low, high = view.edges
+    low -= high - low
+    corners = [[left, low, -3.0], [right, low, -3.0], [right, 0.0, -3.0], [left, 0.0, -3.0]]
+    return pyvista.PolyData(np.array(corners), [4, 0, 1, 2, 3])
+
+
+def surface_of(view: View) -> pyvista.PolyData:
+    """The surface of the floor, as a line."""
+    left, right, _, _ = view.edges
+    return pyvista.PolyData(np.array([[left, 0.0, -2.0], [right, 0.0, -2.0]]), lines=[2, 0, 1])
 
 
 def hatches_of(view: View) -> pyvista.PolyData:

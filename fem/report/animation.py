@@ -47,6 +47,8 @@ COLUMNS = {
     "normal": "normal_force_N",
     "shear": "shear_force_N",
 }
+#: .. of a floor that moves up and down
+LIFT = {"lift": "base_vertical_displacement_m"}
 SINGLE_PRECISION = 2.0**-24
 
 
@@ -57,7 +59,7 @@ class AnimationFrame:
     time: float  #: [s]
     centre: FloatArray  #: (2,) mass centre [m]
     rotation: float  #: mass-weighted best fit [rad]
-    floor: float  #: displacement of the floor [m]
+    floor: tuple[float, float]  #: displacement of the floor, along x and upward [m]
     elastic: FloatArray  #: (n, 2) in the frame turning with the container [m]
     von_mises: FloatArray | None  #: (n,) [Pa]; None of a rigid container
     normal_force: FloatArray  #: (n_c,) at the contact nodes, compression positive [N]
@@ -164,7 +166,9 @@ def rigid_and_elastic(elements: FiniteElements, frame: Frame) -> tuple[FloatArra
 def player_data(shown: Animation, history: History, *, model: Model) -> dict[str, Any]:
     """What the script `player.js` reads, of a run with samples."""
     stride = max(1, math.ceil(len(history) / MOST_SAMPLES))
-    columns = {name: history[column][::stride] for name, column in COLUMNS.items()}
+    names = COLUMNS | (LIFT if history.vertical else {})
+    columns = {name: history[column][::stride] for name, column in names.items()}
+    journey = max(float(np.ptp(columns[name])) for name in ("base", "lift") if name in columns)
     modes = sorted(set(history.modes))
     mesh, angle, scale = model.container.mesh, model.static.slenderness_angle, shown.stress_scale
     wide = len(shown.points) >= 65536
@@ -183,7 +187,7 @@ def player_data(shown: Animation, history: History, *, model: Model) -> dict[str
         "width": mesh.width,
         "height": mesh.height,
         "centroid": shown.centroid.tolist(),
-        "follow": float(np.ptp(columns["base"])) > WIDE_JOURNEY * mesh.width,
+        "follow": journey > WIDE_JOURNEY * mesh.width,
         "points": packed_floats(shown.points.ravel()),
         "quads": packed(shown.quads.ravel(), index),
         "edges": packed(shown.edges.ravel(), index),
@@ -248,7 +252,7 @@ def _frame(model: Model, frame: Frame, drawn: IntArray, contact: IntArray) -> An
         time=frame.time,
         centre=centre,
         rotation=rotation,
-        floor=frame.floor_displacement,
+        floor=(frame.floor_displacement, frame.floor_lift),
         elastic=elastic[drawn],
         von_mises=None if frame.von_mises is None else np.asarray(frame.von_mises, dtype=float)[drawn],
         normal_force=np.asarray(frame.contact_pressure, dtype=float)[contact] * area,

@@ -7,6 +7,7 @@ from markupsafe import Markup
 
 from fem.assessment.summary import own_motion_name, rule_says, run_slid, run_tilted
 from fem.case.case import Case
+from fem.case.motion_tables import FloorMotionTable
 from fem.html.units import degrees, number, quantity, short, typeset
 from fem.model.static_checks import StaticChecks
 from fem.results.run_result import Numerics, RunResult, Verdict
@@ -31,6 +32,10 @@ class Compared(NamedTuple):
 def compared_rows(static: StaticChecks, verdict: Verdict, case: Case) -> list[Compared]:
     """Sliding and overturning under the run's own peak, then under the code's base shear."""
     actions = [(static.own_motion, typeset(own_motion_name(static.to_result())))]
+    if static.own_motion_vertical is not None:
+        peak = quantity(static.peak_vertical_acceleration, "m/s²", figures=3)
+        actions.append((static.own_motion_vertical, f"own peak, and {peak} vertical"))
+    own = [action for action, _ in actions]
     if (code := static.by_code) is not None:
         q = code.values.behaviour_factor
         rows = [(code.as_given, f"code, q = {short(q)}"), (code.q1, "code, q = 1")]
@@ -45,7 +50,7 @@ def compared_rows(static: StaticChecks, verdict: Verdict, case: Case) -> list[Co
             exceeded=not rule.passed,
             clause=rule.clause.removeprefix(EDITION).removesuffix(f", {check}"),
             rule=rule_says(check, rule.utilisation if math.isfinite(rule.utilisation) else None),
-            run=typeset(found(verdict)) if action is static.own_motion and verdict.outcome else "",
+            run=typeset(found(verdict)) if action in own and verdict.outcome else "",
         )
         for action, name in actions
         for check, rule, found in (
@@ -79,6 +84,7 @@ def asked_rows(case: Case) -> list[tuple[str, str]]:
         ("support", supports[case.support.kind]),
         ("friction", mu.format(short(contact.mu_static), short(contact.mu_kinetic))),
         ("floor", floor_in_words(case)),
+        *([("floor, vertical", motion_in_words(case.vertical))] if case.has_vertical else []),
         ("start", _start(case)),
         ("model", models[case.solver.model]),
         ("time", f"{_duration(case)}, g = {short(case.gravity_m_s2)} m/s²"),
@@ -104,7 +110,8 @@ def assumptions(case: Case, result: RunResult | None = None) -> list[str]:
         else "regularised in velocity: under load it creeps"
     )
     lines = [
-        "Plane elevation; one horizontal floor motion, the same under the whole base.",
+        f"Plane elevation; one horizontal{' and one vertical' * case.has_vertical} floor motion, the same under the "
+        "whole base.",
         f"Rigid, level floor under a unilateral contact: penalty {spring}, damping ratio "
         f"{short(contact.damping_ratio)}. The penalty is a numerical input, not the stiffness of a concrete slab.",
         f"Coulomb friction, static and kinetic, {law}.",
@@ -128,16 +135,26 @@ def _material(case: Case) -> str:
 
 
 EXCLUSIONS = (
-    "vertical floor motion, torsion, motion out of the plane, wind",
+    "torsion, motion out of the plane, wind",
     "sloshing, plasticity, buckling and bending of the sheets out of their plane",
     "compliance of floor and soil, neighbouring containers, ropes or stops, loose stacking of boxes",
     "partial factors, and further ground motions: EN 1998-1:2004, 3.2.3.1.2 (4) asks for three or more",
 )
 
 
+def exclusions(case: Case) -> tuple[str, ...]:
+    """What a result leaves out."""
+    first, *others = EXCLUSIONS
+    return (first if case.has_vertical else f"vertical floor motion, {first}", *others)
+
+
 def floor_in_words(case: Case) -> str:
-    """How the floor moves."""
-    motion = case.motion
+    """How the floor moves along x."""
+    return motion_in_words(case.motion)
+
+
+def motion_in_words(motion: FloorMotionTable) -> str:
+    """How the floor moves in one direction."""
     match motion.kind:
         case "none":
             return "at rest"
@@ -146,17 +163,18 @@ def floor_in_words(case: Case) -> str:
             words = (
                 f"harmonic, A = {quantity(motion.amplitude, 'mm', 1e3)}, "
                 f"Ω = {short(motion.angular_frequency, 1.0, 5)} rad/s ({quantity(frequency, 'Hz')}), "
-                f"peak {quantity(case.nominal_peak_acceleration, 'm/s²')}"
+                f"peak {quantity(motion.nominal_peak, 'm/s²')}"
             )
             extras = [
                 f"phase {degrees(motion.phase_rad)}" if motion.phase_rad else "",
                 f"ramps of {short(motion.ramp_cycles)} cycles" if motion.ramp_cycles else "",
                 f"{short(motion.cycles)} cycles" if motion.cycles is not None else "",
+                "the other sign" if motion.factor < 0.0 else "",
             ]
             return ", ".join([words, *filter(None, extras)])
         case "pulse":
             return (
-                f"{motion.shape} pulse, {quantity(motion.peak_acceleration_m_s2, 'm/s²')} for "
+                f"{motion.shape} pulse, {quantity(motion.factor * (motion.peak_acceleration_m_s2 or 0.0), 'm/s²')} for "
                 f"{quantity(motion.pulse_s, 's')}, from t = {short(motion.delay_s)} s"
             )
     return (

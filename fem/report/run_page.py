@@ -24,6 +24,7 @@ from fem.assessment.summary import (
     outcome_sentence,
     result_rows,
 )
+from fem.case.case import Case
 from fem.figures.cache import drawings_of
 from fem.html.page import Signature, render_page, svg_element
 from fem.html.units import ABSENT, millimetres, number, quantity, short, typeset
@@ -37,7 +38,7 @@ from fem.report.animation import (
     exaggerations,
     player_data,
 )
-from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions, compared_rows
+from fem.report.comparison import asked_rows, assumptions, compared_rows, exclusions
 from fem.report.sketch import sketch
 from fem.report.static_sheet import static_sheet
 from fem.report.stills import stills
@@ -128,10 +129,11 @@ def _page(
             case,
             centroid=static.centroid,
             peak_acceleration=static.own_motion.sliding.demand * case.gravity_m_s2 / static.weight,
+            peak_vertical=static.peak_vertical_acceleration,
         ),
         asked=asked_rows(case),
         assumptions=assumptions(case, result),
-        exclusions=EXCLUSIONS,
+        exclusions=exclusions(case),
         compared=compared_rows(static, verdict, case),
         sheet=static_sheet(static, case),
         head=_head(verdict),
@@ -145,7 +147,7 @@ def _page(
         stills=stills(
             shown, history, verdict, angle=static.slenderness_angle, width=mesh.width, height=mesh.height
         ),
-        motion=[one for one in motion if one.name != "base_motion" or case.motion.kind != "none"],
+        motion=[one for one in motion if one.name != "base_motion" or _floor_moves(case)],
         drawn=drawn,
         svg_of=lambda drawing: svg_element(drawing.svg, label=drawing.title, prefix=drawing.name),
         check=rigid_check(run, model, history),
@@ -181,6 +183,10 @@ def rigid_check(run: OpenedRun, model: Model, history: History) -> RigidCheckRes
         return check_against_rigid_block(model, history, result.verdict).result
     except (ValueError, EventError) as error:
         return RigidCheckResult(reasons=(str(error),))
+
+
+def _floor_moves(case: Case) -> bool:
+    return case.motion.kind != "none" or case.has_vertical
 
 
 def _head(verdict: Verdict) -> dict[str, str]:

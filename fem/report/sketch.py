@@ -22,13 +22,16 @@ ABOVE, BELOW = 0.3, 1.2  #: room above and below the container [inch]
 BODY = "#E4EBF1"
 
 
-def sketch(case: Case, *, centroid: float, peak_acceleration: float) -> Markup:
+def sketch(
+    case: Case, *, centroid: float, peak_acceleration: float, peak_vertical: float | None = None
+) -> Markup:
     """An `svg` element.
 
     Args:
         case: the case.
         centroid: height of the mass centre above the floor [m].
         peak_acceleration: largest |acceleration| of the floor in the run [m/s2].
+        peak_vertical: .. up or down; None: it does not move so.
     """
     box = case.container
     width, height = box.width_m, box.total_height
@@ -52,7 +55,12 @@ def sketch(case: Case, *, centroid: float, peak_acceleration: float) -> Markup:
             axes.annotate(
                 "", (-10 * unit, -15 * unit), (10 * unit, -15 * unit), arrowprops=_arrow("<|-|>", BLUE)
             )
+        if peak_vertical is not None:
+            place = 15 * unit
+            axes.annotate("", (place, -19 * unit), (place, -11 * unit), arrowprops=_arrow("<|-|>", BLUE))
         words = _motion(case, peak_acceleration)
+        if peak_vertical is not None:
+            words = [*words, f"vertical: {case.vertical.kind}, peak {short(peak_vertical)} m/s²"]
         axes.text(0.0, -17 * unit, "\n".join(words), color=BLUE, ha="center", va="top")
     label = (
         f"Sketch: container {short(width)} m wide and {short(height)} m high, mass centre at {short(centroid)} m, "

@@ -62,6 +62,10 @@ SLIDING = SheetRow(
     *("utilisation, sliding", "F/(μ_s G)", "{F} / ({μ_s:s4} × {G})", "sliding", ""),
     f"{CLAUSE_SLIDING}; capacity {{F_limit}} kN",
 )
+LEAST_WEIGHT = SheetRow(
+    *("least weight, under the vertical motion", "G_v = m (g − a_v)", "{m} × ({g:s4} − {a_v})", "G_v", "kN"),
+    "a_v, largest vertical acceleration of the floor within the run",
+)
 OVERTURNING = SheetRow(
     *("utilisation, overturning", "F z_c/(G a/2)", "{F} × {z_c} / ({G} × {a:s4} / 2)", "overturning", ""),
     f"{CLAUSE_OVERTURNING}; {{M}} kNm against {{M_limit}} kNm",
@@ -140,6 +144,7 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
             [
                 *(_line(row, own) for row in ((AMPLITUDE, shear) if swings else (shear,))),
                 *_utilisations(static.own_motion, own, "F"),
+                *_vertical_lines(static, own),
             ],
         ),
         *([("Design base shear of the code (not compared with the run)", code)] if code else []),
@@ -148,6 +153,16 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
             [*(_line(row, numbers) for row in ROCKING), _line(RESTITUTION, numbers, credible)],
         ),
     ]
+
+
+def _vertical_lines(static: StaticChecks, own: Numbers) -> list[SheetLine]:
+    """The same rule with the least weight, where the floor moves up and down."""
+    action, peak = static.own_motion_vertical, static.peak_vertical_acceleration
+    if action is None or peak is None:
+        return []
+    least = (action.least_weight or 0.0) / 1e3
+    upward = own | _action(action) | {"a_v": _Printed(peak), "G_v": _Printed(least)}
+    return [_line(LEAST_WEIGHT, upward), *_utilisations(action, upward, "F", "G_v")]
 
 
 def _code_lines(code: CodeChecks, numbers: Numbers) -> list[SheetLine]:
@@ -191,11 +206,16 @@ def _action(action: ActionCheck) -> Numbers:
     }
 
 
-def _utilisations(action: ActionCheck, numbers: Numbers, force: str) -> list[SheetLine]:
-    """Sliding, where there is friction, and overturning; `force` is the symbol of the base shear."""
+def _utilisations(action: ActionCheck, numbers: Numbers, force: str, weight: str = "G") -> list[SheetLine]:
+    """Sliding, where there is friction, and overturning; `force` is the symbol of the base shear, `weight` its own."""
     return [
         _line(
-            row._replace(formula=row.formula.replace("F", force)), numbers, rule_says(check, rule.utilisation)
+            row._replace(
+                formula=row.formula.replace("F", force).replace("G", weight),
+                numbers=row.numbers.replace("{G}", f"{{{weight}}}"),
+            ),
+            numbers,
+            rule_says(check, rule.utilisation),
         )
         for row, check, rule in (
             (SLIDING, "sliding", action.sliding),

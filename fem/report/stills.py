@@ -88,7 +88,7 @@ def _placed(shown: Animation, frame: AnimationFrame, factor: float) -> FloatArra
     held = np.average(frame.elastic[shown.contact], axis=0, weights=weight) if factor else np.zeros(2)
     arm = shown.points + factor * frame.elastic - (factor - 1.0) * held if factor else shown.points
     cosine, sine = math.cos(frame.rotation), math.sin(frame.rotation)
-    placed: FloatArray = frame.centre - [frame.floor, 0.0] + arm @ np.array([[cosine, -sine], [sine, cosine]])
+    placed: FloatArray = frame.centre - frame.floor + arm @ np.array([[cosine, -sine], [sine, cosine]])
     return placed
 
 

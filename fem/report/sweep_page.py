@@ -24,7 +24,7 @@ from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html.page import Signature, render_page, svg_element
 from fem.html.units import ABSENT, millimetres, number, short, typeset
 from fem.report.animation import colour_scale, packed
-from fem.report.comparison import EXCLUSIONS, asked_rows, assumptions
+from fem.report.comparison import asked_rows, assumptions, exclusions
 from fem.results.errors import FolderError
 from fem.sweep.answers import SweepAnswer, sweep_answer
 from fem.sweep.table import SweepTable, open_sweep
@@ -100,7 +100,7 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
         thresholds=_thresholds(folder / "thresholds.csv"),
         maps=_maps(folder, info.get("maps") or []),
         assumptions=assumptions(case),
-        exclusions=EXCLUSIONS,
+        exclusions=exclusions(case),
         version=metadata.version("unanchored"),
         today=dt.date.today().isoformat(),
         number=number,

@@ -91,6 +91,7 @@ class FieldWriter:
         von_mises: FloatArray | None,
         contact_pressure: FloatArray,
         floor_displacement: float,
+        floor_lift: float = 0.0,
     ) -> Path:
         """Write a frame and list it.
 
@@ -100,13 +101,13 @@ class FieldWriter:
             velocity: absolute, shape (n, 2) [m/s].
             von_mises: at the nodes, shape (n,) [Pa]; None leaves the array out.
             contact_pressure: compression positive, zero off the base, shape (n,) [Pa].
-            floor_displacement: along x [m].
+            floor_displacement, floor_lift: of the floor, along x and upward [m].
 
         Returns:
             The file of the frame.
         """
         floor = np.zeros_like(self._points)
-        floor[:, 0] = floor_displacement
+        floor[:, :2] = floor_displacement, floor_lift
         stress = {} if von_mises is None else {"von_mises_Pa": von_mises.astype(np.float32)}
         mesh = meshio.Mesh(
             self._points,
@@ -159,7 +160,8 @@ class Frame:
     velocity: FloatArray  #: shape (n, 2) [m/s]
     von_mises: FloatArray | None  #: shape (n,) [Pa]; None for a rigid container
     contact_pressure: FloatArray  #: shape (n,) [Pa]
-    floor_displacement: float  #: [m]
+    floor_displacement: float  #: along x [m]
+    floor_lift: float = 0.0  #: upward [m]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -207,6 +209,7 @@ class Fields:
                 von_mises=data.get("von_mises_Pa"),
                 contact_pressure=data["contact_pressure_Pa"],
                 floor_displacement=float(data["floor_displacement_m"][0, 0]),
+                floor_lift=float(data["floor_displacement_m"][0, 1]),
             )
         # A parser of broken files fails in every way there is.
         except (Exception, SystemExit) as error:

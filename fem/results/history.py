@@ -3,7 +3,8 @@
 SI units, named in the columns; x positive to the right, z up, rotation positive toward +x, forces on the container.
 Numbers are written so that reading them gives the same bits (shortest exact decimal form).
 
-A stack has three further columns for every joint between its boxes (`fem.model.joints`), counted from the floor up.
+A floor that moves up and down has three further columns, positive upward. A stack has three for every joint between its
+boxes (`fem.model.joints`), counted from the floor up.
 A run that was compared with the rigid block (`fem.assessment.rigid_check`) has the block's rotation as its last
 column, nan where it is not followed. A kill during a write may leave the last line without its end.
 """
@@ -21,7 +22,7 @@ import numpy as np
 from fem.results.files import write_atomically
 from fem.runtime.arrays import FloatArray
 
-#: Columns of `history.csv`, in a stack followed by those of its joints; `mode` is a word, all others are numbers.
+#: Columns of `history.csv`, followed by those of `history_columns`; `mode` is a word, all others are numbers.
 #: The last four are sums since the start: work of the floor on the container, and energy dissipated.
 HISTORY_COLUMNS = (
     "time_s",
@@ -48,24 +49,32 @@ HISTORY_COLUMNS = (
 )
 MODE = HISTORY_COLUMNS.index("mode")  #: column of the word
 NUMBERS = len(HISTORY_COLUMNS) - 1
+#: Columns of a floor that moves up and down.
+VERTICAL_COLUMNS = (
+    "base_vertical_displacement_m",
+    "base_vertical_velocity_m_s",
+    "base_vertical_acceleration_m_s2",
+)
 #: Columns of one joint.
 JOINT_COLUMNS = ("joint_{}_normal_N", "joint_{}_shear_N", "joint_{}_moment_Nm")
 #: Rotation of the analytic rigid block under the same floor motion.
 ANALYTIC_COLUMN = "analytic_rotation_rad"
 
 
-def history_columns(joints: int = 0, *, analytic: bool = False) -> tuple[str, ...]:
-    """Columns of the history of a container with this number of joints, compared with the rigid block or not."""
+def history_columns(joints: int = 0, *, vertical: bool = False, analytic: bool = False) -> tuple[str, ...]:
+    """Columns of a history: so many joints, on a floor that moves up and down, compared with the rigid block."""
     of_joints = (name.format(joint) for joint in range(1, joints + 1) for name in JOINT_COLUMNS)
-    return HISTORY_COLUMNS + tuple(of_joints) + ((ANALYTIC_COLUMN,) if analytic else ())
+    upward = VERTICAL_COLUMNS if vertical else ()
+    return HISTORY_COLUMNS + upward + tuple(of_joints) + ((ANALYTIC_COLUMN,) if analytic else ())
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class History:
     """Samples of a run, in the order of `history_columns` without `mode`."""
 
-    values: FloatArray  #: shape (n_samples, 20 + 3 joints (+ 1)), units as in the columns' names
+    values: FloatArray  #: shape (n_samples, 20 (+ 3) + 3 joints (+ 1)), units as in the columns' names
     modes: tuple[str, ...]  #: state of motion at each sample, length n_samples
+    vertical: bool = False  #: the floor moves up and down, and three columns say how
 
     @classmethod
     def empty(cls) -> Self:
@@ -75,14 +84,14 @@ class History:
     @property
     def joints(self) -> int:
         """Joints between boxes."""
-        return (self.values.shape[1] - NUMBERS) // len(JOINT_COLUMNS)
+        return (self.values.shape[1] - NUMBERS) // len(JOINT_COLUMNS) - self.vertical
 
     @property
     def numbers(self) -> tuple[str, ...]:
         """Names of the columns of numbers, in the order of `values`."""
-        columns = len(HISTORY_COLUMNS) + self.joints * len(JOINT_COLUMNS)
-        analytic = self.values.shape[1] == columns
-        return tuple(name for name in history_columns(self.joints, analytic=analytic) if name != "mode")
+        columns = history_columns(self.joints, vertical=self.vertical)
+        columns += (ANALYTIC_COLUMN,) if self.values.shape[1] == len(columns) else ()
+        return tuple(name for name in columns if name != "mode")
 
     def __len__(self) -> int:
         return len(self.modes)
@@ -108,18 +117,20 @@ class HistoryWriter:
     Args:
         path: the file; replaced unless `position` is given.
         position: length of the file to resume from (`position` of its writer); what follows is cut off.
-        joints: between the boxes of the container, for the header.
+        joints, vertical: of the history, for the header.
 
     Raises:
         ValueError: a position beyond the end of the file.
         OSError: the file cannot be made or written.
     """
 
-    def __init__(self, path: Path, *, position: int | None = None, joints: int = 0) -> None:
+    def __init__(
+        self, path: Path, *, position: int | None = None, joints: int = 0, vertical: bool = False
+    ) -> None:
         self.path = path
         self._digest = hashlib.sha256()
         if position is None:
-            header = ",".join(history_columns(joints)) + "\n"
+            header = ",".join(history_columns(joints, vertical=vertical)) + "\n"
             write_atomically(path, header)
             position = len(header)
         if not path.is_file() or path.stat().st_size < position:
@@ -145,7 +156,7 @@ class HistoryWriter:
         os.fsync(self._file.fileno())
 
     def append(self, rows: FloatArray, modes: Sequence[str]) -> None:
-        """Write samples: rows of numbers, shape (n, 20 + 3 joints), and their modes, length n."""
+        """Write samples: rows of numbers, in the columns of the header without `mode`, and their modes, length n."""
         for row, mode in zip(rows.tolist(), modes, strict=True):
             words = [repr(number) for number in row]
             self._write(",".join([*words[:MODE], mode, *words[MODE:]]) + "\n")
@@ -184,8 +195,10 @@ def read_history(path: Path) -> History:
     """
     lines = _whole_lines(path)
     columns = tuple(lines[0].split(",")) if lines else ()
-    joints = (len(columns) - len(HISTORY_COLUMNS)) // len(JOINT_COLUMNS)
-    if columns != history_columns(joints, analytic=columns[-1:] == (ANALYTIC_COLUMN,)):
+    vertical = VERTICAL_COLUMNS[0] in columns
+    joints = (len(columns) - len(HISTORY_COLUMNS)) // len(JOINT_COLUMNS) - vertical
+    analytic = columns[-1:] == (ANALYTIC_COLUMN,)
+    if columns != history_columns(joints, vertical=vertical, analytic=analytic):
         raise ValueError(f"{path}: not a history; its first line must be {','.join(HISTORY_COLUMNS)} ..")
     numbers = len(columns) - 1
     values, modes = np.empty((len(lines) - 1, numbers)), []
@@ -197,7 +210,7 @@ def read_history(path: Path) -> History:
         except ValueError:
             raise ValueError(f"{path}, line {number + 2}: {numbers} numbers and a mode are needed") from None
         modes.append(mode)
-    return History(values=values, modes=tuple(modes))
+    return History(values=values, modes=tuple(modes), vertical=vertical)
 
 
 def add_analytic_rotation(path: Path, rotation: FloatArray) -> None:

@@ -9,11 +9,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from functools import cache
 from types import UnionType
-from typing import Any, Self, get_args, get_origin, get_type_hints
+from typing import Any, ClassVar, Self, get_args, get_origin, get_type_hints
 
 
 class JsonBlock:
     """A dataclass that is written as a JSON object, with its fields as keys."""
+
+    #: keys that are left out where they are None, in place of null
+    written_where_given: ClassVar[frozenset[str]] = frozenset()
 
     @classmethod
     def from_json(cls, block: Mapping[str, Any]) -> Self:
@@ -32,7 +35,9 @@ class JsonBlock:
 
     def to_json(self) -> dict[str, Any]:
         """The block as JSON types, its keys in the order of the fields."""
-        return {one.name: _plain(getattr(self, one.name)) for one in fields(self)}  # type: ignore[arg-type]
+        block = {one.name: _plain(getattr(self, one.name)) for one in fields(self)}  # type: ignore[arg-type]
+        idle = {key for key in self.written_where_given if block[key] is None}
+        return {key: value for key, value in block.items() if key not in idle}
 
 
 def _plain(value: Any) -> Any:
@@ -44,7 +49,8 @@ def _plain(value: Any) -> Any:
 @cache
 def _readers(kind: type[JsonBlock]) -> dict[str, Callable[[Any], Any]]:
     """For each field, what makes its value from JSON types."""
-    return {name: _reader(hint) for name, hint in get_type_hints(kind).items()}
+    hints = get_type_hints(kind)
+    return {one.name: _reader(hints[one.name]) for one in fields(kind)}  # type: ignore[arg-type]
 
 
 def _reader(hint: Any) -> Callable[[Any], Any]:
@@ -66,6 +72,9 @@ class ActionResult(JsonBlock):
     tilting_moment_Nm: float | None = None
     utilisation_sliding: float | None = None  #: demand over capacity; None without capacity
     utilisation_overturning: float | None = None
+    least_weight_N: float | None = None  #: m (g - a_v), where the rule has it in place of the weight
+
+    written_where_given = frozenset({"least_weight_N"})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,12 +106,21 @@ class StaticResult(JsonBlock):
     housner_restitution: float | None = None
     housner_credible: bool | None = None  #: a restitution of at least 0.5
     own_motion: ActionResult | None = None  #: peak floor acceleration of this run
+    #: the same with g less the largest vertical acceleration; left out where the floor does not move up and down
+    own_motion_vertical: ActionResult | None = None
     code: ActionResult | None = None  #: behaviour factor as given; None without [static], as all that follows
     code_q1: ActionResult | None = None  #: behaviour factor 1
     method_applicable: bool | None = None  #: the lateral force method
     clause: str | None = None
     period_limit_s: float | None = None  #: up to which the method applies
     code_values: CodeValues | None = None
+
+    written_where_given = frozenset({"own_motion_vertical"})
+
+    @property
+    def ruling(self) -> ActionResult:
+        """The rows that a run is compared with: those that take the vertical motion into account, where it has one."""
+        return self.own_motion_vertical or self.own_motion or ActionResult()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,6 +138,9 @@ class MotionResult(JsonBlock):
     peak_displacement_m: float | None = None
     covered: float | None = None  #: share of the motion's time within the run
     peak_in_run_m_s2: float | None = None  #: largest acceleration within the run
+    vertical: "MotionResult | None" = None  #: the same of the vertical motion; left out where there is none
+
+    written_where_given = frozenset({"vertical"})
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -26,7 +26,6 @@ from fem.model.model import Model, build_model
 from fem.model.recovery import Recovery, recovery_of
 from fem.model.validity import runs_in_memory
 from fem.results.run_result import (
-    ActionResult,
     BandMember,
     JointDemand,
     Numerics,
@@ -93,7 +92,7 @@ def rests_far_below_limits(result: RunResult) -> bool:
 def plan_of(model: Model, result: RunResult) -> Plan:
     """The members of a band, those that decide most often first."""
     case, penalty = model.case, model.penalty
-    own = (result.static or StaticResult()).own_motion or ActionResult()
+    own = (result.static or StaticResult()).ruling
     low, high = BELOW_UPLIFT
     soft = case.support.kind != "corners" and low <= (own.utilisation_overturning or 0.0) <= high
     floor = (stiff_floor(penalty),) if soft else ()

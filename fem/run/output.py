@@ -122,12 +122,17 @@ class RunOutput:
 @contextmanager
 def open_output(files: RunFiles, model: Model, start: Start) -> Iterator[RunOutput]:
     """Open the files of a run, and put its model where it starts."""
-    joints, elements, fields = model.case.container.boxes - 1, model.container.elements, None
+    case, elements, fields = model.case, model.container.elements, None
     with ExitStack() as stack:
         history = stack.enter_context(
-            HistoryWriter(files.history, position=start.history_bytes, joints=joints)
+            HistoryWriter(
+                files.history,
+                position=start.history_bytes,
+                joints=case.container.boxes - 1,
+                vertical=case.has_vertical,
+            )
         )
-        if model.case.output.fields_s > 0.0:
+        if case.output.fields_s > 0.0:
             fields = FieldWriter(
                 files.fields,
                 points=elements.nodes,

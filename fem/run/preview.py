@@ -33,10 +33,15 @@ class Preview:
         """Largest |acceleration| that the floor reaches in the run [m/s2]."""
         return self.motion.peak_in_run_m_s2 or 0.0
 
+    @property
+    def vertical_peak(self) -> float | None:
+        """.. up or down; None where it does not move so."""
+        return None if self.motion.vertical is None else self.motion.vertical.peak_in_run_m_s2
+
     @cached_property
     def static(self) -> StaticChecks:
         """Static checks of the container under its own motion."""
-        return static_checks_of(self.case, self.mesh, self.peak)
+        return static_checks_of(self.case, self.mesh, self.peak, self.vertical_peak)
 
     @property
     def derived(self) -> dict[str, float | None]:
@@ -130,7 +135,7 @@ class Preview:
                 f'start = "rest": the floor begins with a jerk of {kick:.3g} m/s',
             ),
             (
-                self.peak >= static.uplift_acceleration and static.own_motion.sliding.passed,
+                static.ruling.overturning.utilisation >= 1.0 and static.ruling.sliding.passed,
                 "the floor reaches the acceleration of uplift, and friction holds until then: expect rocking",
             ),
         ]

@@ -16,7 +16,7 @@ from fem.assessment.verdict import MODE_NAMES
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model
 from fem.model.recovery import Recovery
-from fem.results.history import JOINT_COLUMNS, NUMBERS, History
+from fem.results.history import JOINT_COLUMNS, NUMBERS, VERTICAL_COLUMNS, History
 from fem.runtime.arrays import FloatArray
 
 #: the stepper's columns in the order of a history's, behind time and base motion
@@ -55,7 +55,7 @@ class Recorder:
     Args:
         model: what is stepped.
         recovery: of its fields; None leaves fields and stresses out.
-        history_sink: called with new rows (k, 20 + 3 joints) and their modes.
+        history_sink: called with new rows, as a history has them, and their modes.
         frame_sink: called with every frame.
         joints: of its container, where they are built already.
     """
@@ -99,8 +99,17 @@ class Recorder:
 
     def history(self) -> History:
         """Everything sampled so far."""
-        empty = np.zeros((0, NUMBERS + self._joint_forces.size))
-        return History(values=np.concatenate([empty, *self._rows]), modes=tuple(self._modes))
+        empty = np.zeros((0, self._columns))
+        return History(
+            values=np.concatenate([empty, *self._rows]),
+            modes=tuple(self._modes),
+            vertical=self._model.case.has_vertical,
+        )
+
+    @property
+    def _columns(self) -> int:
+        vertical = len(VERTICAL_COLUMNS) if self._model.case.has_vertical else 0
+        return NUMBERS + vertical + self._joint_forces.size
 
     def memory(self) -> dict[str, FloatArray]:
         """State of the recorder on which the next samples depend, by name."""
@@ -132,11 +141,13 @@ class Recorder:
         if count == 0:
             return
         times: FloatArray = np.arange(first, first + count, dtype=np.float64) * samples.interval
-        rows = np.empty((count, NUMBERS + self._joint_forces.size))
+        rows = np.empty((count, self._columns))
         rows[:, 0] = as_written(times)
         rows[:, 1:4] = floor_history(run.motion, times).T
         rows[:, 4:NUMBERS] = samples.columns[:count, ORDER]
-        rows[:, NUMBERS:] = self._forces_in_joints(samples, first, count)
+        if self._model.case.has_vertical:
+            rows[:, NUMBERS : NUMBERS + len(VERTICAL_COLUMNS)] = floor_history(run.vertical, times).T
+        rows[:, self._columns - self._joint_forces.size :] = self._forces_in_joints(samples, first, count)
         rows += 0.0  # no minus zero
         modes = [MODE_NAMES[int(mode)] for mode in samples.mode[:count]]
         if self._recovery is not None:
@@ -178,6 +189,7 @@ class Recorder:
                     pressure = np.zeros(len(frame.displacement))
                     pressure[self._model.container.nodes] = samples.force[k, :, 1] / self._area
                     floor, _, _ = floor_motion(run.motion, time)
+                    lift, _, _ = floor_motion(run.vertical, time)
                     self._frame_sink(
                         float(as_written(np.array(time))),
                         displacement=frame.displacement,
@@ -185,6 +197,7 @@ class Recorder:
                         von_mises=frame.von_mises,
                         contact_pressure=pressure,
                         floor_displacement=floor,
+                        floor_lift=lift,
                     )
         clock.frames_drained = clock.frames
 

@@ -20,13 +20,7 @@ from fem.figures.cache import write_figures
 from fem.model.container import discretise
 from fem.model.geometry import build_container, node_count
 from fem.model.model import Model, build_model
-from fem.model.motion import (
-    build_motion,
-    build_vertical,
-    longest_run,
-    motion_result,
-    peak_acceleration_within,
-)
+from fem.model.motion import build_motions, longest_run, motion_result, peaks_in_run
 from fem.model.static_checks import static_checks_of
 from fem.model.step_size import largest_step_of
 from fem.model.support import normal_penalty
@@ -112,7 +106,7 @@ def run_case(
         if known is None:
             nodes = node_count(mesh, case.solver.order)
             way_out = "set a larger output.fields_s (0: no frames) or output.history_s"
-            longest = longest_run(case, build_motion(case), build_vertical(case))
+            longest = longest_run(case, *build_motions(case))
             size = size_in_words(case, nodes, longest)
             place.require_room(required_disk(case, nodes, longest), size, way_out)
         model = set_up(case, mesh, place, request, force=options.force, reporter=reporter)
@@ -169,7 +163,7 @@ def compute(
         title=case.title,
         case_hash=request,
         static=model.static.to_result(),
-        motion=motion_result(case, model.motion),
+        motion=motion_result(case, model.motion, model.vertical),
         versions=versions(),
     )
     place.begin(result.to_json(), texts, keep=start.is_resumed)
@@ -273,9 +267,9 @@ def resolve(case: Case, mesh: ContainerMesh) -> Case:
     if case.solver.duration_s == "auto" and not ends_at_rest(case):
         chosen["solver.duration_s"] = longest_time(case)
     if case.solver.step_s == "auto":
-        motions = build_motion(case), build_vertical(case)
-        peak = peak_acceleration_within(motions[0], longest_run(case, *motions))
-        chosen["solver.step_s"], _ = largest_step_of(case, static_checks_of(case, mesh, peak), *motions)
+        motions = build_motions(case)
+        static = static_checks_of(case, mesh, *peaks_in_run(case, *motions))
+        chosen["solver.step_s"], _ = largest_step_of(case, static, *motions)
     return case.with_values(chosen) if chosen else case
 
 

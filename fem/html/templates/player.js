@@ -49,13 +49,15 @@
   const corners = [[-0.5, 0], [0.5, 0], [0.5, 1], [-0.5, 1]].map(
     ([x, z]) => [x * run.width - run.centroid[0], z * run.height - run.centroid[1]]);
   const extents = (onFloor) => {
-    const box = { left: -0.75 * run.width, right: 0.75 * run.width, top: run.height };
+    const box = { left: -0.75 * run.width, right: 0.75 * run.width, top: run.height, low: 0 };
     for (let i = 0; i <= last; i++) {
+      const lift = onFloor || !columns.lift ? 0 : columns.lift[i];
+      box.low = Math.min(box.low, lift);
       const c = Math.cos(columns.rotation[i]), s = Math.sin(columns.rotation[i]);
       for (const [x, z] of corners) {
         const right = columns.x[i] + c * x + s * z + (onFloor ? 0 : columns.base[i]);
         box.left = Math.min(box.left, right); box.right = Math.max(box.right, right);
-        box.top = Math.max(box.top, columns.z[i] - s * x + c * z);
+        box.top = Math.max(box.top, lift + columns.z[i] - s * x + c * z);
       }
     }
     return box;
@@ -73,20 +75,21 @@
     }
     const onFloor = controls.view.value === "floor", box = onFloor ? boxes.floor : boxes.ground;
     const margin = 14;
-    const scale = Math.min((wide - 2 * margin) / (box.right - box.left), (high - 2 * margin) / (box.top + below));
-    const shift = 0.5 * wide - 0.5 * scale * (box.left + box.right), ground = high - margin - scale * below;
+    const scale = Math.min((wide - 2 * margin) / (box.right - box.left), (high - 2 * margin) / (box.top - box.low + below));
+    const shift = 0.5 * wide - 0.5 * scale * (box.left + box.right), ground = high - margin - scale * (below - box.low);
     const base = value("base", now), origin = onFloor ? 0 : base;
-    const X = (x) => shift + scale * x, Z = (z) => ground - scale * z;
+    const lift = onFloor || !columns.lift ? 0 : value("lift", now);
+    const X = (x) => shift + scale * x, Z = (z) => ground - scale * (lift + z);  // z from the floor
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, wide, high);
-    drawFloor(X, Z, wide, onFloor ? 0 : base, scale);
+    drawFloor(X, Z, wide, onFloor ? 0 : base, scale, ground);
     drawContainer(X, Z, origin);
     if (controls.forces.checked) drawForces(X, Z, scale, origin);
     readOut();
     moveCursors();
   };
 
-  const drawFloor = (X, Z, wide, base, scale) => {
+  const drawFloor = (X, Z, wide, base, scale, ground) => {
     const z = Z(0), pitch = 0.25 * run.width;
     pen.strokeStyle = INK; pen.lineWidth = 2;
     pen.beginPath(); pen.moveTo(0, z); pen.lineTo(wide, z); pen.stroke();
@@ -103,7 +106,7 @@
     pen.setLineDash([]);
     if (controls.view.value === "ground") {  // a mark that stays, and how far the floor is from it
       pen.fillStyle = INK; pen.beginPath();  // below the words of the friction
-      pen.moveTo(X(0), z + 23); pen.lineTo(X(0) - 5, z + 32); pen.lineTo(X(0) + 5, z + 32); pen.fill();
+      pen.moveTo(X(0), ground + 23); pen.lineTo(X(0) - 5, ground + 32); pen.lineTo(X(0) + 5, ground + 32); pen.fill();
     }
   };
 
@@ -217,7 +220,8 @@
     const rotation = value("rotation", now);
     const words = { clock: `${now.toFixed(3)} s`, rotation: `${minus((rotation * 180 / Math.PI).toFixed(3))}°`,
       ratio: minus((rotation / run.angle).toFixed(3)), slip: `${millimetres(value("slip", now))} mm`,
-      uplift: `${millimetres(value("uplift", now))} mm`, floor: `${millimetres(value("base", now))} mm`,
+      uplift: `${millimetres(value("uplift", now))} mm`,
+      floor: `${millimetres(value("base", now))} mm` + (columns.lift ? `, ${millimetres(value("lift", now))} mm up` : ""),
       state: modeAt(now) };
     for (const [name, text] of Object.entries(words)) byId(`now-${name}`).textContent = text;
     controls.time.value = Math.round(now / run.step);
