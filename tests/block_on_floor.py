@@ -27,6 +27,7 @@ from contact.stepping.scheme import Scheme, generalised_alpha
 from contact.stepping.state import ROW_ROTATION, ROW_SLIP, Control, RunState, make_run, make_samples
 
 GRAVITY = 9.81
+Motion = FloorMotion | HarmonicMotion | PulseMotion | NoMotion
 LOOSE = 1e30  #: a tolerance that never shortens a step
 
 
@@ -154,7 +155,8 @@ class Rig:
 def rig(
     block: Block,
     *,
-    motion: FloorMotion | HarmonicMotion | PulseMotion | NoMotion = NoMotion(),  # noqa: B008 - frozen
+    motion: Motion = NoMotion(),  # noqa: B008 - frozen
+    vertical: Motion = NoMotion(),  # noqa: B008
     stance: Stance | None = None,
     scheme: Scheme = generalised_alpha(0.5),  # noqa: B008 - a tuple
     largest_step: float = 5e-3,
@@ -172,7 +174,7 @@ def rig(
 
     Args:
         block: with its floor.
-        motion: of the floor.
+        motion: of the floor along x; vertical: upward.
         stance: the initial one; None: settled.
         scheme: of time stepping.
         largest_step: [s]; fixed_step: every step has this size, whatever its energy error.
@@ -193,21 +195,22 @@ def rig(
         damping_ratios=damping_ratios,
         tolerance=1e-6 * GRAVITY / (2.0 * math.pi * block.bounce_frequency) ** 2,
     )
-    compiled_motion = motion if isinstance(motion, FloorMotion) else motion.compiled()
-    floor, floor_velocity, _ = floor_motion(compiled_motion, 0.0)
+    along, upward = (one if isinstance(one, FloorMotion) else one.compiled() for one in (motion, vertical))
+    (x, velocity_x, _), (z, velocity_z, _) = floor_motion(along, 0.0), floor_motion(upward, 0.0)
     contact = block.contact()
     old, new = (make_state(3 + body.stiffness.size, 2, 0) for _ in range(2))
-    stance = (block.standing() if stance is None else stance).moved(floor).moving(floor_velocity)
+    stance = (block.standing() if stance is None else stance).moved(x, z).moving(velocity_x, velocity_z)
     old.force[:] = stance.force
     old.stick[:] = -stance.force[:, 0] / contact.tangential_stiffness
     place(body, old, stance)
     old.position[3:] += amplitudes
     old.velocity[3:] = rates
-    start(body, old, floor)
+    start(body, old, x, z, velocity_z)
     run = make_run(
         scheme=scheme,
         contact=contact,
-        motion=compiled_motion,
+        motion=along,
+        vertical=upward,
         breaks=np.zeros(0) if breaks is None else breaks,
         control=_control(block, largest_step, fixed_step, energy_scale),
         old=old,

@@ -3,19 +3,8 @@
 Signs, factors, dropped terms, one coefficient for another, tangents, the ledger: what a slip of the pen would do.
 """
 
-from dataclasses import dataclass
-
-
-@dataclass(frozen=True, kw_only=True)
-class Mutation:
-    """One fault: a piece of text that stands once in a file, and what it becomes."""
-
-    name: str  #: what is wrong then
-    file: str  #: from the root of the project
-    old: str
-    new: str
-    tests: tuple[str, ...]  #: files from the folder of the tests, and options of pytest
-
+from mutation import Mutation
+from mutations_of_vertical_motion import VERTICAL_MOTION
 
 ELASTICITY = (
     "unit/solid/test_elasticity.py",
@@ -371,4 +360,5 @@ MUTATIONS = (
         new="soft = case.support.foot is not None and case.support.kind != ",
         tests=("verification/test_sure_verdicts.py", "-k", "flat"),
     ),
+    *VERTICAL_MOTION,
 )

@@ -63,6 +63,8 @@ def test_a_resolved_case_with_its_files_beside_it_gives_the_same_bytes(tmp_path,
     assert len((first / "history.csv").read_bytes().splitlines()) > 100
 
 
+#: of the floor in both runs
+VERTICAL = ("vertical.kind=harmonic", "vertical.peak_acceleration_m_s2=3", "vertical.frequency_Hz=3")
 ODD = ("rotation_rad", "angular_velocity_rad_s", "slip_m", "centre_x_m", "shear_force_N")
 EVEN = ("uplift_m", "centre_z_m", "normal_force_N", "kinetic_J")
 
@@ -83,11 +85,12 @@ def pulsed(sign: float, overrides: tuple[str, ...]) -> tuple[Model, Recorder]:
         # rounding alone until the first impact at 0.68 s; an impact multiplies it, and near a limit of the step
         # control it decides on a step: from there on two runs differ by what a step may err, forces by ten times that
         (("solver.model=rigid", "solver.duration_s=4"), 1e-11, 1e-9),
+        (("solver.model=rigid", "solver.duration_s=4", *VERTICAL), 1e-11, 1e-9),
         (("solver.duration_s=2",), 1e-11, 1e-4),
         (("support.kind=flat", "solver.duration_s=0.8"), 1e-10, 1e-8),
         pytest.param((*COARSE, "solver.duration_s=1.2"), 1e-8, 3e-4, marks=pytest.mark.slow),
     ],
-    ids=["rigid", "reduced", "reduced, flat base", "full"],
+    ids=["rigid", "rigid, vertical motion", "reduced", "reduced, flat base", "full"],
 )
 def test_a_mirrored_floor_gives_the_mirrored_history(overrides, before, after):
     (model, right), (_, left) = pulsed(1.0, overrides), pulsed(-1.0, overrides)

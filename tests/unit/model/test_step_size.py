@@ -52,6 +52,26 @@ def test_a_short_pulse_rocks_the_container_as_small_steps_throughout_do():
     assert auto.run.track[0].max_rotation == pytest.approx(rotation, rel=2e-3)
 
 
+def test_the_faster_vertical_motion_sets_the_step():
+    upward = {"vertical.kind": "harmonic", "vertical.amplitude_m": 1e-3, "vertical.frequency_Hz": 10.0}
+    assert build_model(rigid().with_values(upward)).run.control.largest_step == pytest.approx(0.02 * 0.1)
+    with pytest.raises(CaseError, match=r"step_s = 0\.02 s would step over the motion.* at most 0\.01 s"):
+        build_model(rigid(solver__step_s=0.02).with_values(upward))
+
+
+def test_steps_end_where_either_motion_jumps():
+    kicked = PULSE | {
+        "motion.peak_acceleration_m_s2": 2.0,
+        "motion.pulse_s": 1.0,
+        "motion.shape": "rectangular",
+    }
+    upward = {key.replace("motion", "vertical"): value for key, value in kicked.items()} | {
+        "vertical.delay_s": 0.8
+    }
+    breaks = build_model(rigid().with_values(kicked | upward)).run.breaks
+    assert {0.5, 0.8, 1.5, 1.8} <= set(breaks.round(12))
+
+
 def test_a_step_that_would_step_over_the_motion_is_refused():
     case = rigid(motion__frequency_Hz=20.0, motion__amplitude_m=0.01, solver__step_s=0.02)
     with pytest.raises(CaseError, match=r"step_s = 0\.02 s would step over the motion.* at most 0\.005 s"):

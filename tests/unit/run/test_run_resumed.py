@@ -24,7 +24,12 @@ FREE = (
     *("motion.pulse_s=0.1", "motion.peak_acceleration_m_s2=6.0", "output.fields_s=0.1"),
 )
 
+UP = ("vertical.kind=harmonic", "vertical.peak_acceleration_m_s2=3", "vertical.frequency_Hz=3")
+
 CASES = {
+    "vertical": ("rocking", (*RIGID, *UP)),
+    "vertical, full": ("seed_stack_plateau", (*FULL, *UP)),
+    "vertical, aftermath": ("free_rocking", (*FALLING, *UP)),
     "rigid": ("rocking", RIGID),
     "reduced": ("seed_stack_plateau", REDUCED),
     "reduced, flat base": ("seed_stack_plateau", FLAT),

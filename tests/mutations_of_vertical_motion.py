@@ -1,0 +1,113 @@
+"""Faults in the vertical motion of the floor."""
+
+from mutation import Mutation
+
+VERTICAL = "verification/test_vertical_motion.py"
+
+VERTICAL_MOTION = (
+    Mutation(
+        name="points against a floor that moves the other way up and down",
+        file="contact/stepping/modal_kernels.py",
+        old="body.arm[i, 1] - lift\n        work.free_velocity",
+        new="body.arm[i, 1] + lift\n        work.free_velocity",
+        tests=(VERTICAL,),
+    ),
+    Mutation(
+        name="points closed at their absolute vertical velocity",
+        file="contact/stepping/modal_kernels.py",
+        old="- sine * u + cosine * w - lift_velocity",
+        new="- sine * u + cosine * w",
+        tests=(VERTICAL,),
+    ),
+    Mutation(
+        name="nodes against a floor that stays at its height",
+        file="fem/solid/nodal_kernels.py",
+        old="work.free[a, 1] -= lift\n",
+        new="work.free[a, 1] -= 0.0 * lift\n",
+        tests=(VERTICAL, "-k", "full or models"),
+    ),
+    Mutation(
+        name="nodes closed at their absolute vertical velocity",
+        file="fem/solid/nodal_kernels.py",
+        old="work.free_velocity[a, 1] -= lift_velocity\n",
+        new="work.free_velocity[a, 1] -= 0.0 * lift_velocity\n",
+        tests=(VERTICAL, "-k", "full or models"),
+    ),
+    Mutation(
+        name="kinetic energy of the full model against the ground",
+        file="fem/solid/nodal_kernels.py",
+        old="0.5 * twice + lift_velocity *",
+        new="0.5 * twice + 0.0 * lift_velocity *",
+        tests=(VERTICAL, "-k", "full or models"),
+    ),
+    Mutation(
+        name="gravity less the vertical acceleration where the support holds",
+        file="contact/stepping/step.py",
+        old="gravity = control.gravity + run.lift[1, 2]",
+        new="gravity = control.gravity - run.lift[1, 2]",
+        tests=(VERTICAL, "-k", "slider"),
+    ),
+    Mutation(
+        name="work of the vertical motion with the other sign",
+        file="contact/stepping/ledger.py",
+        old="return -mass * gained / step",
+        new="return mass * gained / step",
+        tests=(VERTICAL,),
+    ),
+    Mutation(
+        name="kinetic energy against the ground",
+        file="contact/stepping/modal_kernels.py",
+        old="rise = velocity[1] - lift_velocity",
+        new="rise = velocity[1]",
+        tests=(VERTICAL,),
+    ),
+    Mutation(
+        name="restitution without the work of the vertical motion",
+        file="contact/stepping/observables.py",
+        old="work += work_of_lift(control.mass, old.pose, new.pose, lift, step)",
+        new="work += 0.0 * control.mass",
+        tests=(VERTICAL, "-k", "gravity"),
+    ),
+    Mutation(
+        name="settled under g alone",
+        file="fem/model/equilibrium.py",
+        old="weight=mesh.mass * gravity,\n            centroid",
+        new="weight=mesh.mass * case.gravity_m_s2,\n            centroid",
+        tests=(VERTICAL, "-k", "contents"),
+    ),
+    Mutation(
+        name="a container left at rest by a floor that moves up",
+        file="fem/model/model.py",
+        old="stance = stance.moving(velocity_x, velocity_z)",
+        new="stance = stance.moving(velocity_x)",
+        tests=(VERTICAL, "-k", "start"),
+    ),
+    Mutation(
+        name="the frame of the floor entered without its vertical velocity",
+        file="contact/stepping/integrator.py",
+        old="shift_velocity(body, run.old, floor_velocity, lift_velocity)",
+        new="shift_velocity(body, run.old, floor_velocity, 0.0)",
+        tests=(VERTICAL, "-k", "steadily"),
+    ),
+    Mutation(
+        name="contents that do not rise with the floor",
+        file="contact/stepping/contents.py",
+        old="x = monitor[i, k] + floor[k]",
+        new="x = monitor[i, k] + (floor[0] if k == 0 else 0.0)",
+        tests=(VERTICAL, "-k", "contents"),
+    ),
+    Mutation(
+        name="centre above the ground in the history",
+        file="contact/stepping/sampling.py",
+        old="b[CENTRE_Z], b[VELOCITY_Z]) - lift",
+        new="b[CENTRE_Z], b[VELOCITY_Z]) + 0.0 * lift",
+        tests=(VERTICAL, "-k", "gravity"),
+    ),
+    Mutation(
+        name="steps of the horizontal motion alone",
+        file="fem/model/step_size.py",
+        old="for motion in motions:",
+        new="for motion in motions[:1]:",
+        tests=("unit/model/test_step_size.py", "-k", "vertical"),
+    ),
+)
