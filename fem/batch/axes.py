@@ -24,6 +24,7 @@ NO_AXIS = {
 MOST_VALUES = 1_000_000
 #: the key whose values are motions: files, or pairs of a horizontal and a vertical file
 MOTION_FILE = "motion.file"
+VERTICAL_FILE = "vertical.file"
 A_PAIR = 'a pair is ["horizontal file", "vertical file"]'
 
 ModelT = TypeVar("ModelT", bound=BaseModel)
@@ -79,14 +80,19 @@ def with_following(axes: Iterable[Axis], point: Mapping[str, Any]) -> dict[str, 
     return found
 
 
+def set_axis(axes: Iterable[Axis]) -> Axis | None:
+    """The axis that holds a set of motions; None without one."""
+    return next((axis for axis in axes if axis.key == MOTION_FILE), None)
+
+
 def first_motion(axes: Iterable[Axis]) -> dict[str, Any]:
     """The keys that set the first motion of a set, the first pair if there is one; none without a set."""
-    for axis in axes:
-        if axis.key == MOTION_FILE:
-            verticals = axis.following.get("vertical.file", ())
-            place = next((k for k, name in enumerate(verticals) if name), 0)
-            return with_following([axis], {axis.key: axis.values[place]})
-    return {}
+    axis = set_axis(axes)
+    if axis is None:
+        return {}
+    verticals = axis.following.get(VERTICAL_FILE, ())
+    place = next((k for k, name in enumerate(verticals) if name), 0)
+    return with_following([axis], {axis.key: axis.values[place]})
 
 
 class AxisError(ValueError):
@@ -181,7 +187,7 @@ def read_motion_files(given: Any) -> tuple[tuple[str, ...], dict[str, tuple[str 
     following: dict[str, tuple[str | None, ...]] = {}
     if any(vertical for _, vertical in pairs):
         following["vertical.kind"] = tuple("table" if vertical else "none" for _, vertical in pairs)
-        following["vertical.file"] = tuple(vertical for _, vertical in pairs)
+        following[VERTICAL_FILE] = tuple(vertical for _, vertical in pairs)
     return tuple(horizontal for horizontal, _ in pairs), following
 
 

@@ -30,7 +30,14 @@ class Estimate:
     high: float
 
 
-def estimate(overturned: np.ndarray, failed: np.ndarray, *, replicates: int, confidence: float) -> Estimate:
+def estimate(
+    overturned: np.ndarray,
+    failed: np.ndarray,
+    *,
+    replicates: int,
+    confidence: float,
+    independent: int | None = None,
+) -> Estimate:
     """Probability of overturning from the draws of one cell.
 
     A failed draw has no outcome: the lower end counts it as standing, the upper as overturned.
@@ -39,6 +46,8 @@ def estimate(overturned: np.ndarray, failed: np.ndarray, *, replicates: int, con
         overturned: (n,) bool; failed: (n,) bool, replicate after replicate.
         replicates: 1 for independent draws.
         confidence: two-sided, such as 0.95.
+        independent: draws that count as independent where replicates hold too few events; None: all of them. Where a
+            replicate is a motion, it is the number of motions: draws under one motion may all do the same.
     """
     count, lost = int(overturned.sum()), int(failed.sum())
     value = count / (overturned.size - lost) if lost < overturned.size else None
@@ -48,7 +57,7 @@ def estimate(overturned: np.ndarray, failed: np.ndarray, *, replicates: int, con
             ends.append(binomial_interval(int(counted.sum()), counted.size, confidence))
         else:
             means = counted.reshape(replicates, -1).mean(axis=1)
-            ends.append(replicate_interval(means, counted.size, confidence))
+            ends.append(replicate_interval(means, independent or counted.size, confidence))
     return Estimate(value=value, low=ends[0][0], high=ends[1][1])
 
 
@@ -64,7 +73,7 @@ def replicate_interval(means: FloatArray, draws: int, confidence: float) -> tupl
     """Student's interval of the mean of replicates, widened where there are few events or non-events.
 
     Args:
-        means: (r,) of the replicates, at least two; draws: in all of them together.
+        means: (r,) of the replicates; draws: in all of them together, or those that count as independent.
     """
     mean, count = float(means.mean()), round(float(means.mean()) * draws)
     half = (

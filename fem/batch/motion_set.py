@@ -5,25 +5,29 @@ A set is the values of `motion.file` in a study: recorded motions, alone or with
 
 import hashlib
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
 from contact.motion.table import TableMotion
-from fem.batch.axes import MOTION_FILE, Axis, with_following
+from fem.batch.axes import MOTION_FILE, Axis, set_axis, with_following
 from fem.batch.log import table_text
 from fem.case.case import Case, CaseError
+from fem.figures.motions import draw_spectra
+from fem.figures.style import svg_of
 from fem.model.motion import build_motion, build_vertical
 from fem.records.intensity import intensity
 from fem.records.record import Component, RecordError, require_together
 from fem.records.spectrum import Spectrum, log_spaced_periods, response_spectrum
+from fem.results.folder import ResultFolder
 from fem.runtime.arrays import FloatArray
 
 #: intervals of a motion are equal within this share of their median
 EQUAL = 1e-3
 LONGEST_PERIOD_S = 4.0
+SPECTRA = "figures/spectra.svg"
 MOST_SAMPLES = 2_000_000  #: of a motion whose intervals differ, sampled for its spectrum
 
 
@@ -36,8 +40,8 @@ class FloorComponent:
 
     @property
     def step_s(self) -> float:
-        """Median interval of its samples [s]."""
-        return float(np.median(np.diff(self.motion.times)))
+        """Mean interval of its samples [s]."""
+        return float(np.ptp(self.motion.times)) / (self.motion.times.size - 1)
 
     def numbers(self) -> dict[str, Any]:
         """Length, interval, peaks and duration, by the names of `run.json`."""
@@ -78,11 +82,6 @@ class FloorMotionPair:
         return self.horizontal.numbers() | {"vertical": vertical}
 
 
-def set_axis(axes: Iterable[Axis]) -> Axis | None:
-    """The axis that holds a set of motions; None without one."""
-    return next((axis for axis in axes if axis.key == MOTION_FILE), None)
-
-
 def motion_cases(base: Case, axes: Iterable[Axis]) -> list[Case]:
     """The base case with each motion of a set; none without a set."""
     axis = set_axis(axes)
@@ -113,9 +112,23 @@ def read_motion_set(base: Case, axes: Iterable[Axis]) -> tuple[FloorMotionPair, 
     return tuple(found)
 
 
-def motion_numbers(motions: Sequence[FloorMotionPair]) -> list[dict[str, Any]]:
-    """The numbers of each motion, for the JSON of a study."""
-    return [one.numbers() for one in motions]
+def write_motions(
+    place: ResultFolder, motions: Sequence[FloorMotionPair], told: Sequence[Mapping[str, Any]]
+) -> tuple[str, ...]:
+    """Write `motions.csv`, `spectra.csv` and the figure of the spectra; returns the names of figures.
+
+    Args:
+        place: the folder of a study.
+        motions: of the set.
+        told: numbers of each motion, its outcomes among them.
+    """
+    place.write_text("motions.csv", _motions_table(told))
+    periods, spectra = spectra_of(motions)
+    rows = np.column_stack([periods, *spectra.values()]).tolist()
+    place.write_text("spectra.csv", table_text(["period_s", *spectra], rows))
+    vertical = [one.vertical.name for one in motions if one.vertical is not None]
+    place.write_text(SPECTRA, svg_of(draw_spectra(periods, spectra, vertical=vertical)))
+    return (SPECTRA,)
 
 
 def spectra_of(motions: Sequence[FloorMotionPair]) -> tuple[FloatArray, dict[str, FloatArray]]:
@@ -126,9 +139,17 @@ def spectra_of(motions: Sequence[FloorMotionPair]) -> tuple[FloatArray, dict[str
     return periods, {one.name: one.spectrum(periods).pseudo_acceleration_m_s2 for one in components}
 
 
-def spectra_table(periods: FloatArray, spectra: dict[str, FloatArray]) -> str:
-    """`spectra.csv`: a row a period, a column of pseudo-acceleration [m/s2] for each file; 5 % of damping."""
-    return table_text(["period_s", *spectra], np.column_stack([periods, *spectra.values()]).tolist())
+def _motions_table(told: Sequence[Mapping[str, Any]]) -> str:
+    """`motions.csv`: a row a motion, the numbers of its vertical component with `vertical_` before them."""
+    columns = [name for name in told[0] if name != "vertical"]
+    verticals: Mapping[str, Any] = next((one["vertical"] for one in told if one["vertical"]), {})
+    return table_text(
+        [*columns, *(f"vertical_{name}" for name in verticals)],
+        (
+            [*(one[name] for name in columns), *((one["vertical"] or {}).get(name) for name in verticals)]
+            for one in told
+        ),
+    )
 
 
 def _read_pair(case: Case) -> FloorMotionPair:
@@ -164,12 +185,15 @@ def _contents(pair: FloorMotionPair) -> Iterator[str]:
 
 
 def _evenly_sampled(motion: TableMotion) -> tuple[float, FloatArray]:
-    """Step [s] and accelerations of the motion, sampled anew by straight lines where its intervals differ."""
+    """Step [s] and accelerations of the motion.
+
+    Where its intervals differ, the straight lines between its samples are sampled at half of the shortest.
+    """
     times, values = motion.times, motion.accelerations
     steps, length = np.diff(times), float(np.ptp(times))
     step = length / steps.size
     if np.abs(steps - step).max() <= EQUAL * step:
         return step, values
-    count = min(math.ceil(length / float(steps.min())), MOST_SAMPLES)
+    count = min(math.ceil(2.0 * length / float(steps.min()) * (1.0 - EQUAL)), MOST_SAMPLES)
     even = np.linspace(times[0], times[-1], count + 1)
     return length / count, np.asarray(np.interp(even, times, values))

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
-from fem.batch.axes import Axis, AxisError, hint
+from fem.batch.axes import VERTICAL_FILE, Axis, AxisError, hint, set_axis
 from fem.case.case import Case, load_case
 from fem.case.files import CASES, Origin, is_there, parse_case
 from fem.case.problem import outside_the_folder, stays_in_the_folder
@@ -146,6 +146,30 @@ def read_axes(
     if problems:
         raise CaseError("\n".join(problems))
     return tuple(axes)
+
+
+def require_verticals(axes: Iterable[Axis], varied: Iterable[str], base: Case) -> None:
+    """Refuse a motion alone in a set where a key of its vertical motion varies.
+
+    Args:
+        axes: of which one may hold a set of motions.
+        varied: keys that vary.
+        base: the case that is varied.
+
+    Raises:
+        CaseError: with the key and the motion.
+    """
+    motions = set_axis(axes)
+    key = next((key for key in varied if key.startswith("vertical.")), None)
+    if motions is None or key is None or (not motions.following and base.has_vertical):
+        return
+    verticals = motions.following.get(VERTICAL_FILE, (None,) * len(motions.values))
+    alone = [name for name, vertical in zip(motions.values, verticals, strict=True) if vertical is None]
+    if alone:
+        raise CaseError(
+            f"{key!r} varies, and {alone[0]!r} has no vertical motion; give it as a pair, "
+            f'["{alone[0]}", "its vertical file"]'
+        )
 
 
 def require_once(changes: Mapping[str, Any], varied: Iterable[str]) -> None:

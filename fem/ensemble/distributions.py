@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from scipy.special import ndtr, ndtri
 from scipy.stats import qmc
 
-from fem.batch.axes import AxisError, read_inline
+from fem.batch.axes import VERTICAL_FILE, Axis, AxisError, read_axis, read_inline
 from fem.runtime.arrays import FloatArray
 
 Sampling = Literal["independent", "latin-hypercube", "sobol"]
@@ -54,6 +54,16 @@ class RandomQuantity:
     spread: Distribution
 
     @property
+    def relative(self) -> bool:
+        """Whether it is a factor on the value that the key has anyway."""
+        return self.spread.relative
+
+    @property
+    def asked(self) -> dict[str, Any]:
+        """As the file gives it."""
+        return self.spread.model_dump(by_alias=True, exclude_none=True)
+
+    @property
     def ends(self) -> tuple[float, float]:
         """Least and largest value that can be drawn."""
         low, high = self.values(np.array([0.0, 1.0]))
@@ -71,15 +81,47 @@ class RandomQuantity:
         return np.asarray(first + second * normal if kind == "normal" else first * np.exp(second * normal))
 
 
-def read_random(key: str, given: Any) -> RandomQuantity:
-    """One entry of `[random]`.
+@dataclass(frozen=True, kw_only=True)
+class RandomChoice:
+    """A key whose value is one of a list, each with the same probability: a set of motions, the signs of one."""
+
+    axis: Axis  #: the key, its values, and the keys that follow each
+    relative = False
+
+    @property
+    def key(self) -> str:
+        """Dotted."""
+        return self.axis.key
+
+    @property
+    def asked(self) -> list[Any]:
+        """As the file gives it; pairs of motions as pairs."""
+        verticals = self.axis.following.get(VERTICAL_FILE, (None,) * len(self.axis.values))
+        pairs = zip(self.axis.values, verticals, strict=True)
+        return [[value, vertical] if vertical else value for value, vertical in pairs]
+
+    @property
+    def ends(self) -> tuple[Any, Any]:
+        """First and last value."""
+        return self.axis.values[0], self.axis.values[-1]
+
+    def values(self, shares: FloatArray) -> list[Any]:
+        """Values at given shares of probability, each between 0 and 1."""
+        count = len(self.axis.values)
+        return [self.axis.values[min(int(share * count), count - 1)] for share in shares.tolist()]
+
+
+def read_random(key: str, given: Any) -> RandomQuantity | RandomChoice:
+    """One entry of `[random]`: a distribution, or a list of values that are equally likely.
 
     Raises:
         AxisError: with the reason why it cannot be used.
     """
+    if isinstance(given, list):
+        return RandomChoice(axis=read_axis(key, given))
     example = 'for instance { distribution = "uniform", from = 0.3, to = 0.4 }'
     if not isinstance(given, dict):
-        raise AxisError(f"must be a distribution, got {given!r}; {example}")
+        raise AxisError(f"must be a distribution or a list of values, got {given!r}; {example}")
     spread = read_inline(Distribution, given, example)
     kind, needed = spread.distribution, NEEDS[spread.distribution]
     missing = [name for name in needed if name not in given]

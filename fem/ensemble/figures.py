@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from fem.batch.axes import MOTION_FILE
 from fem.batch.labels import axis_label
 from fem.ensemble.fragility import Lognormal
 from fem.ensemble.plan import Ensemble
@@ -143,9 +144,13 @@ def band_of(
 
 def _statement(ensemble: Ensemble, unknown: UnknownInputs) -> str:
     names = ", ".join(
-        one.key.rpartition(".")[2].removesuffix("_rad").replace("_", " ") for one in ensemble.random
+        one.key.rpartition(".")[2].removesuffix("_rad").replace("_", " ")
+        for one in ensemble.random
+        if one.key != MOTION_FILE
     )
     ranges = f"; {len(unknown.keys)} unknown inputs drawn over their ranges" if unknown.keys else ""
     held = f"; {unknown.held}" if unknown.held else ""
     drawn = f"{ensemble.draws} draws a point ({ensemble.sampling})"
-    return f"{drawn}; random: {names}{ranges}{held}; not the floor's motion"
+    motions = ensemble.motions
+    floor = "not the floor's motion" if motions is None else f"{len(motions.values)} motions equally often"
+    return f"{drawn}; random: {names}{ranges}{held}; {floor}"

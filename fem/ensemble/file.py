@@ -11,14 +11,22 @@ from typing import Annotated, Any
 
 from pydantic import Field, Strict
 
-from fem.batch.axes import Axis, AxisError, check_varied, read_axis
+from fem.batch.axes import MOTION_FILE, Axis, AxisError, check_varied, first_motion, read_axis
 from fem.batch.derived import FREE, Derived, read_derived
 from fem.batch.intervals import least_draws
-from fem.batch.study_file import base_case, read_as, read_axes, read_study, require_once, split_tables
+from fem.batch.study_file import (
+    base_case,
+    read_as,
+    read_axes,
+    read_study,
+    require_once,
+    require_verticals,
+    split_tables,
+)
 from fem.case.files import DEFAULT_CASE, ENSEMBLES, Origin
 from fem.case.tables import CaseTable
 from fem.case.validation import CaseError
-from fem.ensemble.distributions import RandomQuantity, Sampling, read_random
+from fem.ensemble.distributions import RandomChoice, RandomQuantity, Sampling, read_random
 from fem.ensemble.plan import Ensemble, Unknown
 
 TABLES = ("set", "axes", "random", "derived")
@@ -26,6 +34,7 @@ MOST_AXES, MOST_RANDOM = 3, 8
 MOST_RUNS = 1_000_000
 TRIED = 64  #: cases that are built to find bad values before anything is computed
 REPLICATES = 16
+EXAMPLE = '"motion.peak_acceleration_m_s2" = { from = 2.0, to = 10.0, count = 17 }'
 
 
 class EnsembleHeading(CaseTable):
@@ -61,15 +70,17 @@ def load_ensemble(name_or_path: str | Path) -> Ensemble:
 def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
     given, tables = split_tables(data, TABLES)
     heading = read_as("", EnsembleHeading, given)
-    base = base_case(heading.case, tables.get("set", {}), origin)
+    axes = read_axes(tables.get("axes", {}), MOST_AXES, EXAMPLE, _axis)
+    random = _random(tables.get("random", {}), axes)
+    sets = [one.axis for one in random if isinstance(one, RandomChoice) and one.key == MOTION_FILE]
+    base = base_case(heading.case, tables.get("set", {}), origin, first_motion(sets))
     if base.solver.model == "full":
         raise CaseError(
             '[set] "solver.model" must be "rigid" or "reduced": an ensemble of the full model would take weeks'
         )
-    example = '"motion.peak_acceleration_m_s2" = { from = 2.0, to = 10.0, count = 17 }'
-    axes = read_axes(tables.get("axes", {}), MOST_AXES, example, _axis)
-    random = _random(tables.get("random", {}), axes)
-    drawn = [one.key for one in random if not one.spread.relative]
+    require_verticals(sets, [*(axis.key for axis in axes), *(one.key for one in random)], base)
+    drawn = [one.key for one in random if not one.relative]
+    replicates = 1 if heading.sampling == "independent" else heading.replicates
     require_once(tables.get("set", {}), [*(axis.key for axis in axes), *drawn, *tables.get("derived", {})])
     ensemble = Ensemble(
         name=origin.name,
@@ -84,7 +95,7 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
         draws=heading.draws,
         seed=heading.seed,
         sampling=heading.sampling,
-        replicates=1 if heading.sampling == "independent" else heading.replicates,
+        replicates=len(sets[0].values) if sets else replicates,
         confidence=heading.confidence,
         probability=heading.probability,
         unknown_inputs=heading.unknown_inputs,
@@ -104,20 +115,20 @@ def _axis(key: str, value: Any) -> Axis:
     return axis
 
 
-def _random(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> tuple[RandomQuantity, ...]:
+def _random(content: Mapping[str, Any], axes: tuple[Axis, ...]) -> tuple[RandomQuantity | RandomChoice, ...]:
     if not 1 <= len(content) <= MOST_RANDOM:
         example = '"motion.phase_rad" = { distribution = "uniform", from = 0.0, to = 6.2832 }'
         raise CaseError(
             f"[random] must hold one to {MOST_RANDOM} keys, got {len(content)}; for instance {example}"
         )
-    found = []
+    found: list[RandomQuantity | RandomChoice] = []
     for key, value in content.items():
         try:
             _check_key(key)
             one = read_random(key, value)
         except AxisError as error:
             raise CaseError(f"[random] {key!r} {error}") from None
-        if any(axis.key == key for axis in axes) and not one.spread.relative:
+        if any(axis.key == key for axis in axes) and not one.relative:
             raise CaseError(
                 f"[random] {key!r} is an axis as well; give the scatter about its values with relative = true"
             )
@@ -144,7 +155,8 @@ def _check_draws(ensemble: Ensemble) -> None:
     draws, replicates = ensemble.draws, ensemble.replicates
     if draws % replicates:
         raise CaseError(
-            f"draws = {draws} do not make {replicates} replicates of one size; "
+            f"draws = {draws} do not make {replicates} "
+            f"{'replicates of one size' if ensemble.motions is None else 'motions equally likely'}; "
             f"take {replicates * max(draws // replicates, 1)} draws"
         )
     size = draws // replicates
@@ -176,5 +188,8 @@ def _try_cases(ensemble: Ensemble) -> None:
             ensemble.case_of(point, corner[len(ends) :])
         except CaseError as error:
             keys = [*(axis.key for axis in ensemble.axes), *(one.key for one in ensemble.random)]
-            where = ", ".join(f"{key} = {value:g}" for key, value in zip(keys, corner, strict=True))
+            where = ", ".join(
+                f"{key} = {value if isinstance(value, str) else format(value, 'g')}"
+                for key, value in zip(keys, corner, strict=True)
+            )
             raise CaseError(f"{error}\n[axes] and [random] make this case: {where}") from None

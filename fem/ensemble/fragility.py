@@ -53,7 +53,13 @@ def fit_lognormal(strengths: FloatArray, overturned: FloatArray, draws: FloatArr
 
 
 def bootstrap_fits(
-    strengths: FloatArray, counts: FloatArray, sizes: FloatArray, *, seed: int, independent: bool
+    strengths: FloatArray,
+    counts: FloatArray,
+    sizes: FloatArray,
+    *,
+    seed: int,
+    independent: bool,
+    common: bool = False,
 ) -> tuple[FloatArray, FloatArray]:
     """Medians and deviations of curves fitted to resampled counts, shape (k,), k the resamples that have a fit.
 
@@ -63,6 +69,7 @@ def bootstrap_fits(
         strengths: (n,); counts: (n, r) overturned in each replicate; sizes: (n, r) draws that have an outcome.
         seed: of the resampling.
         independent: each replicate's draws are independent of one another.
+        common: a replicate is the same motion at every strength, so that all strengths are resampled alike.
     """
     generator = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(2**32 - 1,)))
     totals = sizes.sum(axis=1)
@@ -70,7 +77,8 @@ def bootstrap_fits(
         shares = np.divide(counts.sum(axis=1), totals, out=np.zeros(len(totals)), where=totals > 0.0)
         drawn = generator.binomial(totals.astype(int), shares, size=(BOOTSTRAPS, len(totals))).astype(float)
     else:
-        picked = generator.integers(counts.shape[1], size=(BOOTSTRAPS, *counts.shape))
+        levels_resampled = 1 if common else counts.shape[0]
+        picked = generator.integers(counts.shape[1], size=(BOOTSTRAPS, levels_resampled, counts.shape[1]))
         levels = np.arange(len(totals))[:, None]
         # Replicates lack the draws that failed; a resampled one counts as if it lacked the average number.
         share = np.divide(counts, sizes, out=np.zeros_like(counts), where=sizes > 0.0)

@@ -8,12 +8,12 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from fem.batch.axes import Axis, point_of, shape_of
+from fem.batch.axes import MOTION_FILE, Axis, point_of, shape_of, with_following
 from fem.batch.case_maker import CaseMaker
 from fem.batch.derived import FREE, Derived, number_of, with_derived
 from fem.case.case import Case
 from fem.case.uncertainty import Value
-from fem.ensemble.distributions import RandomQuantity, Sampling, draw_shares
+from fem.ensemble.distributions import RandomChoice, RandomQuantity, Sampling, draw_shares
 
 #: unknown inputs that the file does not vary: drawn over [uncertainty] of the case, or held
 Unknown = Literal["drawn", "held"]
@@ -24,7 +24,7 @@ class Draw(NamedTuple):
 
     cell: int  #: number of the point, the last axis the fastest
     number: int  #: at this point, replicate after replicate
-    values: tuple[float, ...]  #: of the random quantities, relative ones as factors
+    values: tuple[Any, ...]  #: of the random quantities, relative ones as factors
     unknown: Mapping[str, Value] = {}  #: of the unknown inputs, by key
 
 
@@ -37,12 +37,12 @@ class Ensemble:
     title: str
     base: Case  #: with the keys of [set]
     axes: tuple[Axis, ...]
-    random: tuple[RandomQuantity, ...]
+    random: tuple[RandomQuantity | RandomChoice, ...]
     derived: tuple[Derived, ...]  #: in an order in which each follows what it refers to
     draws: int  #: at each point
     seed: int
     sampling: Sampling
-    replicates: int  #: 1 for independent draws
+    replicates: int  #: 1 for independent draws; of a set of motions one for each
     confidence: float
     probability: float  #: of overturning, to which the points are compared
     unknown_inputs: Unknown = "drawn"
@@ -56,18 +56,33 @@ class Ensemble:
         """Values of the axes at a point, by key."""
         return point_of(self.axes, cell)
 
+    @property
+    def motions(self) -> Axis | None:
+        """The set of motions that are drawn; None where there is one motion."""
+        sets = (one.axis for one in self.random if isinstance(one, RandomChoice) and one.key == MOTION_FILE)
+        return next(sets, None)
+
     def draws_at(self, cell: int) -> list[Draw]:
-        """The draws of a point."""
-        shares = draw_shares(
-            self.sampling,
-            seed=self.seed,
-            cell=cell,
-            dimensions=len(self.random),
-            draws=self.draws,
-            replicates=self.replicates,
-        )
-        values = np.column_stack([one.values(shares[:, k]) for k, one in enumerate(self.random)])
-        return [Draw(cell, number, tuple(drawn)) for number, drawn in enumerate(values.tolist())]
+        """The draws of a point; each motion of a set is drawn equally often, and is a replicate."""
+        spread = [one for one in self.random if one.key != MOTION_FILE]
+        shares = np.empty((self.draws, 0))
+        if spread:
+            shares = draw_shares(
+                self.sampling,
+                seed=self.seed,
+                cell=cell,
+                dimensions=len(spread),
+                draws=self.draws,
+                replicates=self.replicates,
+            )
+        columns: dict[str, Sequence[Any]] = {
+            one.key: np.asarray(one.values(shares[:, k]), dtype=object).tolist()
+            for k, one in enumerate(spread)
+        }
+        if self.motions is not None:
+            columns[MOTION_FILE] = np.repeat(self.motions.values, self.draws // self.replicates).tolist()
+        rows = zip(*(columns[one.key] for one in self.random), strict=True)
+        return [Draw(cell, number, drawn) for number, drawn in enumerate(rows)]
 
     def case(self, draw: Draw) -> Case:
         """The case of a draw.
@@ -78,7 +93,7 @@ class Ensemble:
         return self.case_of(self.point(draw.cell), draw.values, draw.unknown)
 
     def case_of(
-        self, point: Mapping[str, Any], drawn: Sequence[float], unknown: Mapping[str, Value] | None = None
+        self, point: Mapping[str, Any], drawn: Sequence[Any], unknown: Mapping[str, Value] | None = None
     ) -> Case:
         """The case at a point, of values drawn.
 
@@ -87,8 +102,11 @@ class Ensemble:
         """
         values = dict(point)
         for one, value in zip(self.random, drawn, strict=True):
-            scale = number_of(one.key, values, self.base) if one.spread.relative else 1.0
-            values[one.key] = value * scale
+            if isinstance(one, RandomChoice):
+                values |= with_following([one.axis], {one.key: value})
+            else:
+                scale = number_of(one.key, values, self.base) if one.relative else 1.0
+                values[one.key] = value * scale
         values = with_derived(values, self.derived, self.base)
         keys = {key: value for key, value in values.items() if not key.startswith(FREE)}
         return self._make(keys | dict(unknown or {}))

@@ -13,12 +13,15 @@ from typing import Any
 import numpy as np
 
 from fem.batch.answers import table_lines
+from fem.batch.axes import MOTION_FILE, Axis, with_following
 from fem.batch.log import LoggedRuns, fields_of, table_of_lines, table_text
+from fem.batch.motion_set import FloorMotionPair, motion_cases, read_motion_set, write_motions
 from fem.batch.runner import Row, Runner, motion_left_out
 from fem.batch.workers import LocalWorkers
 from fem.case.case import case_hash, to_toml
 from fem.case.rules import ends_at_rest, longest_time
 from fem.ensemble.answers import ensemble_answer
+from fem.ensemble.distributions import RandomChoice, RandomQuantity
 from fem.ensemble.figures import ensemble_figures
 from fem.ensemble.plan import Draw, Ensemble
 from fem.ensemble.statistics import (
@@ -34,6 +37,7 @@ from fem.ensemble.statistics import (
 from fem.ensemble.unknown import UnknownInputs
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
 from fem.results.kinds import ENSEMBLE
+from fem.results.run_files import copy_data_files
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
@@ -50,7 +54,10 @@ class DrawRows:
 
     def __init__(self, ensemble: Ensemble, unknown: UnknownInputs) -> None:
         self._ensemble, self._unknown = ensemble, unknown
-        keys = [f"{one.key}{' factor' if one.spread.relative else ''}" for one in ensemble.random]
+        #: keys that follow the motion of a draw
+        self._following = [key for axis in sets_of(ensemble) for key in axis.following]
+        keys = [f"{one.key}{' factor' if one.relative else ''}" for one in ensemble.random]
+        keys += self._following
         self.columns = ("point", "draw", "replicate", *keys, *unknown.keys, "outcome", "rotation_ratio")
         self.codes = np.full((ensemble.count, ensemble.draws), MISSING, dtype=np.int8)
         self._lines: dict[tuple[int, int], str] = {}
@@ -62,7 +69,10 @@ class DrawRows:
         known = ratio is not None and np.isfinite(ratio)
         found = WORDS[code_of(row)], ratio if known else None
         unknown = (draw.unknown.get(key) for key in self._unknown.keys)
-        return draw.cell, draw.number, replicate, *draw.values, *unknown, *found
+        drawn = dict(zip((one.key for one in self._ensemble.random), draw.values, strict=True))
+        motion = with_following(sets_of(self._ensemble), drawn)
+        following = (motion.get(key) for key in self._following)
+        return draw.cell, draw.number, replicate, *draw.values, *following, *unknown, *found
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
@@ -73,6 +83,14 @@ class DrawRows:
     def table(self) -> str:
         """`draws.csv`: a row a draw, in their order."""
         return table_of_lines(self.columns, (line for _, line in sorted(self._lines.items())))
+
+    def by_replicate(self) -> list[dict[str, int]]:
+        """How many draws of each replicate stood, overturned and failed, over all points."""
+        blocks = self.codes.reshape(len(self.codes), self._ensemble.replicates, -1)
+        return [
+            {word: int((block == code).sum()) for code, word in WORDS.items()}
+            for block in np.moveaxis(blocks, 1, 0)
+        ]
 
     def missing(self) -> list[Draw]:
         """The draws that have no row."""
@@ -102,6 +120,7 @@ def run_ensemble(
     """
     reporter = reporter or SilentReporter()
     asked = ensemble_hash(ensemble)
+    motions = read_motion_set(ensemble.base, sets_of(ensemble))
     with (
         open_result_folder(folder, ENSEMBLE, asked, force=force, resume=resume) as place,
         interruptible(reporter) as stop,
@@ -115,6 +134,8 @@ def run_ensemble(
         place.require_room(required_disk(ensemble, unknown), "the ensemble", "take fewer draws")
         texts = {"ensemble.toml": ensemble.text, "base.toml": to_toml(ensemble.base)}
         place.begin({"status": "running", "asked": asked} | program_of_results(), texts)
+        for case in (ensemble.base, *(one.case for one in motions)):
+            copy_data_files(case, folder)
         draws = DrawRows(ensemble, unknown)
         with LocalWorkers(jobs or cores()) as workers_of:
             LoggedRuns(
@@ -126,11 +147,15 @@ def run_ensemble(
                 values=draws.values,
                 note=draws.note,
             ).run(Runner(workers_of=workers_of, reporter=reporter, stop=stop), iter(draws.missing, []))
-        return _finish(ensemble, unknown, place, draws)
+        return _finish(ensemble, unknown, motions, place, draws)
 
 
 def _finish(
-    ensemble: Ensemble, unknown: UnknownInputs, place: ResultFolder, draws: DrawRows
+    ensemble: Ensemble,
+    unknown: UnknownInputs,
+    motions: Sequence[FloorMotionPair],
+    place: ResultFolder,
+    draws: DrawRows,
 ) -> dict[str, Any]:
     """Count what there is, and write it."""
     complete = (draws.codes != MISSING).all(axis=1)
@@ -146,6 +171,9 @@ def _finish(
         for name, svg in ensemble_figures(ensemble, unknown, points, fragility).items():
             place.write_text(f"figures/{name}.svg", svg)
     result = result_of(ensemble, unknown, points, fragility, status)
+    if motions and complete.all():
+        told = [one.numbers() | found for one, found in zip(motions, draws.by_replicate(), strict=True)]
+        result |= {"motions": told, "motion_figures": write_motions(place, motions, told)}
     answer = ensemble_answer(result)
     result["answer"] = answer.sentence if answer else None
     place.write_result(result)
@@ -163,10 +191,21 @@ def ensemble_hash(ensemble: Ensemble) -> str:
     given = {
         "base": case_hash(ensemble.base),
         "axes": [[axis.key, list(axis.values)] for axis in ensemble.axes],
-        "random": [[one.key, one.spread.model_dump()] for one in ensemble.random],
+        "random": [[one.key, _hashed(one)] for one in ensemble.random],
         "derived": [[one.key, one.expression.text] for one in ensemble.derived],
     }
+    if cases := motion_cases(ensemble.base, sets_of(ensemble)):
+        given["motions"] = [case_hash(case) for case in cases]
     return hashlib.sha256(json.dumps(given | asked_of(ensemble), sort_keys=True).encode()).hexdigest()
+
+
+def sets_of(ensemble: Ensemble) -> list[Axis]:
+    """The set of motions that is drawn, as a list of one or none."""
+    return [] if ensemble.motions is None else [ensemble.motions]
+
+
+def _hashed(one: RandomQuantity | RandomChoice) -> Any:
+    return one.asked if isinstance(one, RandomChoice) else one.spread.model_dump()
 
 
 def asked_of(ensemble: Ensemble) -> dict[str, Any]:
@@ -195,17 +234,25 @@ def result_of(
         "motion_covered": motion_left_out(ensemble.base),
         **asked_of(ensemble),
         "axes": [{"key": axis.key, "values": list(axis.values), "unit": axis.unit} for axis in ensemble.axes],
-        "random": {
-            one.key: one.spread.model_dump(by_alias=True, exclude_none=True) for one in ensemble.random
-        },
+        "random": {one.key: one.asked for one in ensemble.random},
         "derived": {one.key: one.expression.text for one in ensemble.derived},
         "drawn_over_uncertainty": list(unknown.keys),
         "held": unknown.held,
+        "motions": None,
+        "motion_figures": [],
         "points": [point.row() for point in points],
         "regions": {name: regions.count(name) for name in ("below", "undecided", "above")},
         "failed": sum(point.failed for point in points),
         "fragility": fragility,
     } | program_of_results()
+
+
+def _of_motions(result: dict[str, Any]) -> str:
+    """What is random about the floor's motion."""
+    count = len(result["random"].get(MOTION_FILE, ()))
+    if not count:
+        return "the floor's motion is not random"
+    return f"the intervals are those of a sample of {count} motions"
 
 
 def _each(duration: float | str) -> str:
@@ -219,7 +266,7 @@ def page_of(result: dict[str, Any], folder: Path) -> str:
         f"  {len(result['points'])} points x {result['draws']} draws ({result['sampling']}, seed {result['seed']}), "
         f"model {result['model']}, {_each(result['duration_s'])} each, {result['status']}",
         *([f"  under {result['motion_covered']}"] if result.get("motion_covered") else []),
-        f"  random: {', '.join(result['random'])}; the floor's motion is not random",
+        f"  random: {', '.join(result['random'])}; {_of_motions(result)}",
     ]
     if drawn := result.get("drawn_over_uncertainty"):
         lines.append(f"  drawn over [uncertainty]: {', '.join(drawn)}")

@@ -54,7 +54,13 @@ class PointResult:
 def count_point(ensemble: Ensemble, cell: int, codes: np.ndarray) -> PointResult:
     """The result of a point from the codes (draws,) of its draws."""
     overturned, failed = codes == OVERTURNED, codes == FAILED
-    found = estimate(overturned, failed, replicates=ensemble.replicates, confidence=ensemble.confidence)
+    found = estimate(
+        overturned,
+        failed,
+        replicates=ensemble.replicates,
+        confidence=ensemble.confidence,
+        independent=None if ensemble.motions is None else ensemble.replicates,
+    )
     region = "undecided"
     if found.high <= ensemble.probability:
         region = "below"
@@ -115,7 +121,12 @@ def _lognormal(
             "no_lognormal": "the counts are a step, fall, or hold nothing that overturned or nothing that stood"
         }
     medians, deviations = bootstrap_fits(
-        strengths, counts, sizes, seed=ensemble.seed, independent=ensemble.replicates == 1
+        strengths,
+        counts,
+        sizes,
+        seed=ensemble.seed,
+        independent=ensemble.replicates == 1,
+        common=ensemble.motions is not None,
     )
     outside = 50.0 * (1.0 - ensemble.confidence)
     fitted: dict[str, Any] = {"median": curve.median, "deviation": curve.deviation, "levels": len(strengths)}

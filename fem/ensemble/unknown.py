@@ -71,7 +71,7 @@ def _cases(ensemble: Ensemble) -> Iterator[Case]:
     """The cases in the middle and at the ends of all distributions, at the ends of the axes, those that can be made."""
     corners = product(*((axis.values[0], axis.values[-1]) for axis in ensemble.axes))
     shares = np.array([0.5, 0.0, 1.0])
-    drawn = np.column_stack([one.values(shares) for one in ensemble.random]).tolist()
+    drawn = list(zip(*(one.values(shares) for one in ensemble.random), strict=True))
     for corner, values in product(corners, drawn):
         with suppress(CaseError):
             point = {axis.key: value for axis, value in zip(ensemble.axes, corner, strict=True)}

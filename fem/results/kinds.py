@@ -71,7 +71,16 @@ ENSEMBLE = ResultKind(
     mark="ensemble.json",
     request="asked",
     results="points.csv, draws.csv",
-    own=("points.csv", "draws.csv", "base.toml", "ensemble.toml", "state.npz", "figures/*.svg"),
+    own=(
+        "points.csv",
+        "draws.csv",
+        "motions.csv",
+        "spectra.csv",
+        "base.toml",
+        "ensemble.toml",
+        "state.npz",
+        "figures/*.svg",
+    ),
 )
 RESPONSE = ResultKind(
     name="response curve",

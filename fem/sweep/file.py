@@ -9,7 +9,16 @@ from pydantic import Field
 
 from fem.batch.axes import Axis, AxisError, check_varied, field_of, first_motion, hint, read_axis
 from fem.batch.derived import Derived, read_derived, value_in
-from fem.batch.study_file import base_case, flat, read_as, read_axes, read_study, require_once, split_tables
+from fem.batch.study_file import (
+    base_case,
+    flat,
+    read_as,
+    read_axes,
+    read_study,
+    require_once,
+    require_verticals,
+    split_tables,
+)
 from fem.case.case import Case
 from fem.case.files import DEFAULT_CASE, SWEEPS, Origin
 from fem.case.tables import CaseTable
@@ -49,6 +58,7 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
         flat("axes", tables.get("axes", {})), MOST_AXES, '"contact.mu_static" = [0.2, 0.3, 0.4]', read_axis
     )
     base = base_case(heading.case, tables.get("set", {}), origin, first_motion(axes))
+    require_verticals(axes, [axis.key for axis in axes], base)
     derived = _derived(tables.get("derived", {}), base, axes)
     varied = [axis.key for axis in axes] + [one.key for one in derived]
     require_once(tables.get("set", {}), varied)

@@ -5,6 +5,7 @@ independent. The share of motions that overturn has the interval of as many inde
 motions under which the container stood, and is told together with how many overturned: no mean includes a fall.
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -12,14 +13,14 @@ from typing import Any
 import numpy as np
 
 from fem.assessment.summary import ratio_in_words
-from fem.batch.axes import MOTION_FILE, Axis
+from fem.batch.axes import MOTION_FILE, Axis, point_of, shape_of
 from fem.batch.intervals import estimate
 from fem.runtime.arrays import IntArray
 from fem.sweep.cells import Shown
-from fem.sweep.neighbours import FAILED, KIND_NAMES, OVERTURNED, STANDING
-from fem.sweep.plan import Sweep
+from fem.sweep.neighbours import FAILED, OVERTURNED, STANDING
 
 CONFIDENCE = 0.95
+COUNTED = {"stood": STANDING, "overturned": OVERTURNED, "failed": FAILED}
 #: keys whose values of one magnitude are the signs of a motion
 SIGNS = ("motion.scale", "vertical.scale")
 #: columns of `motion_set.csv` behind those of the other axes
@@ -52,17 +53,18 @@ def sign_axes(axes: Sequence[Axis]) -> list[Axis]:
 
 
 def motions_at(
-    sweep: Sweep, shown: Mapping[int, Shown]
+    axes: Sequence[Axis], shown: Mapping[int, Shown]
 ) -> Iterator[tuple[dict[str, Any], list[MotionOutcome]]]:
     """At each point on the axes that are neither motions nor signs: its values, and what each motion did."""
-    keys = [axis.key for axis in sweep.axes]
-    inner = [MOTION_FILE, *(axis.key for axis in sign_axes(sweep.axes))]
+    keys = [axis.key for axis in axes]
+    inner = [MOTION_FILE, *(axis.key for axis in sign_axes(axes))]
     places = [keys.index(key) for key in inner]
-    cells: IntArray = np.moveaxis(np.arange(sweep.count).reshape(sweep.shape), places, range(-len(places), 0))
-    names = sweep.axes[places[0]].values
+    shape = shape_of(axes)
+    cells: IntArray = np.moveaxis(np.arange(math.prod(shape)).reshape(shape), places, range(-len(places), 0))
+    names = axes[places[0]].values
     signs = int(np.prod(cells.shape[cells.ndim - len(places) + 1 :]))
     for block in cells.reshape(-1, len(names), signs):
-        point = sweep.point(int(block[0, 0]))
+        point = point_of(axes, int(block[0, 0]))
         values = {key: value for key, value in point.items() if key not in inner}
         yield (
             values,
@@ -128,10 +130,7 @@ def by_motion(points: Sequence[Sequence[MotionOutcome]]) -> dict[str, dict[str, 
     found: dict[str, dict[str, Any]] = {}
     for outcomes in zip(*points, strict=True):
         standing = [one for one in outcomes if one.kind == STANDING]
-        counts = {
-            KIND_NAMES[kind]: sum(one.kind == kind for one in outcomes)
-            for kind in (STANDING, OVERTURNED, FAILED)
-        }
+        counts = {word: sum(one.kind == kind for one in outcomes) for word, kind in COUNTED.items()}
         found[outcomes[0].motion] = counts | {
             "max_rotation_ratio": max((one.rotation_ratio or 0.0 for one in standing), default=None),
             "max_slip_m": max((one.max_slip_m or 0.0 for one in standing), default=None),

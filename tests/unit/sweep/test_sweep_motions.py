@@ -1,0 +1,113 @@
+"""A sweep over a set of motions, from its file to its folder."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+from motion_files import write_pair
+
+from fem.case.case import CaseError, load_case
+from fem.sweep.file import load_sweep
+from fem.sweep.run import run_sweep, sweep_hash
+from fem.sweep.table import open_sweep
+
+HEAD = """
+case = "seed_stack_plateau"
+[set]
+"solver.model" = "rigid"
+"solver.duration_s" = 1.5
+"motion.quantity" = "acceleration"
+"motion.unit" = "m/s2"
+"vertical.quantity" = "acceleration"
+"vertical.unit" = "m/s2"
+[perturbation]
+cells = "none"
+[axes]
+"""
+PAIRS = '[["a_h.csv", "a_v.csv"], ["b_h.csv", "b_v.csv"]]'
+SIGNS = "vertical.scale = [1.0, -1.0]\n"
+
+
+@pytest.fixture
+def sweep_of(tmp_path):
+    for k, name in enumerate(("a", "b")):
+        write_pair(tmp_path, name, frequency=1.0 + k)
+
+    def read(axes):
+        (tmp_path / "try.toml").write_text(HEAD + axes, encoding="utf-8")
+        return load_sweep(tmp_path / "try.toml")
+
+    return read
+
+
+def test_a_cell_has_both_components_of_its_motion(sweep_of):
+    sweep = sweep_of(f"motion.file = {PAIRS}\n{SIGNS}")
+    assert sweep.shape == (2, 2)
+    case = sweep.case(3)
+    assert (case.motion.kind, case.motion.file) == ("table", "b_h.csv")
+    assert (case.vertical.kind, case.vertical.file, case.vertical.scale) == ("table", "b_v.csv", -1.0)
+
+
+def test_a_motion_alone_has_no_vertical_motion_and_no_sign_of_it(sweep_of):
+    sweep = sweep_of('motion.file = ["a_h.csv", ["b_h.csv", "b_v.csv"]]\n')
+    assert [sweep.case(cell).vertical.kind for cell in (0, 1)] == ["none", "table"]
+    with pytest.raises(CaseError, match=r"'vertical.scale' varies, and 'a_h.csv' has no vertical motion"):
+        sweep_of(f'motion.file = ["a_h.csv", ["b_h.csv", "b_v.csv"]]\n{SIGNS}')
+    with pytest.raises(CaseError, match=r"'vertical.scale' varies, and 'a_h.csv' has no vertical motion"):
+        sweep_of(f'motion.file = ["a_h.csv", "b_h.csv"]\n{SIGNS}')
+
+
+def test_the_hash_follows_the_files(sweep_of, tmp_path):
+    before = sweep_hash(sweep_of(f"motion.file = {PAIRS}\n"))
+    assert before == sweep_hash(sweep_of(f"motion.file = {PAIRS}\n"))
+    write_pair(tmp_path, "b", frequency=4.0)
+    assert before != sweep_hash(sweep_of(f"motion.file = {PAIRS}\n"))
+
+
+def test_what_a_sweep_tells_of_its_motions(sweep_of, tmp_path):
+    folder = tmp_path / "results"
+    strengths = "motion.scale = [0.7, 3.0]\n"
+    sweep = sweep_of(f"{strengths}motion.file = {PAIRS}\n{SIGNS}")
+    info = run_sweep(sweep, folder, jobs=1)
+    assert info["status"] == "completed"
+    table = open_sweep(folder)
+    assert table.axes[1].following == {
+        "vertical.kind": ("table",) * 2,
+        "vertical.file": ("a_v.csv", "b_v.csv"),
+    }
+    assert (
+        table["vertical.file"].tolist()
+        == ["a_v.csv"] * 2 + ["b_v.csv"] * 2 + ["a_v.csv"] * 2 + ["b_v.csv"] * 2
+    )
+    told = json.loads((folder / "sweep.json").read_text(encoding="utf-8"))
+    assert [one["file"] for one in told["motions"]] == ["a_h.csv", "b_h.csv"]
+    assert [one["motion.scale"] for one in told["motion_set"]] == [0.7, 3.0]
+    weak = told["motion_set"][0]
+    ratios = table.grid("rotation_ratio")[0].max(axis=1)  # the worse sign of each motion
+    assert weak["worst_rotation_ratio"] == ratios.max()
+    assert weak["mean_rotation_ratio"] == pytest.approx(ratios.mean())
+    assert weak["motions"] == 2
+    with (folder / "motion_set.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert [float(row["high"]) for row in rows] == [one["high"] for one in told["motion_set"]]
+    spectra = np.loadtxt(folder / "spectra.csv", delimiter=",", skiprows=1)
+    assert spectra.shape == (100, 5)
+    for name in told["motion_figures"]:
+        assert (folder / name).read_text(encoding="utf-8").startswith("<?xml")
+    assert told["motion_figures"] == ["figures/spectra.svg", "figures/overturned.svg"]
+    # The base case in the folder runs there, with the files of any row.
+    base = load_case(folder / "base.toml", ["motion.file=b_h.csv", "vertical.file=b_v.csv"])
+    assert all(path.is_file() for path in base.data_files.values())
+    assert "holds this sweep already" in _again(sweep, folder)
+
+
+def _again(sweep, folder):
+    said = []
+
+    class Listener:
+        def __getattr__(self, name):
+            return lambda *words, **more: said.append(words)
+
+    run_sweep(sweep, folder, jobs=1, reporter=Listener())
+    return str(said)
