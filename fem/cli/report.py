@@ -1,4 +1,4 @@
-"""`report`: one self-contained page from the folder of a run, a sweep or a study."""
+"""`report`: one self-contained page from the folder of a run, a sweep, an ensemble, a response curve or a study."""
 
 import importlib
 from pathlib import Path
@@ -33,11 +33,12 @@ def report(
     Parameters
     ----------
     folder:
-        The folder of a run, a sweep or a study, such as outputs/my-stack.
+        The folder of a run, a sweep, an ensemble, a response curve or a study, such as outputs/my-stack.
     """
     if not folder.is_dir():
         raise FolderError(
-            f"{folder}: no such folder; give the folder of a run, a sweep or a study, such as outputs/NAME"
+            f"{folder}: no such folder; give the folder of a run, a sweep, an ensemble, a response curve or a study, "
+            "such as outputs/NAME"
         )
     place = _place(to if to is not None else folder / PAGE)
     reporter = ScreenReporter(quiet=quiet)
@@ -46,6 +47,14 @@ def report(
     signature = pages.Signature(author=author, checker=checker, revision=revision)
     if (folder / "sweep.json").is_file():
         page = importlib.import_module("fem.report.sweep_page").sweep_report(folder, signature=signature)
+    elif (folder / "ensemble.json").is_file():
+        page = importlib.import_module("fem.report.ensemble_page").ensemble_report(
+            folder, signature=signature
+        )
+    elif (folder / "response.json").is_file():
+        page = importlib.import_module("fem.report.response_page").response_report(
+            folder, signature=signature
+        )
     elif (folder / "study.json").is_file():
         page = importlib.import_module("fem.paper.page").paper_report(folder, signature=signature)
     elif (folder / "assess.json").is_file():

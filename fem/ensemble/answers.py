@@ -35,6 +35,7 @@ class EnsembleAnswer:
     """What an ensemble found along one axis."""
 
     axis: Axis
+    rising: bool  #: more overturn at larger values
     sentence: str  #: of the line of points on which half overturn first
     others: tuple[Axis, ...]  #: the axes that tell its lines apart
     rows: tuple[tuple[Row, HalfPoint, str], ...]  #: a point of each line, its answer, and that in words
@@ -77,14 +78,18 @@ def ensemble_answer(result: Mapping[str, Any]) -> EnsembleAnswer | None:
         rows.append((lines[values][0], found, _sentence(result, axis, lines[values], found, rising=rising)))
     safest = min if rising else max
     reached = [(found.value, k) for k, (_, found, _) in enumerate(rows) if found.value is not None]
-    point, _, sentence = rows[safest(reached)[1] if reached else 0]
-    if others:
-        where = f"first with {place_in_words(others, point)}: {sentence}"
-        sentence = (
-            where if reached else f"fewer than half of {result['draws']} draws overturned at every point"
-        )
+    few = [found.few_to for _, found, _ in rows if found.few_to is not None]
+    sentence = rows[0][2]
+    if others and reached:
+        point, found, _ = rows[safest(reached)[1]]
+        half = _half(result, axis, lines[tuple(point[one.key] for one in others)], found, rising=rising)
+        sentence = f"{half}, first with {place_in_words(others, point)}"
+    elif others:
+        sentence = f"fewer than half of {result['draws']} draws overturned at every point"
+    if others and len(few) == len(rows):
+        sentence += _few(result, axis, safest(few), rising=rising)
     return EnsembleAnswer(
-        axis=axis, sentence=f"{axis_name(axis)}: {sentence}", others=others, rows=tuple(rows)
+        axis=axis, rising=rising, sentence=f"{axis_name(axis)}: {sentence}", others=others, rows=tuple(rows)
     )
 
 
@@ -126,35 +131,39 @@ def _is_rising(axis: Axis, points: Sequence[Row]) -> bool:
     return axis.key in STRENGTHS or sum(high) >= sum(low)
 
 
-def _sentence(result: Row, axis: Axis, points: Sequence[Row], found: HalfPoint, *, rising: bool) -> str:
-    draws = f"half of {result['draws']} draws overturned"
-    if found.at_once:
-        end = "least" if rising else "largest"
-        parts = [f"{draws} or more at the {end} tried, {in_words(axis, [points[0][axis.key]])}"]
-    elif found.value is None:
-        most = max(points, key=lambda point: point["probability"] or 0.0)
-        share = f"{100.0 * (most['probability'] or 0.0):.2g} %"
-        parts = [
-            f"fewer than {draws} at every value tried, at most {share} at {in_words(axis, [most[axis.key]])}"
-        ]
-    else:
-        interval = (
-            f"{100.0 * result['confidence']:g} % interval {_interval(axis, points, found, rising=rising)}"
-        )
-        parts = [f"{draws} at {in_words(axis, [found.value])} ({interval})"]
-    if found.few_to is not None:
-        limit = f"{100.0 * result['probability']:g} %"
-        few = in_words(axis, [found.few_to])
-        parts.append(
-            f"at most {limit} {f'up to {few}' if rising else f'from {few} on'}, by the upper end of the interval"
-        )
-    return "; ".join(parts)
-
-
-def _interval(axis: Axis, points: Sequence[Row], found: HalfPoint, *, rising: bool) -> str:
-    """The ends of the interval of the value; an end that no point shows is said to lie beyond them."""
-    first, last = (in_words(axis, [points[k][axis.key]]) for k in (0, -1))
+def interval_in_words(axis: Axis, found: HalfPoint, *, rising: bool) -> str:
+    """The interval of the value; an end that no point shows is said to lie beyond them."""
+    ends = [axis.values[0], axis.values[-1]]
+    first, last = (in_words(axis, [end]) for end in (ends if rising else reversed(ends)))
     before, after = ("below", "beyond") if rising else ("beyond", "below")
     low, high = ("" if end is None else in_words(axis, [end]) for end in (found.low, found.high))
-    ends = [f"{before} {first}" if low == first else low, high or f"{after} {last}"]
-    return " to ".join(ends if rising else reversed(ends))
+    words = [f"{before} {first}" if low == first else low, high or f"{after} {last}"]
+    return " to ".join(words if rising else reversed(words))
+
+
+def _sentence(result: Row, axis: Axis, points: Sequence[Row], found: HalfPoint, *, rising: bool) -> str:
+    few = "" if found.few_to is None else _few(result, axis, found.few_to, rising=rising)
+    return _half(result, axis, points, found, rising=rising) + few
+
+
+def _half(result: Row, axis: Axis, points: Sequence[Row], found: HalfPoint, *, rising: bool) -> str:
+    half = f"half of {result['draws']} draws overturned"
+    if found.at_once:
+        end = "least" if rising else "largest"
+        return f"{half} or more at the {end} tried, {in_words(axis, [points[0][axis.key]])}"
+    if found.value is None:
+        most = max(points, key=lambda point: point["probability"] or 0.0)
+        share = f"{100.0 * (most['probability'] or 0.0):.2g} %"
+        return (
+            f"fewer than {half} at every value tried, at most {share} at {in_words(axis, [most[axis.key]])}"
+        )
+    interval = interval_in_words(axis, found, rising=rising)
+    return (
+        f"{half} at {in_words(axis, [found.value])} ({100.0 * result['confidence']:g} % interval {interval})"
+    )
+
+
+def _few(result: Row, axis: Axis, few_to: float, *, rising: bool) -> str:
+    few = in_words(axis, [few_to])
+    reach = f"up to {few}" if rising else f"from {few} on"
+    return f"; at most {100.0 * result['probability']:g} % {reach}, by the upper end of the interval"

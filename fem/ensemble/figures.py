@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,7 @@ from fem.sweep.maps import map_axis
 #: of the regions; lightness differs as well
 COLOURS = {"below": SKY, "undecided": "#DDDDDD", "above": VERMILLION}
 FINE = 240  #: points of a drawn curve
+LINE, SMALL_LINE = 92, 104  #: letters of a line above a figure
 MOST_NUMBERS = 320  #: cells of a panel up to which each holds its number
 
 
@@ -55,9 +57,10 @@ def draw_fragility(
     fragility: Mapping[str, Any],
 ) -> Figure:
     """Counts with their intervals, and the lognormal curve with its band."""
-    figure, (axes,) = panels((3.2,), header=3)
+    statement = fill(_statement(ensemble, unknown), SMALL_LINE)
+    figure, (axes,) = panels((3.2,), header=3 + statement.count("\n"))
     axis = ensemble.axes[0]
-    head(figure, ensemble.title or ensemble.name, _statement(ensemble, unknown))
+    head(figure, ensemble.title or ensemble.name, statement)
     fitted = fragility.get("lognormal")
     if fitted is not None:
         strengths = np.linspace(float(axis.values[0]), float(axis.values[-1]), FINE)
@@ -122,7 +125,7 @@ def draw_boundary(ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[P
         x,
         map_axis(down),
         panels,
-        title=f"{ensemble.title or ensemble.name}\n{_statement(ensemble, unknown)}",
+        title=f"{ensemble.title or ensemble.name}\n{fill(_statement(ensemble, unknown), LINE)}",
         colours={words[region]: colour for region, colour in COLOURS.items()},
     )
 

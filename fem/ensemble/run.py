@@ -6,7 +6,7 @@ that nor on the number of cores.
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -272,20 +272,14 @@ def page_of(result: dict[str, Any], folder: Path) -> str:
         lines.append(f"  drawn over [uncertainty]: {', '.join(drawn)}")
     if held := result.get("held"):
         lines.append(f"  held: {held}")
+    words = region_words(result)
     for name, count in result["regions"].items():
-        lines.append(
-            f"  {name:10} {count:>6} points  "
-            + {
-                "below": f"probability of overturning at most {result['probability']:g}",
-                "above": f"more than {result['probability']:g}",
-                "undecided": f"the {100.0 * result['confidence']:g} % interval holds {result['probability']:g}",
-            }[name]
-        )
+        lines.append(f"  {name:10} {count:>6} points  {words[name]}")
     if result["failed"]:
         lines.append(
             f"  failed     {result['failed']:>6} draws; the intervals allow for either outcome of these"
         )
-    lines += _fragility_lines(result["fragility"], result["confidence"])
+    lines += [f"  {name:10} {line}" for name, line in fragility_lines(result)]
     lines.append(f"  files      {folder}")
     if result["status"] == "interrupted":
         lines.append("  --resume continues")
@@ -309,25 +303,39 @@ def code_of(row: Row) -> int:
     return OVERTURNED if row["outcome"] == "overturned" else STOOD
 
 
-def _fragility_lines(fragility: dict[str, Any] | None, confidence: float) -> list[str]:
+def region_words(result: Mapping[str, Any]) -> dict[str, str]:
+    """What each region says of its points."""
+    limit = f"{result['probability']:g}"
+    return {
+        "below": f"probability of overturning at most {limit}",
+        "undecided": f"the {100.0 * result['confidence']:g} % interval holds {limit}",
+        "above": f"more than {limit}",
+    }
+
+
+def fragility_lines(result: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Where the curve falls, and the lognormal curve: name and words; nothing where there is no curve."""
+    fragility = result["fragility"]
     if fragility is None:
-        return []
-    lines = [
-        f"  falls      from {fall['probability_weaker']:.3f} at {fall['weaker']:g} to "
-        f"{fall['probability_stronger']:.3f} at {fall['stronger']:g}: a stronger motion overturns less often"
-        for fall in fragility["falls"]
-    ]
+        return
+    for fall in fragility["falls"]:
+        yield (
+            "falls",
+            f"from {fall['probability_weaker']:.3f} at {fall['weaker']:g} to {fall['probability_stronger']:.3f} at "
+            f"{fall['stronger']:g}: a stronger motion overturns less often",
+        )
     fitted = fragility["lognormal"]
     if fitted is None:
-        return [*lines, f"  lognormal  none: {fragility['no_lognormal']}"]
+        yield "lognormal", f"none: {fragility['no_lognormal']}"
+        return
     parts = []
     for name in ("median", "deviation"):
         ends = fitted[f"{name}_interval"]
         interval = f" ({ends[0]:.3g} to {ends[1]:.3g})" if ends else ""
         parts.append(f"{name} {fitted[name]:.3g}{interval}")
     fit = "" if fitted["adequate"] else "; the lognormal curve does not describe the counts"
-    lines.append(
-        f"  lognormal  {', '.join(parts)}; misses {fitted['levels_missed']} of {fitted['levels']} intervals of "
-        f"{100.0 * confidence:g} % ({fitted['missed_by_chance']} by chance){fit}"
+    yield (
+        "lognormal",
+        f"{', '.join(parts)}; misses {fitted['levels_missed']} of {fitted['levels']} intervals of "
+        f"{100.0 * result['confidence']:g} % ({fitted['missed_by_chance']} by chance){fit}",
     )
-    return lines

@@ -5,26 +5,25 @@ numbers go in single precision; the values of axes and derived keys, from which 
 """
 
 import csv
-import datetime as dt
+import re
 import shlex
 from collections import Counter
-from importlib import metadata
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from markupsafe import Markup
 from numpy.typing import NDArray
 
 from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
-from fem.batch.answers import ranges_in_words
+from fem.batch.answers import Answer, ranges_in_words
 from fem.batch.labels import axis_label, in_words, place_in_words
 from fem.case.case import load_case
 from fem.figures.style import STATE_COLOURS, VERMILLION
-from fem.html.page import Signature, render_page, svg_element
-from fem.html.units import ABSENT, millimetres, number, short, typeset
+from fem.html.page import Signature
+from fem.html.units import ABSENT, millimetres, number, short
 from fem.report.animation import colour_scale, packed
-from fem.report.comparison import asked_rows, assumptions, exclusions
+from fem.report.studies import PageTable, again_from_files, axis_row, drawings, page_table, study_page
 from fem.results.errors import FolderError
 from fem.sweep.answers import SweepAnswer, sweep_answer
 from fem.sweep.table import SweepTable, open_sweep
@@ -56,7 +55,7 @@ OUTCOMES = (
     ("failed", "no outcome: failed", VERMILLION, False),
     ("", "not computed", "#FFFFFF", False),
 )
-MOST_MAP_BYTES = 400_000  #: of a drawn map, as SVG
+NUMBER = re.compile(r"[-+]?\d+(\.\d*)?(e[-+]?\d+)?")
 
 
 def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
@@ -75,20 +74,20 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
     data = map_data(table, folder)
     known = {column["name"] for column in data["columns"]}
     answer = sweep_answer(table, folder)
-    return render_page(
+    name = str(info.get("sweep") or folder.name)
+    return study_page(
         "sweep.html.j2",
-        scripts=["map.js", "signature.js"],
-        data={"sweep": data},
-        title=info.get("title") or info.get("sweep") or folder.name,
-        name=str(info.get("sweep") or folder.name),
-        hash=str(info.get("sweep_hash") or ""),
         info=info,
-        answer=typeset(answer.sentence) if answer else None,
-        answers=answer_rows(answer) if answer and answer.others else None,
         case=case,
-        signature=signature or Signature(),
-        asked=asked_rows(case),
-        axes=[_axis_row(axis.key, axis.unit, axis.values, axis.scale) for axis in table.axes],
+        signature=signature,
+        answer=answer.sentence if answer else None,
+        scripts=["map.js"],
+        data={"sweep": data},
+        title=info.get("title") or name,
+        name=name,
+        hash=str(info.get("sweep_hash") or ""),
+        answers=answer_table(answer) if answer and answer.others else None,
+        axes=[axis_row(axis) for axis in table.axes],
         labels=[axis_label(axis) for axis in table.axes],
         longest=_longest(table),
         quantities=[(name, label) for name, label, *_ in QUANTITIES if name in known],
@@ -98,48 +97,39 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
         computed=int((table["status"] != "").sum()),
         failures=failures(table),
         thresholds=_thresholds(folder / "thresholds.csv"),
-        maps=_maps(folder, info.get("maps") or []),
-        assumptions=assumptions(case),
-        exclusions=exclusions(case),
-        version=metadata.version("unanchored"),
-        today=dt.date.today().isoformat(),
+        drawn=drawings(folder, info.get("maps") or [], "sweep"),
+        provenance=[
+            ("sweep", f"{name}, {info['status']}, model {info.get('model')}"),
+            ("sweep hash", info.get("sweep_hash")),
+            ("base hash", info.get("base_hash")),
+        ],
+        again=again_from_files(folder, study="sweep", name=name, case=case),
         number=number,
-        short=short,
     )
 
 
-def answer_rows(answer: SweepAnswer) -> tuple[list[str], list[list[str]]]:
-    """Head and rows of the table of answers: where, the two values, the slip, what else there is to say."""
+def answer_table(answer: SweepAnswer) -> PageTable:
+    """The answers: where, up to where it stood, where it first overturned, the slip, what else there is to say."""
     up_to, first = (
         ("stood up to", "first overturned at") if answer.rising else ("stood from", "overturned up to")
     )
-    head = ["", up_to, first, "slip there", "stood again", "no outcome", "unsure"]
-    rows = []
-    for point, found, _ in answer.rows:
-        ends = (
-            in_words(answer.axis, [one]) if one is not None else ""
-            for one in (found.stood_to, found.overturned_from)
-        )
-        slip = f"{millimetres(found.slip)} mm" if found.slip is not None else ""
-        ranges = (
-            ranges_in_words(one, answer.axis) for one in (found.stood_again, found.failed, found.unsure)
-        )
-        rows.append(
-            [typeset(one) or ABSENT for one in (place_in_words(answer.others, point), *ends, slip, *ranges)]
-        )
-    shown = [k for k in range(len(head)) if k < 3 or any(row[k] != ABSENT for row in rows)]
-    return [head[k] for k in shown], [[row[k] for k in shown] for row in rows]
 
+    def row(point: Mapping[str, Any], found: Answer) -> Iterator[str]:
+        yield place_in_words(answer.others, point)
+        for end in (found.stood_to, found.overturned_from):
+            yield in_words(answer.axis, [end]) if end is not None else ABSENT
+        yield f"{millimetres(found.slip)} mm" if found.slip is not None else ""
+        for ranges in (found.stood_again, found.failed, found.unsure):
+            yield ranges_in_words(ranges, answer.axis)
 
-def _axis_row(key: str, unit: str, values: tuple[object, ...], scale: str) -> tuple[str, str, str]:
-    """Key, values and their number."""
-    first, last = values[0], values[-1]
-    if scale in ("linear", "log") and isinstance(first, int | float) and isinstance(last, int | float):
-        words = f"{short(first)} to {short(last)} {unit}, {scale}".replace(" ,", ",")
-    else:
-        words = ", ".join(str(value) for value in values[:12]) + (" ..." if len(values) > 12 else "")
-        words += f" {unit}" if unit else ""
-    return key, typeset(words), str(len(values))
+    more = ("slip there", "stood again", "no outcome", "unsure")
+    return page_table(
+        "answers",
+        dict.fromkeys(("", up_to, first, *more), False),
+        (list(row(point, found)) for point, found, _ in answer.rows),
+        file="answers.csv",
+        optional=frozenset(more),
+    )
 
 
 def _longest(table: SweepTable) -> list[int]:
@@ -147,8 +137,8 @@ def _longest(table: SweepTable) -> list[int]:
     return sorted(sorted(range(len(table.axes)), key=lambda k: -len(table.axes[k].values))[:2])
 
 
-def _thresholds(path: Path) -> tuple[list[str], list[list[str]]] | None:
-    """Columns and rows of the refined changes of outcome, where they were asked for."""
+def _thresholds(path: Path) -> PageTable | None:
+    """The refined changes of outcome, where they were asked for."""
     if not path.is_file():
         return None
     try:
@@ -156,24 +146,8 @@ def _thresholds(path: Path) -> tuple[list[str], list[list[str]]] | None:
             header, *rows = list(csv.reader(stream))
     except (OSError, ValueError) as error:
         raise FolderError(f"{path}: cannot be read ({error}); repeat the sweep with --force") from None
-    return header, rows
-
-
-def _maps(folder: Path, names: list[str]) -> list[Markup]:
-    """Maps that the sweep has drawn, for paper and for browsers that run no scripts."""
-    drawn = []
-    for k, name in enumerate(names):
-        path = folder / name
-        inside = path.resolve().is_relative_to(folder.resolve())
-        if inside and path.is_file() and path.stat().st_size <= MOST_MAP_BYTES:
-            text = path.read_text(encoding="utf-8")
-            try:
-                drawn.append(svg_element(text, label=f"map: {path.stem.replace('_', ' ')}", prefix=f"map{k}"))
-            except ValueError as error:
-                raise FolderError(
-                    f"{path}: {error}; remove it and repeat the sweep, which draws it again"
-                ) from None
-    return drawn
+    shown = ([short(float(one), figures=5) if NUMBER.fullmatch(one) else one for one in row] for row in rows)
+    return page_table("changes of outcome", dict.fromkeys(header, False), shown, file=path.name)
 
 
 def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:

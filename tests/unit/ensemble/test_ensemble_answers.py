@@ -24,7 +24,8 @@ def result_of(*rows, **more):
 
 
 def row(share, region="above", spread=0.1, **values):
-    ends = {"low": share and max(share - spread, 0.0), "high": share and min(share + spread, 1.0)}
+    middle = 0.5 if share is None else share
+    ends = {"low": max(middle - spread, 0.0), "high": min(middle + spread, 1.0)}
     return values | {"probability": share, "region": region} | ends
 
 
@@ -80,13 +81,15 @@ def test_a_point_without_outcome_is_left_out():
 def test_a_boundary_has_a_row_for_each_value_of_the_other_axis():
     rows = [*over(PEAK, 0.0, 0.25, 0.75, **{MU: 0.3}), *over(PEAK, 0.0, 0.5, 1.0, **{MU: 0.6})]
     answer = ensemble_answer(result_of(*rows))
-    assert answer.sentence.startswith(
-        "peak acceleration: first with mu static 0.6: half of 128 draws overturned at 0.4 g (95 % interval"
+    assert answer.sentence == (
+        "peak acceleration: half of 128 draws overturned at 0.4 g (95 % interval 0.36 g to 0.44 g), first with "
+        "mu static 0.6; at most 5 % up to 0.2 g, by the upper end of the interval"
     )
     assert [found.value for _, found, _ in answer.rows] == pytest.approx([0.5 * G, 0.4 * G])
     none = [*over(PEAK, 0.0, 0.0, 0.0, **{MU: 0.3}), *over(PEAK, 0.0, 0.0, 0.4, **{MU: 0.6})]
-    assert ensemble_answer(result_of(*none)).sentence.endswith(
-        "fewer than half of 128 draws overturned at every point"
+    assert ensemble_answer(result_of(*none)).sentence == (
+        "peak acceleration: fewer than half of 128 draws overturned at every point; at most 5 % up to 0.4 g, by the "
+        "upper end of the interval"
     )
 
 

@@ -1,0 +1,116 @@
+"""Reports of ensembles and response curves: the answer first, then figures, request, points, how to repeat."""
+
+import json
+import re
+import shlex
+
+import pytest
+from study_folders import ensemble_folder, response_folder
+
+from fem.__main__ import main
+from fem.report.ensemble_page import ensemble_report
+from fem.report.response_page import response_report
+from fem.report.studies import MOST_ROWS, page_table
+from fem.results.errors import FolderError
+
+#: headings in the order in which a reader wants them
+HEADINGS = {
+    "ensemble": ["Found", "Fragility curve", "The ensemble", "Points"],
+    "response": ["Found", "Response", "Where the curve changes", "The drive and the case", "Points"],
+}
+END = ["Assumptions and exclusions", "Provenance and how to repeat it"]
+MADE = {"ensemble": (ensemble_folder, ensemble_report), "response": (response_folder, response_report)}
+
+
+def page_of(kind, folder, **more):
+    make, report = MADE[kind]
+    return report(make(folder, **more))
+
+
+def rows_of(page, label):
+    """The texts of a table's rows."""
+    table = re.search(rf'aria-label="{label}">.*?</table>', page, re.DOTALL)[0]
+    rows = re.findall(r"<tr>(.*?)</tr>", table)
+    return [re.findall(r">([^<]*)</t[hd]>", row) for row in rows[1:]]
+
+
+@pytest.mark.parametrize("kind", MADE)
+def test_a_page_begins_with_the_answer_and_ends_with_how_to_repeat_it(kind, tmp_path):
+    page = page_of(kind, tmp_path)
+    assert re.findall(r"<h2[^>]*>([^<]*)</h2>", page) == HEADINGS[kind] + END
+    assert page.index('class="sentence"') < page.index("<svg")
+    assert "</script><b>" not in page
+    assert "Stack <b>" not in page
+
+
+def test_an_ensemble_says_where_half_overturned_and_shows_every_point(tmp_path):
+    page = page_of("ensemble", tmp_path)
+    sentence = re.search(r'<p class="sentence">(.*?)</p>', page)[1]
+    assert sentence == (
+        "Peak acceleration: half of 100 draws overturned at 0.45 g (95 % interval 0.4 g to 0.5 g); "
+        "at most 5 % up to 0.2 g, by the upper end of the interval."
+    )
+    assert [row[1:] for row in rows_of(page, "points")] == [
+        ["100", "100", "0", "0", "0 %", "0 to 4.00 %", "at most 5 %"],
+        ["100", "60", "40", "0", "40.0 %", "30.0 to 50.0 %", "more than 5 %"],
+        ["100", "20", "80", "0", "80.0 %", "70.0 to 90.0 %", "more than 5 %"],
+    ]
+    assert rows_of(page, "random quantities") == [
+        [
+            "contact.mu_static",
+            "normal, mean 1, deviation 0.05, cut at 3 deviations, times the value of the key",
+        ],
+        ["free.ratio", "uniform, 0.5 to 1"],
+        ["motion.start", "over its range in [uncertainty]"],
+    ]
+    assert "case = &#34;&lt;b&gt;.toml&#34;" in page
+    assert "python -m fem ensemble &#39;my ensemble.toml&#39;" in page
+
+
+def test_a_response_curve_is_repeated_by_its_command(tmp_path):
+    page = page_of("response", tmp_path)
+    assert (
+        "Frequency: overturned at 0.5 Hz going down; stood at the other 3 points; largest rotation 0.62"
+        in page
+    )
+    assert rows_of(page, "points")[-1] == ["down", "0.5", "overturned", *"–––––", "no"]
+    assert rows_of(page, "branches") == [
+        ["overturns", "down", "0.5 Hz", "a motion that was carried there"],
+        ["coexist", "up and down", "1 Hz", "rock of period 1 going up, rest going down"],
+    ]
+    words = shlex.split(re.search(r'<pre class="command">(.*?)</pre>', page)[1])
+    assert words[:5] == ["python", "-m", "fem", "response", "case.toml"]
+    assert dict(zip(words[5::2], words[6::2], strict=True))["--hold"] == "acceleration"
+
+
+@pytest.mark.parametrize("kind", MADE)
+def test_the_command_line_tells_them_apart(kind, tmp_path, capsys):
+    MADE[kind][0](tmp_path / "made")
+    assert main(["report", str(tmp_path / "made"), "--author", "N. N."]) == 0
+    written = tmp_path / "made" / "report.html"
+    assert capsys.readouterr().out.strip() == str(written)
+    assert 'value="N. N."' in written.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("kind", MADE)
+def test_an_unfinished_one_is_refused_with_the_way_out(kind, tmp_path):
+    folder = MADE[kind][0](tmp_path)
+    (folder / f"{kind}.json").write_text(json.dumps({"status": "running", "asked": "ab"}))
+    with pytest.raises(FolderError, match="not finished; continue it with --resume"):
+        MADE[kind][1](folder)
+
+
+@pytest.mark.parametrize("kind", MADE)
+def test_an_interrupted_one_shows_what_there_is_without_an_answer(kind, tmp_path):
+    page = page_of(kind, tmp_path, status="interrupted")
+    assert "(interrupted)" in page
+    assert "half of 100 draws" not in page
+    assert "largest rotation 0.62" not in page
+
+
+def test_a_long_table_says_what_it_leaves_out():
+    table = page_table(
+        "t", {"a": True, "b": False}, ([str(k), ""] for k in range(MOST_ROWS + 5)), file="t.csv"
+    )
+    assert len(table.rows) == MOST_ROWS
+    assert table.left_out == "5 more rows are in t.csv."
