@@ -3,6 +3,7 @@
 from fem.results.run_result import MotionResult
 
 STANDARD_GRAVITY = 9.80665  #: accelerations are also given in g, as records are [m/s2]
+ROUNDING = 1e-9  #: share of a peak
 NAMES = {"table": "record", "pulse": "pulse"}
 
 
@@ -19,7 +20,17 @@ def motion_in_words(motion: MotionResult) -> str:
         words += f", {motion.peak_velocity_m_s:.3g} m/s"
     if motion.peak_displacement_m is not None:
         words += f", {1e3 * motion.peak_displacement_m:.3g} mm"
+    if motion.residual_velocity_m_s is not None and motion.residual_displacement_m is not None:
+        words += (
+            f"; ends with {_small(motion.residual_velocity_m_s, motion.peak_velocity_m_s):.2g} m/s, "
+            f"{1e3 * _small(motion.residual_displacement_m, motion.peak_displacement_m):.2g} mm"
+        )
     return words
+
+
+def _small(residual: float, peak: float | None) -> float:
+    """What is left at the end of a motion; 0 where it is the rounding of sums."""
+    return 0.0 if abs(residual) <= ROUNDING * (peak or 0.0) else residual
 
 
 def is_cut(motion: MotionResult) -> bool:

@@ -12,6 +12,15 @@ from typing import Any, Self
 
 from pydantic import Field, PrivateAttr
 
+from fem.case.data_files import (
+    FILE_KEYS,
+    DataFile,
+    as_named_from,
+    copied_name,
+    find_data_files,
+    outside_problems,
+    place_of,
+)
 from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
 from fem.case.overrides import parse_override, with_overrides
 from fem.case.rules import CASE_RULES
@@ -134,16 +143,26 @@ class Case(CaseHeading):
         return self.motion.nominal_peak
 
     @property
-    def data_files(self) -> dict[str, Path]:
+    def files(self) -> dict[str, DataFile]:
         """Mesh and motion files, as far as the case has them, by dotted key.
 
         Raises:
-            CaseError: a file is missing or outside the folder of the case file.
+            CaseError: a file is missing, or outside the folder of the case file and not named on the command line.
         """
+        return find_data_files(self.folder, self._file_names(), trusted=self._origin.trusted)
+
+    @property
+    def data_files(self) -> dict[str, Path]:
+        """Where these files are; raises as `files`."""
+        return {key: file.path for key, file in self.files.items()}
+
+    def _file_names(self) -> dict[str, str | None]:
         named = {"container.mesh_file": self.container.mesh_file}
         for table, motion in (("motion", self.motion), ("vertical", self.vertical)):
             named[f"{table}.file"] = motion.file if motion.kind == "table" else None
-        return {key: _file_beside(self.folder, key, name) for key, name in named.items() if name is not None}
+        if self.vertical.kind == "table" and self.vertical.file is None:
+            named["vertical.file"] = named["motion.file"]  # another component of it
+        return named
 
     def given(self) -> dict[str, Any]:
         """The keys that were set, by table, as a case file would hold them."""
@@ -153,7 +172,7 @@ class Case(CaseHeading):
         return keys | {name: given for name, given in content.items() if given or name in OPTIONAL}
 
     def resolved(self) -> dict[str, Any]:
-        """Every key that is used, defaults included, by table."""
+        """Every key that is used, defaults included, by table; files are named as their copies in the results are."""
         document = self.model_dump(by_alias=True, exclude=set(TABLES))
         for name in TABLES:
             table = getattr(self, name)
@@ -165,6 +184,10 @@ class Case(CaseHeading):
                 for key, value in table.model_dump().items()
                 if value is not None and key not in idle
             }
+        for dotted in FILE_KEYS:
+            name, _, key = dotted.partition(".")
+            if key in document.get(name, {}):
+                document[name][key] = copied_name(self.folder, document[name][key])
         return document
 
     def with_values(self, values: Mapping[str, Any]) -> "Case":
@@ -187,7 +210,8 @@ class Case(CaseHeading):
     def origin_with(self, values: Mapping[str, Any]) -> Origin:
         """The origin of this case with dotted keys set."""
         overrides = (*self.overrides, *(f"{key}={value}" for key, value in values.items()))
-        return replace(self._origin, overrides=overrides)
+        trusted = self._origin.trusted if self._origin.allow_outside else self._origin.trusted - values.keys()
+        return replace(self._origin, overrides=overrides, trusted=trusted)
 
     def from_origin(self, origin: Origin) -> Self:
         """This case with another origin."""
@@ -196,17 +220,34 @@ class Case(CaseHeading):
         return copy
 
 
-def load_case(name_or_path: str | Path | None = None, overrides: Sequence[str] = ()) -> Case:
+def load_case(
+    name_or_path: str | Path | None = None,
+    overrides: Sequence[str] = (),
+    *,
+    motion: str | None = None,
+    allow_outside: bool = False,
+) -> Case:
     """Read a case file or a shipped case, changed by overrides of the form `table.key=value`.
 
     A file wins over a shipped case of the same name; None is the shipped default.
+
+    Args:
+        name_or_path: of the case.
+        overrides: changes; files that they name may lie anywhere.
+        motion: file of a recorded motion in place of the case's, relative to the current folder.
+        allow_outside: let the case name files outside its folder.
 
     Raises:
         CaseError: with one line for each reason why the case cannot be used.
     """
     found = CASES.shipped(DEFAULT_CASE) if name_or_path is None else CASES.find(name_or_path)
-    origin = replace(found, overrides=tuple(overrides))
     values = dict(parse_override(text) for text in overrides)
+    if motion is not None:
+        recorded = {"motion.kind": "table", "motion.file": as_named_from(found.folder, motion)}
+        values = recorded | {key: value for key, value in values.items() if key not in recorded}
+        overrides = (*(f"{key}={value}" for key, value in recorded.items()), *overrides)
+    trusted = frozenset(FILE_KEYS if allow_outside else values.keys() & set(FILE_KEYS))
+    origin = replace(found, overrides=tuple(overrides), trusted=trusted, allow_outside=allow_outside)
     return _read(with_overrides(parse_case(origin), values), origin, values)
 
 
@@ -241,13 +282,14 @@ def case_hash(case: Case) -> str:
             with path.open("rb") as stream:
                 content = hashlib.file_digest(stream, "sha256").hexdigest()
         except OSError as error:
-            raise CaseError(_place(key) + f"cannot be read: {path}: {error.strerror}") from error
+            raise CaseError(place_of(key) + f"cannot be read: {path}: {error.strerror}") from error
         digest.update(f"{key} {content}\n".encode())
     return digest.hexdigest()
 
 
 def _read(data: Mapping[str, Any], origin: Origin, overrides: Mapping[str, Any]) -> Case:
     values, problems = read_case_tables(data)
+    problems += outside_problems(values, trusted=origin.trusted)
     if problems:
         lines = problem_lines(problems, f"{origin.place}: ")
         raise CaseError("\n".join(_naming_overrides(lines, overrides)))
@@ -275,23 +317,3 @@ def _naming_overrides(lines: list[str], overrides: Mapping[str, Any]) -> list[st
 def _as_override(dotted: str, value: object) -> str:
     shown = str(value)[:80]
     return f"--set {dotted}={shown if shown.isprintable() else repr(shown)}"
-
-
-def _file_beside(folder: Path, key: str, name: str) -> Path:
-    path = folder / name
-    if not path.resolve().is_relative_to(folder.resolve()):
-        raise CaseError(
-            _place(key) + f"must lie in the folder of the case file, got {name!r}, which leads to "
-            f"{path.resolve()}; copy the file there"
-        )
-    if not path.is_file():
-        raise CaseError(
-            _place(key) + f"names no file: {name!r}, looked for in {folder.resolve()}; "
-            "its path is relative to the case file"
-        )
-    return path
-
-
-def _place(dotted: str) -> str:
-    table, _, key = dotted.partition(".")
-    return f"[{table}] {key} "

@@ -49,6 +49,8 @@ class Origin:
     folder: Path = field(default_factory=Path, compare=False)  #: where its mesh and motion files are
     text: str = field(default="", compare=False)  #: the file as given, without overrides
     overrides: tuple[str, ...] = field(default=(), compare=False)  #: as given, `table.key=value`
+    trusted: frozenset[str] = field(default=frozenset(), compare=False)  #: keys whose files may lie anywhere
+    allow_outside: bool = field(default=False, compare=False)  #: all of them may, whoever sets them
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from fem.case import quantities as q
-from fem.case.problem import Rule, outside_the_folder, stays_in_the_folder
+from fem.case.problem import Rule, is_a_file_name, outside_the_folder
 
 #: peak acceleration of a harmonic floor given by amplitude and frequency [m/s2]: a hundred times gravity, which a
 #: vibration test at 100 Hz may reach; ten times that is a slip, and steps of nanoseconds
@@ -125,9 +125,9 @@ def _complete(kind: str, *keys: str) -> Rule:
 
 
 #: quantity of a table -> its units
-UNITS = {"acceleration": ("m/s2", "g"), "displacement": ("m",)}
+UNITS = {"acceleration": ("g", "m/s2", "cm/s2", "gal", "mm/s2"), "displacement": ("m",)}
 
-MOTION_RULES = (
+SHARED_RULES = (
     Rule("motion.amplitude_m", _two_of_three, _not_two_of_three),
     Rule("motion.angular_frequency_rad_s", _frequency_follows, _frequency_refused),
     Rule(
@@ -169,14 +169,9 @@ MOTION_RULES = (
         "without one the floor moves from the beginning on (see start)",
     ),
     _complete("pulse", "shape", "peak_acceleration_m_s2", "pulse_s"),
-    _complete("table", "file", "quantity", "unit"),
     Rule(
         "motion.unit",
-        lambda motion: (
-            motion.kind != "table"
-            or motion.quantity is None
-            or motion.unit in (None, *UNITS[motion.quantity])
-        ),
+        lambda motion: motion.kind != "table" or motion.unit in (None, *UNITS[motion.quantity]),
         lambda motion: (
             f'must be {" or ".join(UNITS[motion.quantity])} for quantity = "{motion.quantity}", '
             f'got "{motion.unit}"; for values in another unit give the factor as scale'
@@ -196,14 +191,31 @@ MOTION_RULES = (
     ),
     Rule(
         "motion.file",
-        lambda motion: stays_in_the_folder(motion.file),
+        lambda motion: is_a_file_name(motion.file),
         lambda motion: outside_the_folder(motion.file),
+    ),
+    Rule(
+        "motion.scale_to_m_s2",
+        lambda motion: motion.kind != "table" or motion.scale_to_m_s2 is None or motion.scale == 1.0,
+        "and scale are alternatives; leave one out",
+    ),
+    Rule(
+        "motion.scale_to_m_s2",
+        lambda motion: motion.scale_to_m_s2 != 0.0,
+        'must not be 0; for a floor at rest take kind = "none"',
+    ),
+    Rule(
+        "motion.end_s",
+        lambda motion: motion.start_s is None or motion.end_s is None or motion.start_s < motion.end_s,
+        "must be later than start_s = {start_s:g} s, got {end_s:g} s",
     ),
 )
 
+MOTION_RULES = (*SHARED_RULES, _complete("table", "file"))
+
 #: the same rules for the keys of the same names, and what concerns a scale of every kind
 VERTICAL_RULES = (
-    *(replace(rule, place=rule.place.replace("motion.", "vertical.", 1)) for rule in MOTION_RULES),
+    *(replace(rule, place=rule.place.replace("motion.", "vertical.", 1)) for rule in SHARED_RULES),
     Rule(
         "vertical.scale",
         lambda vertical: vertical.kind not in ("harmonic", "pulse") or vertical.scale != 0.0,

@@ -79,20 +79,40 @@ class PulseAndTableKeys(CaseTable):
     )
     delay_s: Annotated[float, q.DELAY] = case_key("pulse: when it begins", 0.0, only=("kind", "pulse"))
     file: str | None = case_key(
-        "table: two columns, time and value, beside the case file",
+        "table: a record of any known format, beside the case file; FILE#CHANNEL chooses one of several",
         None,
         example="floor.csv",
         only=("kind", "table"),
     )
-    quantity: Literal["acceleration", "displacement"] | None = case_key(
-        'table: "acceleration" | "displacement"', None, example="acceleration", only=("kind", "table")
+    quantity: Literal["acceleration", "displacement"] = case_key(
+        'table: "acceleration" | "displacement"', "acceleration", only=("kind", "table")
     )
-    unit: Literal["m/s2", "g", "m"] | None = case_key(
-        'table: unit of its values, "m/s2" | "g" | "m"', None, example="m/s2", only=("kind", "table")
+    unit: Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "m"] | None = case_key(
+        'table: unit of its values, where the file does not state it; "g" is 9.80665 m/s2',
+        None,
+        example="g",
+        only=("kind", "table"),
+    )
+    sample_interval_s: Annotated[float, q.SAMPLE_INTERVAL] | None = case_key(
+        "table: of a file of one column, without times", None, example=0.005, only=("kind", "table")
+    )
+    start_s: Annotated[float, q.RECORD_TIME] | None = case_key(
+        "table: begin of the part taken, which becomes t = 0", None, example=5.0, only=("kind", "table")
+    )
+    end_s: Annotated[float, q.RECORD_TIME] | None = case_key(
+        "table: end of the part taken, in the times of the file", None, example=30.0, only=("kind", "table")
     )
     scale: Annotated[float, q.SCALE] = case_key("table: factor on its values", 1.0, only=("kind", "table"))
-    baseline: Literal["none", "mean", "linear"] = case_key(
-        'table: removed from the acceleration, "none" | "mean" | "linear"', "none", only=("kind", "table")
+    scale_to_m_s2: Annotated[float, q.PEAK_ACCELERATION] | None = case_key(
+        "table: peak acceleration that it is scaled to, in place of scale; < 0: the other sign",
+        None,
+        example=2.4,
+        only=("kind", "table"),
+    )
+    baseline: Literal["none", "mean", "linear", "zero-end"] = case_key(
+        'table: removed from the acceleration, "none" | "mean" | "linear" | "zero-end" (ends at rest where it began)',
+        "none",
+        only=("kind", "table"),
     )
 
 

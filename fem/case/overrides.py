@@ -75,6 +75,7 @@ def _replace_alternatives(data: dict[str, Any], dotted: Any) -> None:
         if not isinstance(motion, dict):
             continue
         _drop_others(motion, FREQUENCIES, explicit)
+        _drop_others(motion, ("scale", "scale_to_m_s2"), explicit)
         strengths = {"amplitude_m", "peak_acceleration_m_s2"}
         if strengths <= explicit:
             for key in FREQUENCIES:

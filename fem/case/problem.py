@@ -57,6 +57,11 @@ def broken(rules: Iterable[Rule], subject: Any) -> list[Problem]:
     return problems
 
 
+def is_a_file_name(path: str | None) -> bool:
+    """Whether a name, if there is one, can be that of a file."""
+    return path is None or bool(path.strip() and path.isprintable())
+
+
 def stays_in_the_folder(path: str | None) -> bool:
     """Whether a path, if there is one, names a file in the folder of the case file or below it."""
     if path is None:

@@ -171,6 +171,10 @@ CYCLES = Quantity(unit="", above=0.0, most=1e7)
 RAMP_CYCLES = Quantity(unit="", least=0.0, most=1e7)
 PULSE_DURATION = Quantity(unit="s", least=1e-9, most=1e4, advice="milliseconds are 1e-3 s")
 DELAY = Quantity(unit="s", least=0.0, most=1e4)
+SAMPLE_INTERVAL = Quantity(
+    unit="s", least=1e-6, most=10.0, typical=0.005, slips={"milliseconds": 1e-3}, advice="0.005 is usual"
+)
+RECORD_TIME = Quantity(unit="s", least=-1e6, most=1e6)
 SCALE = Quantity(unit="", least=-1e6, most=1e6)
 ROTATION = Quantity(
     unit="rad",

@@ -5,7 +5,7 @@ from typing import Any
 
 from fem.case import quantities as q
 from fem.case.motion_rules import harmonic_angular_frequency
-from fem.case.problem import Rule, outside_the_folder, stays_in_the_folder
+from fem.case.problem import Rule, is_a_file_name, outside_the_folder
 
 MOST_SAMPLES = 2e7
 MOST_HISTORY = 2.6e9  # bytes in memory: so many samples of a single box
@@ -81,7 +81,7 @@ CONTAINER_RULES = (
     ),
     Rule(
         "container.mesh_file",
-        lambda box: stays_in_the_folder(box.mesh_file),
+        lambda box: is_a_file_name(box.mesh_file),
         lambda box: outside_the_folder(box.mesh_file),
     ),
 )
@@ -296,6 +296,13 @@ CASE_RULES = (
     ),
     *_within_the_run("motion"),
     *_within_the_run("vertical"),
+    Rule(
+        "vertical.file",
+        lambda case: (
+            case.vertical.kind != "table" or case.vertical.file is not None or case.motion.kind == "table"
+        ),
+        'is missing: kind = "table" needs file, or a motion.file with a vertical component',
+    ),
     Rule(
         "uncertainty.mu_kinetic",
         lambda case: (

@@ -45,6 +45,11 @@ Folder = Annotated[Path | None, Parameter(help="Folder of the results; default: 
 Overrides = Annotated[
     tuple[str, ...], flag("Set a key of the case, as in contact.mu_static=0.3; may be repeated.", "--set")
 ]
+Motion = Annotated[
+    str | None,
+    Parameter(name="--motion", help="A record in place of motion.file, anywhere; FILE#CHANNEL of several."),
+]
+AllowOutside = Annotated[bool, flag("Let the case file name files outside its folder.", "--allow-outside")]
 Jobs = Annotated[
     int | None,
     Parameter(

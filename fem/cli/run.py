@@ -10,7 +10,18 @@ from cyclopts import Parameter
 
 from fem.case.case import Case, CaseError, load_case
 from fem.cli.check import numerics_lines, preview_of
-from fem.cli.console import EXIT_CODES, CaseName, Folder, Force, Overrides, Quiet, Resume, flag
+from fem.cli.console import (
+    EXIT_CODES,
+    AllowOutside,
+    CaseName,
+    Folder,
+    Force,
+    Motion,
+    Overrides,
+    Quiet,
+    Resume,
+    flag,
+)
 from fem.results.disk import free_disk, in_units
 from fem.results.folder import read_result
 from fem.runtime.progress import ScreenReporter
@@ -22,6 +33,8 @@ def run(
     *,
     out: Folder = None,
     overrides: Overrides = (),
+    motion: Motion = None,
+    allow_outside: AllowOutside = False,
     check_rigid: Annotated[bool, flag("Compare with the analytic rigid block.")] = False,
     band: Annotated[
         bool | None,
@@ -40,7 +53,7 @@ def run(
     """Compute a case: does the container rest, slide, rock, slide-rock or overturn?"""
     if quiet and verbose:
         raise CaseError("-q and -v contradict each other; give one of them")
-    loaded = load_case(case, overrides)
+    loaded = load_case(case, overrides, motion=motion, allow_outside=allow_outside)
     folder = out if out is not None else Path("outputs") / loaded.name
     if dry_run or verbose:
         plan = plan_of(loaded, folder)

@@ -12,10 +12,10 @@ from fem.case import quantities as q
 from fem.case.case import Case, CaseError
 from fem.case.motion_tables import FloorMotionTable
 from fem.case.problem import broken
+from fem.case.recorded import MotionKey, recorded_motion
 from fem.case.rules import CASE_RULES, MOST_FREE_MOTION, ends_at_rest, longest_time
 from fem.case.validation import problem_lines
 from fem.model.motion_summary import numbers_from_keys
-from fem.model.recorded import Direction, recorded_motion
 from fem.results.run_result import MotionResult
 from fem.runtime.arrays import FloatArray
 
@@ -55,7 +55,7 @@ def build_motions(case: Case) -> tuple[BaseMotion, BaseMotion]:
     return build_motion(case), build_vertical(case)
 
 
-def _built(case: Case, table: Direction) -> BaseMotion:
+def _built(case: Case, table: MotionKey) -> BaseMotion:
     try:
         return _build(case, table)
     except CaseError:
@@ -105,9 +105,10 @@ def motion_result(case: Case, motion: BaseMotion, vertical: BaseMotion) -> Motio
     """The numbers of both motions, and doubts about them."""
     duration = longest_run(case, motion, vertical)
 
-    def numbers(keys: FloorMotionTable, one: BaseMotion, table: Direction) -> MotionResult:
+    def numbers(keys: FloorMotionTable, one: BaseMotion, table: MotionKey) -> MotionResult:
         found = numbers_from_keys(keys, longest_time(case)) or _evaluated(one, duration)
-        return replace(found, kind=keys.kind, notes=tuple(motion_notes(one, table)))
+        of_record = recorded_motion(case, table).notes if keys.kind == "table" else ()
+        return replace(found, kind=keys.kind, notes=(*of_record, *motion_notes(one, table)))
 
     upward = numbers(case.vertical, vertical, "vertical") if case.has_vertical else None
     return replace(numbers(case.motion, motion, "motion"), vertical=upward)
@@ -124,6 +125,7 @@ def _evaluated(motion: BaseMotion, duration: float) -> MotionResult:
     covered = max(0.0, min(end, duration) - max(begin, 0.0)) / (end - begin)
     whole = motion.peak_acceleration
     table = motion if isinstance(motion, TableMotion) else None
+    residual = None if table is None else table.evaluate(table.times[-1:])[:, 0]
     return MotionResult(
         duration_s=end - begin,
         begin_s=begin if begin < 0.0 else None,
@@ -132,6 +134,8 @@ def _evaluated(motion: BaseMotion, duration: float) -> MotionResult:
         peak_acceleration_m_s2=whole,
         peak_velocity_m_s=float(peaks[1]),
         peak_displacement_m=float(peaks[0]),
+        residual_velocity_m_s=None if residual is None else float(residual[1]),
+        residual_displacement_m=None if residual is None else float(residual[0]),
         covered=covered,
         peak_in_run_m_s2=peak_acceleration_within(motion, duration),
     )
@@ -182,7 +186,7 @@ def peaks_in_run(case: Case, motion: BaseMotion, vertical: BaseMotion) -> tuple[
     return peak_acceleration_within(motion, duration), upward
 
 
-def motion_notes(motion: BaseMotion, table: Direction = "motion") -> list[str]:
+def motion_notes(motion: BaseMotion, table: MotionKey = "motion") -> list[str]:
     """Doubts about a recorded motion, of this table: a drift, samples too far apart."""
     if not isinstance(motion, TableMotion):
         return []
@@ -205,7 +209,7 @@ def motion_notes(motion: BaseMotion, table: Direction = "motion") -> list[str]:
     return notes
 
 
-def _plausible(motion: TableMotion, table: Direction) -> TableMotion:
+def _plausible(motion: TableMotion, table: MotionKey) -> TableMotion:
     if motion.times[-1] <= 0.0:
         raise CaseError(
             f"[{table}] file: its times end at {motion.times[-1]:g} s, and the run begins at t = 0; shift them"
@@ -222,7 +226,7 @@ def _plausible(motion: TableMotion, table: Direction) -> TableMotion:
     )
 
 
-def _build(case: Case, table: Direction) -> BaseMotion:
+def _build(case: Case, table: MotionKey) -> BaseMotion:
     motion = case.vertical if table == "vertical" else case.motion
 
     def given(key: str) -> Any:
@@ -252,4 +256,7 @@ def _build(case: Case, table: Direction) -> BaseMotion:
                 delay=motion.delay_s,
             )
         case "table":
-            return _plausible(recorded_motion(case, table), table)
+            made = recorded_motion(case, table).motion
+            return _plausible(
+                TableMotion(times=made.times, values=made.values, quantity=motion.quantity), table
+            )

@@ -1,5 +1,6 @@
 """Read a motion file of any known format; the format is recognised by what the file holds, never by its name."""
 
+from functools import lru_cache
 from pathlib import Path
 
 from fem.records import cosmos, csmip, esm, knet, peer, smc
@@ -25,6 +26,15 @@ def read_record(path: Path, *, unit: str | None = None, sample_interval: float |
     """
     if unit is not None and unit not in STATED:
         raise RecordError(f"unknown unit {unit!r}; known: {', '.join(STATED)}")
+    try:
+        state = path.stat()
+    except OSError:
+        return _read(path, 0, 0, unit, sample_interval)
+    return _read(path, state.st_mtime_ns, state.st_size, unit, sample_interval)
+
+
+@lru_cache(maxsize=16)  # the runs of a sweep and of a band follow the same few motions
+def _read(path: Path, changed: int, size: int, unit: str | None, sample_interval: float | None) -> Record:
     source = read_source(path)
     found = next((form for form in FORMATS if form.recognises(source)), None)
     try:

@@ -47,6 +47,10 @@ class Component:
     direction: Direction | None = None  #: None where the file does not say
 
     def __post_init__(self) -> None:
+        for name in ("times", "readings"):  # read-only copies: a record is read once and shared
+            column = np.array(getattr(self, name), dtype=np.float64)
+            column.flags.writeable = False
+            object.__setattr__(self, name, column)
         if self.times.ndim != 1 or self.times.shape != self.readings.shape:
             raise RecordError(
                 f"{self.times.size} times and {self.readings.size} values: they must be as many"

@@ -4,6 +4,7 @@ import shutil
 from pathlib import Path
 
 from fem.case.case import Case, CaseError
+from fem.case.recorded import recorded_motion
 
 
 class RunFiles:
@@ -42,8 +43,8 @@ class RunFiles:
             CaseError: with the key and the name.
         """
         taken = {value for value in vars(self).values() if value != self.path}
-        for key, file in case.data_files.items():
-            name = file.relative_to(case.folder)
+        for key, file in case.files.items():
+            name = file.copy
             if self.path / name.parts[0] in taken:
                 table, _, word = key.partition(".")
                 raise CaseError(
@@ -53,9 +54,17 @@ class RunFiles:
 
 
 def copy_data_files(case: Case, folder: Path) -> None:
-    """Copy mesh and motion files into a folder, under the names that the case gives them."""
-    for path in case.data_files.values():
-        target = folder / path.relative_to(case.folder)
+    """Copy mesh and motion files into a folder, under the names that the resolved case gives them.
+
+    Raises:
+        CaseError: a motion file holds no motion; results go to others, and may not carry what else it holds.
+    """
+    for key, file in case.files.items():
+        if key == "motion.file":
+            recorded_motion(case, "motion")
+        elif key == "vertical.file":
+            recorded_motion(case, "vertical")
+        path, target = file.path, folder / file.copy
         target.parent.mkdir(parents=True, exist_ok=True)
         if target.resolve() != path.resolve():
             shutil.copyfile(path, target)

@@ -136,6 +136,8 @@ class MotionResult(JsonBlock):
     peak_acceleration_m_s2: float | None = None  #: of the whole motion, as the following
     peak_velocity_m_s: float | None = None
     peak_displacement_m: float | None = None
+    residual_velocity_m_s: float | None = None  #: of a table, at its end, as the following
+    residual_displacement_m: float | None = None
     covered: float | None = None  #: share of the motion's time within the run
     peak_in_run_m_s2: float | None = None  #: largest acceleration within the run
     vertical: "MotionResult | None" = None  #: the same of the vertical motion; left out where there is none

@@ -5,7 +5,7 @@ import re
 import pytest
 from cases import HARMONIC, LEAST, PULSE, TABLE, TEXTS, named_case
 
-from fem.case.case import CaseError, load_case, read_case
+from fem.case.case import CaseError, case_hash, load_case, read_case
 from fem.case.overrides import parse_override
 
 
@@ -260,16 +260,19 @@ harmonic | motion.ramp_cycles=20 | [motion] ramp_cycles = 20 tapers 36.2771 s in
 least    | motion.kind=pulse & motion.peak_acceleration_m_s2=1 | [motion] shape and pulse_s are missing: kind =
 pulse    | motion.delay_s=20 & solver.duration_s=20 | [motion] delay_s must be less than duration_s = 20 s, got 20 s
 pulse    | motion.delay_s=5 & output.history_s=1e-6 | samples of duration_s = "auto", up to 65.5 s
-least    | motion.kind=table & motion.file=a.csv & motion.quantity=acceleration | [motion] unit is missing
-table    | motion.unit=m | unit must be m/s2 or g for quantity = "acceleration", got "m"
+least    | motion.kind=table | [motion] file is missing: kind = "table" needs file
+table    | motion.scale=2.0 & motion.scale_to_m_s2=3.0 | [motion] scale_to_m_s2 and scale are alternatives
+table    | motion.scale_to_m_s2=0.0 | [motion] scale_to_m_s2 must not be 0
+table    | motion.start_s=5.0 & motion.end_s=4.0 | [motion] end_s must be later than start_s = 5 s, got 4 s
+table    | motion.sample_interval_s=5e-7 | [motion] sample_interval_s must be between 1e-06 and 10 s
+table    | motion.unit=m | unit must be g or m/s2 or cm/s2 or gal or mm/s2 for quantity = "acceleration"
 table    | motion.scale=0.0 | [motion] scale must not be 0
-table    | motion.file=../floor.csv | [motion] file must name a file in the folder of the case file
 table    | motion.file="" | [motion] file must name a file in the folder of the case file
 table    | motion.quantity=displacement & motion.unit=m & motion.baseline=mean |
            baseline must be "none" for quantity = "displacement", got "mean"
 least    | vertical.kind=harmonic & vertical.frequency_Hz=1 | [vertical] amplitude_m, peak_acceleration_m_s2, frequency
 least    | vertical.start=rest | [vertical] unknown key 'start'; it belongs into [motion]
-least    | vertical.kind=table | [vertical] file and quantity and unit are missing
+least    | vertical.kind=table | [vertical] file is missing: kind = "table" needs file
 least    | vertical.kind=pulse & vertical.scale=0.0 | [vertical] scale must not be 0
 least    | vertical.kind=harmonic & vertical.frequency_Hz=1 & vertical.peak_acceleration_m_s2=9 & vertical.scale=1e3 |
            [vertical] scale = 1000 makes a peak acceleration of 9000 m/s2; it must be at most 1000
@@ -426,17 +429,24 @@ def test_a_case_is_frozen():
 
 
 class TestDataFiles:
-    """Mesh and motion files are looked for beside the case file, and nowhere else."""
+    """Mesh and motion files are looked for beside the case file; what its user names may lie anywhere."""
 
-    def case(self, folder, name):
+    def written(self, folder, name):
+        folder.mkdir(exist_ok=True)
         path = folder / "case.toml"
         path.write_text(TEXTS["table"].replace("floor.csv", name), encoding="utf-8")
-        return load_case(path)
+        return path
+
+    def case(self, folder, name, **options):
+        return load_case(self.written(folder, name), **options)
+
+    def record(self, path):
+        path.parent.mkdir(exist_ok=True)
+        path.write_text("0,0\n1,0\n", encoding="utf-8")
+        return path
 
     def test_found_beside_the_case_file(self, tmp_path):
-        (tmp_path / "sub").mkdir()
-        record = tmp_path / "sub" / "floor.csv"
-        record.write_text("0,0\n1,0\n", encoding="utf-8")
+        record = self.record(tmp_path / "sub" / "floor.csv")
         assert self.case(tmp_path, "sub/floor.csv").data_files == {"motion.file": record}
 
     def test_missing_is_refused_with_the_folder(self, tmp_path):
@@ -446,7 +456,64 @@ class TestDataFiles:
     def test_a_link_that_leads_out_of_the_folder_is_refused(self, tmp_path):
         folder = tmp_path / "case"
         folder.mkdir()
-        (tmp_path / "secret.csv").write_text("0,0\n1,0\n", encoding="utf-8")
-        (folder / "floor.csv").symlink_to(tmp_path / "secret.csv")
+        (folder / "floor.csv").symlink_to(self.record(tmp_path / "secret.csv"))
         with pytest.raises(CaseError, match="must lie in the folder of the case file"):
             assert self.case(folder, "floor.csv").data_files
+        assert self.case(folder, "floor.csv", allow_outside=True).data_files
+
+    @pytest.mark.parametrize("name", ["../floor.csv", "/etc/passwd", "C:/a.csv"])
+    def test_a_case_file_may_not_lead_out_of_its_folder(self, tmp_path, name):
+        with pytest.raises(
+            CaseError, match=r"\[motion\] file must name a file in the folder.*--allow-outside"
+        ):
+            self.case(tmp_path / "case", name)
+
+    def test_allowed_outside_and_named_by_the_user(self, tmp_path):
+        record = self.record(tmp_path / "floor.csv")
+        allowed = self.case(tmp_path / "case", "../floor.csv", allow_outside=True)
+        path = self.written(tmp_path / "case", "floor.csv")
+        for case in (
+            allowed,
+            load_case(path, [f"motion.file={record}"]),
+            load_case(path, ["motion.file=../floor.csv"]),
+            load_case(path, motion=str(record)),
+        ):
+            assert case.data_files["motion.file"].resolve() == record
+            assert case.resolved()["motion"]["file"] == "data/floor.csv"
+            assert case_hash(case) == case_hash(allowed)
+
+    def test_a_motion_is_named_relative_to_the_current_folder(self, tmp_path, monkeypatch):
+        path = self.written(tmp_path / "case", "floor.csv")
+        beside = self.record(tmp_path / "case" / "mine.csv")
+        monkeypatch.chdir(tmp_path)
+        case = load_case(path, motion="case/mine.csv")
+        assert case.motion.file == "mine.csv" and case.data_files["motion.file"].resolve() == beside
+        harmonic = load_case("seed_stack", motion="case/mine.csv")
+        assert harmonic.motion.kind == "table" and harmonic.data_files["motion.file"].resolve() == beside
+
+    def test_a_value_of_a_study_is_not_the_users(self, tmp_path):
+        path = self.written(tmp_path / "case", "floor.csv")
+        case = load_case(path, [f"motion.file={self.record(tmp_path / 'floor.csv')}"])
+        with pytest.raises(CaseError, match="must name a file in the folder"):
+            case.with_values({"motion.file": "../other.csv"})
+        assert case.with_values({"contact.mu_static": 0.3}).data_files
+
+    def test_a_channel_is_no_part_of_the_name(self, tmp_path):
+        record = self.record(tmp_path / "floor.csv")
+        (file,) = self.case(tmp_path, "floor.csv#HNE").files.values()
+        assert (file.path, file.channel, str(file.copy)) == (record, "HNE", "floor.csv")
+        whole = self.record(tmp_path / "a#2")
+        (file,) = self.case(tmp_path, "a#2").files.values()
+        assert (file.path, file.channel, str(file.copy)) == (whole, "", "a#2")
+
+    def test_files_of_one_name_from_two_folders_are_refused(self, tmp_path):
+        for folder in ("a", "b"):
+            self.record(tmp_path / folder / "floor.csv")
+        case = load_case(
+            self.written(tmp_path / "case", "floor.csv"),
+            ["motion.file=../a/floor.csv", "vertical.kind=table", "vertical.file=../b/floor.csv"],
+        )
+        with pytest.raises(
+            CaseError, match=r"\[vertical\] file has the name of the file of motion.file, 'floor.csv'"
+        ):
+            assert case.files

@@ -7,6 +7,7 @@ import pytest
 
 from fem.__main__ import main
 from fem.case.case import CaseError, read_case
+from fem.case.recorded import recorded_motion
 from fem.model.motion import build_motion, motion_notes
 
 CASE = """
@@ -32,12 +33,18 @@ fields_s = 0.0
 TIMES = np.arange(0.0, 2.0, 0.01)
 
 
-def motion(folder, values, *, times=TIMES, quantity="acceleration", unit="m/s2", baseline="none"):
+def case_of(folder, values, *, times=TIMES, quantity="acceleration", unit="m/s2", baseline="none", extra=""):
     rows = "".join(f"{t!r},{v!r}\n" for t, v in zip(times.tolist(), values.tolist(), strict=True))
     (folder / "floor.csv").write_text(rows)
-    text = CASE.format(quantity=quantity, unit=unit, baseline=baseline)
+    text = CASE.format(quantity=quantity, unit=unit, baseline=baseline).replace(
+        "[solver]", f"{extra}\n[solver]"
+    )
     (folder / "case.toml").write_text(text)
-    return build_motion(read_case(text, folder=folder))
+    return read_case(text, folder=folder)
+
+
+def motion(folder, values, **options):
+    return build_motion(case_of(folder, values, **options))
 
 
 def test_a_mean_acceleration_that_drifts_is_reported_with_the_baselines(tmp_path):
@@ -57,10 +64,31 @@ def test_samples_too_far_apart_for_the_motion_are_reported(tmp_path):
 
 
 def test_accelerations_that_cannot_be_meant_are_refused_with_the_guess(tmp_path):
-    with pytest.raises(CaseError, match=r"reach 350 m/s2, at most 100 m/s2 are accepted; looks like gal"):
+    with pytest.raises(
+        CaseError, match=r"reach 350 m/s2 with unit = 'm/s2'.* 3.5 m/s2 if the values were gal"
+    ):
         motion(tmp_path, 350.0 * np.cos(2.0 * np.pi * TIMES))
-    with pytest.raises(CaseError, match=r"is its unit right|looks like"):
+    with pytest.raises(
+        CaseError, match=r"reach 39.2\d m/s2 with unit = 'g'.* 4 m/s2 if the values were m/s2"
+    ):
+        motion(tmp_path, 4.0 * np.cos(2.0 * np.pi * TIMES), unit="g")
+    with pytest.raises(CaseError, match=r"is the unit right|looks like"):
         motion(tmp_path, 50.0 * np.sin(2.0 * np.pi * TIMES), quantity="displacement", unit="m")
+
+
+def notes_of(folder, values, extra=""):
+    return " ".join(recorded_motion(case_of(folder, values, extra=extra), "motion").notes)
+
+
+def test_an_unusual_peak_is_told_and_one_that_is_named_is_not(tmp_path):
+    wave = np.cos(2.0 * np.pi * TIMES)
+    assert notes_of(tmp_path, 4.0 * wave) == ""
+    low = notes_of(tmp_path, 0.353 * wave)
+    assert "0.353 m/s2 = 0.036 g, hardly moves a container" in low and "3.46 m/s2 if the values were g" in low
+    assert "30 m/s2 = 3.1 g, is beyond almost all records" in notes_of(tmp_path, 30.0 * wave)
+    assert notes_of(tmp_path, 50.0 * wave, "scale_to_m_s2 = 50.0") == ""
+    assert "beyond" in notes_of(tmp_path, 4.0 * wave, "scale = 10.0")
+    assert notes_of(tmp_path, 400.0 * wave, "scale = 0.01") == ""
 
 
 def test_run_and_check_tell_of_a_drift(tmp_path, capsys):

@@ -1,0 +1,123 @@
+"""The files that a case names: where they are, which of them may lie outside its folder, and their copies in results.
+
+A case file may come from anywhere, so that a file it names must lie in its folder or below it. What its user names on
+the command line may lie anywhere. A motion may name a channel of its file behind "#", by number or name.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from fem.case.problem import Problem, outside_the_folder, stays_in_the_folder
+from fem.case.validation import CaseError
+
+#: keys that name files
+FILE_KEYS = ("container.mesh_file", "motion.file", "vertical.file")
+COPIES = "data"  #: folder in the results of the files that lie outside the folder of the case
+WAYS_OUT = "; or name it on the command line, or allow it with --allow-outside"
+
+
+@dataclass(frozen=True, kw_only=True)
+class DataFile:
+    """A file that a case names."""
+
+    path: Path
+    channel: str  #: of a motion; empty where none is named
+    copy: PurePosixPath  #: its place in the folder of results
+
+
+def split_channel(folder: Path, name: str) -> tuple[Path, str]:
+    """The file that a name means, and the channel behind "#"; a file that has "#" in its own name is found, too."""
+    whole = _path(folder, name)
+    stem, mark, channel = name.rpartition("#")
+    if not mark or not stem or whole.is_file():
+        return whole, ""
+    return _path(folder, stem), channel
+
+
+def _path(folder: Path, name: str) -> Path:
+    path = folder / name
+    # A path of Windows, where it is no name of a file here.
+    return path if "\\" not in name or path.exists() else folder / name.replace("\\", "/")
+
+
+def find_data_files(
+    folder: Path, named: Mapping[str, str | None], *, trusted: frozenset[str]
+) -> dict[str, DataFile]:
+    """The files of a case by their keys.
+
+    Args:
+        folder: of the case file.
+        named: names as the case has them; a None names no file.
+        trusted: keys whose files may lie outside that folder.
+
+    Raises:
+        CaseError: a file is missing, or outside that folder and not to be trusted.
+    """
+    found: dict[str, DataFile] = {}
+    for key, name in named.items():
+        if name is None:
+            continue
+        path, channel = split_channel(folder, name)
+        _require_file(folder, key, name, path, trusted=key in trusted)
+        found[key] = DataFile(path=path, channel=channel, copy=_copy(folder, name, channel, path, found))
+    return found
+
+
+def copied_name(folder: Path, name: str) -> str:
+    """The name of a file as a resolved case has it, which lies beside the copies."""
+    if stays_in_the_folder(name):
+        return name
+    path, channel = split_channel(folder, name)
+    return f"{COPIES}/{path.name}" + (f"#{channel}" if channel else "")
+
+
+def outside_problems(tables: Mapping[str, Any], *, trusted: frozenset[str]) -> list[Problem]:
+    """Keys that name files outside the folder of the case and are not to be trusted."""
+    problems = []
+    for dotted in FILE_KEYS:
+        table, _, key = dotted.partition(".")
+        name = getattr(tables.get(table), key, None)
+        if name is not None and dotted not in trusted and not stays_in_the_folder(name):
+            problems.append(Problem(table=table, key=key, reason=outside_the_folder(name) + WAYS_OUT))
+    return problems
+
+
+def _copy(folder: Path, name: str, channel: str, path: Path, found: Mapping[str, DataFile]) -> PurePosixPath:
+    plain = copied_name(folder, name)
+    copy = PurePosixPath(plain[: -len(channel) - 1] if channel else plain)
+    for key, other in found.items():
+        if other.copy == copy and other.path.resolve() != path.resolve():
+            raise CaseError(
+                place_of("vertical.file")
+                + f"has the name of the file of {key}, {copy.name!r}, and another folder; rename one of them"
+            )
+    return copy
+
+
+def _require_file(folder: Path, key: str, name: str, path: Path, *, trusted: bool) -> None:
+    if not trusted and not path.resolve().is_relative_to(folder.resolve()):
+        raise CaseError(
+            place_of(key) + f"must lie in the folder of the case file, got {name!r}, which leads to "
+            f"{path.resolve()}; copy the file there{WAYS_OUT}"
+        )
+    if not path.is_file():
+        raise CaseError(
+            place_of(key) + f"names no file: {name!r}, looked for in {folder.resolve()}; "
+            "its path is relative to the case file"
+        )
+
+
+def place_of(dotted: str) -> str:
+    """A key as messages begin."""
+    table, _, key = dotted.partition(".")
+    return f"[{table}] {key} "
+
+
+def as_named_from(folder: Path, name: str) -> str:
+    """A file named on the command line, relative to the current folder, as a case in a folder names it."""
+    path = Path(name).absolute()
+    if path.resolve().is_relative_to(folder.resolve()) and ".." not in Path(name).parts:
+        return path.resolve().relative_to(folder.resolve()).as_posix()
+    return str(path)

@@ -1,0 +1,131 @@
+"""The recorded motions of a case: read from its files and processed as its keys say."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from fem.case import quantities as q
+from fem.case.case import Case
+from fem.case.motion_tables import MotionTable, VerticalTable
+from fem.case.validation import CaseError
+from fem.records.files import read_record
+from fem.records.processing import Processing, motion_of, processed
+from fem.records.record import Component, Record, RecordError, require_together
+from fem.records.units import STANDARD_GRAVITY, UNITS
+
+MotionKey = Literal["motion", "vertical"]  #: the table of a motion: along x, or vertical
+#: peak above which a unit that only the case states is refused: hardly any record reaches 3 g [m/s2]
+MOST_PEAK = 30.0
+#: peaks of a motion that moves a container, and is not beyond almost all records [m/s2]
+USUAL_PEAKS = (0.5, 20.0)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RecordedMotion:
+    """A component of a record, as the floor follows it, and where it comes from."""
+
+    record: Record
+    component: Component  #: as the file has it
+    motion: Component  #: processed
+    notes: tuple[str, ...]  #: doubts about it
+
+
+def recorded_motion(case: Case, table: MotionKey) -> RecordedMotion:
+    """The motion of a table of the case whose kind is "table".
+
+    Raises:
+        CaseError: its file is missing, or no motion, or its components do not belong together, or the keys do not fit.
+    """
+    try:
+        found = _recorded(case, table)
+        if table == "vertical" and case.motion.kind == "table":
+            _require_pair(_recorded(case, "motion"), found)
+        return found
+    except RecordError as error:
+        raise CaseError(f"[{table}] {error}") from None
+
+
+def _recorded(case: Case, table: MotionKey) -> RecordedMotion:
+    keys: MotionTable | VerticalTable = case.vertical if table == "vertical" else case.motion
+    shared = case.motion if table == "vertical" and case.motion.kind == "table" else keys
+    beside = keys if keys.file is not None else shared  # whose keys describe the file
+    file = case.files[f"{table}.file"]
+    record = read_record(file.path, unit=beside.unit, sample_interval=beside.sample_interval_s)
+    component = record.component(
+        "vertical" if table == "vertical" else "horizontal", quantity=keys.quantity, channel=file.channel
+    )
+    made = processed(
+        component,
+        Processing(
+            start=keys.start_s if keys.start_s is not None else shared.start_s,
+            end=keys.end_s if keys.end_s is not None else shared.end_s,
+            scale=keys.scale,
+            peak=keys.scale_to_m_s2,
+            baseline=keys.baseline,
+        ),
+    )
+    notes = record.notes
+    if keys.scale_to_m_s2 is None:
+        peak = float(np.abs(motion_of(made)[2]).max())
+        _require_plausible(record, component, peak, keys.scale)
+        notes += _peak_notes(table, component, peak, keys.scale)
+    return RecordedMotion(record=record, component=component, motion=made, notes=notes)
+
+
+def _require_plausible(record: Record, component: Component, peak: float, scale: float) -> None:
+    """Refuse accelerations that no record has, where the file does not state their unit and no factor explains them."""
+    unscaled = peak / abs(scale)
+    if component.unit_stated or min(peak, unscaled) <= MOST_PEAK:
+        return
+    meant = (
+        f"; if they are meant, say so: scale_to_m_s2 = {peak:.4g}" if q.PEAK_ACCELERATION.allows(peak) else ""
+    )
+    raise RecordError(
+        f"{record.name}: its accelerations reach {unscaled:.4g} m/s2 with unit = {component.unit!r}, and hardly any "
+        f"record reaches {MOST_PEAK:g} m/s2, 3 g{_other_units(component, unscaled)}; is the unit right?{meant}"
+    )
+
+
+def _peak_notes(table: MotionKey, component: Component, peak: float, scale: float) -> tuple[str, ...]:
+    """That the peak is unusual."""
+    if USUAL_PEAKS[0] <= peak <= USUAL_PEAKS[1]:
+        return ()
+    size = "hardly moves a container" if peak < USUAL_PEAKS[0] else "is beyond almost all records"
+    doubt = "" if component.unit_stated else _other_units(component, peak / abs(scale))
+    return (
+        f"{table}.file: its peak, {peak:.3g} m/s2 = {peak / STANDARD_GRAVITY:.2g} g, {size}"
+        + (f"{doubt}; is the unit right?" if doubt else ""),
+    )
+
+
+def _other_units(component: Component, peak: float) -> str:
+    """The peak if the values were of another unit that makes it a usual one."""
+    number = peak / abs(component.factor)
+    others = {
+        unit: number * UNITS[unit].factor
+        for unit in ("g", "m/s2", "gal", "mm/s2")
+        if component.quantity == "acceleration" and UNITS[unit].factor != abs(component.factor)
+    }
+    fitting = [
+        f"{peak:.3g} m/s2 if the values were {unit}"
+        for unit, peak in others.items()
+        if USUAL_PEAKS[0] <= peak <= USUAL_PEAKS[1]
+    ]
+    return f" (it would be {' or '.join(fitting)})" if fitting else ""
+
+
+def _require_pair(horizontal: RecordedMotion, vertical: RecordedMotion) -> None:
+    """Refuse one component for both directions, and two that were not sampled together."""
+    one, two = horizontal.component, vertical.component
+    if one is two:
+        raise RecordError(
+            f"{vertical.record.name}: the file has one motion, which moves the floor along x already; name the file of "
+            "the vertical component"
+        )
+    require_together(
+        (one, two),
+        (horizontal.record.name, vertical.record.name)
+        if horizontal.record.name != vertical.record.name
+        else (f"{horizontal.record.name} {one.name}", two.name),
+    )
