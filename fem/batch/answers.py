@@ -57,8 +57,13 @@ class Answer:
 
 
 def answer_axis(axes: Sequence[Axis]) -> Axis | None:
-    """The axis along which a study answers: a strength, else the only one whose values are rising numbers."""
-    numeric = {axis.key: axis for axis in axes if axis.is_numeric}
+    """The axis along which a study answers: a strength, else the only one whose values are rising numbers.
+
+    Both signs of one value are no strengths.
+    """
+    numeric = {
+        axis.key: axis for axis in axes if axis.is_numeric and len({abs(value) for value in axis.values}) > 1
+    }
     for key in STRENGTHS:
         if key in numeric:
             return numeric[key]

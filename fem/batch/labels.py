@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from fem.assessment.motion_words import STANDARD_GRAVITY
-from fem.batch.axes import Axis
+from fem.batch.axes import MOTION_FILE, Axis
 
 #: units in which people say the values of a key: from which value on, the unit, the factor
 PEOPLE = {
@@ -16,8 +16,11 @@ PEOPLE = {
 
 def axis_name(axis: Axis) -> str:
     """A key for people: `motion.peak_acceleration_m_s2` is "peak acceleration"."""
-    name = axis.key.rpartition(".")[2]
-    return name.removesuffix("_" + axis.unit.replace("/", "_").replace(" ", "_")).replace("_", " ")
+    table, _, name = axis.key.rpartition(".")
+    if axis.key == MOTION_FILE:
+        return "motion"
+    name = name.removesuffix("_" + axis.unit.replace("/", "_").replace(" ", "_")).replace("_", " ")
+    return f"vertical {name}" if table == "vertical" else name
 
 
 def axis_label(axis: Axis) -> str:

@@ -12,7 +12,7 @@ from itertools import pairwise, takewhile
 from typing import Any
 
 from fem.batch.answers import LARGER_IS_SAFER, STRENGTHS, answer_axis
-from fem.batch.axes import Axis
+from fem.batch.axes import MOTION_FILE, Axis
 from fem.batch.labels import axis_name, in_words, place_in_words
 
 HALF = 0.5
@@ -53,6 +53,14 @@ def axes_of(result: Mapping[str, Any]) -> tuple[Axis, ...]:
     )
 
 
+def draws_in_words(result: Row) -> str:
+    """What is counted at a point: "128 draws", "7 motions", "70 draws of 7 motions"."""
+    draws, motions = result["draws"], len(result["random"].get(MOTION_FILE, ()))
+    if not motions:
+        return f"{draws} draws"
+    return f"{motions} motions" if motions == draws else f"{draws} draws of {motions} motions"
+
+
 def ensemble_answer(result: Mapping[str, Any]) -> EnsembleAnswer | None:
     """The answer along a strength, else along the axis with the most values.
 
@@ -85,7 +93,7 @@ def ensemble_answer(result: Mapping[str, Any]) -> EnsembleAnswer | None:
         half = _half(result, axis, lines[tuple(point[one.key] for one in others)], found, rising=rising)
         sentence = f"{half}, first with {place_in_words(others, point)}"
     elif others:
-        sentence = f"fewer than half of {result['draws']} draws overturned at every point"
+        sentence = f"fewer than half of {draws_in_words(result)} overturned at every point"
     if others and len(few) == len(rows):
         sentence += _few(result, axis, safest(few), rising=rising)
     return EnsembleAnswer(
@@ -147,7 +155,7 @@ def _sentence(result: Row, axis: Axis, points: Sequence[Row], found: HalfPoint, 
 
 
 def _half(result: Row, axis: Axis, points: Sequence[Row], found: HalfPoint, *, rising: bool) -> str:
-    half = f"half of {result['draws']} draws overturned"
+    half = f"half of {draws_in_words(result)} overturned"
     if found.at_once:
         end = "least" if rising else "largest"
         return f"{half} or more at the {end} tried, {in_words(axis, [points[0][axis.key]])}"

@@ -1,6 +1,6 @@
 """The report of an ensemble: where half of the draws overturn, the curve or boundary, its points, the request."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -90,7 +90,7 @@ def answer_table(answer: EnsembleAnswer, info: Mapping[str, Any]) -> PageTable:
 
 def random_table(info: Mapping[str, Any]) -> PageTable:
     """What is drawn: by the file, and over the ranges of the unknown inputs."""
-    rows = [[key, _distribution(spread)] for key, spread in info["random"].items()]
+    rows = [[key, _drawn(spread)] for key, spread in info["random"].items()]
     rows += [[key, "over its range in [uncertainty]"] for key in info.get("drawn_over_uncertainty") or ()]
     return page_table("random quantities", {"key": False, "drawn": False}, rows, caption="Random quantities")
 
@@ -117,8 +117,11 @@ def _on_axis(axis: Axis, value: Any) -> str:
     return str(value) if isinstance(value, bool | str) else short(value)
 
 
-def _distribution(spread: Mapping[str, Any]) -> str:
-    """A distribution in words."""
+def _drawn(spread: Mapping[str, Any] | Sequence[Any]) -> str:
+    """A distribution, or a list of values, in words."""
+    if not isinstance(spread, Mapping):
+        listed = (" + ".join(one) if isinstance(one, list) else str(one) for one in spread)
+        return f"one of, equally often: {', '.join(listed)}"
     names = ("mean", "median", "deviation")
     parts = [f"{short(spread['from'])} to {short(spread['to'])}"] if "from" in spread else []
     parts += [f"{name} {short(spread[name])}" for name in names if name in spread]

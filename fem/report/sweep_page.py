@@ -8,7 +8,7 @@ import csv
 import re
 import shlex
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
-from fem.batch.answers import Answer, ranges_in_words
-from fem.batch.labels import axis_label, in_words, place_in_words
+from fem.batch.answers import ranges_in_words
+from fem.batch.labels import axis_label, in_words
 from fem.case.case import load_case
 from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html.page import Signature
@@ -25,7 +25,7 @@ from fem.html.units import ABSENT, millimetres, number, short
 from fem.report.animation import colour_scale, packed
 from fem.report.studies import PageTable, again_from_files, axis_row, drawings, page_table, study_page
 from fem.results.errors import FolderError
-from fem.sweep.answers import SweepAnswer, sweep_answer
+from fem.sweep.answers import AnswerRow, SweepAnswer, sweep_answer
 from fem.sweep.table import SweepTable, open_sweep
 
 #: what can be shown: column, words for it, unit, factor
@@ -114,8 +114,9 @@ def answer_table(answer: SweepAnswer) -> PageTable:
         ("stood up to", "first overturned at") if answer.rising else ("stood from", "overturned up to")
     )
 
-    def row(point: Mapping[str, Any], found: Answer) -> Iterator[str]:
-        yield place_in_words(answer.others, point)
+    def row(row: AnswerRow) -> Iterator[str]:
+        found = row.answer
+        yield answer.where(row) + (": every motion" if len(row.point) < len(answer.others) else "")
         for end in (found.stood_to, found.overturned_from):
             yield in_words(answer.axis, [end]) if end is not None else ABSENT
         yield f"{millimetres(found.slip)} mm" if found.slip is not None else ""
@@ -126,7 +127,7 @@ def answer_table(answer: SweepAnswer) -> PageTable:
     return page_table(
         "answers",
         dict.fromkeys(("", up_to, first, *more), False),
-        (list(row(point, found)) for point, found, _ in answer.rows),
+        (list(row(one)) for one in answer.rows),
         file="answers.csv",
         optional=frozenset(more),
     )

@@ -4,7 +4,7 @@ A line holds the cells that differ along one axis alone, and the values that a t
 """
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,9 +19,10 @@ from fem.batch.answers import (
     is_rising,
     sentence_of,
 )
-from fem.batch.axes import Axis, point_of
+from fem.batch.axes import Axis, point_of, set_axis
 from fem.batch.labels import axis_name, place_in_words
 from fem.batch.log import fields_of, number_in, table_text
+from fem.sweep.motion_outcomes import sign_axes
 from fem.sweep.neighbours import KIND_NAMES, kind_of
 from fem.sweep.table import SweepTable
 
@@ -31,37 +32,53 @@ COLUMNS = ("stood_to", "overturned_from", "max_slip_m", "stood_again", "no_outco
 
 
 @dataclass(frozen=True, kw_only=True)
+class AnswerRow:
+    """The answer of the lines that have some values of the other axes in common."""
+
+    point: Mapping[
+        str, Any
+    ]  #: these values; without the motion where the row is that of all motions of a set
+    answer: Answer
+    sentence: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class SweepAnswer:
     """What a sweep found along one axis."""
 
     axis: Axis
     rising: bool  #: the smaller values are the safe ones
     sentence: str  #: of all lines together
-    others: tuple[Axis, ...]  #: the axes that tell its lines apart
-    rows: tuple[
-        tuple[Mapping[str, Any], Answer, str], ...
-    ]  #: values of the other axes, answer, the answer in words
+    others: tuple[Axis, ...]  #: the axes that tell the rows apart
+    rows: tuple[AnswerRow, ...]  #: those of all motions of a set first
 
     def table(self) -> str:
         """`answers.csv`: one row for each combination of values of the other axes."""
         return table_text((*(axis.key for axis in self.others), *COLUMNS), map(self._row, self.rows))
 
     def lines(self) -> Iterator[tuple[str, str]]:
-        """The values of the other axes in words, and the answer; nothing where there are no other axes."""
-        for point, _, sentence in self.rows if self.others else ():
-            yield place_in_words(self.others, point), sentence
+        """Where, and the answer; of a set of motions the rows of all of them; nothing where there are no other axes."""
+        of_sets = [row for row in self.rows if len(row.point) < len(self.others)]
+        for row in of_sets or self.rows if self.others else ():
+            yield self.where(row), row.sentence
 
-    def _row(self, row: tuple[Mapping[str, Any], Answer, str]) -> Iterator[Any]:
-        point, answer, sentence = row
-        yield from (point[axis.key] for axis in self.others)
+    def where(self, row: AnswerRow) -> str:
+        """The values of the other axes in words."""
+        return place_in_words((axis for axis in self.others if axis.key in row.point), row.point)
+
+    def _row(self, row: AnswerRow) -> Iterator[Any]:
+        answer = row.answer
+        yield from (row.point.get(axis.key) for axis in self.others)
         yield from (answer.stood_to, answer.overturned_from, answer.slip)
         for ranges in (answer.stood_again, answer.failed, answer.unsure):
             yield "; ".join(f"{low!r} to {high!r}" for low, high in ranges)
-        yield sentence
+        yield row.sentence
 
 
 def sweep_answer(table: SweepTable, folder: Path) -> SweepAnswer | None:
     """The answer of a sweep; None where no axis asks for one, or cells are missing.
+
+    The signs of a motion are no rows of their own: a motion stands where it stands with either sign.
 
     Args:
         table: of the sweep.
@@ -72,21 +89,35 @@ def sweep_answer(table: SweepTable, folder: Path) -> SweepAnswer | None:
     if axis is None or not np.all(table["status"] != ""):
         return None
     lines = _lines_of(table, axis, folder / TRIED)
-    trials = [trial for line in lines.values() for trial in line]
-    rising = is_rising(axis, trials)
-    others = tuple(one for one in table.axes if one is not axis and len(one.values) > 1)
-    rows = []
-    for first, line in lines.items():
-        answer = answer_of(line, rising=rising)
-        rows.append((point_of(table.axes, first), answer, sentence_of(answer, axis, rising=rising)))
-    together = answer_of(trials, rising=rising)
-    where = "" if together.line is None else place_in_words(others, point_of(table.axes, together.line))
-    sentence = sentence_of(together, axis, rising=rising, where=where)
+    rising = is_rising(axis, [trial for line in lines.values() for trial in line])
+    others = [one for one in table.axes if one is not axis and len(one.values) > 1]
+
+    def rows_of(kept: Sequence[Axis]) -> Iterator[AnswerRow]:
+        """A row for each combination of values of some of the other axes."""
+        groups: dict[tuple[Any, ...], list[Trial]] = defaultdict(list)
+        for first, line in lines.items():
+            point = point_of(table.axes, first)
+            groups[tuple(point[one.key] for one in kept)] += line
+        for values, trials in groups.items():
+            answer = answer_of(trials, rising=rising)
+            rest = [one for one in others if one not in kept]
+            where = "" if answer.line is None else place_in_words(rest, point_of(table.axes, answer.line))
+            yield AnswerRow(
+                point=dict(zip((one.key for one in kept), values, strict=True)),
+                answer=answer,
+                sentence=sentence_of(answer, axis, rising=rising, where=where),
+            )
+
+    motions = set_axis(others)
+    kept = [one for one in others if motions is None or one not in sign_axes(others)]
+    outer = [one for one in kept if one is not motions]
+    rows = [*rows_of(outer), *rows_of(kept)] if motions and outer else list(rows_of(kept))
+    (together,) = rows_of(())
     return SweepAnswer(
         axis=axis,
         rising=rising,
-        sentence=f"{axis_name(axis)}: {sentence}",
-        others=others,
+        sentence=f"{axis_name(axis)}: {together.sentence}",
+        others=tuple(kept),
         rows=tuple(rows),
     )
 

@@ -111,6 +111,7 @@ def test_many_islands_are_counted():
         ((MU, WIDTH), None),
         ((MU,), MU.key),
         ((Axis(key="solver.model", values=("rigid", "reduced")),), None),
+        ((Axis(key="motion.scale", values=(-1.0, 1.0)), MU), MU.key),
     ],
 )
 def test_the_axis_of_the_answer_is_the_strength_or_the_only_one(axes, key):

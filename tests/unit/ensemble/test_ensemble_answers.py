@@ -16,6 +16,7 @@ def result_of(*rows, **more):
     return {
         "status": "completed",
         "draws": 128,
+        "random": {},
         "confidence": 0.95,
         "probability": 0.05,
         "axes": axes,
@@ -66,6 +67,17 @@ def over(key, *shares, **others):
 )
 def test_a_curve_has_one_sentence(rows, sentence):
     assert ensemble_answer(result_of(*rows)).sentence == sentence
+
+
+@pytest.mark.parametrize(
+    ("draws", "words"),
+    [(2, "half of 2 motions overturned"), (10, "half of 10 draws of 2 motions overturned")],
+)
+def test_motions_of_a_set_are_counted_as_such(draws, words):
+    result = result_of(
+        *over(PEAK, 0.0, 0.5, 1.0), draws=draws, random={"motion.file": ["a.at2", ["b_h", "b_v"]]}
+    )
+    assert ensemble_answer(result).sentence.startswith(f"peak acceleration: {words} at 0.4 g")
 
 
 def test_an_island_does_not_move_the_first_crossing():

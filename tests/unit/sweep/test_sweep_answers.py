@@ -2,6 +2,7 @@
 
 import csv
 import json
+from itertools import product
 
 import pytest
 
@@ -67,6 +68,45 @@ def test_what_was_tried_by_an_earlier_version_has_no_slip(folder):
     )
     sentence = sweep_answer(open_sweep(folder), folder).sentence
     assert "first overturned at 0.44 g (with mu static 0.5)" in sentence
+
+
+def test_a_set_of_motions_is_told_as_one_and_motion_by_motion(tmp_path):
+    """Two motions with both signs under two frictions; the second overturns at 0.4 g with the other sign alone."""
+    peaks = [0.2 * G, 0.4 * G]
+    axes = {MU: [0.3, 0.5], "motion.file": ["a.csv", "b.csv"], "vertical.scale": [-1.0, 1.0]}
+    axes[PEAK] = peaks
+    columns = ["cell", *axes, *FOUND, *BAND]
+    lines = [",".join(columns)]
+    for cell, values in enumerate(product(*axes.values())):
+        fell = values == (0.5, "b.csv", -1.0, peaks[1])
+        row = dict.fromkeys(columns, "") | {"cell": cell} | dict(zip(axes, values, strict=True))
+        row |= {"outcome": "overturned" if fell else "slide", "max_slip_m": 0.02}
+        row["status"] = "overturned" if fell else "completed"
+        lines.append(",".join(str(row[name]) for name in columns))
+    (tmp_path / "table.csv").write_text("\n".join(lines) + "\n")
+    listed = [{"key": key, "values": values, "scale": "list", "unit": ""} for key, values in axes.items()]
+    listed[-1]["unit"] = "m/s2"
+    info = {"sweep": "s", "status": "completed", "cells": 16, "sweep_hash": "ab", "axes": listed}
+    (tmp_path / "sweep.json").write_text(json.dumps(info))
+    answer = sweep_answer(open_sweep(tmp_path), tmp_path)
+    assert answer.sentence == (
+        "peak acceleration: stood in every motion tried up to 0.2 g; first overturned at 0.4 g (slip there 20 mm, "
+        "with mu static 0.5, motion b.csv, vertical scale -1)"
+    )
+    assert list(answer.lines()) == [
+        ("mu static 0.3", "stood in every motion tried up to 0.4 g; none overturned"),
+        (
+            "mu static 0.5",
+            "stood in every motion tried up to 0.2 g; first overturned at 0.4 g (slip there 20 mm, with motion b.csv, "
+            "vertical scale -1)",
+        ),
+    ]
+    rows = list(csv.DictReader(answer.table().splitlines()))
+    assert [(row[MU], row["motion.file"]) for row in rows] == [
+        *(("0.3", ""), ("0.5", "")),
+        *(("0.3", "a.csv"), ("0.3", "b.csv"), ("0.5", "a.csv"), ("0.5", "b.csv")),
+    ]
+    assert [bool(row["overturned_from"]) for row in rows] == [False, True, False, False, False, True]
 
 
 def test_without_a_threshold_the_cells_answer_over_the_strength(folder):
