@@ -33,7 +33,7 @@ def read_record(path: Path, *, unit: str | None = None, sample_interval: float |
     return _read(path, state.st_mtime_ns, state.st_size, unit, sample_interval)
 
 
-@lru_cache(maxsize=16)  # the runs of a sweep and of a band follow the same few motions
+@lru_cache(maxsize=64)  # the runs of a sweep and of a band follow the same motions: a set of 32 pairs
 def _read(path: Path, changed: int, size: int, unit: str | None, sample_interval: float | None) -> Record:
     source = read_source(path)
     found = next((form for form in FORMATS if form.recognises(source)), None)
