@@ -19,7 +19,6 @@ from fem.figures.motions import draw_spectra
 from fem.figures.style import svg_of
 from fem.model.motion import build_motion, build_vertical
 from fem.records.intensity import intensity
-from fem.records.record import Component, RecordError, require_together
 from fem.records.spectrum import Spectrum, log_spaced_periods, response_spectrum
 from fem.results.folder import ResultFolder
 from fem.runtime.arrays import FloatArray
@@ -157,15 +156,7 @@ def _read_pair(case: Case) -> FloorMotionPair:
     if case.vertical.kind != "table" or case.vertical.file is None:
         return FloorMotionPair(case=case, horizontal=horizontal, vertical=None)
     vertical = FloorComponent(name=case.vertical.file, motion=_table(build_vertical(case)))
-    pair = FloorMotionPair(case=case, horizontal=horizontal, vertical=vertical)
-    try:
-        require_together(
-            [Component(times=one.motion.times, readings=one.motion.values) for one in pair.components],
-            [one.name for one in pair.components],
-        )
-    except RecordError as error:
-        raise CaseError(f"{MOTION_FILE!r}: {error}") from None
-    return pair
+    return FloorMotionPair(case=case, horizontal=horizontal, vertical=vertical)
 
 
 def _table(motion: object) -> TableMotion:

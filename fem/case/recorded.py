@@ -55,12 +55,15 @@ def _recorded(case: Case, table: MotionKey) -> RecordedMotion:
     component = record.component(
         "vertical" if table == "vertical" else "horizontal", quantity=keys.quantity, channel=file.channel
     )
+    scale = keys.scale
+    if keys is not shared and keys.scale_to_m_s2 is None:
+        scale *= _factor_to_peak(case)
     made = processed(
         component,
         Processing(
             start=keys.start_s if keys.start_s is not None else shared.start_s,
             end=keys.end_s if keys.end_s is not None else shared.end_s,
-            scale=keys.scale,
+            scale=scale,
             peak=keys.scale_to_m_s2,
             baseline=keys.baseline,
         ),
@@ -68,9 +71,22 @@ def _recorded(case: Case, table: MotionKey) -> RecordedMotion:
     notes = record.notes
     if keys.scale_to_m_s2 is None:
         peak = float(np.abs(motion_of(made)[2]).max())
-        _require_plausible(record, component, peak, keys.scale)
-        notes += _peak_notes(table, component, peak, keys.scale)
+        _require_plausible(record, component, peak, scale)
+        notes += _peak_notes(table, component, peak, scale)
     return RecordedMotion(record=record, component=component, motion=made, notes=notes)
+
+
+def _factor_to_peak(case: Case) -> float:
+    """The factor by which [motion] is scaled to a peak, which holds for both components of a recording; else 1."""
+    keys = case.motion
+    if keys.scale_to_m_s2 is None:
+        return 1.0
+    made = _recorded(case, "motion")
+    of_file = processed(
+        made.component,
+        Processing(start=keys.start_s, end=keys.end_s, baseline=keys.baseline),
+    )
+    return abs(keys.scale_to_m_s2) / float(np.abs(motion_of(of_file)[2]).max())
 
 
 def _require_plausible(record: Record, component: Component, peak: float, scale: float) -> None:

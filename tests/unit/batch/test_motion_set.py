@@ -95,6 +95,23 @@ def test_the_motions_are_read_as_the_case_takes_them(base):
     assert [case.vertical.file for case in motion_cases(scaled, [axis])] == ["a_v.csv", "b_v.csv"]
 
 
+def test_one_factor_scales_both_components_of_a_recording(base):
+    axis = read_axis("motion.file", [["a_h.csv", "a_v.csv"]])  # peaks of 3 and 2 m/s2
+    for values, peaks in (
+        ({"motion.scale_to_m_s2": 6.0, "vertical.scale": -1.0}, (6.0, -4.0)),
+        ({"motion.scale_to_m_s2": 6.0, "vertical.scale_to_m_s2": 1.0}, (6.0, 1.0)),
+        ({"motion.scale": 2.0}, (6.0, 2.0)),
+    ):
+        (pair,) = read_motion_set(base.with_values(values), [axis])
+        (own,) = read_motion_set(base, [axis])
+        ratios = [
+            one.motion.values[k] / two.motion.values[k]
+            for one, two in zip(pair.components, own.components, strict=True)
+            for k in [np.abs(two.motion.values).argmax()]
+        ]
+        assert (3.0 * ratios[0], 2.0 * ratios[1]) == pytest.approx(peaks)
+
+
 def test_a_motion_alone_has_no_vertical_one(base):
     axis = read_axis("motion.file", ["a_h.csv", ["b_h.csv", "b_v.csv"]])
     assert [one.vertical is None for one in read_motion_set(base, [axis])] == [True, False]
@@ -128,7 +145,7 @@ def test_motions_that_are_one_are_refused(base, tmp_path):
     )  # of a_h.csv: half as strong, of the other sign
     with pytest.raises(CaseError, match=r"'copy.csv' and 'a_h.csv' hold the same motion"):
         read_motion_set(base, [read_axis("motion.file", ["a_h.csv", "b_h.csv", "copy.csv"])])
-    with pytest.raises(CaseError, match=r"'a_h.csv' and 'a_h.csv' hold the same motion"):
+    with pytest.raises(CaseError, match=r"a_h.csv: the file has one motion"):
         read_motion_set(base, [read_axis("motion.file", [["a_h.csv", "a_h.csv"]])])
 
 
