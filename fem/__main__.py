@@ -31,8 +31,8 @@ GROUPS = {
     "Start": {
         "run": ("Compute a case: does it rest, slide, rock or overturn?", "my-stack.toml"),
         "check": ("Print static checks and settings of a case without computing it.", "my-stack.toml"),
-        "init": ("Write a commented case, sweep or ensemble file to start from.", "--to my-stack.toml"),
-        "list": ("List the shipped cases, sweeps and ensembles.", ""),
+        "init": ("Write a commented case, sweep, ensemble or site file to start from.", "--to my-stack.toml"),
+        "list": ("List the shipped cases, sweeps, ensembles and sites.", ""),
         "completion": ("Print the completion script of a shell, for `unanchored`.", "bash"),
     },
     "Many runs": {
@@ -53,7 +53,7 @@ GROUPS = {
         "verify": ("Compare the program with reference solutions.", "--quick"),
         "study": ("Check every claim of the paper (Knoedel and Hrabowski) by runs.", "seed -j 4"),
         "doctor": ("Report missing dependencies and how to install them.", ""),
-        "schema": ("Print the JSON schema of a case, sweep or ensemble file.", "sweep"),
+        "schema": ("Print the JSON schema of a case, sweep, ensemble or site file.", "sweep"),
     },
 }
 COMMANDS = [name for commands in GROUPS.values() for name in commands]

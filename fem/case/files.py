@@ -18,9 +18,10 @@ from fem.case.validation import CaseError, did_you_mean
 DEFAULT_CASE = "seed_stack_plateau"
 LARGEST_FILE = 1_000_000  # bytes; a case file has a few thousand
 #: kind of a file -> the command that computes it
-COMMANDS = {"case": "run", "sweep": "sweep", "ensemble": "ensemble"}
+COMMANDS = {"case": "run", "sweep": "sweep", "ensemble": "ensemble", "site": "assess"}
 #: kind of a file -> keys and tables that make it one
 MARKS = {
+    "site": {"site"},
     "ensemble": {"random", "draws", "sampling", "replicates"},
     "sweep": {"axes", "perturbation", "threshold", "maps"},
     "case": {"container", "contact", "motion"},
@@ -124,7 +125,8 @@ class Collection:
 CASES = Collection("case", "case")
 SWEEPS = Collection("sweep", "sweep")
 ENSEMBLES = Collection("ensemble", "ensemble")
-COLLECTIONS = (CASES, SWEEPS, ENSEMBLES)
+SITES = Collection("site", "site_check")
+COLLECTIONS = (CASES, SWEEPS, ENSEMBLES, SITES)
 
 
 def parse_case(origin: Origin) -> dict[str, Any]:
@@ -140,7 +142,9 @@ def parse_case(origin: Origin) -> dict[str, Any]:
     except ValueError as error:  # TOMLDecodeError, or a whole number of thousands of digits
         raise CaseError(f"{origin.place}: not a TOML file: {error}{_slip_in(origin.text, error)}") from error
     kinds = [kind for kind, marks in MARKS.items() if not marks.isdisjoint(data)]
-    if kinds and (origin.kind not in kinds or (origin.kind == "sweep" and "ensemble" in kinds)):
+    # An ensemble has axes, as a sweep has; a site file names its container, as a case does.
+    more = {"sweep": "ensemble", "case": "site"}.get(origin.kind)
+    if kinds and (origin.kind not in kinds or more in kinds):
         raise CaseError(_other_kind(origin.place, kinds[0]))
     return data
 

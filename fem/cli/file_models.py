@@ -1,12 +1,22 @@
-"""Whole sweep and ensemble files as models, for their JSON schemas; the files themselves are read table by table."""
+"""Whole sweep, ensemble and site files as models, for their JSON schemas; the files are read table by table."""
 
 from typing import Any
 
 from pydantic import Field
 
 from fem.batch.axes import Range
+from fem.case.tables import DocumentTable
 from fem.ensemble.distributions import Distribution
 from fem.ensemble.file import EnsembleHeading
+from fem.site_check.file import SiteHeading
+from fem.site_check.tables import (
+    BuildingTable,
+    FrictionTable,
+    LimitsTable,
+    MotionsTable,
+    SiteTable,
+    WindTable,
+)
 from fem.sweep.file import SweepHeading
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.plan import MapChoice
@@ -39,4 +49,16 @@ class EnsembleFile(EnsembleHeading):
     derived: dict[str, str] = Field(default={}, description=DERIVED)
 
 
-FILE_MODELS = {"sweep": SweepFile, "ensemble": EnsembleFile}
+class SiteFile(SiteHeading):
+    """A site: the action there, motions for it, a container, and what is allowed."""
+
+    site: SiteTable
+    building: BuildingTable | None = None
+    motions: MotionsTable = MotionsTable()
+    friction: FrictionTable
+    limits: LimitsTable
+    wind: WindTable | None = None
+    document: DocumentTable | None = None
+
+
+FILE_MODELS = {"sweep": SweepFile, "ensemble": EnsembleFile, "site": SiteFile}

@@ -1,4 +1,4 @@
-"""`init`: a commented case, sweep or ensemble file to start from."""
+"""`init`: a commented case, sweep, ensemble or site file to start from."""
 
 from pathlib import Path
 from typing import Annotated
@@ -16,12 +16,12 @@ def init(
     *,
     to: Annotated[Path | None, Parameter(help="The file; default: NAME.toml, or case.toml.")] = None,
 ) -> None:
-    """Write a commented case, sweep or ensemble file to start from; an existing file is never overwritten.
+    """Write a commented case, sweep, ensemble or site file to start from; an existing file is never overwritten.
 
     Parameters
     ----------
     name:
-        A shipped case, sweep or ensemble (see `python -m fem list`); default: a case file with every key.
+        A shipped case, sweep, ensemble or site (see `python -m fem list`); default: a case file with every key.
     """
     kind, text = "case", ""
     if name is None:

@@ -1,4 +1,4 @@
-"""`list`: the shipped cases, sweeps and ensembles."""
+"""`list`: the shipped cases, sweeps, ensembles and sites."""
 
 import json
 from textwrap import fill
@@ -8,7 +8,7 @@ from fem.cli.console import WIDTH, AsJson
 
 
 def list_cases(*, as_json: AsJson = False) -> None:
-    """List the shipped cases, sweeps and ensembles, each with its description."""
+    """List the shipped cases, sweeps, ensembles and sites, each with its description."""
     if as_json:
         document = {
             f"{collection.kind}s": [

@@ -1,4 +1,4 @@
-"""`schema`: the JSON schema of a case, sweep or ensemble file."""
+"""`schema`: the JSON schema of a case, sweep, ensemble or site file."""
 
 import importlib
 import json
@@ -10,7 +10,7 @@ from fem.case.case import Case
 
 
 def schema(
-    kind: Annotated[Literal["case", "sweep", "ensemble"], Parameter(help="Kind of file.")] = "case", /
+    kind: Annotated[Literal["case", "sweep", "ensemble", "site"], Parameter(help="Kind of file.")] = "case", /
 ) -> None:
     """Print the JSON schema of a kind of file: keys, types, units, ranges, defaults."""
     # The models of the other kinds take long to load.

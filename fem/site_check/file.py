@@ -1,0 +1,266 @@
+"""Read a site file: container, action, motions, friction, limits; the reasons why it cannot be used."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, Strict
+
+from fem.batch.study_file import base_case, read_as, read_study, split_tables
+from fem.case import quantities as q
+from fem.case.case import Case
+from fem.case.files import SITES, Origin
+from fem.case.table import CaseTable, case_key
+from fem.case.tables import DocumentTable
+from fem.case.validation import CaseError
+from fem.site.action import GERMAN_ZONES, SiteAction, SpectrumShape, eurocode_shape, german_shape
+from fem.site.wind import german_pressure, terrain_pressure
+from fem.site_check.tables import (
+    BuildingTable,
+    FrictionTable,
+    LimitsTable,
+    MotionsTable,
+    SiteTable,
+    WindTable,
+)
+
+#: tables that must be given, and what is missing without them
+REQUIRED = {
+    "site": "the action: spectrum, ground, reference acceleration",
+    "friction": "the range of mu_static",
+    "limits": "slip_m, the clearance, without which there is no answer",
+}
+TABLES: dict[str, type[CaseTable]] = {
+    "site": SiteTable,
+    "building": BuildingTable,
+    "motions": MotionsTable,
+    "friction": FrictionTable,
+    "limits": LimitsTable,
+    "wind": WindTable,
+    "document": DocumentTable,
+}
+FULL, EMPTY = "full", "empty"
+
+
+class SiteHeading(CaseTable):
+    """The keys of a site file that stand before its first table."""
+
+    schema_version: Annotated[int, Strict(), q.SCHEMA] = Field(
+        default=1, alias="schema", description="of this file's keys"
+    )
+    title: Annotated[str, Field(max_length=500)] = case_key("for people", "")
+    container: str = case_key("a case file beside this one, or a shipped case; its motion is not used")
+    empty_mass_kg: Annotated[float, q.MASS] | None = case_key(
+        "of one empty box; left out: full only", None, example=400.0
+    )
+    empty_centroid_m: Annotated[float, q.LENGTH] | None = case_key(
+        "height of the mass centre of an empty box; default: half its height", None, example=0.5
+    )
+    model: Literal["rigid", "reduced"] = case_key(
+        '"rigid" | "reduced", of all runs; what decides is confirmed with "reduced"', "rigid"
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variant:
+    """One container to be run: its weight and the elevation that it shows."""
+
+    mass: str  #: full | empty
+    elevation: str  #: width | depth: the dimension along the motion
+    case: Case  #: without its motion
+
+
+@dataclass(frozen=True, kw_only=True)
+class SiteRequest:
+    """What a site file asks for."""
+
+    origin: Origin
+    data: Mapping[str, Any]  #: of the file, with what was changed
+    heading: SiteHeading
+    container: Case  #: as its file has it, with what was changed
+    site: SiteTable
+    building: BuildingTable | None
+    motions: MotionsTable
+    friction: FrictionTable
+    limits: LimitsTable
+    wind: WindTable | None
+    document: DocumentTable | None
+
+    @property
+    def name(self) -> str:
+        """File stem, or the name of the shipped file."""
+        return self.origin.name
+
+    @cached_property
+    def action(self) -> SiteAction:
+        """The action of the site.
+
+        Raises:
+            CaseError: a ground that the spectrum does not have.
+        """
+        try:
+            return _action(self.site)
+        except ValueError as error:
+            raise CaseError(f"[site] {error}") from None
+
+    @property
+    def frictions(self) -> list[tuple[float, float]]:
+        """Pairs of static and kinetic friction: the corners of the ranges, and the middle."""
+        static, share = _ends(self.friction.mu_static), _ends(self.friction.mu_kinetic_over_static)
+        pairs = [*product(static, share), (0.5 * sum(static), 0.5 * sum(share))]
+        return list(dict.fromkeys((mu, _rounded(mu * part)) for mu, part in pairs))
+
+    @cached_property
+    def variants(self) -> list[Variant]:
+        """The containers to run: full and empty, in both elevations where width and depth differ.
+
+        Raises:
+            CaseError: the empty mass cannot be.
+        """
+        masses = {FULL: self.container}
+        if self.heading.empty_mass_kg is not None:
+            masses[EMPTY] = self._empty(self.heading.empty_mass_kg)
+        found = [Variant(mass=mass, elevation="width", case=case) for mass, case in masses.items()]
+        box = self.container.container
+        if box.width_m != box.depth_m:
+            turned = {"container.width_m": box.depth_m, "container.depth_m": box.width_m}
+            found += [
+                Variant(mass=mass, elevation="depth", case=case.with_values(turned))
+                for mass, case in masses.items()
+            ]
+        return found
+
+    @property
+    def wind_pressure(self) -> tuple[float, str] | None:
+        """Peak velocity pressure [Pa] and where it comes from; None without wind.
+
+        Raises:
+            CaseError: the simplified pressures do not hold there.
+        """
+        if (wind := self.wind) is None:
+            return None
+        height = self.container.container.total_height
+        if wind.terrain is not None:
+            velocity = wind.basic_velocity_m_s or 0.0
+            pressure = terrain_pressure(category=wind.terrain, basic_velocity=velocity, height=height)
+            return pressure, f"EN 1991-1-4:2005, terrain {wind.terrain}, v_b = {velocity:g} m/s"
+        if wind.german_zone is not None:
+            try:
+                pressure = german_pressure(zone=wind.german_zone, place=wind.german_place, height=height)
+            except ValueError as error:
+                raise CaseError(f"[wind] {error}") from None
+            return pressure, f"simplified German pressure, zone {wind.german_zone}, {wind.german_place}"
+        return wind.peak_velocity_pressure_Pa or 0.0, "given"
+
+    def with_value(self, key: str, value: float | int) -> "SiteRequest":
+        """This request with one dotted key changed: of the site file, or of its container.
+
+        `contact.mu_static` takes the place of the range of static friction.
+
+        Raises:
+            CaseError: no such key, or a value that cannot be used.
+        """
+        table, _, name = key.partition(".")
+        if key == "contact.mu_static":
+            table, name, value = "friction", "mu_static", [value]  # type: ignore[assignment]
+        if table in TABLES:
+            content = dict(self.data.get(table, {})) | {name: value}
+            return _request(dict(self.data) | {table: content}, self.origin, self.container)
+        return _request(self.data, self.origin, self.container.with_values({key: value}))
+
+    def _empty(self, mass: float) -> Case:
+        box = self.container.container
+        height = self.heading.empty_centroid_m or 0.5 * box.height_m
+        return self.container.with_values({"container.mass_kg": mass, "container.centroid_m": height})
+
+
+def load_site(name_or_path: str | Path) -> SiteRequest:
+    """Read a site file, or a shipped one.
+
+    Raises:
+        CaseError: with one line for each reason why it cannot be used.
+    """
+    return read_study(SITES.find(name_or_path), _request)
+
+
+def _request(data: Mapping[str, Any], origin: Origin, container: Case | None = None) -> SiteRequest:
+    given, tables = split_tables(data, list(TABLES))
+    problems: list[str] = []
+    read: dict[str, Any] = {}
+
+    def take(name: str, model: type[CaseTable], content: Mapping[str, Any]) -> None:
+        try:
+            read[name] = read_as(name, model, content)
+        except CaseError as error:
+            problems.extend(str(error).splitlines())
+
+    take("", SiteHeading, given)
+    for name, model in TABLES.items():
+        if name in REQUIRED and name not in tables:
+            problems.append(f"[{name}] is missing: {REQUIRED[name]}")
+        elif name in tables or name == "motions":
+            take(name, model, tables.get(name, {}))
+    if problems:
+        raise CaseError("\n".join(problems))
+    heading = read.pop("")
+    request = SiteRequest(
+        origin=origin,
+        data=data,
+        heading=heading,
+        container=container or base_case(heading.container, {}, origin),
+        site=read["site"],
+        building=read.get("building"),
+        motions=read["motions"],
+        friction=read["friction"],
+        limits=read["limits"],
+        wind=read.get("wind"),
+        document=read.get("document"),
+    )
+    _check(request)
+    return request
+
+
+def _check(request: SiteRequest) -> None:
+    """Ask for everything that may be refused, so that it is refused before anything is computed."""
+    _ = request.action, request.variants, request.wind_pressure
+    if request.heading.empty_centroid_m is not None and request.heading.empty_mass_kg is None:
+        raise CaseError("empty_centroid_m has no effect without empty_mass_kg")
+
+
+def _action(site: SiteTable) -> SiteAction:
+    reference = site.reference_acceleration_m_s2
+    if site.spectrum == "EN1998-1":
+        shape = eurocode_shape(site.type or 1, site.ground or "")
+    elif site.spectrum == "DIN-NA-2011":
+        shape = german_shape(site.ground or "", site.vertical_ratio or 0.0)
+        reference = GERMAN_ZONES[site.zone or 0]
+    else:
+        shape = SpectrumShape(
+            soil_factor=site.soil_factor or 0.0,
+            corner_periods=_three(site.corner_periods_s),
+            vertical_ratio=site.vertical_ratio or 0.0,
+            vertical_corner_periods=_three(site.vertical_corner_periods_s),
+        )
+    return SiteAction(
+        shape=shape,
+        reference_acceleration=reference or 0.0,
+        importance_factor=site.importance_factor,
+        element_importance_factor=site.element_importance_factor,
+    )
+
+
+def _three(values: list[float] | None) -> tuple[float, float, float]:
+    first, second, third = values or (0.0, 0.0, 0.0)
+    return first, second, third
+
+
+def _ends(values: list[float]) -> tuple[float, float]:
+    return values[0], values[-1]
+
+
+def _rounded(value: float) -> float:
+    """Without the last bits of a product: 0.12 for 0.3 times 0.4."""
+    return float(f"{value:.9g}")

@@ -1,0 +1,261 @@
+"""The tables of a site file, one frozen model each: keys, units, defaults and what they mean."""
+
+from itertools import pairwise
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, Strict
+
+from fem.case import quantities as q
+from fem.case.problem import Rule
+from fem.case.quantities import Quantity
+from fem.case.table import CaseTable, case_key
+
+IMPORTANCE = Quantity(
+    unit="",
+    least=0.5,
+    most=2.0,
+    advice="EN 1998-1:2004, 4.2.5 has 0.8 to 1.4; 4.3.5.3 has 1.5 for toxic content",
+)
+REFERENCE = Quantity(unit="m/s2", above=0.0, below=30.0, typical=1.6, slips={"g": 9.81, "cm/s2": 0.01})
+VERTICAL_RATIO = Quantity(unit="", above=0.0, below=10.0, advice="EN 1998-1:2004, table 3.4 has 0.45 and 0.9")
+SPECTRUM_PERIOD = Quantity(unit="s", above=0.0, most=4.0, advice="T_B, T_C, T_D are 0.05 to 2 s")
+LEVEL = Quantity(unit="", least=0.0, most=1.0, advice="0 is the foundation, 1 the roof")
+BUILDING_PERIOD = Quantity(
+    unit="s", least=0.02, most=10.0, advice="T_1 of the building in this direction; about 0.1 s a storey"
+)
+DAMPING = Quantity(unit="", above=0.0, below=0.5, typical=0.05, slips={"per cent": 0.01})
+STATIONARY = Quantity(
+    unit="s",
+    least=1.0,
+    most=60.0,
+    advice="EN 1998-1:2004, 3.2.3.1.2 (3) asks for 10 s, where nothing is known",
+)
+SHARE = Quantity(unit="", above=0.0, most=1.0, advice="0.5 to 1 is usual")
+ROTATION_RATIO = Quantity(unit="", above=0.0, most=1.0, advice="0.5 is usual; 1 is on the point of falling")
+SLIP = Quantity(unit="m", above=0.0, most=100.0, typical=0.1, slips={"millimetres": 1e-3})
+WIND = Quantity(unit="Pa", above=0.0, most=1e4, typical=650.0, slips={"kN/m2": 1e3})
+GAMMA_MU = Quantity(unit="", least=1.0, most=3.0, advice="1.3 is usual for scaffolds")
+MOST_MOTIONS = 100
+FrictionRange = Annotated[list[Annotated[float, q.FRICTION]], Field(min_length=1, max_length=2)]
+ShareRange = Annotated[list[Annotated[float, SHARE]], Field(min_length=1, max_length=2)]
+Corners = Annotated[list[Annotated[float, SPECTRUM_PERIOD]], Field(min_length=3, max_length=3)] | None
+
+#: keys of [site] that a spectrum needs, and those that it has of its own
+NEEDED = {
+    "EN1998-1": ("ground", "reference_acceleration_m_s2"),
+    "DIN-NA-2011": ("ground", "zone", "vertical_ratio"),
+    "custom": (
+        "reference_acceleration_m_s2",
+        "soil_factor",
+        "corner_periods_s",
+        "vertical_ratio",
+        "vertical_corner_periods_s",
+    ),
+}
+OF_SPECTRA = ("type", "ground", "zone", "reference_acceleration_m_s2", *NEEDED["custom"][1:])
+WHY = {
+    "vertical_ratio": "a_vg/a_g, which the annex in force gives",
+    "zone": "1, 2 or 3",
+    "ground": 'such as "D", or "C-R" in Germany',
+    "reference_acceleration_m_s2": "a_gR of the site",
+}
+
+
+def _missing(site: Any) -> list[str]:
+    return [key for key in NEEDED[site.spectrum] if getattr(site, key) is None]
+
+
+def _foreign(site: Any) -> list[str]:
+    own = {*NEEDED[site.spectrum], *(("type",) if site.spectrum == "EN1998-1" else ())}
+    return [key for key in OF_SPECTRA if key not in own and getattr(site, key) is not None]
+
+
+def _rising(values: Any) -> bool:
+    return values is None or all(low < high for low, high in pairwise(values))
+
+
+def _rises(name: str, key: str) -> Rule:
+    return Rule(
+        f"{name}.{key}",
+        lambda table: len(getattr(table, key)) == 1 or getattr(table, key)[0] <= getattr(table, key)[-1],
+        lambda table: f"must be [low, high], got {getattr(table, key)}; put the smaller number first",
+    )
+
+
+class SiteTable(CaseTable):
+    """The action: the elastic spectra of the site, and what multiplies them."""
+
+    spectrum: Literal["EN1998-1", "DIN-NA-2011", "custom"] = case_key(
+        '"EN1998-1" | "DIN-NA-2011" | "custom": parameters of another annex, given below', "EN1998-1"
+    )
+    type: Annotated[int, Strict(), Quantity(unit="", least=1, most=2)] | None = case_key(
+        "of the spectrum, EN1998-1 only: 1, or 2 where the hazard is from magnitudes up to 5.5 (default 1)",
+        None,
+        example=1,
+    )
+    ground: str | None = case_key('"A" to "E"; DIN-NA-2011: "C-R" and the like', None, example="D")
+    zone: Annotated[int, Strict(), Quantity(unit="", least=1, most=3)] | None = case_key(
+        "DIN-NA-2011 only: 1, 2, 3", None, example=3
+    )
+    reference_acceleration_m_s2: Annotated[float, REFERENCE] | None = case_key(
+        "a_gR on rock; DIN-NA-2011: from the zone", None, example=1.6
+    )
+    importance_factor: Annotated[float, IMPORTANCE] = case_key("gamma_I (4.2.5)", 1.0)
+    element_importance_factor: Annotated[float, IMPORTANCE] = case_key(
+        "gamma_a (4.3.5.3): 1.5 for toxic or explosive content", 1.0
+    )
+    soil_factor: Annotated[float, q.SOIL_FACTOR] | None = case_key("S, custom only", None, example=1.35)
+    corner_periods_s: Corners = case_key("[T_B, T_C, T_D], custom only", None, example=[0.2, 0.8, 2.0])
+    vertical_ratio: Annotated[float, VERTICAL_RATIO] | None = case_key(
+        "a_vg/a_g, custom and DIN-NA-2011", None, example=0.9
+    )
+    vertical_corner_periods_s: Corners = case_key(
+        "of the vertical, custom only", None, example=[0.05, 0.15, 1.0]
+    )
+
+    rules = (
+        Rule(
+            "site.spectrum",
+            lambda site: not _missing(site),
+            lambda site: (
+                f'= "{site.spectrum}" needs '
+                + ", ".join(f"{key} ({WHY[key]})" if key in WHY else key for key in _missing(site))
+            ),
+        ),
+        Rule(
+            "site.spectrum",
+            lambda site: not _foreign(site),
+            lambda site: (
+                f'= "{site.spectrum}" has its own {", ".join(_foreign(site))}; take the key out, or choose '
+                'spectrum = "custom"'
+            ),
+        ),
+        Rule(
+            "site.corner_periods_s",
+            lambda site: _rising(site.corner_periods_s),
+            lambda site: f"must rise, got {site.corner_periods_s}",
+        ),
+        Rule(
+            "site.vertical_corner_periods_s",
+            lambda site: _rising(site.vertical_corner_periods_s),
+            lambda site: f"must rise, got {site.vertical_corner_periods_s}",
+        ),
+    )
+
+
+class BuildingTable(CaseTable):
+    """The building on a floor of which the container stands; left out: it stands on the ground."""
+
+    z_over_h: Annotated[float, LEVEL] = case_key(
+        "height of the floor over that of the building, both above the foundation", example=1.0
+    )
+    building_period_s: Annotated[float, BUILDING_PERIOD] = case_key(
+        "T_1 in the direction of the motion; it is varied by 15 % both ways", example=0.5
+    )
+    damping_ratio: Annotated[float, DAMPING] = case_key("of the building", 0.05)
+
+
+class MotionsTable(CaseTable):
+    """The motions that represent the action."""
+
+    source: Literal["artificial", "records", "matched"] = case_key(
+        '"artificial" | "records": scaled | "matched": records changed by wavelets', "artificial"
+    )
+    count: Annotated[int, Strict(), Quantity(unit="", least=3, most=MOST_MOTIONS)] = case_key(
+        "artificial motions; the mean counts from 7", 7
+    )
+    seed: Annotated[int, Strict(), Quantity(unit="", least=0, most=2**31 - 1)] = case_key(
+        "of the artificial motions", 1
+    )
+    stationary_s: Annotated[float, STATIONARY] = case_key("stationary part of the artificial motions", 12.0)
+    vertical: bool = case_key("whether the floor moves vertically, too", True)
+    files: list[list[str]] | None = case_key(
+        "records: a list of pairs, horizontal and vertical", None, example=[["h1.at2", "v1.at2"]]
+    )
+    further: Annotated[int, Strict(), Quantity(unit="", least=0, most=10_000)] = case_key(
+        "further artificial motions, for the share that overturns; 0: none", 100
+    )
+
+    rules = (
+        Rule(
+            "motions.files",
+            lambda motions: motions.source == "artificial" or bool(motions.files),
+            'is missing: source = "{source}" needs the files of the records, such as [["h1.at2", "v1.at2"]]',
+        ),
+        Rule(
+            "motions.files",
+            lambda motions: (
+                motions.files is None
+                or all(len(pair) in (1, 2) and all(name.strip() for name in pair) for pair in motions.files)
+            ),
+            "must hold one or two names each: horizontal, vertical",
+        ),
+        Rule(
+            "motions.files",
+            lambda motions: (
+                motions.source == "artificial"
+                or not motions.vertical
+                or motions.files is None
+                or all(len(pair) == 2 for pair in motions.files)
+            ),
+            "must name a vertical record beside every horizontal one, or take vertical = false",
+        ),
+    )
+
+
+class FrictionTable(CaseTable):
+    """The range of friction; no value of it is on the safe side."""
+
+    mu_static: FrictionRange = case_key("[low, high], or [value]", example=[0.3, 0.4])
+    mu_kinetic_over_static: ShareRange = case_key("[low, high], or [value]", [0.5, 1.0])
+
+    rules = (_rises("friction", "mu_static"), _rises("friction", "mu_kinetic_over_static"))
+
+
+class LimitsTable(CaseTable):
+    """What the user allows."""
+
+    rotation_ratio: Annotated[float, ROTATION_RATIO] = case_key(
+        "largest |rotation| over the slenderness angle", 0.5
+    )
+    slip_m: Annotated[float, SLIP] = case_key("largest slip: the clearance", example=0.1)
+
+
+class WindTable(CaseTable):
+    """The wind, on the lightest container; not combined with the earthquake."""
+
+    peak_velocity_pressure_Pa: Annotated[float, WIND] | None = case_key(  # noqa: N815
+        "q_p at the top of the container", None, example=650.0
+    )
+    german_zone: Annotated[int, Strict(), Quantity(unit="", least=1, most=4)] | None = case_key(
+        "wind zone, in place of q_p: simplified pressure", None, example=2
+    )
+    german_place: Literal["inland", "coast", "North Sea islands"] = case_key(
+        '"inland" | "coast" | "North Sea islands"', "inland"
+    )
+    terrain: Literal["0", "I", "II", "III", "IV"] | None = case_key(
+        "category of EN 1991-1-4, in place of q_p: with basic_velocity_m_s", None, example="II"
+    )
+    basic_velocity_m_s: Annotated[float, Quantity(unit="m/s", above=0.0, most=60.0)] | None = case_key(
+        "v_b, with terrain", None, example=25.0
+    )
+    gamma_mu: Annotated[float, GAMMA_MU] = case_key("partial factor on friction under wind", 1.0)
+
+    rules = (
+        Rule(
+            "wind.peak_velocity_pressure_Pa",
+            lambda wind: (
+                sum(
+                    value is not None
+                    for value in (wind.peak_velocity_pressure_Pa, wind.german_zone, wind.terrain)
+                )
+                == 1
+            ),
+            ", german_zone, terrain: exactly one of the three must be given",
+        ),
+        Rule(
+            "wind.basic_velocity_m_s",
+            lambda wind: (wind.basic_velocity_m_s is None) == (wind.terrain is None),
+            "and terrain belong together",
+        ),
+    )

@@ -1,0 +1,138 @@
+"""A site file: what it asks for, and the reasons why it cannot be used."""
+
+import pytest
+
+from fem.case.case import load_case
+from fem.case.files import SITES
+from fem.case.validation import CaseError
+from fem.site_check.file import SiteRequest, load_site
+
+LEAST = """
+container = "seed_stack"
+[site]
+ground = "D"
+reference_acceleration_m_s2 = 1.6
+[friction]
+mu_static = [0.3, 0.4]
+[limits]
+slip_m = 0.1
+"""
+
+
+def request(tmp_path, *changes: tuple[str, str]) -> SiteRequest:
+    text = LEAST
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    place = tmp_path / "hall.toml"
+    place.write_text(text)
+    return load_site(place)
+
+
+def test_the_shipped_site_can_be_read():
+    asked = load_site("site")
+    assert (asked.name, asked.heading.container, asked.motions.count) == ("site", "seed_stack", 7)
+    assert asked.action.surface_acceleration == pytest.approx(1.35 * 1.6)
+    assert [(one.mass, one.elevation) for one in asked.variants] == [("full", "width"), ("empty", "width")]
+    assert asked.variants[1].case.mass == pytest.approx(1600.0)
+    assert asked.wind_pressure == (650.0, "given")
+
+
+def test_defaults_are_those_of_the_shipped_file(tmp_path):
+    asked = request(tmp_path)
+    assert (asked.motions.source, asked.motions.seed, asked.motions.vertical) == ("artificial", 1, True)
+    assert (asked.limits.rotation_ratio, asked.building, asked.wind_pressure) == (0.5, None, None)
+    assert [one.mass for one in asked.variants] == ["full"]
+
+
+def test_frictions_are_the_corners_of_the_ranges_and_their_middle(tmp_path):
+    assert request(tmp_path).frictions == [(0.3, 0.15), (0.3, 0.3), (0.4, 0.2), (0.4, 0.4), (0.35, 0.2625)]
+    one = request(tmp_path, ("[0.3, 0.4]", "[0.3]\nmu_kinetic_over_static = [1.0]"))
+    assert one.frictions == [(0.3, 0.3)]
+
+
+def test_both_elevations_are_run_where_width_and_depth_differ(tmp_path):
+    (tmp_path / "box.toml").write_text(
+        "[container]\nwidth_m = 1.1\ndepth_m = 2.2\nheight_m = 2.0\nmass_kg = 3000.0\n[contact]\nmu_static = 0.4\n"
+        '[motion]\nkind = "none"\n'
+    )
+    asked = request(tmp_path, ('"seed_stack"', '"box.toml"\nempty_mass_kg = 500.0'))
+    found = [(one.mass, one.elevation, one.case.container.width_m) for one in asked.variants]
+    assert found == [
+        ("full", "width", 1.1),
+        ("empty", "width", 1.1),
+        ("full", "depth", 2.2),
+        ("empty", "depth", 2.2),
+    ]
+
+
+def test_german_zones_and_other_annexes(tmp_path):
+    german = (
+        'spectrum = "DIN-NA-2011"\nground = "C-R"\nzone = 3\nvertical_ratio = 0.5\nimportance_factor = 1.6'
+    )
+    asked = request(tmp_path, ('ground = "D"\nreference_acceleration_m_s2 = 1.6', german))
+    assert asked.action.surface_acceleration == pytest.approx(1.92)
+    custom = (
+        'spectrum = "custom"\nsoil_factor = 1.2\ncorner_periods_s = [0.1, 0.3, 2.0]\nvertical_ratio = 0.7\n'
+        "vertical_corner_periods_s = [0.05, 0.2, 1.2]"
+    )
+    asked = request(tmp_path, ('ground = "D"', custom))
+    assert (asked.action.surface_acceleration, asked.action.vertical_acceleration) == pytest.approx(
+        (1.92, 1.12)
+    )
+
+
+def test_a_value_of_the_site_or_of_the_container_is_changed(tmp_path):
+    asked = request(tmp_path)
+    assert asked.with_value("site.reference_acceleration_m_s2", 3.2).action.reference_acceleration == 3.2
+    assert asked.with_value("container.boxes", 2).variants[0].case.container.boxes == 2
+    stiff = asked.with_value("container.width_m", 1.5).with_value("contact.mu_static", 0.25)
+    assert (stiff.container.container.width_m, stiff.frictions[0][0]) == (1.5, 0.25)
+    assert len(stiff.frictions) == 3
+
+
+def test_wind_pressures_come_from_a_table_or_a_terrain(tmp_path):
+    zone = request(tmp_path, ("[limits]", "[wind]\ngerman_zone = 2\n[limits]"))
+    assert zone.wind_pressure == (650.0, "simplified German pressure, zone 2, inland")
+    terrain = request(tmp_path, ("[limits]", '[wind]\nterrain = "II"\nbasic_velocity_m_s = 25.0\n[limits]'))
+    assert terrain.wind_pressure[0] == pytest.approx(703.3, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('ground = "D"', 'ground = "F"', r"ground type 'F': EN 1998-1 has A, B, C, D, E"),
+        ('ground = "D"', 'ground = "S1"', r"\[site\] ground type S1 needs a special study"),
+        ('ground = "D"\n', "", r'\[site\] spectrum = "EN1998-1" needs ground \(such as "D"'),
+        ('ground = "D"', 'ground = "D"\nzone = 2', r'spectrum = "EN1998-1" has its own zone'),
+        ('ground = "D"', 'ground = "C-R"\nspectrum = "DIN-NA-2011"\nzone = 3', r"needs vertical_ratio \(a_vg/a_g"),
+        ("= 1.6", "= 1.6\nimportance_factor = 2.5", r"importance_factor must be between 0.5 and 2"),
+        ("= 1.6", "= 1.6\nelement_importance_factor = 0.1", r"element_importance_factor must be between 0.5 and 2"),
+        ("[0.3, 0.4]", "[0.4, 0.3]", r"\[friction\] mu_static must be \[low, high\], got \[0.4, 0.3\]"),
+        ("[limits]\nslip_m = 0.1\n", "", r"\[limits\] is missing: slip_m, the clearance"),
+        ("slip_m = 0.1", "rotation_ratio = 0.5", r"\[limits\] slip_m"),
+        ("slip_m = 0.1", "slip_m = 150.0", r"millimetres"),
+        ("[limits]", "[building]\nz_over_h = 1.0\nbuilding_period_s = 0.0\n[limits]", r"building_period_s"),
+        ("[limits]", '[motions]\nsource = "records"\n[limits]', r"\[motions\] files is missing"),
+        ("[limits]", '[motions]\nsource = "records"\nfiles = [["h.at2"]]\n[limits]', r"a vertical record beside every"),
+        ("[limits]", "[motions]\ncount = 2\n[limits]", r"\[motions\] count"),
+        ("[limits]", "[wind]\n[limits]", r"german_zone, terrain: exactly one of the three"),
+        ("[limits]", '[wind]\ngerman_zone = 1\ngerman_place = "coast"\n[limits]', r"no simplified wind"),
+        ("[limits]", "[wnd]\n[limits]", r"unknown table; did you mean 'wind'"),
+        ('"seed_stack"', '"no-such.toml"', r"is no file in .* and no shipped case"),
+        ('"seed_stack"', '"seed_stack"\nempty_mass_kg = 0.4', r"mass"),
+        ('"seed_stack"', '"seed_stack"\nempty_centroid_m = 0.4', r"no effect without empty_mass_kg"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_told_with_its_place(tmp_path, old, new, message):
+    with pytest.raises(CaseError, match=message) as error:
+        request(tmp_path, (old, new))
+    assert "hall.toml" in str(error.value)
+
+
+def test_a_site_file_is_no_case_file_nor_the_other_way_round(tmp_path):
+    place = tmp_path / "hall.toml"
+    place.write_text(LEAST)
+    with pytest.raises(CaseError, match=r"this is a site file: python -m fem assess"):
+        load_case(place)
+    assert "site" in SITES.names
