@@ -249,6 +249,8 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
         reasons.append(
             f"the block leaves the floor, or its impact has no solution, at {reference.left_model_at:.4g} s"
         )
+    if not model.case.starts_moving and floor_motion(model.vertical.compiled(), 0.0)[1] != 0.0:
+        reasons.append("the floor starts with a jerk up or down, which the block does not feel")
     if impact is None and verdict.first_impact_s is None:
         reasons.append("no impact in the run or the block")
     return reasons

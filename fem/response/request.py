@@ -25,7 +25,8 @@ class ResponseRequest:
     """Frequencies swept up and down, and the periods waited for at each.
 
     Raises:
-        CaseError: a number out of range, a case without a harmonic drive or with one that ends, the full model.
+        CaseError: a number out of range, a case without a harmonic drive or with one that ends, with a vertical
+            motion, the full model.
     """
 
     case: Case
@@ -48,6 +49,12 @@ class ResponseRequest:
             raise CaseError(
                 f"[motion] cycles = {motion.cycles:g} ends the drive, a response curve needs one without an end; "
                 "leave the key out"
+            )
+        if self.case.has_vertical:
+            raise CaseError(
+                f'[vertical] kind must be "none" for a response curve, got "{self.case.vertical.kind}": the frequency '
+                "of the horizontal motion is swept, and a vertical one would have to be changed with it; "
+                "take --set vertical.kind=none, or a sweep over motion.frequency_Hz"
             )
         if solver.model == "full":
             raise CaseError(

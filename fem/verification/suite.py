@@ -21,6 +21,7 @@ from fem.verification import (
     sliding,
     statics,
     time_stepping,
+    vertical,
 )
 from fem.verification.rows import Check, Row, analytic
 from fem.verification.runs import STACK, run
@@ -34,6 +35,7 @@ MODULES = (
     rocking,
     restitution,
     overturning,
+    vertical,
     limits,
 )
 CHECKS = tuple(check for module in MODULES for check in vars(module).values() if isinstance(check, Check))

@@ -118,3 +118,28 @@ def test_lateral_force_method_is_limited_to_two_seconds_and_four_control_periods
     for corner_period, limit in ((0.8, 2.0), (0.4, 1.6)):
         applicability = block(code=code(corner_period_s=corner_period)).by_code.applicability
         assert (applicability.demand, applicability.capacity) == (block().period_eq3, limit)
+
+
+@pytest.mark.parametrize(
+    ("horizontal", "vertical", "overturning", "sliding"),
+    [
+        (2.4, 0.0, 0.8896, 0.6116),
+        (2.4, 0.48, 0.9354, 0.6431),
+        (2.4, 1.6, 1.0630, 0.7308),
+        (0.72, 1.6, 0.3189, 0.2192),
+    ],
+)
+def test_a_vertical_acceleration_takes_from_the_weight(horizontal, vertical, overturning, sliding):
+    # ag S = 2.4 m/s2 and avg = 1.6 m/s2, worked by hand: a h/((g - a_v) b) and a/(mu (g - a_v)).
+    static = block(width=1.1, peak_floor_acceleration=horizontal, peak_vertical_acceleration=vertical)
+    assert static.own_motion_vertical.overturning.utilisation == pytest.approx(overturning, abs=5e-5)
+    assert static.own_motion_vertical.sliding.utilisation == pytest.approx(sliding, abs=5e-5)
+    assert static.own_motion == block(width=1.1, peak_floor_acceleration=horizontal).own_motion
+    assert static.ruling is static.own_motion_vertical
+
+
+def test_a_floor_that_falls_with_gravity_leaves_no_capacity():
+    static = block(peak_vertical_acceleration=12.0)
+    assert static.own_motion_vertical.overturning.utilisation == math.inf
+    assert static.to_result().own_motion_vertical.least_weight_N == 0.0
+    assert block().own_motion_vertical is None

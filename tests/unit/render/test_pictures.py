@@ -16,7 +16,7 @@ from fem.render import opengl as rendering
 from fem.render.caption import caption
 from fem.render.movie import select_frames, write_movie
 from fem.render.picture import Scene, time_of_largest_rotation, write_picture
-from fem.render.scene import View, summarise_frames
+from fem.render.scene import BOTTOM, View, summarise_frames
 from fem.results.errors import FolderError
 from fem.results.fields import FieldError, FieldWriter
 from fem.run.run import RunOptions, run_case
@@ -105,6 +105,20 @@ class TestScene:
         assert colour_of(second, pixel(scene.view, 0.3, at)).max() < 60.0
         foot = (0, first.height - 25, 200, first.height)
         assert np.array_equal(np.asarray(first.crop(foot)), np.asarray(second.crop(foot)))
+
+    def test_the_floor_rises_and_sinks(self, run, scene):
+        frame = run.fields.frame(0)
+        view, free = scene.view, frame.points[:, 0].min() - 0.2
+        raised = scene.image(dataclasses.replace(frame, floor_lift=0.1 * view.depth))
+        above = pixel(view, free, 0.05 * view.depth)
+        assert colour_of(scene.image(frame), above).min() > 250.0
+        assert colour_of(raised, above).max() < 245.0
+        below = dataclasses.replace(frame, displacement=frame.displacement - (0.0, 0.4), floor_lift=-0.4)
+        sunk = summarise_frames([frame, below]).view
+        assert sunk.lowest == -0.4
+        assert sunk.edges[2] * sunk.pixels_per_metre == pytest.approx(
+            -(sunk.depth + 0.4) * sunk.pixels_per_metre - BOTTOM
+        )
 
     def test_stress_darkens_the_container(self, run, scene):
         frame = run.fields.frame(0)

@@ -26,6 +26,7 @@ def fields(floor=0.03):
         "von_mises": RNG.uniform(0.0, 3e8, size=15),
         "contact_pressure": RNG.uniform(0.0, 1e6, size=15),
         "floor_displacement": floor,
+        "floor_lift": -0.5 * floor,
     }
 
 

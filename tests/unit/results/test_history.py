@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from fem.results.history import (
     HISTORY_COLUMNS,
     NUMBERS,
+    VERTICAL_COLUMNS,
     HistoryWriter,
     add_analytic_rotation,
     read_history,
@@ -47,6 +48,24 @@ def test_columns_are_the_documented_ones_in_their_order_and_come_back_to_the_las
         assert history[name].tolist() == rows[:, column].tolist()
     with pytest.raises(KeyError, match="no column 'joint_3_shear_N'; known: time_s"):
         history["joint_3_shear_N"]
+
+
+@pytest.mark.parametrize("joints", [0, 1, 2])
+@pytest.mark.parametrize("analytic", [False, True])
+def test_columns_of_a_vertical_motion_stand_before_those_of_the_joints(tmp_path, joints, analytic):
+    path, rows = tmp_path / "history.csv", np.hstack([ROWS, ROWS[:, : 3 + 3 * joints]])
+    with HistoryWriter(path, joints=joints, vertical=True) as writer:
+        writer.append(rows, MODES)
+    if analytic:
+        add_analytic_rotation(path, ROWS[:, 7])
+    history = read_history(path)
+    assert (history.joints, history.vertical) == (joints, True)
+    assert history["base_vertical_displacement_m"].tolist() == ROWS[:, 0].tolist()
+    assert history["base_vertical_acceleration_m_s2"].tolist() == ROWS[:, 2].tolist()
+    assert history.numbers[20:23] == VERTICAL_COLUMNS
+    if joints:
+        assert history["joint_1_normal_N"].tolist() == ROWS[:, 3].tolist()
+    assert (history.numbers[-1] == "analytic_rotation_rad") is analytic
 
 
 def test_the_rigid_block_is_the_last_column_and_is_replaced_not_repeated(tmp_path):

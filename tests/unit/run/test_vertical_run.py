@@ -1,0 +1,147 @@
+"""A run whose floor moves up and down: what its files, its words and its pages say of it."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from fem.__main__ import main
+from fem.case.case import CaseError, load_case
+from fem.figures.run import figures_of
+from fem.model.model import build_model
+from fem.report.animation import animation_of
+from fem.report.run_page import run_report
+from fem.response.request import ResponseRequest
+from fem.results.reader import open_run
+from fem.run.run import RunOptions, run_case
+
+OMEGA, PHASE = 9.0, 0.5
+VERTICAL = (
+    "vertical.kind=harmonic",
+    "vertical.peak_acceleration_m_s2=3.0",
+    f"vertical.angular_frequency_rad_s={OMEGA}",
+    f"vertical.phase_rad={PHASE}",
+    "vertical.scale=-1",
+)
+RIGID = ("solver.model=rigid", "solver.duration_s=1.5", "contact.mu_static=0.8")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A short run of the stack under both motions, compared with the rigid block."""
+    place = tmp_path_factory.mktemp("vertical") / "run"
+    case = load_case("seed_stack_plateau", [*RIGID, *VERTICAL])
+    run_case(case, case_text=case.text, folder=place, options=RunOptions(band=False, check_rigid=True))
+    return place
+
+
+@pytest.fixture(scope="module")
+def run(folder):
+    return open_run(folder)
+
+
+def test_the_history_has_the_motion_of_the_floor_upward(run):
+    history, amplitude = run.history, -3.0 / OMEGA**2
+    turn = OMEGA * history["time_s"] + PHASE
+    for column, expected in (
+        ("base_vertical_displacement_m", amplitude * np.sin(turn)),
+        ("base_vertical_velocity_m_s", amplitude * OMEGA * np.cos(turn)),
+        ("base_vertical_acceleration_m_s2", -amplitude * OMEGA**2 * np.sin(turn)),
+    ):
+        assert history[column] == pytest.approx(expected, abs=1e-12)
+    assert history.joints == 3
+    assert history.numbers[20:24] == (
+        "base_vertical_displacement_m",
+        "base_vertical_velocity_m_s",
+        "base_vertical_acceleration_m_s2",
+        "joint_1_normal_N",
+    )
+    weight = history["normal_force_N"][0] / (1.0 + history["base_vertical_acceleration_m_s2"][0] / 9.81)
+    assert weight == pytest.approx(98100.0, rel=1e-6)
+
+
+def test_the_result_has_the_same_keys_for_both_motions(folder):
+    motion = json.loads((folder / "run.json").read_text())["motion"]
+    upward = motion.pop("vertical")
+    assert set(upward) == set(motion)
+    assert upward["peak_acceleration_m_s2"] == pytest.approx(3.0)
+    assert upward["peak_displacement_m"] == pytest.approx(3.0 / OMEGA**2)
+    assert (upward["kind"], upward["covered"]) == ("harmonic", 1.0)
+
+
+def test_the_static_rule_with_the_least_weight_stands_beside_the_other(run, folder):
+    static = run.typed_result.static
+    assert static.own_motion_vertical.least_weight_N == pytest.approx(98100.0 * (1.0 - 3.0 / 9.81))
+    for check in ("utilisation_sliding", "utilisation_overturning"):
+        plain, upward = (getattr(one, check) for one in (static.own_motion, static.own_motion_vertical))
+        assert upward == pytest.approx(plain / (1.0 - 3.0 / 9.81))
+    summary = " ".join((folder / "summary.txt").read_text().split())
+    assert "vertical motion 1.5 s; peaks 3 m/s2 = 0.306 g" in summary
+    assert "own, vertical sliding 40 / 54.48 kN 0.734 holds" in summary
+
+
+def test_the_run_is_compared_with_a_block_on_the_same_floor(run):
+    check = run.typed_result.rigid_check
+    assert check.first_impact_s.run == pytest.approx(check.first_impact_s.block, abs=0.01)
+    assert check.largest_difference_before_impact < 5e-3
+
+
+def test_frames_and_animation_move_with_the_floor(run):
+    lifts = [run.fields.frame(k).floor_lift for k in range(0, len(run.fields), 5)]
+    assert lifts == pytest.approx(-3.0 / OMEGA**2 * np.sin(OMEGA * run.fields.times[::5] + PHASE), abs=1e-7)
+    shown = animation_of(build_model(run.case), run.fields)
+    heights = [frame.centre[1] - frame.floor[1] for frame in shown.frames[:3]]
+    assert heights == pytest.approx([2.0] * 3, abs=1e-3)
+
+
+def test_figure_and_page_show_both_motions(run):
+    figure = figures_of(run)["base_motion"]
+    assert "3 m/s² upward or downward" in figure.texts[0].get_text()
+    assert [len(axes.lines) for axes in figure.axes[:2]] == [3, 3]  # zero, along x, upward
+    page = run_report(run)
+    for words in ("floor, vertical", "the other sign", '"lift"', "least weight, under the vertical motion"):
+        assert words in page
+    assert "vertical floor motion, torsion" not in page
+
+
+def test_what_a_floor_without_vertical_motion_writes_stays(tmp_path):
+    case = load_case("seed_stack_plateau", [*RIGID, "output.fields_s=0", "output.figures=false"])
+    run_case(case, case_text=case.text, folder=tmp_path / "run", options=RunOptions(band=False))
+    text = (tmp_path / "run" / "run.json").read_text()
+    assert "vertical" not in text and "least_weight" not in text
+    assert "vertical" not in (tmp_path / "run" / "history.csv").read_text().partition("\n")[0]
+    assert "vertical" not in (tmp_path / "run" / "resolved.toml").read_text()
+
+
+def test_check_tells_both_motions_and_both_rules(capsys):
+    assert (
+        main(
+            ["check", "seed_stack_plateau", *(part for one in (*RIGID, *VERTICAL) for part in ("--set", one))]
+        )
+        == 0
+    )
+    lines = [" ".join(line.split()) for line in capsys.readouterr().out.splitlines()]
+    assert "vertical A = 0.03704 m, Omega = 9 rad/s, peak 3 m/s2" in lines
+    assert any(line.startswith("own, vertical overturning 80.000 37.455 kNm 2.136") for line in lines)
+
+
+def test_a_run_on_two_motions_lasts_as_long_as_the_longer_one():
+    pulse = {"kind": "pulse", "shape": "sine", "peak_acceleration_m_s2": 1.0}
+    case = load_case("seed_box").with_values(
+        {f"motion.{key}": value for key, value in (pulse | {"pulse_s": 0.5}).items()}
+        | {f"vertical.{key}": value for key, value in (pulse | {"pulse_s": 0.4, "delay_s": 0.3}).items()}
+        | {"solver.duration_s": "auto", "solver.model": "rigid"}
+    )
+    model = build_model(case)
+    assert model.rest_from == 0.7
+    assert model.duration == 60.7
+    assert math.isinf(build_model(case.with_values({"solver.duration_s": 2.0})).rest_from)
+
+
+def test_a_response_curve_has_no_vertical_motion():
+    case = load_case("seed_stack_plateau", [*RIGID, *VERTICAL])
+    with pytest.raises(
+        CaseError, match=r'\[vertical\] kind must be "none" for a response curve, got "harmonic"'
+    ):
+        ResponseRequest(case=case, first_Hz=0.5, last_Hz=1.0, count=3)
