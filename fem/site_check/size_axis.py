@@ -1,0 +1,125 @@
+"""The key that `size` varies: what is looked for, and the values of the scan."""
+
+import math
+
+from fem.batch.axes import AxisError, field_of
+from fem.batch.derived import value_in
+from fem.case.quantities import Quantity
+from fem.case.validation import CaseError, did_you_mean, known_keys, quantity_of
+from fem.site_check.bracket import SizeAxis, Wanted, spaced
+from fem.site_check.file import TABLES, SiteRequest
+
+COUNT = 13  #: values of the scan
+MOST_COUNT = 200
+WIDER = 3.0  #: the scan reaches from the value in the file over this to this times it
+BOXES, FRICTION = "container.boxes", "contact.mu_static"
+#: key -> what is looked for, and words for it; other keys: the window of their values
+KNOWN: dict[str, tuple[Wanted, str]] = {
+    "container.width_m": ("least", "width"),
+    "container.depth_m": ("least", "depth"),
+    BOXES: ("largest", "number of boxes"),
+    FRICTION: ("window", "static friction"),
+    "site.reference_acceleration_m_s2": ("largest", "reference acceleration"),
+    "site.importance_factor": ("largest", "importance factor"),
+    "site.element_importance_factor": ("largest", "importance factor of the element"),
+    "site.soil_factor": ("largest", "soil factor"),
+    "site.vertical_ratio": ("largest", "vertical ratio"),
+    "building.z_over_h": ("largest", "height in the building"),
+}
+#: ends of the scan where the value in the file says little
+RANGES = {FRICTION: (0.05, 1.0), BOXES: (1.0, 12.0), "building.z_over_h": (0.0, 1.0)}
+
+
+def size_axis(
+    request: SiteRequest,
+    key: str,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+    count: int | None = None,
+) -> SizeAxis:
+    """The axis of a key of the site file or of its container.
+
+    Args:
+        request: what is asked, with the value that the range starts from.
+        key: dotted, such as `container.width_m`.
+        low, high: ends of the scan; None: as suits the key.
+        count: values of the scan; None: 13, or every whole number.
+
+    Raises:
+        CaseError: no such key, one without a number, a range that does not rise or that the key cannot have.
+    """
+    quantity, value = _quantity(key), _value(request, key)
+    whole = key == BOXES
+    if low is None or high is None:
+        begin, end = RANGES.get(key) or _around(key, value, quantity)
+        low, high = begin if low is None else low, end if high is None else high
+    if not low < high:
+        raise CaseError(f"--from {low:g} --to {high:g}: the range of {key} must rise")
+    for name, bound in (("--from", low), ("--to", high)):
+        try:
+            quantity.check(bound)
+        except ValueError as error:
+            raise CaseError(f"{name}: {key} {error}") from None
+    if count is not None and not 2 <= count <= MOST_COUNT:
+        raise CaseError(f"--count must be 2 to {MOST_COUNT}, got {count}")
+    values = (
+        tuple(float(number) for number in range(math.ceil(low), math.floor(high) + 1))
+        if whole
+        else spaced(low, high, count or COUNT)
+    )
+    wanted, words = KNOWN.get(key, ("window", key))
+    axis = SizeAxis(key=key, words=words, unit=quantity.unit, wanted=wanted, values=values, whole=whole)
+    for bound in (values[0], values[-1]):
+        at(request, axis, bound)  # refused before anything is computed
+    return axis
+
+
+def at(request: SiteRequest, axis: SizeAxis, value: float) -> SiteRequest:
+    """The request at a value of the axis.
+
+    Raises:
+        CaseError: the value cannot be used.
+    """
+    return request.with_value(axis.key, round(value) if axis.whole else value)
+
+
+def _quantity(key: str) -> Quantity:
+    """The quantity of a key; only numbers can vary."""
+    table, _, name = key.partition(".")
+    if table in TABLES:
+        fields = known_keys(TABLES[table])
+        if name not in fields:
+            near = did_you_mean(name, fields)
+            raise CaseError(f"--over {key}: no such key of a site file{'; ' + near if near else ''}")
+        field = fields[name]
+    else:
+        try:
+            field = field_of(key)
+        except AxisError as error:
+            raise CaseError(f"--over {key}: {error}") from None
+    quantity = quantity_of(field.annotation, field.metadata)
+    if quantity is None or "list" in str(field.annotation):
+        raise CaseError(f"--over {key}: it holds no single number; try one of {', '.join(KNOWN)}")
+    return quantity
+
+
+def _value(request: SiteRequest, key: str) -> float | None:
+    """The value in the files; None where there is none."""
+    table, _, name = key.partition(".")
+    if table not in TABLES:
+        return value_in(request.container, key, {})
+    content = getattr(request, table)
+    if content is None:
+        raise CaseError(f"--over {key}: the site file has no [{table}]")
+    found = getattr(content, name)
+    return None if found is None else float(found)
+
+
+def _around(key: str, value: float | None, quantity: Quantity) -> tuple[float, float]:
+    """From a third to three times the value in the file, within what the key can have."""
+    if not value or value < 0.0:
+        raise CaseError(f"--over {key}: the files give no value to start from; give --from and --to")
+    least = quantity.least if quantity.least is not None else 0.0
+    most = quantity.most if quantity.most is not None else math.inf
+    return max(value / WIDER, least), min(value * WIDER, most)

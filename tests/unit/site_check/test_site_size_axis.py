@@ -1,0 +1,54 @@
+"""The key that `size` varies, and its range."""
+
+import pytest
+
+from fem.case.validation import CaseError
+from fem.site_check.file import load_site
+from fem.site_check.size_axis import at, size_axis
+
+SITE = load_site("site")
+
+
+@pytest.mark.parametrize(
+    ("key", "wanted", "unit", "ends", "count"),
+    [
+        ("container.width_m", "least", "m", (1.1 / 3.0, 3.3), 13),
+        ("container.boxes", "largest", "", (1.0, 12.0), 12),
+        ("contact.mu_static", "window", "", (0.05, 1.0), 13),
+        ("site.reference_acceleration_m_s2", "largest", "m/s2", (1.6 / 3.0, 4.8), 13),
+        ("site.importance_factor", "largest", "", (0.5, 2.0), 13),
+        ("limits.slip_m", "window", "m", (0.1 / 3.0, 0.3), 13),
+    ],
+)
+def test_each_key_has_its_range_about_the_value_of_the_files(key, wanted, unit, ends, count):
+    axis = size_axis(SITE, key)
+    assert (axis.wanted, axis.unit, len(axis.values)) == (wanted, unit, count)
+    assert (axis.values[0], axis.values[-1]) == pytest.approx(ends, rel=1e-5)
+
+
+def test_the_request_takes_the_value():
+    assert at(SITE, size_axis(SITE, "container.boxes"), 3.0).container.container.boxes == 3
+    axis = size_axis(SITE, "container.width_m", low=0.8, high=1.2, count=3)
+    assert axis.values == (0.8, 1.0, 1.2)
+    assert at(SITE, axis, 0.8).container.container.width_m == 0.8
+
+
+@pytest.mark.parametrize(
+    ("key", "ends", "message"),
+    [
+        ("container.widht_m", {}, "did you mean 'width_m'"),
+        ("site.acceleration", {}, "no such key of a site file"),
+        ("site.spectrum", {}, "holds no single number"),
+        ("friction.mu_static", {}, "holds no single number"),
+        ("building.z_over_h", {}, r"the site file has no \[building\]"),
+        ("site.soil_factor", {}, "no value to start from; give --from and --to"),
+        ("site.soil_factor", {"low": 1.0, "high": 2.0}, "has its own soil_factor"),
+        ("container.width_m", {"low": 2.0, "high": 1.0}, "must rise"),
+        ("container.width_m", {"high": 3000.0}, "--to: container.width_m"),
+        ("container.height_m", {}, "centroid_m must be less than height_m"),
+        ("container.width_m", {"count": 1}, "--count must be 2 to 200"),
+    ],
+)
+def test_a_key_that_cannot_vary_is_told(key, ends, message):
+    with pytest.raises(CaseError, match=message):
+        size_axis(SITE, key, **ends)
