@@ -15,6 +15,7 @@ from fem.site_check.result import (
     MOTIONS,
     RESULT_FILE,
     ConfirmedRun,
+    FloorResult,
     FurtherMotions,
     MotionSet,
     ScanPoint,
@@ -106,7 +107,9 @@ def site_body(mass: str) -> SiteBody:
     )
 
 
-def example(*, overturned: int = 0, valid: bool = True) -> tuple[SiteResult, dict[str, str]]:
+def example(
+    *, overturned: int = 0, valid: bool = True, building: bool = False
+) -> tuple[SiteResult, dict[str, str]]:
     """A result, and the files of its motions; so many runs overturn, and the set may fail its checks."""
     motions, files = [], {}
     for number in range(1, 8):
@@ -120,6 +123,7 @@ def example(*, overturned: int = 0, valid: bool = True) -> tuple[SiteResult, dic
             mu_static=mu,
             mu_kinetic=share * mu,
             mass=mass,
+            building_period_s=period,
             model="rigid",
             outcome="slide" if mu == 0.2 else "rest",
             rotation_ratio=0.002 * motion.number,
@@ -130,6 +134,7 @@ def example(*, overturned: int = 0, valid: bool = True) -> tuple[SiteResult, dic
         for mu in (0.2, 0.4)
         for share in (0.5, 1.0)
         for mass in ("full", "empty")
+        for period in ((0.425, 0.5, 0.575) if building else (None,))
     )
     fell = [SiteRun(**(run.__dict__ | {"outcome": "overturned", "rotation_ratio": 2.0})) for run in runs]
     runs = (*fell[:overturned], *runs[overturned:])
@@ -158,6 +163,14 @@ def example(*, overturned: int = 0, valid: bool = True) -> tuple[SiteResult, dic
         mean_m_s2=tuple(mean.tolist()),
         vertical_target_m_s2=tuple(SITE.vertical(PERIODS).tolist()),
         vertical_mean_m_s2=tuple(vertical_mean.tolist()),
+    )
+    floor = FloorResult(
+        z_over_h=1.0,
+        building_periods_s=(0.425, 0.5, 0.575),
+        damping_ratio=0.05,
+        peak_m_s2=6.1,
+        peak_velocity_m_s=0.8,
+        mean_m_s2=tuple((mean * (1.0 + 3.0 * np.exp(-(np.log(PERIODS / 0.5) ** 2)))).tolist()),
     )
     mean_pga = float(np.mean([motion.pga_m_s2 for motion in motions]))
     checks = (
@@ -242,6 +255,7 @@ def example(*, overturned: int = 0, valid: bool = True) -> tuple[SiteResult, dic
         title="Mercury containers <hall 3>",
         inputs=INPUTS,
         action=action,
+        floor=floor if building else None,
         set=MotionSet(
             source="artificial",
             count=7,
@@ -266,7 +280,7 @@ def example(*, overturned: int = 0, valid: bool = True) -> tuple[SiteResult, dic
             site=SITE,
             motions=motions,
             periods_s=action.periods_s,
-            floor=None,
+            floor=floor if building else None,
             runs=runs if valid else (),
         ),
         provenance=SiteProvenance(

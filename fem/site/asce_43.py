@@ -14,7 +14,7 @@ import numpy as np
 from contact.reference.rigid_block import RigidBlock
 from fem.runtime.arrays import FloatArray
 from fem.site.body import PERIODS, FloorAction, Limits, LooseBody, Spectrum
-from fem.site.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
+from fem.site.method import MethodQuantity, MethodRow, MethodSource, SourceStanding, length_in_words
 
 SLIDING_DAMPING = 0.10
 VERTICAL_SHARE = 0.4  #: of the vertical peak that reduces friction, and of a second horizontal component
@@ -129,7 +129,7 @@ class RockingOscillator:
 def sliding_row(body: LooseBody, limits: Limits, action: FloorAction) -> MethodRow:
     """Sliding distance in the plane of the motion, against the slip that is allowed."""
     found = slide(body.mu_kinetic, body.block.gravity, action)
-    said = "does not slide" if found.period == 0.0 else f"slides {1000.0 * found.distance:.3g} mm"
+    said = "does not slide" if found.period == 0.0 else f"slides {length_in_words(found.distance)}"
     return MethodRow(
         name="ASCE/SEI 43 approximate sliding",
         quantity=MethodQuantity.SLIP,

@@ -43,6 +43,11 @@ class MethodSource:
         }[self.standing]
 
 
+def length_in_words(length: float) -> str:
+    """A length [m] in mm, or in m from 1 m on."""
+    return f"{1000.0 * length:.3g} mm" if length < 1.0 else f"{length:.3g} m"
+
+
 @dataclass(frozen=True, kw_only=True)
 class MethodRow:
     """One simplified method, applied."""

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from fem.site.body import FloorAction, Limits, LooseBody
-from fem.site.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
+from fem.site.method import MethodQuantity, MethodRow, MethodSource, SourceStanding, length_in_words
 
 STANDARD_GRAVITY = 9.80665
 #: ratio a_y/a_max, peak acceleration [m/s2], peak velocity [m/s] -> slip [m]
@@ -114,7 +114,7 @@ def _row(rule: SlidingRule, body: LooseBody, limits: Limits, action: FloorAction
         demand=slip,
         capacity=limits.slip,
         unit="m",
-        says=f"slides {1000.0 * slip:.3g} mm" if slides else "does not slide",
+        says=f"slides {length_in_words(slip)}" if slides else "does not slide",
         source=MethodSource(work=rule.name, standing=SourceStanding.LITERATURE),
         validity=f"{rule.validity}; slip in one direction on a slope, one friction coefficient",
     )

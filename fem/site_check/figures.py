@@ -27,8 +27,10 @@ from fem.figures.style import (
     zero_line,
 )
 from fem.runtime.arrays import FloatArray
+from fem.site.static_rules import floor_factor
 from fem.site_check.bracket import SizePoint, SizeResult
 from fem.site_check.result import (
+    FloorResult,
     MotionSet,
     ScanPoint,
     SiteActionResult,
@@ -72,6 +74,37 @@ def draw_spectra(action: SiteActionResult, motions: MotionSet) -> str:
             _draw_spectrum(panel, periods, target, mean, spectra, (low, last), f"{name} [m/s²]")
             if k == 0:
                 legend_above(panel, columns=5)
+        return svg_of(figure)
+
+
+def draw_floor(action: SiteActionResult, floor: FloorResult) -> str:
+    """Mean spectrum of the floor, with that of the ground and what formula (4.25) gives an element."""
+    with house_style():
+        figure, (axes,) = panels((2.0,), header=3)
+        period = floor.building_periods_s[len(floor.building_periods_s) // 2]
+        head(
+            figure,
+            f"Response spectra of the floor at z/H = {floor.z_over_h:g}, 5 % damping",
+            "mean over the motions, for the period of the building with the largest peaks",
+        )
+        periods = np.array(action.periods_s)
+        formula = action.ag_S_m_s2 * np.array(
+            [floor_factor(floor.z_over_h, one / period) for one in action.periods_s]
+        )
+        axes.plot(periods, floor.mean_m_s2, color=BLUE, linewidth=1.8, label="floor, mean")
+        axes.plot(periods, action.mean_m_s2, color=GREY, label="ground, mean")
+        axes.plot(
+            periods,
+            formula,
+            color=ORANGE,
+            linestyle="--",
+            label="formula (4.25), not a target",
+        )
+        _period_axis(axes, list(TICKS))
+        axes.set_xlabel("period of an element [s]")
+        axes.set_ylabel("horizontal [m/s²]")
+        axes.set_ylim(bottom=0.0)
+        legend_above(axes)
         return svg_of(figure)
 
 

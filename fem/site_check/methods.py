@@ -11,7 +11,7 @@ from contact.stepping.observables import SLIDING
 from fem.runtime.arrays import FloatArray
 from fem.site.action import DAMPING_RATIO, SiteAction, damping_correction
 from fem.site.body import FloorAction, Limits, LooseBody
-from fem.site.method import MethodQuantity, MethodRow
+from fem.site.method import MethodQuantity, MethodRow, length_in_words
 from fem.site.methods import method_capacities, method_rows, methods_of
 from fem.site.wind import wind_rows
 from fem.site_check.result import FloorResult, SiteBody, SiteInputs, SiteMethod, SiteMotion, SiteRun
@@ -141,7 +141,7 @@ def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limi
     if not slips:
         return Found(words="no runs")
     most = max(slips)
-    words = f"{1000.0 * min(slips):.2g} to {1000.0 * most:.2g} mm"
+    words = f"{length_in_words(min(slips))} to {length_in_words(most)}"
     if row.quantity is MethodQuantity.SLIDING:
         slid = most > SLIDING * width
         return Found(words=words, compared=_compared(refused=not row.fulfilled, failed=slid))

@@ -17,7 +17,7 @@ from fem.html.page import Signature, render_page, svg_element
 from fem.html.units import ABSENT, millimetres, number, quantity, rotation_ratio, short, typeset
 from fem.results.errors import FolderError
 from fem.runtime.arrays import FloatArray
-from fem.site_check.figures import draw_methods, draw_motion, draw_scan, draw_spectra
+from fem.site_check.figures import draw_floor, draw_methods, draw_motion, draw_scan, draw_spectra
 from fem.site_check.result import (
     RESULT_FILE,
     MotionSet,
@@ -93,6 +93,7 @@ def site_report(folder: Path, *, signature: Signature | None = None) -> str:
         signs=sorted({run.vertical_sign for run in result.runs}, reverse=True) or [1],
         methods=merged_methods(result.methods),
         spectra=_drawn(draw_spectra(result.action, result.set), "spectra"),
+        floor=_drawn(draw_floor(result.action, result.floor), "floor") if result.floor else "",
         scan=_drawn(draw_scan(result.result, result.inputs), "scan") if result.result.scan else "",
         capacities=[
             _drawn(draw_methods(one, result.result, shown_body), f"methods-{k}")
@@ -247,9 +248,11 @@ def merged_methods(methods: Sequence[SiteMethod]) -> list[SiteMethod]:
 
 def motion_figure(folder: Path, motion: SiteMotion, result: SiteResult) -> str:
     """The figure of a motion, from its files."""
-    curves = [_curve(folder / name) for name in motion.files]
-    times, horizontal = curves[0]
-    vertical = curves[1][1] if len(curves) > 1 else None
+    curves = {name[-5:]: _curve(folder / name) for name in motion.files if name.endswith(".csv")}
+    if "h.csv" not in curves:
+        raise FolderError(f"{folder / RESULT_FILE}: motion {motion.number} has no curve; compute it again")
+    times, horizontal = curves["h.csv"]
+    vertical = curves["v.csv"][1] if "v.csv" in curves else None
     return draw_motion(motion, result.action, times, horizontal, vertical)
 
 

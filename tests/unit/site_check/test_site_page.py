@@ -17,6 +17,7 @@ from fem.site_check.result import RESULT_FILE, SiteResult
 ANSWERS = {
     "fulfilled": ({}, "Fulfilled under the rule below"),
     "not fulfilled": ({"overturned": 9}, "Not fulfilled under the rule below: 9 of 112 runs overturned"),
+    "in a building": ({"building": True}, "Fulfilled under the rule below"),
     "not valid": ({"valid": False}, "Not valid: the set of motions fails its checks"),
 }
 
@@ -79,6 +80,14 @@ def test_every_motion_run_and_method_is_on_the_page(folders):
     assert outcomes == 112 + 14 + 2
     assert {name for motion in result.set.motions for name in motion.sha256 if name not in page} == set()
     assert {row.name for row in result.methods if row.name.split(",")[0] not in words_of(page)} == set()
+
+
+def test_in_a_building_the_floor_stands_beside_the_ground(folders):
+    words = words_of(page_of(folders, "in a building"))
+    assert "floor at z/H = 1 of a building with T1 = 0.425, 0.5, 0.575 s" in words
+    assert "The floor in the building" in words
+    assert "element on a floor, z/H = 1, Ta/T1 = 1" in words
+    assert page_of(folders, "in a building").count('<td class="number">0.425</td>') == 8 + 7 * 8
 
 
 def test_a_set_that_is_not_valid_shows_no_runs(folders):
