@@ -100,7 +100,13 @@ def page_of(info: dict[str, Any], folder: Path) -> str:
         )
     if info["status"] == "interrupted":
         lines.append("  --resume continues")
-    return "\n".join([*lines, *_answer_lines(info, folder)])
+    return "\n".join([*lines, *_set_lines(info), *_answer_lines(info, folder)])
+
+
+def _set_lines(info: dict[str, Any]) -> Iterator[str]:
+    """What a set of motions did at each point of the other axes."""
+    rows = info.get("motion_set") or ()
+    yield from table_lines(((one["where"], one["in_words"]) for one in rows), "motion_set.csv")
 
 
 def _answer_lines(info: dict[str, Any], folder: Path) -> Iterator[str]:

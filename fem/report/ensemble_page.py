@@ -11,6 +11,7 @@ from fem.ensemble.answers import EnsembleAnswer, axes_of, ensemble_answer, inter
 from fem.ensemble.run import fragility_lines
 from fem.html.page import Signature
 from fem.html.units import ABSENT, number, short, typeset
+from fem.report.motion_part import motions_of_ensemble
 from fem.report.studies import PageTable, again_from_files, axis_row, drawings, page_table, study_page
 from fem.results.errors import FolderError
 from fem.results.kinds import ENSEMBLE, read_result
@@ -50,6 +51,7 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
         regions=[(words[region], count) for region, count in info["regions"].items() if count],
         fitted=[typeset(f"{head}: {line}.") for head, line in fragility_lines(info)],
         drawn=drawings(folder, FIGURES, "ensemble"),
+        motions=motions_of_ensemble(folder, info),
         axes=[axis_row(axis) for axis in axes_of(info)],
         random=random_table(info),
         points=points_table(info),

@@ -127,8 +127,13 @@ def axis_row(axis: Axis) -> tuple[str, str, str]:
     return axis.key, typeset(words), str(len(axis.values))
 
 
-def drawings(folder: Path, names: Iterable[str], command: str) -> list[Markup]:
+def drawings(folder: Path, names: Iterable[str], command: str, *, prefix: str = "drawn") -> list[Markup]:
     """Drawings that a study has made, for the page; those that are missing, outside or too large are left out.
+
+    Args:
+        folder, names: where they are.
+        command: that draws them again.
+        prefix: of their ids on the page, another one for each list of drawings.
 
     Raises:
         FolderError: one holds what no drawing does; the command draws it again.
@@ -141,7 +146,7 @@ def drawings(folder: Path, names: Iterable[str], command: str) -> list[Markup]:
             continue
         text = path.read_text(encoding="utf-8")
         try:
-            drawn.append(svg_element(text, label=path.stem.replace("_", " "), prefix=f"drawn{k}"))
+            drawn.append(svg_element(text, label=path.stem.replace("_", " "), prefix=f"{prefix}{k}"))
         except ValueError as error:
             raise FolderError(
                 f"{path}: {error}; remove it and repeat the {command}, which draws it again"

@@ -23,6 +23,7 @@ from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html.page import Signature
 from fem.html.units import ABSENT, millimetres, number, short
 from fem.report.animation import colour_scale, packed
+from fem.report.motion_part import motions_of_sweep
 from fem.report.studies import PageTable, again_from_files, axis_row, drawings, page_table, study_page
 from fem.results.errors import FolderError
 from fem.sweep.answers import AnswerRow, SweepAnswer, sweep_answer
@@ -98,6 +99,7 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
         failures=failures(table),
         thresholds=_thresholds(folder / "thresholds.csv"),
         drawn=drawings(folder, info.get("maps") or [], "sweep"),
+        motions=motions_of_sweep(folder, table),
         provenance=[
             ("sweep", f"{name}, {info['status']}, model {info.get('model')}"),
             ("sweep hash", info.get("sweep_hash")),
@@ -183,7 +185,14 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
             {"key": axis.key, "label": axis_label(axis), "values": list(axis.values)} for axis in table.axes
         ],
         "columns": columns,
-        "derived": [{"key": key, "values": _plain(table[key])} for key in table.info["derived"]],
+        "derived": [
+            *(
+                {"key": key, "values": [str(word) or None for word in table[key]]}
+                for axis in table.axes
+                for key in axis.following
+            ),
+            *({"key": key, "values": _plain(table[key])} for key in table.info["derived"]),
+        ],
         "outcomes": [
             {"name": name, "label": label, "colour": colour, "found": found_any}
             for name, label, colour, found_any in OUTCOMES

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from fem.assessment.ranges import LEAST_LENGTH
 from fem.assessment.summary import ratio_in_words
 from fem.batch.axes import MOTION_FILE, Axis, point_of, shape_of
 from fem.batch.intervals import estimate
@@ -116,12 +117,12 @@ def set_in_words(row: Mapping[str, Any]) -> str:
     elif row["worst_rotation_ratio"] is not None:
         ratio = ratio_in_words(row["worst_rotation_ratio"])
         parts.append(f"worst {row['worst_motion']}, {row['worst_outcome']}, rotation ratio {ratio}")
-    if row["worst_slip_m"]:
-        parts.append(f"largest slip {1e3 * row['worst_slip_m']:.3g} mm, {row['worst_slip_motion']}")
+    if (row["worst_slip_m"] or 0.0) >= LEAST_LENGTH:
+        parts.append(f"largest slip {_millimetres(row['worst_slip_m'])}, {row['worst_slip_motion']}")
     if row["mean_rotation_ratio"] is not None:
         of = f"mean of {row['stood']}" + (f" that stood, {overturned} overturned" if overturned else "")
         ratio = ratio_in_words(row["mean_rotation_ratio"])
-        parts.append(f"{of}: rotation ratio {ratio}, slip {1e3 * row['mean_slip_m']:.3g} mm")
+        parts.append(f"{of}: rotation ratio {ratio}, slip {_millimetres(row['mean_slip_m'])}")
     return "; ".join(parts)
 
 
@@ -159,6 +160,11 @@ def _worst(motion: str, signs: Sequence[Shown]) -> MotionOutcome:
         rotation_ratio=worst.rotation_ratio,
         max_slip_m=slip,
     )
+
+
+def _millimetres(length: float) -> str:
+    """A length given in metres; below 0.01 mm only that limit."""
+    return f"{1e3 * length:.3g} mm" if length >= LEAST_LENGTH else f"< {1e3 * LEAST_LENGTH:g} mm"
 
 
 def _mean(values: Sequence[float | None]) -> float | None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from fem.batch.answers import STRENGTHS
 from fem.batch.axes import Axis
-from fem.batch.labels import axis_label
+from fem.batch.labels import axis_label, place_in_words
 from fem.batch.log import table_text
 from fem.batch.motion_set import FloorMotionPair, write_motions
 from fem.figures.motions import ShareCurve, draw_shares
@@ -29,8 +29,9 @@ def write_set(
     outcomes = by_motion([found for _, found in points])
     told = [one.numbers() | outcomes[one.name] for one in motions]
     rows = [values | set_row(found) for values, found in points]
-    names = [key for key in rows[0] if key not in SET_COLUMNS]
-    place.write_text("motion_set.csv", table_text([*names, *SET_COLUMNS], (row.values() for row in rows)))
+    others = [axis for axis in sweep.axes if axis.key in rows[0]]
+    columns = (*(axis.key for axis in others), *SET_COLUMNS)
+    place.write_text("motion_set.csv", table_text(columns, (row.values() for row in rows)))
     figures = write_motions(place, motions, told)
     if curves := _shares(sweep.axes, rows):
         axis, shares = curves
@@ -39,7 +40,9 @@ def write_set(
         figures = (*figures, SHARES)
     return {
         "motions": told,
-        "motion_set": [row | {"in_words": set_in_words(row)} for row in rows],
+        "motion_set": [
+            row | {"where": place_in_words(others, row), "in_words": set_in_words(row)} for row in rows
+        ],
         "motion_figures": figures,
     }
 
