@@ -12,6 +12,7 @@ from fem.figures.style import (
     BLUE,
     GREEN,
     GREY,
+    LINE,
     ORANGE,
     PURPLE,
     SKY,
@@ -27,6 +28,7 @@ from fem.runtime.arrays import FloatArray
 COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, SKY, PURPLE, GREY)
 LINES = ("-", "--", ":", "-.")
 MOST_NAMED = 8  #: motions that the legend names
+NAMES_A_LINE = 3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,8 +56,9 @@ def draw_spectra(
     if vertical:
         groups.append(("vertical", list(vertical)))
     with house_style():
-        gaps = [0.55] * (len(groups) - 1)
-        figure, axes = panels([2.6] * len(groups), gaps=gaps, header=2 + 2 * (len(groups[0][1]) > 3))
+        lines = max(_legend_lines(len(names)) for _, names in groups)
+        gaps = [0.35 + LINE * lines] * (len(groups) - 1)
+        figure, axes = panels([2.6] * len(groups), gaps=gaps, header=2 + lines)
         head(figure, "Response spectra of the motions", "pseudo-acceleration, 5 % damping")
         for panel, (direction, names) in zip(axes, groups, strict=True):
             for k, name in enumerate(names):
@@ -69,9 +72,16 @@ def draw_spectra(
             panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
             panel.set_ylim(bottom=0.0)
             panel.set_ylabel(f"{direction} [m/s²]")
-            legend_above(panel, 3)
+            if lines:
+                legend_above(panel, NAMES_A_LINE)
         axes[-1].set_xlabel("period [s]")
         return figure
+
+
+def _legend_lines(motions: int) -> int:
+    """Lines of the legend: each motion, where it names them, and their mean."""
+    names = (motions if motions <= MOST_NAMED else 0) + (motions > 1)
+    return -(-names // NAMES_A_LINE)
 
 
 def draw_shares(curves: Sequence[ShareCurve], *, title: str, label: str) -> Figure:
@@ -83,7 +93,7 @@ def draw_shares(curves: Sequence[ShareCurve], *, title: str, label: str) -> Figu
         label: of the strength, with its unit.
     """
     with house_style():
-        figure, (axes,) = panels((3.0,), header=3 + (len(curves) > 3))
+        figure, (axes,) = panels((3.0,), header=2 + -(-len(curves) // NAMES_A_LINE))
         head(figure, title, "share of the motions that overturn, worse sign of each, with 95 % intervals")
         widths = [float(np.ptp(one.strengths)) for one in curves]
         for k, one in enumerate(curves):
@@ -106,5 +116,5 @@ def draw_shares(curves: Sequence[ShareCurve], *, title: str, label: str) -> Figu
         axes.set_ylabel("share that overturns [-]")
         axes.set_xlabel(label)
         if any(one.label for one in curves):
-            legend_above(axes, 3)
+            legend_above(axes, NAMES_A_LINE)
         return figure

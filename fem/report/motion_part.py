@@ -13,7 +13,7 @@ from fem.html.units import ABSENT, millimetres, number, rotation_ratio, short
 from fem.report.studies import PageTable, drawings, page_table
 from fem.sweep.cells import Shown
 from fem.sweep.motion_outcomes import MotionOutcome, motions_at
-from fem.sweep.neighbours import FAILED, OVERTURNED, kind_of
+from fem.sweep.neighbours import FAILED, kind_of
 from fem.sweep.table import SweepTable
 
 MOST_POINTS = 12  #: beside one another in the table of outcomes
@@ -79,7 +79,7 @@ def _drawn(folder: Path, info: Mapping[str, Any], command: str) -> Sequence[Mark
 
 def _numbers(motions: Sequence[Mapping[str, Any]]) -> PageTable:
     """A row a component: peaks, significant duration, length, step."""
-    heads = ("PGA [m/s2]", "PGA [g]", "PGV [m/s]", "PGD [mm]", "D5-95 [s]", "length [s]", "step [s]")
+    heads = ("PGA [m/s²]", "PGA [g]", "PGV [m/s]", "PGD [mm]", "D5-95 [s]", "length [s]", "step [s]")
     columns = {"motion": False} | dict.fromkeys(heads, True)
 
     def row(one: Mapping[str, Any], word: str) -> Iterator[str]:
@@ -153,12 +153,13 @@ def _shown(table: SweepTable) -> dict[int, Shown]:
 
 
 def _outcome(one: MotionOutcome) -> str:
-    slip = f", {millimetres(one.max_slip_m)} mm" if one.kind not in (OVERTURNED, FAILED) else ""
-    return _words(one.outcome, one.rotation_ratio) + slip
+    """An outcome with the figures that belong to it."""
+    words = _words(one.outcome, one.rotation_ratio)
+    return f"{words}, {millimetres(one.max_slip_m)} mm" if one.outcome in ("slide", "slide-rock") else words
 
 
 def _words(outcome: str | None, ratio: float | None) -> str:
-    """An outcome, and the rotation ratio of what stood."""
+    """An outcome, and the rotation ratio of what rocked."""
     if outcome is None:
         return "failed"
-    return outcome if outcome == "overturned" else f"{outcome}, {rotation_ratio(ratio)}"
+    return f"{outcome}, {rotation_ratio(ratio)}" if outcome in ("rock", "slide-rock") else outcome
