@@ -1,7 +1,7 @@
 """Which values of one key fulfil the rule: a range is scanned, every change located, islands and all."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
@@ -10,15 +10,13 @@ import numpy as np
 
 from fem.results.run_result import JsonBlock
 from fem.site_check.result import SiteAnswer
-from fem.sweep.threshold import refine_changes
+from fem.sweep.threshold import least_width, values_to_try
 
 RESOLUTION = 0.01  #: largest width of a bracket over the value
 INNER = 3  #: values tried within a bracket at a time
 FULFILLED, NOT_FULFILLED, NO_ANSWER = "fulfilled", "not fulfilled", "no answer"
 #: which values a user looks for: the least, the largest, or all
 Wanted = Literal["least", "largest", "window"]
-#: the answers at values of the key, all asked at once
-Answers = Callable[[Sequence[float]], Sequence[SiteAnswer]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,17 +63,23 @@ class SizeResult(JsonBlock):
     points: tuple[SizePoint, ...]  #: by rising value
 
 
-def size_of(axis: SizeAxis, answers: Answers) -> SizeResult:
-    """Scan the range, locate every change to 1 % of the value, and say which values fulfil the rule."""
-    found: dict[float, SiteAnswer] = {}
+def next_values(axis: SizeAxis, found: Mapping[float, SiteAnswer]) -> list[float]:
+    """Values to be tried next: those of the scan, then values within every bracket wider than 1 % of the value.
 
-    def judge(values: Sequence[float]) -> list[str]:
-        found.update(zip(values, answers(values), strict=True))
-        return [_outcome(found[value]) for value in values]
+    Args:
+        found: answers so far, by value. None is asked for again; empty: all is found.
+    """
+    missing = [value for value in axis.values if value not in found]
+    if missing or axis.whole:
+        return missing
+    outcomes = {value: _outcome(answer) for value, answer in found.items()}
+    return values_to_try(
+        outcomes, resolution=RESOLUTION, inner=INNER, least=least_width(axis.values, RESOLUTION)
+    )
 
-    outcomes = judge(axis.values)
-    if not axis.whole:
-        refine_changes(axis.values, outcomes, judge, resolution=RESOLUTION, inner=INNER)
+
+def size_result(axis: SizeAxis, found: Mapping[float, SiteAnswer]) -> SizeResult:
+    """Which values fulfil the rule, from the answers by value."""
     points = tuple(_point(value, found[value]) for value in sorted(found))
     intervals = fulfilled_intervals(points)
     return SizeResult(

@@ -7,7 +7,7 @@ import pytest
 from site_example import INPUTS
 
 from fem.results.files import to_json
-from fem.site_check.bracket import SizeAxis, SizeResult, size_of, spaced
+from fem.site_check.bracket import SizeAxis, SizeResult, next_values, size_result, spaced
 from fem.site_check.figures import draw_size
 from fem.site_check.result import SiteAnswer
 
@@ -40,15 +40,11 @@ BOXES = SizeAxis(
 
 def size(axis: SizeAxis, fulfils) -> SizeResult:
     """The result where `fulfils(value)` says which values do; every value is asked for once."""
-    asked: list[float] = []
-
-    def answers(values):
-        asked.extend(values)
-        return [ANSWER if fulfils(value) else FELL for value in values]
-
-    result = size_of(axis, answers)
-    assert len(set(asked)) == len(asked) == len(result.points)
-    return result
+    found: dict[float, SiteAnswer] = {}
+    while values := next_values(axis, found):
+        assert not set(values) & set(found)
+        found |= {value: ANSWER if fulfils(value) else FELL for value in values}
+    return size_result(axis, found)
 
 
 def test_the_least_width_is_found_within_one_per_cent_on_the_side_that_fulfils():
@@ -114,7 +110,7 @@ def test_a_least_value_needs_the_end_of_the_range():
 
 
 def test_no_answer_is_not_fulfilled():
-    result = size_of(BOXES, lambda values: [replace(ANSWER, fulfilled=None)] * len(values))
+    result = size_result(BOXES, {value: replace(ANSWER, fulfilled=None) for value in BOXES.values})
     assert result.intervals == ()
     assert result.points[0].fulfilled is None
 
