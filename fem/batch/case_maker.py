@@ -6,7 +6,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from fem.case.case import Case
-from fem.case.overrides import with_overrides
+from fem.case.overrides import keys_in_effect, with_overrides
 from fem.case.tables import TABLES
 
 
@@ -19,6 +19,7 @@ class CaseMaker:
 
     def __init__(self, base: Case) -> None:
         self.base = base
+        self._kinds = base.kinds
         #: by the keys that are set: what does not change, and the content of the tables that do
         self._templates: dict[tuple[str, ...], tuple[dict[str, Any], dict[str, dict[str, Any]]]] = {}
 
@@ -28,6 +29,8 @@ class CaseMaker:
         Raises:
             CaseError: as for a case file.
         """
+        given = values
+        values = keys_in_effect(values, self._kinds)
         keys = tuple(values)
         if keys not in self._templates:
             self._templates[keys] = self._template(values)
@@ -39,9 +42,9 @@ class CaseMaker:
             (content[table] if table else heading)[key] = value
         try:
             tables = {name: TABLES[name].model_validate(given) for name, given in content.items()}
-            return Case.model_validate(fixed | heading | tables).from_origin(self.base.origin_with(values))
+            return Case.model_validate(fixed | heading | tables).from_origin(self.base.origin_with(given))
         except ValidationError:
-            return self.base.with_values(values)
+            return self.base.with_values(given)
 
     def _template(self, values: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
         data = with_overrides(self.base.given(), values)

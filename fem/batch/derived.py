@@ -7,6 +7,7 @@ from typing import Any
 from fem.batch.axes import AxisError
 from fem.batch.expressions import Expression, ExpressionError, parse_expression
 from fem.case.case import Case
+from fem.case.overrides import keys_in_effect
 from fem.case.tables import TABLES
 from fem.case.validation import CaseError, known_keys
 
@@ -93,6 +94,7 @@ def value_in(base: Case, key: str, values: Mapping[str, Any]) -> float | None:
 
     A default that follows another key of its table (`mu_kinetic` that of `mu_static`) follows it here too.
     """
+    (key,) = keys_in_effect({key: None}, base.kinds)
     table, dot, name = key.rpartition(".")
     if not dot:
         return _as_number(base.resolved().get(name))

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 from fem.batch.axes import VERTICAL_FILE, Axis, AxisError, hint, set_axis
 from fem.case.case import Case, load_case
 from fem.case.files import CASES, Origin, is_there, parse_case
+from fem.case.overrides import keys_in_effect
 from fem.case.problem import outside_the_folder, stays_in_the_folder
 from fem.case.tables import CaseTable
 from fem.case.validation import CaseError, problem_lines, read_table
@@ -172,12 +173,15 @@ def require_verticals(axes: Iterable[Axis], varied: Iterable[str], base: Case) -
         )
 
 
-def require_once(changes: Mapping[str, Any], varied: Iterable[str]) -> None:
-    """Refuse a key of [set] that varies: one of the two would have no effect.
+def require_once(changes: Mapping[str, Any], varied: Sequence[str], base: Case) -> None:
+    """Refuse a key of [set] that varies, and two that are one in this case: one of the two would have no effect.
 
     Raises:
         CaseError: with the key.
     """
-    for key in varied:
-        if key in flat("set", changes):
+    effects = [next(iter(keys_in_effect({key: None}, base.kinds))) for key in varied]
+    for key, effect in zip(varied, effects, strict=True):
+        if {key, effect} & flat("set", changes).keys():
             raise CaseError(f"[set] {key!r} varies as well; take it out of [set], or do not vary it")
+        if effects.count(effect) > 1 and key != effect:
+            raise CaseError(f"{key!r} of a record is its {effect!r}, which varies as well; leave one out")

@@ -118,6 +118,11 @@ class Case(CaseHeading):
         return self.box_mass / (self.container.width_m * self.container.height_m)
 
     @property
+    def kinds(self) -> dict[str, object]:
+        """The kinds of its motions, by table."""
+        return {"motion": self.motion.kind, "vertical": self.vertical.kind}
+
+    @property
     def has_vertical(self) -> bool:
         """Whether the floor moves up and down."""
         return self.vertical.kind != "none"

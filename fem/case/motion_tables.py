@@ -128,7 +128,8 @@ class FloorMotionTable(PulseAndTableKeys, HarmonicKeys):
     def nominal_peak(self) -> float | None:
         """A Omega^2 of a harmonic motion, the peak of a pulse, 0 of no motion [m/s2]; a magnitude.
 
-        Ramps are ignored, and so is the end of a run before the peak. None for a table, whose file is not read here.
+        Ramps are ignored, and so is the end of a run before the peak. Of a table what it is scaled to, else None: no
+        file is read here.
         """
         match self.kind:
             case "none":
@@ -137,7 +138,7 @@ class FloorMotionTable(PulseAndTableKeys, HarmonicKeys):
                 return self.amplitude * self.angular_frequency**2
             case "pulse":
                 return abs(self.factor * (self.peak_acceleration_m_s2 or 0.0))
-        return None
+        return None if self.scale_to_m_s2 is None else abs(self.scale_to_m_s2)
 
     @property
     def angular_frequency(self) -> float:

@@ -1,7 +1,7 @@
 """Change single keys of a case: `table.key=value` from the command line, or dotted keys of a sweep.
 
 A key that is one of a group of alternatives replaces the others: `motion.peak_acceleration_m_s2` replaces the amplitude
-of a case given by amplitude and frequency.
+of a case given by amplitude and frequency. Of a record it is the peak to which it is scaled, `motion.scale_to_m_s2`.
 """
 
 import re
@@ -15,6 +15,10 @@ from fem.case.validation import CaseError, did_you_mean
 
 DOTTED_KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)?")
 FREQUENCIES = ("angular_frequency_rad_s", "frequency_Hz")
+#: of a record, the key that another one stands for
+OF_A_RECORD = {
+    f"{table}.peak_acceleration_m_s2": f"{table}.scale_to_m_s2" for table in ("motion", "vertical")
+}
 
 
 def parse_override(text: str) -> tuple[str, Any]:
@@ -43,6 +47,7 @@ def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
         CaseError: a key names no table of a case file.
     """
     changed = deepcopy(dict(data))
+    overrides = keys_in_effect(overrides, kinds_of(data))
     for dotted, value in overrides.items():
         table, dot, key = dotted.rpartition(".")
         if not dot:
@@ -63,6 +68,28 @@ def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
             content[key] = value
     _replace_alternatives(changed, overrides.keys())
     return changed
+
+
+def keys_in_effect(values: Mapping[str, Any], kinds: Mapping[str, object]) -> Mapping[str, Any]:
+    """The values by the keys that they set: the peak of a record is what it is scaled to; of two, the last holds.
+
+    Args:
+        values: by dotted key.
+        kinds: of the motions of the case, by table, before the values are set; see `kinds_of`.
+    """
+    if values.keys().isdisjoint(OF_A_RECORD):
+        return values
+    kinds = {table: values.get(f"{table}.kind", kinds.get(table)) for table in ("motion", "vertical")}
+    return {
+        OF_A_RECORD[key] if key in OF_A_RECORD and kinds[key.partition(".")[0]] == "table" else key: value
+        for key, value in values.items()
+    }
+
+
+def kinds_of(data: Mapping[str, Any]) -> dict[str, object]:
+    """The kinds of the motions in a case's data, by table."""
+    tables = {name: data.get(name) for name in ("motion", "vertical")}
+    return {name: table.get("kind") for name, table in tables.items() if isinstance(table, Mapping)}
 
 
 def _replace_alternatives(data: dict[str, Any], dotted: Any) -> None:

@@ -81,7 +81,8 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
     require_verticals(sets, [*(axis.key for axis in axes), *(one.key for one in random)], base)
     drawn = [one.key for one in random if not one.relative]
     replicates = 1 if heading.sampling == "independent" else heading.replicates
-    require_once(tables.get("set", {}), [*(axis.key for axis in axes), *drawn, *tables.get("derived", {})])
+    varied = [*(axis.key for axis in axes), *drawn, *tables.get("derived", {})]
+    require_once(tables.get("set", {}), varied, base)
     ensemble = Ensemble(
         name=origin.name,
         text=origin.text,

@@ -177,10 +177,15 @@ def motion_in_words(motion: FloorMotionTable) -> str:
                 f"{motion.shape} pulse, {quantity(motion.factor * (motion.peak_acceleration_m_s2 or 0.0), 'm/s²')} for "
                 f"{quantity(motion.pulse_s, 's')}, from t = {short(motion.delay_s)} s"
             )
-    return (
-        f"record {motion.file} ({motion.quantity}, {motion.unit}), scale {short(motion.scale)}, "
-        f"baseline {motion.baseline}"
-    )
+    unit = f", {motion.unit}" if motion.unit else ""
+    return f"record {motion.file} ({motion.quantity}{unit}), {scale_in_words(motion)}, baseline {motion.baseline}"
+
+
+def scale_in_words(motion: FloorMotionTable) -> str:
+    """The factor on a record, or the peak to which it is scaled."""
+    if motion.scale_to_m_s2 is not None:
+        return f"scaled to {quantity(motion.scale_to_m_s2, 'm/s²')}"
+    return f"scale {short(motion.scale)}"
 
 
 def _start(case: Case) -> str:

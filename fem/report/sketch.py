@@ -149,4 +149,5 @@ def _motion(case: Case, peak: float) -> list[str]:
             return [f"x = A sin(Ωt{phase})", f"A = {amplitude}, Ω = {omega} rad/s, peak {short(peak)} m/s²"]
         case "pulse":
             return [f"{motion.shape} pulse", f"{short(motion.pulse_s)} s long, peak {short(peak)} m/s²"]
-    return [f"record {motion.file}", f"scale {short(motion.scale)}, peak {short(peak)} m/s²"]
+    scale = f"scale {short(motion.scale)}, " if motion.scale_to_m_s2 is None else ""
+    return [f"record {motion.file}", f"{scale}peak {short(peak)} m/s²"]

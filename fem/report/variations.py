@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from fem.case.case import Case
+from fem.case.strength import scaled_motion
 from fem.html.units import degrees, quantity, short
 
 FRICTION_FACTORS = (0.5, 0.75, 1.25, 1.5)
@@ -79,20 +80,11 @@ def variations_of(case: Case) -> Iterator[Variation]:
 
 def _strengths(case: Case) -> Iterator[Variation]:
     """The floor's motion made stronger and weaker: the factor at which it overturns is the margin."""
-    motion, peak = case.motion, case.nominal_peak_acceleration or 0.0
-    if motion.kind == "none":
-        return
-    if motion.kind == "table":
-        key, given = "scale", motion.scale
-    elif motion.peak_acceleration_m_s2 is not None:
-        key, given = "peak_acceleration_m_s2", motion.peak_acceleration_m_s2
-    else:
-        key, given = "amplitude_m", motion.amplitude
+    peak = case.nominal_peak_acceleration
     for factor in STRENGTHS:
-        shown = "" if key == "scale" else f", peak {quantity(factor * peak, 'm/s²', figures=3)}"
-        yield Variation(
-            subject="strength", change=f"× {factor:g}{shown}", values={f"motion.{key}": factor * given}
-        )
+        shown = f", peak {quantity(factor * peak, 'm/s²', figures=3)}" if peak else ""
+        if values := scaled_motion(case, factor):
+            yield Variation(subject="strength", change=f"× {factor:g}{shown}", values=values)
 
 
 def by_importance(variations: Sequence[Variation]) -> list[int]:

@@ -21,6 +21,7 @@ from fem.batch.study_file import (
 )
 from fem.case.case import Case
 from fem.case.files import DEFAULT_CASE, SWEEPS, Origin
+from fem.case.overrides import keys_in_effect
 from fem.case.tables import CaseTable
 from fem.case.validation import CaseError
 from fem.sweep.perturbation import Perturbation
@@ -61,7 +62,7 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
     require_verticals(axes, [axis.key for axis in axes], base)
     derived = _derived(tables.get("derived", {}), base, axes)
     varied = [axis.key for axis in axes] + [one.key for one in derived]
-    require_once(tables.get("set", {}), varied)
+    require_once(tables.get("set", {}), varied, base)
     sweep = Sweep(
         name=origin.name,
         text=origin.text,
@@ -162,6 +163,7 @@ def _try_cells(sweep: Sweep) -> None:
 
 
 def _is_idle(case: Case, key: str) -> bool:
+    (key,) = keys_in_effect({key: None}, case.kinds)
     table, _, name = key.rpartition(".")
     if key == "solver.elastic_modes":
         return case.solver.model != "reduced"

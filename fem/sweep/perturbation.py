@@ -11,6 +11,7 @@ from pydantic import Field, Strict
 
 from fem.case.case import Case
 from fem.case.quantities import CONTACT_DAMPING, DRAWS, Quantity
+from fem.case.strength import scaled_motion
 from fem.case.tables import CaseTable
 from fem.case.uncertainty import DASHPOT, InputChange
 
@@ -59,7 +60,7 @@ class Perturbation(CaseTable):
     def members(self, case: Case) -> Iterator[dict[str, Any]]:
         """The keys that each copy of a case changes."""
         for factor in (1.0 - self.amplitude_share, 1.0 + self.amplitude_share):
-            scaled = _scaled_motion(case, factor)
+            scaled = scaled_motion(case, factor)
             if scaled and factor != 1.0:
                 yield scaled
         friction = case.contact
@@ -81,21 +82,6 @@ class Perturbation(CaseTable):
         for ratio in self.contact_damping_ratios:
             if ratio != friction.damping_ratio:
                 yield {"contact.damping_ratio": ratio}
-
-
-def _scaled_motion(case: Case, factor: float) -> dict[str, Any]:
-    """The floor's motion times a factor, at the same frequency; empty for a floor at rest."""
-    motion = case.motion
-    match motion.kind:
-        case "none":
-            return {}
-        case "table":
-            return {"motion.scale": factor * motion.scale}
-    return {
-        f"motion.{key}": factor * value
-        for key in ("amplitude_m", "peak_acceleration_m_s2")
-        if (value := getattr(motion, key)) is not None
-    }
 
 
 def _rounded(value: float) -> float:

@@ -111,3 +111,23 @@ def _again(sweep, folder):
 
     run_sweep(sweep, folder, jobs=1, reporter=Listener())
     return str(said)
+
+
+def test_the_peak_is_an_axis_of_records_too_and_ends_with_the_answer(sweep_of, tmp_path):
+    sweep = sweep_of(
+        f"{SIGNS}motion.file = {PAIRS}\nmotion.peak_acceleration_m_s2 = [2.0, 14.0, 30.0]\n"
+        '[threshold]\naxis = "motion.peak_acceleration_m_s2"\nresolution = 0.2\n'
+    )
+    assert sweep.case(1).motion.scale_to_m_s2 == 14.0
+    info = run_sweep(sweep, tmp_path / "out", jobs=1)
+    assert info["status"] == "completed"
+    assert info["answer"].startswith("peak acceleration: stood in every motion tried up to ")
+    with (tmp_path / "out" / "answers.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [row["motion.file"] for row in rows] == [
+        "a_h.csv",
+        "b_h.csv",
+    ]  # the signs of a motion count as one
+    for row in rows:
+        fell = [float(row["overturned_from"])] if row["overturned_from"] else []
+        assert 2.0 <= float(row["stood_to"]) < min([*fell, 31.0])

@@ -1,0 +1,27 @@
+"""The floor's motion made stronger or weaker as a whole: the keys to set, by the kind of each component."""
+
+from fem.case.case import Case
+from fem.case.motion_tables import FloorMotionTable
+
+
+def scaled_motion(case: Case, factor: float) -> dict[str, float]:
+    """The keys that make both components of the floor's motion so many times as strong; none of a floor at rest.
+
+    The frequency of a harmonic motion stays. A recorded vertical component beside one that is scaled to a peak follows
+    it anyway.
+    """
+    values = _scaled("motion", case.motion, factor)
+    follows = case.motion.kind == case.vertical.kind == "table" and case.motion.scale_to_m_s2 is not None
+    if case.has_vertical and (case.vertical.scale_to_m_s2 is not None or not follows):
+        values |= _scaled("vertical", case.vertical, factor)
+    return values
+
+
+def _scaled(table: str, motion: FloorMotionTable, factor: float) -> dict[str, float]:
+    if motion.kind == "none":
+        return {}
+    keys = ["amplitude_m", "peak_acceleration_m_s2"]
+    if motion.kind == "table":
+        keys = ["scale" if motion.scale_to_m_s2 is None else "scale_to_m_s2"]
+    given = {key: getattr(motion, key) for key in keys}
+    return {f"{table}.{key}": factor * value for key, value in given.items() if value is not None}
