@@ -88,9 +88,28 @@ def _pulse(kind: int, parameters: FloatArray, time: float) -> tuple[float, float
     return displacement, velocity, acceleration if during and time >= delay else 0.0
 
 
+@compiled(inline=True)
+def _row_at(breaks: FloatArray, time: float) -> int:
+    """Number of breaks up to `time`; found at once where they are evenly spaced, as in a record."""
+    count = breaks.size
+    first, last = breaks[0], breaks[count - 1]
+    if time < first:
+        return 0
+    if not time < last:
+        return count
+    row = min(int((time - first) / (last - first) * (count - 1)) + 1, count - 1)
+    if time < breaks[row - 1]:
+        row -= 1
+    elif time >= breaks[row]:
+        row += 1
+    if breaks[row - 1] <= time < breaks[row]:
+        return row
+    return int(np.searchsorted(breaks, time, side="right"))
+
+
 @compiled
 def _piecewise(breaks: FloatArray, coefficients: FloatArray, time: float) -> tuple[float, float, float]:
-    row = int(np.searchsorted(breaks, time, side="right"))
+    row = _row_at(breaks, time)
     x, v, a, jerk = coefficients[row, 0], coefficients[row, 1], coefficients[row, 2], coefficients[row, 3]
     s = time - breaks[max(row - 1, 0)]
     return (

@@ -37,6 +37,25 @@ def test_displacement_and_velocity_are_exact_integrals_of_the_acceleration(until
     assert a == pytest.approx(np.interp(until, TIMES, motion.accelerations), rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    "times",
+    [
+        TIMES,
+        np.arange(0.0, 40.0, 0.005),
+        np.cumsum(RNG.uniform(0.004, 0.006, 900)),
+        np.array([0.0, 1e-9, 5.0]),
+    ],
+    ids=["at random", "even", "almost even", "far apart"],
+)
+def test_the_interval_of_any_time_is_found(times):
+    values = RNG.normal(size=times.size)
+    motion = TableMotion(times=times, values=values)
+    inner = times[1:-1]
+    asked = np.concatenate([RNG.uniform(times[0], times[-1], 500), inner, np.nextafter(inner, 0.0)])
+    largest = np.abs(values).max()
+    assert motion.evaluate(asked)[2] == pytest.approx(np.interp(asked, times, values), abs=1e-6 * largest)
+
+
 def test_floor_is_at_rest_before_the_table_and_coasts_after_it():
     motion = TableMotion(times=TIMES, values=VALUES)
     assert (motion.evaluate(np.array([0.0, TIMES[0] - 1e-12])) == 0.0).all()
