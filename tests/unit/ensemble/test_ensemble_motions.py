@@ -1,5 +1,7 @@
 """Motions as draws: each equally often, with intervals of a sample of motions."""
 
+import csv
+
 import numpy as np
 import pytest
 from motion_files import write_pair
@@ -8,7 +10,8 @@ from fem.batch.intervals import binomial_interval, estimate
 from fem.case.case import CaseError
 from fem.ensemble.file import load_ensemble
 from fem.ensemble.fragility import bootstrap_fits
-from fem.ensemble.run import ensemble_hash
+from fem.ensemble.run import ensemble_hash, run_ensemble
+from fem.report.ensemble_page import ensemble_report
 
 HEAD = """
 case = "seed_stack_plateau"
@@ -17,6 +20,7 @@ probability = 0.5
 {sampling}
 [set]
 "solver.model" = "rigid"
+"solver.duration_s" = 1.2
 "motion.quantity" = "acceleration"
 "motion.unit" = "m/s2"
 "vertical.quantity" = "acceleration"
@@ -86,6 +90,27 @@ def test_draws_are_a_multiple_of_the_motions(ensemble_of, tmp_path):
     (tmp_path / "try.toml").write_text(text, encoding="utf-8")
     with pytest.raises(CaseError, match=r"draws = 14 do not make 3 motions equally likely; take 12 draws"):
         load_ensemble(tmp_path / "try.toml")
+
+
+def test_an_ensemble_tells_its_motions(ensemble_of, tmp_path):
+    folder = tmp_path / "results"
+    result = run_ensemble(ensemble_of(), folder=folder, jobs=1)
+    assert [one["file"] for one in result["motions"]] == ["a_h.csv", "b_h.csv", "c_h.csv"]
+    for one in result["motions"]:
+        assert one["stood"] + one["overturned"] + one["failed"] == 8  # four draws at each of two points
+    with (folder / "draws.csv").open(encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert [rows[k]["vertical.file"] for k in (0, 4, 8)] == ["a_v.csv", "b_v.csv", ""]
+    fallen = sum(row["outcome"] == "overturned" for row in rows)
+    assert sum(one["overturned"] for one in result["motions"]) == fallen
+    assert (folder / "c_h.csv").is_file()
+    assert (folder / "spectra.csv").read_text(encoding="utf-8").startswith("period_s,a_h.csv,a_v.csv,b_h.csv")
+    # Nothing of three motions overturned at the first point, or everything: no narrower than three of three tell.
+    for point in result["points"]:
+        if point["overturned"] in (0, 12):
+            assert point["high"] - point["low"] >= binomial_interval(0, 3, 0.95)[1] - 1e-12
+    page = ensemble_report(folder)
+    assert "c_h.csv" in page and "sample of 3 motions" in page
 
 
 def test_the_result_depends_on_what_the_files_hold(ensemble_of, tmp_path):

@@ -2,12 +2,15 @@
 
 import csv
 import json
+import re
 
 import numpy as np
 import pytest
 from motion_files import write_pair
 
 from fem.case.case import CaseError, load_case
+from fem.cli.sweep import page_of
+from fem.report.sweep_page import sweep_report
 from fem.sweep.file import load_sweep
 from fem.sweep.run import run_sweep, sweep_hash
 from fem.sweep.table import open_sweep
@@ -100,6 +103,13 @@ def test_what_a_sweep_tells_of_its_motions(sweep_of, tmp_path):
     base = load_case(folder / "base.toml", ["motion.file=b_h.csv", "vertical.file=b_v.csv"])
     assert all(path.is_file() for path in base.data_files.values())
     assert "holds this sweep already" in _again(sweep, folder)
+    page = sweep_report(folder)
+    assert re.search(r'aria-label="outcome of each motion".*?a_h\.csv.*?b_h\.csv', page, re.DOTALL)
+    assert "b_v.csv (vertical)" in page
+    assert 'aria-label="spectra"' in page and 'aria-label="overturned"' in page
+    told_cells = json.loads(re.search(r'id="sweep"[^>]*>(.*?)</script>', page, re.DOTALL)[1])["derived"]
+    assert told_cells[1] == {"key": "vertical.file", "values": table["vertical.file"].tolist()}
+    assert "of 2 motions overturn" in page_of(json.loads((folder / "sweep.json").read_text()), folder)
 
 
 def _again(sweep, folder):
