@@ -170,16 +170,22 @@ def with_motion(model: Model, motion: FloorMotion, breaks: tuple[float, ...] = (
 
 def lifted(model: Model, height: float, speed: float) -> Model:
     """A rigid or reduced model `height` [m] above the floor, unstrained, falling at `speed` [m/s]."""
-    state, (x, z) = model.run.old, model.container.mesh.centroid
-    state.force[:] = 0.0
-    state.stick[:] = 0.0
+    x, z = model.container.mesh.centroid
     stance = Stance(
         centre=(x, z + height),
         rotation=0.0,
         velocity=(0.0, -speed),
         angular_velocity=0.0,
-        force=state.force.copy(),
+        force=np.zeros_like(model.run.old.force),
     )
+    return placed(model, stance)
+
+
+def placed(model: Model, stance: Stance) -> Model:
+    """A rigid or reduced model in another pose and motion at t = 0, without forces."""
+    state = model.run.old
+    state.force[:] = 0.0
+    state.stick[:] = 0.0
     modal_kernels.place(_modal(model), state, stance)
     modal_kernels.start(_modal(model), state, float(model.run.floor[0, 0]))
     return model
