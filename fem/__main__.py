@@ -51,6 +51,7 @@ GROUPS = {
     },
     "Trust": {
         "verify": ("Compare the program with reference solutions.", "--quick"),
+        "validate": ("Predict laboratory experiments and compare with what was measured.", "--data motions"),
         "study": ("Check every claim of the paper (Knoedel and Hrabowski) by runs.", "seed -j 4"),
         "doctor": ("Report missing dependencies and how to install them.", ""),
         "schema": ("Print the JSON schema of a case, sweep, ensemble or site file.", "sweep"),

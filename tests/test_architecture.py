@@ -36,7 +36,7 @@ LAYERS = (
     ("fem.report",),
     ("fem.site_check",),
     ("fem.verification",),
-    ("fem.paper",),
+    ("fem.paper", "fem.validation"),
     ("fem.cli",),
 )
 #: package -> the only packages of a lower layer that it may import, where these are not all

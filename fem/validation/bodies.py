@@ -32,7 +32,9 @@ def specimen(case: Case, *, centroid: float, inertia_ratio: float) -> Container:
     levels = np.linspace(0.0, height, LAYERS + 1)
     middle, layer = 0.5 * (levels[1:] + levels[:-1]), height / LAYERS
     about_centroid = (middle - centroid) ** 2 + (layer**2 + width**2) / 12.0
-    shares = np.linalg.solve(np.stack([np.ones(LAYERS), middle, about_centroid]), [1.0, centroid, inertia_ratio])
+    shares = np.linalg.solve(
+        np.stack([np.ones(LAYERS), middle, about_centroid]), [1.0, centroid, inertia_ratio]
+    )
     if shares.min() < 0.0:
         raise MeshError(
             f"no body of {width:g} x {height:g} m has its mass centre at {centroid:g} m and an inertia of "
@@ -46,7 +48,7 @@ def specimen(case: Case, *, centroid: float, inertia_ratio: float) -> Container:
             quads=np.stack([low, low + 1, low + 3, low + 2], axis=1),
             region=np.full(LAYERS, int(Region.SOLID)),
             thickness=np.full(LAYERS, case.container.depth_m),
-            areal_density=mass * shares / (width * layer),
+            areal_density=np.asarray(mass * shares / (width * layer), dtype=np.float64),
         ),
     )
 

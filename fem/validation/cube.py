@@ -89,14 +89,16 @@ def compute() -> Experiment:
         rebound.other_side > rebound.same_side
         for rebound in (landed(one, middle, HIGH_FRICTION) for one in landings)
     )
-    fits = " and ".join(f"{ratio:g} (a point rebounds with {restitution_of(ratio):.2f})" for ratio, _ in halves)
+    fits = " and ".join(
+        f"{ratio:g} (a point rebounds with {restitution_of(ratio):.2f})" for ratio, _ in halves
+    )
     return Experiment(
         name="cube",
         title="A cube landing on a face",
         source="Pfrommer, Halm, Posa, ContactNets, 2020: github.com/DAIRLab/contact-nets, motion capture at 148 Hz",
         licence="Copyright (c) 2020 Dynamic Autonomy and Intelligent Robotics Lab, BSD 3-Clause",
         tests=len(landings),
-        fitted=f"damping ratio of the contact, on each half of the landings: {fits}; friction {FRICTION} is the authors'",
+        fitted=f"damping ratio of the contact, on each half: {fits}; friction {FRICTION}: the authors'",
         findings=(
             Finding(
                 quantity="landings that rebound to the side they come from",
@@ -129,7 +131,7 @@ def compute() -> Experiment:
                 passed=rest <= MOST_TIME,
             ),
             Finding(
-                quantity=f"size of the rebound with the authors' restitution of a point, {AUTHORS_RESTITUTION:g}, median",
+                quantity=f"size of the rebound with the authors' point restitution ({AUTHORS_RESTITUTION:g}), median",
                 measured=1.0,
                 predicted=round(plastic, 2),
                 note="a cube that turns about its trailing corner with c times its speed rises by (c w)^2 R^2/(2 g a), "
@@ -170,7 +172,11 @@ def landed(landing: Landing, damping_ratio: float, friction: float = FRICTION) -
     """Compute a landing from its measured state."""
     case, container = _cube()
     case = case.with_values(
-        {"contact.damping_ratio": damping_ratio, "contact.mu_static": friction, "contact.mu_kinetic": friction}
+        {
+            "contact.damping_ratio": damping_ratio,
+            "contact.mu_static": friction,
+            "contact.mu_kinetic": friction,
+        }
     )
     history = finish(placed(build_model(case, container), _start(landing))).history
     times, rotation = history["time_s"], history["rotation_rad"]

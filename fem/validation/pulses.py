@@ -61,13 +61,15 @@ def compute() -> Experiment:
     halves = cross_validated(kicks, fitted_size)
     right = sum(predicted(size, kick) == kick.overturned for size, others in halves for kick in others)
     agreement = right / len(kicks)
-    stood = max(sum(not kick.overturned for kick in kicks), sum(kick.overturned for kick in kicks)) / len(kicks)
+    stood = max(sum(not kick.overturned for kick in kicks), sum(kick.overturned for kick in kicks)) / len(
+        kicks
+    )
     sizes = " and ".join(f"{size.angle:.2f} rad, {1e3 * size.radius:.0f} mm" for size, _ in halves)
     return Experiment(
         name="pulses",
         title="A block on a base that is kicked and stopped",
-        source="Ceh, Camenen, Bicanic, Pellegrino, Petrinic, Int. J. Masonry Research and Innovation 1(4), 2016, figure 9, "
-        "read off the picture to 0.2 mm and 5 mm/s",
+        source="Ceh, Camenen, Bicanic, Pellegrino, Petrinic, Int. J. Masonry Research and Innovation 1(4), 2016, "
+        "figure 9, read off the picture to 0.2 mm and 5 mm/s",
         licence="numbers read off a published figure",
         tests=len(kicks),
         fitted=f"slenderness angle and radius of the block, on each half of the tests: {sizes}",
@@ -82,7 +84,9 @@ def compute() -> Experiment:
             ),
         ),
         others=(
-            Predictor(name="the more frequent outcome for all", agreement=f"{stood:.2f}", source="the same table"),
+            Predictor(
+                name="the more frequent outcome for all", agreement=f"{stood:.2f}", source="the same table"
+            ),
         ),
     )
 
