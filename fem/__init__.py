@@ -1,6 +1,8 @@
 """What the container is and what the user touches: bodies, case, run, output, command line.
 
-`fem.open_run(folder)` opens the results of a run in a script or a notebook.
+In a script or a notebook, `fem.load_case(name)` and `fem.case_from(mapping)` give a case, `case.replace({key: value})`
+changes it, `fem.compute(case)` and `fem.compute_many(cases)` run it in memory, and `fem.open_run(folder)` opens the
+results of `python -m fem run`. What is wrong with the input is a `ValueError` in words (`fem.case.case.CaseError`).
 """
 
 import importlib
@@ -10,9 +12,21 @@ from typing import TYPE_CHECKING, Any
 from fem.runtime.signals import exit_on_signal
 
 if TYPE_CHECKING:
-    from fem.results.reader import OpenedRun, open_run
+    from fem.batch.compute_many import compute_many
+    from fem.case.case import case_from, load_case
+    from fem.results.reader import open_run
+    from fem.run.compute import compute
 
-__all__ = ["OpenedRun", "open_run"]
+__all__ = ["case_from", "compute", "compute_many", "load_case", "open_run"]
+
+#: name -> where it is
+PLACES = {
+    "case_from": "fem.case.case",
+    "compute": "fem.run.compute",
+    "compute_many": "fem.batch.compute_many",
+    "load_case": "fem.case.case",
+    "open_run": "fem.results.reader",
+}
 
 if sys.argv[:1] == [
     "-m"
@@ -22,6 +36,11 @@ if sys.argv[:1] == [
 
 def __getattr__(name: str) -> Any:
     """What the package gives away, loaded when it is first asked for: the command line answers without it."""
-    if name not in __all__:
+    if name not in PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module("fem.results.reader"), name)
+    return getattr(importlib.import_module(PLACES[name]), name)
+
+
+def __dir__() -> list[str]:
+    """The names that the package gives away."""
+    return [*__all__, "__all__", "__doc__", "__file__", "__name__", "__path__"]

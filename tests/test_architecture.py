@@ -46,7 +46,8 @@ NARROW = {
     "contact.interface": {"contact.arrays", "contact.jit", "contact.motion"},
     "contact.stepping": {"contact.arrays", "contact.jit", "contact.motion", "contact.interface"},
     "fem.records": {"contact.arrays", "contact.motion", "fem.runtime"},
-    "fem": {"fem.runtime", "fem.results"},  # what the package offers by name
+    # what the package offers by name
+    "fem": {"fem.runtime", "fem.case", "fem.results", "fem.run", "fem.batch"},
     "fem.__main__": {"fem.runtime", "fem.cli"},
 }
 MOST_FILES = 25  #: in one folder

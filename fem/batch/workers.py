@@ -1,9 +1,13 @@
 """The cores of this machine as pools of workers, and how chunks of a list are handed to them."""
 
+import ast
+import linecache
+import math
 import os
 import signal
+import sys
 import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
     BrokenExecutor,
@@ -22,7 +26,8 @@ from types import TracebackType
 from typing import Self, TypeVar
 
 #: number of cases from which processes, which take some seconds to start, pay off for the compiled models
-WORTH_PROCESSES = {"rigid": 500, "reduced": 100}
+WORTH_PROCESSES = {"rigid": 500, "reduced": 100, "full": 1}
+IN_THREADS = dict.fromkeys(WORTH_PROCESSES, math.inf)  #: no number: threads alone
 #: chunks handed out for every worker, so that none waits for the next
 AHEAD = 2
 
@@ -61,20 +66,24 @@ class LocalWorkers:
     row takes two fifths of a rigid case: with threads, two cores are 1.3 times as fast as one. Many cases are
     therefore shared by one thread of this process, which works while the others start, and one process for each other
     core. Started processes are kept for later cases; leaving the context ends them at once, as a case may take an hour.
+
+    Args:
+        jobs: cores to use.
+        worth: number of cases of a model from which processes are started.
     """
 
-    def __init__(self, jobs: int) -> None:
-        self._jobs = jobs
+    def __init__(self, jobs: int, worth: Mapping[str, float] = WORTH_PROCESSES) -> None:
+        self._jobs, self._worth = jobs, worth
         self._held = ExitStack()
         self._over: Event | None = None
         self._pools: dict[tuple[type[Executor], int], Executor] = {}
 
     def __call__(self, model: str, count: int) -> Sequence[Pool]:
-        jobs = self._jobs
-        if model == "full":
+        jobs, worth = self._jobs, count >= self._worth[model]
+        if model == "full" and worth:
             return [self._processes(jobs)]
         started = (ProcessPoolExecutor, jobs - 1) in self._pools
-        if jobs > 1 and (started or count >= WORTH_PROCESSES[model]):
+        if jobs > 1 and (started or worth):
             return [self._threads(1), self._processes(jobs - 1)]
         return [self._threads(jobs)]
 
@@ -159,6 +168,33 @@ def hand_out(
     finally:
         for future in waiting:
             future.cancel()
+
+
+def unguarded_script() -> str | None:
+    """The script that is calling outside an `if` on `__name__`: a process would load it, and start it again.
+
+    None where a process may be started; also of a notebook, whose processes load nothing.
+    """
+    frame = sys._getframe()
+    while frame.f_back is not None and not _is_main(frame.f_code.co_name, frame.f_globals):
+        frame = frame.f_back
+    main, path = sys.modules["__main__"], frame.f_code.co_filename
+    source = "".join(linecache.getlines(path))
+    if getattr(main, "__file__", None) is None or not source or frame.f_globals is not vars(main):
+        return None
+    guards = [
+        node
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.If | ast.IfExp)
+        and any(isinstance(one, ast.Name) and one.id == "__name__" for one in ast.walk(node.test))
+    ]
+    inside = any(node.lineno <= frame.f_lineno <= (node.end_lineno or 0) for node in guards)
+    return None if inside else os.path.basename(path)
+
+
+def _is_main(name: str, variables: Mapping[str, object]) -> bool:
+    """Whether a frame is the top level of the main script."""
+    return name == "<module>" and variables.get("__name__") == "__main__"
 
 
 def _end_with_parent(parent: int, over: Event) -> None:

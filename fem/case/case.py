@@ -203,6 +203,17 @@ class Case(CaseHeading):
         """
         return _read(with_overrides(self.given(), values), self.origin_with(values), values)
 
+    def replace(self, changes: Mapping[str, Any]) -> "Case":
+        """This case with keys changed, for scripts: `case.replace({"contact.mu_static": 0.3})`.
+
+        Args:
+            changes: dotted keys and their values, which may be numpy's; alternatives are replaced, as by `--set`.
+
+        Raises:
+            CaseError: as for a case file; a ValueError.
+        """
+        return self.with_values({str(key): _plain(value) for key, value in changes.items()})
+
     def without_fields(self) -> "Case":
         """This case without frames; not validated again, since no other key depends on them."""
         if self.output.fields_s == 0.0:
@@ -266,6 +277,22 @@ def read_case(text: str, *, name: str = "case", folder: Path | None = None) -> C
     return _read(parse_case(origin), origin, {})
 
 
+def case_from(mapping: Mapping[str, Any]) -> Case:
+    """A case from a mapping that holds what a case file would hold.
+
+    `fem.case_from({"container": {"width_m": 1.1, ...}, "contact": {"mu_static": 0.4}, "motion": {"kind": "none"}})`
+
+    Args:
+        mapping: tables by name, and the keys before the first table; values may be numpy's. Mesh and motion files are
+            looked for in the current folder.
+
+    Raises:
+        CaseError: with one line for each reason why the case cannot be used; a ValueError.
+    """
+    case = _read(_plain(mapping), Origin(), {})
+    return case.from_origin(Origin(text=toml_document(case.given())))
+
+
 def to_toml(case: Case) -> str:
     """The resolved case as a file that reads back to the same numbers, bit for bit."""
     return toml_document(case.resolved())
@@ -290,6 +317,17 @@ def case_hash(case: Case) -> str:
             raise CaseError(place_of(key) + f"cannot be read: {path}: {error.strerror}") from error
         digest.update(f"{key} {content}\n".encode())
     return digest.hexdigest()
+
+
+def _plain(value: Any) -> Any:
+    """A value of a script as a case file would give it: scalars, lists and tables, without numpy."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    return str(value) if isinstance(value, Path) else value
 
 
 def _read(data: Mapping[str, Any], origin: Origin, overrides: Mapping[str, Any]) -> Case:

@@ -63,13 +63,15 @@ def run(
         return 0
     # Loaded only now, so that bad input is answered before anything is compiled.
     solver = importlib.import_module("fem.run.run")
+    options = solver.RunOptions(check_rigid=check_rigid, band=band, resume=resume, force=force)
     result = solver.run_case(
         loaded,
         case_text=text_with_overrides(loaded),
         folder=folder,
-        options=solver.RunOptions(check_rigid=check_rigid, band=band, resume=resume, force=force),
+        options=options,
         reporter=ScreenReporter(quiet=quiet),
     )
+    stopped = solver.was_stopped(result, options)
     if as_json:
         print(json.dumps(read_result(folder / "run.json"), indent=2))
     else:
@@ -79,9 +81,9 @@ def run(
             f"interrupted; run the same command with --resume to continue from {folder / 'checkpoint.npz'}",
             file=sys.stderr,
         )
-    elif result.stopped:
+    elif stopped:
         print("interrupted during the sensitivity runs; run the same command to continue", file=sys.stderr)
-    return EXIT_CODES["interrupted" if result.stopped else result.status]
+    return EXIT_CODES["interrupted" if stopped else result.status]
 
 
 def text_with_overrides(case: Case) -> str:

@@ -10,6 +10,7 @@ import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 from xml.sax.saxutils import quoteattr
 
@@ -166,10 +167,11 @@ class Frame:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Fields:
-    """A series of frames on disk, read one at a time."""
+    """A series of frames: on disk, read one at a time, or kept in memory."""
 
     times: FloatArray  #: shape (n_frames,) [s]
-    files: tuple[Path, ...]  #: of the frames, in order
+    files: tuple[Path, ...] = ()  #: of the frames, in order
+    kept: tuple[Frame, ...] = ()  #: in place of files
 
     def __repr__(self) -> str:
         """One line, for a notebook."""
@@ -177,7 +179,7 @@ class Fields:
         return f"<fields: {len(self)} frames{span}>"
 
     def __len__(self) -> int:
-        return len(self.files)
+        return len(self.times)
 
     def __iter__(self) -> Iterator[Frame]:
         """Frames in order, each read when it is reached."""
@@ -187,12 +189,28 @@ class Fields:
         """Index of the frame nearest to a time [s]; of two as near, the earlier."""
         return int(np.argmin(np.abs(self.times - time)))
 
+    def index_at(self, time: float) -> int:
+        """Index of the frame of a time [s], within half an interval.
+
+        Raises:
+            FieldError: there is none.
+        """
+        if not len(self):
+            raise FieldError("there are no frames; compute the case with output.fields_s > 0")
+        first, last = float(self.times[0]), float(self.times[-1])
+        beside = (last - first) / (2 * len(self)) + 1e-9
+        if not first - beside <= time <= last + beside:  # true for nan
+            raise FieldError(f"frames lie from {first:g} to {last:g} s, not at {time:g} s")
+        return self.nearest(time)
+
     def frame(self, index: int) -> Frame:
-        """Read a frame.
+        """A frame, read from its file where there is one.
 
         Raises:
             FieldError: its file is missing or damaged.
         """
+        if self.kept:
+            return self.kept[index]
         path = self.files[index]
         if not path.is_file():
             raise FieldError(f"{path}: this frame is missing; run the case again with --force")
@@ -219,6 +237,47 @@ class Fields:
             ) from None
 
 
+class FrameKeeper:
+    """Keeps the frames of a run in memory, in single precision as files do.
+
+    Args:
+        points, cells, region: as for `FieldWriter`.
+    """
+
+    def __init__(self, *, points: FloatArray, cells: IntArray, region: IntArray) -> None:
+        self._points, self._cells, self._region = _single(points), cells, region
+        self._kept: list[Frame] = []
+
+    @property
+    def fields(self) -> Fields:
+        """The frames so far."""
+        return Fields(times=np.array([frame.time for frame in self._kept]), kept=tuple(self._kept))
+
+    def keep(
+        self,
+        time: float,
+        *,
+        displacement: FloatArray,
+        velocity: FloatArray,
+        von_mises: FloatArray | None,
+        contact_pressure: FloatArray,
+        floor_displacement: float,
+    ) -> None:
+        """Keep a frame; arguments as of `FieldWriter.write`."""
+        frame = Frame(
+            time=time,
+            points=self._points,
+            cells=self._cells,
+            region=self._region,
+            displacement=_single(displacement),
+            velocity=_single(velocity),
+            von_mises=None if von_mises is None else _single(von_mises),
+            contact_pressure=_single(contact_pressure),
+            floor_displacement=float(np.float32(floor_displacement)),
+        )
+        self._kept.append(frame)
+
+
 def open_fields(folder: Path) -> Fields:
     """The frames in the folder `fields` of a run, finished or not.
 
@@ -243,6 +302,11 @@ def open_fields(folder: Path) -> Fields:
 def frame_name(index: int) -> str:
     """File name of a frame; the first has index 0."""
     return f"frame_{index:05d}.vtu"
+
+
+def _single(values: FloatArray) -> Any:
+    """In single precision."""
+    return values.astype(np.float32)
 
 
 def _padded(vectors: FloatArray) -> NDArray[np.float32]:

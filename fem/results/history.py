@@ -13,7 +13,7 @@ import contextlib
 import hashlib
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Self
 
@@ -92,6 +92,10 @@ class History:
         columns = history_columns(self.joints, vertical=self.vertical)
         columns += (ANALYTIC_COLUMN,) if self.values.shape[1] == len(columns) else ()
         return tuple(name for name in columns if name != "mode")
+
+    def with_analytic(self, rotation: FloatArray) -> Self:
+        """These samples with the rotation of the rigid block as last column, shape (n_samples,) [rad]."""
+        return replace(self, values=np.column_stack([self.values, rotation]))
 
     def __len__(self) -> int:
         return len(self.modes)

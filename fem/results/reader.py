@@ -14,11 +14,11 @@ import numpy as np
 
 from fem.case.case import Case, load_case
 from fem.results.errors import FolderError
-from fem.results.fields import Fields, Frame, open_fields
+from fem.results.fields import FieldError, Fields, Frame, open_fields
 from fem.results.history import History, read_history
 from fem.results.kinds import KINDS, RUN, read_result
 from fem.results.run_files import RunFiles
-from fem.results.run_result import RunResult
+from fem.results.run_result import RunResult, Verdict
 from fem.runtime.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -63,6 +63,11 @@ class OpenedRun:
             return RunResult.from_json(self.result)
         except ValueError as error:
             raise FolderError(f"{self.place.result}: {error}; run the case again") from None
+
+    @property
+    def verdict(self) -> Verdict:
+        """Outcome, extremes and events: `run.verdict.sure`, or by its key in the file, `run.verdict["sure"]`."""
+        return self.typed_result.verdict or Verdict()
 
     @property
     def slenderness_angle(self) -> float:
@@ -127,23 +132,18 @@ class OpenedRun:
             FolderError: there are no fields, or none of that time.
             FieldError: this frame is damaged.
         """
-        times = self.fields.times
-        first, last = float(times[0]), float(times[-1])
-        beside = (last - first) / (2 * len(times)) + 1e-9
-        if not first - beside <= time <= last + beside:  # true for nan
-            raise FolderError(
-                f"{self.place.fields}: frames lie from {first:g} to {last:g} s, not at {time:g} s"
-            )
-        return self.fields.frame(self.fields.nearest(time))
+        try:
+            index = self.fields.index_at(time)
+        except FieldError as error:
+            raise FolderError(f"{self.place.fields}: {error}") from None
+        return self.fields.frame(index)
 
     def grid(self, time: float) -> "UnstructuredGrid":
         """The frame nearest to a time [s] as a pyvista grid in the x-y plane, where the container stood.
 
         `run.grid(1.5).warp_by_vector("displacement_m").plot(scalars="von_mises_Pa", cpos="xy")`
         """
-        # pyvista takes a second to import; only a caller who asks for a grid waits for it.
-        grid: UnstructuredGrid = importlib.import_module("fem.results.grid").grid_of(self.frame(time))
-        return grid
+        return pyvista_grid(self.frame(time))
 
 
 def open_run(folder: str | Path) -> OpenedRun:
@@ -167,6 +167,12 @@ def open_run(folder: str | Path) -> OpenedRun:
             )
     place = RunFiles(path)
     return OpenedRun(place=place, result=read_result(place.result))
+
+
+def pyvista_grid(frame: Frame) -> "UnstructuredGrid":
+    """A frame as a grid, see `fem.results.grid`; only who asks for one waits for pyvista, a second."""
+    grid: UnstructuredGrid = importlib.import_module("fem.results.grid").grid_of(frame)
+    return grid
 
 
 def _unreadable(path: Path, error: Exception) -> str:

@@ -13,7 +13,7 @@ from typing import Any, ClassVar, Self, get_args, get_origin, get_type_hints
 
 
 class JsonBlock:
-    """A dataclass that is written as a JSON object, with its fields as keys."""
+    """A dataclass that is written as a JSON object, with its fields as keys; `block[key]` is `block.key`."""
 
     #: keys that are left out where they are None, in place of null
     written_where_given: ClassVar[frozenset[str]] = frozenset()
@@ -32,6 +32,13 @@ class JsonBlock:
             )
         except (AttributeError, TypeError) as error:
             raise ValueError(f"cannot be read as {cls.__name__} ({error})") from None
+
+    def __getitem__(self, key: str) -> Any:
+        """A value by its key in the file; KeyError names the keys there are."""
+        names = [one.name for one in fields(self)]  # type: ignore[arg-type]
+        if key not in names:
+            raise KeyError(f"no key {key!r}; known: {', '.join(names)}")
+        return getattr(self, key)
 
     def to_json(self) -> dict[str, Any]:
         """The block as JSON types, its keys in the order of the fields."""

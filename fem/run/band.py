@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from itertools import count
+from typing import Protocol
 
 from fem.assessment.joint_demands import joint_demands
 from fem.assessment.joint_tables import largest_bolt_forces
@@ -33,10 +34,10 @@ from fem.results.run_result import (
     StaticResult,
     Verdict,
 )
-from fem.run.band_checkpoint import BandCheckpoint
+from fem.run.checkpoint import CheckpointWriter
 from fem.run.outcome import run_without_history
 from fem.run.recorder import Recorder
-from fem.run.simulation import simulate
+from fem.run.simulation import BEGINNING, Progress, simulate
 from fem.runtime.threads import cores
 from fem.solid.nodal_body import full_model_memory
 
@@ -70,6 +71,36 @@ class Shared:
 
     recovery: Recovery | None  #: of stresses
     joints: Joints | None  #: of a stack
+
+
+class MemberStore(Protocol):
+    """Where the members of a band are stored while it is computed, to continue an interrupted one."""
+
+    def read_members(self) -> list[BandMember]:
+        """The finished members."""
+
+    def write_members(self, members: Sequence[BandMember], number: int | None = None) -> None:
+        """Store the finished members; the one of this number needs its checkpoint no more."""
+
+    def open_member(
+        self, number: int, model: Model, recorder: Recorder
+    ) -> tuple[CheckpointWriter | None, Progress]:
+        """Put a member where its checkpoint says; returns what writes the next one, and the progress."""
+
+
+class NothingStored:
+    """A `MemberStore` for a band in memory."""
+
+    def read_members(self) -> list[BandMember]:
+        """None."""
+        return []
+
+    def write_members(self, members: Sequence[BandMember], number: int | None = None) -> None:
+        """Store nothing."""
+
+    def open_member(self, number: int, model: Model, recorder: Recorder) -> tuple[None, Progress]:
+        """Leave a member at t = 0."""
+        return None, BEGINNING
 
 
 def wants_band(asked: bool | None, case: Case, result: RunResult) -> bool:
@@ -118,7 +149,7 @@ def cost_of(numerics: Numerics) -> float:
 
 
 def with_band(
-    model: Model, result: RunResult, *, stop: Callable[[], bool], checkpoint: BandCheckpoint
+    model: Model, result: RunResult, *, stop: Callable[[], bool], checkpoint: MemberStore
 ) -> Verdict | None:
     """Compute the members of a band side by side and judge the verdict of the run by them.
 
@@ -126,7 +157,7 @@ def with_band(
         model: of the run; the mesh and modes of its container serve every member.
         result: of the run, which is itself a member.
         stop: called in pauses; true ends the band.
-        checkpoint: of the band, to resume from.
+        checkpoint: of the band, to resume from; or none.
 
     Returns:
         The verdict with its band, or None if it was stopped.
@@ -185,7 +216,7 @@ def _run_member(
     change: InputChange,
     shared: Shared,
     stop: Callable[[], bool],
-    checkpoint: BandCheckpoint,
+    checkpoint: MemberStore,
 ) -> BandMember:
     """One member; a problem of any kind is its error, never an outcome."""
     try:

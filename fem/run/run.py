@@ -1,7 +1,7 @@
-"""A run, from a case to a verdict and its files.
+"""A run in a folder: its files grow with it, and an interrupted one continues.
 
 case -> model (mesh, body, floor, equilibrium) -> step until done -> verdict -> files; then, where they are wanted, the
-comparison with the rigid block and the band of the contact.
+comparison with the rigid block and the band over what is not known.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -10,35 +10,28 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from fem.assessment.joint_demands import joint_demands
-from fem.assessment.summary import outcome_sentence, plain_summary
-from fem.assessment.verdict import energy_of, numerics_of, verdict_of
-from fem.assessment.warnings import warnings_for
+from fem.assessment.summary import plain_summary
 from fem.case.case import Case, case_hash, to_toml
-from fem.case.rules import ends_at_rest, longest_time
 from fem.figures.cache import write_figures
 from fem.model.container import discretise
 from fem.model.geometry import build_container, node_count
 from fem.model.model import Model, build_model
-from fem.model.motion import build_motions, longest_run, motion_result, peaks_in_run
-from fem.model.static_checks import static_checks_of
-from fem.model.step_size import largest_step_of
-from fem.model.support import normal_penalty
+from fem.model.motion import build_motions, longest_run
 from fem.results.errors import FolderError, FolderLostError, unwritable
 from fem.results.folder import ResultFolder, find_result, open_result_folder
-from fem.results.history import History
+from fem.results.history import History, add_analytic_rotation, read_history
 from fem.results.kinds import RUN
-from fem.results.reader import open_run
+from fem.results.reader import OpenedRun, open_run
 from fem.results.run_files import RunFiles, copy_data_files
 from fem.results.run_result import RunResult
+from fem.run.band_checkpoint import BandCheckpoint
 from fem.run.checkpoint import CheckpointWriter
 from fem.run.checks import WantedChecks, add_checks, lacks_band, lacks_checks
 from fem.run.output import Start, Stopwatch, open_output, read_start
 from fem.run.setup_cache import SetupCache
-from fem.run.simulation import simulate
 from fem.run.size import required_disk, size_in_words
+from fem.run.solve import begun, in_words, resolve, stepped
 from fem.runtime.compilation import compilation_announced
-from fem.runtime.identity import versions
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.runtime.signals import ending_at_once, interruptible
 from fem.solid.nodal_body import advance_body
@@ -56,25 +49,6 @@ class RunOptions(WantedChecks):
     force: bool = False
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Run:
-    """A run that has ended, or was interrupted."""
-
-    typed_result: RunResult
-    history: History
-    stopped: bool = False  #: the stepping was interrupted, or the band after it
-
-    @property
-    def status(self) -> str:
-        """Status of the run: completed | overturned | failed | interrupted."""
-        return self.typed_result.status
-
-    @property
-    def result(self) -> dict[str, Any]:
-        """As in `run.json`."""
-        return self.typed_result.to_json()
-
-
 def run_case(
     case: Case,
     *,
@@ -82,10 +56,13 @@ def run_case(
     folder: Path,
     options: RunOptions | None = None,
     reporter: Reporter | None = None,
-) -> Run:
+) -> OpenedRun:
     """Compute a case into a folder.
 
     A finished run of the same case is not computed again; a band or a rigid check that it lacks is added.
+
+    Returns:
+        The run, read from its folder; `was_stopped` says whether it was interrupted.
 
     Raises:
         CaseError, MeshError, FolderError: bad input, or no room for the results; nothing is left behind.
@@ -95,10 +72,10 @@ def run_case(
     files, mesh = RunFiles(folder), build_container(case)
     files.require_free_names(case)
     resolved = resolve(case, mesh)
-    request, history = case_hash(resolved), History.empty()
+    request = case_hash(resolved)
     known = finished_result(folder, request, options, reporter)
     if known is not None and not lacks_checks(known, case, options) and not _lacks_figures(files, case):
-        return Run(typed_result=known, history=history)
+        return open_run(folder)
 
     with open_result_folder(
         folder, RUN, request, force=options.force, resume=options.resume, way_on=WAY_ON
@@ -114,38 +91,49 @@ def run_case(
             result = known
             if result is None:
                 texts = {files.case.name: case_text, files.resolved.name: to_toml(resolved)}
-                result, history = compute(
-                    model, place, request, texts=texts, watch=watch, reporter=reporter, stop=stop
+                result = compute_into(
+                    place, model, request, texts=texts, watch=watch, reporter=reporter, stop=stop
                 )
                 result = store(replace(result, **watch.spent()), case, place)
             # The run is safe before its checks begin, and complete after them.
-            checked = add_checks(result, model, place, options, reporter=reporter, stop=stop)
+            members = BandCheckpoint(place, case_hash=request, reporter=reporter)
+            checked, block = add_checks(
+                result, model, lambda: _history_of(files), options, members, reporter=reporter, stop=stop
+            )
+            if block is not None:
+                place.write_text(files.rigid_check.name, block.table())
+                add_analytic_rotation(files.history, block.analytic_rotation)
             if checked is not result:
                 if known is None:
                     checked = replace(checked, **watch.spent())
                 result = store(checked, case, place)
             if result is not known or _lacks_figures(files, case):
                 draw(model, place.path, reporter)
-    finished = result.status in RUN.finished
-    stopped = lacks_band(result, case, options) if finished else result.status == "interrupted"
-    return Run(typed_result=result, history=history, stopped=stopped)
+    return open_run(folder)
 
 
-def compute(
-    model: Model,
+def was_stopped(run: OpenedRun, options: RunOptions) -> bool:
+    """Whether the stepping of a run was interrupted, or the band after it."""
+    if run.status in RUN.finished:
+        return lacks_band(run.typed_result, run.case, options)
+    return run.status == "interrupted"
+
+
+def compute_into(
     place: ResultFolder,
+    model: Model,
     request: str,
     *,
     texts: Mapping[str, str],
     watch: Stopwatch,
     reporter: Reporter,
     stop: Callable[[], bool],
-) -> tuple[RunResult, History]:
+) -> RunResult:
     """Step a model from t = 0, or from its checkpoint, to a verdict; its files grow on the way.
 
     Args:
+        place: the folder of the run.
         model: at t = 0.
-        place: its folder.
         request: hash of the case.
         texts: files that describe the case.
         watch: counts from the checkpoint on.
@@ -157,15 +145,7 @@ def compute(
     case, files = model.case, RunFiles(place.path)
     start = read_start(files, model, request) if place.resuming else Start()
     watch.before = start.spent
-    result = RunResult(
-        status="running",
-        case=case.name,
-        title=case.title,
-        case_hash=request,
-        static=model.static.to_result(),
-        motion=motion_result(case, model.motion, model.vertical),
-        versions=versions(),
-    )
+    result = begun(model, request)
     place.begin(result.to_json(), texts, keep=start.is_resumed)
     with failure_noted(place, result):
         copy_data_files(case, place.path)
@@ -179,22 +159,11 @@ def compute(
                 return output.sync() | {"spent": watch.spent()}
 
             save = CheckpointWriter(files.checkpoint, model, recorder, case_hash=request, notes=notes)
-            ending = simulate(
-                model, recorder, reporter=reporter, stop=stop, save=save, progress=start.state.progress
+            progress = start.state.progress
+            result, _ = stepped(
+                model, result, recorder, reporter=reporter, stop=stop, save=save, progress=progress
             )
-    history = recorder.history()
-    stress = recorder.largest_von_mises if case.solver.model != "rigid" else None
-    verdict = verdict_of(model, history, stress)
-    result = replace(
-        result,
-        status=ending.status,
-        verdict=verdict if ending.error is None else replace(verdict, outcome=None),
-        joints=joint_demands(model, history),
-        energy=energy_of(model),
-        numerics=numerics_of(model, ending.stepping_cpu_s),
-        error=ending.error,
-    )
-    return result, history
+    return result
 
 
 def finished_result(folder: Path, request: str, options: RunOptions, reporter: Reporter) -> RunResult | None:
@@ -228,10 +197,7 @@ def store(result: RunResult, case: Case, place: ResultFolder) -> RunResult:
     Checkpoints are removed after that, when there is nothing left to resume.
     """
     place.check()
-    result = replace(result, warnings=tuple(warnings_for(result, case)))
-    if result.verdict is not None:
-        first_line = outcome_sentence(result)
-        result = replace(result, verdict=replace(result.verdict, first_line=first_line))
+    result = in_words(result, case)
     place.write_text(RunFiles(place.path).summary.name, plain_summary(result, folder=place.path))
     place.write_result(result.to_json())
     if result.status in RUN.finished:
@@ -253,26 +219,6 @@ def draw(model: Model, folder: Path, reporter: Reporter) -> None:
         )
 
 
-def resolve(case: Case, mesh: ContainerMesh) -> Case:
-    """The case with every "auto" replaced by the value chosen; running it again gives the same result.
-
-    A duration that depends on when the container comes to rest stays "auto".
-
-    Raises:
-        CaseError: a motion that cannot be built, or that the given step would step over.
-    """
-    chosen: dict[str, Any] = {}
-    if case.contact.normal_penalty_Pa_m == "auto":
-        chosen["contact.normal_penalty_Pa_m"] = normal_penalty(case, mesh)
-    if case.solver.duration_s == "auto" and not ends_at_rest(case):
-        chosen["solver.duration_s"] = longest_time(case)
-    if case.solver.step_s == "auto":
-        motions = build_motions(case)
-        static = static_checks_of(case, mesh, *peaks_in_run(case, *motions))
-        chosen["solver.step_s"], _ = largest_step_of(case, static, *motions)
-    return case.with_values(chosen) if chosen else case
-
-
 def set_up(
     case: Case, mesh: ContainerMesh, place: ResultFolder, request: str, *, force: bool, reporter: Reporter
 ) -> Model:
@@ -292,6 +238,16 @@ def set_up(
         place.remove(SETUP_PARTS)
         raise
     return model
+
+
+def _history_of(files: RunFiles) -> History:
+    """The samples of a finished run."""
+    try:
+        return read_history(files.history)
+    except (OSError, ValueError) as error:
+        raise FolderError(
+            f"{files.history}: cannot be compared with the rigid block ({error}); --force repeats the run"
+        ) from None
 
 
 def _lacks_figures(files: RunFiles, case: Case) -> bool:

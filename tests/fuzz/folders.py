@@ -14,7 +14,7 @@ from typing import Any
 from hypothesis import strategies as st
 from inputs import NASTY, Input
 
-import fem.run.run
+import fem.run.solve
 from fem.__main__ import main
 
 Draw = Any
@@ -55,17 +55,17 @@ def finished() -> dict[str, bytes]:
 @cache
 def interrupted() -> dict[str, bytes]:
     """Files of a run that was stopped after its first slice."""
-    simulate = fem.run.run.simulate
+    simulate = fem.run.solve.simulate
     answers = iter([False])
 
     def first_slice(*arguments: Any, **options: Any) -> Any:
         return simulate(*arguments, **options | {"stop": lambda: next(answers, True)})
 
-    fem.run.run.simulate = first_slice
+    fem.run.solve.simulate = first_slice
     try:
         return _files_of(4)
     finally:
-        fem.run.run.simulate = simulate
+        fem.run.solve.simulate = simulate
 
 
 def _files_of(expected: int) -> dict[str, bytes]:

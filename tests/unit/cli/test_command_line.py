@@ -315,9 +315,12 @@ def install_solver(monkeypatch, status):
         folder.mkdir()
         (folder / "run.json").write_text(json.dumps({"status": status, "case_hash": "0"}), encoding="utf-8")
         (folder / "summary.txt").write_text(f"summary of {status}\n", encoding="utf-8")
-        return SimpleNamespace(status=status, stopped=status == "interrupted")
+        return SimpleNamespace(status=status)
 
-    solver = SimpleNamespace(run_case=run_case, RunOptions=SimpleNamespace)
+    def was_stopped(run, options):
+        return run.status == "interrupted"
+
+    solver = SimpleNamespace(run_case=run_case, was_stopped=was_stopped, RunOptions=SimpleNamespace)
     monkeypatch.setitem(sys.modules, "fem.run.run", solver)
     return asked
 

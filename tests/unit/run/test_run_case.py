@@ -19,13 +19,14 @@ from fem.__main__ import main
 from fem.case.case import load_case
 from fem.results.history import History, read_history
 from fem.results.kinds import read_result
-from fem.run.run import Run, RunOptions, run_case
+from fem.results.reader import OpenedRun
+from fem.run.run import RunOptions, run_case
 
 QUICK = ("solver.model=rigid", "output.fields_s=0", "output.figures=false")
 ANGLE = math.atan(1.1 / 4.0)  #: slenderness angle of the shipped stack [rad]
 
 
-def run(folder: Path, name: str, *overrides: str, **options) -> Run:
+def run(folder: Path, name: str, *overrides: str, **options) -> OpenedRun:
     case = load_case(name, [*QUICK, *overrides])
     return run_case(case, case_text=case.text, folder=folder, options=RunOptions(**options))
 

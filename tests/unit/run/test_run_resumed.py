@@ -6,10 +6,11 @@ from pathlib import Path
 import pytest
 from interrupted_runs import COARSE, FLAT_SHELL, one_slice, require_same
 
-import fem.run.run
 import fem.run.simulation
+import fem.run.solve
 from fem.case.case import load_case
-from fem.run.run import Run, RunOptions, run_case
+from fem.results.reader import OpenedRun
+from fem.run.run import RunOptions, run_case
 
 RIGID = ("solver.model=rigid", "solver.duration_s=1.2", "output.fields_s=0.1")
 REDUCED = ("solver.duration_s=0.7", "output.fields_s=0.1")
@@ -40,7 +41,7 @@ CASES = {
 }
 
 
-def run(folder: Path, name: str, overrides: tuple[str, ...], **options) -> Run:
+def run(folder: Path, name: str, overrides: tuple[str, ...], **options) -> OpenedRun:
     case = load_case(name, [*overrides, "output.figures=false"])
     return run_case(case, case_text=case.text, folder=folder, options=RunOptions(band=False, **options))
 
@@ -53,11 +54,11 @@ def test_a_run_cut_off_after_every_slice_is_the_run_left_alone(tmp_path, monkeyp
     monkeypatch.setattr(fem.run.simulation, "FIRST_PAUSE", 400)
     monkeypatch.setattr(fem.run.simulation, "AFTERMATH_SLICE", 0.15)
     run(tmp_path / "whole", name, overrides)
-    stepping = fem.run.run.simulate
+    stepping = fem.run.solve.simulate
     cuts = 0
     while True:
         # every beginning steps one slice, so every state between slices has been through a checkpoint
-        monkeypatch.setattr(fem.run.run, "simulate", partial(one_slice, stepping))
+        monkeypatch.setattr(fem.run.solve, "simulate", partial(one_slice, stepping))
         if run(tmp_path / "cut", name, overrides, resume=True).status != "interrupted":
             break
         cuts += 1

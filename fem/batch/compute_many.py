@@ -1,0 +1,77 @@
+"""Many runs in memory on all cores: `fem.compute_many(cases)`."""
+
+import warnings
+from collections.abc import Hashable, Iterable, Sequence
+from functools import partial
+
+from fem.batch.container_cache import ContainerCache, container_key
+from fem.batch.workers import IN_THREADS, LocalWorkers, hand_out, unguarded_script
+from fem.case.case import Case
+from fem.run.checks import WantedChecks
+from fem.run.compute import Run, compute_on
+from fem.runtime.threads import cores
+
+#: number of cases from which processes pay off: runs with history and band hold the interpreter longer than rows do
+WORTH_PROCESSES = {"rigid": 24, "reduced": 6, "full": 2}
+
+_CONTAINERS = ContainerCache()
+
+Item = tuple[int, Case]
+
+
+def compute_many(
+    cases: Iterable[Case], jobs: int | None = None, *, band: bool | None = None, check_rigid: bool = False
+) -> list[Run]:
+    """Compute cases in memory, side by side; no file is written.
+
+    Several cases are shared by threads, many by processes as well. A process loads the script that started it: in a
+    script, call this behind `if __name__ == "__main__":`. Where that is missing, a warning says so, and the cases are
+    computed by threads alone. Cases that differ in floor or friction only share their container.
+
+    Args:
+        cases: from `fem.load_case`, `fem.case_from` or `case.replace`, of any models.
+        jobs: cores to use; default: all.
+        band, check_rigid: as for `fem.compute`.
+
+    Returns:
+        The runs in the order of the cases, each the same as `fem.compute` gives, whatever `jobs` is.
+
+    Raises:
+        CaseError, MeshError: one of the cases cannot be computed; a note of the error says which.
+        ValueError: jobs is less than 1.
+        WorkersLostError: a process died, perhaps for want of memory.
+    """
+    asked = list(cases)
+    jobs = cores() if jobs is None else jobs
+    if jobs < 1:
+        raise ValueError(f"compute_many: jobs must be at least 1, got {jobs}")
+    script = unguarded_script() if min(jobs, len(asked)) > 1 else None
+    if script is not None:
+        warnings.warn(
+            f'{script} calls compute_many outside `if __name__ == "__main__":`, so its cases are computed by threads '
+            "of this process alone; behind that line, processes help with many of them",
+            stacklevel=2,
+        )
+    first: dict[Hashable, int] = {}
+    for number, case in enumerate(asked):
+        first.setdefault(container_key(case), number)
+    order = sorted(range(len(asked)), key=lambda number: first[container_key(asked[number])])
+    work = partial(_compute, WantedChecks(check_rigid=check_rigid, band=band), len(asked))
+    runs: dict[int, Run] = {}
+    with LocalWorkers(jobs, WORTH_PROCESSES if script is None else IN_THREADS) as workers_of:
+        for model in WORTH_PROCESSES:
+            items = [(number, asked[number]) for number in order if asked[number].solver.model == model]
+            for chunk, found in hand_out(items, work, workers_of(model, len(items)), at_a_time=1):
+                runs |= dict(zip((number for number, _ in chunk), found, strict=True))
+    return [runs[number] for number in range(len(asked))]
+
+
+def _compute(wanted: WantedChecks, count: int, items: Sequence[Item]) -> list[Run]:
+    runs = []
+    for number, case in items:
+        try:
+            runs.append(compute_on(_CONTAINERS.container_of(case), case, wanted))
+        except ValueError as error:
+            error.add_note(f"case {number + 1} of {count} of compute_many")
+            raise
+    return runs

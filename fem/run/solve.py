@@ -1,0 +1,101 @@
+"""The computation of a run, without its files: a resolved case, stepping until done, the result in numbers and words.
+
+`fem.run.compute` keeps a run in memory, `fem.run.run` in a folder; both call what is here.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from fem.assessment.joint_demands import joint_demands
+from fem.assessment.summary import outcome_sentence
+from fem.assessment.verdict import energy_of, numerics_of, verdict_of
+from fem.assessment.warnings import warnings_for
+from fem.case.case import Case
+from fem.case.rules import ends_at_rest, longest_time
+from fem.model.model import Model
+from fem.model.motion import build_motions, motion_result, peaks_in_run
+from fem.model.static_checks import static_checks_of
+from fem.model.step_size import largest_step_of
+from fem.model.support import normal_penalty
+from fem.results.history import History
+from fem.results.run_result import RunResult
+from fem.run.recorder import Recorder
+from fem.run.simulation import BEGINNING, Progress, simulate
+from fem.runtime.identity import versions
+from fem.runtime.progress import Reporter
+from mesh.container import ContainerMesh
+
+
+def resolve(case: Case, mesh: ContainerMesh) -> Case:
+    """The case with every "auto" replaced by the value chosen; running it again gives the same result.
+
+    A duration that depends on when the container comes to rest stays "auto".
+
+    Raises:
+        CaseError: a motion that cannot be built, or that the given step would step over.
+    """
+    chosen: dict[str, Any] = {}
+    if case.contact.normal_penalty_Pa_m == "auto":
+        chosen["contact.normal_penalty_Pa_m"] = normal_penalty(case, mesh)
+    if case.solver.duration_s == "auto" and not ends_at_rest(case):
+        chosen["solver.duration_s"] = longest_time(case)
+    if case.solver.step_s == "auto":
+        motions = build_motions(case)
+        static = static_checks_of(case, mesh, *peaks_in_run(case, *motions))
+        chosen["solver.step_s"], _ = largest_step_of(case, static, *motions)
+    return case.with_values(chosen) if chosen else case
+
+
+def begun(model: Model, case_hash: str) -> RunResult:
+    """The result of a run that is to be stepped: what is known before."""
+    case = model.case
+    return RunResult(
+        status="running",
+        case=case.name,
+        title=case.title,
+        case_hash=case_hash,
+        static=model.static.to_result(),
+        motion=motion_result(case, model.motion, model.vertical),
+        versions=versions(),
+    )
+
+
+def stepped(
+    model: Model,
+    result: RunResult,
+    recorder: Recorder,
+    *,
+    reporter: Reporter,
+    stop: Callable[[], bool],
+    save: Callable[[Progress, bool], None] | None = None,
+    progress: Progress = BEGINNING,
+) -> tuple[RunResult, History]:
+    """Step a model to its end: the result with verdict, energy and numerics, and the samples.
+
+    Args:
+        model: from its present state on; result: begun.
+        recorder, reporter, stop, save, progress: as for `fem.run.simulation.simulate`.
+    """
+    ending = simulate(model, recorder, reporter=reporter, stop=stop, save=save, progress=progress)
+    history = recorder.history()
+    stress = recorder.largest_von_mises if model.case.solver.model != "rigid" else None
+    verdict = verdict_of(model, history, stress)
+    result = replace(
+        result,
+        status=ending.status,
+        verdict=verdict if ending.error is None else replace(verdict, outcome=None),
+        joints=joint_demands(model, history),
+        energy=energy_of(model),
+        numerics=numerics_of(model, ending.stepping_cpu_s),
+        error=ending.error,
+    )
+    return result, history
+
+
+def in_words(result: RunResult, case: Case) -> RunResult:
+    """The result with its warnings and the first line of its verdict, which follow from the rest."""
+    result = replace(result, warnings=tuple(warnings_for(result, case)))
+    if result.verdict is None:
+        return result
+    return replace(result, verdict=replace(result.verdict, first_line=outcome_sentence(result)))

@@ -1,0 +1,72 @@
+"""Cases made and changed in a script: the same keys, the same checks, the same messages as a case file."""
+
+import tomllib
+
+import numpy as np
+import pytest
+from cases import LEAST
+
+import fem
+from fem.case.case import CaseError, case_hash, read_case
+
+
+def test_a_mapping_is_the_case_file_that_it_holds():
+    case = fem.case_from(tomllib.loads(LEAST))
+    assert case.resolved() == read_case(LEAST).resolved()
+    assert case_hash(case) == case_hash(read_case(LEAST))
+    assert read_case(case.text).resolved() == case.resolved()
+
+
+def test_values_may_be_those_of_numpy():
+    mapping = tomllib.loads(LEAST) | {"uncertainty": {"mu_kinetic": np.array([0.2, 0.4])}}
+    mapping["container"] |= {"boxes": np.int64(2), "width_m": np.float32(1.5)}
+    case = fem.case_from(mapping)
+    assert (case.container.boxes, case.container.width_m, case.uncertainty.mu_kinetic) == (2, 1.5, [0.2, 0.4])
+    (changed,) = (case.replace({"contact.mu_static": mu}) for mu in np.linspace(0.5, 0.5, 1))
+    assert changed.contact.mu_static == 0.5
+    assert type(changed.contact.mu_static) is float
+
+
+def test_a_change_leaves_the_case_as_it_was_and_replaces_alternatives():
+    case = fem.case_from(tomllib.loads(LEAST))
+    lighter = case.replace({"container.mass_kg": 2000.0, "title": "lighter"})
+    assert (lighter.box_mass, lighter.container.weight_N, lighter.title) == (2000.0, None, "lighter")
+    assert (case.container.weight_N, case.title) == (24525.0, "")
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: fem.case_from({}), "case: [container] width_m is missing"),
+        (lambda: fem.case_from({"container": 3}), "case: [container] must be one table, got 3"),
+        (lambda: fem.load_case("seed_bax"), "did you mean 'seed_box'?"),
+        (
+            lambda: fem.load_case("seed_box").replace({"contact.mu_static": 40}),
+            "[contact] mu_static must be between 0 and 5, got 40; looks like per cent: 0.4? (--set contact",
+        ),
+        (
+            lambda: fem.load_case("seed_box").replace({"contact.mu": 0.4}),
+            "[contact] unknown key 'mu'; did you mean 'mu_static'?",
+        ),
+    ],
+)
+def test_what_cannot_be_is_refused_in_the_words_of_the_command(make, words):
+    with pytest.raises(CaseError) as refused:
+        make()
+    assert words in str(refused.value)
+    assert isinstance(refused.value, ValueError)
+
+
+def test_the_package_gives_away_its_interface_and_nothing_else():
+    assert [name for name in dir(fem) if not name.startswith("_")] == [
+        "case_from",
+        "compute",
+        "compute_many",
+        "load_case",
+        "open_run",
+    ]
+    for name in fem.__all__:
+        assert getattr(fem, name).__doc__.strip()
+        assert getattr(fem, name).__annotations__["return"]
+    with pytest.raises(AttributeError, match="no attribute 'calculate'"):
+        fem.calculate  # noqa: B018

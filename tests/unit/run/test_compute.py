@@ -1,0 +1,81 @@
+"""A case computed in memory is the run of the command line: the same result, samples and fields, and no file."""
+
+import json
+
+import numpy as np
+import pytest
+
+import fem
+from fem.case.case import CaseError
+from fem.results.fields import FieldError
+from fem.run.run import RunOptions, run_case
+
+ROCKING = ("solver.model=rigid", "solver.duration_s=1", "output.fields_s=0.25", "output.figures=false")
+STACK = ("solver.duration_s=0.5", "output.fields_s=0.1", "output.figures=false")
+#: keys of `run.json` that hold times, and those of the band that say nothing of its members
+TIMES = {"wall_s", "cpu_s", "compile_s"}
+
+
+def without_times(result):
+    result = {key: value for key, value in json.loads(json.dumps(result)).items() if key not in TIMES}
+    result["numerics"].pop("stepping_cpu_s")
+    return result
+
+
+@pytest.mark.parametrize(
+    ("name", "overrides", "checks"),
+    [
+        ("free_rocking", ROCKING, {}),  # with its rigid check, and its band
+        ("seed_stack_plateau", STACK, {"band": False}),
+        ("seed_box", (*STACK, "solver.model=rigid"), {"band": False, "check_rigid": True}),
+    ],
+)
+def test_a_run_in_memory_is_that_of_the_command(tmp_path, monkeypatch, name, overrides, checks):
+    case = fem.load_case(name, overrides)
+    stored = run_case(case, case_text=case.text, folder=tmp_path / "r", options=RunOptions(**checks))
+    monkeypatch.chdir(tmp_path)
+    run = fem.compute(case, **checks)
+    assert [path.name for path in tmp_path.iterdir()] == ["r"]
+    assert without_times(run.result) == without_times(stored.result)
+    assert run.verdict == stored.verdict
+    assert (run.status, run.case.resolved()) == (stored.status, stored.case.resolved())
+    assert run.history.numbers == stored.history.numbers
+    assert (run.history.values.view(np.int64) == stored.history.values.view(np.int64)).all()
+    assert run.history.modes == stored.history.modes
+    assert run.fields.times.tolist() == stored.fields.times.tolist()
+    for kept, read in zip(run.fields, stored.fields, strict=True):
+        for field in ("points", "cells", "region", "displacement", "velocity", "contact_pressure"):
+            assert (getattr(kept, field) == getattr(read, field)).all()
+        assert kept.floor_displacement == read.floor_displacement
+        assert (kept.von_mises is None) == (read.von_mises is None)
+    time = float(run.fields.times[1])
+    assert (run.grid(time).points == stored.grid(time).points).all()
+
+
+def test_what_a_run_in_memory_offers():
+    run = fem.compute(fem.load_case("free_rocking", ROCKING), band=False)
+    assert repr(run) == "<run 'free_rocking': completed, rock>"
+    assert run.verdict["outcome"] == run.verdict.outcome == run.result["verdict"]["outcome"] == "rock"
+    assert run.history["rotation_rad"].dtype == np.float64
+    with pytest.raises(KeyError, match="no key 'outcomes'; known: outcome, modes"):
+        run.verdict["outcomes"]
+    with pytest.raises(FieldError, match="frames lie from 0 to 1 s, not at 7 s"):
+        run.grid(7.0)
+    without = fem.compute(run.case.replace({"output.fields_s": 0.0}), band=False)
+    assert len(without.fields) == 0
+    with pytest.raises(ValueError, match=r"there are no frames; compute the case with output\.fields_s > 0"):
+        without.frame(0.0)
+
+
+def test_the_band_is_computed_where_the_command_computes_it():
+    case = fem.load_case("rocking", ["solver.model=rigid", "solver.duration_s=1", "output.fields_s=0"])
+    assert fem.compute(case).verdict.band is not None
+    assert fem.compute(case, band=False).verdict.sure is None
+    far_below = fem.compute(case.replace({"motion.amplitude_m": 0.001}))
+    assert (far_below.verdict.sure, far_below.verdict.band) == ("sure", None)
+
+
+def test_a_case_that_cannot_be_computed_is_refused_in_the_words_of_the_command():
+    coarse = fem.load_case("seed_box").replace({"solver.step_s": 0.5})
+    with pytest.raises(CaseError, match=r"\[solver\] step_s"):
+        fem.compute(coarse)
