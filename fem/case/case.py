@@ -10,6 +10,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, Self
 
+import numpy as np
+import numpy.typing as npt
 from pydantic import Field, PrivateAttr
 
 from fem.case.data_files import (
@@ -42,6 +44,8 @@ from fem.case.tables import (
 )
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError, problem_lines, read_case_tables
+from fem.records.columns import given_record, written
+from fem.records.record import Direction, Record
 
 #: key and table that name a case and are no part of what is computed
 LABELS = ("title", "document")
@@ -161,8 +165,15 @@ class Case(CaseHeading):
         """Where these files are; raises as `files`."""
         return {key: file.path for key, file in self.files.items()}
 
+    @property
+    def recorded(self) -> Record | None:
+        """The motion given by `with_motion`; None where a recorded motion has a file."""
+        return self._origin.recorded
+
     def _file_names(self) -> dict[str, str | None]:
         named = {"container.mesh_file": self.container.mesh_file}
+        if self.recorded is not None:
+            return named
         for table, motion in (("motion", self.motion), ("vertical", self.vertical)):
             named[f"{table}.file"] = motion.file if motion.kind == "table" else None
         if self.vertical.kind == "table" and self.vertical.file is None:
@@ -213,6 +224,35 @@ class Case(CaseHeading):
             CaseError: as for a case file; a ValueError.
         """
         return self.with_values({str(key): _plain(value) for key, value in changes.items()})
+
+    def with_motion(
+        self,
+        time_s: npt.ArrayLike,
+        acceleration_m_s2: npt.ArrayLike,
+        vertical_m_s2: npt.ArrayLike | None = None,
+    ) -> "Case":
+        """This case on a motion given by arrays, in place of its own; the acceleration is linear between samples.
+
+        Args:
+            time_s: rising, shape (n,) [s].
+            acceleration_m_s2: of the floor, > 0 toward +x, shape (n,) [m/s2].
+            vertical_m_s2: of the floor, > 0 upward, shape (n,) [m/s2]; None: it does not move up and down.
+
+        Raises:
+            CaseError: arrays that are no motion, or not of one length; a ValueError.
+        """
+        values: dict[Direction, npt.ArrayLike] = {"horizontal": acceleration_m_s2}
+        if vertical_m_s2 is not None:
+            values["vertical"] = vertical_m_s2
+        try:
+            record = given_record(np.asarray(time_s), {name: np.asarray(one) for name, one in values.items()})
+        except ValueError as error:
+            raise CaseError(f"with_motion: {error}") from None
+        data = {key: value for key, value in self.given().items() if key not in ("motion", "vertical")}
+        data["motion"] = {"kind": "table", "file": record.name, "start": self.motion.start}
+        if vertical_m_s2 is not None:
+            data["vertical"] = {"kind": "table"}
+        return _read(data, replace(self._origin, recorded=record), {})
 
     def without_fields(self) -> "Case":
         """This case without frames; not validated again, since no other key depends on them."""
@@ -316,6 +356,8 @@ def case_hash(case: Case) -> str:
         except OSError as error:
             raise CaseError(place_of(key) + f"cannot be read: {path}: {error.strerror}") from error
         digest.update(f"{key} {content}\n".encode())
+    if case.recorded is not None:
+        digest.update(written(case.recorded).encode())
     return digest.hexdigest()
 
 

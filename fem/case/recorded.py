@@ -50,10 +50,13 @@ def _recorded(case: Case, table: MotionKey) -> RecordedMotion:
     keys: MotionTable | VerticalTable = case.vertical if table == "vertical" else case.motion
     shared = case.motion if table == "vertical" and case.motion.kind == "table" else keys
     beside = keys if keys.file is not None else shared  # whose keys describe the file
-    file = case.files[f"{table}.file"]
-    record = read_record(file.path, unit=beside.unit, sample_interval=beside.sample_interval_s)
+    record, channel = case.recorded, ""
+    if record is None:
+        file = case.files[f"{table}.file"]
+        record = read_record(file.path, unit=beside.unit, sample_interval=beside.sample_interval_s)
+        channel = file.channel
     component = record.component(
-        "vertical" if table == "vertical" else "horizontal", quantity=keys.quantity, channel=file.channel
+        "vertical" if table == "vertical" else "horizontal", quantity=keys.quantity, channel=channel
     )
     scale = keys.scale
     if keys is not shared and keys.scale_to_m_s2 is None:

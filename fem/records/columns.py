@@ -5,7 +5,7 @@ separate. `#` starts a comment. Lines before the first number are a header, whos
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from fem.records.units import UNITS, settled_unit, unit_spelled
 from fem.runtime.arrays import FloatArray
 
 NAME = "columns"
+GIVEN = "motion.csv"  #: file name of a motion that was given by arrays
 MOST_COLUMNS = 3
 NOT_NUMBERS = ("nan", "inf", "+inf", "-inf")
 DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(\s+[-+]?\d+,\d+)+\s*", re.ASCII)
@@ -169,3 +170,27 @@ def _unit_of(field: str) -> str | None:
     parts = field.split("_")
     spelled = (unit_spelled("_".join(parts[k:])) for k in range(len(parts)))
     return next((unit for unit in spelled if unit is not None), None)
+
+
+def given_record(times: FloatArray, accelerations: Mapping[Direction, FloatArray]) -> Record:
+    """A record of accelerations in m/s2, by direction, at the same times.
+
+    Raises:
+        RecordError: numbers that are no motion, or not as many as there are times.
+    """
+    return Record(
+        components=tuple(
+            Component(times=times, readings=values, name=direction, direction=direction)
+            for direction, values in accelerations.items()
+        ),
+        name=GIVEN,
+        format=NAME,
+    )
+
+
+def written(record: Record) -> str:
+    """Times and SI values of all components as a file of columns, which reads back to the same bits."""
+    columns = [record.components[0].times, *(one.values for one in record.components)]
+    names = ["acceleration_m_s2"] if len(columns) == 2 else [f"{one.name}_m_s2" for one in record.components]
+    rows = (",".join(map(repr, row)) for row in zip(*(column.tolist() for column in columns), strict=True))
+    return "\n".join([",".join(["time_s", *names]), *rows, ""])

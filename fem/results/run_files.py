@@ -5,6 +5,7 @@ from pathlib import Path
 
 from fem.case.case import Case, CaseError
 from fem.case.recorded import recorded_motion
+from fem.records.columns import written
 
 
 class RunFiles:
@@ -59,6 +60,8 @@ def copy_data_files(case: Case, folder: Path) -> None:
     Raises:
         CaseError: a motion file holds no motion; results go to others, and may not carry what else it holds.
     """
+    if case.recorded is not None:
+        (folder / case.recorded.name).write_text(written(case.recorded), encoding="ascii")
     for key, file in case.files.items():
         if key == "motion.file":
             recorded_motion(case, "motion")

@@ -20,7 +20,7 @@ from fem.model.container import Container
 from fem.model.model import build_model
 from fem.runtime.arrays import FloatArray
 from fem.validation.bodies import cross_validated, specimen
-from fem.validation.findings import Experiment, Finding
+from fem.validation.findings import Experiment, Prediction
 from fem.validation.tables import measured_table
 from fem.verification.runs import finish, placed
 
@@ -100,7 +100,7 @@ def compute() -> Experiment:
         tests=len(landings),
         fitted=f"damping ratio of the contact, on each half: {fits}; friction {FRICTION}: the authors'",
         findings=(
-            Finding(
+            Prediction(
                 quantity="landings that rebound to the side they come from",
                 measured=len(landings),
                 predicted=sides,
@@ -108,7 +108,7 @@ def compute() -> Experiment:
                 passed=sides >= SIDE_SHARE * len(landings),
                 note="Housner's impact turns the cube to the other side, by 1.2 to 3.5 degrees; it never does",
             ),
-            Finding(
+            Prediction(
                 quantity="size of the rebound, predicted over measured, median",
                 measured=1.0,
                 predicted=round(ratio, 2),
@@ -116,28 +116,28 @@ def compute() -> Experiment:
                 passed=1.0 / SIZE_FACTOR <= ratio <= SIZE_FACTOR,
                 note="measured tilts are uncertain by 0.5 degrees",
             ),
-            Finding(
+            Prediction(
                 quantity="largest hop of the lowest corner [mm]",
                 measured=3.1,
                 predicted=round(1e3 * hop, 2),
                 criterion=f"below {1e3 * MOST_HOP:g} mm",
                 passed=hop < MOST_HOP,
             ),
-            Finding(
+            Prediction(
                 quantity="longest time from landing to rest [s]",
                 measured="0.08 to 0.14",
                 predicted=round(rest, 3),
                 criterion=f"at most {MOST_TIME:g} s",
                 passed=rest <= MOST_TIME,
             ),
-            Finding(
+            Prediction(
                 quantity=f"size of the rebound with the authors' point restitution ({AUTHORS_RESTITUTION:g}), median",
                 measured=1.0,
                 predicted=round(plastic, 2),
                 note="a cube that turns about its trailing corner with c times its speed rises by (c w)^2 R^2/(2 g a), "
                 "a sixth of what is measured; the landing corner leaves the table with 0.2 to 0.3 of its speed",
             ),
-            Finding(
+            Prediction(
                 quantity=f"landings that turn to the other side with a friction of {HIGH_FRICTION:g}",
                 measured="-",
                 predicted=turned,

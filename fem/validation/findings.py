@@ -8,7 +8,7 @@ Value = float | str
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finding:
+class Prediction:
     """One comparison; without a criterion it is stated and not judged."""
 
     quantity: str  #: with its unit
@@ -38,13 +38,13 @@ class Experiment:
     licence: str
     tests: int  #: how many are compared
     fitted: str  #: which inputs were fitted, on which tests, and to what
-    findings: tuple[Finding, ...] = ()
+    findings: tuple[Prediction, ...] = ()
     others: tuple[Predictor, ...] = ()
     not_computed: str = ""  #: the reason, where there is nothing to compare
     seconds: float = 0.0
 
     @property
-    def missed(self) -> tuple[Finding, ...]:
+    def missed(self) -> tuple[Prediction, ...]:
         """Findings that are not as near as was asked."""
         return tuple(finding for finding in self.findings if finding.passed is False)
 

@@ -5,7 +5,7 @@ import datetime as dt
 from fem.html.page import render_page
 from fem.html.units import short, typeset
 from fem.runtime.identity import versions
-from fem.validation.findings import Experiment, Finding, ValidationResult, Value
+from fem.validation.findings import Experiment, Prediction, ValidationResult, Value
 
 
 def table_lines(result: ValidationResult) -> list[str]:
@@ -46,7 +46,7 @@ def _missed_last(one: Experiment) -> bool:
     return not one.missed
 
 
-def _word(finding: Finding) -> str:
+def _word(finding: Prediction) -> str:
     if finding.passed is None:
         return ""
     return "met" if finding.passed else "MISSED"

@@ -17,7 +17,7 @@ from fem.model.container import Container, discretise
 from fem.model.model import Model, build_model
 from fem.run.outcome import run_without_history
 from fem.validation.bodies import cross_validated
-from fem.validation.findings import Experiment, Finding, Predictor
+from fem.validation.findings import Experiment, Prediction, Predictor
 from fem.validation.tables import measured_table
 from fem.verification.runs import with_motion
 
@@ -74,7 +74,7 @@ def compute() -> Experiment:
         tests=len(kicks),
         fitted=f"slenderness angle and radius of the block, on each half of the tests: {sizes}",
         findings=(
-            Finding(
+            Prediction(
                 quantity="share of outcomes predicted, fitted on the other half",
                 measured="1",
                 predicted=round(agreement, 3),

@@ -25,7 +25,7 @@ from fem.run.outcome import run_without_history
 from fem.runtime.arrays import FloatArray
 from fem.runtime.threads import cores
 from fem.validation.bodies import cross_validated, specimen
-from fem.validation.findings import Experiment, Finding, Predictor
+from fem.validation.findings import Experiment, Prediction, Predictor
 from fem.validation.tables import measured_table
 
 MOTIONS = "granite_rock_motions.csv.gz"  #: file of the folder
@@ -171,7 +171,7 @@ def _rock(angle: float) -> tuple[Case, Container]:
     return case, specimen(case, centroid=CENTROID, inertia_ratio=INERTIA)
 
 
-def _findings(rock: int, found: Sequence[tuple[float, ShakeTest]]) -> list[Finding]:
+def _findings(rock: int, found: Sequence[tuple[float, ShakeTest]]) -> list[Prediction]:
     """What a rock did and what was predicted for it, each test by the fit on the others."""
     count = len(found)
     with ThreadPoolExecutor(max_workers=cores()) as pool:
@@ -182,7 +182,7 @@ def _findings(rock: int, found: Sequence[tuple[float, ShakeTest]]) -> list[Findi
     share, seen = sum(predicted) / count, sum(measured) / count
     unsure = sum(_is_unsure(test, angle) for angle, test in wrong)
     findings = [
-        Finding(
+        Prediction(
             quantity=f"rock {rock}: share of outcomes predicted, fitted on the other half",
             measured="1",
             predicted=round(agreement, 3),
@@ -190,14 +190,14 @@ def _findings(rock: int, found: Sequence[tuple[float, ShakeTest]]) -> list[Findi
             passed=agreement >= LEAST_AGREEMENT,
             note="the other rock on the same table agrees with this one in 0.87 of 582 tests",
         ),
-        Finding(
+        Prediction(
             quantity=f"rock {rock}: share overturned",
             measured=round(seen, 3),
             predicted=round(share, 3),
             criterion=f"within {SHARE_WITHIN}",
             passed=abs(share - seen) <= SHARE_WITHIN,
         ),
-        Finding(
+        Prediction(
             quantity=f"rock {rock}: wrong predictions that the program itself calls unsure",
             measured=len(wrong),
             predicted=unsure,
@@ -210,7 +210,7 @@ def _findings(rock: int, found: Sequence[tuple[float, ShakeTest]]) -> list[Findi
         if some:
             to = f"to {high:g} g" if math.isfinite(high) else "g and more"
             findings.append(
-                Finding(
+                Prediction(
                     quantity=f"rock {rock}: overturned of {len(some)} with a peak from {low:g} {to}",
                     measured=sum(measured[k] for k in some),
                     predicted=sum(predicted[k] for k in some),

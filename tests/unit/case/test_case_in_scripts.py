@@ -7,7 +7,9 @@ import pytest
 from cases import LEAST
 
 import fem
-from fem.case.case import CaseError, case_hash, read_case
+from fem.case.case import CaseError, case_hash, read_case, to_toml
+from fem.case.recorded import recorded_motion
+from fem.results.run_files import copy_data_files
 
 
 def test_a_mapping_is_the_case_file_that_it_holds():
@@ -70,3 +72,41 @@ def test_the_package_gives_away_its_interface_and_nothing_else():
         assert getattr(fem, name).__annotations__["return"]
     with pytest.raises(AttributeError, match="no attribute 'calculate'"):
         fem.calculate  # noqa: B018
+
+
+TIMES = np.arange(0.0, 2.0, 0.01)
+ALONG, UP = 3.0 * np.sin(5.0 * TIMES), 1.0 * np.sin(12.0 * TIMES)
+
+
+def test_a_motion_may_be_given_by_arrays():
+    case = read_case(LEAST).with_motion(TIMES, ALONG, UP)
+    assert (case.motion.kind, case.vertical.kind) == ("table", "table")
+    np.testing.assert_array_equal(recorded_motion(case, "motion").motion.values, ALONG)
+    np.testing.assert_array_equal(recorded_motion(case, "vertical").motion.values, UP)
+    assert case.replace({"motion.scale": 2.0}).recorded is case.recorded
+    assert case.with_motion(TIMES, ALONG).vertical.kind == "none"
+    assert case_hash(case) != case_hash(case.with_motion(TIMES, 2.0 * ALONG, UP))
+
+
+def test_a_motion_given_by_arrays_is_written_as_a_file_that_reads_back_to_the_same_bits(tmp_path):
+    case = read_case(LEAST).with_motion(TIMES / 3.0, ALONG, UP)
+    copy_data_files(case, tmp_path)
+    again = read_case(to_toml(case), folder=tmp_path)
+    for table, values in (("motion", ALONG), ("vertical", UP)):
+        found = recorded_motion(again, table).motion
+        np.testing.assert_array_equal(found.values, values)
+        np.testing.assert_array_equal(found.times, TIMES / 3.0)
+
+
+@pytest.mark.parametrize(
+    ("time", "along", "reason"),
+    [
+        (TIMES, ALONG[:-1], "200 times and 199 values"),
+        (TIMES[::-1], ALONG, "times must increase"),
+        (TIMES, ALONG * np.nan, "not a finite number"),
+        (0.0, 1.0, "must be as many"),
+    ],
+)
+def test_arrays_that_are_no_motion_are_refused(time, along, reason):
+    with pytest.raises(CaseError, match=reason):
+        read_case(LEAST).with_motion(time, along)

@@ -2,12 +2,12 @@
 
 import pytest
 
-from fem.validation.findings import Experiment, Finding, ValidationResult
+from fem.validation.findings import Experiment, Prediction, ValidationResult
 from fem.validation.page import page, table_lines
 
 
-def finding(passed: bool | None) -> Finding:
-    return Finding(
+def finding(passed: bool | None) -> Prediction:
+    return Prediction(
         quantity="side", measured=1.0, predicted=0.5, criterion="" if passed is None else "all", passed=passed
     )
 
