@@ -14,6 +14,7 @@ import numpy as np
 from contact.motion.table import TableMotion
 from fem.batch.axes import MOTION_FILE, Axis, set_axis, with_following
 from fem.batch.log import table_text
+from fem.batch.runner import motion_left_out
 from fem.case.case import Case, CaseError
 from fem.figures.motions import draw_spectra
 from fem.figures.style import svg_of
@@ -111,9 +112,23 @@ def read_motion_set(base: Case, axes: Iterable[Axis]) -> tuple[FloorMotionPair, 
     return tuple(found)
 
 
+def motions_left_out(base: Case, motions: Sequence[FloorMotionPair]) -> str | None:
+    """The part of its motion that runs are under, where they end before it; of a set of the first that is cut.
+
+    None where every motion is covered.
+    """
+    if not motions:
+        return motion_left_out(base)
+    cut = [(one.name, words) for one in motions if (words := motion_left_out(one.case)) is not None]
+    if not cut:
+        return None
+    name, words = cut[0]
+    return f"{words} ({name}{f', and {len(cut) - 1} more motions are cut' if len(cut) > 1 else ''})"
+
+
 def write_motions(
     place: ResultFolder, motions: Sequence[FloorMotionPair], told: Sequence[Mapping[str, Any]]
-) -> tuple[str, ...]:
+) -> list[str]:
     """Write `motions.csv`, `spectra.csv` and the figure of the spectra; returns the names of figures.
 
     Args:
@@ -127,7 +142,7 @@ def write_motions(
     place.write_text("spectra.csv", table_text(["period_s", *spectra], rows))
     vertical = [one.vertical.name for one in motions if one.vertical is not None]
     place.write_text(SPECTRA, svg_of(draw_spectra(periods, spectra, vertical=vertical)))
-    return (SPECTRA,)
+    return [SPECTRA]
 
 
 def spectra_of(motions: Sequence[FloorMotionPair]) -> tuple[FloatArray, dict[str, FloatArray]]:

@@ -15,8 +15,14 @@ import numpy as np
 from fem.batch.answers import table_lines
 from fem.batch.axes import MOTION_FILE, Axis, with_following
 from fem.batch.log import LoggedRuns, fields_of, table_of_lines, table_text
-from fem.batch.motion_set import FloorMotionPair, motion_cases, read_motion_set, write_motions
-from fem.batch.runner import Row, Runner, motion_left_out
+from fem.batch.motion_set import (
+    FloorMotionPair,
+    motion_cases,
+    motions_left_out,
+    read_motion_set,
+    write_motions,
+)
+from fem.batch.runner import Row, Runner
 from fem.batch.workers import LocalWorkers
 from fem.case.case import case_hash, to_toml
 from fem.case.rules import ends_at_rest, longest_time
@@ -170,7 +176,7 @@ def _finish(
     if complete.all():
         for name, svg in ensemble_figures(ensemble, unknown, points, fragility).items():
             place.write_text(f"figures/{name}.svg", svg)
-    result = result_of(ensemble, unknown, points, fragility, status)
+    result = result_of(ensemble, unknown, motions, points, fragility, status)
     if motions and complete.all():
         told = [one.numbers() | found for one, found in zip(motions, draws.by_replicate(), strict=True)]
         result |= {"motions": told, "motion_figures": write_motions(place, motions, told)}
@@ -217,6 +223,7 @@ def asked_of(ensemble: Ensemble) -> dict[str, Any]:
 def result_of(
     ensemble: Ensemble,
     unknown: UnknownInputs,
+    motions: Sequence[FloorMotionPair],
     points: Sequence[PointResult],
     fragility: dict[str, Any] | None,
     status: str,
@@ -231,7 +238,7 @@ def result_of(
         "case": ensemble.base.name,
         "model": ensemble.base.solver.model,
         "duration_s": longest_time(ensemble.base) if not ends_at_rest(ensemble.base) else "auto",
-        "motion_covered": motion_left_out(ensemble.base),
+        "motion_covered": motions_left_out(ensemble.base, motions),
         **asked_of(ensemble),
         "axes": [{"key": axis.key, "values": list(axis.values), "unit": axis.unit} for axis in ensemble.axes],
         "random": {one.key: one.asked for one in ensemble.random},

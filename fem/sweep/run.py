@@ -15,8 +15,8 @@ from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
 from fem.batch.axes import with_following
 from fem.batch.held import held_inputs
 from fem.batch.log import LoggedRuns, fields_of, line_of, read_lines, table_of_lines
-from fem.batch.motion_set import FloorMotionPair, motion_cases, read_motion_set
-from fem.batch.runner import Row, Runner, motion_left_out
+from fem.batch.motion_set import FloorMotionPair, motion_cases, motions_left_out, read_motion_set
+from fem.batch.runner import Row, Runner
 from fem.batch.workers import LocalWorkers, WorkersOf
 from fem.case.case import case_hash
 from fem.case.rules import ends_at_rest, longest_time
@@ -111,7 +111,7 @@ def run_sweep(
         runner = Runner(
             workers_of=workers_of or stack.enter_context(LocalWorkers(jobs)), reporter=reporter, stop=stop
         )
-        info = _asked(sweep) | {"jobs": jobs}
+        info = _asked(sweep, motions) | {"jobs": jobs}
         return _Work(sweep=sweep, motions=motions, place=place, runner=runner, info=info).run(
             same_band=same_band
         )
@@ -298,7 +298,7 @@ def _rows_in(log: Path) -> int:
     return max(log.read_bytes().count(b"\n") - 1, 0) if log.is_file() else 0
 
 
-def _asked(sweep: Sweep) -> dict[str, Any]:
+def _asked(sweep: Sweep, motions: Sequence[FloorMotionPair]) -> dict[str, Any]:
     """The part of `sweep.json` that is known beforehand."""
     return {
         "status": "running",
@@ -310,7 +310,7 @@ def _asked(sweep: Sweep) -> dict[str, Any]:
         "base_hash": case_hash(sweep.base),
         "model": sweep.base.solver.model,
         "duration_s": longest_time(sweep.base) if not ends_at_rest(sweep.base) else "auto",
-        "motion_covered": motion_left_out(sweep.base),
+        "motion_covered": motions_left_out(sweep.base, motions),
         "axes": [
             {"key": axis.key, "values": axis.values, "scale": axis.scale, "unit": axis.unit}
             | ({"following": dict(axis.following)} if axis.following else {})

@@ -37,7 +37,7 @@ def write_set(
         axis, shares = curves
         title = sweep.title or sweep.name
         place.write_text(SHARES, svg_of(draw_shares(shares, title=title, label=axis_label(axis))))
-        figures = (*figures, SHARES)
+        figures.append(SHARES)
     return {
         "motions": told,
         "motion_set": [
@@ -49,7 +49,7 @@ def write_set(
 
 def _shares(axes: Sequence[Axis], rows: Sequence[Mapping[str, Any]]) -> tuple[Axis, list[ShareCurve]] | None:
     """A curve over the strength for each point of the other axes; None without a strength, or with too many."""
-    axis = next((one for one in axes if one.key in STRENGTHS and one.is_numeric), None)
+    axis = next((one for one in axes if one.key in STRENGTHS and one.is_numeric and one.key in rows[0]), None)
     if axis is None:
         return None
     others = [key for key in rows[0] if key not in SET_COLUMNS and key != axis.key]
