@@ -7,8 +7,11 @@ import time
 
 import pytest
 from browser import CHROMIUM, FAINT, Browser
+from study_folders import ensemble_folder, response_folder
 
 from fem.case.case import load_case
+from fem.report.ensemble_page import ensemble_report
+from fem.report.response_page import response_report
 from fem.report.run_page import run_report
 from fem.report.sweep_page import sweep_report
 from fem.results.reader import open_run
@@ -40,7 +43,7 @@ CLOCK = "parseFloat(document.getElementById('now-clock').textContent)"
 
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory):
-    """A report of a run and one of a sweep."""
+    """A report of a run, a sweep, an ensemble and a response curve."""
     place = tmp_path_factory.mktemp("pages")
     case = load_case("seed_stack_plateau", COARSE)
     run_case(case, case_text=case.text, folder=place / "stack")
@@ -49,6 +52,9 @@ def pages(tmp_path_factory):
     asked = load_sweep(str(place / "boxes.toml"))
     run_sweep(asked, place / "boxes", jobs=1, resume=False, force=False, reporter=SilentReporter())
     (place / "sweep.html").write_text(sweep_report(place / "boxes"), encoding="utf-8")
+    counted, swept = ensemble_folder(place / "counted"), response_folder(place / "swept")
+    (place / "ensemble.html").write_text(ensemble_report(counted), encoding="utf-8")
+    (place / "response.html").write_text(response_report(swept), encoding="utf-8")
     return place
 
 
@@ -73,7 +79,7 @@ def sweep_page(browser, pages):
     return browser
 
 
-@pytest.mark.parametrize("name", ["run.html", "sweep.html"])
+@pytest.mark.parametrize("name", ["run.html", "sweep.html", "ensemble.html", "response.html"])
 class TestEveryReport:
     def test_loads_without_errors_and_without_any_request(self, browser, pages, name):
         browser.open(pages / name)
