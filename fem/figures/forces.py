@@ -14,6 +14,7 @@ from fem.figures.style import (
     GREY,
     LEGEND_GAP,
     VERMILLION,
+    changing_weight,
     curve_panel,
     draw_limits,
     head,
@@ -45,13 +46,20 @@ def forces_figure(run: OpenedRun) -> Figure:
         (axes[1], shear, "shear force [kN]", VERMILLION),
     ):
         curve_panel(panel, label, time, (force, colour, "-", None), zero=False, linewidth=0.8)
-    name = f"weight, {number(weight, 4)} kN"
-    axes[0].axhline(weight, color=BLACK, linestyle="--", linewidth=0.9, label=name)
+    changing = changing_weight(history, run.case.gravity_m_s2)
+    times = " times (g + a_v)/g" if changing is not None else ""
+    name = f"weight, {number(weight, 4)} kN{times}"
+    if changing is None:
+        axes[0].axhline(weight, color=BLACK, linestyle="--", linewidth=0.9, label=name)
+    else:
+        axes[0].plot(
+            changing[0], weight * changing[1], color=BLACK, linestyle="--", linewidth=0.9, label=name
+        )
     axes[0].set_ylim(bottom=0.0)
     friction = {"static": (contact.mu_static, "--"), "kinetic": (contact.mu_kinetic, ":")}
     for name, (mu, style) in friction.items():
-        label = f"{name} friction of the weight, ±{number(mu * weight)} kN"
-        draw_limits(axes[1], mu * weight, label, color=BLACK, linestyle=style)
+        label = f"{name} friction of the weight, ±{number(mu * weight)} kN{times}"
+        draw_limits(axes[1], mu * weight, label, of_weight=changing, color=BLACK, linestyle=style)
         if contact.mu_static == contact.mu_kinetic:
             break
     for panel, force, limit in zip(axes, (normal, shear), limits, strict=True):

@@ -32,6 +32,7 @@ from fem.figures.style import (
     VERMILLION,
     WIDTH,
     Drawing,
+    changing_weight,
     cursor_axes,
     curve_panel,
     draw_limits,
@@ -109,12 +110,16 @@ def base_motion_figure(run: OpenedRun) -> Figure:
             curve_panel(panel, label, history["time_s"], (upward, GREY, "-", name and "upward"), zero=False)
         keep_visible(panel, LEAST_MOTION)
     peak, moved = float(np.abs(acceleration).max()), float(np.abs(displacement).max())
+    weight = changing_weight(history, run.case.gravity_m_s2)
     for limit, style, name in (
-        (static.uplift_acceleration_m_s2, "--", "a static load tilts it"),
-        (run.case.contact.mu_static * run.case.gravity_m_s2, ":", "a static load slides it"),
+        (static.uplift_acceleration_m_s2, "--", "tilts"),
+        (run.case.contact.mu_static * run.case.gravity_m_s2, ":", "slides"),
     ):
         if limit and limit < 1.3 * peak:
-            draw_limits(axes[2], limit, f"{name} from {number(limit)} m/s²", color=BLACK, linestyle=style)
+            label = f"a static load {name} it from {number(limit)} m/s²"
+            if history.vertical:
+                label = f"{name} statically from {number(limit)} (g + a_v)/g"
+            draw_limits(axes[2], limit, label, of_weight=weight, color=BLACK, linestyle=style)
     if axes[2].get_legend_handles_labels()[0]:
         legend_above(axes[2])
     title = f"Motion of the floor: {number(moved)} mm and {number(peak)} m/s² at most"

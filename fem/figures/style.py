@@ -234,10 +234,31 @@ def kept_samples(*columns: FloatArray) -> NDArray[np.int64]:
     return np.unique(np.minimum(np.concatenate(kept), count - 1))
 
 
-def draw_limits(axes: Axes, value: float, label: str, **style: Any) -> None:
-    """Lines at plus and minus a limit, with one entry in the legend."""
+def draw_limits(
+    axes: Axes,
+    value: float,
+    label: str,
+    *,
+    of_weight: tuple[FloatArray, FloatArray] | None = None,
+    **style: Any,
+) -> None:
+    """Lines at plus and minus a limit, with one entry in the legend.
+
+    Args:
+        of_weight: times and share (g + a_v)/g, where the limit follows a weight that changes.
+    """
     for place, name in ((value, label), (-value, None)):
-        axes.axhline(place, linewidth=0.9, label=name, **style)
+        if of_weight is None:
+            axes.axhline(place, linewidth=0.9, label=name, **style)
+        else:
+            axes.plot(of_weight[0], place * of_weight[1], linewidth=0.9, label=name, **style)
+
+
+def changing_weight(history: History, gravity: float) -> tuple[FloatArray, FloatArray] | None:
+    """Times [s] and share (g + a_v)/g of a floor that moves up and down; None of any other."""
+    if not history.vertical:
+        return None
+    return history["time_s"], 1.0 + history["base_vertical_acceleration_m_s2"] / gravity
 
 
 def zero_line(axes: Axes) -> None:

@@ -106,7 +106,7 @@ def _page(
     case, result, static, mesh = run.case, run.typed_result, model.static, model.container.mesh
     verdict, history = result.verdict or Verdict(), _history(run, message)
     shown = animation_of(model, _fields(run, message))
-    drawn = drawings_of(run, model.container)
+    drawn, compared = drawings_of(run, model.container), compared_rows(static, verdict, case)
     motion = [drawn[name] for name in MOTION if name in drawn]
     played = player_data(shown, history, model=model) if len(history) > 1 else {}
     computed = dt.datetime.fromtimestamp(run.place.result.stat().st_mtime)
@@ -134,7 +134,8 @@ def _page(
         asked=asked_rows(case),
         assumptions=assumptions(case, result),
         exclusions=exclusions(case),
-        compared=compared_rows(static, verdict, case),
+        compared=compared,
+        ruling=compared[2:4] if case.has_vertical else compared[:2],
         sheet=static_sheet(static, case),
         head=_head(verdict),
         believed=[typeset(sentence) for sentence in believed(result)],

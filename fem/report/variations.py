@@ -1,4 +1,4 @@
-"""The variations in the report of a run: friction, contact damping, penalty, phase, start, strength.
+"""The variations in the report of a run: friction, contact damping, penalty, phase, vertical motion, start, strength.
 
 None of these is known exactly. Every variation changes one thing. Where there is time for some of them only, one of
 each subject comes first, and moderate changes come before large ones.
@@ -67,6 +67,11 @@ def variations_of(case: Case) -> Iterator[Variation]:
         start = "rest" if motion.start == "moving" else "moving"
         words = {"rest": "the floor starts with its velocity", "moving": "it moves with the floor"}
         yield Variation(subject="start", change=f"{start}: {words[start]}", values={"motion.start": start})
+    if case.has_vertical:
+        key = "scale" if case.vertical.scale_to_m_s2 is None else "scale_to_m_s2"
+        other = {f"vertical.{key}": -getattr(case.vertical, key)}
+        yield Variation(subject="vertical motion", change="the other sign", values=other)
+        yield Variation(subject="vertical motion", change="none", values={"vertical.kind": "none"})
     if initial.rotation_rad != 0.0:
         for factor in ROTATIONS:
             rotation = factor * initial.rotation_rad
@@ -79,12 +84,13 @@ def variations_of(case: Case) -> Iterator[Variation]:
 
 
 def _strengths(case: Case) -> Iterator[Variation]:
-    """The floor's motion made stronger and weaker: the factor at which it overturns is the margin."""
+    """The floor's motions made stronger and weaker: the factor at which it overturns is the margin."""
     peak = case.nominal_peak_acceleration
     for factor in STRENGTHS:
         shown = f", peak {quantity(factor * peak, 'm/s²', figures=3)}" if peak else ""
+        both = ", both motions" if case.has_vertical and case.motion.kind != "none" else ""
         if values := scaled_motion(case, factor):
-            yield Variation(subject="strength", change=f"× {factor:g}{shown}", values=values)
+            yield Variation(subject="strength", change=f"× {factor:g}{shown}{both}", values=values)
 
 
 def by_importance(variations: Sequence[Variation]) -> list[int]:
