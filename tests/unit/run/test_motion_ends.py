@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from cases import named_case
 
-from contact.motion.base_motion import PulseMotion
+from contact.motion.base_motion import NoMotion, PulseMotion
 from fem.__main__ import main
 from fem.assessment.motion_words import covered_in_words
 from fem.assessment.warnings import warnings_for
@@ -16,7 +16,7 @@ from fem.batch.runner import run_model
 from fem.case.case import CaseError, load_case, read_case
 from fem.cli.check import preview_of
 from fem.model.model import build_model
-from fem.model.motion import build_motion, motion_result
+from fem.model.motion import build_motion, build_motions, motion_result
 from fem.results.reader import open_run
 from fem.results.run_result import RunResult, Verdict
 from fem.run.run import run_case
@@ -190,7 +190,7 @@ def test_check_says_what_a_run_leaves_out(tmp_path, capsys, duration, words):
 
 def test_a_record_of_negative_times_is_covered_from_zero_on(tmp_path):
     case = record_case(tmp_path, RECORD - [1.0, 0.0])
-    found = motion_result(case, build_motion(case))
+    found = motion_result(case, *build_motions(case))
     assert found.covered == pytest.approx(0.75)
     assert covered_in_words(found) == "3 of 4 s, from 1 s of it on"
     with pytest.raises(CaseError, match="its times end at -1 s, and the run begins at t = 0; shift them"):
@@ -215,7 +215,7 @@ def test_peaks_of_a_pulse_are_its_integrals(shape):
     assert found.peak_velocity_m_s == pytest.approx(v, rel=1e-6)
     assert found.peak_displacement_m == pytest.approx(x, rel=1e-6)
     # the same by evaluation, where the run covers a part of it
-    part = motion_result(case.with_values({"solver.duration_s": 0.35}), motion)
+    part = motion_result(case.with_values({"solver.duration_s": 0.35}), motion, NoMotion())
     assert part.covered == pytest.approx(0.35 / 0.8)
     assert part.peak_velocity_m_s == pytest.approx(v, rel=1e-4)
     assert part.peak_displacement_m == pytest.approx(x, rel=1e-4)
