@@ -7,6 +7,7 @@ import hashlib
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -94,13 +95,21 @@ def read_motion_set(base: Case, axes: Iterable[Axis]) -> tuple[FloorMotionPair, 
     """Read the motions of a set, as the base case takes them; none without a set.
 
     Raises:
-        CaseError: a file that cannot be used, components that were not sampled together, two files that hold the
-            same motion.
+        CaseError: a file that cannot be used, components that were not sampled together, two motions of one file, two
+            files that hold the same motion.
     """
     found: list[FloorMotionPair] = []
     contents: dict[str, str] = {}
+    owners: dict[Path, str] = {}
     for case in motion_cases(base, axes):
         pair = _read_pair(case)
+        for path in {case.data_files[f"{table}.file"].resolve() for table in _tables_of(pair)}:
+            if path in owners:
+                raise CaseError(
+                    f"{MOTION_FILE!r}: {owners[path]!r} and {pair.name!r} are motions of one file, {path.name}; those "
+                    "of a set must be of different ones: leave one out"
+                )
+            owners[path] = pair.name
         for component, content in zip(pair.components, _contents(pair), strict=True):
             if content in contents:
                 raise CaseError(
@@ -172,6 +181,10 @@ def _read_pair(case: Case) -> FloorMotionPair:
         return FloorMotionPair(case=case, horizontal=horizontal, vertical=None)
     vertical = FloorComponent(name=case.vertical.file, motion=_table(build_vertical(case)))
     return FloorMotionPair(case=case, horizontal=horizontal, vertical=vertical)
+
+
+def _tables_of(pair: FloorMotionPair) -> tuple[str, ...]:
+    return ("motion",) if pair.vertical is None else ("motion", "vertical")
 
 
 def _table(motion: object) -> TableMotion:

@@ -149,6 +149,18 @@ def test_motions_that_are_one_are_refused(base, tmp_path):
         read_motion_set(base, [read_axis("motion.file", [["a_h.csv", "a_h.csv"]])])
 
 
+def test_two_motions_of_one_file_are_refused(base, tmp_path):
+    columns = [np.loadtxt(tmp_path / f"{name}_h.csv", delimiter=",", skiprows=1).T for name in ("a", "b")]
+    rows = np.column_stack([columns[0][0], columns[0][1], columns[1][1]])
+    np.savetxt(tmp_path / "both.csv", rows, delimiter=",")
+    (pair,) = read_motion_set(base, [read_axis("motion.file", [["both.csv#1", "both.csv#2"]])])
+    assert pair.vertical is not None
+    with pytest.raises(CaseError, match=r"'both.csv#1' and 'both.csv#2' are motions of one file, both.csv"):
+        read_motion_set(base, [read_axis("motion.file", ["both.csv#1", "both.csv#2"])])
+    with pytest.raises(CaseError, match=r"'a_h.csv' and './a_h.csv' are motions of one file"):
+        read_motion_set(base, [read_axis("motion.file", ["a_h.csv", "./a_h.csv"])])
+
+
 @pytest.mark.parametrize(("length", "step"), [(1.2, 0.02), (0.5, 0.01)])
 def test_components_of_different_length_or_step_are_refused(base, tmp_path, length, step):
     write_motion(tmp_path, "other.csv", frequency=3.0, length=length, step=step)
