@@ -22,6 +22,7 @@ from fem.case.data_files import (
     find_data_files,
     outside_problems,
     place_of,
+    without_channel,
 )
 from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
 from fem.case.overrides import parse_override, with_overrides
@@ -177,7 +178,7 @@ class Case(CaseHeading):
         for table, motion in (("motion", self.motion), ("vertical", self.vertical)):
             named[f"{table}.file"] = motion.file if motion.kind == "table" else None
         if self.vertical.kind == "table" and self.vertical.file is None:
-            named["vertical.file"] = named["motion.file"]  # another component of it
+            named["vertical.file"] = without_channel(self.folder, self.motion.file)  # another component of it
         return named
 
     def given(self) -> dict[str, Any]:

@@ -36,6 +36,14 @@ def split_channel(folder: Path, name: str) -> tuple[Path, str]:
     return _path(folder, stem), channel
 
 
+def without_channel(folder: Path, name: str | None) -> str | None:
+    """A name without the channel that it chooses."""
+    if name is None:
+        return None
+    channel = split_channel(folder, name)[1]
+    return name.removesuffix(f"#{channel}") if channel else name
+
+
 def _path(folder: Path, name: str) -> Path:
     path = folder / name
     # A path of Windows, where it is no name of a file here.
