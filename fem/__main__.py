@@ -45,7 +45,10 @@ GROUPS = {
     },
     "Look": {
         "report": ("Make one HTML page from a run, a sweep or a study.", "outputs/my-stack"),
-        "picture": ("Draw one instant of a run (PNG).", "outputs/my-stack --time 3.2"),
+        "picture": (
+            "Draw one instant of a run, or a motion and its spectrum (PNG).",
+            "outputs/my-stack --time 3.2",
+        ),
         "movie": ("Animate a run (GIF or MP4).", "outputs/my-stack --to rocking.gif"),
         "modes": ("Compute elastic frequencies and shapes of the free container.", "my-stack.toml"),
     },

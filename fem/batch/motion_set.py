@@ -4,7 +4,6 @@ A set is the values of `motion.file` in a study: recorded motions, alone or with
 """
 
 import hashlib
-import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -21,15 +20,12 @@ from fem.figures.motions import draw_spectra
 from fem.figures.style import svg_of
 from fem.model.motion import build_motion, build_vertical
 from fem.records.intensity import intensity
-from fem.records.spectrum import Spectrum, log_spaced_periods, response_spectrum
+from fem.records.spectrum import Spectrum, evenly_sampled, log_spaced_periods, response_spectrum
 from fem.results.folder import ResultFolder
 from fem.runtime.arrays import FloatArray
 
-#: intervals of a motion are equal within this share of their median
-EQUAL = 1e-3
 LONGEST_PERIOD_S = 4.0
 SPECTRA = "figures/spectra.svg"
-MOST_SAMPLES = 2_000_000  #: of a motion whose intervals differ, sampled for its spectrum
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -56,7 +52,7 @@ class FloorComponent:
 
     def spectrum(self, periods_s: FloatArray) -> Spectrum:
         """Response spectrum for 5 % of damping."""
-        return response_spectrum(*_evenly_sampled(self.motion), periods_s)
+        return response_spectrum(*evenly_sampled(self.motion.times, self.motion.accelerations), periods_s)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -201,18 +197,3 @@ def _contents(pair: FloorMotionPair) -> Iterator[str]:
         times = one.motion.times - one.motion.times[0]
         shape = np.round(np.concatenate([times / (times[-1] or 1.0), values / largest]), 6) + 0.0
         yield hashlib.sha256(shape.tobytes()).hexdigest()
-
-
-def _evenly_sampled(motion: TableMotion) -> tuple[float, FloatArray]:
-    """Step [s] and accelerations of the motion.
-
-    Where its intervals differ, the straight lines between its samples are sampled at half of the shortest.
-    """
-    times, values = motion.times, motion.accelerations
-    steps, length = np.diff(times), float(np.ptp(times))
-    step = length / steps.size
-    if np.abs(steps - step).max() <= EQUAL * step:
-        return step, values
-    count = min(math.ceil(2.0 * length / float(steps.min()) * (1.0 - EQUAL)), MOST_SAMPLES)
-    even = np.linspace(times[0], times[-1], count + 1)
-    return length / count, np.asarray(np.interp(even, times, values))

@@ -1,33 +1,90 @@
-"""`picture`: one instant of a run as PNG."""
+"""`picture`: one instant of a run, or a recorded motion and its response spectrum."""
 
 import importlib
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from fem.cli.console import ELSEWHERE_TO, RunFolder
+from fem.case.data_files import split_channel
+from fem.case.validation import CaseError
+from fem.cli.console import ELSEWHERE_TO
+from fem.records.files import read_record
+from fem.records.processing import Baseline, Processing, processed
+from fem.records.record import Component
 from fem.render.opengl import require_rendering
 from fem.results.errors import writing_into
+from fem.results.files import write_atomically
 from fem.results.reader import open_run
+
+Source = Annotated[
+    str,
+    Parameter(name="RUN", help="Folder of a run, such as outputs/my-stack, or a motion file; FILE#CHANNEL."),
+]
+SUFFIXES = (".png", ".svg")
 
 
 def picture(
-    run: RunFolder,
+    run: Source,
     /,
     *,
     time: Annotated[
         float | None, Parameter(help="Instant [s]; default: the frame of the largest rotation.")
     ] = None,
+    unit: Annotated[
+        Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "m"] | None,
+        Parameter(help="Of a motion file that does not state it."),
+    ] = None,
+    sample_interval: Annotated[float | None, Parameter(help="Of a motion file of one column [s].")] = None,
+    quantity: Annotated[
+        Literal["acceleration", "displacement"], Parameter(help="Of a motion file.", show_default=False)
+    ] = "acceleration",
+    baseline: Annotated[Baseline, Parameter(help="Of a motion file.", show_default=False)] = "none",
     to: Annotated[
-        Path | None, Parameter(help="The PNG; default: figures/picture_TIME.png of the run.")
+        Path | None,
+        Parameter(
+            help="The PNG, of a motion also SVG; default: figures/picture_TIME.png of the run, FILE.png."
+        ),
     ] = None,
 ) -> None:
-    """Draw the deformed container on its floor: stress, contact pressure, time and rotation ratio."""
-    opened = open_run(run)
+    """Draw the deformed container on its floor, or a recorded motion with its response spectrum.
+
+    Of a run: stress, contact pressure, time and rotation ratio. Of a motion file: acceleration, velocity, displacement
+    and pseudo-acceleration for 5 % of damping.
+    """
+    path, channel = split_channel(Path(), run)
+    if path.is_file():
+        if time is not None:
+            raise CaseError("--time is for a run, and this is a motion file")
+        record = read_record(path, unit=unit, sample_interval=sample_interval)
+        found = record.component("horizontal", quantity=quantity, channel=channel) if channel else None
+        shown = (
+            [one for one in record.components if one.quantity == quantity][:3] if found is None else [found]
+        )
+        if not shown:
+            record.component("horizontal", quantity=quantity)  # raises, with what it holds
+        print(_write_motion([processed(one, Processing(baseline=baseline)) for one in shown], path, to))
+        return
+    opened = open_run(Path(run))
     _ = opened.fields  # raises where there are no frames to draw
     require_rendering()
     # Loads pyvista.
     pictures = importlib.import_module("fem.render.picture")
-    with writing_into(to.parent if to else run, ELSEWHERE_TO):
+    with writing_into(to.parent if to else Path(run), ELSEWHERE_TO):
         print(pictures.write_picture(opened, time=time, path=to))
+
+
+def _write_motion(components: list[Component], path: Path, to: Path | None) -> Path:
+    """Draw a record beside its file, or where it is asked for."""
+    target = to if to is not None else Path(f"{path.stem}.png")
+    if target.suffix.lower() not in SUFFIXES:
+        raise CaseError(f"--to {target}: a motion is drawn as {' or '.join(SUFFIXES)}")
+    # Loads matplotlib.
+    figures, style = (importlib.import_module(f"fem.figures.{name}") for name in ("recorded", "style"))
+    figure = figures.record_figure(components, path.name)
+    with writing_into(target.parent, ELSEWHERE_TO):
+        if target.suffix.lower() == ".svg":
+            write_atomically(target, style.svg_of(figure))
+        else:
+            figure.savefig(target, dpi=160)
+    return target

@@ -20,6 +20,7 @@ from fem.figures.energy import energy_figure
 from fem.figures.forces import forces_figure
 from fem.figures.joints import joints_figure
 from fem.figures.modes import modes_figure
+from fem.figures.recorded import spectrum_figure
 from fem.figures.style import (
     BLACK,
     BLUE,
@@ -227,6 +228,7 @@ def phase_portrait_figure(run: OpenedRun) -> Figure:
 
 FIGURES: dict[str, Callable[[OpenedRun], Figure | None]] = {
     "base_motion": base_motion_figure,
+    "spectrum": spectrum_figure,
     "rotation": rotation_figure,
     "slip": slip_figure,
     "uplift": uplift_figure,

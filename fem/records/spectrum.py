@@ -19,6 +19,8 @@ SAMPLES_PER_PERIOD = 10.0
 #: steps of the shortest period that the samples describe
 LEAST_STEPS = 2.0
 DAMPING_RATIO = 0.05  #: usual for spectra
+EQUAL = 1e-3  #: share of their mean within which intervals count as equal
+MOST_SAMPLES = 2_000_000  #: of a motion whose intervals differ
 MOST_GROWTH = 7.0  #: exponent by which the sums of a block may grow: three of sixteen digits
 
 ComplexArray = NDArray[np.complex128]
@@ -50,6 +52,20 @@ def log_spaced_periods(
 ) -> FloatArray:
     """Periods for a curve, shape (count,) [s]: evenly spaced logarithms, from what the step resolves."""
     return np.geomspace(max(shortest_s, LEAST_STEPS * step_s), longest_s, count)
+
+
+def evenly_sampled(times_s: FloatArray, acceleration: FloatArray) -> tuple[float, FloatArray]:
+    """Step [s] and accelerations of a motion for its spectrum.
+
+    Where its intervals differ, the straight lines between its samples are sampled at half of the shortest.
+    """
+    steps, length = np.diff(times_s), float(np.ptp(times_s))
+    step = length / steps.size
+    if np.abs(steps - step).max() <= EQUAL * step:
+        return step, acceleration
+    count = min(math.ceil(2.0 * length / float(steps.min()) * (1.0 - EQUAL)), MOST_SAMPLES)
+    even = np.linspace(times_s[0], times_s[-1], count + 1)
+    return length / count, np.asarray(np.interp(even, times_s, acceleration))
 
 
 def response_spectrum(

@@ -52,7 +52,7 @@ from fem.results.run_result import RigidCheckResult, Verdict
 from fem.solid.modes import FEW, elastic_mode_table, elastic_modes
 
 #: figures beside the animation, in the order of reading; the others have their own sections
-MOTION = ("rotation", "slip", "base_motion", "uplift", "forces", "phase_portrait", "energy")
+MOTION = ("rotation", "slip", "base_motion", "spectrum", "uplift", "forces", "phase_portrait", "energy")
 
 
 def run_report(
