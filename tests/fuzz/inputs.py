@@ -17,6 +17,7 @@ import numpy as np
 from hypothesis import strategies as st
 from mesh_writer import write_container_mesh
 from pydantic.fields import FieldInfo
+from record_files import WRITTEN, synthetic_motion
 
 from fem.case.files import CASES
 from fem.case.overrides import with_overrides
@@ -305,7 +306,8 @@ def motion_tables(draw: Draw) -> Input:
     if draw(st.integers(0, 3)) == 0:
         words = {"quantity": "displacement", "unit": "m"}
     if draw(st.integers(0, 3)) == 0:
-        names = ("quantity", "unit", "baseline", "scale", "start")
+        names = ("quantity", "unit", "baseline", "scale", "start", "sample_interval_s", "start_s", "end_s")
+        names += ("scale_to_m_s2",) if draw(st.booleans()) else ()
         words |= {name: draw(values_of(f"motion.{name}", None)) for name in names}
     heading = draw(
         st.sampled_from(("", "", "time_s,value\n", "time_s,acc_m_s2\n", "t [s],disp [m]\n", "t,a_g\n"))
@@ -323,6 +325,60 @@ def motion_tables(draw: Draw) -> Input:
     return Input(
         arguments=("run", "case.toml", "--out", "out", "-q", "--no-band"),
         files={"case.toml": case.encode(), "floor.csv": content},
+    )
+
+
+def record_of(name: str) -> bytes:
+    """A file of a format, short enough to be damaged in its header as often as in its numbers."""
+    values = tuple(component[:200] for component in synthetic_motion())
+    return WRITTEN[name].text(*values).encode()
+
+
+@st.composite
+def records(draw: Draw) -> Input:
+    """A file of any format with bytes changed, as the motion of a case or drawn, in any way of naming it."""
+    name = draw(st.sampled_from(sorted(WRITTEN)))
+    form, content = WRITTEN[name], draw(damaged(record_of(name)))
+    if draw(st.integers(0, 5)) == 0:
+        content = content.decode("utf-8", "replace").encode(
+            draw(st.sampled_from(("utf-16", "utf-8-sig", "cp500")))
+        )
+    said = {"unit": form.unit, "sample_interval": form.sample_interval}
+    if draw(st.integers(0, 3)) == 0:
+        said["unit"] = draw(st.sampled_from(("g", "gal", "m/s2", "m")))
+    channel = draw(st.sampled_from(("", "", "", "#1", "#2", "#Up", "#9", "#")))
+    if draw(st.integers(0, 3)) == 0:
+        options = [f"--{key.replace('_', '-')}={value}" for key, value in said.items() if value is not None]
+        return Input(arguments=("picture", f"motion{channel}", *options), files={"motion": content})
+    keys = {"unit": said["unit"], "sample_interval_s": said["sample_interval"]}
+    for key in draw(
+        st.sets(st.sampled_from(("start_s", "end_s", "scale_to_m_s2", "baseline", "quantity")), max_size=3)
+    ):
+        keys[key] = draw(values_of(f"motion.{key}", None))
+    keys |= {"vertical.kind": "table"} if draw(st.booleans()) else {}
+    changes = [
+        f"{key if '.' in key else f'motion.{key}'}={value}"
+        for key, value in keys.items()
+        if value is not None
+    ]
+    case = (
+        "[container]\nwidth_m = 1.1\nheight_m = 4.0\ndensity_kg_m3 = 2000.0\n[contact]\nmu_static = 0.4\n"
+        '[motion]\nkind = "none"\n[solver]\nmodel = "rigid"\nduration_s = 0.2\nelement_size_m = 2.0\n'
+        "[output]\nfields_s = 0.0\nfigures = false\n"
+    )
+    command = (
+        ("run", "case.toml", "--out", "out", "-q", "--no-band")
+        if draw(st.booleans())
+        else ("check", "case.toml")
+    )
+    return Input(
+        arguments=(
+            *command,
+            "--motion",
+            f"motion{channel}",
+            *(word for one in changes for word in ("--set", one)),
+        ),
+        files={"case.toml": case.encode(), "motion": content},
     )
 
 
@@ -344,5 +400,6 @@ KINDS: dict[str, tuple[st.SearchStrategy[Input], float]] = {
     "case": (runs(), 0.4),
     "text": (texts(), 0.25),
     "mesh": (meshes(), 0.15),
-    "table": (motion_tables(), 0.2),
+    "table": (motion_tables(), 0.15),
+    "record": (records(), 0.05),
 }
