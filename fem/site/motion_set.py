@@ -70,6 +70,22 @@ class MotionSetCheck:
     reasons: tuple[str, ...]  #: why the set may not be used; empty: it may
 
     @property
+    def peak_fulfilled(self) -> bool:
+        """(4)b."""
+        return self.mean_peak >= self.wanted_peak * (1.0 - ROUNDING)
+
+    @property
+    def spectrum_fulfilled(self) -> bool:
+        """(4)c."""
+        return self.least_ratio >= LEAST_SHARE * (1.0 - ROUNDING)
+
+    @property
+    def vertical_fulfilled(self) -> bool:
+        """As (4)c, for the vertical spectrum; true without one."""
+        least = self.vertical_least_ratio
+        return least is None or least >= LEAST_SHARE * (1.0 - ROUNDING)
+
+    @property
     def valid(self) -> bool:
         """Whether the set may be used."""
         return not self.reasons

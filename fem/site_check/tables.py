@@ -9,6 +9,8 @@ from fem.case import quantities as q
 from fem.case.problem import Rule
 from fem.case.quantities import Quantity
 from fem.case.table import CaseTable, case_key
+from fem.site.artificial import LEAST_STATIONARY_S, MOST_STATIONARY_S
+from fem.site.motion_set import LEAST_MOTIONS
 
 IMPORTANCE = Quantity(
     unit="",
@@ -26,9 +28,9 @@ BUILDING_PERIOD = Quantity(
 DAMPING = Quantity(unit="", above=0.0, below=0.5, typical=0.05, slips={"per cent": 0.01})
 STATIONARY = Quantity(
     unit="s",
-    least=1.0,
-    most=60.0,
-    advice="EN 1998-1:2004, 3.2.3.1.2 (3) asks for 10 s, where nothing is known",
+    least=LEAST_STATIONARY_S,
+    most=MOST_STATIONARY_S,
+    advice="EN 1998-1:2004, 3.2.3.1.2 (3) asks for 10 s at least",
 )
 SHARE = Quantity(unit="", above=0.0, most=1.0, advice="0.5 to 1 is usual")
 ROTATION_RATIO = Quantity(unit="", above=0.0, most=1.0, advice="0.5 is usual; 1 is on the point of falling")
@@ -172,6 +174,12 @@ class MotionsTable(CaseTable):
     files: list[list[str]] | None = case_key(
         "records: a list of pairs, horizontal and vertical", None, example=[["h1.at2", "v1.at2"]]
     )
+    unit: Literal["g", "m/s2", "cm/s2", "gal", "mm/s2"] | None = case_key(
+        "of records whose files do not state it", None, example="g"
+    )
+    sample_interval_s: Annotated[float, Quantity(unit="s", above=0.0, most=1.0)] | None = case_key(
+        "of records of one column", None, example=0.01
+    )
     further: Annotated[int, Strict(), Quantity(unit="", least=0, most=10_000)] = case_key(
         "further artificial motions, for the share that overturns; 0: none", 100
     )
@@ -181,6 +189,11 @@ class MotionsTable(CaseTable):
             "motions.files",
             lambda motions: motions.source == "artificial" or bool(motions.files),
             'is missing: source = "{source}" needs the files of the records, such as [["h1.at2", "v1.at2"]]',
+        ),
+        Rule(
+            "motions.files",
+            lambda motions: motions.files is None or len(motions.files) >= LEAST_MOTIONS,
+            lambda motions: f"names {len(motions.files)} motions, at least {LEAST_MOTIONS} are needed",
         ),
         Rule(
             "motions.files",

@@ -1,0 +1,199 @@
+"""The motions of a site as files and as typed results: action, checks of the set, every motion, the floor."""
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from fem.records.spectrum import response_spectrum
+from fem.runtime.arrays import FloatArray
+from fem.site.action import SiteAction
+from fem.site.ground_motion import GroundMotion
+from fem.site.motion_files import write_at2, write_csv
+from fem.site.motion_set import LEAST_MOTIONS, LEAST_SHARE, MOST_CORRELATION, MotionSetCheck
+from fem.site_check.file import SiteRequest
+from fem.site_check.result import MOTIONS, FloorResult, MotionSet, SetCheck, SiteActionResult, SiteMotion
+
+CLAUSE = "EN 1998-1:2004, 3.2.3.1.2 (4) "
+
+
+def action_result(action: SiteAction, checked: MotionSetCheck) -> SiteActionResult:
+    """The action, and the spectra of the set beside its targets."""
+    shape, vertical = action.shape, checked.vertical
+    return SiteActionResult(
+        source=shape.source,
+        reference_acceleration_m_s2=action.reference_acceleration,
+        importance_factor=action.importance_factor,
+        element_importance_factor=action.element_importance_factor,
+        ag_m_s2=action.ground_acceleration,
+        soil_factor=shape.soil_factor,
+        ag_S_m_s2=action.surface_acceleration,
+        avg_m_s2=action.vertical_acceleration,
+        vertical_ratio=shape.vertical_ratio,
+        corner_periods_s=shape.corner_periods,
+        vertical_corner_periods_s=shape.vertical_corner_periods,
+        displacement_m=action.ground_displacement,
+        periods_s=_numbers(checked.periods),
+        target_m_s2=_numbers(checked.horizontal.target),
+        mean_m_s2=_numbers(checked.horizontal.mean),
+        vertical_target_m_s2=_numbers(vertical.target) if vertical else (),
+        vertical_mean_m_s2=_numbers(vertical.mean) if vertical else (),
+    )
+
+
+def set_result(
+    request: SiteRequest, checked: MotionSetCheck, ground: Sequence[GroundMotion], told: Sequence[SiteMotion]
+) -> MotionSet:
+    """The set of motions and its checks."""
+    asked, vertical = request.motions, checked.vertical
+    return MotionSet(
+        source=asked.source,
+        count=checked.count,
+        seed=asked.seed if asked.source == "artificial" else None,
+        stationary_s=checked.stationary,
+        band_s=checked.band,
+        mean_pga_m_s2=checked.mean_peak,
+        least_ratio=checked.least_ratio,
+        least_ratio_period_s=checked.least_ratio_period,
+        vertical_least_ratio=checked.vertical_least_ratio,
+        vertical_least_ratio_period_s=checked.vertical_least_ratio_period,
+        largest_correlation=checked.largest_correlation,
+        valid=checked.valid,
+        reasons=checked.reasons,
+        checks=_checks(checked),
+        motions=tuple(
+            replace(
+                one,
+                spectrum_m_s2=_numbers(checked.horizontal.motions[k]),
+                vertical_spectrum_m_s2=_numbers(vertical.motions[k]) if vertical else (),
+            )
+            for k, one in enumerate(told)
+        ),
+    )
+
+
+def _checks(checked: MotionSetCheck) -> tuple[SetCheck, ...]:
+    band = f"{checked.band[0]:g} to {checked.band[1]:.3g} s"
+    checks = [
+        SetCheck(
+            name="number of motions",
+            found=float(checked.count),
+            demanded=f"at least {LEAST_MOTIONS}",
+            fulfilled=checked.count >= LEAST_MOTIONS,
+            clause=CLAUSE + "a)",
+        ),
+        SetCheck(
+            name="mean of the zero-period values",
+            found=checked.mean_peak,
+            demanded=f"at least {checked.wanted_peak:.4g} m/s2",
+            unit="m/s2",
+            fulfilled=checked.peak_fulfilled,
+            clause=CLAUSE + "b)",
+        ),
+        SetCheck(
+            name=f"least mean over target, {band}, at {checked.least_ratio_period:.3g} s",
+            found=checked.least_ratio,
+            demanded=f"at least {LEAST_SHARE:g}",
+            fulfilled=checked.spectrum_fulfilled,
+            clause=CLAUSE + "c)",
+        ),
+        SetCheck(
+            name="largest correlation of two accelerations",
+            found=checked.largest_correlation,
+            demanded=f"at most {MOST_CORRELATION:g}",
+            fulfilled=checked.largest_correlation <= MOST_CORRELATION,
+        ),
+    ]
+    if checked.vertical_least_ratio is not None and checked.vertical_least_ratio_period is not None:
+        needed = checked.stationary is not None
+        checks.append(
+            SetCheck(
+                name=f"vertical: least mean over target, at {checked.vertical_least_ratio_period:.3g} s",
+                found=checked.vertical_least_ratio,
+                demanded=f"at least {LEAST_SHARE:g}" if needed else "shown only: recorded components",
+                fulfilled=checked.vertical_fulfilled or not needed,
+                clause="EN 1998-1:2004, 3.2.3.1.2 (1)P" if needed else "",
+            )
+        )
+    if checked.stationary is not None:
+        checks.append(
+            SetCheck(
+                name="stationary part",
+                found=checked.stationary,
+                demanded="at least 10 s",
+                unit="s",
+                fulfilled=checked.stationary >= 10.0,
+                clause="EN 1998-1:2004, 3.2.3.1.2 (3)",
+            )
+        )
+    return tuple(checks)
+
+
+def write_ground(folder: Path, ground: Sequence[GroundMotion]) -> list[SiteMotion]:
+    """Write the motions of the ground as CSV and as AT2, and tell what they are but for their spectra."""
+    (folder / MOTIONS).mkdir(exist_ok=True)
+    told = []
+    for number, motion in enumerate(ground, start=1):
+        files = write_csv_files(folder, motion, motion.name)
+        for letter, component in zip("hv", motion.components, strict=False):
+            name = f"{MOTIONS}/{motion.name}_{letter}.at2"
+            heading = f"UNANCHORED, , {motion.name}, {'UP' if letter == 'v' else 'HORIZONTAL'}"
+            write_at2(folder / name, motion.step, component, heading)
+            files.append(name)
+        measures, ends = motion.intensities, motion.ends
+        told.append(
+            SiteMotion(
+                number=number,
+                origin=motion.origin,
+                scale=motion.factor,
+                pga_m_s2=measures[0].peak_acceleration_m_s2,
+                pgv_m_s=measures[0].peak_velocity_m_s,
+                pgd_m=measures[0].peak_displacement_m,
+                d5_95_s=measures[0].significant_s,
+                vertical_pga_m_s2=measures[1].peak_acceleration_m_s2 if len(measures) == 2 else None,
+                end_velocity_m_s=ends[0],
+                end_displacement_m=ends[1],
+                spectrum_m_s2=(),
+                files=tuple(files),
+                sha256=tuple(hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in files),
+            )
+        )
+    return told
+
+
+def write_csv_files(folder: Path, motion: GroundMotion, stem: str) -> list[str]:
+    """Write the components of a motion for the runs; returns the names in the folder of results."""
+    (folder / MOTIONS).mkdir(exist_ok=True)
+    names = [f"{MOTIONS}/{stem}_{letter}.csv" for letter, _ in zip("hv", motion.components, strict=False)]
+    for name, component in zip(names, motion.components, strict=True):
+        write_csv(folder / name, motion.step, component)
+    return names
+
+
+def floor_result(
+    request: SiteRequest, floors: Mapping[float | None, Sequence[GroundMotion]], periods: FloatArray
+) -> FloorResult | None:
+    """What the motions are on the floor of a building: means over the set; None on the ground."""
+    if request.building is None or None in floors:
+        return None
+    varied = {period: motions for period, motions in floors.items() if period is not None}
+    peaks = {period: float(np.mean([one.peak for one in motions])) for period, motions in varied.items()}
+    worst = max(peaks, key=lambda period: peaks[period])
+    motions = varied[worst]
+    spectra = [
+        response_spectrum(one.step, one.horizontal, periods).pseudo_acceleration_m_s2 for one in motions
+    ]
+    return FloorResult(
+        z_over_h=request.building.z_over_h,
+        building_periods_s=tuple(varied),
+        damping_ratio=request.building.damping_ratio,
+        peak_m_s2=peaks[worst],
+        peak_velocity_m_s=float(np.mean([one.intensities[0].peak_velocity_m_s for one in motions])),
+        mean_m_s2=_numbers(np.mean(spectra, axis=0)),
+    )
+
+
+def _numbers(values: FloatArray) -> tuple[float, ...]:
+    return tuple(values.tolist())

@@ -1,0 +1,144 @@
+"""The motions of a site: made or read, on the ground and on the floor of a building."""
+
+import math
+from collections.abc import Sequence
+from itertools import combinations
+
+import numpy as np
+
+from fem.case.data_files import split_channel
+from fem.case.problem import outside_the_folder, stays_in_the_folder
+from fem.case.validation import CaseError
+from fem.records.files import read_record
+from fem.records.record import Component, Record, RecordError, require_together
+from fem.runtime.arrays import FloatArray
+from fem.site.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S
+from fem.site.artificial import artificial_set
+from fem.site.floor import PERIOD_FACTORS, floor_motion
+from fem.site.ground_motion import GroundMotion
+from fem.site.matched import matched_records, scaled_records
+from fem.site_check.file import SiteRequest
+
+#: largest difference of two intervals of a record that is sampled evenly, over the interval
+UNEVEN = 1e-3
+
+
+def longest_period(rates: Sequence[float]) -> float:
+    """End of the band of periods: 4 s, or 2 pi/p of the largest body where that is longer, up to 10 s.
+
+    Args:
+        rates: frequency parameters p of the bodies [1/s].
+    """
+    return min(max(LAST_PERIOD_S, *(2.0 * math.pi / rate for rate in rates)), LAST_PERIOD_ANNEX_A_S)
+
+
+def ground_motions(
+    request: SiteRequest, longest: float, *, allow_outside: bool = False
+) -> list[GroundMotion]:
+    """The set of motions of the ground, scaled or matched where it is recorded.
+
+    Raises:
+        CaseError: a record that is missing, outside the folder, no motion, or not independent of another.
+    """
+    asked = request.motions
+    if asked.source == "artificial":
+        try:
+            return artificial_set(
+                request.action,
+                count=asked.count,
+                seed=asked.seed,
+                stationary=asked.stationary_s,
+                longest=longest,
+                vertical=asked.vertical,
+            )
+        except ValueError as error:
+            raise CaseError(f"[motions] {error}") from None
+    records = [
+        _record(request, number, names, allow_outside)
+        for number, names in enumerate(asked.files or [], start=1)
+    ]
+    _require_independent(records)
+    fit = scaled_records if asked.source == "records" else matched_records
+    return fit(records, request.action, longest=longest)
+
+
+def floor_motions(
+    request: SiteRequest, ground: Sequence[GroundMotion]
+) -> dict[float | None, list[GroundMotion]]:
+    """Motions of the floor on which the container stands, by the period of the building; None: the ground."""
+    building = request.building
+    if building is None or building.z_over_h == 0.0:
+        return {None: list(ground)}
+    return {
+        period: [
+            floor_motion(
+                motion, height_ratio=building.z_over_h, period=period, damping_ratio=building.damping_ratio
+            )
+            for motion in ground
+        ]
+        for period in (float(f"{factor * building.building_period_s:.9g}") for factor in PERIOD_FACTORS)
+    }
+
+
+def _record(request: SiteRequest, number: int, names: Sequence[str], allow_outside: bool) -> GroundMotion:
+    asked, records, components = request.motions, list[Record](), list[Component]()
+    try:
+        for name, direction in zip(names, ("horizontal", "vertical"), strict=False):
+            if direction == "vertical" and not asked.vertical:
+                continue
+            record, channel = _read(request, name, allow_outside)
+            records.append(record)
+            components.append(
+                record.component(
+                    "vertical" if direction == "vertical" else "horizontal",
+                    quantity="acceleration",
+                    channel=channel,
+                )
+            )
+        require_together(components, [record.name for record in records])
+    except RecordError as error:
+        raise CaseError(f"[motions] files: {error}") from None
+    if len(components) == 2 and components[0] is components[1]:
+        raise CaseError(f"[motions] files: {records[0].name} is named for both directions")
+    step, values = _even(components)
+    return GroundMotion(
+        name=f"motion_{number:02d}",
+        step=step,
+        horizontal=values[0],
+        vertical=values[1] if len(values) == 2 else None,
+        origin=", ".join(dict.fromkeys(record.name for record in records)),
+        event=" ".join(f"{records[0].event} {records[0].date}".split()),
+    )
+
+
+def _read(request: SiteRequest, name: str, allow_outside: bool) -> tuple[Record, str]:
+    if not allow_outside and not stays_in_the_folder(name):
+        raise CaseError(f"[motions] files {outside_the_folder(name)}; or allow it with --allow-outside")
+    path, channel = split_channel(request.origin.folder, name)
+    folder = request.origin.folder.resolve()
+    if not allow_outside and not path.resolve().is_relative_to(folder):
+        raise CaseError(f"[motions] files: {name!r} leads out of {folder}; allow it with --allow-outside")
+    asked = request.motions
+    return read_record(path, unit=asked.unit, sample_interval=asked.sample_interval_s), channel
+
+
+def _even(components: Sequence[Component]) -> tuple[float, list[FloatArray]]:
+    """Step and values of components at even times; linear between samples where they are not even."""
+    times = components[0].times
+    steps = np.diff(times)
+    step = float(np.median(steps))
+    if np.ptp(steps) <= UNEVEN * step:
+        return step, [one.values for one in components]
+    step = float(steps.min())
+    even = times[0] + np.arange(math.floor((times[-1] - times[0]) / step * (1.0 + 1e-12)) + 1) * step
+    return step, [np.asarray(np.interp(even, one.times, one.values)) for one in components]
+
+
+def _require_independent(records: Sequence[GroundMotion]) -> None:
+    """Refuse two records of one event: the motions of a set count as independent of one another."""
+    for one, other in combinations(records, 2):
+        if one.event and one.event.casefold() == other.event.casefold():
+            raise CaseError(
+                f"[motions] files: {one.origin} and {other.origin} are records of one event, {one.event}; the motions "
+                "of a set must be independent, so take one of them"
+            )
