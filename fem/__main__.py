@@ -42,6 +42,7 @@ GROUPS = {
             "Compute the long-time motion over the frequency of the floor.",
             "rocking --from 0.5 --to 2",
         ),
+        "assess": ("Verify a container at a site by EN 1998-1, time histories and rules.", "site -j 4"),
     },
     "Look": {
         "report": ("Make one HTML page from a run, a sweep or a study.", "outputs/my-stack"),

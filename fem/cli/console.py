@@ -1,10 +1,14 @@
 """What commands have in common: options that mean the same everywhere, and the exit code of a status."""
 
+import importlib
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from cyclopts import Parameter, Token
+
+from fem.case.validation import CaseError
 
 ELSEWHERE_OUT = "run the command again, or choose another place with --out DIR"
 ELSEWHERE_TO = "run the command again, or choose another place with --to FILE"
@@ -63,4 +67,28 @@ Jobs = Annotated[
 Resume = Annotated[bool, flag("Continue an interrupted computation.")]
 Force = Annotated[bool, flag("Recompute and overwrite existing results.")]
 AsJson = Annotated[bool, flag("Print JSON.", "--json")]
+Scheduler = Annotated[
+    str | None,
+    Parameter(show_default=False, help="Address of a dask scheduler, such as tcp://127.0.0.1:8786."),
+]
 Quiet = Annotated[bool, flag("Print no progress.", "--quiet", "-q")]
+
+
+def connected(scheduler: str) -> AbstractContextManager[Any]:
+    """The workers of a cluster, for as long as the context lasts.
+
+    dask is loaded only here: it is an optional dependency, and takes a second.
+
+    Raises:
+        CaseError: it is not installed.
+    """
+    try:
+        module = importlib.import_module("fem.batch.cluster")
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
+            raise
+        raise CaseError(
+            "--scheduler needs the extra 'cluster': python -m pip install \"unanchored[cluster]\""
+        ) from None
+    workers: AbstractContextManager[Any] = module.cluster(scheduler)
+    return workers

@@ -5,14 +5,10 @@ import json
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
-from types import ModuleType
 from typing import Annotated, Any
 
-from cyclopts import Parameter
-
 from fem.batch.answers import table_lines
-from fem.case.case import CaseError
-from fem.cli.console import EXIT_CODES, Folder, Force, Jobs, Quiet, Resume, flag
+from fem.cli.console import EXIT_CODES, Folder, Force, Jobs, Quiet, Resume, Scheduler, connected, flag
 from fem.results.files import to_json
 from fem.runtime.progress import ScreenReporter
 from fem.sweep.file import load_sweep
@@ -24,10 +20,7 @@ def sweep(
     *,
     out: Folder = None,
     jobs: Jobs = None,
-    scheduler: Annotated[
-        str | None,
-        Parameter(show_default=False, help="Address of a dask scheduler, such as tcp://127.0.0.1:8786."),
-    ] = None,
+    scheduler: Scheduler = None,
     resume: Resume = False,
     force: Force = False,
     as_json: Annotated[bool, flag("Print sweep.json.", "--json")] = False,
@@ -47,7 +40,7 @@ def sweep(
     with ExitStack() as stack:
         workers_of = None
         if scheduler is not None:
-            workers_of = stack.enter_context(_cluster_module().cluster(scheduler))
+            workers_of = stack.enter_context(connected(scheduler))
         info = solver.run_sweep(
             asked,
             folder,
@@ -59,18 +52,6 @@ def sweep(
         )
     print(to_json(info).rstrip() if as_json else page_of(json.loads(to_json(info)), folder))
     return EXIT_CODES[info["status"]]
-
-
-def _cluster_module() -> ModuleType:
-    """Loaded only with --scheduler: dask is an optional dependency, and takes a second."""
-    try:
-        return importlib.import_module("fem.batch.cluster")
-    except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] not in ("dask", "distributed"):
-            raise
-        raise CaseError(
-            "--scheduler needs the extra 'cluster': python -m pip install \"unanchored[cluster]\""
-        ) from None
 
 
 def page_of(info: dict[str, Any], folder: Path) -> str:

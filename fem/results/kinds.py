@@ -90,6 +90,14 @@ RESPONSE = ResultKind(
     results="response.csv",
     own=("response.csv", "sections.csv", "portraits.csv", "case.toml", "state.npz", "figures/*.svg"),
 )
+SITE = ResultKind(
+    name="verification at a site",
+    asked="site",
+    mark="assess.json",
+    request="asked",
+    results="assess.json",
+    own=("runs.csv", "report.html", "site.toml", "container.toml", "motions/*.csv", "motions/*.at2"),
+)
 PAPER = ResultKind(
     name="study",
     asked="study",
@@ -107,7 +115,7 @@ VERIFICATION = ResultKind(
     results="verify.json",
     own=(),
 )
-KINDS = (RUN, SWEEP, ENSEMBLE, RESPONSE, PAPER, VERIFICATION)
+KINDS = (RUN, SWEEP, ENSEMBLE, RESPONSE, SITE, PAPER, VERIFICATION)
 
 
 def read_result(path: Path, kind: ResultKind = RUN) -> dict[str, Any]:

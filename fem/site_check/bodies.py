@@ -1,8 +1,9 @@
 """The containers of a site as bodies: full and empty, in the elevations that are run."""
 
+from fem.case.case import CaseError
 from fem.model.geometry import build_container
 from fem.model.static_checks import static_checks_of
-from fem.site_check.file import Variant
+from fem.site_check.file import EMPTY, Variant
 from fem.site_check.result import SiteBody
 
 
@@ -13,7 +14,12 @@ def body_of(variant: Variant) -> SiteBody:
         CaseError, MeshError: it cannot be built.
     """
     case = variant.case
-    mesh = build_container(case)
+    try:
+        mesh = build_container(case)
+    except ValueError as error:
+        if variant.mass == EMPTY:
+            raise CaseError(f"empty_mass_kg: {error}") from None
+        raise
     static = static_checks_of(case, mesh, 0.0)
     return SiteBody(
         mass=variant.mass,

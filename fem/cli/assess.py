@@ -1,0 +1,64 @@
+"""`assess`: does a container at a site stand, by time histories for the action of EN 1998-1?"""
+
+import importlib
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Annotated
+
+from fem.cli.console import (
+    EXIT_CODES,
+    AllowOutside,
+    Folder,
+    Force,
+    Jobs,
+    Quiet,
+    Resume,
+    Scheduler,
+    connected,
+    flag,
+)
+from fem.results.files import to_json
+from fem.runtime.progress import ScreenReporter
+
+
+def assess(
+    site: str,
+    /,
+    *,
+    out: Folder = None,
+    jobs: Jobs = None,
+    scheduler: Scheduler = None,
+    resume: Resume = False,
+    force: Force = False,
+    allow_outside: AllowOutside = False,
+    as_json: Annotated[bool, flag("Print assess.json.", "--json")] = False,
+    quiet: Quiet = False,
+) -> int:
+    """Verify a container at a site: overturning and slip under motions for the site, by EN 1998-1, 4.4.2.4(2).
+
+    Motions that match the spectra of the site, the container full and empty, over the range of friction, with both
+    signs of the vertical motion; the answer by a stated rule and limits, beside simplified methods. Writes
+    report.html and assess.json.
+
+    Parameters
+    ----------
+    site:
+        A site file or the name of a shipped one: site.
+    """
+    request = importlib.import_module("fem.site_check.file").load_site(site)
+    folder = out if out is not None else Path("outputs") / request.name
+    # Loaded only now, so that bad input is answered before anything is compiled.
+    study = importlib.import_module("fem.site_check.run")
+    with ExitStack() as stack:
+        result = study.run_site(
+            request,
+            folder,
+            jobs=jobs,
+            workers_of=stack.enter_context(connected(scheduler)) if scheduler is not None else None,
+            resume=resume,
+            force=force,
+            allow_outside=allow_outside,
+            reporter=ScreenReporter(quiet=quiet),
+        )
+    print(to_json(result.to_json()).rstrip() if as_json else study.page_of(result, folder))
+    return EXIT_CODES[result.status]
