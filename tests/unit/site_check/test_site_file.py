@@ -34,7 +34,7 @@ def test_the_shipped_site_can_be_read():
     assert (asked.name, asked.heading.container, asked.motions.count) == ("site", "seed_stack", 7)
     assert asked.action.surface_acceleration == pytest.approx(1.35 * 1.6)
     assert [(one.mass, one.elevation) for one in asked.variants] == [("full", "width"), ("empty", "width")]
-    assert asked.variants[1].case.mass == pytest.approx(1600.0)
+    assert asked.variants[1].case.mass == pytest.approx(2000.0)
     assert asked.wind_pressure == (650.0, "given")
 
 
