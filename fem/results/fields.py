@@ -262,6 +262,7 @@ class FrameKeeper:
         von_mises: FloatArray | None,
         contact_pressure: FloatArray,
         floor_displacement: float,
+        floor_lift: float = 0.0,
     ) -> None:
         """Keep a frame; arguments as of `FieldWriter.write`."""
         frame = Frame(
@@ -274,6 +275,7 @@ class FrameKeeper:
             von_mises=None if von_mises is None else _single(von_mises),
             contact_pressure=_single(contact_pressure),
             floor_displacement=float(np.float32(floor_displacement)),
+            floor_lift=float(np.float32(floor_lift)),
         )
         self._kept.append(frame)
 
