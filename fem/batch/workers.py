@@ -21,7 +21,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field
 from itertools import islice
 from multiprocessing import get_context
-from multiprocessing.synchronize import Event
+from multiprocessing.synchronize import Semaphore
 from types import TracebackType
 from typing import Self, TypeVar
 
@@ -69,13 +69,15 @@ class LocalWorkers:
 
     Args:
         jobs: cores to use.
-        worth: number of cases of a model from which processes are started.
+        worth: number of cases of a model from which processes are started; default: `WORTH_PROCESSES`.
     """
 
-    def __init__(self, jobs: int, worth: Mapping[str, float] = WORTH_PROCESSES) -> None:
-        self._jobs, self._worth = jobs, worth
+    def __init__(self, jobs: int, worth: Mapping[str, float] | None = None) -> None:
+        self._jobs, self._worth = jobs, worth or WORTH_PROCESSES
         self._held = ExitStack()
-        self._over: Event | None = None
+        self._over: Semaphore | None = (
+            None  #: released for each process at the end; a dead one blocks no other
+        )
         self._pools: dict[tuple[type[Executor], int], Executor] = {}
 
     def __call__(self, model: str, count: int) -> Sequence[Pool]:
@@ -93,8 +95,10 @@ class LocalWorkers:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self._over is not None:
-            self._over.set()
+        for kind_of_pool, count in self._pools:
+            for _ in range(count if kind_of_pool is ProcessPoolExecutor else 0):
+                assert self._over is not None
+                self._over.release()
         self._held.close()
 
     def _threads(self, count: int) -> Pool:
@@ -107,7 +111,7 @@ class LocalWorkers:
         key = ProcessPoolExecutor, count
         if key not in self._pools:
             context = get_context("spawn")
-            self._over = self._over or context.Event()
+            self._over = self._over or context.Semaphore(0)
             executor = ProcessPoolExecutor(count, context, _end_with_parent, (os.getpid(), self._over))
             self._pools[key] = self._held.enter_context(executor)
         return Pool(self._pools[key], count)
@@ -197,12 +201,12 @@ def _is_main(name: str, variables: Mapping[str, object]) -> bool:
     return name == "<module>" and variables.get("__name__") == "__main__"
 
 
-def _end_with_parent(parent: int, over: Event) -> None:
+def _end_with_parent(parent: int, over: Semaphore) -> None:
     """End this worker when the work is over, or when the process that started it has ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles Ctrl-C
 
     def watch() -> None:
-        while os.getppid() == parent and not over.wait(1.0):
+        while os.getppid() == parent and not over.acquire(timeout=1.0):
             pass
         os._exit(1)
 

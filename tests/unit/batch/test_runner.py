@@ -1,14 +1,14 @@
 """A list of cases on all cores: each row is the run of its case, whatever runs beside it."""
 
 import os
-import time
 
 import pytest
+from worker_tasks import end_the_process, who_works
 
 from fem.assessment.verdict import verdict_of
 from fem.batch.container_cache import container_key
 from fem.batch.runner import SCALARS, run_cases
-from fem.batch.workers import WORTH_PROCESSES, LocalWorkers, hand_out
+from fem.batch.workers import WORTH_PROCESSES, LocalWorkers, WorkersLostError, hand_out
 from fem.case.case import load_case
 from fem.model.model import build_model
 from fem.model.recovery import recovery_of
@@ -62,9 +62,9 @@ def test_processes_give_the_rows_that_threads_give(cases, monkeypatch):
     assert without_wall(run_cases(few, jobs=2)) == without_wall(threads)
 
 
-def who_works(chunk):
-    time.sleep(0.05)
-    return os.getpid()
+def test_a_process_that_dies_ends_the_work_with_a_word():
+    with pytest.raises(WorkersLostError, match="a worker process died"), LocalWorkers(2) as workers_of:
+        list(hand_out(range(4), end_the_process, workers_of("full", 4), at_a_time=1))
 
 
 def test_many_cases_are_shared_by_this_process_and_others():
