@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.reference.rigid_block import RigidBlock
-from contact.stepping.observables import SLIDING
+from contact.stepping.observables import ROCKING, SLIDING
 from fem.runtime.arrays import FloatArray
 from fem.site.action import DAMPING_RATIO, SiteAction, damping_correction
 from fem.site.body import FloorAction, Limits, LooseBody
@@ -35,7 +35,7 @@ def site_methods(
         motions: of the set; their mean peak velocity is that of the action on the ground.
         periods_s: of the spectrum of the floor.
         floor: of the building; None: on the ground.
-        runs: those of the set, with both signs; other factors than 1 are left out.
+        runs: those of the set count, with both signs.
     """
     limits = Limits(rotation_ratio=inputs.rotation_ratio_limit, slip=inputs.slip_limit_m)
     action = floor_action(site, motions, periods_s, floor)
@@ -121,7 +121,7 @@ def floor_action(
 
 @dataclass(frozen=True, kw_only=True)
 class Found:
-    """What the runs of one body found at factor 1, of one quantity."""
+    """What the runs of the set found of one body and one quantity."""
 
     words: str
     compared: str = ""
@@ -133,7 +133,7 @@ def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limi
     Overturning: over all frictions; slip: with the least friction, as the methods take it. A method is conservative
     where it refuses what the runs fulfil, or tells more slip than they find.
     """
-    done = [run for run in runs if run.factor == 1.0 and run.outcome is not None]
+    done = [run for run in runs if run.stage == "set" and run.outcome is not None]
     if row.quantity is MethodQuantity.OVERTURNING:
         return _overturning(row, done, limits)
     least = min(((run.mu_static, run.mu_kinetic) for run in done), default=None)
@@ -141,10 +141,10 @@ def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limi
     if not slips:
         return Found(words="no runs")
     most = max(slips)
-    words = f"{length_in_words(min(slips))} to {length_in_words(most)}"
+    slides = most > SLIDING * width
+    words = f"{length_in_words(min(slips))} to {length_in_words(most)}" if slides else "none slides"
     if row.quantity is MethodQuantity.SLIDING:
-        slid = most > SLIDING * width
-        return Found(words=words, compared=_compared(refused=not row.fulfilled, failed=slid))
+        return Found(words=words, compared=_compared(refused=not row.fulfilled, failed=slides))
     within = min(row.demand, most) >= 0.9 * max(row.demand, most)
     return Found(
         words=words,
@@ -159,9 +159,16 @@ def _overturning(row: MethodRow, done: Sequence[SiteRun], limits: Limits) -> Fou
         return Found(words="no runs")
     words = f"{fell or 'none'} of {len(done)} overturned"
     if stood:
-        words += f"; {'others ' if fell else ''}at most {max(stood):.2g} of the angle"
+        words += f"; {_rotation(max(stood), others=fell > 0)}"
     failed = fell > 0 or max(stood) > limits.rotation_ratio
     return Found(words=words, compared=_compared(refused=not row.fulfilled, failed=failed))
+
+
+def _rotation(ratio: float, *, others: bool) -> str:
+    """The largest rotation ratio of those that stood, beside others that fell."""
+    if ratio <= ROCKING:
+        return "no other rocks" if others else "none rocks"
+    return f"{'the others ' if others else ''}at most {ratio:.2g} of the angle"
 
 
 def _compared(*, refused: bool, failed: bool) -> str:

@@ -64,7 +64,7 @@ def site_report(folder: Path, *, signature: Signature | None = None) -> str:
     """
     result = read_result(folder)
     document = result.document or SiteDocument()
-    groups = groups_of(run for run in result.runs if run.factor == 1.0)
+    groups = groups_of(run for run in result.runs if run.stage == "set")
     shown_body = result.result.governing.mass if result.result.governing else result.bodies[0].mass
     return render_page(
         "site.html.j2",
@@ -239,11 +239,19 @@ def friction(run: SiteRun) -> str:
 
 
 def merged_methods(methods: Sequence[SiteMethod]) -> list[SiteMethod]:
-    """The methods; those that differ in the weight alone in one row, with the names of the weights."""
-    found: dict[SiteMethod, list[str]] = {}
+    """The methods side by side; weights for which a method says the same, to three figures, share a row."""
+    found: dict[tuple[str, ...], list[SiteMethod]] = {}
     for one in methods:
-        found.setdefault(replace(one, mass=""), []).append(one.mass)
-    return [replace(one, mass=", ".join(masses)) for one, masses in found.items()]
+        told = (
+            one.name,
+            one.quantity,
+            one.elevation,
+            number(one.utilisation, figures=3),
+            one.says,
+            one.found,
+        )
+        found.setdefault((*told, one.compared), []).append(one)
+    return [replace(same[0], mass=", ".join(one.mass for one in same)) for same in found.values()]
 
 
 def motion_figure(folder: Path, motion: SiteMotion, result: SiteResult) -> str:

@@ -125,6 +125,7 @@ class SiteBody(JsonBlock):
 class SiteRun(JsonBlock):
     """One run."""
 
+    stage: str = "set"  #: set | scan | refined | further: what it is for
     motion: int
     vertical_sign: int  #: 1, -1; 0: no vertical component
     mu_static: float

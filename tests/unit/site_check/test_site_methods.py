@@ -36,18 +36,19 @@ STRONGER = peak_rows(k1(mu_static=0.2), ACTION.scaled(1.5), horizontal=1.0, vert
         (
             OVERTURNING,
             [STOOD, FELL],
-            "1 of 2 overturned; others at most 0.2 of the angle",
+            "1 of 2 overturned; the others at most 0.2 of the angle",
             "not conservative",
         ),
         (OVERTURNING, [FELL], "1 of 1 overturned", "not conservative"),
         (OVERTURNING, [BEYOND], "none of 1 overturned; at most 0.6 of the angle", "not conservative"),
         (STRONGER, [STOOD], "none of 1 overturned; at most 0.2 of the angle", "conservative"),
+        (OVERTURNING, [replace(STOOD, rotation_ratio=0.001)], "none of 1 overturned; none rocks", "agrees"),
         (STRONGER, [FELL], "1 of 1 overturned", "agrees"),
         (SLIDING, [STOOD], "4 mm to 4 mm", "agrees"),
-        (SLIDING, [replace(STOOD, max_slip_m=1e-6)], "0.001 mm to 0.001 mm", "conservative"),
+        (SLIDING, [replace(STOOD, max_slip_m=1e-6)], "none slides", "conservative"),
         (SLIDING, [STOOD, replace(STOOD, mu_static=0.4, max_slip_m=0.5)], "4 mm to 4 mm", "agrees"),
         (SLIDING, [replace(STOOD, outcome=None)], "no runs", ""),
-        (OVERTURNING, [replace(FELL, factor=2.0)], "no runs", ""),
+        (OVERTURNING, [replace(FELL, stage="scan", factor=2.0)], "no runs", ""),
     ],
 )
 def test_what_the_runs_found_beside_a_method(row, runs, words, compared):
