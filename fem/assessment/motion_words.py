@@ -33,6 +33,19 @@ def _small(residual: float, peak: float | None) -> float:
     return 0.0 if abs(residual) <= ROUNDING * (peak or 0.0) else residual
 
 
+def doubts(motion: MotionResult, gravity: float) -> tuple[str, ...]:
+    """What is doubtful about the motions of a floor under this gravity [m/s2]: records, and a floor that falls away."""
+    upward = motion.vertical
+    if upward is None:
+        return motion.notes
+    falls = (upward.peak_in_run_m_s2 or 0.0) >= gravity
+    note = (
+        f"the vertical acceleration of the floor reaches {upward.peak_in_run_m_s2:.4g} m/s2, gravity or more: where it "
+        "is downward, the floor bears nothing and the container leaves it"
+    )
+    return (*motion.notes, *upward.notes, *((note,) if falls else ()))
+
+
 def is_cut(motion: MotionResult) -> bool:
     """Whether the run ends before one of the motions, or begins after it has."""
     covered = _most_cut(motion).covered

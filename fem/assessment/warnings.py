@@ -7,6 +7,7 @@ that raised it, the limit, and what can be done. No warning changes a verdict.
 import math
 from collections.abc import Callable
 
+from fem.assessment.motion_words import doubts
 from fem.assessment.sureness import SURE, sureness_in_words
 from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from fem.case.case import Case
@@ -131,8 +132,8 @@ def it_still_moves(result: RunResult, case: Case) -> str | None:
 
 
 def motion_is_doubtful(result: RunResult, case: Case) -> str | None:
-    """A recorded motion that drifts, or whose samples are too far apart."""
-    return "; ".join((result.motion or MotionResult()).notes) or None
+    """A recorded motion that drifts, or whose samples are too far apart; a floor that falls away."""
+    return "; ".join(doubts(result.motion or MotionResult(), case.gravity_m_s2)) or None
 
 
 def rest_proves_nothing(result: RunResult, case: Case) -> str | None:

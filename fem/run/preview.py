@@ -7,6 +7,7 @@ from typing import Any
 
 from contact.interface.penalty import contact_frequency
 from fem.assessment.code_note import code_note
+from fem.assessment.motion_words import doubts
 from fem.case.case import Case
 from fem.case.rules import ends_at_rest
 from fem.model.geometry import node_count
@@ -106,7 +107,11 @@ class Preview:
     def notes(self) -> list[str]:
         """What to keep in mind when the run is read."""
         case, static = self.case, self.static
-        kick = case.amplitude * case.angular_frequency * abs(math.cos(case.motion.phase_rad))
+        kicks = [
+            one.amplitude * one.angular_frequency * abs(math.cos(one.phase_rad))
+            for one in (case.motion, case.vertical)
+        ]
+        upward = f" along x and {kicks[1]:.3g} m/s vertically" if case.vertical.kind == "harmonic" else ""
         notes = [
             (
                 abs(case.initial.rotation_rad) >= static.slenderness_angle,
@@ -119,7 +124,7 @@ class Preview:
                 "the rigid block's impact model is not credible",
             ),
             (static.by_code is not None, code_note(static.to_result())),
-            *((True, note) for note in self.motion.notes),
+            *((True, note) for note in doubts(self.motion, case.gravity_m_s2)),
             (
                 case.contact.friction == "regularised",
                 "friction regularised in velocity creeps under constant load; elastic-stick does not",
@@ -132,7 +137,7 @@ class Preview:
             ),
             (
                 case.motion.start == "rest" and case.motion.kind == "harmonic",
-                f'start = "rest": the floor begins with a jerk of {kick:.3g} m/s',
+                f'start = "rest": the floor begins with a jerk of {kicks[0]:.3g} m/s{upward}',
             ),
             (
                 static.ruling.overturning.utilisation >= 1.0 and static.ruling.sliding.passed,

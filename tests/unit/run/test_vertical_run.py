@@ -12,6 +12,7 @@ from fem.figures.run import figures_of
 from fem.model.model import build_model
 from fem.report.animation import animation_of
 from fem.report.run_page import run_report
+from fem.report.variations import variations_of
 from fem.response.request import ResponseRequest
 from fem.results.reader import open_run
 from fem.run.run import RunOptions, run_case
@@ -145,3 +146,20 @@ def test_a_response_curve_has_no_vertical_motion():
         CaseError, match=r'\[vertical\] kind must be "none" for a response curve, got "harmonic"'
     ):
         ResponseRequest(case=case, first_Hz=0.5, last_Hz=1.0, count=3)
+
+
+def test_a_floor_that_falls_away_and_a_jerk_are_told_before_the_run(capsys):
+    changes = (*RIGID, *VERTICAL, "vertical.peak_acceleration_m_s2=12.0", "motion.start=rest")
+    assert main(["check", "seed_stack_plateau", *(part for one in changes for part in ("--set", one))]) == 0
+    page = " ".join(capsys.readouterr().out.split())
+    assert "the vertical acceleration of the floor reaches 12 m/s2, gravity or more" in page
+    assert "a jerk of 0.577 m/s along x and 1.17 m/s vertically" in page
+
+
+def test_variations_try_the_other_sign_and_strengthen_both_motions():
+    changed = [one.values for one in variations_of(load_case("seed_stack_plateau", VERTICAL))]
+    assert {"vertical.scale": 1.0} in changed
+    assert {"vertical.kind": "none"} in changed
+    assert {"motion.peak_acceleration_m_s2": 8.0, "vertical.peak_acceleration_m_s2": 6.0} in changed
+    plain = [one.values for one in variations_of(load_case("seed_stack_plateau"))]
+    assert not [values for values in plain if any(key.startswith("vertical") for key in values)]
