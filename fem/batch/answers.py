@@ -133,7 +133,7 @@ def sentence_of(answer: Answer, axis: Axis, *, rising: bool, where: str = "") ->
         where: the line that overturned first, in words.
     """
     every = f"stood in every {'motion' if axis.key.startswith('motion.') else 'case'} tried"
-    stood, fell = _told_apart(axis, answer.stood_to, answer.overturned_from)
+    stood, fell = ends_in_words(answer, axis)
     slip = _slip_in_words(answer.slip) if fell and answer.slip is not None else ""
     noted = ", ".join(filter(None, (slip, f"with {where}" if fell and where else "")))
     noted = f" ({noted})" if noted else ""
@@ -162,6 +162,18 @@ def sentence_of(answer: Answer, axis: Axis, *, rising: bool, where: str = "") ->
     return "; ".join(filter(None, parts))
 
 
+def ends_in_words(answer: Answer, axis: Axis) -> tuple[str, str]:
+    """Up to where it stood and where it first overturned, in as many figures as tell them apart; empty for none."""
+    ends = (answer.stood_to, answer.overturned_from)
+    words = ("", "")
+    for figures in range(3, MOST_FIGURES + 1):
+        stood, fell = ("" if one is None else in_words(axis, [one], figures) for one in ends)
+        words = stood, fell
+        if stood != fell:
+            break
+    return words
+
+
 def ranges_in_words(ranges: Sequence[Range], axis: Axis) -> str:
     """Ranges of values: "0.5 to 0.55 g, 0.61 g"; those after the fourth are counted."""
     shown = [in_words(axis, sorted({*one})) for one in ranges[:MOST_RANGES]]
@@ -188,13 +200,3 @@ def _ranges(marked: Iterable[tuple[float, bool]]) -> Iterator[Range]:
         if mark:
             values = [value for value, _ in group]
             yield values[0], values[-1]
-
-
-def _told_apart(axis: Axis, *values: float | None) -> list[str]:
-    """Values with as many figures as it takes to tell them apart; nothing for none."""
-    words: list[str] = []
-    for figures in range(3, MOST_FIGURES + 1):
-        words = ["" if one is None else in_words(axis, [one], figures) for one in values]
-        if len(set(words)) == len(words):
-            break
-    return words

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
-from fem.batch.answers import ranges_in_words
-from fem.batch.labels import axis_label, in_words
+from fem.batch.answers import ends_in_words, ranges_in_words
+from fem.batch.labels import axis_label
 from fem.case.case import load_case
 from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html.page import Signature
@@ -119,8 +119,8 @@ def answer_table(answer: SweepAnswer) -> PageTable:
     def row(row: AnswerRow) -> Iterator[str]:
         found = row.answer
         yield answer.where(row) + (": every motion" if len(row.point) < len(answer.others) else "")
-        for end in (found.stood_to, found.overturned_from):
-            yield in_words(answer.axis, [end]) if end is not None else ABSENT
+        for end in ends_in_words(found, answer.axis):
+            yield end or ABSENT
         yield f"{millimetres(found.slip)} mm" if found.slip is not None else ""
         for ranges in (found.stood_again, found.failed, found.unsure):
             yield ranges_in_words(ranges, answer.axis)
