@@ -45,7 +45,7 @@ GROUPS = {
         "assess": ("Verify a container at a site by EN 1998-1, time histories and rules.", "site -j 4"),
     },
     "Look": {
-        "report": ("Make one HTML page from a run, a sweep or a study.", "outputs/my-stack"),
+        "report": ("Make one HTML page from a folder of results.", "outputs/my-stack"),
         "picture": (
             "Draw one instant of a run, or a motion and its spectrum (PNG).",
             "outputs/my-stack --time 3.2",
