@@ -73,7 +73,7 @@ VERTICAL_MOTION = (
         file="fem/model/equilibrium.py",
         old="weight=mesh.mass * gravity,\n            centroid",
         new="weight=mesh.mass * case.gravity_m_s2,\n            centroid",
-        tests=(VERTICAL, "-k", "contents"),
+        tests=(VERTICAL, "-k", "settled"),
     ),
     Mutation(
         name="a container left at rest by a floor that moves up",

@@ -102,6 +102,18 @@ def test_a_constant_acceleration_is_another_gravity(model, acceleration):
     assert np.isclose(lifted.history["centre_z_m"], heavier.history["centre_z_m"], atol=1e-3).all()
 
 
+@pytest.mark.parametrize("model", ["rigid", "reduced"])
+def test_a_container_settled_on_an_accelerating_floor_stays_settled(model):
+    values = PULL | {
+        "vertical.peak_acceleration_m_s2": 3.0,
+        "solver.model": model,
+        "solver.element_size_m": 0.5,
+    }
+    still = run(box(solver__duration_s=1.0).with_values(values))
+    assert still.history["normal_force_N"] == pytest.approx(2500.0 * 12.81, rel=1e-6)
+    assert np.ptp(still.history["centre_z_m"]) < 1e-9
+
+
 @pytest.mark.parametrize("model", ["rigid", "reduced", "full"])
 def test_a_container_on_a_falling_floor_is_weightless(model):
     values = {"vertical.peak_acceleration_m_s2": -9.81, "vertical.delay_s": 0.1, "solver.duration_s": 0.5}
