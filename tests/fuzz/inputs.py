@@ -85,12 +85,32 @@ def cases_by_schema(draw: Draw) -> Tables:
         "output.figures": False,
         "output.fields_s": 0.0,
     }
-    tables = with_overrides(tables, quick)
+    tables = with_overrides(tables, quick | draw(st.one_of(st.just({}), vertical_motions())))
     chosen = draw(st.sets(st.sampled_from(sorted(FIELDS)), max_size=9))
     values = {key: draw(values_of(key, present(tables, key))) for key in sorted(chosen)}
     tables = with_overrides(tables, values)
     bound_the_cost(tables)
     return tables
+
+
+@st.composite
+def vertical_motions(draw: Draw) -> dict[str, Any]:
+    """Keys of a vertical motion, up to a floor that falls three times as fast as the container."""
+    keys = {
+        "peak_acceleration_m_s2": draw(st.floats(0.0, 30.0)),
+        "scale": draw(st.sampled_from((1.0, -1.0, 0.3))),
+    }
+    if draw(st.booleans()):
+        keys |= {
+            "kind": "harmonic",
+            "frequency_Hz": draw(st.floats(0.5, 40.0)),
+            "phase_rad": draw(st.floats(-3.0, 3.0)),
+        }
+    else:
+        shape = draw(st.sampled_from(("rectangular", "half-sine", "sine")))
+        keys |= {"kind": "pulse", "shape": shape, "pulse_s": draw(st.floats(1e-3, 0.5))}
+        keys["delay_s"] = draw(st.sampled_from((0.0, 0.02)))
+    return {f"vertical.{key}": value for key, value in keys.items()}
 
 
 def present(tables: Tables, key: str) -> Any:
