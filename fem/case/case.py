@@ -96,6 +96,11 @@ class Case(CaseHeading):
         return self._origin.overrides
 
     @property
+    def named(self) -> dict[str, str | None]:
+        """What its pages bear, by key of [document]."""
+        return {} if self.document is None else self.document.model_dump()
+
+    @property
     def box_mass(self) -> float:
         """Mass of one box with its fill [kg]."""
         box = self.container

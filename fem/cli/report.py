@@ -26,6 +26,8 @@ def report(
     all_variations: Annotated[
         bool, flag("Compute every variation of a run, even if that takes long.")
     ] = False,
+    short: Annotated[bool, flag("At most three printed pages, of a run.")] = False,
+    pdf: Annotated[bool, flag("Print it to a PDF beside it, by Chromium or Chrome.")] = False,
     quiet: Quiet = False,
 ) -> None:
     """Make one HTML file that can be sent, read offline and printed.
@@ -40,6 +42,8 @@ def report(
             f"{folder}: no such folder; give the folder of a run, a sweep, an ensemble, a response curve or a study, "
             "such as outputs/NAME"
         )
+    if short and not (folder / "run.json").is_file():
+        raise FolderError(f"{folder}: --short is for the report of a run")
     place = _place(to if to is not None else folder / PAGE)
     reporter = ScreenReporter(quiet=quiet)
     interrupts = importlib.import_module("fem.runtime.signals")
@@ -66,12 +70,16 @@ def report(
                 opened,
                 signature=signature,
                 every_variation=all_variations,
+                brief=short,
                 message=reporter.message,
                 stop=stop,
             )
     with writing_into(place.parent, ELSEWHERE_TO):
         write_atomically(place, page)
     print(place)
+    if pdf:
+        printing = importlib.import_module("fem.report.printing")
+        print(printing.print_page(place) or printing.BY_HAND)
 
 
 def _place(path: Path) -> Path:

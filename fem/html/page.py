@@ -10,7 +10,7 @@ import hashlib
 import json
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
 from typing import Any
@@ -28,11 +28,25 @@ FOREIGN = re.compile(
 
 @dataclass(frozen=True, kw_only=True)
 class Signature:
-    """Who answers for a page; may be filled in later."""
+    """What a page belongs to, and who answers for it; may be filled in later."""
 
+    project: str = ""
+    company: str = ""
+    number: str = ""  #: of the document
+    revision: str = ""
     author: str = ""
     checker: str = ""
-    revision: str = ""
+
+    @property
+    def heading(self) -> str:
+        """The line above the title; empty where nothing is known."""
+        return " · ".join(part for part in (self.company, self.project, self.number) if part)
+
+    def completed(self, document: Mapping[str, str | None]) -> "Signature":
+        """With what the table [document] of a case says, where nothing was given."""
+        return replace(
+            self, **{key: text for key, text in document.items() if text and not getattr(self, key)}
+        )
 
 
 def render_page(

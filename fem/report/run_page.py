@@ -53,6 +53,7 @@ from fem.solid.modes import FEW, elastic_mode_table, elastic_modes
 
 #: figures beside the animation, in the order of reading; the others have their own sections
 MOTION = ("rotation", "slip", "base_motion", "spectrum", "uplift", "forces", "phase_portrait", "energy")
+SHORT_MOTION = ("rotation", "slip", "base_motion")
 
 
 def run_report(
@@ -60,6 +61,7 @@ def run_report(
     *,
     signature: Signature | None = None,
     every_variation: bool = False,
+    brief: bool = False,
     message: Callable[[str], None] = lambda text: None,
     stop: Callable[[], bool] = lambda: False,
 ) -> str:
@@ -69,6 +71,7 @@ def run_report(
         run: opened; finished or not.
         signature: author, checker, revision.
         every_variation: compute also those that take long.
+        brief: three printed pages at most: answer, inputs, static rule and run, rotation and slip, limits.
         message: receives a sentence for the user where something takes time or is missing.
         stop: asked repeatedly; true leaves out what has not been computed.
 
@@ -88,11 +91,11 @@ def run_report(
             message=message,
             stop=stop,
         )
-        if run.status in RUN.finished
+        if run.status in RUN.finished and not brief
         else nullcontext(lambda: None)
     )
     with varying as variations:
-        return _page(run, model, signature or Signature(), variations, message)
+        return _page(run, model, signature or Signature(), variations, brief, message)
 
 
 def _page(
@@ -100,6 +103,7 @@ def _page(
     model: Model,
     signature: Signature,
     variations: Callable[[], VariationTable | None],
+    brief: bool,
     message: Callable[[str], None],
 ) -> str:
     """The page; the variations are waited for last."""
@@ -107,8 +111,8 @@ def _page(
     verdict, history = result.verdict or Verdict(), _history(run, message)
     shown = animation_of(model, _fields(run, message))
     drawn, compared = drawings_of(run, model.container), compared_rows(static, verdict, case)
-    motion = [drawn[name] for name in MOTION if name in drawn]
-    played = player_data(shown, history, model=model) if len(history) > 1 else {}
+    motion = [drawn[name] for name in (SHORT_MOTION if brief else MOTION) if name in drawn]
+    played = player_data(shown, history, model=model) if len(history) > 1 and not brief else {}
     computed = dt.datetime.fromtimestamp(run.place.result.stat().st_mtime)
     return render_page(
         "run.html.j2",
@@ -124,7 +128,8 @@ def _page(
         verdict=verdict,
         sentence=typeset(outcome_sentence(result)),
         standing=_standing(run.status, verdict),
-        signature=signature,
+        signature=signature.completed(case.named),
+        brief=brief,
         sketch=sketch(
             case,
             centroid=static.centroid,

@@ -103,7 +103,7 @@ def study_page(
         data=data,
         info=info,
         case=case,
-        signature=signature or Signature(),
+        signature=(signature or Signature()).completed(case.named),
         answer=typeset(answer[0].upper() + answer[1:]) if answer else None,
         asked=asked_rows(case),
         assumptions=assumptions(case),

@@ -4,7 +4,7 @@ import csv
 import datetime as dt
 import json
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from importlib import metadata
 from pathlib import Path
 from typing import NamedTuple
@@ -74,9 +74,7 @@ def site_report(folder: Path, *, signature: Signature | None = None) -> str:
         hash=result.provenance.site_hash,
         version=metadata.version("unanchored"),
         today=dt.date.today().isoformat(),
-        signature=signature
-        or Signature(author=document.author, checker=document.checker, revision=document.revision),
-        document=document,
+        signature=(signature or Signature()).completed(asdict(document)),
         result=result,
         answer=result.result,
         standing={None: "open", True: "stood", False: "fell"}[result.result.fulfilled],

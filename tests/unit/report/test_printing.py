@@ -1,0 +1,63 @@
+"""A page as a PDF: three pages at most of the short report, and the way by hand where there is no browser."""
+
+import re
+import shutil
+import subprocess
+
+import pytest
+
+from fem.__main__ import main
+from fem.report import printing
+
+NEEDS_BROWSER = pytest.mark.skipif(
+    printing.find_browser() is None, reason="no Chromium or Chrome to print with"
+)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    place = tmp_path_factory.mktemp("printed") / "run"
+    changes = [
+        "solver.duration_s=0.5",
+        "output.fields_s=0.25",
+        "document.project=Store <3>",
+        "document.number=7-A",
+    ]
+    sets = [word for change in changes for word in ("--set", change)]
+    assert main(["run", "rocking", "--no-band", "-q", "--out", str(place), *sets]) == 0
+    return place
+
+
+def test_the_document_stands_on_the_page(folder):
+    assert main(["report", str(folder), "-q", "--short"]) == 0
+    text = (folder / "report.html").read_text(encoding="utf-8")
+    assert "Store &lt;3&gt; · 7-A" in text
+    assert 'id="sheet"' not in text
+    assert 'id="static"' in text
+
+
+@NEEDS_BROWSER
+def test_the_short_report_has_three_pages_at_most(folder, capsys):
+    assert main(["report", str(folder), "-q", "--short", "--pdf"]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == str(folder / "report.pdf")
+    pdf = (folder / "report.pdf").read_bytes()
+    assert pdf.startswith(b"%PDF")
+    if shutil.which("pdfinfo"):
+        info = subprocess.run(
+            ["pdfinfo", folder / "report.pdf"], capture_output=True, text=True, check=True
+        ).stdout
+        assert int(re.search(r"^Pages:\s+(\d+)", info, flags=re.MULTILINE)[1]) <= 3
+        assert "A4" in info
+
+
+def test_without_a_browser_the_way_by_hand_is_printed(folder, monkeypatch, capsys):
+    monkeypatch.setenv("PATH", str(folder))
+    monkeypatch.setattr(printing, "PLACES", ())
+    assert main(["report", str(folder), "-q", "--short", "--pdf"]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == printing.BY_HAND
+
+
+def test_only_a_run_has_a_short_report(tmp_path, capsys):
+    (tmp_path / "sweep.json").write_text("{}")
+    assert main(["report", str(tmp_path), "--short"]) == 2
+    assert "--short is for the report of a run" in capsys.readouterr().err
