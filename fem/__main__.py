@@ -43,6 +43,10 @@ GROUPS = {
             "rocking --from 0.5 --to 2",
         ),
         "assess": ("Verify a container at a site by EN 1998-1, time histories and rules.", "site -j 4"),
+        "size": (
+            "Find the least width, tallest stack or strongest action that a site allows.",
+            "site --over container.width_m",
+        ),
     },
     "Look": {
         "report": ("Make one HTML page from a folder of results.", "outputs/my-stack"),

@@ -98,6 +98,14 @@ SITE = ResultKind(
     results="assess.json",
     own=("runs.csv", "report.html", "site.toml", "container.toml", "motions/*.csv", "motions/*.at2"),
 )
+SIZE = ResultKind(
+    name="size",
+    asked="size",
+    mark="size.json",
+    request="asked",
+    results="size.json",
+    own=("runs.csv", "site.toml", "container.toml", "figures/size.svg"),
+)
 PAPER = ResultKind(
     name="study",
     asked="study",
@@ -115,7 +123,7 @@ VERIFICATION = ResultKind(
     results="verify.json",
     own=(),
 )
-KINDS = (RUN, SWEEP, ENSEMBLE, RESPONSE, SITE, PAPER, VERIFICATION)
+KINDS = (RUN, SWEEP, ENSEMBLE, RESPONSE, SITE, SIZE, PAPER, VERIFICATION)
 
 
 def read_result(path: Path, kind: ResultKind = RUN) -> dict[str, Any]:

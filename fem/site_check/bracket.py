@@ -52,6 +52,7 @@ class SizeResult(JsonBlock):
     """Which values fulfil the rule: what `size.json` holds."""
 
     key: str
+    followers: tuple[str, ...] = ()  #: keys that took the same values
     unit: str
     low: float  #: ends of the range that was tried
     high: float
@@ -78,12 +79,15 @@ def next_values(axis: SizeAxis, found: Mapping[float, SiteAnswer]) -> list[float
     )
 
 
-def size_result(axis: SizeAxis, found: Mapping[float, SiteAnswer]) -> SizeResult:
+def size_result(
+    axis: SizeAxis, found: Mapping[float, SiteAnswer], followers: tuple[str, ...] = ()
+) -> SizeResult:
     """Which values fulfil the rule, from the answers by value."""
     points = tuple(_point(value, found[value]) for value in sorted(found))
     intervals = fulfilled_intervals(points)
     return SizeResult(
         key=axis.key,
+        followers=followers,
         unit=axis.unit,
         low=axis.values[0],
         high=axis.values[-1],
@@ -143,23 +147,31 @@ def sentence(axis: SizeAxis, intervals: Sequence[tuple[float, float]]) -> str:
 
 
 def _stretches(intervals: Sequence[tuple[float, float]], axis: SizeAxis) -> str:
-    return " and ".join(
-        f"of {_value(low, axis)}"
-        if low == high
-        else f"from {_value(low, axis, up=True)} to {_value(high, axis, up=False)}"
-        for low, high in intervals
-    )
+    return " and ".join(_stretch(low, high, axis) for low, high in intervals)
 
 
-def _value(value: float, axis: SizeAxis, *, up: bool | None = None) -> str:
-    """With three figures, rounded into what fulfils the rule."""
-    if axis.whole or value == 0.0:
-        return f"{value:g} {axis.unit}".strip()
-    if up is not None:
-        step = 10.0 ** (math.floor(math.log10(abs(value))) - 2)
-        steps = value / step
-        value = (math.ceil(steps - 1e-9) if up else math.floor(steps + 1e-9)) * step
-    return f"{value:.3g} {axis.unit}".strip()
+def _stretch(low: float, high: float, axis: SizeAxis) -> str:
+    """A stretch in words, with as many figures as tell its ends apart."""
+    if low == high:
+        return f"of {_value(low, axis)}"
+    figures = next((n for n in (3, 4, 5) if _inward(low, n, up=True) <= _inward(high, n, up=False)), 6)
+    return f"from {_value(low, axis, figures, up=True)} to {_value(high, axis, figures, up=False)}"
+
+
+def _value(value: float, axis: SizeAxis, figures: int = 3, *, up: bool | None = None) -> str:
+    """With so many figures, rounded into what fulfils the rule."""
+    if not axis.whole and up is not None:
+        value = _inward(value, figures, up=up)
+    return f"{value:.{figures}g} {axis.unit}".strip()
+
+
+def _inward(value: float, figures: int, *, up: bool) -> float:
+    """A value rounded up or down to so many figures."""
+    if value == 0.0:
+        return value
+    step = 10.0 ** (math.floor(math.log10(abs(value))) - figures + 1)
+    steps = value / step
+    return (math.ceil(steps - 1e-9) if up else math.floor(steps + 1e-9)) * step
 
 
 def _outcome(answer: SiteAnswer) -> str:

@@ -179,9 +179,9 @@ def draw_scan(answer: SiteAnswer, inputs: SiteInputs) -> str:
 
 def draw_size(size: SizeResult, inputs: SiteInputs) -> str:
     """Rotation, slip and the runs that overturned over the key that was varied; what fulfils the rule is shaded."""
-    label = f"{size.key} [{size.unit or '-'}]"
+    answer = size.sentence.partition(";")[0].rstrip(".")  # the islands are in the figure
     with house_style():
-        figure, axes = _over("Which values fulfil the rule", size.sentence, label, size.points, inputs)
+        figure, axes = _over("Which values fulfil the rule", answer, size.key, size.points, inputs)
         for panel in axes:
             margin = 0.02 * (size.high - size.low)
             panel.set_xlim(size.low - margin, size.high + margin)

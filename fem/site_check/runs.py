@@ -217,7 +217,7 @@ class RunRows:
             factor=float(fields["factor"]),
         )
         self.found[key] = SiteRun(
-            **{name: getattr(key, name) for name in RunKey._fields if name != "stage"},
+            **key._asdict(),
             outcome=fields["outcome"] or None,
             rotation_ratio=number_in(fields["rotation_ratio"]),
             max_slip_m=number_in(fields["max_slip_m"]),

@@ -12,6 +12,7 @@ from fem.site_check.file import TABLES, SiteRequest
 COUNT = 13  #: values of the scan
 MOST_COUNT = 200
 WIDER = 3.0  #: the scan reaches from the value in the file over this to this times it
+SIDES = ("container.width_m", "container.depth_m")
 BOXES, FRICTION = "container.boxes", "contact.mu_static"
 #: key -> what is looked for, and words for it; other keys: the window of their values
 KNOWN: dict[str, tuple[Wanted, str]] = {
@@ -76,12 +77,22 @@ def size_axis(
 
 
 def at(request: SiteRequest, axis: SizeAxis, value: float) -> SiteRequest:
-    """The request at a value of the axis.
+    """The request at a value of the axis; of a square container the other side follows.
 
     Raises:
         CaseError: the value cannot be used.
     """
-    return request.with_value(axis.key, round(value) if axis.whole else value)
+    changed = request.with_value(axis.key, round(value) if axis.whole else value)
+    for key in followers(request, axis.key):
+        changed = changed.with_value(key, value)
+    return changed
+
+
+def followers(request: SiteRequest, key: str) -> tuple[str, ...]:
+    """Keys that take the same value: the other side of a container that is as deep as wide."""
+    box = request.container.container
+    square = key in SIDES and box.width_m == box.depth_m
+    return tuple(side for side in SIDES if square and side != key)
 
 
 def _quantity(key: str) -> Quantity:

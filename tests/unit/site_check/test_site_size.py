@@ -64,6 +64,15 @@ def test_an_island_below_does_not_count_and_is_told():
     assert "an island that does not count" in result.sentence
 
 
+def test_a_narrow_island_has_the_figures_that_tell_its_ends_apart():
+    points = {0.8: FELL, 1.103125: ANSWER, 1.1075: ANSWER, 1.12: FELL, 1.5: ANSWER, 2.0: ANSWER}
+    result = size_result(replace(WIDTH, values=(0.8, 2.0)), points)
+    assert result.sentence == (
+        "The least width is 1.5 m: the rule is fulfilled from there to 2 m; also from 1.104 m to 1.107 m, an island "
+        "that does not count."
+    )
+
+
 def test_the_largest_action_is_what_all_weaker_ones_fulfil_as_well():
     result = size(STRENGTH, lambda strength: strength <= 1.7 or 2.2 <= strength <= 3.1)
     assert 1.7 / 1.0101 <= result.value <= 1.7

@@ -30,7 +30,10 @@ def test_the_request_takes_the_value():
     assert at(SITE, size_axis(SITE, "container.boxes"), 3.0).container.container.boxes == 3
     axis = size_axis(SITE, "container.width_m", low=0.8, high=1.2, count=3)
     assert axis.values == (0.8, 1.0, 1.2)
-    assert at(SITE, axis, 0.8).container.container.width_m == 0.8
+    box = at(SITE, axis, 0.8).container.container
+    assert (box.width_m, box.depth_m) == (0.8, 0.8)  # it was square
+    deep = at(SITE.with_value("container.depth_m", 1.3), axis, 0.8).container.container
+    assert (deep.width_m, deep.depth_m) == (0.8, 1.3)
 
 
 @pytest.mark.parametrize(

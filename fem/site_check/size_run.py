@@ -1,0 +1,259 @@
+"""`size` from its request to its folder: the set of motions and its runs at every value that is tried.
+
+At a value only the runs of the set are computed, not the scan of factors nor the further motions. Rows are logged as
+they are ready, so that an interrupted computation continues where it was.
+"""
+
+import shlex
+import shutil
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from fem.batch.log import LoggedRuns, fields_of, line_of
+from fem.batch.runner import Row, Runner
+from fem.batch.workers import LocalWorkers, WorkersOf
+from fem.case.case import Case
+from fem.results.folder import ResultFolder, open_result_folder, program_of_results
+from fem.results.kinds import SIZE
+from fem.runtime.progress import Reporter, SilentReporter
+from fem.runtime.signals import interruptible
+from fem.runtime.threads import cores
+from fem.site.ground_motion import GroundMotion
+from fem.site.motion_set import check_set
+from fem.site_check.answer import answer_of
+from fem.site_check.bodies import body_of
+from fem.site_check.bracket import SizeAxis, SizeResult, next_values, size_result
+from fem.site_check.figures import draw_size
+from fem.site_check.file import SiteRequest
+from fem.site_check.motion_results import set_result, write_csv_files
+from fem.site_check.motions import floor_motions, ground_motions, longest_period
+from fem.site_check.result import MotionSet, SiteAnswer
+from fem.site_check.run import inputs_of, site_hash
+from fem.site_check.runs import COLUMNS, RunCases, RunKey, RunPlan, RunRows, motion_stem
+from fem.site_check.size_axis import at, followers
+
+RUNS, FIGURE = "runs.csv", "figures/size.svg"
+WORKING = ".motions"  #: of the sets, as long as they are computed
+#: room on the disk [bytes]: the motions of a set, all else
+BYTES_OF_A_SET, BYTES_BESIDE = 50_000_000, 5_000_000
+
+
+class SizeKey(NamedTuple):
+    """One run at one value."""
+
+    value: float
+    run: RunKey
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SizeCases:
+    """Makes the case of a run at a value; picklable."""
+
+    cases: dict[float, RunCases] = field(default_factory=dict)
+
+    def __call__(self, key: SizeKey) -> Case:
+        """The case of a run.
+
+        Raises:
+            CaseError: its motion is missing.
+        """
+        return self.cases[key.value](key.run)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Tried:
+    """The request at a value, with its set of motions."""
+
+    request: SiteRequest
+    motions: MotionSet
+    plan: RunPlan
+    rows: RunRows = field(default_factory=RunRows)
+
+    @property
+    def keys(self) -> list[RunKey]:
+        """The runs of the set; none of a set that is not valid."""
+        return self.plan.of_set() if self.motions.valid else []
+
+    @property
+    def answer(self) -> SiteAnswer:
+        """By the rule, from all runs."""
+        return answer_of(self.request, self.motions, self.rows.found)
+
+
+def run_size(
+    request: SiteRequest,
+    axis: SizeAxis,
+    folder: Path,
+    *,
+    jobs: int | None = None,
+    workers_of: WorkersOf | None = None,
+    resume: bool = False,
+    force: bool = False,
+    allow_outside: bool = False,
+    reporter: Reporter | None = None,
+) -> SizeResult | None:
+    """Find which values of a key fulfil the rule, into a folder; a finished result is not computed again.
+
+    Args:
+        axis: the key and the values of the scan.
+        jobs, workers_of, resume, force, allow_outside: as of `run_site`.
+
+    Returns:
+        What was found; None where it was interrupted.
+
+    Raises:
+        CaseError, FolderError: bad input.
+        WorkersLostError: a worker died; what was computed is kept.
+        OutputError: the disk is full, the folder was removed; what was written is kept.
+    """
+    reporter, began = reporter or SilentReporter(), time.perf_counter()
+    ground = _ground(request, allow_outside)
+    asked = sha256(f"{site_hash(request, ground)} {axis}".encode()).hexdigest()
+    with (
+        open_result_folder(folder, SIZE, asked, force=force, resume=resume) as place,
+        interruptible(reporter) as stop,
+        ExitStack() as stack,
+    ):
+        if place.finished and place.found:
+            reporter.message(f"{folder} holds this result already; --force computes it again")
+            return SizeResult.from_json(place.found)
+        place.refuse_unfinished("its runs so far")
+        if place.resuming:
+            place.require_same_program()
+        place.require_room(BYTES_OF_A_SET + BYTES_BESIDE, "the result", "take fewer motions")
+        texts = {"site.toml": request.origin.text, "container.toml": request.container.text}
+        mark = {"asked": asked, "command": _command(request, axis)} | program_of_results()
+        place.begin({"status": "running"} | mark, texts)
+        stack.callback(shutil.rmtree, place.path / WORKING, ignore_errors=True)
+        work = _Sizing(request=request, axis=axis, place=place, allow_outside=allow_outside)
+        runner = Runner(
+            workers_of=workers_of or stack.enter_context(LocalWorkers(jobs or cores())),
+            reporter=reporter,
+            stop=stop,
+        )
+        LoggedRuns(
+            what="runs",
+            path=place.path / RUNS,
+            columns=("value", *COLUMNS),
+            make=work.cases,
+            model_of=lambda key: key.run.model,
+            values=work.values,
+            note=work.note,
+        ).run(runner, work.batches())
+        if stop():
+            place.write_result({"status": "interrupted"} | mark)
+            return None
+        place.check()
+        result = size_result(axis, work.answers(), followers(request, axis.key))
+        place.write_text(FIGURE, draw_size(result, inputs_of(request)))
+        wall = {"wall_s": time.perf_counter() - began}
+        place.write_result({"status": "completed"} | mark | wall | result.to_json())
+        return result
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Sizing:
+    """A size under way."""
+
+    request: SiteRequest
+    axis: SizeAxis
+    place: ResultFolder
+    allow_outside: bool
+    cases: SizeCases = field(default_factory=SizeCases)
+    tried: dict[float, Tried] = field(default_factory=dict)
+    #: rows of an earlier attempt, by value, until it is tried
+    early: dict[float, list[str]] = field(default_factory=dict)
+
+    def batches(self) -> Iterator[Sequence[SizeKey]]:
+        """The missing runs of the values to be tried next, as long as there are any."""
+        while values := next_values(self.axis, self.answers()):
+            for value in values:
+                self._try(value)
+            missing = [
+                SizeKey(value, key)
+                for value in values
+                for key in self.tried[value].rows.missing(self.tried[value].keys)
+            ]
+            if missing:
+                yield missing
+
+    def answers(self) -> dict[float, SiteAnswer]:
+        """By value, as far as they were tried."""
+        return {value: tried.answer for value, tried in self.tried.items()}
+
+    def values(self, key: SizeKey, row: Row) -> tuple[Any, ...]:
+        """The row of a run for the log."""
+        return (key.value, *self.tried[key.value].rows.values(key.run, row))
+
+    def note(self, line: str) -> None:
+        """Add a line of the log."""
+        value, *fields = fields_of(line)
+        if (tried := self.tried.get(float(value))) is not None:
+            tried.rows.note(line_of(fields))
+        else:
+            self.early.setdefault(float(value), []).append(line_of(fields))
+
+    def _try(self, value: float) -> None:
+        """Make the motions of a value, and the cases of its runs."""
+        request = at(self.request, self.axis, value)
+        ground = _ground(request, self.allow_outside)
+        longest = _longest(request)
+        floors = floor_motions(request, ground)
+        checked = check_set(ground, request.action, longest=longest)
+        vertical = ground[0].vertical is not None
+        self.tried[value] = tried = Tried(
+            request=request,
+            motions=set_result(request, checked, ground, ()),
+            plan=RunPlan(request=request, motions=len(ground), vertical=vertical, periods=tuple(floors)),
+        )
+        self.cases.cases[value] = RunCases.of(request, self._written(floors))
+        for line in self.early.pop(value, []):
+            tried.rows.note(line)
+
+    def _written(self, floors: Mapping[float | None, Sequence[GroundMotion]]) -> Path:
+        """The folder of these motions; values of the container share it."""
+        digest = sha256()
+        for motion in (one for floor in floors.values() for one in floor):
+            for component in motion.components:
+                digest.update(component.tobytes())
+        folder = self.place.path / WORKING / digest.hexdigest()[:16]
+        if not folder.exists():
+            folder.mkdir(parents=True)
+            for period, floor in floors.items():
+                for number, motion in enumerate(floor, start=1):
+                    write_csv_files(folder, motion, motion_stem(number, period))
+        return folder
+
+
+def _longest(request: SiteRequest) -> float:
+    return longest_period([body_of(one).frequency_parameter_1_s for one in request.variants])
+
+
+def _ground(request: SiteRequest, allow_outside: bool) -> list[GroundMotion]:
+    return ground_motions(request, _longest(request), allow_outside=allow_outside)
+
+
+def _command(request: SiteRequest, axis: SizeAxis) -> str:
+    first, last = axis.values[0], axis.values[-1]
+    ends = f"--from {first:g} --to {last:g} --count {len(axis.values)}"
+    return f"python -m fem size {shlex.quote(request.origin.place)} --over {axis.key} {ends}"
+
+
+def size_page(result: SizeResult, folder: Path) -> str:
+    """The result as text; the sentence last."""
+    tried = len(result.points)
+    fulfilled = sum(bool(point.fulfilled) for point in result.points)
+    runs = sum(point.runs for point in result.points)
+    keys = " and ".join([result.key, *result.followers])
+    lines = [
+        f"{keys}: {tried} values from {result.low:g} to {result.high:g} {result.unit}".rstrip(),
+        f"  fulfilled  at {fulfilled} of them, {runs} runs",
+        f"  files      {folder}",
+        result.sentence,
+    ]
+    return "\n".join(lines)

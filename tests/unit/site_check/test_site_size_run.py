@@ -1,0 +1,85 @@
+"""`size` from a site file to its folder, interrupted and resumed."""
+
+import json
+
+import pytest
+
+from fem.__main__ import main
+from fem.results.errors import FolderError
+from fem.site_check.file import load_site
+from fem.site_check.result import SiteAnswer
+from fem.site_check.size_axis import size_axis
+from fem.site_check.size_run import run_size
+
+SITE = """
+container = "seed_stack"
+[site]
+ground = "D"
+reference_acceleration_m_s2 = 3.5
+[motions]
+count = 3
+further = 0
+[friction]
+mu_static = [0.4]
+mu_kinetic_over_static = [1.0]
+[limits]
+slip_m = 0.1
+"""
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    """A folder with a site file, and the stacks that it allows."""
+    place = tmp_path_factory.mktemp("size")
+    (place / "hall.toml").write_text(SITE, encoding="utf-8")
+    assert (
+        main(["size", str(place / "hall.toml"), "--over", "container.boxes", "--to", "5", *out(place)]) == 0
+    )
+    return place
+
+
+def out(place) -> list[str]:
+    return ["--out", str(place / "found"), "-j", "1", "-q"]
+
+
+def result_in(folder) -> dict:
+    return json.loads((folder / "size.json").read_text(encoding="utf-8"))
+
+
+def test_the_tallest_stack_is_found(place):
+    found = result_in(place / "found")
+    fulfilled = [point["fulfilled"] for point in found["points"]]
+    assert fulfilled[0] and not fulfilled[-1]  # one box does not rock at 0.48 g; five overturn
+    assert found["value"] == fulfilled.index(False)
+    assert found["sentence"].startswith(f"The largest number of boxes is {found['value']:g}")
+    assert [point["runs"] for point in found["points"]] == [6] * 5
+    assert (place / "found" / "figures" / "size.svg").is_file()
+    assert not (place / "found" / ".motions").exists()
+
+
+def test_an_interrupted_size_continues_to_the_same_result(place):
+    folder, before = place / "found", result_in(place / "found")
+    log = folder / "runs.csv"
+    lines = log.read_text(encoding="utf-8").splitlines(keepends=True)
+    log.write_text("".join(lines[:14]), encoding="utf-8")
+    (folder / "size.json").write_text(json.dumps(before | {"status": "running"}), encoding="utf-8")
+    asked = load_site(place / "hall.toml")
+    axis = size_axis(asked, "container.boxes", high=5.0)
+    with pytest.raises(FolderError, match="--resume"):
+        run_size(asked, axis, folder, jobs=1)
+    result = run_size(asked, axis, folder, jobs=1, resume=True)
+    assert json.loads(json.dumps(result.to_json())) == {key: before[key] for key in result.to_json()}
+    assert sorted(log.read_text(encoding="utf-8").splitlines(keepends=True)) == sorted(lines)
+
+
+def test_a_finished_size_is_not_computed_again(place, monkeypatch):
+    monkeypatch.setattr("fem.site_check.size_run.answer_of", lambda *_: SiteAnswer())
+    assert (
+        main(["size", str(place / "hall.toml"), "--over", "container.boxes", "--to", "5", *out(place)]) == 0
+    )
+
+
+def test_bad_input_is_told_before_anything_is_computed(place, capsys):
+    for over, message in (("container.boxs", "did you mean 'boxes'"), ("site.ground", "no single number")):
+        assert main(["size", str(place / "hall.toml"), "--over", over, *out(place)]) == 2
+        assert message in capsys.readouterr().err
