@@ -164,7 +164,10 @@ class Case(CaseHeading):
         Raises:
             CaseError: a file is missing, or outside the folder of the case file and not named on the command line.
         """
-        return find_data_files(self.folder, self._file_names(), trusted=self._origin.trusted)
+        trusted = self._origin.trusted
+        if self.vertical.file is None and "motion.file" in trusted:
+            trusted |= {"vertical.file"}
+        return find_data_files(self.folder, self._file_names(), trusted=trusted)
 
     @property
     def data_files(self) -> dict[str, Path]:

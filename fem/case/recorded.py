@@ -98,7 +98,7 @@ def _require_plausible(record: Record, component: Component, peak: float, scale:
     if component.unit_stated or min(peak, unscaled) <= MOST_PEAK:
         return
     meant = (
-        f"; if they are meant, say so: scale_to_m_s2 = {peak:.4g}" if q.PEAK_ACCELERATION.allows(peak) else ""
+        f" If they are meant, say so: scale_to_m_s2 = {peak:.4g}" if q.PEAK_ACCELERATION.allows(peak) else ""
     )
     raise RecordError(
         f"{record.name}: its accelerations reach {unscaled:.4g} m/s2 with unit = {component.unit!r}, and hardly any "

@@ -1,0 +1,128 @@
+"""The records of a case: which component moves the floor which way, what belongs together, what is refused."""
+
+import numpy as np
+import pytest
+import record_files as files
+from record_files import STEP, G, synthetic_motion
+
+from fem.__main__ import main
+from fem.case.case import CaseError, load_case
+from fem.case.recorded import recorded_motion
+
+FIRST, SECOND, THIRD = synthetic_motion(801)
+CASE = """
+[container]
+width_m = 1.1
+height_m = 4.0
+density_kg_m3 = 2000.0
+[contact]
+mu_static = 0.4
+[motion]
+kind = "none"
+"""
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    """The files of one station, beside a case."""
+    for name, text in {
+        "case.toml": CASE,
+        "h.at2": files.peer(FIRST / G),
+        "v.at2": files.peer(THIRD / G, "UP"),
+        "short.at2": files.peer(THIRD[:700] / G, "UP"),
+        "slow.at2": files.peer(THIRD / G, "UP").replace(".0050", ".0100"),
+        "one.at2": files.peer(FIRST / G, "BOX"),
+        "pair.csv": files.columns([FIRST, THIRD], heading="t [s],H [m/s2],V [m/s2]"),
+        "station.v2": files.csmip_v2(
+            [(100.0 * FIRST, "90 Deg"), (100.0 * SECOND, "360 Deg"), (100.0 * THIRD, "Up")]
+        ),
+        "secret.txt": "root:secret:0:0\n",
+        "bare.csv": files.columns([FIRST]),
+    }.items():
+        (tmp_path / name).write_text(text)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def moved(motion, *changes, table="motion"):
+    vertical = ("vertical.kind=table",) if table == "vertical" else ()
+    case = load_case("case.toml", (*vertical, *changes), motion=motion)
+    return recorded_motion(case, table).motion
+
+
+@pytest.mark.parametrize(
+    ("motion", "changes", "horizontal"),
+    [
+        ("h.at2", ("vertical.file=v.at2",), FIRST),
+        ("pair.csv", (), FIRST),
+        ("station.v2#1", (), FIRST),
+        ("station.v2#2", (), SECOND),
+        ("station.v2#360 Deg", (), SECOND),
+        ("h.at2", ("vertical.file=station.v2",), FIRST),
+    ],
+)
+def test_each_direction_takes_its_component(motion, changes, horizontal):
+    assert moved(motion, *changes, table="motion").values == pytest.approx(horizontal, abs=2e-6)
+    assert moved(motion, *changes, table="vertical").values == pytest.approx(THIRD, abs=2e-6)
+
+
+def test_the_vertical_component_follows_what_is_common_to_both():
+    changes = ("motion.start_s=1.0", "motion.end_s=3.0", "vertical.scale=-1")
+    for vertical in ((), ("vertical.file=v.at2",)):
+        found = moved("station.v2#1", *changes, *vertical, table="vertical")
+        assert (found.times[0], found.times[-1]) == pytest.approx((0.0, 2.0))
+        assert found.values == pytest.approx(-THIRD[200:601], abs=2e-6)
+    both = moved("pair.csv", "motion.scale_to_m_s2=1.5", table="motion")
+    assert np.abs(both.values).max() == pytest.approx(1.5)
+
+
+@pytest.mark.parametrize(
+    ("motion", "changes", "words"),
+    [
+        ("station.v2", (), r"2 components may be the horizontal one \(#1 90 Deg.*choose one as station.v2#NUMBER"),
+        ("v.at2", (), r"no horizontal component \(#1 UP, vertical"),
+        ("h.at2", ("vertical.kind=table",), r"\[vertical\] h.at2: no vertical component"),
+        ("one.at2", ("vertical.kind=table",), "has one motion, which moves the floor along x already"),
+        ("one.at2#1", ("vertical.kind=table", "vertical.file=one.at2#1"), "has one motion, which moves"),
+        ("h.at2", ("vertical.kind=table", "vertical.file=short.at2"), "do not belong together: 801 and 700 samples"),
+        ("h.at2", ("vertical.kind=table", "vertical.file=slow.at2"), "0.005 and 0.01 s between samples"),
+        ("h.at2", ("motion.unit=gal",), "the file states 'g', but unit = 'gal' is given"),
+        ("bare.csv", (), "does not state the unit of its values; state it as unit"),
+        ("bare.csv", ("motion.unit=g", "motion.sample_interval_s=0.01"), "is for a file of one column"),
+        ("h.at2", ("motion.start_s=5.0",), "nothing is left of it: its times are 0 to 4 s"),
+        ("h.at2", ("motion.quantity=displacement",), "it holds accelerations, and displacements are needed"),
+        ("none.at2", (), "names no file"),
+        ("secret.txt", (), "secret.txt: no numbers were found"),
+    ],
+)  # fmt: skip
+def test_what_cannot_move_the_floor_is_refused_with_exit_code_2(motion, changes, words, capsys):
+    table = "vertical" if "vertical.kind=table" in changes else "motion"
+    with pytest.raises(CaseError, match=words):
+        moved(motion, *changes, table=table)
+    options = [word for change in changes for word in ("--set", change)]
+    assert main(["check", "case.toml", "--motion", motion, *options]) == 2
+    said = capsys.readouterr().err
+    assert f"[{table}]" in said and "root:" not in said
+
+
+def test_gal_is_a_unit_and_no_slip():
+    assert moved("bare.csv", "motion.unit=gal").values == pytest.approx(0.01 * FIRST, abs=1e-8)
+
+
+def test_check_tells_length_interval_peaks_and_what_is_left(capsys):
+    changes = ["--set", "vertical.kind=table", "--set", "motion.baseline=zero-end"]
+    assert main(["check", "case.toml", "--motion", "pair.csv", *changes]) == 0
+    said = capsys.readouterr().out
+    assert f"4 s, 801 samples of {STEP:g} s; peaks " in said
+    assert said.count("; ends with ") == 2 and "ends with 0 m/s, 0 mm" in said
+
+
+def test_a_path_outside_is_the_users_to_allow(folder, tmp_path, capsys):
+    inner = tmp_path / "inner"
+    inner.mkdir()
+    (inner / "case.toml").write_text(CASE.replace('"none"', '"table"\nfile = "../h.at2"'))
+    assert main(["check", "inner/case.toml"]) == 2
+    assert "--allow-outside" in capsys.readouterr().err
+    assert main(["check", "inner/case.toml", "--allow-outside"]) == 0
+    assert main(["check", "inner/case.toml", "--motion", "h.at2"]) == 0
+    assert main(["check", "inner/case.toml", "--set", f"motion.file={tmp_path / 'h.at2'}"]) == 0
