@@ -32,6 +32,7 @@ def assess(
     force: Force = False,
     allow_outside: AllowOutside = False,
     as_json: Annotated[bool, flag("Print assess.json.", "--json")] = False,
+    pdf: Annotated[bool, flag("Print the page to report.pdf, by Chromium or Chrome.")] = False,
     quiet: Quiet = False,
 ) -> int:
     """Verify a container at a site: overturning and slip under motions for the site, by EN 1998-1, 4.4.2.4(2).
@@ -60,5 +61,8 @@ def assess(
             allow_outside=allow_outside,
             reporter=ScreenReporter(quiet=quiet),
         )
+    if pdf and result.status == "completed":
+        printing = importlib.import_module("fem.report.printing")
+        ScreenReporter(quiet=quiet).message(str(printing.print_page(folder / study.PAGE) or printing.BY_HAND))
     print(to_json(result.to_json()).rstrip() if as_json else study.page_of(result, folder))
     return EXIT_CODES[result.status]
