@@ -6,7 +6,7 @@ rules of `fem.case.rules` and `fem.case.motion_rules`. Keys of an option that is
 
 from typing import Annotated, Literal
 
-from pydantic import Field, Strict
+from pydantic import BeforeValidator, Field, Strict
 
 from fem.case import quantities as q
 from fem.case.motion_tables import MotionTable, VerticalTable
@@ -228,7 +228,13 @@ class UncertaintyTable(CaseTable):
     rules = UNCERTAINTY_RULES
 
 
-Text = Annotated[str, Field(max_length=200)] | None
+def _as_text(value: object) -> object:
+    """A number as text: a document may have the number 2417."""
+    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+Text = Annotated[str | None, Field(max_length=200)]
+Mark = Annotated[Text, BeforeValidator(_as_text)]
 
 
 class DocumentTable(CaseTable):
@@ -236,8 +242,8 @@ class DocumentTable(CaseTable):
 
     project: Text = case_key("for every page", None, example="Store of chemicals, hall 3")
     company: Text = case_key("for every page", None, example="Example Ltd")
-    number: Text = case_key("of the document", None, example="2417-ST-03")
-    revision: Text = case_key("of the document", None, example="A")
+    number: Mark = case_key("of the document", None, example="2417-ST-03")
+    revision: Mark = case_key("of the document", None, example="A")
     author: Text = case_key("who made it", None, example="A. Author")
     checker: Text = case_key("who checked it", None, example="C. Checker")
 

@@ -110,3 +110,11 @@ def test_a_motion_given_by_arrays_is_written_as_a_file_that_reads_back_to_the_sa
 def test_arrays_that_are_no_motion_are_refused(time, along, reason):
     with pytest.raises(CaseError, match=reason):
         read_case(LEAST).with_motion(time, along)
+
+
+def test_the_number_of_a_document_may_be_a_number():
+    case = read_case(LEAST).replace({"document.number": 2417, "document.company": "A"})
+    assert case.named["number"] == "2417"
+    assert case_hash(case) == case_hash(read_case(LEAST))
+    with pytest.raises(CaseError, match="document"):
+        read_case(LEAST).replace({"document.number": True})
