@@ -29,7 +29,7 @@ from fem.site_check.result import (
     SiteResult,
     SiteRun,
 )
-from fem.site_check.rule import RunGroup, groups_of
+from fem.site_check.rule import RunGroup, both_directions, groups_of
 
 COPIES = ("site.toml", "container.toml")  #: in the folder, printed on the page
 CODE = (
@@ -85,6 +85,7 @@ def site_report(folder: Path, *, signature: Signature | None = None) -> str:
         code=CODE,
         not_covered=NOT_COVERED,
         groups=groups,
+        both=both_directions(groups),
         governing=governing_group(result, groups),
         pairs=[pair for group in groups for pair in pairs_of(group)],
         pairs_of=pairs_of,

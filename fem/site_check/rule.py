@@ -6,13 +6,15 @@ these groups the largest counts. Any overturning means not fulfilled: the code i
 there, so this is the rule of this program.
 """
 
+import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from fem.site_check.result import SiteRun
 
 MEAN_FROM = 7  #: motions from which the mean counts
 OVERTURNED = "overturned"
+SHARE = 0.3  #: of the other horizontal component
 Key = tuple[str, str, float | None, float, float]
 
 
@@ -67,9 +69,33 @@ def groups_of(runs: Iterable[SiteRun]) -> list[RunGroup]:
     """Runs by weight, elevation, building period and frictions, in the order of their first runs."""
     found: dict[Key, list[SiteRun]] = {}
     for run in runs:
-        key = (run.mass, run.elevation, run.building_period_s, run.mu_static, run.mu_kinetic)
-        found.setdefault(key, []).append(run)
+        found.setdefault(_key(run), []).append(run)
     return [RunGroup(runs=tuple(members)) for members in found.values()]
+
+
+def _key(run: SiteRun) -> Key:
+    return run.mass, run.elevation, run.building_period_s, run.mu_static, run.mu_kinetic
+
+
+def both_directions(groups: Sequence[RunGroup]) -> list[tuple[RunGroup, float]]:
+    """Slip under 100 % of one horizontal component and 30 % of the other, where both elevations were run [m].
+
+    EN 1998-1:2004, 4.3.3.5.1 (3), of effects: the slips as vectors. For friction, which is not linear, that is an
+    estimate, so it is shown and is no part of the rule.
+
+    Returns:
+        The group of the elevation along the width, and the larger of the two combinations.
+    """
+    found = []
+    for along in groups:
+        for across in groups:
+            same = replace(across.first, elevation=along.first.elevation)
+            if along.first.elevation != "width" or across.first.elevation == "width":
+                continue
+            if _key(same) == _key(along.first) and along.slip_m is not None and across.slip_m is not None:
+                pairs = ((along.slip_m, across.slip_m), (across.slip_m, along.slip_m))
+                found.append((along, max(math.hypot(whole, SHARE * part) for whole, part in pairs)))
+    return found
 
 
 def rule_in_words(motions: int) -> str:

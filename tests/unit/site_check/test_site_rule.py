@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from fem.site_check.result import SiteRun
-from fem.site_check.rule import groups_of, rule_in_words
+from fem.site_check.rule import both_directions, groups_of, rule_in_words
 
 RUN = SiteRun(
     motion=1,
@@ -71,3 +71,11 @@ def test_one_run_that_overturned_or_failed_leaves_no_mean(outcome, overturned, f
 )
 def test_groups_differ_in_weight_elevation_friction_and_building(change):
     assert len(groups_of([RUN, replace(RUN, motion=2), replace(RUN, **change)])) == 2
+
+
+def test_slips_of_both_elevations_add_up_as_vectors_with_100_and_30_per_cent():
+    along = [replace(RUN, max_slip_m=0.03), replace(RUN, mass="empty", max_slip_m=0.02)]
+    across = replace(RUN, elevation="depth", max_slip_m=0.04)
+    ((group, slip),) = both_directions(groups_of([*along, across]))
+    assert (group.first.mass, slip) == ("full", pytest.approx((0.04**2 + 0.009**2) ** 0.5))
+    assert both_directions(groups_of(along)) == []
