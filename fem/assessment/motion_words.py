@@ -1,8 +1,8 @@
 """The floor's motions of a run in words: length, samples and peaks, and what of them the run leaves out."""
 
+from fem.records.units import STANDARD_GRAVITY
 from fem.results.run_result import MotionResult
 
-STANDARD_GRAVITY = 9.80665  #: accelerations are also given in g, as records are [m/s2]
 ROUNDING = 1e-9  #: share of a peak
 NAMES = {"table": "record", "pulse": "pulse"}
 

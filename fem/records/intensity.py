@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fem.records.units import STANDARD_GRAVITY
 from fem.runtime.arrays import FloatArray
 
-STANDARD_GRAVITY = 9.80665  #: in the Arias intensity (ISO 80000-3) [m/s2]
 #: shares of the Arias intensity between which a motion is significant
 SIGNIFICANT = (0.05, 0.95)
 

@@ -361,7 +361,7 @@ def records(draw: Draw) -> Input:
     form, content = WRITTEN[name], draw(damaged(record_of(name)))
     if draw(st.integers(0, 5)) == 0:
         content = content.decode("utf-8", "replace").encode(
-            draw(st.sampled_from(("utf-16", "utf-8-sig", "cp500")))
+            draw(st.sampled_from(("utf-16", "utf-8-sig", "cp500"))), "replace"
         )
     said = {"unit": form.unit, "sample_interval": form.sample_interval}
     if draw(st.integers(0, 3)) == 0:
