@@ -66,7 +66,7 @@ VERTICAL_MOTION = (
         file="contact/stepping/observables.py",
         old="work += work_of_lift(control.mass, old.pose, new.pose, lift, step)",
         new="work += 0.0 * control.mass",
-        tests=(VERTICAL, "-k", "gravity"),
+        tests=(VERTICAL, "-k", "restitution"),
     ),
     Mutation(
         name="settled under g alone",
