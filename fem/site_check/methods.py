@@ -141,8 +141,9 @@ def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limi
     if not slips:
         return Found(words="no runs")
     most = max(slips)
-    slides = most > SLIDING * width
-    words = f"{length_in_words(min(slips))} to {length_in_words(most)}" if slides else "none slides"
+    least_slip, slides = min(slips), most > SLIDING * width
+    ends = f"{length_in_words(least_slip)} to" if least_slip > SLIDING * width else "up to"
+    words = f"{ends} {length_in_words(most)}" if slides else "none slides"
     if row.quantity is MethodQuantity.SLIDING:
         return Found(words=words, compared=_compared(refused=not row.fulfilled, failed=slides))
     within = min(row.demand, most) >= 0.9 * max(row.demand, most)

@@ -46,6 +46,7 @@ STRONGER = peak_rows(k1(mu_static=0.2), ACTION.scaled(1.5), horizontal=1.0, vert
         (STRONGER, [FELL], "1 of 1 overturned", "agrees"),
         (SLIDING, [STOOD], "4 mm to 4 mm", "agrees"),
         (SLIDING, [replace(STOOD, max_slip_m=1e-6)], "none slides", "conservative"),
+        (SLIDING, [STOOD, replace(STOOD, max_slip_m=1e-6)], "up to 4 mm", "agrees"),
         (SLIDING, [STOOD, replace(STOOD, mu_static=0.4, max_slip_m=0.5)], "4 mm to 4 mm", "agrees"),
         (SLIDING, [replace(STOOD, outcome=None)], "no runs", ""),
         (OVERTURNING, [replace(FELL, stage="scan", factor=2.0)], "no runs", ""),
