@@ -30,6 +30,7 @@ from fem.site.ground_motion import GroundMotion
 from fem.site.motion_set import check_set
 from fem.site_check.answer import answer_of, governing_run
 from fem.site_check.bodies import body_of
+from fem.site_check.confirm import confirmed, deciding
 from fem.site_check.file import SiteRequest
 from fem.site_check.methods import site_methods
 from fem.site_check.motion_results import (
@@ -42,6 +43,7 @@ from fem.site_check.motion_results import (
 from fem.site_check.motions import floor_motions, ground_motions, longest_period
 from fem.site_check.page import site_report
 from fem.site_check.result import (
+    ConfirmedRun,
     SiteBody,
     SiteDocument,
     SiteInputs,
@@ -117,6 +119,7 @@ def run_site(
             ground=ground,
             floors=floors,
             longest=longest,
+            jobs=jobs or cores(),
             runner=Runner(
                 workers_of=workers_of or stack.enter_context(LocalWorkers(jobs or cores())),
                 reporter=reporter,
@@ -151,6 +154,7 @@ class _Work:
     floors: Mapping[float | None, Sequence[GroundMotion]]  #: by building period
     longest: float  #: period of the band [s]
     runner: Runner
+    jobs: int
 
     def run(self, asked: str, began: float) -> SiteResult:
         """Write the motions, compute what is missing, and write the result."""
@@ -161,20 +165,23 @@ class _Work:
             for number, motion in enumerate(moved, start=1):
                 if period is not None:
                     write_csv_files(place.path, motion, motion_stem(number, period))
-        rows = RunRows()
+        rows, cases, again = RunRows(), RunCases.of(request, place.path), list[ConfirmedRun]()
         if motions.valid:
             LoggedRuns(
                 what="runs",
                 path=place.path / RUNS,
                 columns=COLUMNS,
-                make=RunCases.of(request, place.path),
+                make=cases,
                 model_of=lambda key: key.model,
                 values=rows.values,
                 note=rows.note,
             ).run(self.runner, self._batches(rows))
+            keys = deciding(rows.found, governing_run(request, rows.of(self.plan.of_set())))
+            if not self.runner.stop() and keys:
+                self.runner.reporter.message("confirming what decides with the reduced model")
+                again = confirmed(cases, rows.found, keys, self.jobs)
         interrupted = self.runner.stop()
-        if not interrupted:
-            place.check()
+        place.check()
         action = action_result(request.action, checked)
         floor = floor_result(request, self.floors, checked.periods)
         own = rows.of(self.plan.of_set())
@@ -188,7 +195,7 @@ class _Work:
             set=motions,
             bodies=self.bodies,
             runs=tuple(rows.found.values()),
-            result=answer_of(request, motions, rows.found),
+            result=answer_of(request, motions, rows.found, again),
             methods=site_methods(
                 bodies=self.bodies,
                 inputs=inputs,

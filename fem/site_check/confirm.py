@@ -1,0 +1,49 @@
+"""What decides, computed again: with the reduced model, over the inputs that are not known."""
+
+from collections.abc import Mapping
+
+from fem.batch.compute_many import compute_many
+from fem.site_check.result import ConfirmedRun, SiteRun
+from fem.site_check.rule import OVERTURNED
+from fem.site_check.runs import SET, RunCases, RunKey
+
+MODEL = "reduced"
+
+
+def deciding(found: Mapping[RunKey, SiteRun], governing: SiteRun | None) -> list[RunKey]:
+    """The runs that decide: what governs, and the largest rotation and slip among the runs that stood."""
+    own = {key: run for key, run in found.items() if key.stage == SET and run.outcome is not None}
+    if governing is None or not own:
+        return []
+    keys = [next(key for key, run in own.items() if run is governing)]
+    stood = {key: run for key, run in own.items() if run.outcome != OVERTURNED}
+    if stood:
+        keys.append(max(stood, key=lambda key: stood[key].rotation_ratio or 0.0))
+        keys.append(max(stood, key=lambda key: stood[key].max_slip_m or 0.0))
+    return list(dict.fromkeys(keys))
+
+
+def confirmed(
+    cases: RunCases, found: Mapping[RunKey, SiteRun], keys: list[RunKey], jobs: int | None
+) -> list[ConfirmedRun]:
+    """These runs with the reduced model, each with its band unless it rests far below the static limits.
+
+    Raises:
+        CaseError, MeshError: one of them cannot be computed.
+    """
+    again = compute_many([cases(key._replace(model=MODEL)) for key in keys], jobs)
+    results = []
+    for key, run in zip(keys, again, strict=True):
+        verdict = run.verdict
+        results.append(
+            ConfirmedRun(
+                run=found[key],
+                model=MODEL,
+                outcome=verdict.outcome,
+                rotation_ratio=verdict.rotation_ratio,
+                max_slip_m=verdict.max_slip_m,
+                sure=verdict.sure or "",
+                outcomes=verdict.band.outcomes if verdict.band else (),
+            )
+        )
+    return results

@@ -1,0 +1,262 @@
+"""Verifications from file to folder: the same result on any number of cores and after an interruption."""
+
+import json
+import shutil
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fem.__main__ import main
+from fem.records.files import read_record
+from fem.site.artificial import artificial_motions
+from fem.site.motion_files import write_at2, write_csv
+from fem.site_check.file import load_site
+from fem.site_check.result import SiteResult, SiteRun
+from fem.site_check.run import RUNS, run_site
+from fem.site_check.runs import SCANNED
+
+CONTAINER = """
+schema = 1
+[container]
+width_m = 1.1
+height_m = 4.0
+mass_kg = 10000.0
+[contact]
+mu_static = 0.4
+[motion]
+kind = "harmonic"
+peak_acceleration_m_s2 = 4.0
+frequency_Hz = 1.0
+[solver]
+model = "rigid"
+"""
+SITE = """
+schema = 1
+container = "k1.toml"
+{heading}
+[site]
+type = 1
+ground = "D"
+reference_acceleration_m_s2 = {reference}
+[motions]
+count = 3
+stationary_s = 10.0
+further = {further}
+{motions}
+[friction]
+mu_static = [0.4]
+mu_kinetic_over_static = [0.5]
+[limits]
+slip_m = 0.1
+{more}
+"""
+
+
+def site_file(folder, *, reference=2.4 / 1.35, further=4, heading="", motions="", more=""):
+    (folder / "k1.toml").write_text(CONTAINER)
+    text = SITE.format(reference=reference, further=further, heading=heading, motions=motions, more=more)
+    (folder / "site.toml").write_text(text)
+    return folder / "site.toml"
+
+
+@pytest.fixture(scope="module")
+def computed(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("site")
+    place = site_file(folder)
+    return run_site(load_site(place), folder / "out", jobs=1), folder
+
+
+def without_times(result: SiteResult) -> SiteResult:
+    return replace(result, provenance=replace(result.provenance, wall_s=None))
+
+
+def test_every_motion_runs_with_both_signs_at_every_factor(computed):
+    result, _ = computed
+    assert result.status == "completed"
+    own = [run for run in result.runs if run.factor == 1.0 and run.motion <= 3]
+    assert {(run.motion, run.vertical_sign) for run in own} >= {(k, s) for k in (1, 2, 3) for s in (1, -1)}
+    assert [point.factor for point in result.result.scan] == sorted([1.0, *SCANNED])
+    assert all(point.runs == 6 for point in result.result.scan)
+    assert result.result.runs == 6 and result.result.further.motions == 4
+    assert result.result.confirmed and {one.model for one in result.result.confirmed} == {"reduced"}
+
+
+def test_the_container_of_the_example_fulfils_the_rule_and_overturns_at_a_higher_factor(computed):
+    answer = computed[0].result
+    assert answer.fulfilled is True and answer.overturned == 0
+    assert answer.rotation_ratio < 0.01 and answer.slip_m < 0.005
+    assert answer.sentence.startswith("Fulfilled under the rule below: none of 6 runs overturned")
+    first = answer.factor_at_first_overturning
+    assert 1.25 < first <= 4.0
+    fell = [run.factor for run in computed[0].runs if run.outcome == "overturned"]
+    assert first == min(fell)
+    # Between the first factor of the scan that overturns and the one below, others were tried.
+    assert {run.factor for run in computed[0].runs} > {1.0, *SCANNED}
+
+
+def test_the_file_has_the_keys_that_scripts_rely_on(computed):
+    found = json.loads((computed[1] / "out" / "assess.json").read_text())
+    assert {"ag_m_s2", "soil_factor", "ag_S_m_s2", "avg_m_s2", "corner_periods_s", "displacement_m"} <= set(
+        found["action"]
+    )
+    spectra = ("periods_s", "target_m_s2", "mean_m_s2", "vertical_target_m_s2", "vertical_mean_m_s2")
+    assert len({len(found["action"][name]) for name in spectra}) == 1
+    assert found["set"]["valid"] is True and found["set"]["reasons"] == []
+    assert {"count", "mean_pga_m_s2", "least_ratio", "least_ratio_period_s", "largest_correlation"} <= set(
+        found["set"]
+    )
+    assert {
+        "motion",
+        "vertical_sign",
+        "mu_static",
+        "mu_kinetic",
+        "mass",
+        "model",
+        "factor",
+        "outcome",
+    } <= set(found["runs"][0])
+    result = found["result"]
+    assert {"fulfilled", "rule", "overturned", "runs", "rotation_ratio", "slip_m"} <= set(result)
+    assert set(result["further"]) >= {"motions", "overturned", "interval"}
+    assert {"name", "quantity", "demand", "capacity", "utilisation", "says", "source"} <= set(
+        found["methods"][0]
+    )
+    assert SiteResult.from_json(found) == computed[0]
+
+
+def test_the_motions_are_written_and_read_back_to_the_same_bits(computed):
+    result, folder = computed
+    assert {motion.files for motion in result.set.motions}
+    for motion in result.set.motions:
+        values = {name: read_record(folder / "out" / name).components[0] for name in motion.files}
+        for letter in ("h", "v"):
+            csv, at2 = (
+                values[f"motions/motion_{motion.number:02d}_{letter}.{end}"] for end in ("csv", "at2")
+            )
+            assert csv.values.tobytes() == at2.values.tobytes()
+            assert csv.times.tobytes() == at2.times.tobytes()
+        assert motion.end_velocity_m_s < 1e-10 and motion.end_displacement_m < 1e-9
+
+
+def test_an_interrupted_verification_continues_to_the_same_result(computed, tmp_path):
+    whole, folder = computed
+    place, out = folder / "site.toml", tmp_path / "out"
+    shutil.copytree(folder / "out", out)
+    lines = (out / RUNS).read_text().splitlines(keepends=True)
+    (out / RUNS).write_text("".join(lines[:20]) + lines[20][:9])
+    mark = json.loads((out / "assess.json").read_text()) | {"status": "running"}
+    (out / "assess.json").write_text(json.dumps(mark))
+    again = run_site(load_site(place), out, jobs=2, resume=True)
+    assert without_times(again).result == without_times(whole).result
+    assert sorted(again.runs, key=repr) == sorted(whole.runs, key=repr)
+
+
+def test_a_finished_verification_is_not_computed_again(computed):
+    whole, folder = computed
+    assert run_site(load_site(folder / "site.toml"), folder / "out") == whole
+
+
+def test_on_a_floor_the_period_of_the_building_is_varied(tmp_path):
+    more = "[building]\nz_over_h = 1.0\nbuilding_period_s = 0.5"
+    place = site_file(tmp_path, reference=0.6, further=0, motions="vertical = false", more=more)
+    result = run_site(load_site(place), tmp_path / "out", jobs=1)
+    own = [run for run in result.runs if run.factor == 1.0]
+    assert {run.building_period_s for run in own} == {0.425, 0.5, 0.575}
+    assert {run.vertical_sign for run in own} == {0}
+    assert result.floor.peak_m_s2 > 2.0 * result.set.mean_pga_m_s2
+    assert result.result.further is None
+    assert any("4.3.5.2" in method.source for method in result.methods)
+
+
+def records(folder, *, twice=False, scale=1.0, event=""):
+    """Three pairs of record files, sampled at 0.01 s."""
+    action = load_site("site").action
+    made = artificial_motions(action, count=3, seed=5)
+    if twice:
+        made[2] = made[0]
+    names = []
+    for number, motion in enumerate(made):
+        pair = []
+        for letter, component in zip("hv", motion.components, strict=True):
+            name = f"r{number}_{letter}.at2"
+            described = (
+                f"{event or f'EVENT {number}'}, 1/1/20, STATION {number}, {'UP' if letter == 'v' else '090'}"
+            )
+            values = scale * component
+            write_at2(folder / name, motion.step, values / 9.80665 * 9.80665, described)
+            pair.append(name)
+        names.append(pair)
+    return f'source = "records"\nfiles = {json.dumps(names)}'
+
+
+def test_records_are_scaled_to_the_site(tmp_path):
+    place = site_file(tmp_path, further=0, motions=records(tmp_path, scale=0.1))
+    result = run_site(load_site(place), tmp_path / "out", jobs=1)
+    assert result.set.valid and result.set.source == "records" and result.set.stationary_s is None
+    assert all(motion.scale > 5.0 for motion in result.set.motions)
+    assert min(result.set.mean_pga_m_s2 / 2.4, result.set.least_ratio / 0.9) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_a_set_with_one_motion_twice_is_not_used(tmp_path, capsys):
+    place = site_file(tmp_path, further=0, motions=records(tmp_path, twice=True))
+    assert main(["assess", str(place), "--out", str(tmp_path / "out"), "-q"]) == 0
+    found = json.loads((tmp_path / "out" / "assess.json").read_text())
+    assert found["set"]["valid"] is False and found["runs"] == []
+    assert found["result"]["fulfilled"] is None
+    assert "Not valid" in capsys.readouterr().out
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert "Not valid" in page and "one motion" in page
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda folder: records(folder, event="IZMIT"), "records of one event"),
+        (
+            lambda folder: (
+                'source = "records"\nfiles = [["a.at2","b.at2"],["c.at2","d.at2"],["e.at2","f.at2"]]'
+            ),
+            "a.at2",
+        ),
+        (
+            lambda folder: 'source = "records"\nfiles = [["../a.at2","b.at2"],["c","d"],["e","f"]]',
+            "in the folder",
+        ),
+        (lambda folder: 'source = "records"\nfiles = [["a.at2","b.at2"]]', "at least 3"),
+        (lambda folder: 'source = "records"\nfiles = [["a"],["b"],["c"]]', "vertical"),
+        (lambda folder: 'source = "records"', "files is missing"),
+        (lambda folder: "stationary_s = 5.0", "between 10 and 60 s"),
+    ],
+)
+def test_motions_that_cannot_be_used_are_refused(tmp_path, capsys, make, message):
+    motions = make(tmp_path)
+    text = site_file(tmp_path, motions=motions).read_text()
+    if "stationary_s = 5.0" in motions:
+        text = text.replace("stationary_s = 10.0\n", "", 1)
+    (tmp_path / "site.toml").write_text(text)
+    assert main(["assess", str(tmp_path / "site.toml"), "--out", str(tmp_path / "out"), "-q"]) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_components_of_different_length_are_refused(tmp_path, capsys):
+    motions = records(tmp_path)
+    write_csv(tmp_path / "r0_v.at2", 0.005, np.zeros(100))
+    place = site_file(tmp_path, motions=motions)
+    assert main(["assess", str(place), "--out", str(tmp_path / "out"), "-q"]) == 2
+    assert "do not belong together" in capsys.readouterr().err
+
+
+def test_an_empty_box_lighter_than_its_walls_is_refused(tmp_path, capsys):
+    (tmp_path / "site.toml").write_text(
+        load_site("site").origin.text.replace("empty_mass_kg = 500.0", "empty_mass_kg = 400.0")
+    )
+    assert main(["assess", str(tmp_path / "site.toml"), "--out", str(tmp_path / "out"), "-q"]) == 2
+    assert "empty_mass_kg: the walls of one box weigh" in capsys.readouterr().err
+
+
+def test_a_run_is_known_by_what_it_is_made_of():
+    one = SiteRun(
+        motion=1, vertical_sign=1, mu_static=0.4, mu_kinetic=0.2, mass="full", model="rigid", outcome="rest"
+    )
+    assert one.factor == 1.0 and one.building_period_s is None
