@@ -39,7 +39,7 @@ class Signature:
 
     @property
     def heading(self) -> str:
-        """The line above the title; empty where nothing is known."""
+        """The line above the title, and at the head of every printed sheet; empty where nothing is known."""
         return " · ".join(part for part in (self.company, self.project, self.number) if part)
 
     def completed(self, document: Mapping[str, str | None]) -> "Signature":
@@ -130,10 +130,9 @@ def _json_in_page(value: Any) -> Markup:
 
 
 def _css_string(text: str) -> Markup:
-    """Text as a CSS string: everything but letters, digits and spaces by its code point."""
-    return Markup(  # escaped here
-        '"' + "".join(sign if sign.isalnum() or sign == " " else f"\\{ord(sign):06x}" for sign in text) + '"'
-    )
+    """Text as a CSS string: everything but letters and digits by its code point, which would swallow a space."""
+    signs = (sign if sign.isalnum() else f"\\{ord(sign):06x}" for sign in text)
+    return Markup(f'"{"".join(signs)}"')  # escaped here
 
 
 def _policy(scripts: Sequence[str]) -> str:

@@ -57,6 +57,8 @@ def rotation_ratio(value: float | None) -> str:
 
 def typeset(text: str) -> str:
     """A line of the summary for a page: true minus signs, powers of ten, m/s²."""
+    if text == "-":
+        return ABSENT
     text = text.replace("m/s2", "m/s²")
     text = re.sub(r"(?<![\w.)-])-(?=\d)", "−", text)
     return re.sub(r"(?<=\d)e([+-]\d+)\b", lambda power: times_ten_to(power[1]), text)

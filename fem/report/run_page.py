@@ -53,7 +53,7 @@ from fem.solid.modes import FEW, elastic_mode_table, elastic_modes
 
 #: figures beside the animation, in the order of reading; the others have their own sections
 MOTION = ("rotation", "slip", "base_motion", "spectrum", "uplift", "forces", "phase_portrait", "energy")
-SHORT_MOTION = ("rotation", "slip", "base_motion")
+SHORT_MOTION = ("rotation", "slip")
 
 
 def run_report(

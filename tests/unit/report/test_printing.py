@@ -28,9 +28,12 @@ def folder(tmp_path_factory):
     return place
 
 
-def test_the_document_stands_on_the_page(folder):
-    assert main(["report", str(folder), "-q", "--short"]) == 0
+def test_the_document_stands_on_the_page_and_at_the_head_of_every_sheet(folder):
+    assert main(["report", str(folder), "-q", "--short", "--revision", "B"]) == 0
     text = (folder / "report.html").read_text(encoding="utf-8")
+    heads = re.search(r"@top-left \{ content: (.*?); \} @top-right \{ content: (.*?); \}", text)
+    said = [re.sub(r"\\([0-9a-f]{6})", lambda sign: chr(int(sign[1], 16)), one) for one in heads.groups()]
+    assert said == ['"Store <3> · 7-A"', '"revision B"']
     assert "Store &lt;3&gt; · 7-A" in text
     assert 'id="sheet"' not in text
     assert 'id="static"' in text
