@@ -10,9 +10,12 @@ from pathlib import Path
 
 import pytest
 
+import fem
 from fem.__main__ import COMMANDS
+from fem.case.case import load_case
 from fem.case.files import CASES, DEFAULT_CASE
 from fem.render.opengl import MEND_PICTURES, probe_rendering
+from fem.run.run import RunOptions, run_case
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("*/README.md")), *sorted(ROOT.glob("fem/*/README.md"))]
@@ -23,6 +26,8 @@ LINES = [
     for line in block.splitlines()
 ]
 TOUR = [line for line in LINES if line.startswith("python -m fem ")]
+#: a case that is computed at once, with frames
+RIGID = ["solver.model=rigid", "solver.duration_s=2", "output.fields_s=0.5", "output.figures=false"]
 #: appended to a command of the tour: the same command, less to compute
 SHORT = {
     "run": ("--set", "solver.duration_s=0.1", "--set", "output.fields_s=0.05", "--no-band"),
@@ -108,6 +113,33 @@ def test_the_tour_works_as_written(tmp_path):
     assert [name for name in files if not (results / name).is_file()] == []
     assert json.loads((results / "run.json").read_text())["status"] == "completed"
     assert {path.name for path in (tmp_path / "outputs").iterdir()} >= {"my-stack", "slippery", "rigid"}
+
+
+def test_the_lines_in_python_work_as_in_a_notebook(tmp_path, monkeypatch):
+    (lines,) = re.findall(r"^```python\n(import fem\n.*?)^```$", README, flags=re.MULTILINE | re.DOTALL)
+    for shown, short in (
+        ('load_case("rocking")', f'load_case("rocking", {RIGID})'),  # the same, less to compute
+        (".plot()", ".n_points"),  # no window
+    ):
+        assert shown in lines
+        lines = lines.replace(shown, short)
+    case = load_case("rocking", RIGID)
+    run_case(
+        case, case_text=case.text, folder=tmp_path / "outputs" / "my-stack", options=RunOptions(band=False)
+    )
+    before = {path.name for path in tmp_path.rglob("*")}
+    monkeypatch.chdir(tmp_path)
+    cells = {}
+    exec(lines, cells)
+    run = cells["run"]
+    assert run.case.contact.mu_static == 0.3
+    assert run.history["base_acceleration_m_s2"].max() == pytest.approx(6.0)
+    assert [run.case.container.boxes for run in cells["runs"]] == [2, 3, 4]
+    assert {path.name for path in tmp_path.rglob("*")} == before  # no files
+    # Kept in a folder, with its motion as a file, it is the same run.
+    run_case(run.case, case_text=run.case.text, folder=tmp_path / "kept", options=RunOptions(band=False))
+    again = fem.compute(fem.load_case(tmp_path / "kept" / "resolved.toml"), band=False)
+    assert (again.history.values == run.history.values).all()
 
 
 def test_the_static_figures_of_the_default_case_are_those_of_check(tmp_path):
