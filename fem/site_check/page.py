@@ -29,7 +29,7 @@ from fem.site_check.result import (
     SiteResult,
     SiteRun,
 )
-from fem.site_check.rule import RunGroup, both_directions, groups_of
+from fem.site_check.rule import OVERTURNED, RunGroup, both_directions, groups_of
 
 COPIES = ("site.toml", "container.toml")  #: in the folder, printed on the page
 CODE = (
@@ -77,6 +77,7 @@ def site_report(folder: Path, *, signature: Signature | None = None) -> str:
         signature=(signature or Signature()).completed(asdict(document)),
         result=result,
         answer=result.result,
+        confirmation=confirmation(result),
         standing={None: "open", True: "stood", False: "fell"}[result.result.fulfilled],
         site=site_rows(result),
         container=container_rows(result),
@@ -179,7 +180,38 @@ def container_rows(result: SiteResult) -> list[tuple[str, str]]:
             f"rotation ratio {short(inputs.rotation_ratio_limit)}, slip {quantity(inputs.slip_limit_m, 'mm', 1e3, 3)}",
         ),
     ]
+    if inputs.wind_pressure_Pa is not None:
+        pressure = (
+            f"q_p = {quantity(inputs.wind_pressure_Pa, 'kN/m²', 1e-3, 3)} ({inputs.wind_pressure_source})"
+        )
+        rows.append(("wind", f"{pressure}, γ_μ = {short(inputs.gamma_mu)}"))
     return rows
+
+
+def confirmation(result: SiteResult) -> tuple[str, bool]:
+    """What the runs that decide do when they are computed again, and whether that casts doubt on the answer."""
+    again, inputs = result.result.confirmed, result.inputs
+    if not again:
+        return "", False
+    models = ", ".join(dict.fromkeys(one.model for one in again))
+    words = f"What decides, computed again with the {models} model and over the inputs that are not known"
+    failed = sum(one.outcome is None for one in again)
+    fell = sum(OVERTURNED in (one.outcome, *one.outcomes) for one in again)
+    ratios = [one.rotation_ratio for one in again if one.rotation_ratio is not None]
+    slips = [one.max_slip_m for one in again if one.max_slip_m is not None]
+    if failed:
+        return f"{words}: {failed} of {len(again)} runs failed.", True
+    if fell:
+        doubt = result.result.fulfilled is not False
+        return (
+            f"{words}: {fell} of {len(again)} runs can overturn{', so the answer is not sure' if doubt else ''}.",
+            doubt,
+        )
+    ratio, slip = max(ratios, default=0.0), max(slips, default=0.0)
+    beyond = ratio > inputs.rotation_ratio_limit or slip > inputs.slip_limit_m
+    doubt = beyond and result.result.fulfilled is True
+    found = f"rotation ratio at most {rotation_ratio(ratio)}, slip at most {millimetres(slip)} mm"
+    return f"{words}: none overturns, {found}{', so the answer is not sure' if doubt else ''}.", doubt
 
 
 def _body(body: SiteBody) -> str:

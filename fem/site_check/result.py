@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from fem.results.run_result import JsonBlock
 
 RESULT_FILE = "assess.json"
+USUAL_BEHAVIOUR_FACTOR = 1.5
 MOTIONS = "motions"  #: folder of the motions: motion_01_h.csv, motion_01_v.csv, ..
 
 
@@ -230,7 +231,9 @@ class SiteInputs(JsonBlock):
     wind_pressure_Pa: float | None = None
     wind_pressure_source: str = ""
     gamma_mu: float = 1.0  #: partial factor on friction in the wind rows
-    behaviour_factor: float = 1.5  #: of the plateau rows
+    behaviour_factor: float = (
+        USUAL_BEHAVIOUR_FACTOR  #: of the plateau rows: that of [static] of the container
+    )
     model: str
 
 

@@ -43,6 +43,7 @@ from fem.site_check.motion_results import (
 from fem.site_check.motions import floor_motions, ground_motions, longest_period
 from fem.site_check.page import site_report
 from fem.site_check.result import (
+    USUAL_BEHAVIOUR_FACTOR,
     ConfirmedRun,
     SiteBody,
     SiteDocument,
@@ -274,7 +275,7 @@ def further_motions(
 
 def inputs_of(request: SiteRequest) -> SiteInputs:
     """What was asked, for the page and the simplified methods."""
-    wind = request.wind_pressure
+    wind, static = request.wind_pressure, request.container.static
     return SiteInputs(
         container=request.heading.container,
         mu_static=tuple(request.friction.mu_static),
@@ -284,6 +285,7 @@ def inputs_of(request: SiteRequest) -> SiteInputs:
         wind_pressure_Pa=wind[0] if wind else None,
         wind_pressure_source=wind[1] if wind else "",
         gamma_mu=request.wind.gamma_mu if request.wind else 1.0,
+        behaviour_factor=static.behaviour_factor if static else USUAL_BEHAVIOUR_FACTOR,
         model=request.heading.model,
     )
 

@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 
 import pytest
 from browser import CHROMIUM, FAINT, Browser
@@ -11,7 +12,7 @@ from site_example import example, write_example
 from fem.html.formula import formula_markup, symbols_markup
 from fem.results.errors import FolderError
 from fem.results.files import to_json
-from fem.site_check.page import site_report
+from fem.site_check.page import confirmation, site_report
 from fem.site_check.result import RESULT_FILE, SiteResult
 
 ANSWERS = {
@@ -96,6 +97,26 @@ def test_a_set_that_is_not_valid_shows_no_runs(folders):
     assert "Reasons: the mean spectrum is" in words
     assert "What the runs found" not in words
     assert "no runs" in words
+
+
+CONFIRMED = example()[0].result.confirmed[0]
+
+
+@pytest.mark.parametrize(
+    ("change", "words", "doubt"),
+    [
+        ({}, "none overturns, rotation ratio at most 0.00400, slip at most 4.10 mm.", False),
+        ({"outcomes": ("rock", "overturned")}, "1 of 1 runs can overturn, so the answer is not sure.", True),
+        ({"max_slip_m": 0.2}, "slip at most 200 mm, so the answer is not sure.", True),
+        ({"outcome": None}, "1 of 1 runs failed.", True),
+    ],
+)
+def test_what_decides_is_confirmed_or_casts_doubt(change, words, doubt):
+    result, _ = example()
+    answer = replace(result.result, confirmed=(replace(CONFIRMED, **change),))
+    found = confirmation(replace(result, result=answer))
+    assert found[0].endswith(words)
+    assert found[1] == doubt
 
 
 def test_text_of_users_is_escaped(folders):
