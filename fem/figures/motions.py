@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
 
 from fem.figures.style import (
     BLACK,
@@ -20,8 +19,8 @@ from fem.figures.style import (
     head,
     house_style,
     legend_above,
-    number,
     panels,
+    spectrum_axes,
 )
 from fem.runtime.arrays import FloatArray
 
@@ -68,9 +67,7 @@ def draw_spectra(
             if len(names) > 1:
                 mean = np.mean([spectra[name] for name in names], axis=0)
                 panel.plot(periods, mean, color=BLACK, linewidth=1.8, label=f"mean of {len(names)}")
-            panel.set_xscale("log")
-            panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
-            panel.set_ylim(bottom=0.0)
+            spectrum_axes(panel)
             panel.set_ylabel(f"{direction} [m/s²]")
             if lines:
                 legend_above(panel, NAMES_A_LINE)

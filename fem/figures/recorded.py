@@ -5,7 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
 
 from fem.case.case import CaseError
 from fem.case.recorded import MotionKey, recorded_motion
@@ -20,6 +19,7 @@ from fem.figures.style import (
     legend_above,
     number,
     panels,
+    spectrum_axes,
 )
 from fem.records.processing import motion_of
 from fem.records.record import Component
@@ -27,7 +27,6 @@ from fem.records.spectrum import Spectrum, evenly_sampled, log_spaced_periods, r
 from fem.results.reader import OpenedRun
 
 COLOURS = (BLUE, VERMILLION, GREEN)
-LONGEST_PERIOD_S = 4.0
 LINES = ("-", "--", ":")
 DAMPED = "pseudo-acceleration, 5 % of critical damping"
 
@@ -35,7 +34,7 @@ DAMPED = "pseudo-acceleration, 5 % of critical damping"
 def spectrum_of(component: Component) -> Spectrum:
     """Response spectrum of a processed component, for 5 % of damping, from what its samples resolve up to 4 s."""
     step, values = evenly_sampled(component.times, motion_of(component)[2])
-    return response_spectrum(step, values, log_spaced_periods(component.step, longest_s=LONGEST_PERIOD_S))
+    return response_spectrum(step, values, log_spaced_periods(component.step))
 
 
 def spectrum_figure(run: OpenedRun) -> Figure | None:
@@ -116,9 +115,7 @@ def _draw_spectra(axes: Axes, named: Sequence[tuple[str, Component]]) -> None:
             linestyle=LINES[k % len(LINES)],
             label=name if len(named) > 1 else None,
         )
-    axes.set_xscale("log")
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
-    axes.set_ylim(bottom=0.0)
+    spectrum_axes(axes)
     axes.set_ylabel("spectrum [m/s²]")
     axes.set_xlabel("period [s]")
     if len(named) > 1:

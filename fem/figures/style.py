@@ -17,6 +17,7 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
 from fem.html.units import times_ten_to
@@ -198,6 +199,13 @@ def legend_above(axes: Axes, columns: int = 4) -> None:
     axes.legend(
         loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.1, handlelength=2.4
     )
+
+
+def spectrum_axes(axes: Axes) -> None:
+    """Logarithmic periods with plain numbers, and ordinates from zero."""
+    axes.set_xscale("log")
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
+    axes.set_ylim(bottom=0.0)
 
 
 def _draw_states(axes: Axes, time: FloatArray, modes: Sequence[str], states: Sequence[str]) -> None:

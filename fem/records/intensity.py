@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from contact.motion.samples import sampled_motion
 from fem.records.units import STANDARD_GRAVITY
 from fem.runtime.arrays import FloatArray
 
@@ -34,14 +35,13 @@ def intensity(times_s: FloatArray, acceleration: FloatArray) -> Intensity:
         acceleration: at these times, shape (n,) [m/s2].
 
     Arias (1970): pi/(2 g) times the integral of a^2. Trifunac and Brady (1975): the significant duration. Peaks of
-    velocity and displacement between samples count.
+    velocity between samples count; the displacement is that at samples.
     """
     steps = np.diff(times_s)
     before, after = acceleration[:-1], acceleration[1:]
     squares = np.cumsum(steps * (before**2 + before * after + after**2) / 3.0)
-    velocity = _summed(0.5 * (before + after) * steps)
-    displacement = _summed(steps * (velocity[:-1] + steps * (2.0 * before + after) / 6.0))
-    # Where the acceleration passes through zero the velocity turns, as the displacement does where the velocity does.
+    displacement, velocity, _ = sampled_motion(times_s, acceleration, "acceleration")
+    # Where the acceleration passes through zero the velocity turns.
     through = before * after < 0.0
     turning = velocity[:-1][through] + 0.5 * before[through] ** 2 * steps[through] / (before - after)[through]
     begin, end = np.interp(np.array(SIGNIFICANT) * squares[-1], np.append(0.0, squares), times_s).tolist()
@@ -52,7 +52,3 @@ def intensity(times_s: FloatArray, acceleration: FloatArray) -> Intensity:
         arias_m_s=math.pi / (2.0 * STANDARD_GRAVITY) * float(squares[-1]),
         significant_s=end - begin if squares[-1] > 0.0 else 0.0,
     )
-
-
-def _summed(increments: FloatArray) -> FloatArray:
-    return np.concatenate([[0.0], np.cumsum(increments)])

@@ -24,8 +24,6 @@ from fem.site.ground_motion import GroundMotion
 from fem.site.motion_set import MOST_CORRELATION, largest_correlation
 from fem.site.oscillators import pseudo_accelerations
 
-#: of what follows here: motions of another version have other samples
-ALGORITHM = 1
 STEP_S = 0.005
 #: parts of the envelope beside the stationary one [s]; what the last one ends at, before the taper
 RISE_S, DECAY_S = 2.0, 6.0

@@ -9,12 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from fem.records.files import read_record
-from fem.records.record import RecordError
+from fem.records.columns import given_record, written
 from fem.records.units import STANDARD_GRAVITY
 from fem.runtime.arrays import FloatArray
 
-CSV_HEADING = "time_s,acceleration_m_s2"
 AT2_PER_LINE = 5
 
 
@@ -25,9 +23,9 @@ def in_whole_g(acceleration: FloatArray) -> FloatArray:
 
 def write_csv(path: Path, step: float, acceleration: FloatArray) -> None:
     """Write times and accelerations (n,) [m/s2]."""
-    times = (np.arange(acceleration.size) * step).tolist()
-    rows = (f"{time!r},{value!r}" for time, value in zip(times, acceleration.tolist(), strict=True))
-    path.write_text("\n".join((CSV_HEADING, *rows, "")), encoding="ascii")
+    times = np.asarray(np.arange(acceleration.size) * step, dtype=np.float64)
+    record = given_record(times, {"horizontal": acceleration})
+    path.write_text(written(record), encoding="ascii")
 
 
 def write_at2(path: Path, step: float, acceleration: FloatArray, described: str) -> None:
@@ -56,16 +54,3 @@ def write_at2(path: Path, step: float, acceleration: FloatArray, described: str)
         f"NPTS= {values.size}, DT= {step!r} SEC",
     )
     path.write_text("\n".join((*heading, *rows, "")), encoding="ascii")
-
-
-def read_back(path: Path) -> tuple[float, FloatArray]:
-    """Step [s] and acceleration (n,) [m/s2] of a file written here.
-
-    Raises:
-        RecordError: it is no motion of one acceleration.
-    """
-    record = read_record(path)
-    if len(record.components) != 1 or record.components[0].quantity != "acceleration":
-        raise RecordError(f"{path.name}: one acceleration is needed")
-    component = record.components[0]
-    return float(component.times[1] - component.times[0]), component.values

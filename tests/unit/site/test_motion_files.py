@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fem.records.files import read_record
-from fem.site.motion_files import in_whole_g, read_back, write_at2, write_csv
+from fem.site.motion_files import in_whole_g, write_at2, write_csv
 
 GENERATOR = np.random.default_rng(7)
 VALUES = in_whole_g(
@@ -17,9 +17,9 @@ def test_csv_and_at2_read_back_to_the_same_bits(tmp_path, step):
     write_csv(tmp_path / "a.csv", step, VALUES)
     write_at2(tmp_path / "a.at2", step, VALUES, "ARTIFICIAL, , MOTION 1, H")
     for name in ("a.csv", "a.at2"):
-        found, values = read_back(tmp_path / name)
-        assert found == step
-        assert values.tobytes() == VALUES.tobytes()
+        (component,) = read_record(tmp_path / name).components
+        assert component.times.tobytes() == (np.arange(VALUES.size) * step).tobytes()
+        assert component.values.tobytes() == VALUES.tobytes()
 
 
 def test_rounding_to_a_number_in_g_is_no_more_than_that():
