@@ -1,10 +1,10 @@
 """Artificial motions whose spectra match a target: random phases, amplitudes found by iteration.
 
 A motion is a sum of harmonics with random phases under an envelope. Its spectrum is computed with exact oscillators,
-each Fourier amplitude is multiplied by target over spectrum at its period, and so on; the phases stay. Peaks beyond
-the target's own at zero period are rounded off in each pass, and the baseline is removed, so that velocity and
-displacement end at zero. After D. A. Gasparini, E. H. Vanmarcke, Simulated earthquake motions compatible with
-prescribed response spectra, MIT R76-4 (1976), with the amplitudes found by iteration alone.
+each Fourier amplitude is multiplied by target over spectrum at its period, and so on; the phases stay. In each pass
+peaks beyond the target's own at zero period are rounded off, a lower one is raised by a short wavelet, and the baseline
+is removed, so that velocity and displacement end at zero. After D. A. Gasparini, E. H. Vanmarcke, Simulated earthquake
+motions compatible with prescribed response spectra, MIT R76-4 (1976), with the amplitudes found by iteration alone.
 
 The same seed gives the same bits: phases are made of the raw output of a bit generator whose stream numpy keeps.
 """
@@ -21,7 +21,7 @@ from fem.records.zero_end import ZeroEnd
 from fem.runtime.arrays import FloatArray
 from fem.site.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S, SiteAction
 from fem.site.ground_motion import GroundMotion
-from fem.site.motion_set import MOST_CORRELATION, largest_correlation
+from fem.site.motion_set import LEAST_SHARE, MOST_CORRELATION, check_set, largest_correlation
 from fem.site.oscillators import pseudo_accelerations
 
 STEP_S = 0.005
@@ -45,6 +45,10 @@ HIGHEST_HZ = 80.0
 LOW = 0.4
 #: of the target at zero period: where peaks are rounded off from, and what they never reach
 KNEE, CEILING = 1.045, 1.1
+#: period of the wavelet that raises a peak [s]
+WAVELET_S = 0.03
+#: factor on a whole set, at most, that makes its mean peak and mean spectra suffice
+MOST_FACTOR = 1.05
 
 #: periods (n,) [s] -> pseudo-accelerations (n,) [m/s2]
 Target = Callable[[FloatArray], FloatArray]
@@ -139,8 +143,8 @@ class Shaper:
         return self._finished(changed[: self.times.size], peak)
 
     def _finished(self, motion: FloatArray, peak: float) -> FloatArray:
-        """The motion (n,) as it may be used: peaks rounded off, tapered, ending at rest where it began."""
-        tapered = self.taper * rounded_off(motion, peak)
+        """The motion (n,) as it may be used: with the peak of the target, tapered, ending at rest where it began."""
+        tapered = raised(self.times, self.taper * rounded_off(motion, peak), peak)
         return tapered - self._zero_end.baseline(tapered)
 
     def _amplitudes(self, wanted: FloatArray) -> FloatArray:
@@ -159,6 +163,17 @@ def rounded_off(motion: FloatArray, peak: float) -> FloatArray:
     room = CEILING - KNEE
     bent = np.sign(motion) * peak * (KNEE + room * np.tanh(beyond / room))
     return np.where(beyond > 0.0, bent, motion)
+
+
+def raised(times: FloatArray, motion: FloatArray, peak: float) -> FloatArray:
+    """The motion (n,) with a short wavelet on its largest value, where that does not reach the target's peak."""
+    place = int(np.argmax(np.abs(motion)))
+    missing = peak - abs(float(motion[place]))
+    if missing <= 0.0:
+        return motion
+    after = (times - times[place]) / WAVELET_S
+    wavelet = np.exp(-((3.0 * after) ** 2)) * np.cos(2.0 * np.pi * after)
+    return motion + math.copysign(missing, motion[place]) * wavelet
 
 
 def artificial_motions(
@@ -206,9 +221,10 @@ def artificial_set(
     longest: float = LAST_PERIOD_S,
     vertical: bool = True,
 ) -> list[GroundMotion]:
-    """Motions to be used together, none correlated with another: one that is, is left out and the next one taken.
+    """Motions to be used together: a motion that is correlated with one before is left out, and the next one taken.
 
-    Arguments and errors as for `artificial_motions`.
+    Where the mean peak or a mean spectrum falls short of EN 1998-1, 3.2.3.1.2(4), a component of all motions is
+    multiplied by one factor of up to 1.05. Arguments and errors as for `artificial_motions`.
     """
     kept: list[GroundMotion] = []
     number = 0
@@ -225,7 +241,11 @@ def artificial_set(
         )
         if largest_correlation([*kept, motion]) <= MOST_CORRELATION:
             kept.append(replace(motion, name=f"motion_{len(kept) + 1:02d}"))
-    return kept
+    found = check_set(kept, action, longest=longest)
+    needed = max(found.wanted_peak / found.mean_peak, LEAST_SHARE / found.least_ratio)
+    upward = LEAST_SHARE / (found.vertical_least_ratio or LEAST_SHARE)
+    factors = [min(max(1.0, one), MOST_FACTOR) for one in (needed, upward)]
+    return kept if factors == [1.0, 1.0] else [motion.scaled(*factors) for motion in kept]
 
 
 def _uniform(stream: Sequence[int], count: int) -> FloatArray:

@@ -177,12 +177,14 @@ class _Work:
                 values=rows.values,
                 note=rows.note,
             ).run(self.runner, self._batches(rows))
-            keys = deciding(rows.found, governing_run(request, rows.of(self.plan.of_set())))
+            found = rows.in_order()
+            keys = deciding(found, governing_run(request, rows.of(self.plan.of_set())))
             if not self.runner.stop() and keys:
                 self.runner.reporter.message("confirming what decides with the reduced model")
-                again = confirmed(cases, rows.found, keys, self.jobs)
+                again = confirmed(cases, found, keys, self.jobs)
         interrupted = self.runner.stop()
         place.check()
+        found = rows.in_order()
         action = action_result(request.action, checked)
         floor = floor_result(request, self.floors, checked.periods)
         own = rows.of(self.plan.of_set())
@@ -195,8 +197,8 @@ class _Work:
             floor=floor,
             set=motions,
             bodies=self.bodies,
-            runs=tuple(rows.found.values()),
-            result=answer_of(request, motions, rows.found, again),
+            runs=tuple(found.values()),
+            result=answer_of(request, motions, found, again),
             methods=site_methods(
                 bodies=self.bodies,
                 inputs=inputs,
@@ -219,6 +221,8 @@ class _Work:
         )
         place.write_result(result.to_json() | {"asked": asked} | program_of_results())
         if not interrupted:
+            if found:
+                place.write_text(RUNS, rows.table())
             place.write_text(PAGE, site_report(place.path))
         return result
 
@@ -231,7 +235,7 @@ class _Work:
 
     def _further(self, rows: RunRows) -> Sequence[RunKey]:
         """The runs of the further motions, whose files are written."""
-        own = {key: run for key, run in rows.found.items() if key.stage == SET}
+        own = {key: run for key, run in rows.in_order().items() if key.stage == SET}
         governing = governing_run(self.request, list(own.values()))
         if governing is None or not self.request.motions.further:
             return []

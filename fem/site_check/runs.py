@@ -8,16 +8,17 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from fem.batch.case_maker import CaseMaker
-from fem.batch.log import fields_of, number_in
+from fem.batch.log import fields_of, number_in, table_of_lines
 from fem.batch.runner import Row
 from fem.case.case import Case, read_case
 from fem.case.data_files import FILE_KEYS
 from fem.case.toml import toml_document
-from fem.site_check.file import SiteRequest
+from fem.site_check.file import FULL, SiteRequest
 from fem.site_check.result import MOTIONS, SiteRun
 from fem.site_check.rule import OVERTURNED
 
 SET, SCAN, REFINED, FURTHER = "set", "scan", "refined", "further"
+WIDTH = "width"  #: the elevation that a case file shows
 #: factors on the motions beside 1, and values tried between the first that overturns and the one below it
 SCANNED = (0.5, 0.75, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 3.5, 4.0)
 BETWEEN = 3
@@ -197,6 +198,7 @@ class RunRows:
     """The rows of the runs so far."""
 
     found: dict[RunKey, SiteRun] = field(default_factory=dict)
+    lines: dict[RunKey, str] = field(default_factory=dict)  #: of the log
     reasons: list[str] = field(default_factory=list)  #: why runs failed
 
     def values(self, key: RunKey, row: Row) -> tuple[Any, ...]:
@@ -227,8 +229,17 @@ class RunRows:
             residual_slip_m=number_in(fields["residual_slip_m"]),
             max_uplift_m=number_in(fields["max_uplift_m"]),
         )
+        self.lines[key] = line
         if fields["reason"]:
             self.reasons.append(fields["reason"])
+
+    def in_order(self) -> dict[RunKey, SiteRun]:
+        """All of them, stage by stage: not in the order in which they were ready, which depends on the cores."""
+        return dict(sorted(self.found.items(), key=lambda pair: _place(pair[0])))
+
+    def table(self) -> str:
+        """`runs.csv`: a row a run, in the same order."""
+        return table_of_lines(COLUMNS, (self.lines[key] for key in self.in_order()))
 
     def missing(self, keys: Iterable[RunKey]) -> list[RunKey]:
         """Those that have no row."""
@@ -237,3 +248,10 @@ class RunRows:
     def of(self, keys: Sequence[RunKey]) -> list[SiteRun]:
         """The runs of these keys, in their order, as far as they are there."""
         return [self.found[key] for key in keys if key in self.found]
+
+
+def _place(key: RunKey) -> tuple[Any, ...]:
+    """What runs are sorted by."""
+    stage = (SET, SCAN, REFINED, FURTHER).index(key.stage)
+    container = key.mass != FULL, key.elevation != WIDTH, key.building_period_s or 0.0
+    return stage, key.factor, *container, key.mu_static, key.mu_kinetic, key.motion, -key.vertical_sign

@@ -9,8 +9,8 @@ import pytest
 from contact.motion.samples import sampled_motion
 from fem.records.spectrum import response_spectrum
 from fem.site.action import SiteAction, eurocode_shape
-from fem.site.artificial import STEP_S, Shaper, artificial_motions, artificial_set, rounded_off
-from fem.site.motion_set import largest_correlation
+from fem.site.artificial import STEP_S, Shaper, artificial_motions, artificial_set, raised, rounded_off
+from fem.site.motion_set import check_set, largest_correlation
 from fem.site.oscillators import pseudo_accelerations
 
 #: ground D, type 1, a_g S = 2.4 m/s2
@@ -121,6 +121,25 @@ def test_rounding_off_leaves_small_values_and_keeps_the_sign():
     assert np.abs(found).max() == pytest.approx(1.1)
     np.testing.assert_allclose(found, -found[::-1], rtol=1e-12, atol=1e-12)
     assert (np.diff(found) >= -1e-15).all()
+
+
+def test_a_low_peak_is_raised_to_that_of_the_target():
+    times = np.arange(401) * 0.005
+    motion = 0.8 * np.sin(2.0 * np.pi * times) * np.exp(-times)
+    found = raised(times, motion, 1.0)
+    assert np.abs(found).max() == pytest.approx(1.0, rel=1e-12)
+    far = np.abs(times - times[np.argmax(np.abs(motion))]) > 0.05
+    np.testing.assert_allclose(found[far], motion[far], atol=1e-6)
+    np.testing.assert_array_equal(raised(times, motion, 0.5), motion)
+
+
+@pytest.mark.parametrize(("kind", "ground", "longest"), [(2, "A", 4.0), (1, "B", 8.0)])
+def test_sets_of_three_fulfil_the_code_on_other_grounds_and_for_larger_bodies(kind, ground, longest):
+    """Ground B at 8 s needs a factor on the set: 12 s of stationary motion hold two cycles of such periods."""
+    action = SiteAction(shape=eurocode_shape(kind, ground), reference_acceleration=1.5)
+    made = artificial_set(action, count=3, seed=3, longest=longest)
+    assert check_set(made, action, longest=longest).valid
+    assert all(1.0 <= motion.factor <= 1.05 for motion in made)
 
 
 def test_the_compiled_oscillators_agree_with_the_exact_spectrum(motions):
