@@ -7,7 +7,7 @@ from markupsafe import Markup, escape
 
 #: a letter alone, but pi and the s of a unit such as m/s, with what follows its underscore; or a power
 SYMBOL = re.compile(
-    r"(?<![A-Za-zα-ωΩ_])(?<!m/)([A-Za-zα-ορ-ωΩ])(?:_([A-Za-z0-9]+))?(?![A-Za-zα-ωΩ])|\^([−0-9.]+)"
+    r"(?<![A-Za-zα-ωΩ_])(?<!m/)([A-Za-zα-ορ-ωΩ])(?:_([A-Za-z0-9μ]+))?(?![A-Za-zα-ωΩ])|\^([−0-9.]+)"
 )
 
 

@@ -210,7 +210,7 @@ def confirmation(result: SiteResult) -> tuple[str, bool]:
     ratio, slip = max(ratios, default=0.0), max(slips, default=0.0)
     beyond = ratio > inputs.rotation_ratio_limit or slip > inputs.slip_limit_m
     doubt = beyond and result.result.fulfilled is True
-    found = f"rotation ratio at most {rotation_ratio(ratio)}, slip at most {millimetres(slip)} mm"
+    found = f"largest rotation ratio {rotation_ratio(ratio)}, largest slip {millimetres(slip)} mm"
     return f"{words}: none overturns, {found}{', so the answer is not sure' if doubt else ''}.", doubt
 
 

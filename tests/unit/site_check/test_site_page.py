@@ -105,9 +105,9 @@ CONFIRMED = example()[0].result.confirmed[0]
 @pytest.mark.parametrize(
     ("change", "words", "doubt"),
     [
-        ({}, "none overturns, rotation ratio at most 0.00400, slip at most 4.10 mm.", False),
+        ({}, "none overturns, largest rotation ratio 0.00400, largest slip 4.10 mm.", False),
         ({"outcomes": ("rock", "overturned")}, "1 of 1 runs can overturn, so the answer is not sure.", True),
-        ({"max_slip_m": 0.2}, "slip at most 200 mm, so the answer is not sure.", True),
+        ({"max_slip_m": 0.2}, "largest slip 200 mm, so the answer is not sure.", True),
         ({"outcome": None}, "1 of 1 runs failed.", True),
     ],
 )
@@ -144,6 +144,7 @@ def test_a_motion_that_is_missing_is_told(tmp_path):
     [
         ("λ a_up ≤ g b/h", "<i>λ</i> <i>a</i><sub>up</sub> ≤ <i>g</i> <i>b</i>/<i>h</i>"),
         ("max(3, x) r^−4 cm/s", "max(3, <i>x</i>) <i>r</i><sup>−4</sup> cm/s"),
+        ("0.9 G/γ_μ", "0.9 <i>G</i>/<i>γ</i><sub>μ</sub>"),
         ("r < 2π cos α", "<i>r</i> &lt; 2π cos <i>α</i>"),
     ],
 )
