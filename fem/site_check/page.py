@@ -39,6 +39,7 @@ CODE = (
     "overturning means not fulfilled is the rule of this program: a mean does not exist where a body has fallen, and "
     "the code is silent."
 )
+MOST_DRAWN = 30  #: motions whose curves are on the page
 NOT_COVERED = (
     "two horizontal components at once, torsion, motion out of the plane",
     "joints of a stack, sloshing of the content, buckling",
@@ -101,7 +102,12 @@ def site_report(folder: Path, *, signature: Signature | None = None) -> str:
             if any(row.factor is not None for row in one)
         ],
         motions=[
-            (motion, _drawn(motion_figure(folder, motion, result), f"motion-{motion.number}"))
+            (
+                motion,
+                _drawn(motion_figure(folder, motion, result), f"motion-{motion.number}")
+                if motion.number <= MOST_DRAWN
+                else "",
+            )
             for motion in result.set.motions
         ],
         copies=[(name, _text(folder / name)) for name in COPIES if (folder / name).is_file()],
@@ -125,7 +131,10 @@ def read_result(folder: Path) -> SiteResult:
     """
     place = folder / RESULT_FILE
     try:
-        return SiteResult.from_json(json.loads(place.read_text(encoding="utf-8")))
+        content = json.loads(place.read_text(encoding="utf-8"))
+        if isinstance(content, dict) and content.get("status") == "running":
+            raise FolderError(f"{place}: the verification is not finished; assess --resume continues it")
+        return SiteResult.from_json(content)
     except OSError as error:
         raise FolderError(f"{place} cannot be read ({error.strerror or error})") from None
     except ValueError as error:

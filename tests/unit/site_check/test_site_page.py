@@ -91,6 +91,13 @@ def test_in_a_building_the_floor_stands_beside_the_ground(folders):
     assert page_of(folders, "in a building").count('<td class="number">0.425</td>') == 8 + 7 * 8
 
 
+def test_of_many_motions_the_first_are_drawn(folders, monkeypatch):
+    monkeypatch.setattr("fem.site_check.page.MOST_DRAWN", 2)
+    page = site_report(folders / "fulfilled")
+    assert page.count('aria-label="motion ') == 2 * 2 + 1
+    assert "The curves of the other 5 motions are in their files." in page
+
+
 def test_a_set_that_is_not_valid_shows_no_runs(folders):
     words = words_of(page_of(folders, "not valid"))
     assert "The set of motions: not valid" in words
@@ -122,6 +129,12 @@ def test_what_decides_is_confirmed_or_casts_doubt(change, words, doubt):
 def test_text_of_users_is_escaped(folders):
     assert "<hall 3>" not in page_of(folders, "fulfilled")
     assert "Mercury containers &lt;hall 3&gt;" in page_of(folders, "fulfilled")
+
+
+def test_an_unfinished_verification_is_told(tmp_path):
+    (tmp_path / RESULT_FILE).write_text('{"status": "running"}', encoding="utf-8")
+    with pytest.raises(FolderError, match="--resume continues it"):
+        site_report(tmp_path)
 
 
 @pytest.mark.parametrize("text", [None, "{", '{"status": "completed"}'])
