@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from fem.assessment.motion_words import STANDARD_GRAVITY
 from fem.html.units import ABSENT, millimetres, number, rotation_ratio, short
+from fem.records.units import STANDARD_GRAVITY
 from fem.report.studies import PageTable, drawings, page_table
 from fem.sweep.cells import Shown
 from fem.sweep.motion_outcomes import MotionOutcome, motions_at
