@@ -11,10 +11,12 @@ from dataclasses import dataclass, field
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fem.case.validation import CaseError, did_you_mean
-from fem.records.record import Record
+
+if TYPE_CHECKING:  # it loads numpy, which `list` and bad input need not wait for
+    from fem.records.record import Record
 
 DEFAULT_CASE = "seed_stack_plateau"
 LARGEST_FILE = 1_000_000  # bytes; a case file has a few thousand
@@ -53,7 +55,7 @@ class Origin:
     overrides: tuple[str, ...] = field(default=(), compare=False)  #: as given, `table.key=value`
     trusted: frozenset[str] = field(default=frozenset(), compare=False)  #: keys whose files may lie anywhere
     allow_outside: bool = field(default=False, compare=False)  #: all of them may, whoever sets them
-    recorded: Record | None = field(
+    recorded: "Record | None" = field(
         default=None, compare=False
     )  #: a motion given by arrays, in place of a file
 
