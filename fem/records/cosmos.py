@@ -19,6 +19,7 @@ TITLE = re.compile(r"\(format v\s*[\d.]+\s+with\s+(\d+)\s+text lines\)", re.IGNO
 BLOCK = re.compile(r"\s*(\d+)\s+(.*)", re.ASCII)
 CHANNEL = re.compile(r"Chan\s+(\d+):\s*(\S+(?: \S+)*)", re.IGNORECASE | re.ASCII)
 SPELLED = re.compile(r"units\s*=\s*([^\s,(]+)", re.IGNORECASE)
+END = re.compile(r"end[- ]of[- ]data", re.IGNORECASE)
 UNIT_CODES = {
     2: "g", 4: "cm/s2", 5: "cm/s", 6: "cm", 7: "in/s2", 8: "in/s", 9: "in", 10: "gal", 11: "mg", 50: "counts",
     51: "volts",
@@ -51,7 +52,7 @@ def read(source: MotionText, unit: str | None) -> Record:
         component, line = _channel(source, line, unit)
         components.append(component)
         while line <= len(source.lines) and not TITLE.search(source.line(line)):
-            if source.line(line).strip() and not source.line(line).lower().lstrip().startswith("end-of-data"):
+            if source.line(line).strip() and not END.search(source.line(line)):
                 raise source.refused("a channel or the end of the file is needed here", line)
             line += 1
     return Record(

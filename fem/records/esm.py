@@ -9,7 +9,7 @@ from fem.records.source import MotionText
 from fem.records.units import UNITS, settled_unit, unit_in_header
 
 NAME = "ESM ASCII"
-KEY = re.compile(r"([A-Z][A-Z0-9_/]*)\s*:\s*(.*)")
+KEY = re.compile(r"([A-Z][A-Z0-9_/^]*)\s*:\s*(.*)")  #: such as PGA_CM/S^2
 MOST_LINES = 200  #: of a header; it has 64
 
 

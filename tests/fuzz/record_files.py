@@ -62,10 +62,13 @@ def esm(values: Array, stream: str = "HNE", *, data_type: str = "ACCELERATION", 
         "EVENT_ID": "XX-1999-0001",
         "EVENT_DATE_YYYYMMDD": "19990102",
         "STATION_CODE": "TST",
+        "VS30_M/S": "",
         "SAMPLING_INTERVAL_S": f"{STEP:.6f}",
         "NDATA": str(len(values)),
         "UNITS": unit,
         "STREAM": stream,
+        "INSTRUMENT_ANALOG/DIGITAL": "D",
+        "PGA_CM/S^2": f"{np.abs(values).max():.6f}",
         "DATA_TYPE": data_type,
     }
     keys |= {f"USER{k}": "" for k in range(64 - len(keys))}
