@@ -8,7 +8,7 @@ from fem.batch.container_cache import ContainerCache, container_key
 from fem.batch.workers import IN_THREADS, LocalWorkers, hand_out, unguarded_script
 from fem.case.case import Case
 from fem.run.checks import WantedChecks
-from fem.run.compute import Run, compute_on
+from fem.run.compute import Run, compute_on, require_case
 from fem.runtime.threads import cores
 
 #: number of cases from which processes pay off: runs with history and band hold the interpreter longer than rows do
@@ -42,6 +42,8 @@ def compute_many(
         WorkersLostError: a process died, perhaps for want of memory.
     """
     asked = list(cases)
+    for case in asked:
+        require_case(case)
     jobs = cores() if jobs is None else jobs
     if jobs < 1:
         raise ValueError(f"compute_many: jobs must be at least 1, got {jobs}")

@@ -338,6 +338,8 @@ def case_from(mapping: Mapping[str, Any]) -> Case:
     Raises:
         CaseError: with one line for each reason why the case cannot be used; a ValueError.
     """
+    if not isinstance(mapping, Mapping):
+        raise CaseError(f"case_from: a mapping of tables is needed, got {type(mapping).__name__}")
     case = _read(_plain(mapping), Origin(), {})
     return case.from_origin(Origin(text=toml_document(case.given())))
 

@@ -112,8 +112,15 @@ def _require_file(folder: Path, key: str, name: str, path: Path, *, trusted: boo
         )
     if not path.is_file():
         raise CaseError(
-            place_of(key) + f"names no file: {name!r}, looked for in {folder.resolve()}; "
-            "its path is relative to the case file"
+            place_of(key)
+            + f"names no file: {name!r}"
+            + (
+                ", which is a folder"
+                if path.is_dir()
+                else ""
+                if path == Path(name)
+                else f", looked for in {folder.resolve()}; its path is relative to the case file"
+            )
         )
 
 

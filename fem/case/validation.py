@@ -169,7 +169,8 @@ def _reason(field: FieldInfo, details: list[ErrorDetails]) -> str:
         return f'must be {kind} or "{choice}", got {_shown(faults["literal_error"]["input"])}'
     if "literal_error" in faults:
         choices = choices_of(field.annotation)
-        near = did_you_mean(value, choices) if isinstance(value, str) else ""
+        units = any("/" in choice for choice in choices)  # the nearest spelling is another unit
+        near = did_you_mean(value, choices) if isinstance(value, str) and not units else ""
         listed = " or ".join(f'"{choice}"' for choice in choices)
         return f"must be {listed}, got {_shown(value)}" + (f"; {near}" if near else "")
     hint = (

@@ -115,7 +115,8 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
 
 def _motion_lines(name: str, more: str, keys: FloorMotionTable, motion: MotionResult) -> Iterator[str]:
     """What moves the floor in one direction, and the numbers of its motion."""
-    kinds = {"none": "at rest", "pulse": f"{keys.shape} pulse", "table": f"table {keys.file}"}
+    table = f"table {keys.file}" if keys.file else "in the file of [motion]"
+    kinds = {"none": "at rest", "pulse": f"{keys.shape} pulse", "table": table}
     harmonic = f"A = {keys.amplitude:.4g} m, Omega = {keys.angular_frequency:.4g} rad/s"
     yield f"  {name:<11} {kinds.get(keys.kind, harmonic)}, peak {motion.peak_in_run_m_s2 or 0.0:.4g} m/s2"
     if length := motion_in_words(motion):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem.case.case import Case, case_hash
+from fem.case.validation import CaseError
 from fem.model.container import Container, discretise
 from fem.model.geometry import build_container
 from fem.model.model import build_model
@@ -95,7 +96,18 @@ def compute(case: Case, *, band: bool | None = None, check_rigid: bool = False) 
     Raises:
         CaseError, MeshError: the case cannot be computed; both are a ValueError with the message of the command.
     """
+    require_case(case)
     return compute_on(None, case, WantedChecks(check_rigid=check_rigid, band=band))
+
+
+def require_case(given: object) -> None:
+    """Refuse what is no case, such as its name.
+
+    Raises:
+        CaseError: it is none.
+    """
+    if not isinstance(given, Case):
+        raise CaseError(f"a case from fem.load_case or fem.case_from is needed, got {type(given).__name__}")
 
 
 def compute_on(container: Container | None, case: Case, wanted: WantedChecks) -> Run:

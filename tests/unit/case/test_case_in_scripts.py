@@ -40,6 +40,9 @@ def test_a_change_leaves_the_case_as_it_was_and_replaces_alternatives():
     ("make", "words"),
     [
         (lambda: fem.case_from({}), "case: [container] width_m is missing"),
+        (lambda: fem.case_from(["container"]), "case_from: a mapping of tables is needed, got list"),
+        (lambda: fem.compute("seed_box"), "a case from fem.load_case or fem.case_from is needed, got str"),
+        (lambda: fem.compute_many(fem.load_case("seed_box")), "is needed, got tuple"),
         (lambda: fem.case_from({"container": 3}), "case: [container] must be one table, got 3"),
         (lambda: fem.load_case("seed_bax"), "did you mean 'seed_box'?"),
         (

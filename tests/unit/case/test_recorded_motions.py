@@ -92,6 +92,8 @@ def test_the_vertical_component_follows_what_is_common_to_both():
         ("h.at2", ("motion.start_s=5.0",), "nothing is left of it: its times are 0 to 4 s"),
         ("h.at2", ("motion.quantity=displacement",), "it holds accelerations, and displacements are needed"),
         ("none.at2", (), "names no file"),
+        (".", (), "which is a folder"),
+        ("bare.csv", ("motion.unit=ft/s2",), r"got the text 'ft/s2'(?! *;)"),
         ("secret.txt", (), "secret.txt: no numbers were found"),
     ],
 )  # fmt: skip
