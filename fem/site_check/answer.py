@@ -25,8 +25,10 @@ def answer_of(
     motions: MotionSet,
     found: Mapping[RunKey, SiteRun],
     confirmed: Sequence[ConfirmedRun] = (),
+    *,
+    expected: int = 0,
 ) -> SiteAnswer:
-    """The answer, from all runs there are."""
+    """The answer, from all runs there are; none while fewer than those expected of the set are there."""
     own = [run for key, run in found.items() if key.stage == SET]
     rule = rule_in_words(motions.count)
     if not motions.valid:
@@ -36,6 +38,13 @@ def answer_of(
             sentence=f"Not valid: the set of motions fails its checks and is not used ({reasons}).",
             overturned=0,
             runs=0,
+        )
+    if len(own) < expected:
+        return SiteAnswer(
+            rule=rule,
+            sentence=f"No answer yet: {len(own)} of {expected} runs are computed.",
+            overturned=sum(run.outcome == OVERTURNED for run in own),
+            runs=len(own),
         )
     groups, limits = groups_of(own), request.limits
     overturned, failed = sum(one.overturned for one in groups), sum(one.failed for one in groups)

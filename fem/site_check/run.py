@@ -198,7 +198,7 @@ class _Work:
             set=motions,
             bodies=self.bodies,
             runs=tuple(found.values()),
-            result=answer_of(request, motions, found, again),
+            result=answer_of(request, motions, found, again, expected=len(self.plan.of_set())),
             methods=site_methods(
                 bodies=self.bodies,
                 inputs=inputs,

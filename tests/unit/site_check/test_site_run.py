@@ -11,10 +11,13 @@ from fem.__main__ import main
 from fem.records.files import read_record
 from fem.site.artificial import artificial_motions
 from fem.site.motion_files import write_at2, write_csv
+from fem.site.motion_set import check_set
+from fem.site_check.answer import answer_of
 from fem.site_check.file import load_site
+from fem.site_check.motions import ground_motions
 from fem.site_check.result import SiteResult, SiteRun
 from fem.site_check.run import RUNS, run_site
-from fem.site_check.runs import SCANNED
+from fem.site_check.runs import SCANNED, RunRows
 
 CONTAINER = """
 schema = 1
@@ -153,6 +156,16 @@ def test_an_interrupted_verification_continues_to_the_same_result(computed, tmp_
     assert without_times(again) == without_times(whole)
 
 
+def test_part_of_the_runs_gives_no_answer(computed):
+    result, folder = computed
+    request = load_site(folder / "site.toml")
+    rows = RunRows()
+    for line in (folder / "out" / RUNS).read_text().splitlines()[1:6]:
+        rows.note(line)
+    answer = answer_of(request, result.set, rows.in_order(), expected=6)
+    assert answer.fulfilled is None and "5 of 6 runs" in answer.sentence
+
+
 def test_a_finished_verification_is_not_computed_again(computed):
     whole, folder = computed
     assert run_site(load_site(folder / "site.toml"), folder / "out") == whole
@@ -189,6 +202,14 @@ def records(folder, *, twice=False, scale=1.0, event=""):
             pair.append(name)
         names.append(pair)
     return f'source = "records"\nfiles = {json.dumps(names)}'
+
+
+def test_records_are_matched_to_the_site(tmp_path):
+    motions = records(tmp_path, scale=0.1).replace('"records"', '"matched"')
+    request = load_site(site_file(tmp_path, motions=motions))
+    found = check_set(ground_motions(request, 4.0), request.action)
+    assert found.valid and found.least_ratio > 0.9 and found.vertical_least_ratio > 0.9
+    assert found.mean_peak < 1.3 * found.wanted_peak
 
 
 def test_records_are_scaled_to_the_site(tmp_path):
