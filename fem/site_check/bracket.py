@@ -45,6 +45,13 @@ class SizePoint(JsonBlock):
     runs: int
     rotation_ratio: float | None = None
     slip_m: float | None = None
+    fails: str = ""  #: why it is not fulfilled, in words
+
+    def __post_init__(self) -> None:
+        if bool(self.fails) == bool(self.fulfilled):
+            raise ValueError(
+                f"{self.value}: a reason is given where, and only where, the rule is not fulfilled"
+            )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,7 +100,7 @@ def size_result(
         high=axis.values[-1],
         value=wanted_value(axis, intervals),
         intervals=tuple(intervals),
-        sentence=sentence(axis, intervals),
+        sentence=sentence(axis, points),
         points=points,
     )
 
@@ -120,12 +127,14 @@ def wanted_value(axis: SizeAxis, intervals: Sequence[tuple[float, float]]) -> fl
     return None
 
 
-def sentence(axis: SizeAxis, intervals: Sequence[tuple[float, float]]) -> str:
-    """The answer in one sentence, with the islands."""
+def sentence(axis: SizeAxis, points: Sequence[SizePoint]) -> str:
+    """The answer in one sentence: the value, what fails beyond it, and the islands."""
+    intervals = fulfilled_intervals(points)
     low, high = axis.values[0], axis.values[-1]
     tried = f"from {_value(low, axis)} to {_value(high, axis)}"
     if not intervals:
-        return f"The rule is not fulfilled at any {axis.words} tried {tried}."
+        reasons = " or ".join(dict.fromkeys(point.fails for point in points))
+        return f"The rule is not fulfilled at any {axis.words} tried {tried}: {reasons}."
     if intervals == [(low, high)]:
         return f"The rule is fulfilled at every {axis.words} tried {tried}."
     value = wanted_value(axis, intervals)
@@ -136,13 +145,15 @@ def sentence(axis: SizeAxis, intervals: Sequence[tuple[float, float]]) -> str:
     others = intervals[:-1] if axis.wanted == "least" else intervals[1:]
     island = f"; also {_stretches(others, axis)}, an island that does not count" if others else ""
     if axis.wanted == "least":
+        beyond = [point for point in points if point.value < value][-1]
         return (
             f"The least {axis.words} is {_value(value, axis, up=True)}: the rule is fulfilled from there to "
-            f"{_value(high, axis)}{island}."
+            f"{_value(high, axis)} (below: {beyond.fails}){island}."
         )
+    beyond = next(point for point in points if point.value > value)
     return (
         f"The largest {axis.words} is {_value(value, axis, up=False)}: the rule is fulfilled from "
-        f"{_value(low, axis)} to there{island}."
+        f"{_value(low, axis)} to there (above: {beyond.fails}){island}."
     )
 
 
@@ -186,7 +197,20 @@ def _point(value: float, answer: SiteAnswer) -> SizePoint:
         runs=answer.runs,
         rotation_ratio=answer.rotation_ratio,
         slip_m=answer.slip_m,
+        fails=_reason(answer),
     )
+
+
+def _reason(answer: SiteAnswer) -> str:
+    if answer.fulfilled:
+        return ""
+    if answer.fulfilled is None:
+        return "there is no answer"
+    if answer.overturned:
+        return "it overturns"
+    limited = (("rotation", answer.rotation_fulfilled), ("slip", answer.slip_fulfilled))
+    names = [name for name, kept in limited if kept is False]
+    return f"{' and '.join(names)} {'are' if len(names) > 1 else 'is'} beyond the limit"
 
 
 def spaced(low: float, high: float, count: int) -> tuple[float, ...]:

@@ -68,8 +68,8 @@ def test_a_narrow_island_has_the_figures_that_tell_its_ends_apart():
     points = {0.8: FELL, 1.103125: ANSWER, 1.1075: ANSWER, 1.12: FELL, 1.5: ANSWER, 2.0: ANSWER}
     result = size_result(replace(WIDTH, values=(0.8, 2.0)), points)
     assert result.sentence == (
-        "The least width is 1.5 m: the rule is fulfilled from there to 2 m; also from 1.104 m to 1.107 m, an island "
-        "that does not count."
+        "The least width is 1.5 m: the rule is fulfilled from there to 2 m (below: it overturns); also from 1.104 m to "
+        "1.107 m, an island that does not count."
     )
 
 
@@ -77,7 +77,7 @@ def test_the_largest_action_is_what_all_weaker_ones_fulfil_as_well():
     result = size(STRENGTH, lambda strength: strength <= 1.7 or 2.2 <= strength <= 3.1)
     assert 1.7 / 1.0101 <= result.value <= 1.7
     assert result.sentence.startswith("The largest reference acceleration is 1.6")
-    assert "m/s2 to there; also from 2.2" in result.sentence
+    assert "m/s2 to there (above: it overturns); also from 2.2" in result.sentence
 
 
 def test_friction_has_a_window():
@@ -92,8 +92,8 @@ def test_stacks_are_counted_one_by_one():
     result = size(BOXES, lambda boxes: boxes != 4.0)
     assert (result.value, len(result.points)) == (3.0, 6)
     assert result.sentence == (
-        "The largest number of boxes is 3: the rule is fulfilled from 1 to there; also from 5 to 6, an island that "
-        "does not count."
+        "The largest number of boxes is 3: the rule is fulfilled from 1 to there (above: it overturns); also from 5 "
+        "to 6, an island that does not count."
     )
 
 
@@ -116,6 +116,20 @@ def test_a_least_value_needs_the_end_of_the_range():
     result = size(WIDTH, lambda width: 1.0 <= width <= 1.5)
     assert result.value is None
     assert "The rule is fulfilled for a width from 1" in result.sentence
+
+
+@pytest.mark.parametrize(
+    ("kept", "words"),
+    [
+        ((False, True), "(above: rotation is beyond the limit)."),
+        ((True, False), "(above: slip is beyond the limit)."),
+        ((False, False), "(above: rotation and slip are beyond the limit)."),
+    ],
+)
+def test_what_fails_beyond_is_told(kept, words):
+    beyond = replace(ANSWER, fulfilled=False, rotation_fulfilled=kept[0], slip_fulfilled=kept[1])
+    assert size_result(BOXES, {1.0: ANSWER, 6.0: beyond}).sentence.endswith(words)
+    assert "from 1 to 6: it overturns or " in size_result(BOXES, {1.0: FELL, 6.0: beyond}).sentence
 
 
 def test_no_answer_is_not_fulfilled():
