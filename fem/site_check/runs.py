@@ -81,7 +81,10 @@ class RunPlan:
     periods: tuple[float | None, ...]  #: of the building
 
     def of_set(self) -> list[RunKey]:
-        """Every motion with both signs, over frictions, weights, elevations and periods; those of a motion together."""
+        """Every motion with both signs, over weights, elevations, periods and frictions.
+
+        Neighbours differ in their motion alone, so that they share the equilibrium that they start from.
+        """
         signs = (1, -1) if self.vertical else (0,)
         return [
             RunKey(
@@ -96,11 +99,11 @@ class RunPlan:
                 model=self.request.heading.model,
                 factor=1.0,
             )
-            for variant, period, motion, (mu_static, mu_kinetic), sign in product(
+            for variant, period, (mu_static, mu_kinetic), motion, sign in product(
                 self.request.variants,
                 self.periods,
-                range(1, self.motions + 1),
                 self.request.frictions,
+                range(1, self.motions + 1),
                 signs,
             )
         ]
