@@ -16,7 +16,7 @@ def sampled_motion(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Displacement [m], velocity [m/s] and acceleration [m/s2] at the samples, each of shape (n,).
 
-    Accelerations are integrated from rest, displacements read as the natural cubic spline through them.
+    Accelerations are integrated from rest; displacements are interpolated by a natural cubic spline.
     """
     steps = np.diff(times)
     if quantity == "displacement":

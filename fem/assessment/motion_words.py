@@ -29,12 +29,12 @@ def motion_in_words(motion: MotionResult) -> str:
 
 
 def _small(residual: float, peak: float | None) -> float:
-    """What is left at the end of a motion; 0 where it is the rounding of sums."""
+    """The residual at the end of a motion; 0 where it is rounding error."""
     return 0.0 if abs(residual) <= ROUNDING * (peak or 0.0) else residual
 
 
 def doubts(motion: MotionResult, gravity: float) -> tuple[str, ...]:
-    """What is doubtful about the motions of a floor under this gravity [m/s2]: records, and a floor that falls away."""
+    """Doubts about the floor's motions under this gravity [m/s2]: those of records, and a floor that falls with g."""
     upward = motion.vertical
     if upward is None:
         return motion.notes

@@ -45,7 +45,7 @@ class Trial(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Answer:
-    """What the runs of one or more lines say, from the safe side on."""
+    """The result of the runs of one or more lines, from the safe side on."""
 
     stood_to: float | None  #: up to here every run stood; None where one of the first value did not
     overturned_from: float | None  #: the first value at which a run overturned
@@ -59,7 +59,7 @@ class Answer:
 def answer_axis(axes: Sequence[Axis]) -> Axis | None:
     """The axis along which a study answers: a strength, else the only one whose values are rising numbers.
 
-    Both signs of one value are no strengths.
+    An axis of two opposite signs is not a strength.
     """
     numeric = {
         axis.key: axis for axis in axes if axis.is_numeric and len({abs(value) for value in axis.values}) > 1
@@ -101,7 +101,7 @@ def answer_of(trials: Sequence[Trial], *, rising: bool) -> Answer:
     upright = stands.index(False) if False in stands else len(values)
     fell = [one for one in at[fallen[0]] if one.kind == OVERTURNED] if fallen else []
     worst = max(fell, key=lambda one: (one.slip or 0.0, -one.line), default=None)
-    # A value that was tried in some of the lines says nothing of the others; where it did not stand, it ends a range.
+    # A value tried in some lines only is unknown for the others; where it did not stand, it ends a range.
     beyond = [
         (value, stood)
         for value, stood in zip(values[first:], stands[first:], strict=True)
@@ -163,7 +163,7 @@ def sentence_of(answer: Answer, axis: Axis, *, rising: bool, where: str = "") ->
 
 
 def ends_in_words(answer: Answer, axis: Axis) -> tuple[str, str]:
-    """Up to where it stood and where it first overturned, in as many figures as tell them apart; empty for none."""
+    """Up to where it stood and where it first overturned, with enough figures to differ; empty for none."""
     ends = (answer.stood_to, answer.overturned_from)
     words = ("", "")
     for figures in range(3, MOST_FIGURES + 1):
@@ -182,7 +182,7 @@ def ranges_in_words(ranges: Sequence[Range], axis: Axis) -> str:
 
 
 def table_lines(rows: Iterable[tuple[str, str]], file: str = "") -> Iterator[str]:
-    """Rows for a screen, each where and the answer; beyond the first forty their number, and the file of all."""
+    """Lines for a screen, each a place and its answer; after the first forty, the number left and the file of all."""
     listed = list(rows)
     widest = max((len(where) for where, _ in listed), default=0)
     yield from (f"  {where:{widest}}  {sentence}" for where, sentence in listed[:MOST_ROWS])

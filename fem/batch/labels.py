@@ -1,4 +1,4 @@
-"""Keys and values of axes as people read them: "peak acceleration [m/s²]", "0.42 g"."""
+"""Keys and values of axes in words: "peak acceleration [m/s²]", "0.42 g"."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -15,7 +15,7 @@ PEOPLE = {
 
 
 def axis_name(axis: Axis) -> str:
-    """A key for people: `motion.peak_acceleration_m_s2` is "peak acceleration"."""
+    """The name of a key: `motion.peak_acceleration_m_s2` is "peak acceleration"."""
     table, _, name = axis.key.rpartition(".")
     if axis.key == MOTION_FILE:
         return "motion"
@@ -24,14 +24,14 @@ def axis_name(axis: Axis) -> str:
 
 
 def axis_label(axis: Axis) -> str:
-    """A key for people with the unit of its numbers: "peak acceleration [m/s²]"."""
+    """The name of a key with its unit: "peak acceleration [m/s²]"."""
     shown = axis.unit.replace("s2", "s²").replace("m3", "m³") or "-"
     words = all(isinstance(value, bool | str) for value in axis.values)
     return axis_name(axis) + ("" if words else f" [{shown}]")
 
 
 def in_words(axis: Axis, values: Sequence[Any], figures: int = 3) -> str:
-    """Values on an axis in the unit in which people say them: "0.5 to 0.55 g", "steel, wood"."""
+    """Values on an axis in their usual unit: "0.5 to 0.55 g", "steel, wood"."""
     if any(isinstance(value, bool | str) for value in values):
         return ", ".join(str(value) for value in values)
     numbers = [value for value in axis.values if not isinstance(value, bool | str)]
@@ -50,7 +50,7 @@ def plain_number(value: float, figures: int = 3) -> str:
 
 
 def _unit_of_people(axis: Axis, largest: float) -> tuple[str, float]:
-    """A unit, and the factor from that of the key, which depends on the largest value."""
+    """The usual unit and the factor from the unit of the key; it depends on the largest value."""
     if axis.unit == "m/s2" and axis.key.startswith(("motion.", "vertical.")):
         return "g", 1.0 / STANDARD_GRAVITY
     for least, unit, factor in PEOPLE.get(axis.unit, ()):

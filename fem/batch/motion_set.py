@@ -1,4 +1,4 @@
-"""The motions of a set: read once, checked against each other, and told in numbers and spectra.
+"""The motions of a set: read once, checked against each other, with their measures and spectra.
 
 A set is the values of `motion.file` in a study: recorded motions, alone or with a vertical component each.
 """
@@ -118,7 +118,7 @@ def read_motion_set(base: Case, axes: Iterable[Axis]) -> tuple[FloorMotionPair, 
 
 
 def motions_left_out(base: Case, motions: Sequence[FloorMotionPair]) -> str | None:
-    """The part of its motion that runs are under, where they end before it; of a set of the first that is cut.
+    """The part of the motion that the runs cover, where they end before it; of a set, that of the first one cut.
 
     None where every motion is covered.
     """
@@ -132,16 +132,16 @@ def motions_left_out(base: Case, motions: Sequence[FloorMotionPair]) -> str | No
 
 
 def write_motions(
-    place: ResultFolder, motions: Sequence[FloorMotionPair], told: Sequence[Mapping[str, Any]]
+    place: ResultFolder, motions: Sequence[FloorMotionPair], measures: Sequence[Mapping[str, Any]]
 ) -> list[str]:
     """Write `motions.csv`, `spectra.csv` and the figure of the spectra; returns the names of figures.
 
     Args:
         place: the folder of a study.
         motions: of the set.
-        told: numbers of each motion, its outcomes among them.
+        measures: of each motion, with its outcomes.
     """
-    place.write_text("motions.csv", _motions_table(told))
+    place.write_text("motions.csv", _motions_table(measures))
     periods, spectra = spectra_of(motions)
     rows = np.column_stack([periods, *spectra.values()]).tolist()
     place.write_text("spectra.csv", table_text(["period_s", *spectra], rows))
@@ -158,15 +158,15 @@ def spectra_of(motions: Sequence[FloorMotionPair]) -> tuple[FloatArray, dict[str
     return periods, {one.name: one.spectrum(periods).pseudo_acceleration_m_s2 for one in components}
 
 
-def _motions_table(told: Sequence[Mapping[str, Any]]) -> str:
+def _motions_table(measures: Sequence[Mapping[str, Any]]) -> str:
     """`motions.csv`: a row a motion, the numbers of its vertical component with `vertical_` before them."""
-    columns = [name for name in told[0] if name != "vertical"]
-    verticals: Mapping[str, Any] = next((one["vertical"] for one in told if one["vertical"]), {})
+    columns = [name for name in measures[0] if name != "vertical"]
+    verticals: Mapping[str, Any] = next((one["vertical"] for one in measures if one["vertical"]), {})
     return table_text(
         [*columns, *(f"vertical_{name}" for name in verticals)],
         (
             [*(one[name] for name in columns), *((one["vertical"] or {}).get(name) for name in verticals)]
-            for one in told
+            for one in measures
         ),
     )
 
@@ -190,7 +190,7 @@ def _table(motion: object) -> TableMotion:
 
 
 def _contents(pair: FloorMotionPair) -> Iterator[str]:
-    """Equal for components that are the same motion, whatever their scale and sign."""
+    """A digest that is equal for components of the same motion, whatever their scale and sign."""
     for one in pair.components:
         values = one.motion.accelerations
         largest = values[np.argmax(np.abs(values))] or 1.0

@@ -97,7 +97,7 @@ class Case(CaseHeading):
 
     @property
     def named(self) -> dict[str, str | None]:
-        """What its pages bear, by key of [document]."""
+        """What stands on its pages, by key of [document]."""
         return {} if self.document is None else self.document.model_dump()
 
     @property

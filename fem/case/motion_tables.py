@@ -51,7 +51,7 @@ class HarmonicKeys(CaseTable):
         "harmonic: cycles over which the beginning and the end are tapered", 0.0, only=("kind", "harmonic")
     )
     cycles: Annotated[float, q.CYCLES] | None = case_key(
-        "harmonic: the floor stops when it next comes to rest after so many cycles; default: never",
+        "harmonic: the floor stops when it next comes to rest after this number of cycles; default: never",
         None,
         example=10.0,
         only=("kind", "harmonic"),
@@ -59,7 +59,7 @@ class HarmonicKeys(CaseTable):
 
 
 class StartKey(HarmonicKeys):
-    """How the container begins, behind the keys of a harmonic motion; it holds for the vertical motion, too."""
+    """How the container starts, after the keys of a harmonic motion; it holds for the vertical motion, too."""
 
     start: Literal["moving", "rest"] = case_key(
         '"moving": the container moves with the floor at t = 0 | "rest": it does not',
@@ -97,7 +97,7 @@ class PulseAndTableKeys(CaseTable):
         "table: of a file of one column, without times", None, example=0.005, only=("kind", "table")
     )
     start_s: Annotated[float, q.RECORD_TIME] | None = case_key(
-        "table: begin of the part taken, which becomes t = 0", None, example=5.0, only=("kind", "table")
+        "table: start of the part taken, which becomes t = 0", None, example=5.0, only=("kind", "table")
     )
     end_s: Annotated[float, q.RECORD_TIME] | None = case_key(
         "table: end of the part taken, in the times of the file", None, example=30.0, only=("kind", "table")
@@ -128,8 +128,8 @@ class FloorMotionTable(PulseAndTableKeys, HarmonicKeys):
     def nominal_peak(self) -> float | None:
         """A Omega^2 of a harmonic motion, the peak of a pulse, 0 of no motion [m/s2]; a magnitude.
 
-        Ramps are ignored, and so is the end of a run before the peak. Of a table what it is scaled to, else None: no
-        file is read here.
+        Ramps are ignored, and so is the end of a run before the peak. Of a table: the peak to which it is
+        scaled, else None: no file is read here.
         """
         match self.kind:
             case "none":

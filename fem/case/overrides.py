@@ -15,7 +15,7 @@ from fem.case.validation import CaseError, did_you_mean
 
 DOTTED_KEY = re.compile(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+)?")
 FREQUENCIES = ("angular_frequency_rad_s", "frequency_Hz")
-#: of a record, the key that another one stands for
+#: of a record: the key that replaces another one
 OF_A_RECORD = {
     f"{table}.peak_acceleration_m_s2": f"{table}.scale_to_m_s2" for table in ("motion", "vertical")
 }

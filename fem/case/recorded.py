@@ -23,7 +23,7 @@ USUAL_PEAKS = (0.5, 20.0)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RecordedMotion:
-    """A component of a record, as the floor follows it, and where it comes from."""
+    """A component of a record as the floor follows it, and its origin."""
 
     record: Record
     component: Component  #: as the file has it

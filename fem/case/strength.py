@@ -5,7 +5,7 @@ from fem.case.motion_tables import FloorMotionTable
 
 
 def scaled_motion(case: Case, factor: float) -> dict[str, float]:
-    """The keys that make both components of the floor's motion so many times as strong; none of a floor at rest.
+    """The keys that multiply both components of the floor's motion by a factor; none for a floor at rest.
 
     The frequency of a harmonic motion stays. A recorded vertical component beside one that is scaled to a peak follows
     it anyway.

@@ -238,7 +238,7 @@ Mark = Annotated[Text, BeforeValidator(_as_text)]
 
 
 class DocumentTable(CaseTable):
-    """What identifies the pages made of a case; no part of its hash."""
+    """What identifies the pages of a case; it is no part of the hash."""
 
     project: Text = case_key("for every page", None, example="Store of chemicals, hall 3")
     company: Text = case_key("for every page", None, example="Example Ltd")

@@ -1,4 +1,4 @@
-"""`assess`: does a container at a site stand, by time histories for the action of EN 1998-1?"""
+"""`assess`: verify a container at a site, by time histories for the action of EN 1998-1."""
 
 import importlib
 from contextlib import ExitStack

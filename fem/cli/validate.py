@@ -23,7 +23,7 @@ def validate(
     as_json: AsJson = False,
     quiet: Quiet = False,
 ) -> int:
-    """Predict experiments; writes validate.json and validate.html; ends with 3 if one is missed."""
+    """Predict experiments; writes validate.json and validate.html; exits with 3 if one is missed."""
     suite = importlib.import_module("fem.validation.suite")
     pages = importlib.import_module("fem.validation.page")
 

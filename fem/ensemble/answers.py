@@ -1,4 +1,4 @@
-"""The answer of an ensemble: where half of the draws overturn, and up to where few enough do, from its result alone.
+"""The answer of an ensemble: where half of the draws overturn, and up to where few enough do; from the result alone.
 
 The shares counted at the points are joined by straight lines, and so are the ends of their intervals: half of the draws
 overturn where the line of the shares first passes one half, from the side on which fewer do; the interval of that value
@@ -37,7 +37,7 @@ class EnsembleAnswer:
     axis: Axis
     rising: bool  #: more overturn at larger values
     sentence: str  #: of the line of points on which half overturn first
-    others: tuple[Axis, ...]  #: the axes that tell its lines apart
+    others: tuple[Axis, ...]  #: the axes that distinguish its lines
     rows: tuple[tuple[Row, HalfPoint, str], ...]  #: a point of each line, its answer, and that in words
 
     def lines(self) -> Iterator[tuple[str, str]]:
@@ -140,7 +140,7 @@ def _is_rising(axis: Axis, points: Sequence[Row]) -> bool:
 
 
 def interval_in_words(axis: Axis, found: HalfPoint, *, rising: bool) -> str:
-    """The interval of the value; an end that no point shows is said to lie beyond them."""
+    """The interval of the value in words; an end outside the points lies "beyond" them."""
     ends = [axis.values[0], axis.values[-1]]
     first, last = (in_words(axis, [end]) for end in (ends if rising else reversed(ends)))
     before, after = ("below", "beyond") if rising else ("beyond", "below")

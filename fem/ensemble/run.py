@@ -178,8 +178,8 @@ def _finish(
             place.write_text(f"figures/{name}.svg", svg)
     result = result_of(ensemble, unknown, motions, points, fragility, status)
     if motions and complete.all():
-        told = [one.numbers() | found for one, found in zip(motions, draws.by_replicate(), strict=True)]
-        result |= {"motions": told, "motion_figures": write_motions(place, motions, told)}
+        measures = [one.numbers() | found for one, found in zip(motions, draws.by_replicate(), strict=True)]
+        result |= {"motions": measures, "motion_figures": write_motions(place, motions, measures)}
     answer = ensemble_answer(result)
     result["answer"] = answer.sentence if answer else None
     place.write_result(result)
@@ -311,7 +311,7 @@ def code_of(row: Row) -> int:
 
 
 def region_words(result: Mapping[str, Any]) -> dict[str, str]:
-    """What each region says of its points."""
+    """The regions in words."""
     limit = f"{result['probability']:g}"
     return {
         "below": f"probability of overturning at most {limit}",

@@ -28,7 +28,7 @@ FOREIGN = re.compile(
 
 @dataclass(frozen=True, kw_only=True)
 class Signature:
-    """What a page belongs to, and who answers for it; may be filled in later."""
+    """Project and persons of a page; may be filled in later."""
 
     project: str = ""
     company: str = ""
@@ -43,7 +43,7 @@ class Signature:
         return " · ".join(part for part in (self.company, self.project, self.number) if part)
 
     def completed(self, document: Mapping[str, str | None]) -> "Signature":
-        """With what the table [document] of a case says, where nothing was given."""
+        """Completed from the table [document] of a case."""
         return replace(
             self, **{key: text for key, text in document.items() if text and not getattr(self, key)}
         )

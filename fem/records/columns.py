@@ -30,7 +30,7 @@ def read_columns(source: MotionText, *, unit: str | None, sample_interval: float
     """Read a file of one, two or three columns.
 
     Raises:
-        RecordError: by line: no numbers, another number of columns, a unit that contradicts; no unit.
+        RecordError: with the line: no numbers, another number of columns, contradicting units, no unit.
     """
     numbered = list(_contents(source))
     begin = next((k for k, (_, line) in enumerate(numbered) if _is_data(line)), len(numbered))

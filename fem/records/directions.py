@@ -1,4 +1,4 @@
-"""What headers call the direction of a component, and which sense of a vertical one they count positive."""
+"""Directions of components as headers name them, and the positive sense of a vertical one."""
 
 import re
 
@@ -16,7 +16,7 @@ AZIMUTH = re.compile(r"([ns]?\s*\d{1,3}\s*[ew]?)(\s*deg(rees)?)?", re.IGNORECASE
 def direction_of(word: str) -> tuple[Direction | None, float]:
     """Direction by its name, and the factor that makes a vertical component positive upward: -1 of "down".
 
-    A number is an azimuth in degrees. None where the name says nothing.
+    A number is an azimuth in degrees. None where the name gives none.
     """
     name = word.strip().strip(".").casefold()
     if name in UPWARD:

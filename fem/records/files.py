@@ -1,4 +1,4 @@
-"""Read a motion file of any known format; the format is recognised by what the file holds, never by its name."""
+"""Read a motion file of any known format, which is recognised by its content, never by its name."""
 
 from functools import lru_cache
 from pathlib import Path

@@ -42,7 +42,7 @@ def read_block(
         The numbers, shape (count,), and the line behind them.
 
     Raises:
-        RecordError: fewer or more numbers than the header says, or a field that is no number.
+        RecordError: fewer or more numbers than in the header, or a field that is no number.
     """
     behind = first + -(-count // per_line)
     lines = [line.rstrip() for line in source.lines[first - 1 : behind - 1]]
@@ -74,10 +74,10 @@ def read_separated(source: MotionText, first: int, count: int) -> tuple[FloatArr
 
 
 def require_end(source: MotionText, line: int, count: int) -> None:
-    """Refuse a file that goes on behind its numbers."""
+    """Refuse a file with content after its numbers."""
     for number in range(line, len(source.lines) + 1):
         if source.line(number).strip():
-            raise source.refused(f"the header says {count} values, and the file goes on behind them", number)
+            raise source.refused(f"the header says {count} values, and more content follows them", number)
 
 
 def _checked(source: MotionText, rows: list[list[str]], first: int, largest: float) -> FloatArray:

@@ -1,4 +1,4 @@
-"""Measures of how strong a motion is: peaks, Arias intensity, significant duration.
+"""Intensity measures of a motion: peaks, Arias intensity, significant duration.
 
 The acceleration is linear between its samples and zero outside them; velocity and displacement start at zero.
 """
@@ -18,7 +18,7 @@ SIGNIFICANT = (0.05, 0.95)
 
 @dataclass(frozen=True, kw_only=True)
 class Intensity:
-    """Peaks are magnitudes."""
+    """Intensity measures of a motion; peaks are magnitudes."""
 
     peak_acceleration_m_s2: float
     peak_velocity_m_s: float
@@ -28,7 +28,7 @@ class Intensity:
 
 
 def intensity(times_s: FloatArray, acceleration: FloatArray) -> Intensity:
-    """Measures of a motion.
+    """Intensity measures of a motion.
 
     Args:
         times_s: rising, shape (n,) [s].

@@ -1,7 +1,7 @@
 """A recorded motion: one or more components, each with its times, values, quantity and unit. SI units.
 
-What the file says of itself (format, station, event, date, names and directions of components) is kept; what it does
-not say stays empty. Values are positive as in the file.
+What the file states (format, station, event, date, names and directions of components) is kept; what it does
+not state stays empty. Values are positive as in the file.
 """
 
 from collections.abc import Sequence
@@ -102,8 +102,8 @@ class Record:
     def component(self, direction: Direction, *, quantity: Quantity, channel: str = "") -> Component:
         """The component that moves the floor in a direction.
 
-        The file decides where it says which component is vertical. A file of one component serves any direction
-        unless it says that it is the other one.
+        Directions stated in the file decide. A file of one component serves either direction unless it states the
+        other one.
 
         Args:
             direction: of the floor.
@@ -160,7 +160,7 @@ def require_together(components: Sequence[Component], names: Sequence[str]) -> N
     """Refuse components of one motion that were not sampled together.
 
     Raises:
-        RecordError: number of samples, begin or interval differ; with both.
+        RecordError: number of samples, start or interval differ; with both values.
     """
     first = components[0]
     for other, name in zip(components[1:], names[1:], strict=True):

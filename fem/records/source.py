@@ -1,6 +1,6 @@
 """The text of a motion file, from bytes in any of the usual encodings; binary, empty and huge files are refused.
 
-Messages name the line and never quote it: a file that is no motion may hold what is not for everyone to see.
+Messages name the line and never quote it: a file that is no motion may hold confidential content.
 """
 
 import re
@@ -61,7 +61,7 @@ def read_source(path: Path) -> MotionText:
 
 
 def _decoded(content: bytes) -> str | None:
-    """UTF-16 with its mark, UTF-8, else Latin-1, which every sequence of bytes is."""
+    """UTF-16 with a byte order mark, UTF-8, else Latin-1, which any bytes can be."""
     encodings = [TWO_BYTES[content[:2]]] if content[:2] in TWO_BYTES else ["utf-8-sig", "latin-1"]
     for encoding in encodings:
         try:

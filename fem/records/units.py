@@ -11,7 +11,7 @@ STANDARD_GRAVITY = 9.80665  #: of a record in g (ISO 80000-3), not the gravity o
 
 @dataclass(frozen=True, kw_only=True)
 class Unit:
-    """What a unit measures, and what one of it is in SI."""
+    """The quantity of a unit, and its factor to SI."""
 
     quantity: Quantity
     factor: float
@@ -46,7 +46,7 @@ OTHERWISE = 'state it as unit = "g", "m/s2", "cm/s2", "gal" or "mm/s2" (displace
 
 
 def unit_spelled(text: str) -> str | None:
-    """The unit that a header spells, such as CM/SEC/SEC, m s-2 or m_s2; None where it is none that is known."""
+    """The unit that a header spells, such as CM/SEC/SEC, m s-2 or m_s2; None for an unknown unit."""
     word = text.strip().casefold().replace("²", "2").replace("−", "-")
     word = re.sub(r"\s+|\*\*|\^|\*|·", "", word) if "_" not in word else word.replace("_", "/", 1)
     word = re.sub(r"sec(ond)?s?", "s", word)

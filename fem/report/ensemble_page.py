@@ -37,7 +37,7 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
         )
     case = load_case(str(folder / "base.toml"))
     answer, name = ensemble_answer(info), str(info.get("ensemble") or folder.name)
-    words = region_words(info)
+    words = region_labels(info)
     return study_page(
         "ensemble.html.j2",
         info=info,
@@ -64,8 +64,8 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
     )
 
 
-def region_words(info: Mapping[str, Any]) -> dict[str, str]:
-    """What each region says of the share that overturns at its points."""
+def region_labels(info: Mapping[str, Any]) -> dict[str, str]:
+    """The regions in words, as the share that overturns."""
     limit = f"{short(info['probability'], 100.0)} %"
     return {"below": f"at most {limit}", "undecided": "not decided", "above": f"more than {limit}"}
 
@@ -99,7 +99,7 @@ def random_table(info: Mapping[str, Any]) -> PageTable:
 
 def points_table(info: Mapping[str, Any]) -> PageTable:
     """A row a point: the counts, the share that overturned, its interval, the region."""
-    axes, words = axes_of(info), region_words(info)
+    axes, words = axes_of(info), region_labels(info)
     counted = ("draws", "stood", "overturned", "failed")
     numbers = (*counted, "share", f"{100.0 * info['confidence']:g} % interval")
     columns = dict.fromkeys((axis_label(axis) for axis in axes), True)

@@ -1,4 +1,4 @@
-"""The part of a page that tells the motions of a set: numbers and spectra, what each did, and all of them together."""
+"""The part of a page about a set of motions: measures and spectra, the outcome of each, and of all together."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

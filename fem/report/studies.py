@@ -1,4 +1,4 @@
-"""What the reports of sweeps, ensembles and response curves have in common: tables, drawings, how to repeat them."""
+"""Common parts of the reports of sweeps, ensembles and response curves: tables, drawings, how to repeat them."""
 
 import datetime as dt
 import shlex
@@ -35,7 +35,7 @@ class PageTable:
 
 @dataclass(frozen=True, kw_only=True)
 class Again:
-    """How to compute a study again."""
+    """How to repeat a study."""
 
     words: str
     command: str
@@ -51,7 +51,7 @@ def page_table(
     file: str = "",
     optional: frozenset[str] = frozenset(),
 ) -> PageTable:
-    """A table with at most so many rows as a page can carry.
+    """A table, cut to the rows that a page can carry.
 
     Args:
         label: for those who cannot see it.

@@ -1,4 +1,4 @@
-"""The answer of a response curve in one sentence: where it overturned, turned furthest, and two motions coexist."""
+"""The answer of a response curve in one sentence: overturning, largest rotation, coexisting motions."""
 
 from collections.abc import Mapping
 from typing import Any

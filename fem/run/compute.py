@@ -86,7 +86,7 @@ def compute(case: Case, *, band: bool | None = None, check_rigid: bool = False) 
 
     Args:
         case: from `fem.load_case` or `fem.case_from`.
-        band: repeat the run over what is not known of its inputs, for `verdict.sure`; default: all but a plain rest
+        band: repeat the run over its unknown inputs, for `verdict.sure`; default: all but a plain rest
             and the full model, as the command.
         check_rigid: compare it with the analytic rigid block.
 

@@ -1,7 +1,7 @@
 """A run in a folder: its files grow with it, and an interrupted one continues.
 
 case -> model (mesh, body, floor, equilibrium) -> step until done -> verdict -> files; then, where they are wanted, the
-comparison with the rigid block and the band over what is not known.
+comparison with the rigid block and the band over unknown inputs.
 """
 
 from collections.abc import Callable, Iterator, Mapping

@@ -22,7 +22,7 @@ LEAST_DAMPING_CORRECTION = 0.55
 LEAST_DESIGN_SHARE = 0.2
 #: q of the vertical design spectrum, at most (3.2.2.5(6))
 MOST_VERTICAL_BEHAVIOUR_FACTOR = 1.5
-#: range of the formulas (3.2) to (3.5); Annex A goes on from there
+#: range of the formulas (3.2) to (3.5); Annex A continues from there
 LAST_PERIOD_S, LAST_PERIOD_ANNEX_A_S = 4.0, 10.0
 #: gamma_I and gamma_a that are accepted
 FACTORS = (0.5, 2.0)

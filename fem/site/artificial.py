@@ -56,7 +56,7 @@ Target = Callable[[FloatArray], FloatArray]
 
 @dataclass(frozen=True, kw_only=True)
 class Shaper:
-    """What motions of one length have in common while they are matched."""
+    """What motions of one length share while they are matched."""
 
     stationary: float  #: stationary part [s]
     longest: float = LAST_PERIOD_S  #: period up to which they are matched [s]

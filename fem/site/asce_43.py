@@ -139,7 +139,7 @@ def sliding_row(body: LooseBody, limits: Limits, action: FloorAction) -> MethodR
         demand=found.distance,
         capacity=limits.slip,
         unit="m",
-        says=said if math.isfinite(found.distance) else "slides further than the spectrum tells",
+        says=said if math.isfinite(found.distance) else "slides further than the spectrum shows",
         source=SOURCE,
         validity="meant to be conservative; one friction coefficient, the kinetic one; motion in a plane",
     )

@@ -1,4 +1,4 @@
-"""What the simplified methods know: a loose body, the motion below it, and the limits.
+"""The input of the simplified methods: a loose body, the motion below it, and the limits.
 
 Lengths in m, accelerations in m/s2, magnitudes throughout. The motion is that of the floor below the body: on
 the ground that of the site, in a building that of the floor.
@@ -102,7 +102,7 @@ class FloorAction:
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """What the user allows."""
+    """The limits that the user gives."""
 
     rotation_ratio: float = 0.5  #: largest |rotation| over the slenderness angle [-]
     slip: float  #: [m]

@@ -16,7 +16,7 @@ from fem.records.zero_end import ZeroEnd
 from fem.runtime.arrays import FloatArray
 from fem.site.ground_motion import GroundMotion, sampled_at
 
-#: by which the period is multiplied: it is not known better than that
+#: factors on the period, which is not known more precisely
 PERIOD_FACTORS = (0.85, 1.0, 1.15)
 MODE_AT_TOP = 1.5
 #: samples of a period of the building, at least

@@ -1,4 +1,4 @@
-"""A row of a simplified method: what it demands, what the body has, what it says, and where it comes from."""
+"""A row of a simplified method: demand, capacity, conclusion and source."""
 
 import math
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class MethodQuantity(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class MethodSource:
-    """Where a method comes from. Only a clause that was checked is called one."""
+    """The source of a method. Only a clause that was checked is cited as one."""
 
     work: str  #: standard with its year, or authors with the year
     clause: str = ""  #: only with SourceStanding.CLAUSE
@@ -55,7 +55,7 @@ class MethodRow:
     name: str
     quantity: MethodQuantity
     formula: str  #: symbols; an index after an underscore
-    numbers: str  #: the formula with the numbers put in
+    numbers: str  #: the formula with numbers
     demand: float  #: infinite where the method finds no position of rest below overturning
     capacity: float
     unit: str

@@ -1,4 +1,4 @@
-"""All simplified methods side by side, and how far the action may grow by each."""
+"""All simplified methods side by side, and the factor on the action that each allows."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ Method = Callable[[FloorAction], Sequence[MethodRow]]
 
 @dataclass(frozen=True, kw_only=True)
 class MethodCapacity:
-    """The action at which a method is used up, over the action given: capacity over strength."""
+    """The action at which the utilisation of a method is 1, over the action given: capacity over strength."""
 
     name: str
     quantity: MethodQuantity
@@ -58,7 +58,7 @@ def methods_of(
 
 
 def method_rows(methods: Sequence[Method], action: FloorAction) -> list[MethodRow]:
-    """What each method says of an action."""
+    """The rows of all methods for an action."""
     return [row for method in methods for row in method(action)]
 
 

@@ -35,14 +35,14 @@ def write_at2(path: Path, step: float, acceleration: FloatArray, described: str)
         described: event, date, station and component of the second line; commas divide them.
 
     Raises:
-        ValueError: a value that no float64 in g stands for; `in_whole_g` first.
+        ValueError: a value that is no float64 in g times 9.80665; use `in_whole_g` first.
     """
     values = acceleration / STANDARD_GRAVITY
     for neighbour in (-np.inf, np.inf):
         off = values * STANDARD_GRAVITY != acceleration
         values[off] = np.nextafter(acceleration[off] / STANDARD_GRAVITY, neighbour)
     if (values * STANDARD_GRAVITY != acceleration).any():
-        raise ValueError("an acceleration is no float64 in g times 9.80665")
+        raise ValueError("an acceleration is no float64 in g times 9.80665; use in_whole_g first")
     rows = [
         " ".join(f"{value:24.16E}" for value in values[at : at + AT2_PER_LINE].tolist())
         for at in range(0, values.size, AT2_PER_LINE)

@@ -44,7 +44,7 @@ class ComponentSpectra:
         return np.asarray(self.motions.mean(axis=0))
 
     def least(self, within: np.ndarray) -> tuple[float, int]:
-        """Least ratio of mean to target among the periods of a mask (k,), and its place."""
+        """Least ratio of mean to target among the periods of a mask (k,), and its index."""
         ratios = np.where(within, self.mean / self.target, np.inf)
         place = int(np.argmin(ratios))
         return float(ratios[place]), place

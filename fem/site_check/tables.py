@@ -226,7 +226,7 @@ class FrictionTable(CaseTable):
 
 
 class LimitsTable(CaseTable):
-    """What the user allows."""
+    """The limits that the user gives."""
 
     rotation_ratio: Annotated[float, ROTATION_RATIO] = case_key(
         "largest |rotation| over the slenderness angle", 0.5

@@ -49,7 +49,7 @@ class SweepAnswer:
     axis: Axis
     rising: bool  #: the smaller values are the safe ones
     sentence: str  #: of all lines together
-    others: tuple[Axis, ...]  #: the axes that tell the rows apart
+    others: tuple[Axis, ...]  #: the axes that distinguish the rows
     rows: tuple[AnswerRow, ...]  #: those of all motions of a set first
 
     def table(self) -> str:

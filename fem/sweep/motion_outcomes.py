@@ -1,8 +1,8 @@
-"""What a set of motions did: by motion, and of the whole set at each point on the other axes.
+"""The outcomes of a set of motions: of each motion, and of the whole set at each point on the other axes.
 
 A motion that is tried with both signs counts once, with the worse of the two: the signs of one motion are not
 independent. The share of motions that overturn has the interval of as many independent ones. A mean is that of the
-motions under which the container stood, and is told together with how many overturned: no mean includes a fall.
+motions under which the container stood, and stands beside the number that overturned: no mean includes a fall.
 """
 
 import math
@@ -34,7 +34,7 @@ SET_COLUMNS = (
 
 @dataclass(frozen=True, kw_only=True)
 class MotionOutcome:
-    """What one motion did, with the worse of its signs."""
+    """The outcome of one motion, with the worse of its signs."""
 
     motion: str
     kind: int  #: see `neighbours`
@@ -44,19 +44,19 @@ class MotionOutcome:
 
     @property
     def severity(self) -> tuple[int, float]:
-        """Rises with how bad the outcome is."""
+        """Larger for a worse outcome."""
         return (STANDING, FAILED, OVERTURNED).index(self.kind), self.rotation_ratio or 0.0
 
 
 def sign_axes(axes: Sequence[Axis]) -> list[Axis]:
-    """The axes that turn the sign of a motion and change nothing else."""
+    """The axes that only reverse the sign of a motion."""
     return [axis for axis in axes if axis.key in SIGNS and len({abs(value) for value in axis.values}) == 1]
 
 
 def motions_at(
     axes: Sequence[Axis], shown: Mapping[int, Shown]
 ) -> Iterator[tuple[dict[str, Any], list[MotionOutcome]]]:
-    """At each point on the axes that are neither motions nor signs: its values, and what each motion did."""
+    """At each point on the axes that are neither motions nor signs: its values, and the outcome of each motion."""
     keys = [axis.key for axis in axes]
     inner = [MOTION_FILE, *(axis.key for axis in sign_axes(axes))]
     places = [keys.index(key) for key in inner]
@@ -77,7 +77,7 @@ def motions_at(
 
 
 def set_row(found: Sequence[MotionOutcome]) -> dict[str, Any]:
-    """What a set of motions did at a point, by `SET_COLUMNS`."""
+    """The outcome of a set of motions at a point, by `SET_COLUMNS`."""
     kinds = np.array([one.kind for one in found])
     share = estimate(kinds == OVERTURNED, kinds == FAILED, replicates=1, confidence=CONFIDENCE)
     computed = [one for one in found if one.kind != FAILED]
@@ -140,7 +140,7 @@ def by_motion(points: Sequence[Sequence[MotionOutcome]]) -> dict[str, dict[str, 
 
 
 def _worst(motion: str, signs: Sequence[Shown]) -> MotionOutcome:
-    """What a motion did, with the worse of its signs; a failed one hides no fall, and is never taken as standing."""
+    """The outcome of a motion, with the worse of its signs; a failed run hides no fall and never counts as standing."""
     each = [
         MotionOutcome(
             motion=motion,

@@ -1,4 +1,4 @@
-"""The files of a set of motions in the folder of a sweep: numbers, spectra, what the set did, figures."""
+"""The files of a set of motions in the folder of a sweep: measures, spectra, outcomes of the set, figures."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -24,22 +24,22 @@ SHARES = "figures/overturned.svg"
 def write_set(
     place: ResultFolder, sweep: Sweep, motions: Sequence[FloorMotionPair], cells: CellRows
 ) -> dict[str, Any]:
-    """Write the files of the set; returns what `sweep.json` tells of it."""
+    """Write the files of the set; returns its part of `sweep.json`."""
     points = list(motions_at(sweep.axes, cells.shown))
     outcomes = by_motion([found for _, found in points])
-    told = [one.numbers() | outcomes[one.name] for one in motions]
+    measures = [one.numbers() | outcomes[one.name] for one in motions]
     rows = [values | set_row(found) for values, found in points]
     others = [axis for axis in sweep.axes if axis.key in rows[0]]
     columns = (*(axis.key for axis in others), *SET_COLUMNS)
     place.write_text("motion_set.csv", table_text(columns, (row.values() for row in rows)))
-    figures = write_motions(place, motions, told)
+    figures = write_motions(place, motions, measures)
     if curves := _shares(sweep.axes, rows):
         axis, shares = curves
         title = sweep.title or sweep.name
         place.write_text(SHARES, svg_of(draw_shares(shares, title=title, label=axis_label(axis))))
         figures.append(SHARES)
     return {
-        "motions": told,
+        "motions": measures,
         "motion_set": [
             row | {"where": place_in_words(others, row), "in_words": set_in_words(row)} for row in rows
         ],

@@ -1,1 +1,1 @@
-"""The program against laboratory experiments: measured tables, fits, predictions. It knows no command and no study."""
+"""Laboratory experiments predicted by the program: measurements, fits, predictions; no command, no study."""

@@ -56,6 +56,6 @@ def specimen(case: Case, *, centroid: float, inertia_ratio: float) -> Container:
 def cross_validated(
     tests: Sequence[TestT], fit: Callable[[Sequence[TestT]], FitT]
 ) -> list[tuple[FitT, Sequence[TestT]]]:
-    """Fit on the tests of odd rank for those of even rank, and the reverse: each fit, and the tests to predict."""
+    """Fit on the tests of odd rank to predict those of even rank, and vice versa: fits with the tests to predict."""
     odd, even = tests[0::2], tests[1::2]
     return [(fit(odd), even), (fit(even), odd)]

@@ -1,7 +1,7 @@
 """A cube that lands on a face after it has slid and turned on an edge: 12 planar landings by motion capture.
 
-Each run starts from the measured state at about 12 degrees of tilt, with one corner on the table or above it. What is
-fitted is one number, the damping of the contact; friction is the authors' value. The impact of so squat a body on a
+Each run starts from the measured state at about 12 degrees of tilt, with one corner on the table or above it. One
+number is fitted, the damping of the contact; friction is the authors' value. The impact of so squat a body on a
 slippery table is decided by the corner that lands, not by Housner's impact about it: the cube rebounds to the side that
 it comes from.
 """

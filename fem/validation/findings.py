@@ -1,4 +1,4 @@
-"""What an experiment finds: a prediction beside a measurement, and whether it is as near as was asked beforehand."""
+"""The findings of an experiment: predictions beside measurements, and whether they meet the criteria set beforehand."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -21,7 +21,7 @@ class Prediction:
 
 @dataclass(frozen=True, kw_only=True)
 class Predictor:
-    """What something else reaches on the same tests."""
+    """The score of another predictor on the same tests."""
 
     name: str
     agreement: str
@@ -45,7 +45,7 @@ class Experiment:
 
     @property
     def missed(self) -> tuple[Prediction, ...]:
-        """Findings that are not as near as was asked."""
+        """Findings that miss their criterion."""
         return tuple(finding for finding in self.findings if finding.passed is False)
 
 
@@ -57,7 +57,7 @@ class ValidationResult:
 
     @property
     def missed(self) -> int:
-        """Number of findings that are not as near as was asked."""
+        """Number of findings that miss their criterion."""
         return sum(len(one.missed) for one in self.experiments)
 
     @property
@@ -67,7 +67,7 @@ class ValidationResult:
 
     @property
     def sentence(self) -> str:
-        """The result in one sentence; what is missed comes first."""
+        """The result in one sentence, missed criteria first."""
         if not self.judged:
             return "No experiment was computed."
         skipped = sum(bool(one.not_computed) for one in self.experiments)

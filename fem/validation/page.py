@@ -1,4 +1,4 @@
-"""The experiments for people: lines for a terminal and a self-contained page, what is missed first."""
+"""The experiments as lines for a terminal and as a self-contained page, missed criteria first."""
 
 import datetime as dt
 
@@ -28,7 +28,7 @@ def table_lines(result: ValidationResult) -> list[str]:
 
 
 def page(result: ValidationResult) -> str:
-    """The page, those experiments first that are missed."""
+    """The page, missed experiments first."""
     return render_page(
         "validate.html.j2",
         result=result,

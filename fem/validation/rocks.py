@@ -1,6 +1,6 @@
 """Two nearly identical granite rocks on a shake table: overturned or stood, under 35 recorded table motions.
 
-The scan of a rock does not say where it stood on its pedestal, so one number is fitted, its slenderness angle; mass
+The scan of a rock does not show where it stood on its pedestal, so one number is fitted, its slenderness angle; mass
 centre and inertia are those of the scan. It is fitted on half of the motions, and the other half is predicted. The
 motions come from a folder that the user names; the table of this package has outcomes and peaks.
 """
@@ -137,7 +137,7 @@ def overturns(test: ShakeTest, angle: float) -> bool:
 
 
 def _is_unsure(test: ShakeTest, angle: float) -> bool:
-    """Whether the program calls its prediction unsure: another outcome within what is not known of its inputs."""
+    """Whether the program calls its prediction unsure: another outcome within the ranges of its unknown inputs."""
     case, container = _rock(angle)
     motion = case.with_motion(test.times, test.acceleration)
     return compute_on(container, motion, WantedChecks(band=True)).verdict.sure == "unsure"
@@ -172,7 +172,7 @@ def _rock(angle: float) -> tuple[Case, Container]:
 
 
 def _findings(rock: int, found: Sequence[tuple[float, ShakeTest]]) -> list[Prediction]:
-    """What a rock did and what was predicted for it, each test by the fit on the others."""
+    """Measured and predicted outcomes of a rock, each test predicted by the fit on the others."""
     count = len(found)
     with ThreadPoolExecutor(max_workers=cores()) as pool:
         predicted = list(pool.map(lambda one: overturns(one[1], one[0]), found))
@@ -220,7 +220,7 @@ def _findings(rock: int, found: Sequence[tuple[float, ShakeTest]]) -> list[Predi
 
 
 def _others(tests: Sequence[ShakeTest]) -> tuple[Predictor, ...]:
-    """What other predictors reach on these tests."""
+    """The scores of other predictors on these tests."""
 
     def agreement(says: Callable[[ShakeTest], tuple[bool, bool]]) -> str:
         return ", ".join(

@@ -1,4 +1,4 @@
-"""All experiments, one after the other."""
+"""The suite of experiments."""
 
 import time
 from collections.abc import Callable
