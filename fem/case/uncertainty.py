@@ -88,7 +88,7 @@ class InputRange:
 
 
 def ranges_of(case: Case, penalty: float | None) -> tuple[InputRange, ...]:
-    """The ranges of all inputs that are not known, in the order of `INPUTS` and without the numerics.
+    """The ranges of all unknown inputs, in the order of `INPUTS` and without the numerics.
 
     Args:
         case: with its table [uncertainty].

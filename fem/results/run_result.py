@@ -179,7 +179,7 @@ class BandMember(JsonBlock):
 
 @dataclass(frozen=True, kw_only=True)
 class Band(JsonBlock):
-    """What the run does when the inputs that are not known change; figures are [low, high]."""
+    """What the run does when its unknown inputs change; figures are [low, high]."""
 
     outcomes: tuple[str, ...] = ()  #: that were found, from rest to overturned
     unsure: bool = False  #: the outcome is unsure: see `Verdict.sure`

@@ -1,4 +1,4 @@
-"""Which values of one key fulfil the rule: a range is scanned, every change located, islands and all."""
+"""Which values of one key fulfil the rule: a scan of a range, then every change is located."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -162,7 +162,7 @@ def _stretches(intervals: Sequence[tuple[float, float]], axis: SizeAxis) -> str:
 
 
 def _stretch(low: float, high: float, axis: SizeAxis) -> str:
-    """A stretch in words, with as many figures as tell its ends apart."""
+    """A stretch in words, with enough figures for its ends to differ."""
     if low == high:
         return f"of {_value(low, axis)}"
     figures = next((n for n in (3, 4, 5) if _inward(low, n, up=True) <= _inward(high, n, up=False)), 6)
@@ -170,14 +170,14 @@ def _stretch(low: float, high: float, axis: SizeAxis) -> str:
 
 
 def _value(value: float, axis: SizeAxis, figures: int = 3, *, up: bool | None = None) -> str:
-    """With so many figures, rounded into what fulfils the rule."""
+    """A value with its unit, rounded toward what fulfils the rule."""
     if not axis.whole and up is not None:
         value = _inward(value, figures, up=up)
     return f"{value:.{figures}g} {axis.unit}".strip()
 
 
 def _inward(value: float, figures: int, *, up: bool) -> float:
-    """A value rounded up or down to so many figures."""
+    """A value rounded up or down to a number of figures."""
     if value == 0.0:
         return value
     step = 10.0 ** (math.floor(math.log10(abs(value))) - figures + 1)

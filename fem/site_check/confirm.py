@@ -1,4 +1,4 @@
-"""What decides, computed again: with the reduced model, over the inputs that are not known."""
+"""The deciding runs, repeated with the reduced model over their unknown inputs."""
 
 from collections.abc import Mapping
 

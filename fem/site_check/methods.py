@@ -1,4 +1,4 @@
-"""The simplified methods for the container of a site, beside what the runs found for the same action."""
+"""The simplified methods for the container of a site, beside the results of the runs for the same action."""
 
 import math
 from collections.abc import Sequence
@@ -128,7 +128,7 @@ class Found:
 
 
 def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limits: Limits) -> Found:
-    """What the runs found where a method says something, and how the two compare.
+    """The result of the runs beside that of a method, and how the two compare.
 
     Overturning: over all frictions; slip: with the least friction, as the methods take it. A method is conservative
     where it refuses what the runs fulfil, or tells more slip than they find.

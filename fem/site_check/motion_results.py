@@ -44,7 +44,10 @@ def action_result(action: SiteAction, checked: MotionSetCheck) -> SiteActionResu
 
 
 def set_result(
-    request: SiteRequest, checked: MotionSetCheck, ground: Sequence[GroundMotion], told: Sequence[SiteMotion]
+    request: SiteRequest,
+    checked: MotionSetCheck,
+    ground: Sequence[GroundMotion],
+    described: Sequence[SiteMotion],
 ) -> MotionSet:
     """The set of motions and its checks."""
     asked, vertical = request.motions, checked.vertical
@@ -69,7 +72,7 @@ def set_result(
                 spectrum_m_s2=_numbers(checked.horizontal.motions[k]),
                 vertical_spectrum_m_s2=_numbers(vertical.motions[k]) if vertical else (),
             )
-            for k, one in enumerate(told)
+            for k, one in enumerate(described)
         ),
     )
 
@@ -132,9 +135,9 @@ def _checks(checked: MotionSetCheck) -> tuple[SetCheck, ...]:
 
 
 def write_ground(folder: Path, ground: Sequence[GroundMotion]) -> list[SiteMotion]:
-    """Write the motions of the ground as CSV and as AT2, and tell what they are but for their spectra."""
+    """Write the motions of the ground as CSV and as AT2, and describe them, apart from their spectra."""
     (folder / MOTIONS).mkdir(exist_ok=True)
-    told = []
+    described = []
     for number, motion in enumerate(ground, start=1):
         files = write_csv_files(folder, motion, motion.name)
         for letter, component in zip("hv", motion.components, strict=False):
@@ -143,7 +146,7 @@ def write_ground(folder: Path, ground: Sequence[GroundMotion]) -> list[SiteMotio
             write_at2(folder / name, motion.step, component, heading)
             files.append(name)
         measures, ends = motion.intensities, motion.ends
-        told.append(
+        described.append(
             SiteMotion(
                 number=number,
                 origin=motion.origin,
@@ -160,7 +163,7 @@ def write_ground(folder: Path, ground: Sequence[GroundMotion]) -> list[SiteMotio
                 sha256=tuple(hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in files),
             )
         )
-    return told
+    return described
 
 
 def write_csv_files(folder: Path, motion: GroundMotion, stem: str) -> list[str]:

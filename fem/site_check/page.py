@@ -1,4 +1,4 @@
-"""The page of a verification at a site: the answer first, then what it rests on, then everything to check it by."""
+"""The page of a verification at a site: the answer first, then its basis, then all numbers."""
 
 import csv
 import datetime as dt
@@ -36,8 +36,8 @@ CODE = (
     "EN 1998-1:2004, 4.4.2.4 (2) allows the equilibrium to be verified by geometrically non-linear methods with the "
     "action of 3.2.3.1. It names no number of motions, no limit of rotation or slip and no partial factor. The motions "
     "follow 3.2.3.1; worst or mean follow 4.3.3.4.3 (3), by analogy; the limits are those of the user. That any "
-    "overturning means not fulfilled is the rule of this program: a mean does not exist where a body has fallen, and "
-    "the code is silent."
+    "overturning means not fulfilled is the rule of this program: there is no mean where a body has fallen, and the "
+    "code gives no rule."
 )
 MOST_DRAWN = 30  #: motions whose curves are on the page
 NOT_COVERED = (
@@ -198,12 +198,12 @@ def container_rows(result: SiteResult) -> list[tuple[str, str]]:
 
 
 def confirmation(result: SiteResult) -> tuple[str, bool]:
-    """What the runs that decide do when they are computed again, and whether that casts doubt on the answer."""
+    """The result of the deciding runs when they are repeated, and whether it casts doubt on the answer."""
     again, inputs = result.result.confirmed, result.inputs
     if not again:
         return "", False
     models = ", ".join(dict.fromkeys(one.model for one in again))
-    words = f"What decides, computed again with the {models} model and over the inputs that are not known"
+    words = f"The deciding runs, repeated with the {models} model over their unknown inputs"
     failed = sum(one.outcome is None for one in again)
     fell = sum(OVERTURNED in (one.outcome, *one.outcomes) for one in again)
     ratios = [one.rotation_ratio for one in again if one.rotation_ratio is not None]
@@ -241,12 +241,12 @@ def found_in_words(check: SetCheck) -> str:
 
 
 def period_sentence(motions: MotionSet) -> str:
-    """That a rocking body has no period, and which band was taken."""
+    """The band of periods, and why a rocking body has no period."""
     low, high = motions.band_s[0], motions.band_s[-1]
     return (
-        "T_1 does not exist for a rocking body: at rest it has no restoring stiffness, and its period grows with its "
-        f"rotation. The mean spectrum is compared from {short(low)} s to {short(high)} s, which holds 0.2 T_1 to 2 T_1 "
-        f"for every T_1 from {short(low / 0.2)} s to {short(high / 2.0)} s."
+        "T_1 does not exist for a rocking body: below the uplift moment it does not rotate, then its period grows with "
+        f"its rotation. The mean spectrum is compared from {short(low)} s to {short(high)} s, which holds 0.2 T_1 to "
+        f"2 T_1 for every T_1 from {short(low / 0.2)} s to {short(high / 2.0)} s."
     )
 
 
@@ -279,10 +279,10 @@ def friction(run: SiteRun) -> str:
 
 
 def merged_methods(methods: Sequence[SiteMethod]) -> list[SiteMethod]:
-    """The methods side by side; weights for which a method says the same, to three figures, share a row."""
+    """The methods side by side; weights with the same result, to three figures, share a row."""
     found: dict[tuple[str, ...], list[SiteMethod]] = {}
     for one in methods:
-        told = (
+        shown = (
             one.name,
             one.quantity,
             one.elevation,
@@ -290,7 +290,7 @@ def merged_methods(methods: Sequence[SiteMethod]) -> list[SiteMethod]:
             one.says,
             one.found,
         )
-        found.setdefault((*told, one.compared), []).append(one)
+        found.setdefault((*shown, one.compared), []).append(one)
     return [replace(same[0], mass=", ".join(one.mass for one in same)) for same in found.values()]
 
 

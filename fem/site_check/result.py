@@ -51,7 +51,7 @@ class FloorResult(JsonBlock):
 
 @dataclass(frozen=True, kw_only=True)
 class SetCheck(JsonBlock):
-    """One demand on the set of motions."""
+    """One requirement on the set of motions."""
 
     name: str
     found: float | None = None
@@ -166,7 +166,7 @@ class FurtherMotions(JsonBlock):
 
 @dataclass(frozen=True, kw_only=True)
 class ConfirmedRun(JsonBlock):
-    """A run that decides, again with another model and over the inputs that are not known."""
+    """A deciding run, repeated with another model over its unknown inputs."""
 
     run: SiteRun
     model: str
@@ -199,7 +199,7 @@ class SiteAnswer(JsonBlock):
 
 @dataclass(frozen=True, kw_only=True)
 class SiteMethod(JsonBlock):
-    """One simplified method; `says` is what it says, `found` what the runs found for the same action."""
+    """One simplified method; `says` is its conclusion, `found` the result of the runs for the same action."""
 
     name: str
     quantity: str
@@ -239,7 +239,7 @@ class SiteInputs(JsonBlock):
 
 @dataclass(frozen=True, kw_only=True)
 class SiteDocument(JsonBlock):
-    """What identifies the page, as [document] of a case."""
+    """The identification of the page, as [document] of a case."""
 
     project: str = ""
     company: str = ""

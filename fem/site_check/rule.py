@@ -99,9 +99,9 @@ def both_directions(groups: Sequence[RunGroup]) -> list[tuple[RunGroup, float]]:
 
 
 def rule_in_words(motions: int) -> str:
-    """What counts of a set of so many motions."""
+    """The rule in words, for a number of motions."""
     share = "the mean" if motions >= MEAN_FROM else "the largest"
     return (
-        f"of each motion the worse sign of the vertical, then {share} over the {motions} motions; of all weights and "
-        "frictions the largest; any overturning means not fulfilled"
+        f"for each motion the worse sign of the vertical, then {share} over the {motions} motions; the largest over "
+        "all weights and frictions; any overturning means not fulfilled"
     )

@@ -85,7 +85,7 @@ def _rises(name: str, key: str) -> Rule:
 
 
 class SiteTable(CaseTable):
-    """The action: the elastic spectra of the site, and what multiplies them."""
+    """The action: the elastic spectra of the site and their factors."""
 
     spectrum: Literal["EN1998-1", "DIN-NA-2011", "custom"] = case_key(
         '"EN1998-1" | "DIN-NA-2011" | "custom": parameters of another annex, given below', "EN1998-1"
@@ -152,7 +152,7 @@ class BuildingTable(CaseTable):
         "height of the floor over that of the building, both above the foundation", example=1.0
     )
     building_period_s: Annotated[float, BUILDING_PERIOD] = case_key(
-        "T_1 in the direction of the motion; it is varied by 15 % both ways", example=0.5
+        "T_1 in the direction of the motion; it is varied by plus and minus 15 %", example=0.5
     )
     damping_ratio: Annotated[float, DAMPING] = case_key("of the building", 0.05)
 
@@ -217,7 +217,7 @@ class MotionsTable(CaseTable):
 
 
 class FrictionTable(CaseTable):
-    """The range of friction; no value of it is on the safe side."""
+    """The range of friction; no value is always the unfavourable one."""
 
     mu_static: FrictionRange = case_key("[low, high], or [value]", example=[0.3, 0.4])
     mu_kinetic_over_static: ShareRange = case_key("[low, high], or [value]", [0.5, 1.0])
