@@ -51,7 +51,7 @@ def compute_many(
     if script is not None:
         warnings.warn(
             f'{script} calls compute_many outside `if __name__ == "__main__":`, so its cases are computed by threads '
-            "of this process alone; behind that line, processes help with many of them",
+            "of this process only; put the call behind that line to use several processes",
             stacklevel=2,
         )
     first: dict[Hashable, int] = {}

@@ -169,8 +169,8 @@ class VerticalTable(FloorMotionTable):
         '"none" | "harmonic" | "pulse" | "table"', "none"
     )
     scale: Annotated[float, q.SCALE] = case_key(
-        "factor on the motion of any kind; -1: the other sign; of a record beside one that [motion] scales to a peak: "
-        "on top of the factor of that one",
+        "factor on the motion of any kind; -1: the other sign; of a record whose [motion] is scaled to a peak: "
+        "times the factor of that one",
         1.0,
         only=("kind", "harmonic", "pulse", "table"),
     )

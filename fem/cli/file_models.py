@@ -50,7 +50,7 @@ class EnsembleFile(EnsembleHeading):
 
 
 class SiteFile(SiteHeading):
-    """A site: the action there, motions for it, a container, and what is allowed."""
+    """A site: action, motions, container, friction and limits."""
 
     site: SiteTable
     building: BuildingTable | None = None

@@ -64,7 +64,7 @@ def _built(case: Case, table: MotionKey) -> BaseMotion:
 
 
 def motion_span(motion: BaseMotion) -> tuple[float, float]:
-    """Begin and end of a pulse or a record; any other motion has no end [s]."""
+    """Start and end of a pulse or a record; any other motion has no end [s]."""
     if isinstance(motion, PulseMotion):
         return motion.delay, motion.delay + motion.pulse
     if isinstance(motion, TableMotion):

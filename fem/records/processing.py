@@ -57,7 +57,7 @@ def processed(component: Component, processing: Processing) -> Component:
     if processing.peak is not None:
         largest = float(np.abs(sampled_motion(times, values, component.quantity)[2]).max())
         if largest == 0.0:
-            raise RecordError("its accelerations are all zero, so that they cannot be scaled to a peak")
+            raise RecordError("its accelerations are all zero, so they cannot be scaled to a peak")
         values = values * (processing.peak / largest)
     return replace(component, times=times, readings=values, factor=1.0)
 

@@ -44,7 +44,7 @@ def peak_rows(body: LooseBody, action: FloorAction, *, horizontal: float, vertic
         lift=vertical * action.vertical_peak,
         lift_put_in=f"{vertical:g} × {action.vertical_peak:.4g}",
         source=PEAK,
-        validity="rest before uplift or slip; a peak lasts an instant, the rule takes it as lasting",
+        validity="at rest before uplift or slip; treats the instantaneous peak as a sustained force",
     )
 
 

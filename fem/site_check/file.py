@@ -60,7 +60,7 @@ class SiteHeading(CaseTable):
         "height of the mass centre of an empty box; default: half its height", None, example=0.5
     )
     model: Literal["rigid", "reduced"] = case_key(
-        '"rigid" | "reduced", of all runs; what decides is confirmed with "reduced"', "rigid"
+        '"rigid" | "reduced", of all runs; the deciding ones are repeated with "reduced"', "rigid"
     )
 
 

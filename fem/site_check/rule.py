@@ -1,4 +1,4 @@
-"""The rule of a verification: what counts of the runs of a set of motions.
+"""The rule of a verification: from the runs of a set of motions to one number for each limit.
 
 For each weight, elevation, building period and pair of frictions: of each motion the worse sign of the vertical; then
 the largest of fewer than seven motions, or the mean of seven and more (EN 1998-1:2004, 4.3.3.4.3 (3), by analogy). Of

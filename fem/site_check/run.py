@@ -180,7 +180,7 @@ class _Work:
             found = rows.in_order()
             keys = deciding(found, governing_run(request, rows.of(self.plan.of_set())))
             if not self.runner.stop() and keys:
-                self.runner.reporter.message("confirming what decides with the reduced model")
+                self.runner.reporter.message("repeating the deciding runs with the reduced model")
                 again = confirmed(cases, found, keys, self.jobs)
         interrupted = self.runner.stop()
         place.check()
