@@ -1,5 +1,6 @@
 """The floor's motions of a run in words: length, samples and peaks, and what of them the run leaves out."""
 
+from fem.assessment.ranges import in_figures
 from fem.records.units import STANDARD_GRAVITY
 from fem.results.run_result import MotionResult
 
@@ -19,11 +20,11 @@ def motion_in_words(motion: MotionResult) -> str:
     if motion.peak_velocity_m_s is not None:
         words += f", {motion.peak_velocity_m_s:.3g} m/s"
     if motion.peak_displacement_m is not None:
-        words += f", {1e3 * motion.peak_displacement_m:.3g} mm"
+        words += f", {in_figures(motion.peak_displacement_m, 3, 1e3)} mm"
     if motion.residual_velocity_m_s is not None and motion.residual_displacement_m is not None:
         words += (
-            f"; ends with {_small(motion.residual_velocity_m_s, motion.peak_velocity_m_s):.2g} m/s, "
-            f"{1e3 * _small(motion.residual_displacement_m, motion.peak_displacement_m):.2g} mm"
+            f"; ends with {in_figures(_small(motion.residual_velocity_m_s, motion.peak_velocity_m_s), 2)} m/s, "
+            f"{in_figures(_small(motion.residual_displacement_m, motion.peak_displacement_m), 2, 1e3)} mm"
         )
     return words
 

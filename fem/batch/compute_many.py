@@ -5,7 +5,7 @@ from collections.abc import Hashable, Iterable, Sequence
 from functools import partial
 
 from fem.batch.container_cache import ContainerCache, container_key
-from fem.batch.workers import IN_THREADS, LocalWorkers, hand_out, unguarded_script
+from fem.batch.workers import IN_THREADS, STDIN, LocalWorkers, hand_out, unguarded_script
 from fem.case.case import Case
 from fem.run.checks import WantedChecks
 from fem.run.compute import Run, compute_on, require_case
@@ -49,9 +49,14 @@ def compute_many(
         raise ValueError(f"compute_many: jobs must be at least 1, got {jobs}")
     script = unguarded_script() if min(jobs, len(asked)) > 1 else None
     if script is not None:
+        unfit, fit = (
+            ("is no file that a process can load", "run it from a file")
+            if script == STDIN
+            else ('calls compute_many outside `if __name__ == "__main__":`', "put the call behind that line")
+        )
         warnings.warn(
-            f'{script} calls compute_many outside `if __name__ == "__main__":`, so its cases are computed by threads '
-            "of this process only; put the call behind that line to use several processes",
+            f"{script} {unfit}, so its cases are computed by threads of this process only; {fit} to use several "
+            "processes",
             stacklevel=2,
         )
     first: dict[Hashable, int] = {}

@@ -19,6 +19,8 @@ def axis_name(axis: Axis) -> str:
     table, _, name = axis.key.rpartition(".")
     if axis.key == MOTION_FILE:
         return "motion"
+    if name == "scale_to_m_s2":  # of a record
+        name = "peak_acceleration_m_s2"
     name = name.removesuffix("_" + axis.unit.replace("/", "_").replace(" ", "_")).replace("_", " ")
     return f"vertical {name}" if table == "vertical" else name
 

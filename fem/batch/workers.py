@@ -28,6 +28,7 @@ from typing import Self, TypeVar
 #: number of cases from which processes, which take some seconds to start, pay off for the compiled models
 WORTH_PROCESSES = {"rigid": 500, "reduced": 100, "full": 1}
 IN_THREADS = dict.fromkeys(WORTH_PROCESSES, math.inf)  #: no number: threads alone
+STDIN = "<stdin>"  #: file of a script that Python reads from its standard input
 #: chunks handed out for every worker, so that none waits for the next
 AHEAD = 2
 
@@ -177,12 +178,15 @@ def hand_out(
 def unguarded_script() -> str | None:
     """The script that is calling outside an `if` on `__name__`: a process would load it, and start it again.
 
-    None where a process may be started; also of a notebook, whose processes load nothing.
+    None where a process may be started; also of a notebook, whose processes load nothing. A script that Python reads
+    from its standard input, which no process can load, is "<stdin>".
     """
     frame = sys._getframe()
     while frame.f_back is not None and not _is_main(frame.f_code.co_name, frame.f_globals):
         frame = frame.f_back
     main, path = sys.modules["__main__"], frame.f_code.co_filename
+    if path == STDIN and getattr(main, "__file__", None) == STDIN:
+        return STDIN
     source = "".join(linecache.getlines(path))
     if getattr(main, "__file__", None) is None or not source or frame.f_globals is not vars(main):
         return None

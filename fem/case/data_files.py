@@ -118,7 +118,7 @@ def _require_file(folder: Path, key: str, name: str, path: Path, *, trusted: boo
                 ", which is a folder"
                 if path.is_dir()
                 else ""
-                if path == Path(name)
+                if Path(name).is_absolute()
                 else f", looked for in {folder.resolve()}; its path is relative to the case file"
             )
         )

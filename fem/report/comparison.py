@@ -178,7 +178,8 @@ def motion_in_words(motion: FloorMotionTable) -> str:
                 f"{quantity(motion.pulse_s, 's')}, from t = {short(motion.delay_s)} s"
             )
     unit = f", {motion.unit}" if motion.unit else ""
-    return f"record {motion.file} ({motion.quantity}{unit}), {scale_in_words(motion)}, baseline {motion.baseline}"
+    record = f"record {motion.file}" if motion.file else "vertical component of that record"
+    return f"{record} ({motion.quantity}{unit}), {scale_in_words(motion)}, baseline {motion.baseline}"
 
 
 def scale_in_words(motion: FloorMotionTable) -> str:

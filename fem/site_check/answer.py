@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from fem.assessment.ranges import LEAST_LENGTH
+from fem.assessment.ranges import LEAST_LENGTH, in_figures
 from fem.assessment.summary import ratio_in_words
 from fem.batch.intervals import binomial_interval
 from fem.site_check.file import SiteRequest
@@ -175,4 +175,4 @@ def _sentence(
 
 
 def _slip_in_words(slip: float) -> str:
-    return f"below {1e3 * LEAST_LENGTH:g} mm" if slip < LEAST_LENGTH else f"{1e3 * slip:.3g} mm"
+    return f"below {1e3 * LEAST_LENGTH:g} mm" if slip < LEAST_LENGTH else f"{in_figures(slip, 3, 1e3)} mm"

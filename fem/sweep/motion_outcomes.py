@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from fem.assessment.ranges import LEAST_LENGTH
+from fem.assessment.ranges import LEAST_LENGTH, in_figures
 from fem.assessment.summary import ratio_in_words
 from fem.batch.axes import MOTION_FILE, Axis, point_of, shape_of
 from fem.batch.intervals import estimate
@@ -164,7 +164,7 @@ def _worst(motion: str, signs: Sequence[Shown]) -> MotionOutcome:
 
 def _millimetres(length: float) -> str:
     """A length given in metres; below 0.01 mm only that limit."""
-    return f"{1e3 * length:.3g} mm" if length >= LEAST_LENGTH else f"< {1e3 * LEAST_LENGTH:g} mm"
+    return f"{in_figures(length, 3, 1e3, LEAST_LENGTH)} mm"
 
 
 def _mean(values: Sequence[float | None]) -> float | None:

@@ -83,3 +83,18 @@ def test_a_script_without_a_guard_is_told_so_and_does_not_start_itself_again(tmp
     said = 'UserWarning: study.py calls compute_many outside `if __name__ == "__main__":`'
     assert found.stderr.count(said) == warned
     assert "Traceback" not in found.stderr
+
+
+def test_a_script_from_standard_input_is_computed_by_threads(tmp_path):
+    found = subprocess.run(
+        [sys.executable, "-"],
+        input=SCRIPT + "compute()\n",
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=300,
+    )
+    assert found.stdout == "begun\n['slide', 'rest']\n"
+    assert "UserWarning: <stdin> is no file that a process can load" in found.stderr

@@ -23,8 +23,12 @@ def test_worst_and_mean_of_a_set_that_stands():
     assert row["high"] == binomial_interval(0, 3, 0.95)[1]
     assert set_in_words(row) == (
         "none of 3 motions overturns (0 to 71 % of such motions at 95 % confidence); worst b, rock, rotation ratio "
-        "0.600; largest slip 60 mm, c; mean of 3: rotation ratio 0.300, slip 30 mm"
+        "0.600; largest slip 60.0 mm, c; mean of 3: rotation ratio 0.300, slip 30.0 mm"
     )
+
+
+def test_a_slip_of_metres_is_told_without_powers_of_ten():
+    assert "largest slip 1130 mm, a" in set_in_words(set_row([did("a", 0.2, 1.1304)]))
 
 
 def test_no_mean_includes_a_fall():
@@ -33,7 +37,7 @@ def test_no_mean_includes_a_fall():
     assert row["mean_rotation_ratio"] == pytest.approx(0.3)
     assert row["low"] == binomial_interval(1, 3, 0.95)[0]
     assert "1 of 3 motions overturns" in set_in_words(row)
-    assert "mean of 2 that stood, 1 overturned: rotation ratio 0.300, slip 30 mm" in set_in_words(row)
+    assert "mean of 2 that stood, 1 overturned: rotation ratio 0.300, slip 30.0 mm" in set_in_words(row)
 
 
 def test_a_failed_motion_is_neither_standing_nor_fallen():
