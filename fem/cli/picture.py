@@ -65,6 +65,8 @@ def picture(
             record.component("horizontal", quantity=quantity)  # raises, with what it holds
         print(_write_motion([processed(one, Processing(baseline=baseline)) for one in shown], path, to))
         return
+    if not path.exists():
+        raise CaseError(f"{run}: no such file or folder; give the folder of a run, or a motion file")
     opened = open_run(Path(run))
     _ = opened.fields  # raises where there are no frames to draw
     require_rendering()

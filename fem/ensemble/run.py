@@ -336,10 +336,10 @@ def fragility_lines(result: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "lognormal", f"none: {fragility['no_lognormal']}"
         return
     parts = []
-    for name in ("median", "deviation"):
+    for name, unit in (("median", result["axes"][0]["unit"]), ("deviation", "")):
         ends = fitted[f"{name}_interval"]
         interval = f" ({ends[0]:.3g} to {ends[1]:.3g})" if ends else ""
-        parts.append(f"{name} {fitted[name]:.3g}{interval}")
+        parts.append(f"{name} {fitted[name]:.3g}{interval} {unit}".rstrip())
     fit = "" if fitted["adequate"] else "; the lognormal curve does not describe the counts"
     yield (
         "lognormal",

@@ -28,6 +28,10 @@ BAD_INPUT = [
         ["check", "--set", "support.kind=feet", "--set", "support.foot_m=0.6"],
         "foot_m must be less than half of",
     ),
+    (
+        ["picture", "nothing.csv"],
+        "nothing.csv: no such file or folder; give the folder of a run, or a motion file",
+    ),
     (["check", "--set", "container.mesh_file=nothing.vtu"], "names no file: 'nothing.vtu'"),
     (["check", "--set", "solver.element_size_m=1e-5"], "take a larger element size"),
     (["check", "--set", "nonsense"], "not of the form table.key=value"),
