@@ -47,7 +47,8 @@ def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
         CaseError: a key names no table of a case file.
     """
     changed = deepcopy(dict(data))
-    overrides = keys_in_effect(overrides, kinds_of(data))
+    tables = {f"{table}.kind": "table" for table in ("motion", "vertical") if f"{table}.file" in overrides}
+    overrides = keys_in_effect(tables | dict(overrides), kinds_of(data))  # who names a record wants it to move the floor
     for dotted, value in overrides.items():
         table, dot, key = dotted.rpartition(".")
         if not dot:

@@ -27,8 +27,10 @@
     if (typeof value !== "number") return String(value);
     if (!Number.isFinite(value)) return "–";
     const size = Math.abs(value);
-    const text = size !== 0 && (size < 1e-3 || size >= 1e6) ? value.toExponential(digits - 1) : String(Number(value.toPrecision(digits)));
-    return text.replace("-", "−");
+    if (size === 0 || (size >= 1e-3 && size < 1e6)) return String(Number(value.toPrecision(digits))).replace("-", "−");
+    const [mantissa, exponent] = value.toExponential(digits - 1).split("e");
+    const power = String(Number(exponent)).replace(/./g, (sign) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(sign)]);
+    return `${mantissa.replace("-", "−")} × 10${power}`;
   };
   const withUnit = (text, unit) => (unit && text !== "–" ? `${text} ${unit}` : text);
   const valueOf = (column, cell) => {

@@ -107,6 +107,13 @@ def test_what_cannot_move_the_floor_is_refused_with_exit_code_2(motion, changes,
     assert f"[{table}]" in said and "root:" not in said
 
 
+def test_a_file_that_is_set_moves_the_floor_of_a_harmonic_case():
+    assert load_case("rocking", ["motion.file=h.at2"]).motion.kind == "table"
+    pair = load_case("rocking").replace({"motion.file": "h.at2", "vertical.file": "v.at2"})
+    assert (pair.motion.kind, pair.vertical.kind) == ("table", "table")
+    assert load_case("rocking", ["motion.file=h.at2", "motion.kind=harmonic"]).motion.kind == "harmonic"
+
+
 def test_gal_is_a_unit_and_no_slip():
     assert moved("bare.csv", "motion.unit=gal").values == pytest.approx(0.01 * FIRST, abs=1e-8)
 
