@@ -48,7 +48,8 @@ def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
     """
     changed = deepcopy(dict(data))
     tables = {f"{table}.kind": "table" for table in ("motion", "vertical") if f"{table}.file" in overrides}
-    overrides = keys_in_effect(tables | dict(overrides), kinds_of(data))  # who names a record wants it to move the floor
+    # who names a record wants it to move the floor
+    overrides = keys_in_effect(tables | dict(overrides), kinds_of(data))
     for dotted, value in overrides.items():
         table, dot, key = dotted.rpartition(".")
         if not dot:
