@@ -15,7 +15,7 @@ from fem.case.validation import CaseError
 #: keys that name files
 FILE_KEYS = ("container.mesh_file", "motion.file", "vertical.file")
 COPIES = "data"  #: folder in the results of the files that lie outside the folder of the case
-WAYS_OUT = ", or name it on the command line, or allow it with --allow-outside"
+WAYS_OUT = "; `run` and `check` take one from anywhere that the command line names, or with --allow-outside"
 
 
 @dataclass(frozen=True, kw_only=True)

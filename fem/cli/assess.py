@@ -30,6 +30,13 @@ def assess(
     scheduler: Scheduler = None,
     resume: Resume = False,
     force: Force = False,
+    motion: Annotated[
+        tuple[str, ...],
+        flag(
+            "A record in place of the motions of the site, anywhere, or a pair H,V; repeat it for each.",
+            "--motion",
+        ),
+    ] = (),
     allow_outside: AllowOutside = False,
     as_json: Annotated[bool, flag("Print assess.json.", "--json")] = False,
     pdf: Annotated[bool, flag("Print the page to report.pdf, by Chromium or Chrome.")] = False,
@@ -46,7 +53,7 @@ def assess(
     site:
         A site file or the name of a shipped one: site.
     """
-    request = importlib.import_module("fem.site_check.file").load_site(site)
+    request = importlib.import_module("fem.site_check.file").load_site(site, motion)
     folder = out if out is not None else Path("outputs") / request.name
     # Loaded only now, so that bad input is answered before anything is compiled.
     study = importlib.import_module("fem.site_check.run")
@@ -58,7 +65,7 @@ def assess(
             workers_of=stack.enter_context(connected(scheduler)) if scheduler is not None else None,
             resume=resume,
             force=force,
-            allow_outside=allow_outside,
+            allow_outside=allow_outside or bool(motion),
             reporter=ScreenReporter(quiet=quiet),
         )
     if pdf and result.status == "completed":

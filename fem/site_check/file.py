@@ -1,6 +1,6 @@
 """Read a site file: container, action, motions, friction, limits; the reasons why it cannot be used."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -12,6 +12,7 @@ from pydantic import Field, Strict
 from fem.batch.study_file import base_case, read_as, read_study, split_tables
 from fem.case import quantities as q
 from fem.case.case import Case
+from fem.case.data_files import as_named_from
 from fem.case.files import SITES, Origin
 from fem.case.table import CaseTable, case_key
 from fem.case.tables import DocumentTable
@@ -177,13 +178,33 @@ class SiteRequest:
         return self.container.with_values({"container.mass_kg": mass, "container.centroid_m": height})
 
 
-def load_site(name_or_path: str | Path) -> SiteRequest:
+def load_site(name_or_path: str | Path, records: Sequence[str] = ()) -> SiteRequest:
     """Read a site file, or a shipped one.
+
+    Args:
+        name_or_path: of the site file.
+        records: files of motions in place of those of the site file, relative to the current folder; a pair of a
+            horizontal and a vertical component as "H,V". Without any pair, there is no vertical motion.
 
     Raises:
         CaseError: with one line for each reason why it cannot be used.
     """
-    return read_study(SITES.find(name_or_path), _request)
+
+    def read(data: Mapping[str, Any], origin: Origin) -> SiteRequest:
+        return _request(_with_records(data, origin.folder, records) if records else data, origin)
+
+    return read_study(SITES.find(name_or_path), read)
+
+
+def _with_records(data: Mapping[str, Any], folder: Path, records: Sequence[str]) -> dict[str, Any]:
+    """The tables of a site file with these records as its motions."""
+    motions = dict(data.get("motions", {}))
+    if motions.get("source") != "matched":
+        motions["source"] = "records"
+    motions["files"] = [[as_named_from(folder, name.strip()) for name in pair.split(",")] for pair in records]
+    if max(map(len, motions["files"])) == 1:
+        motions["vertical"] = False
+    return {**data, "motions": motions}
 
 
 def _request(data: Mapping[str, Any], origin: Origin, container: Case | None = None) -> SiteRequest:

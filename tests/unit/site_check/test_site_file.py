@@ -136,3 +136,20 @@ def test_a_site_file_is_no_case_file_nor_the_other_way_round(tmp_path):
     with pytest.raises(CaseError, match=r"this is a site file: python -m fem assess"):
         load_case(place)
     assert "site" in SITES.names
+
+
+def test_records_of_the_command_line_take_the_place_of_those_of_the_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "here").mkdir()
+    path = tmp_path / "here" / "mine.toml"
+    path.write_text(LEAST, encoding="utf-8")
+    single = load_site(path, ["here/a.at2", "c.csv#2", "d.csv"])
+    assert single.motions.files == [["a.at2"], [str(tmp_path / "c.csv#2")], [str(tmp_path / "d.csv")]]
+    assert (single.motions.source, single.motions.vertical) == ("records", False)
+    pairs = load_site(path, ["here/a.at2,b.at2", "c.csv,d.csv", "e.csv, f.csv"])
+    assert pairs.motions.files[0] == ["a.at2", str(tmp_path / "b.at2")]
+    assert pairs.motions.vertical
+    with pytest.raises(CaseError, match="a vertical record beside every horizontal one"):
+        load_site(path, ["a.at2,b.at2", "c.csv", "d.csv"])
+    with pytest.raises(CaseError, match="at least 3 are needed"):
+        load_site(path, ["a.at2"])
