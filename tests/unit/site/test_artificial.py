@@ -1,7 +1,5 @@
 """Artificial motions: spectra within the target, ends at rest, the same bits for the same seed."""
 
-import time
-
 import eqsig
 import numpy as np
 import pytest
@@ -47,13 +45,14 @@ def test_the_vertical_spectrum_is_matched_from_other_phases(motions):
 
 
 def test_an_independent_oscillator_finds_the_same_spectra(motions):
-    periods = PERIODS[PERIODS >= 0.05]  # ten samples a period, which eqsig needs
+    # eqsig takes peaks at the samples alone: the straight lines are sampled more densely for it.
+    parts = 8
     for component in motions[0].components:
-        found = response_spectrum(STEP_S, component, periods).pseudo_acceleration_m_s2
-        other = eqsig.sdof.pseudo_response_spectra(component, STEP_S, periods, 0.05)[2]
-        # Its peaks are those at the samples, which at ten a period lie up to 5 % below; on average 1.6 %.
-        np.testing.assert_allclose(other[periods > 0.12], found[periods > 0.12], rtol=0.01)
-        np.testing.assert_allclose(other, found, rtol=0.05)
+        count = component.size - 1
+        dense = np.interp(np.arange(count * parts + 1) / parts, np.arange(count + 1), component)
+        found = response_spectrum(STEP_S, component, PERIODS).pseudo_acceleration_m_s2
+        other = eqsig.sdof.pseudo_response_spectra(dense, STEP_S / parts, PERIODS, 0.05)[2]
+        np.testing.assert_allclose(other, found, rtol=0.01)
 
 
 def test_the_floor_ends_at_rest_where_it_began(motions):
@@ -99,13 +98,6 @@ def test_a_longer_band_is_matched_with_annex_a():
     ]
     ratios = np.mean(found, axis=0) / ACTION.horizontal(periods)
     assert ratios.min() > 0.9 and ratios.max() < 1.15
-
-
-def test_seven_motions_cost_less_than_two_seconds():
-    artificial_motions(ACTION, count=1, seed=1)
-    began = time.process_time()
-    artificial_set(ACTION, count=7, seed=5)
-    assert time.process_time() - began < 2.0
 
 
 @pytest.mark.parametrize(("stationary", "longest"), [(9.9, 4.0), (61.0, 4.0), (12.0, 11.0)])
