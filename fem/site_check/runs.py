@@ -22,8 +22,6 @@ WIDTH = "width"  #: the elevation that a case file shows
 #: factors on the motions beside 1, and values tried between the first that overturns and the one below it
 SCANNED = (0.5, 0.75, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 3.5, 4.0)
 BETWEEN = 3
-#: energy tolerance of the scan and of further motions, as of maps
-COARSE = 10.0
 
 COLUMNS = (
     "stage",
@@ -161,10 +159,9 @@ class RunCases:
         Raises:
             CaseError: its motion is missing.
         """
-        place, own = self.folder / MOTIONS, self.bases[key.mass, key.elevation].solver.energy_tolerance
+        place = self.folder / MOTIONS
         values: dict[str, Any] = {
             "solver.model": key.model,
-            "solver.energy_tolerance": max(COARSE, own) if key.stage in (SCAN, REFINED, FURTHER) else own,
             "contact.mu_static": key.mu_static,
             "contact.mu_kinetic": key.mu_kinetic,
             "motion.kind": "table",
