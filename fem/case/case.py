@@ -25,7 +25,7 @@ from fem.case.data_files import (
     without_channel,
 )
 from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
-from fem.case.overrides import parse_override, with_overrides
+from fem.case.overrides import naming_overrides, parse_override, with_overrides
 from fem.case.rules import CASE_RULES
 from fem.case.tables import (
     OPTIONAL,
@@ -388,28 +388,5 @@ def _read(data: Mapping[str, Any], origin: Origin, overrides: Mapping[str, Any])
     problems += outside_problems(values, trusted=origin.trusted)
     if problems:
         lines = problem_lines(problems, f"{origin.place}: ")
-        raise CaseError("\n".join(_naming_overrides(lines, overrides)))
+        raise CaseError("\n".join(naming_overrides(lines, overrides)))
     return Case.model_validate(values).from_origin(origin)
-
-
-def _naming_overrides(lines: list[str], overrides: Mapping[str, Any]) -> list[str]:
-    """Name each override on the line of its key, else on a line of its own."""
-    named = []
-    unnamed = dict(overrides)
-    for line in lines:
-        for dotted, value in overrides.items():
-            table, _, key = dotted.rpartition(".")
-            if (
-                f"[{table}] {key} " if table else f" {key} "
-            ) in line or f"[{table}] unknown key {key!r}" in line:
-                line += f" ({_as_override(dotted, value)})"
-                unnamed.pop(dotted, None)
-        named.append(line)
-    if unnamed and not any("(--set " in line for line in named):
-        named.append("with " + " ".join(_as_override(dotted, value) for dotted, value in unnamed.items()))
-    return named
-
-
-def _as_override(dotted: str, value: object) -> str:
-    shown = str(value)[:80]
-    return f"--set {dotted}={shown if shown.isprintable() else repr(shown)}"

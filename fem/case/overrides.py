@@ -124,3 +124,26 @@ def _drop_others(table: dict[str, Any], group: tuple[str, ...], explicit: set[st
     for key in group:
         if key not in explicit:
             table.pop(key, None)
+
+
+def naming_overrides(lines: list[str], overrides: Mapping[str, Any]) -> list[str]:
+    """Reasons why a case cannot be used, with each override named on the line of its key, else on a line of its own."""
+    named = []
+    unnamed = dict(overrides)
+    for line in lines:
+        for dotted, value in overrides.items():
+            table, _, key = dotted.rpartition(".")
+            if (
+                f"[{table}] {key} " if table else f" {key} "
+            ) in line or f"[{table}] unknown key {key!r}" in line:
+                line += f" ({_as_override(dotted, value)})"
+                unnamed.pop(dotted, None)
+        named.append(line)
+    if unnamed and not any("(--set " in line for line in named):
+        named.append("with " + " ".join(_as_override(dotted, value) for dotted, value in unnamed.items()))
+    return named
+
+
+def _as_override(dotted: str, value: object) -> str:
+    shown = str(value)[:80]
+    return f"--set {dotted}={shown if shown.isprintable() else repr(shown)}"

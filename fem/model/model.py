@@ -82,8 +82,8 @@ def build_model(
 
     Args:
         container: of the case, where it is built already.
-        equilibrium: of that container, where `same_equilibrium` allows its reuse; found anew where the vertical motion
-            begins otherwise.
+        equilibrium: of that container, where `same_equilibrium` allows its reuse; computed again where the
+            vertical motion begins otherwise.
 
     Raises:
         CaseError, MeshError: bad input, no equilibrium at the start.

@@ -49,6 +49,7 @@ RUN = ResultKind(
         "figures/movie.gif",
         "figures/movie.mp4",
         "report.html",
+        "report.pdf",
         "variations.json",
     ),
     finished=frozenset({"completed", "overturned"}),
@@ -96,7 +97,15 @@ SITE = ResultKind(
     mark="assess.json",
     request="asked",
     results="assess.json",
-    own=("runs.csv", "report.html", "site.toml", "container.toml", "motions/*.csv", "motions/*.at2"),
+    own=(
+        "runs.csv",
+        "report.html",
+        "report.pdf",
+        "site.toml",
+        "container.toml",
+        "motions/*.csv",
+        "motions/*.at2",
+    ),
 )
 SIZE = ResultKind(
     name="size",

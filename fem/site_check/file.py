@@ -1,7 +1,7 @@
 """Read a site file: container, action, motions, friction, limits; the reasons why it cannot be used."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
 from pathlib import Path
@@ -16,6 +16,7 @@ from fem.case.data_files import as_named_from
 from fem.case.files import SITES, Origin
 from fem.case.table import CaseTable, case_key
 from fem.case.tables import DocumentTable
+from fem.case.toml import toml_document
 from fem.case.validation import CaseError
 from fem.site.action import GERMAN_ZONES, SiteAction, SpectrumShape, eurocode_shape, german_shape
 from fem.site.wind import german_pressure, terrain_pressure
@@ -191,7 +192,10 @@ def load_site(name_or_path: str | Path, records: Sequence[str] = ()) -> SiteRequ
     """
 
     def read(data: Mapping[str, Any], origin: Origin) -> SiteRequest:
-        return _request(_with_records(data, origin.folder, records) if records else data, origin)
+        if not records:
+            return _request(data, origin)
+        changed = _with_records(data, origin.folder, records)
+        return _request(changed, replace(origin, text=toml_document(changed)))  # which the results keep
 
     return read_study(SITES.find(name_or_path), read)
 

@@ -10,8 +10,8 @@ import gzip
 import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, replace
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -33,6 +33,15 @@ MASS, HEIGHT, CENTROID, INERTIA = 353.8, 0.79, 0.294, 0.0526  #: [kg], [m], [m],
 ANGLES = tuple(np.round(np.arange(0.05, 0.1601, 0.005), 3).tolist())  #: of slenderness, tried [rad]
 SPECIMENS = (1, 2)
 LEAST_AGREEMENT, SHARE_WITHIN, UNSURE_SHARE = 0.82, 0.08, 0.5
+DESCRIBED = Experiment(
+    name="rocks",
+    title="Two rocks on a shake table",
+    source="github.com/ZhiangChen/virtual_shake_robot_pybullet, commit 9f239e7e, tests of 2021; 35 of 582 "
+    "motions, 0.1 to 25 Hz",
+    licence="outcomes as facts; the repository is GPL-3.0, none is stated for the data",
+    tests=0,
+    fitted="slenderness angle",
+)
 BINS = ((0.0, 0.12), (0.12, 0.27), (0.27, math.inf))  #: of the peak acceleration [g]
 
 
@@ -99,21 +108,24 @@ def compute(folder: Path | None) -> Experiment:
     Raises:
         MotionFolderError: as for `read_tests`.
     """
-    described = _described(0, "slenderness angle")
     if folder is None:
-        return described(
-            not_computed="the motions are not part of the program: name their folder with --data"
+        return replace(
+            DESCRIBED, not_computed="the motions are not part of the program: name their folder with --data"
         )
     tests = read_tests(folder)
     fits, findings = [], []
     for rock in SPECIMENS:
-        halves = cross_validated(tests, lambda some, rock=rock: fitted_angle(some, rock))  # type: ignore[misc]
+        halves = cross_validated(tests, partial(fitted_angle, rock=rock))
         fits.append(" and ".join(f"{angle:.3f}" for angle, _ in halves))
         found = [(angle, test) for angle, others in halves for test in others]
         findings += _findings(rock, found)
-    return _described(
-        len(tests), f"slenderness angle [rad], on each half: {'; '.join(fits)} (rock 1; rock 2)"
-    )(findings=tuple(findings), others=_others(tests))
+    return replace(
+        DESCRIBED,
+        tests=len(tests),
+        fitted=f"slenderness angle [rad], on each half: {'; '.join(fits)} (rock 1; rock 2)",
+        findings=tuple(findings),
+        others=_others(tests),
+    )
 
 
 def fitted_angle(tests: Sequence[ShakeTest], rock: int) -> float:
@@ -242,19 +254,3 @@ def _others(tests: Sequence[ShakeTest]) -> tuple[Predictor, ...]:
             source="the authors; 0.87 and 0.90 of all 582",
         ),
     )
-
-
-def _described(tests: int, fitted: str) -> Callable[..., Experiment]:
-    def experiment(**found: object) -> Experiment:
-        return Experiment(
-            name="rocks",
-            title="Two rocks on a shake table",
-            source="github.com/ZhiangChen/virtual_shake_robot_pybullet, commit 9f239e7e, tests of 2021; 35 of 582 "
-            "motions, 0.1 to 25 Hz",
-            licence="outcomes as facts; the repository is GPL-3.0, none is stated for the data",
-            tests=tests,
-            fitted=fitted,
-            **found,  # type: ignore[arg-type]
-        )
-
-    return experiment

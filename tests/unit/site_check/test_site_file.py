@@ -146,6 +146,9 @@ def test_records_of_the_command_line_take_the_place_of_those_of_the_file(tmp_pat
     single = load_site(path, ["here/a.at2", "c.csv#2", "d.csv"])
     assert single.motions.files == [["a.at2"], [str(tmp_path / "c.csv#2")], [str(tmp_path / "d.csv")]]
     assert (single.motions.source, single.motions.vertical) == ("records", False)
+    copy = tmp_path / "here" / "copy.toml"
+    copy.write_text(single.origin.text, encoding="utf-8")  # as the results keep it
+    assert load_site(copy).motions == single.motions
     pairs = load_site(path, ["here/a.at2,b.at2", "c.csv,d.csv", "e.csv, f.csv"])
     assert pairs.motions.files[0] == ["a.at2", str(tmp_path / "b.at2")]
     assert pairs.motions.vertical
