@@ -7,7 +7,8 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from fem.results.run_result import JointDemand
+from fem.assessment.ranges import impact_note
+from fem.results.run_result import JointDemand, Verdict
 
 LEAST_N = 1e-6  #: smaller joint forces [N] and moments [Nm] are rounding
 MOST_JOINTS = 8  #: joints shown; of more, those with a largest value
@@ -16,13 +17,17 @@ JOINTS_NOTE = (
     "the tension in the bolts along one edge, the shear in the bolts beyond friction with the floor's mu_static, and "
     "when a joint without bolts would open at an edge or slide."
 )
+OVERSTATED = (
+    "Where impacts are elastic, means over them overstate the friction needed, the forces in the bolts, and how often "
+    "joints without bolts would open or slide."
+)
+LOOSE_RUN = 'A run with container.joints = "loose" finds what loose boxes do.'
 LARGEST = ("max_shear_N", "max_moment_Nm", "bolt_tension_left_N", "bolt_tension_right_N", "bolt_shear_N")
 
 
-def largest_bolt_forces(joints: Sequence[JointDemand]) -> tuple[float, float]:
-    """Largest tension along an edge, of all joints and both sides, and largest shear [N]."""
-    tension = max(max(one.bolt_tension_left_N, one.bolt_tension_right_N) for one in joints)
-    return tension, max(one.bolt_shear_N for one in joints)
+def joints_note(verdict: Verdict) -> str:
+    """How to read the joints of a bolted stack, whose table is only an estimate of what loose boxes do."""
+    return " ".join([JOINTS_NOTE, *([OVERSTATED] if verdict.impacts else []), LOOSE_RUN])
 
 
 def titled_table(title: str, *columns: str) -> Table:
@@ -35,8 +40,9 @@ def titled_table(title: str, *columns: str) -> Table:
     return table
 
 
-def joint_tables(every: Sequence[JointDemand], note: str = "") -> Iterator[RenderableType]:
-    """Forces, and what bolts carry; one row a joint, from the floor up; the note stands in the titles."""
+def joint_tables(every: Sequence[JointDemand], verdict: Verdict) -> Iterator[RenderableType]:
+    """Forces, and what bolts carry; one row a joint, from the floor up."""
+    note = impact_note(verdict)
     forces = titled_table(
         f"Forces in the joints between boxes{note}", "joint at", ">normal kN", ">shear kN", ">moment kNm"
     )
@@ -56,7 +62,9 @@ def joint_tables(every: Sequence[JointDemand], note: str = "") -> Iterator[Rende
         )
     yield from (forces, bolts)
     left_out = len(every) - len(joints)
-    yield Text(JOINTS_NOTE + (f" {left_out} more joints are in run.json." if left_out else "") + "\n")
+    yield Text(
+        joints_note(verdict) + (f" {left_out} more joints are in run.json." if left_out else "") + "\n"
+    )
 
 
 def _shown(joints: Sequence[JointDemand]) -> Sequence[JointDemand]:

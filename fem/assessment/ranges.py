@@ -4,9 +4,9 @@ Where the range is wider than a tenth, number and ends have two significant figu
 """
 
 import math
+from collections.abc import Sequence
 
-from fem.assessment.joint_tables import largest_bolt_forces
-from fem.results.run_result import Band, Numerics, RunResult, Verdict
+from fem.results.run_result import Band, JointDemand, Numerics, RunResult, Verdict
 
 Reach = tuple[float, float]
 
@@ -139,6 +139,12 @@ def largest_stress(verdict: Verdict) -> str:
         return f"{stress}{impact_note(verdict)}" if stress else ""
     where = "beyond yield" if verdict.max_von_mises_Pa > limit else "beyond yield within the band"
     return f"{where} ({1e-6 * limit:g} MPa); the elastic model has {stress}{impact_note(verdict)}"
+
+
+def largest_bolt_forces(joints: Sequence[JointDemand]) -> tuple[float, float]:
+    """Largest tension along an edge, of all joints and both sides, and largest shear [N]."""
+    tension = max(max(one.bolt_tension_left_N, one.bolt_tension_right_N) for one in joints)
+    return tension, max(one.bolt_shear_N for one in joints)
 
 
 def bolt_forces(result: RunResult) -> str:

@@ -22,7 +22,6 @@ from fem.assessment.ranges import (
     bolt_forces,
     contents_acceleration,
     corner_force,
-    impact_note,
     largest_slip,
     largest_stress,
     largest_uplift,
@@ -85,7 +84,7 @@ def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
         if note := code_note(result.static):
             yield Text(f"{note}\n")
     if result.joints:
-        yield from joint_tables(result.joints, impact_note(verdict))
+        yield from joint_tables(result.joints, verdict)
     if verdict.outcome in ("rock", "slide-rock"):
         yield Text(f"{MARGIN_NOTE}\n")
     if verdict.band is not None:

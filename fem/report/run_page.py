@@ -7,7 +7,7 @@ from importlib import metadata
 
 from contact.reference.event_driven import EventError
 from fem.assessment.code_note import code_note
-from fem.assessment.joint_tables import JOINTS_NOTE
+from fem.assessment.joint_tables import joints_note
 from fem.assessment.ranges import (
     IMPACT,
     largest_rotation,
@@ -166,7 +166,7 @@ def _page(
             "code": typeset(code_note(static.to_result())),
             "margin": MARGIN_NOTE,
             "band": BAND_NOTE,
-            "joints": JOINTS_NOTE,
+            "joints": joints_note(verdict),
             "impact": f"; {IMPACT}" if verdict.impacts else "",
         },
         rotation_ratio=ratio_alone,

@@ -17,7 +17,7 @@ from itertools import count
 from typing import Protocol
 
 from fem.assessment.joint_demands import joint_demands
-from fem.assessment.joint_tables import largest_bolt_forces
+from fem.assessment.ranges import largest_bolt_forces
 from fem.assessment.sureness import judged, static_use
 from fem.assessment.verdict import verdict_of
 from fem.case.case import Case

@@ -11,7 +11,7 @@ from fem.assessment.joint_demands import edge_forces, joint_demands
 from fem.assessment.joint_tables import unbolted
 from fem.assessment.summary import plain_summary
 from fem.results.history import NUMBERS, History
-from fem.results.run_result import RunResult
+from fem.results.run_result import RunResult, Verdict
 
 #: normal, shear, moment at 0, 1, 2 and 3 s: pressed in the middle; beyond a sixth of the width; beyond its edge, the
 #: left one open; lifted off
@@ -73,8 +73,8 @@ def test_a_single_box_has_no_joints():
     assert joint_demands(stack(), History.empty()) is None
 
 
-def page(joints) -> str:
-    result = RunResult(status="completed", joints=tuple(joints))
+def page(joints, **verdict) -> str:
+    result = RunResult(status="completed", joints=tuple(joints), verdict=Verdict(**verdict))
     return " ".join(plain_summary(result, folder=Path("outputs")).split())
 
 
@@ -82,6 +82,12 @@ def test_the_page_names_what_an_unbolted_joint_would_do():
     assert unbolted(demands(FORCES)[0]) == "opens at 2 s, slides at 1 s"
     assert unbolted(demands(FORCES[:1])[0]) == "stays closed, sticks"
     assert "no mu" in page(demands(FORCES))
+
+
+def test_the_table_warns_of_elastic_impacts_and_names_the_loose_run():
+    bolted, loose = demands(FORCES[:1]), 'container.joints = "loose"'
+    assert "overstate" in page(bolted, impacts=3) and loose in page(bolted, impacts=3)
+    assert "overstate" not in page(bolted, impacts=0) and loose in page(bolted, impacts=0)
 
 
 def test_of_many_joints_the_page_shows_those_that_decide():
