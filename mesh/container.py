@@ -38,13 +38,14 @@ class ContainerMesh:
     points: FloatArray  #: (n, 2) [x, z] [m]
     quads: IntArray  #: (m, 4) corners, counter-clockwise
     region: IntArray  #: (m,) values of Region
+    box: IntArray  #: (m,) box of the stack, from the floor up, from 0
     thickness: FloatArray  #: (m,) of the stiff material, out of the plane [m]
     areal_density: FloatArray  #: (m,) mass per area of elevation [kg/m2]
 
     def __post_init__(self) -> None:
         for name in ("points", "thickness", "areal_density"):
             self._own(name, np.array(getattr(self, name), dtype=np.float64))
-        for name in ("quads", "region"):
+        for name in ("quads", "region", "box"):
             self._own(name, np.array(getattr(self, name), dtype=np.int64))
         require_quality(self.points, self.quads)
         self._require_cell_data()
@@ -55,7 +56,7 @@ class ContainerMesh:
         object.__setattr__(self, name, array)
 
     def _require_cell_data(self) -> None:
-        for name in ("region", "thickness", "areal_density"):
+        for name in ("region", "box", "thickness", "areal_density"):
             if getattr(self, name).shape != (len(self.quads),):
                 raise MeshError(
                     f"{name} must have one value a cell, shape ({len(self.quads)},), "
@@ -185,6 +186,7 @@ def build_container_mesh(
         points=points,
         quads=quads,
         region=region,
+        box=np.repeat(np.arange(geometry.boxes), len(box_quads)),
         thickness=cell_thickness(geometry, region),
         areal_density=np.tile(density, geometry.boxes),
     )

@@ -129,11 +129,12 @@ def _container(
     solid = geometry.section is Section.SOLID
     allowed = (Region.SOLID,) if solid else (Region.WALL, Region.SHEET, Region.FILL)
     region = cell_regions(tags, allowed)
-    density, region = _fill_boxes(points, quads, region, geometry, fill)
+    density, region, box = _fill_boxes(points, quads, region, geometry, fill)
     return ContainerMesh(
         points=points,
         quads=quads,
         region=region,
+        box=box,
         thickness=cell_thickness(geometry, region),
         areal_density=density,
     )
@@ -186,8 +187,8 @@ def _plane(points: FloatArray) -> FloatArray:
 
 def _fill_boxes(
     points: FloatArray, quads: IntArray, region: IntArray, geometry: ContainerGeometry, fill: MassFill
-) -> tuple[FloatArray, IntArray]:
-    """Areal density and region of all cells, box by box."""
+) -> tuple[FloatArray, IntArray, IntArray]:
+    """Areal density, region and box of all cells, box by box."""
     area, centroid = areas_and_centroids(points, quads)
     corner_heights = points[quads, 1]
     bottom, top = corner_heights.min(axis=1), corner_heights.max(axis=1)
@@ -216,4 +217,4 @@ def _fill_boxes(
                 top=top[cells] - floor,
             ),
         )
-    return density, region
+    return density, region, box

@@ -45,8 +45,8 @@ def modes(
         drawn = modes_figure(
             points=elements.nodes,
             cells=elements.cells,
+            box=elements.box,
             modes=found,
-            boxes=loaded.container.boxes,
             name=loaded.name,
         )
     folder = out if out is not None else Path("outputs") / loaded.name / "modes"

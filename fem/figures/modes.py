@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from fem.figures.style import BLUE, GREY, LINE, WIDTH, head, number
 from fem.runtime.arrays import FloatArray, IntArray
@@ -17,15 +18,15 @@ TALLEST = 2.6  #: panel [inch]
 
 
 def modes_figure(
-    *, points: FloatArray, cells: IntArray, modes: ElasticModes, boxes: int = 1, name: str = ""
+    *, points: FloatArray, cells: IntArray, box: NDArray[np.integer], modes: ElasticModes, name: str = ""
 ) -> Figure:
     """Deformed outlines over the undeformed one, all to the same amplitude; drawn in the house style.
 
     Args:
         points: undeformed nodes (n, 2) [m].
         cells: nodes of each cell in the order of VTK, shape (m, 4 or 9).
+        box: of each cell, shape (m,).
         modes: of these nodes.
-        boxes: of the stack.
         name: of the case, for the title.
     """
     shown = min(len(modes.frequencies_Hz), MOST)
@@ -39,12 +40,12 @@ def modes_figure(
     top = 0.15 + 2 * LINE
     height = top + rows * (tall + LINE) + 0.1
     figure = Figure(figsize=(WIDTH, height))
-    lines = chained(outline_edges(points, cells, boxes))
+    lines = chained(outline_edges(cells, box))
     for k in range(shown):
         row, column = divmod(k, columns)
         bottom = height - top - (row + 1) * (tall + LINE)
-        box = ((0.1 + column * wide) / WIDTH, bottom / height, wide / WIDTH, tall / height)
-        axes = figure.add_axes(box)
+        place = ((0.1 + column * wide) / WIDTH, bottom / height, wide / WIDTH, tall / height)
+        axes = figure.add_axes(place)
         axes.set_axis_off()
         shape = modes.shapes[k]
         moved = points + shape * (reach / np.linalg.norm(shape, axis=1).max())

@@ -80,8 +80,8 @@ def draw_all(run: OpenedRun, container: Container) -> list[Drawing]:
         figures["modes"] = modes_figure(
             points=elements.nodes,
             cells=elements.cells,
+            box=elements.box,
             modes=elastic_modes(elements, FEW),
-            boxes=run.case.container.boxes,
             name=run.name,
         )
     drawings = []

@@ -59,7 +59,7 @@ class Scene:
         self._plotter = pyvista.Plotter(off_screen=True, window_size=list(self.view.size))
         self._plotter.set_background("white")  # type: ignore[arg-type]
         self._plotter.enable_anti_aliasing("msaa", multi_samples=SMOOTH)
-        self._body, self._outline = body_of(first), outline_of(first, run.case.container.boxes)
+        self._body, self._outline = body_of(first), outline_of(first)
         self._arrows = arrows(len(self._pressed))
         moving = hatches_of(self.view), mark_of(self.view)
         rising = slab_of(self.view), surface_of(self.view)  # they reach across the picture

@@ -108,9 +108,9 @@ def body_of(frame: Frame) -> pyvista.PolyData:
     return pyvista.PolyData(spatial(frame.points), np.column_stack([np.full(len(parts), 4), parts]).ravel())
 
 
-def outline_of(frame: Frame, boxes: int) -> pyvista.PolyData:
+def outline_of(frame: Frame) -> pyvista.PolyData:
     """Outer edges of the container and the joints of its boxes, as lines on its nodes."""
-    lines = chained(outline_edges(frame.points, frame.cells, boxes))
+    lines = chained(outline_edges(frame.cells, frame.box))
     return pyvista.PolyData(
         spatial(frame.points), lines=np.concatenate([[len(line), *line] for line in lines])
     )

@@ -23,6 +23,8 @@ from fem.results.fields import Fields, Frame
 from fem.results.history import History
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements
+from fem.solid.edges import outline_edges
+from mesh.region import Region
 
 FIELD_BYTES = 2_400_000  #: of all frames, before base64 makes four thirds of it
 LEAST_FRAMES = 40  #: where cells would leave fewer frames, the outline alone is sent
@@ -109,7 +111,7 @@ def animation_of(model: Model, fields: Fields | None) -> Animation:
     contact = model.container.nodes[: model.container.support.index.size]
     count = len(fields) if fields else 0
     corners = np.asarray(elements.cells)[:, :4]
-    edges = outline(corners, np.asarray(elements.region))
+    edges = outline_edges(corners, len(Region) * elements.box + elements.region)
     whole = np.unique(np.concatenate([corners.ravel(), contact]))
     enough = FIELD_BYTES // min(max(count, 1), LEAST_FRAMES)
     quads = corners if 5 * whole.size <= enough else corners[:0]
@@ -128,17 +130,6 @@ def animation_of(model: Model, fields: Fields | None) -> Animation:
         if fields
         else [],
     )
-
-
-def outline(quads: IntArray, region: IntArray) -> IntArray:
-    """Edges on the outside or between cells of different regions, shape (k, 2)."""
-    sides = np.sort(np.concatenate([quads[:, [i, (i + 1) % 4]] for i in range(4)]), axis=1)
-    kinds = np.tile(region, 4)
-    edges, inverse, counts = np.unique(sides, axis=0, return_inverse=True, return_counts=True)
-    least, most = np.full(len(edges), np.iinfo(np.int64).max), np.full(len(edges), -1)
-    np.minimum.at(least, inverse, kinds)
-    np.maximum.at(most, inverse, kinds)
-    return edges[(counts == 1) | (least != most)]
 
 
 def rigid_and_elastic(elements: FiniteElements, frame: Frame) -> tuple[FloatArray, float, FloatArray]:

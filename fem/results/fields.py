@@ -42,6 +42,7 @@ class FieldWriter:
         points: reference positions of the nodes (x, z), shape (n, 2) [m].
         cells: nodes of each cell in the order of VTK, shape (m, 4) or (m, 9).
         region: kind of each cell, shape (m,).
+        box: of each cell, from 1 at the floor, shape (m,).
         kept_times: times of the frames of an interrupted run that are kept [s]; other old frames are removed.
 
     Raises:
@@ -55,13 +56,14 @@ class FieldWriter:
         points: FloatArray,
         cells: IntArray,
         region: IntArray,
+        box: IntArray,
         kept_times: Sequence[float] = (),
     ) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         self.folder = folder
         self._points = _padded(points)
         self._cells = [(CELL_TYPES[cells.shape[1]], cells.astype(np.int32))]
-        self._region = [region.astype(np.int32)]
+        self._cell_data = {"region": [region.astype(np.int32)], "box": [box.astype(np.int32)]}
         self._times = list(kept_times)
         self._listed = 0
         self._synced = len(self._times)
@@ -120,7 +122,7 @@ class FieldWriter:
                 "contact_pressure_Pa": contact_pressure.astype(np.float32),
                 "floor_displacement_m": floor,
             },
-            cell_data={"region": self._region},
+            cell_data=self._cell_data,
         )
         path = self.folder / frame_name(len(self._times))
         with replacing(path) as part:
@@ -157,6 +159,7 @@ class Frame:
     points: FloatArray  #: reference positions (x, z), shape (n, 2) [m]
     cells: IntArray  #: nodes of each cell in the order of VTK, shape (m, 4 or 9)
     region: IntArray  #: shape (m,)
+    box: IntArray  #: of the stack, from 1 at the floor, shape (m,)
     displacement: FloatArray  #: shape (n, 2) [m]
     velocity: FloatArray  #: shape (n, 2) [m/s]
     von_mises: FloatArray | None  #: shape (n,) [Pa]; None for a rigid container
@@ -222,6 +225,9 @@ class Fields:
                 points=mesh.points[:, :2],
                 cells=block.data,
                 region=mesh.cell_data["region"][0],
+                box=mesh.cell_data.get("box", [np.ones(len(block.data), dtype=np.int32)])[
+                    0
+                ],  # former versions
                 displacement=data["displacement_m"][:, :2],
                 velocity=data["velocity_m_s"][:, :2],
                 von_mises=data.get("von_mises_Pa"),
@@ -241,11 +247,11 @@ class FrameKeeper:
     """Keeps the frames of a run in memory, in single precision as files do.
 
     Args:
-        points, cells, region: as for `FieldWriter`.
+        points, cells, region, box: as for `FieldWriter`.
     """
 
-    def __init__(self, *, points: FloatArray, cells: IntArray, region: IntArray) -> None:
-        self._points, self._cells, self._region = _single(points), cells, region
+    def __init__(self, *, points: FloatArray, cells: IntArray, region: IntArray, box: IntArray) -> None:
+        self._points, self._cells, self._region, self._box = _single(points), cells, region, box
         self._kept: list[Frame] = []
 
     @property
@@ -270,6 +276,7 @@ class FrameKeeper:
             points=self._points,
             cells=self._cells,
             region=self._region,
+            box=self._box,
             displacement=_single(displacement),
             velocity=_single(velocity),
             von_mises=None if von_mises is None else _single(von_mises),

@@ -24,6 +24,7 @@ def grid_of(frame: Frame) -> pyvista.UnstructuredGrid:
         grid.point_data["von_mises_Pa"] = frame.von_mises
     grid.point_data["contact_pressure_Pa"] = frame.contact_pressure
     grid.cell_data["region"] = frame.region
+    grid.cell_data["box"] = frame.box
     return grid
 
 

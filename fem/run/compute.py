@@ -124,7 +124,12 @@ def compute_on(container: Container | None, case: Case, wanted: WantedChecks) ->
         model = build_model(case, container or discretise(case, mesh))
         advance_body(model.body, model.run, 0.0)  # no step: compiles
     elements = model.container.elements
-    keeper = FrameKeeper(points=elements.nodes, cells=elements.cells, region=elements.region.astype(np.int64))
+    keeper = FrameKeeper(
+        points=elements.nodes,
+        cells=elements.cells,
+        region=elements.region.astype(np.int64),
+        box=1 + elements.box.astype(np.int64),
+    )
     recorder = Recorder(model, recovery_of(model), frame_sink=keeper.keep)
     result = begun(model, case_hash(resolved))
     result, history = stepped(model, result, recorder, reporter=silent, stop=lambda: False)

@@ -138,6 +138,7 @@ def open_output(files: RunFiles, model: Model, start: Start) -> Iterator[RunOutp
                 points=elements.nodes,
                 cells=elements.cells,
                 region=elements.region.astype(np.int64),
+                box=1 + elements.box.astype(np.int64),
                 kept_times=start.frames_s,
             )
             stack.callback(fields.close)

@@ -63,6 +63,9 @@ class QuadMesh(Protocol):
     def region(self) -> NDArray[np.integer]: ...  #: (m,)
 
     @property
+    def box(self) -> NDArray[np.integer]: ...  #: (m,)
+
+    @property
     def thickness(self) -> NDArray[np.floating]: ...  #: (m,), out of plane [m]
 
     @property
@@ -94,6 +97,7 @@ class FiniteElements:
     nodes: FloatArray  #: reference positions of all nodes, shape (n, 2) [m]
     cells: IntArray  #: nodes of each cell in VTK's order (quad, biquadratic quad), shape (m, 4 | 9)
     region: NDArray[np.integer]  #: region of each cell, shape (m,)
+    box: NDArray[np.integer]  #: box of each cell, from 0, shape (m,)
     base_nodes: IntArray  #: nodes at z = 0, by rising x
     mass: csr_array  #: consistent mass, the same for x and z, shape (n, n) [kg]
     stiffness: csc_array  #: linear plane stress, shape (2n, 2n), interleaved [N/m]
@@ -228,6 +232,7 @@ def assemble(mesh: QuadMesh, *, youngs_modulus: float, poisson_ratio: float, ord
         nodes=nodes,
         cells=cells,
         region=np.asarray(mesh.region),
+        box=np.asarray(mesh.box),
         base_nodes=_base_nodes(nodes),
         mass=csr_array(_mass_form.assemble(basis, areal_density=density)),
         stiffness=csc_array(_stiffness_form.assemble(vector_basis, **elastic)),

@@ -1,32 +1,34 @@
-"""Outline of a container as pairs of nodes: its outer edges and the joints between its boxes."""
+"""Outline of a container as pairs of nodes: its outer edges, and those between cells of different kinds."""
 
 import numpy as np
+from numpy.typing import NDArray
 
-from fem.runtime.arrays import FloatArray, IntArray
+from fem.runtime.arrays import IntArray
 
 #: nodes along the sides of a cell, by its number of nodes in the order of VTK
 SIDES = {4: ((0, 1), (1, 2), (2, 3), (3, 0)), 9: ((0, 4, 1), (1, 5, 2), (2, 6, 3), (3, 7, 0))}
-AT_JOINT = 1e-4  #: of the height, within which a side lies on a joint
 
 
-def outline_edges(points: FloatArray, cells: IntArray, boxes: int = 1) -> IntArray:
-    """Pairs of neighbouring nodes on the outline.
+def outline_edges(cells: IntArray, kind: NDArray[np.integer]) -> IntArray:
+    """Pairs of neighbouring nodes on sides that belong to one cell, or to cells of different kinds.
 
     Args:
-        points: undeformed positions of the nodes, shape (n, 2) [m].
         cells: nodes of each cell in the order of VTK, shape (m, 4 or 9).
-        boxes: of equal height, one on the other.
+        kind: of each cell, such as its box, shape (m,).
 
     Returns:
         Shape (k, 2).
     """
     sides = cells[:, SIDES[cells.shape[1]]].reshape(-1, len(SIDES[cells.shape[1]][0]))
     ends = np.sort(sides[:, [0, -1]], axis=1)
-    _, first, count = np.unique(ends, axis=0, return_index=True, return_counts=True)
-    height = points[:, 1].max()
-    joints = height * np.arange(1, boxes) / boxes
-    distance = np.abs(points[sides, 1][:, :, None] - joints).max(axis=1).min(axis=1, initial=np.inf)
-    drawn = sides[first[(count == 1) | (distance[first] < AT_JOINT * height)]]
+    _, first, inverse, count = np.unique(
+        ends, axis=0, return_index=True, return_inverse=True, return_counts=True
+    )
+    kinds = np.repeat(kind, 4)
+    least, most = np.full(len(first), np.iinfo(np.int64).max), np.full(len(first), np.iinfo(np.int64).min)
+    np.minimum.at(least, inverse, kinds)
+    np.maximum.at(most, inverse, kinds)
+    drawn = sides[first[(count == 1) | (least != most)]]
     return np.concatenate([drawn[:, i : i + 2] for i in range(drawn.shape[1] - 1)])
 
 

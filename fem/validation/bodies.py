@@ -47,6 +47,7 @@ def specimen(case: Case, *, centroid: float, inertia_ratio: float) -> Container:
             points=np.array([[x, z] for z in levels for x in (-0.5 * width, 0.5 * width)]),
             quads=np.stack([low, low + 1, low + 3, low + 2], axis=1),
             region=np.full(LAYERS, int(Region.SOLID)),
+            box=np.zeros(LAYERS, dtype=np.int64),
             thickness=np.full(LAYERS, case.container.depth_m),
             areal_density=np.asarray(mass * shares / (width * layer), dtype=np.float64),
         ),

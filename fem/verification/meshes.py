@@ -18,6 +18,7 @@ class PlainMesh:
     points: FloatArray  #: (n, 2) [m]
     quads: IntArray  #: (m, 4), counter-clockwise
     region: IntArray  #: (m,)
+    box: IntArray  #: (m,)
     thickness: FloatArray  #: (m,) [m]
     areal_density: FloatArray  #: (m,) [kg/m2]
 
@@ -34,6 +35,7 @@ def mapped_mesh(
         points=np.stack(place(s.ravel(), t.ravel()), axis=1),
         quads=np.stack([corner, corner + 1, corner + columns + 2, corner + columns + 1], axis=1),
         region=np.zeros(corner.size, dtype=np.int64),
+        box=np.zeros(corner.size, dtype=np.int64),
         thickness=thickness * full,
         areal_density=density * thickness * full,
     )
@@ -47,6 +49,7 @@ def grid_mesh(x: FloatArray, z: FloatArray, *, depth: float, areal_density: floa
         points=np.column_stack([np.tile(x, z.size), np.repeat(z, x.size)]),
         quads=np.column_stack([first, first + 1, first + columns + 2, first + columns + 1]),
         region=np.full(first.size, 3),
+        box=np.zeros(first.size, dtype=np.int64),
         thickness=np.full(first.size, depth),
         areal_density=np.full(first.size, areal_density),
     )

@@ -61,7 +61,7 @@ def film(folder: Path) -> Figure:
 def write_again(frames: list[Frame], recovery: Recovery, folder: Path) -> None:
     """The frames of a run, made from its coordinates and written as a run does."""
     first = frames[0]
-    writer = FieldWriter(folder, points=first.points, cells=first.cells, region=first.region)
+    writer = FieldWriter(folder, points=first.points, cells=first.cells, region=first.region, box=first.box)
     for frame in frames:
         made = recovery.frame((frame.points + frame.displacement).ravel(), frame.velocity.ravel())
         writer.write(

@@ -250,7 +250,7 @@ class TestCommands:
         folder.mkdir()
         (folder / "run.json").write_text('{"status": "running", "case_hash": "0"}')
         assert "no fields were written" in self.refused(capsys, "movie", folder)
-        FieldWriter(folder / "fields", points=GRID, cells=QUADS9, region=np.array([0]))
+        FieldWriter(folder / "fields", points=GRID, cells=QUADS9, region=np.array([0]), box=np.array([1]))
         assert "no frame has been written yet" in self.refused(capsys, "picture", folder)
 
     @pytest.mark.parametrize("time", ["99", "-1", "nan"])

@@ -31,7 +31,9 @@ def fields(floor=0.03):
 
 
 def writer(folder, cells=QUADS9, **options):
-    return FieldWriter(folder, points=POINTS, cells=cells, region=np.array([1, 2]), **options)
+    return FieldWriter(
+        folder, points=POINTS, cells=cells, region=np.array([1, 2]), box=np.array([1, 2]), **options
+    )
 
 
 @pytest.mark.parametrize(("cells", "kind"), [(QUADS, "quad"), (QUADS9, "quad9")])
@@ -48,6 +50,7 @@ def test_meshio_and_open_fields_read_what_was_written(tmp_path, cells, kind):
     assert frame.time == 0.25
     assert frame.points == pytest.approx(POINTS)
     assert frame.cells.tolist() == cells.tolist() and frame.region.tolist() == [1, 2]
+    assert frame.box.tolist() == [1, 2]
     for name, wanted in written.items():
         assert getattr(frame, name) == pytest.approx(wanted, rel=1e-6)
     path = writer(tmp_path, cells).write(0.1, **{**written, "von_mises": None})
@@ -69,7 +72,7 @@ def test_pyvista_reads_the_time_series(tmp_path, cells, kind):
     grid = reader.read()[0]
     assert set(grid.celltypes) == {kind}
     assert grid.point_data["displacement_m"][:, :2] == pytest.approx(written[1]["displacement"], rel=1e-6)
-    assert grid.cell_data["region"].tolist() == [1, 2]
+    assert grid.cell_data["region"].tolist() == grid.cell_data["box"].tolist() == [1, 2]
     assert grid.compute_cell_sizes()["Area"] == pytest.approx([1.0, 1.0], rel=1e-6)  # nodes in VTK's order
     warped = grid.warp_by_vector("displacement_m")
     assert warped.points[:, :2] == pytest.approx(POINTS + written[1]["displacement"], abs=1e-6)

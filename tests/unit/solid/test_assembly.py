@@ -24,6 +24,7 @@ def quad_mesh(x, z, *, thickness=0.5, areal_density=120.0):
         points=np.stack([X.ravel(), Z.ravel()], axis=1),
         quads=quads,
         region=np.arange(len(quads)) % 4,
+        box=np.zeros(len(quads), dtype=int),
         thickness=thickness * full,
         areal_density=areal_density * full,
     )
