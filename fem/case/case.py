@@ -25,6 +25,7 @@ from fem.case.data_files import (
     without_channel,
 )
 from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
+from fem.case.floors import PENALTY_KEYS
 from fem.case.overrides import naming_overrides, parse_override, with_overrides
 from fem.case.rules import CASE_RULES
 from fem.case.tables import (
@@ -34,6 +35,7 @@ from fem.case.tables import (
     ContactTable,
     ContainerTable,
     DocumentTable,
+    FloorTable,
     InitialTable,
     MotionTable,
     OutputTable,
@@ -62,6 +64,7 @@ class Case(CaseHeading):
     container: ContainerTable
     support: SupportTable = Field(default_factory=SupportTable)
     contact: ContactTable
+    floor: FloorTable = Field(default_factory=FloorTable)
     motion: MotionTable
     vertical: VerticalTable = Field(default_factory=VerticalTable)
     initial: InitialTable = Field(default_factory=InitialTable)
@@ -138,6 +141,12 @@ class Case(CaseHeading):
         return self.vertical.kind != "none"
 
     @property
+    def contact_damping_ratio(self) -> float | None:
+        """c/(2 sqrt(k m)), the whole mass m on the spring k of one corner; None: the slab's own damping."""
+        own = self.floor.is_slab and "damping_ratio" not in self.contact.model_fields_set
+        return None if own else self.contact.damping_ratio
+
+    @property
     def starts_moving(self) -> bool:
         """Whether the container has the velocity of the floor at t = 0, along x and vertically."""
         return self.motion.kind == "none" or self.motion.start == "moving"
@@ -179,6 +188,20 @@ class Case(CaseHeading):
         """The motion given by `with_motion`; None where a recorded motion has a file."""
         return self._origin.recorded
 
+    @property
+    def _absent(self) -> set[str]:
+        """Tables that say nothing."""
+        level = not self.floor.is_slab and self.floor.slope_percent == 0.0
+        absent = {"vertical": not self.has_vertical, "floor": level}
+        return {name for name, says_nothing in absent.items() if says_nothing}
+
+    @property
+    def _idle_on_slab(self) -> set[str]:
+        """Keys of [contact] that a slab does not use."""
+        if not self.floor.is_slab:
+            return set()
+        return {*PENALTY_KEYS} | ({"damping_ratio"} if self.contact_damping_ratio is None else set())
+
     def _file_names(self) -> dict[str, str | None]:
         named = {"container.mesh_file": self.container.mesh_file}
         if self.recorded is not None:
@@ -201,9 +224,9 @@ class Case(CaseHeading):
         document = self.model_dump(by_alias=True, exclude=set(TABLES))
         for name in TABLES:
             table = getattr(self, name)
-            if table is None or (name == "vertical" and not self.has_vertical):
-                continue  # a case without vertical motion keeps its file and its hash
-            idle = table.idle_keys()
+            if table is None or name in self._absent:
+                continue  # a case without vertical motion, or on a level rigid floor, keeps its file and its hash
+            idle = table.idle_keys() | (self._idle_on_slab if name == "contact" else set())
             document[name] = {
                 key: value
                 for key, value in table.model_dump().items()

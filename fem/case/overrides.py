@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from copy import deepcopy
 from typing import Any
 
+from fem.case.floors import PENALTY_KEYS, PRESET_KEYS, SLAB_KEYS
 from fem.case.tables import TABLES
 from fem.case.validation import CaseError, did_you_mean
 
@@ -48,7 +49,9 @@ def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
     """
     changed = deepcopy(dict(data))
     tables = {f"{table}.kind": "table" for table in ("motion", "vertical") if f"{table}.file" in overrides}
-    # who names a record wants it to move the floor
+    if "floor.preset" in overrides:
+        tables["floor.kind"] = "slab"
+    # who names a record wants it to move the floor, who names a floor to stand on it
     overrides = keys_in_effect(tables | dict(overrides), kinds_of(data))
     for dotted, value in overrides.items():
         table, dot, key = dotted.rpartition(".")
@@ -99,6 +102,7 @@ def _replace_alternatives(data: dict[str, Any], dotted: Any) -> None:
     container = data.get("container")
     if isinstance(container, dict):
         _drop_others(container, ("weight_N", "mass_kg", "density_kg_m3"), _keys_set("container", dotted))
+    _replace_floor(data, dotted)
     for table in ("motion", "vertical"):
         motion, explicit = data.get(table), _keys_set(table, dotted)
         if not isinstance(motion, dict):
@@ -114,15 +118,31 @@ def _replace_alternatives(data: dict[str, Any], dotted: Any) -> None:
             _drop_others(motion, ("amplitude_m", "peak_acceleration_m_s2"), explicit)
 
 
+def _replace_floor(data: dict[str, Any], dotted: Any) -> None:
+    """Another kind of floor takes nothing of the former one, another preset none of its numbers."""
+    floor, contact, explicit = data.get("floor"), data.get("contact"), _keys_set("floor", dotted)
+    if not isinstance(floor, dict):
+        return
+    if "kind" in explicit and floor.get("kind") == "rigid":
+        _drop(floor, SLAB_KEYS, explicit)
+    if "kind" in explicit and floor.get("kind") == "slab" and isinstance(contact, dict):
+        _drop(contact, PENALTY_KEYS, _keys_set("contact", dotted))
+    if "preset" in explicit:
+        _drop(floor, PRESET_KEYS, explicit)
+
+
 def _keys_set(table: str, dotted: Any) -> set[str]:
     return {key.partition(".")[2] for key in dotted if key.startswith(f"{table}.")}
 
 
 def _drop_others(table: dict[str, Any], group: tuple[str, ...], explicit: set[str]) -> None:
-    if explicit.isdisjoint(group):
-        return
+    if not explicit.isdisjoint(group):
+        _drop(table, group, explicit)
+
+
+def _drop(table: dict[str, Any], group: tuple[str, ...], kept: set[str]) -> None:
     for key in group:
-        if key not in explicit:
+        if key not in kept:
             table.pop(key, None)
 
 

@@ -147,6 +147,26 @@ SLIP_VELOCITY = Quantity(
     advice="about 1e-3 of the largest slip velocity is usual",
 )
 PENALTY = Quantity(unit="Pa/m", least=1.0, most=1e20, advice='"auto" chooses it')
+FLOOR_STIFFNESS = Quantity(
+    unit="Pa",
+    least=1e5,
+    most=1e12,
+    typical=3e10,
+    slips={"GPa (kN/mm2)": 1e9, "MPa (N/mm2)": 1e6},
+    advice="concrete has 3e10",
+)
+# 0.5 is a fluid: no shear, and the half-space does not yield at all
+FLOOR_POISSON = Quantity(unit="", least=0.0, below=0.5, advice="concrete has 0.2, rubber 0.49")
+BEARING_STRENGTH = Quantity(
+    unit="Pa",
+    least=1e4,
+    most=1e11,
+    typical=5e7,
+    slips={"GPa (kN/mm2)": 1e9, "MPa (N/mm2)": 1e6, "kN/m2 (kPa)": 1e3},
+    advice="concrete has 2.5e7 to 1e8",
+)
+PATCH = Quantity(unit="m", least=1e-4, most=100.0, typical=0.02, slips=MILLI_AND_CENTI)
+SLOPE = Quantity(unit="per cent", least=-20.0, most=20.0, advice="1 to 2 is usual for drainage")
 DRAWS = Quantity(unit="", least=0, most=1024, advice="32 is usual")
 RATIO = Quantity(unit="", least=1e-6, most=1e3, advice="1 is usual")
 WEAKENING = Quantity(

@@ -4,6 +4,7 @@ import math
 from typing import Any
 
 from fem.case import quantities as q
+from fem.case.floors import FLOOR_CASE_RULES
 from fem.case.motion_rules import harmonic_angular_frequency
 from fem.case.problem import Rule, is_a_file_name, outside_the_folder
 
@@ -260,6 +261,7 @@ def _frames(case: Any) -> float:
 
 
 CASE_RULES = (
+    *FLOOR_CASE_RULES,
     _plausible_density("weight_N"),
     _plausible_density("mass_kg"),
     Rule(

@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, Strict
 
 from fem.case import quantities as q
+from fem.case.floors import FloorTable
 from fem.case.motion_tables import MotionTable, VerticalTable
 from fem.case.rules import CONTACT_RULES, CONTAINER_RULES, SOLVER_RULES, UNCERTAINTY_RULES
 from fem.case.table import CaseTable, case_key
@@ -252,6 +253,7 @@ TABLES: dict[str, type[CaseTable]] = {
     "container": ContainerTable,
     "support": SupportTable,
     "contact": ContactTable,
+    "floor": FloorTable,
     "motion": MotionTable,
     "vertical": VerticalTable,
     "initial": InitialTable,

@@ -169,7 +169,7 @@ def _reason(field: FieldInfo, details: list[ErrorDetails]) -> str:
         return f'must be {kind} or "{choice}", got {_shown(faults["literal_error"]["input"])}'
     if "literal_error" in faults:
         choices = choices_of(field.annotation)
-        units = any("/" in choice for choice in choices)  # the nearest spelling is another unit
+        units = "m/s2" in choices  # the nearest spelling is another unit
         near = did_you_mean(value, choices) if isinstance(value, str) and not units else ""
         listed = " or ".join(f'"{choice}"' for choice in choices)
         return f"must be {listed}, got {_shown(value)}" + (f"; {near}" if near else "")
@@ -203,6 +203,8 @@ def requirement_of(detail: ErrorDetails) -> str:
             return f"must be at most {limits['le']}"
         case "string_too_long":
             return f"must have at most {limits['max_length']} characters"
+        case "too_short" | "too_long":
+            return f"must have {limits.get('min_length', limits.get('max_length'))} items"
         case "literal_error":
             return f"must be {limits['expected']}"
     return f"cannot be used ({detail['msg'].lower()})"

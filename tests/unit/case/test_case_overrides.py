@@ -3,6 +3,7 @@
 import pytest
 
 from fem.case.case import CaseError, load_case
+from fem.case.floors import PRESETS
 
 BASE = "seed_stack"  # amplitude and angular frequency, weight
 
@@ -67,6 +68,24 @@ def test_density_and_mass_replace_the_weight_and_back():
     assert case.box_mass == pytest.approx(1210.0)
     assert case.with_values({"container.mass_kg": 2400.0}).box_mass == 2400.0
     assert case.with_values({"container.weight_N": 24525.0}).box_mass == pytest.approx(2500.0)
+
+
+SLAB = ["floor.preset=asphalt", "floor.bearing_strength_Pa=4e6", "floor.corner_patch_m=[0.1, 0.2]"]
+
+
+def test_who_names_a_floor_stands_on_it_with_all_its_numbers():
+    asphalt = load_case(BASE, SLAB)
+    assert (asphalt.floor.kind, asphalt.floor.bearing_strength_Pa) == ("slab", 4e6)
+    concrete = asphalt.with_values({"floor.preset": "concrete C25/30"})
+    assert concrete.floor.bearing_strength_Pa == PRESETS["concrete C25/30"].bearing_strength
+    assert concrete.floor.corner_patch_m == [0.1, 0.2]
+
+
+def test_another_kind_of_floor_takes_nothing_of_the_former_one():
+    case = load_case(BASE, ["contact.normal_penalty_Pa_m=1e9"])
+    slab = case.with_values({"floor.preset": "asphalt"})
+    assert slab.contact.normal_penalty_Pa_m == "auto"
+    assert slab.with_values({"floor.kind": "rigid"}).resolved() == load_case(BASE).resolved()
 
 
 def test_overrides_go_through_the_same_checks_and_are_named():

@@ -195,6 +195,13 @@ least    | static.ground_acceleration_m_s2=160 | got 160 m/s2; looks like gal (c
 least    | solver.duration_s=20000.0 | got 20000 s; looks like milliseconds: 20 s?
 least    | solver.element_size_m=100 | got 100 m; looks like millimetres: 0.1 m?
 least    | solver.element_size_m=10.0 | got 10 m; looks like centimetres: 0.1 m?
+least    | floor.preset=concrete C25/30 & floor.bearing_strength_Pa=25 | got 25 Pa; looks like MPa (N/mm2): 2.5e+07 Pa?
+least    | floor.preset=concrete C25/30 & floor.youngs_modulus_Pa=31 | got 31 Pa; looks like GPa (kN/mm2): 3.1e+10 Pa?
+least    | floor.preset=concrete C25/30 & floor.youngs_modulus_Pa=31000 |
+           got 31000 Pa; looks like MPa (N/mm2): 3.1e+10 Pa?
+least    | floor.preset=concrete C25/30 & floor.corner_patch_m=[100, 200] | got 200 m; looks like millimetres: 0.2 m?
+least    | floor.preset=concrete C25/30 & floor.corner_patch_m=[8.0, 1.0] |
+           along x at most half of width_m = 0.55 m, got 8 m; looks like millimetres: 0.008 m?
 least    | gravity_m_s2=981.0 |
            gravity_m_s2 must be between 0.01 and 100 m/s2, got 981 m/s2; looks like cm/s2: 9.81 m/s2?
 """
@@ -280,6 +287,20 @@ least    | vertical.file=../floor.csv | [vertical] file must name a file in the 
 least    | motion.amplitude_m=-1.0 | [motion] amplitude_m must be between 0 and 10 m
 least    | motion.kind=quake | [motion] kind must be "none" or "harmonic" or "pulse" or "table"
 least    | initial.rotation_rad=1.6 | [initial] rotation_rad must be more than -1.5708 and less than 1.5708 rad
+least    | floor.preset=concrete C30 | got the text 'concrete C30'; did you mean 'concrete C25/30'?
+least    | floor.kind=rigid & floor.preset=asphalt | [floor] preset belongs to kind = "slab", this floor is "rigid"; set
+least    | floor.bearing_strength_Pa=25e6 | [floor] bearing_strength_Pa belongs to kind = "slab", this floor is "rigid"
+least    | floor.kind=slab | [floor] youngs_modulus_Pa is missing: kind = "slab" needs it, or a preset (
+least    | floor.preset=asphalt | [floor] corner_patch_m is missing: a solid block has no wall that would say how much
+least    | floor.preset=asphalt & floor.corner_patch_m=[0.6, 0.2] |
+           [floor] corner_patch_m = [0.6, 0.2] does not fit under the base: along x at most half of width_m = 0.55 m
+least    | floor.preset=asphalt & floor.corner_patch_m=[0.1, 1.2] | out of plane at most depth_m = 1.1 m, got 1.2 m
+least    | floor.preset=asphalt & floor.corner_patch_m=[0.1] | [floor] corner_patch_m must have 2 items, got a list
+least    | floor.preset=asphalt & floor.poisson_ratio=0.5 | poisson_ratio must be at least 0 and less than 0.5, got 0.5
+least    | floor.preset=asphalt & contact.normal_penalty_Pa_m=1e9 |
+           [contact] normal_penalty_Pa_m belongs to floor.kind = "rigid": the stiffness of a slab follows its
+least    | floor.preset=asphalt & contact.tangential_ratio=0.5 | [contact] tangential_ratio belongs to floor.kind =
+least    | floor.slope_percent=45.0 | slope_percent must be between -20 and 20 per cent, got 45 per cent; 1 to 2 is
 least    | solver.model=rigit | got the text 'rigit'; did you mean 'rigid'?
 least    | solver.order=3 | [solver] order must be between 1 and 2, got 3
 least    | solver.scheme=newmark & solver.newmark_beta=0.1 | newmark_beta must be at least newmark_gamma/2

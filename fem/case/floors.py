@@ -1,0 +1,222 @@
+"""The floor as a material: table [floor], presets of common floors with their ranges and sources, and their rules.
+
+A rigid floor is the numerical penalty of [contact]. A slab is an elastic half-space under a patch at each corner of the
+elevation, which crushes where the pressure reaches its bearing strength (`fem.model.floor` makes springs of it). A
+preset gives what the case leaves out; no preset is fitted to an experiment.
+"""
+
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from fem.case import quantities as q
+from fem.case.problem import Rule
+from fem.case.table import CaseTable, case_key
+
+Reach = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class FloorPreset:
+    """A common floor: the values taken, and the range in which such floors lie."""
+
+    youngs_modulus: float  #: for loads of some milliseconds [Pa]
+    youngs_modulus_range: Reach  #: [Pa]
+    poisson_ratio: float
+    bearing_strength: float  #: mean pressure on a small patch at which it gives way [Pa]
+    bearing_strength_range: Reach  #: [Pa]
+    density: float | None  #: for radiation damping [kg/m3]; None where no half-space lies below
+    source: str
+
+
+PresetName = Literal["concrete C25/30", "asphalt", "compacted gravel", "steel plate", "rubber mat"]
+
+PRESETS: dict[PresetName, FloorPreset] = {
+    "concrete C25/30": FloorPreset(
+        youngs_modulus=31e9,
+        youngs_modulus_range=(22e9, 37e9),
+        poisson_ratio=0.2,
+        bearing_strength=50e6,
+        bearing_strength_range=(25e6, 99e6),
+        density=2400.0,
+        source=(
+            "EN 1992-1-1:2004, Table 3.1 (E_cm, f_ck = 25 MPa, f_cm = 33 MPa) and 3.1.3 (aggregates: 0.7 to 1.2 E_cm); "
+            "strength from f_ck without spread to 3 f_cm with it (6.7, Eq. 6.63), 1.5 f_cm taken"
+        ),
+    ),
+    "asphalt": FloorPreset(
+        youngs_modulus=3e9,
+        youngs_modulus_range=(0.3e9, 14e9),
+        poisson_ratio=0.35,
+        bearing_strength=5e6,
+        bearing_strength_range=(2e6, 15e6),
+        density=2400.0,
+        source=(
+            "typical values for pavement materials: 2.1 to 3.4 GPa at 21 C, 14 GPa and more at 0 C, 0.14 to 0.34 GPa "
+            "at 60 C, Poisson's ratio 0.30 to 0.35; strength: estimate, unconfined to three times that"
+        ),
+    ),
+    "compacted gravel": FloorPreset(
+        youngs_modulus=280e6,
+        youngs_modulus_range=(140e6, 550e6),
+        poisson_ratio=0.35,
+        bearing_strength=0.5e6,
+        bearing_strength_range=(0.2e6, 1e6),
+        density=2100.0,
+        source=(
+            "typical values for pavement materials, base of crushed stone: 140 to 550 MPa, Poisson's ratio 0.35; "
+            "strength by EN 1997-1:2004, D.4, of a patch 0.2 m wide with 42 to 50 degrees of friction (more if wider)"
+        ),
+    ),
+    "steel plate": FloorPreset(
+        youngs_modulus=210e9,
+        youngs_modulus_range=(200e9, 215e9),
+        poisson_ratio=0.3,
+        bearing_strength=600e6,
+        bearing_strength_range=(235e6, 700e6),
+        density=7850.0,
+        source=(
+            "EN 1993-1-1:2005, 3.2.6 and Table 3.1 (S235); strength from yield to 2.97 times yield, a punch on a plate "
+            "thick against the patch (Johnson, Contact Mechanics, 1985, 6.2); a thin one is as strong as what is below"
+        ),
+    ),
+    "rubber mat": FloorPreset(
+        youngs_modulus=3.6e6,
+        youngs_modulus_range=(2.0e6, 7.1e6),
+        poisson_ratio=0.49,
+        bearing_strength=10e6,
+        bearing_strength_range=(5e6, 20e6),
+        density=None,
+        source=(
+            "Gent, Rubber Chem. Technol. 31 (1958) 896: hardness 60 Shore A (45 to 75), thick against the patch (a "
+            "thinner mat is stiffer); strength: estimate, the tensile strength, since rubber recovers below it"
+        ),
+    ),
+}
+
+#: keys of [floor] that a slab alone has
+SLAB_KEYS = ("preset", "youngs_modulus_Pa", "poisson_ratio", "bearing_strength_Pa", "corner_patch_m")
+#: .. and those that a preset gives
+PRESET_KEYS = ("youngs_modulus_Pa", "poisson_ratio", "bearing_strength_Pa")
+#: keys of [contact] that belong to the numerical penalty of a rigid floor
+PENALTY_KEYS = ("normal_penalty_Pa_m", "tangential_ratio")
+
+
+def _of_preset(name: str) -> Any:
+    """The default of a key of a slab: that of its preset."""
+
+    def value(values: dict[str, Any]) -> float | None:
+        preset = PRESETS.get(values["preset"])
+        return None if preset is None or values["kind"] != "slab" else getattr(preset, name)
+
+    return value
+
+
+def _missing(key: str) -> Rule:
+    presets = ", ".join(f'"{name}"' for name in PRESETS)
+    return Rule(
+        f"floor.{key}",
+        lambda floor: floor.kind != "slab" or getattr(floor, key) is not None,
+        f'is missing: kind = "slab" needs it, or a preset ({presets})',
+    )
+
+
+def _of_a_slab(key: str) -> Rule:
+    """Ignored on a rigid floor, such a key would be an answer for another floor."""
+    return Rule(
+        f"floor.{key}",
+        lambda floor: floor.kind == "slab" or getattr(floor, key) is None,
+        'belongs to kind = "slab", this floor is "rigid"; set kind = "slab", or leave it out',
+    )
+
+
+FLOOR_RULES = (*map(_of_a_slab, SLAB_KEYS), *map(_missing, PRESET_KEYS))
+
+
+class FloorTable(CaseTable):
+    """The floor: rigid (the numerical penalty of [contact]), or a slab that gives way and crushes; its slope."""
+
+    kind: Literal["rigid", "slab"] = case_key('"rigid" | "slab"', "rigid")
+    preset: PresetName | None = case_key(
+        f"of a slab: {' | '.join(PRESETS)}", None, example="concrete C25/30", only=("kind", "slab")
+    )
+    youngs_modulus_Pa: Annotated[float, q.FLOOR_STIFFNESS] | None = case_key(  # noqa: N815
+        "of a slab; default: that of the preset",
+        follows=_of_preset("youngs_modulus"),
+        example=31e9,
+        only=("kind", "slab"),
+    )
+    poisson_ratio: Annotated[float, q.FLOOR_POISSON] | None = case_key(
+        "of a slab; default: that of the preset",
+        follows=_of_preset("poisson_ratio"),
+        example=0.2,
+        only=("kind", "slab"),
+    )
+    bearing_strength_Pa: Annotated[float, q.BEARING_STRENGTH] | None = case_key(  # noqa: N815
+        "of a slab: pressure at which it crushes; default: that of the preset",
+        follows=_of_preset("bearing_strength"),
+        example=50e6,
+        only=("kind", "slab"),
+    )
+    corner_patch_m: Annotated[list[Annotated[float, q.PATCH]], Field(min_length=2, max_length=2)] | None = (
+        case_key(
+            "of a slab: [along x, out of plane], all that bears under one corner of the elevation; default: "
+            "wall x depth, of feet and flat their own",
+            None,
+            example=[0.1, 0.2],
+            only=("kind", "slab"),
+        )
+    )
+    slope_percent: Annotated[float, q.SLOPE] = case_key("of the floor, > 0: it falls toward +x", 0.0)
+
+    rules = FLOOR_RULES
+
+    @property
+    def is_slab(self) -> bool:
+        """Whether it gives way and crushes."""
+        return self.kind == "slab"
+
+    @property
+    def density(self) -> float | None:
+        """For radiation damping [kg/m3]; None where it is not known."""
+        return None if self.preset is None else PRESETS[self.preset].density
+
+
+def _patch_does_not_fit(case: Any) -> str:
+    """Why the patches do not fit below the base; empty where they do."""
+    patch, box = case.floor.corner_patch_m, case.container
+    if case.floor.kind != "slab" or patch is None:
+        return ""
+    limits = (("along x", "half of width_m", 0.5 * box.width_m), ("out of plane", "depth_m", box.depth_m))
+    for value, (name, of, most) in zip(patch, limits, strict=True):
+        if value > most * (1.0 + 1e-9):
+            guess = q.PATCH.guess(value) if value > 10.0 * most else ""
+            said = f"= {patch} does not fit under the base: {name} at most {of} = {most:g} m, got {value:g} m"
+            return f"{said}; {guess}" if guess else said
+    return ""
+
+
+FLOOR_CASE_RULES = (
+    Rule(
+        "floor.corner_patch_m",
+        lambda case: (
+            case.floor.kind != "slab"
+            or case.floor.corner_patch_m is not None
+            or case.support.kind != "corners"
+            or case.container.section == "shell"
+        ),
+        "is missing: a solid block has no wall that would say how much of a corner bears; give [along x, out of plane]",
+    ),
+    Rule("floor.corner_patch_m", lambda case: not _patch_does_not_fit(case), _patch_does_not_fit),
+    Rule(
+        "contact.normal_penalty_Pa_m",
+        lambda case: case.floor.kind != "slab" or case.contact.normal_penalty_Pa_m == "auto",
+        'belongs to floor.kind = "rigid": the stiffness of a slab follows its youngs_modulus_Pa; leave it out',
+    ),
+    Rule(
+        "contact.tangential_ratio",
+        lambda case: case.floor.kind != "slab" or case.contact.tangential_ratio == 1.0,
+        'belongs to floor.kind = "rigid": a slab has its own tangential stiffness; leave it out',
+    ),
+)
