@@ -1,0 +1,266 @@
+"""Two blocks without sliding: Lagrange's equations against Newton and Euler's, starts, impacts, limits."""
+
+import math
+
+import numpy as np
+import pytest
+
+from contact.reference.floor_acceleration import (
+    Acceleration,
+    half_sine_pulse,
+    rectangular_pulse,
+    sine_floor,
+    still_floor,
+)
+from contact.reference.rigid_block import RigidBlock
+from contact.reference.rocking import simulate_rocking
+from contact.reference.two_block_motion import select, simulate_two_blocks
+from contact.reference.two_blocks import (
+    Footing,
+    Pattern,
+    StackedBlock,
+    TwoBlockStack,
+    contact_normals,
+    energy,
+    velocities,
+)
+
+G = 9.81
+BOX = StackedBlock.homogeneous(width=1.1, height=2.0, mass=5000.0)
+EQUAL = TwoBlockStack(lower=BOX, upper=BOX, gravity=G)
+#: a narrow heavy block with a low centre beside the axis of a wide one, and the other way round
+UNEQUAL = TwoBlockStack(
+    lower=StackedBlock.homogeneous(width=1.4, height=0.9, mass=1500.0),
+    upper=StackedBlock(half_width=0.3, height=1.5, mass=900.0, centroid_height=0.6, inertia=160.0),
+    gravity=G,
+    offset=0.2,
+)
+TOP_HEAVY = TwoBlockStack(lower=UNEQUAL.upper, upper=UNEQUAL.lower, gravity=G, offset=-0.1)
+STACKS = [EQUAL, UNEQUAL, TOP_HEAVY]
+SLENDER_ON_BOX = TwoBlockStack(
+    lower=BOX, upper=StackedBlock.homogeneous(width=0.7, height=2.0, mass=3000.0), gravity=G
+)
+ALONE = TwoBlockStack(lower=UNEQUAL.lower, upper=UNEQUAL.upper, gravity=G)
+ANGLE = math.atan2(1.1, 4.0)
+
+
+def newton_euler(stack, footing, state, floor):
+    """Angular accelerations and forces at the ends of both interfaces, from six equations of motion and constraints."""
+    one, two = stack.lower, stack.upper
+    foot = footing.base * one.half_width
+    end = stack.joint_end(footing.joint or 1)
+
+    def at(q, x, z):
+        turn = np.array([[np.cos(q[2]), np.sin(q[2])], [-np.sin(q[2]), np.cos(q[2])]])
+        return np.array(q[:2]) + turn @ np.array([x, z])
+
+    def constraints(q):
+        low, high = q[:3], q[3:]
+        joint = at(high, end - stack.offset, -two.centroid_height)
+        rows = [
+            *at(low, foot, -one.centroid_height),
+            *(joint - at(low, end, one.height - one.centroid_height)),
+        ]
+        if footing.base == 0:
+            rows.append(low[2])
+        if footing.joint == 0:
+            rows.append(high[2] - low[2])
+        return np.array(rows)
+
+    # coordinates and velocities from the constraints themselves
+    turn = np.array([[np.cos(state[0]), np.sin(state[0])], [-np.sin(state[0]), np.cos(state[0])]])
+    low = [*(np.array([foot, 0.0]) + turn @ [-foot, one.centroid_height]), state[0]]
+    head = at(low, end, one.height - one.centroid_height)
+    turn = np.array([[np.cos(state[2]), np.sin(state[2])], [-np.sin(state[2]), np.cos(state[2])]])
+    q = np.array([*low, *(head + turn @ [stack.offset - end, two.centroid_height]), state[2]])
+    h = 1e-3
+    unit = np.eye(6) * h
+    first = [constraints(q + e) - constraints(q - e) for e in unit]
+    second = [constraints(q + 2.0 * e) - constraints(q - 2.0 * e) for e in unit]
+    jacobian = ((8.0 * np.array(first) - np.array(second)) / (12.0 * h)).T
+    # the velocity with the two rates that meets the constraints
+    free = [0, 1, 3, 4]
+    spins = np.zeros(6)
+    spins[[2, 5]] = state[1], state[3]
+    v = spins.copy()
+    v[free] = np.linalg.lstsq(jacobian[:, free], -jacobian @ spins, rcond=None)[0]
+    assert np.abs(jacobian @ v).max() < 1e-9
+    c = [constraints(q + k * h * v) for k in (-2, -1, 0, 1, 2)]
+    curvature = (-c[0] + 16.0 * c[1] - 30.0 * c[2] + 16.0 * c[3] - c[4]) / (12.0 * h**2)
+    mass = np.diag([one.mass, one.mass, one.inertia, two.mass, two.mass, two.inertia])
+    force = np.array([-floor.x, -G - floor.z, 0.0, -floor.x, -G - floor.z, 0.0]) * np.diag(mass)
+    size = len(jacobian)
+    whole = np.block([[mass, -jacobian.T], [jacobian, np.zeros((size, size))]])
+    solved = np.linalg.solve(whole, np.concatenate([force, -curvature]))
+    return solved[[2, 5]], solved[6:]
+
+
+@pytest.mark.parametrize("stack", STACKS)
+@pytest.mark.parametrize("base", [0, 1, -1])
+@pytest.mark.parametrize("joint", [0, 1, -1])
+def test_the_equations_of_every_pattern_are_those_of_newton_and_euler(stack, base, joint):
+    lower = 0.11 * base, -0.4 * base
+    upper = lower[0] + 0.07 * joint, lower[1] + 0.6 * joint
+    state, footing, floor = np.array([*lower, *upper]), Footing(base, joint), Acceleration(2.3, -1.2)
+    normal, angular = contact_normals(stack, footing, state, floor)
+    expected, reactions = newton_euler(stack, footing, state, floor)
+    assert angular == pytest.approx(expected, rel=1e-7, abs=1e-7)
+    # normal to the lower block's face; reactions are in the axes of the floor
+    on_joint = math.sin(state[0]) * reactions[2] + math.cos(state[0]) * reactions[3]
+    assert normal.joint_left + normal.joint_right == pytest.approx(on_joint, rel=1e-6)
+    if base:
+        on_base = math.sin(state[0]) * reactions[0] + math.cos(state[0]) * reactions[1]
+        assert normal.base_left + normal.base_right == pytest.approx(on_base, rel=1e-6)
+        unused = normal.base_left if base == 1 else normal.base_right
+        assert unused == pytest.approx(0.0, abs=1e-9 * stack.mass * G)
+    if joint:
+        unused = normal.joint_left if joint == 1 else normal.joint_right
+        assert unused == pytest.approx(0.0, abs=1e-9 * stack.mass * G)
+
+
+@pytest.mark.parametrize("stack", STACKS)
+@pytest.mark.parametrize("start", [(0.0, 0.0, 0.1, 0.0), (0.05, 0.0, -0.04, 0.0), (0.04, 0.1, 0.12, 0.3)])
+def test_energy_is_kept_between_impacts_and_never_gained_at_them(stack, start):
+    motion = simulate_two_blocks(stack, still_floor(), duration=1.0, state=start)
+    assert len(motion.impacts) >= 2
+    first = energy(stack, motion.footings[0], np.array(start))
+    last = first
+    for piece in motion.pieces:
+        footing = motion.footings[piece.regime]
+        times = np.linspace(piece.start, piece.end, 5)
+        found = [energy(stack, footing, piece.interpolant(t)) for t in times]
+        assert np.ptp(found) < 1e-9 * first
+        assert found[0] < last + 1e-9 * first
+        last = found[-1]
+
+
+@pytest.mark.parametrize("stack", STACKS)
+def test_an_impact_takes_the_nearest_of_the_velocities_that_its_footing_allows(stack):
+    # in the metric of the kinetic energy; that is, it keeps the angular momenta that no impulse there changes
+    motion = simulate_two_blocks(stack, still_floor(), duration=1.0, state=(0.05, 0.0, -0.04, 0.0))
+    for hit in motion.impacts[:3]:
+        state = hit.state.copy()
+        before = velocities(stack, hit.footing, state)
+        after = next(t.footing for t in motion.transitions if t.time == hit.time)
+
+        def distance(nudge, hit=hit, after=after, state=state, before=before):
+            state[[1, 3]] = np.array(hit.rates) + nudge
+            d = before.minus(velocities(stack, after, state))
+            kinetic = stack.lower.mass * d.lower.dot(d.lower) + stack.upper.mass * d.upper.dot(d.upper)
+            return kinetic + stack.lower.inertia * d.lower_spin**2 + stack.upper.inertia * d.upper_spin**2
+
+        # the ways in which the blocks may turn on the new footing
+        ways = [np.array([0.0, 1.0])] if after.joint else []
+        ways += [np.array([1.0, 1.0])] if after.base else []
+        assert ways
+        least = distance(np.zeros(2))
+        for way in ways:
+            assert min(distance(1e-4 * way), distance(-1e-4 * way)) > least
+
+
+def test_a_stack_whose_joint_stays_closed_is_one_block():
+    whole = RigidBlock.homogeneous(width=1.1, height=4.0)
+    floor = sine_floor(amplitude=4.0 / 6.928**2, angular_frequency=6.928)
+    one = simulate_rocking(whole, floor, duration=6.0)
+    two = simulate_two_blocks(EQUAL, floor, duration=6.0)
+    assert two.patterns == (Pattern.AS_ONE,)
+    assert [hit.time for hit in two.impacts] == pytest.approx([hit.time for hit in one.impacts], abs=1e-9)
+    times = np.linspace(0.0, 6.0, 50)
+    assert two.at(times)[:, 2] == pytest.approx(one.at(times)[0], abs=1e-9)
+
+
+def test_on_a_heavy_block_the_upper_one_rocks_as_on_the_floor():
+    # 1e9 times as heavy, and wide: it does not move, and Housner's restitution holds.
+    plinth = StackedBlock.homogeneous(width=8.0, height=1.0, mass=1e12)
+    upper = StackedBlock.homogeneous(width=0.6, height=2.0, mass=1000.0)
+    stack = TwoBlockStack(lower=plinth, upper=upper, gravity=G, offset=1.0)
+    one = simulate_rocking(
+        RigidBlock.homogeneous(width=0.6, height=2.0), still_floor(), duration=2.0, rotation=0.1
+    )
+    two = simulate_two_blocks(stack, still_floor(), duration=2.0, state=(0.0, 0.0, 0.1, 0.0))
+    assert two.patterns == (Pattern.UPPER_ALONE,)
+    assert len(one.impacts) >= 3
+    assert [hit.time for hit in two.impacts] == pytest.approx([hit.time for hit in one.impacts], rel=1e-7)
+    found = [hit.rates[1] for hit in two.impacts]
+    assert found == pytest.approx([hit.velocity_after for hit in one.impacts], rel=1e-7)
+
+
+def start_of(stack, acceleration):
+    """The pattern in which the stack leaves its rest on a floor that accelerates so."""
+    footing = select(stack, np.zeros(4), Acceleration(acceleration))
+    return footing.pattern if footing is not None else None
+
+
+def test_equal_blocks_start_as_one_and_under_a_strong_jerk_opposite_ways():
+    # b half width, h half height: as one above g b/(2h), from moments about the corner; the joint opens on the
+    # other side from (a h + g b) (4/3)(b^2 + 4h^2) = (2 a h - g b)(10/3 h^2 - 2/3 b^2) on; on the same side never.
+    b, h = 0.55, 1.0
+    one = G * b / (2.0 * h)
+    opposite = G * b * (b**2 + 13.0 * h**2) / (2.0 * h * (h**2 - 2.0 * b**2))
+    assert start_of(EQUAL, 0.999 * one) is Pattern.REST
+    assert start_of(EQUAL, 1.001 * one) is start_of(EQUAL, 0.999 * opposite) is Pattern.AS_ONE
+    assert start_of(EQUAL, 1.001 * opposite) is Pattern.OPPOSITE_WAYS
+
+
+def test_a_slender_block_on_a_squat_one_starts_alone_and_both_start_the_same_way():
+    # alone above g b_2/h_2; then the lower block tips when moments of all about its corner vanish.
+    upper = ALONE.upper
+    alone = G * upper.half_width / upper.centroid_height
+    assert start_of(ALONE, 0.999 * alone) is Pattern.REST
+    assert start_of(ALONE, -1.001 * alone) is Pattern.UPPER_ALONE
+    b, c, height, mass = 0.7, 0.45, 0.9, ALONE.lower.mass
+    arm, rise = upper.half_width, upper.centroid_height
+    polar = upper.inertia + upper.mass * (arm**2 + rise**2)
+
+    def moment(a):
+        """About the lower block's corner, positive where it holds the block down."""
+        turning = upper.mass * (a * rise - G * arm) / polar
+        lever = b - arm
+        on_lower = (a - turning * rise, G + turning * arm)  # reaction at the upper foot, per mass
+        return mass * (G * b - a * c) + upper.mass * (on_lower[1] * lever - on_lower[0] * height)
+
+    low, high = alone, 5.0 * G
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if moment(middle) > 0.0 else (low, middle)
+    assert low > 1.1 * alone
+    assert start_of(ALONE, 0.9999 * low) is Pattern.UPPER_ALONE
+    assert start_of(ALONE, 1.0001 * low) is Pattern.SAME_WAY
+
+
+def test_the_mirror_image_through_all_patterns():
+    floor, other = (half_sine_pulse(peak=peak, duration=0.15) for peak in (-G, G))
+    times = np.linspace(0.0, 1.5, 151)
+    here = simulate_two_blocks(SLENDER_ON_BOX, floor, duration=1.5)
+    there = simulate_two_blocks(SLENDER_ON_BOX, other, duration=1.5)
+    assert set(here.patterns) == set(Pattern) - {Pattern.REST}
+    assert len(here.impacts) >= 3
+    assert here.at(times) == pytest.approx(-there.at(times), abs=1e-6)
+    mirrored = TwoBlockStack(lower=UNEQUAL.lower, upper=UNEQUAL.upper, gravity=G, offset=-UNEQUAL.offset)
+    here = simulate_two_blocks(UNEQUAL, floor, duration=1.5)
+    there = simulate_two_blocks(mirrored, other, duration=1.5)
+    assert here.at(times) == pytest.approx(-there.at(times), abs=1e-6)
+
+
+def test_a_floor_that_falls_ends_the_motion():
+    still = still_floor()
+    floor = still.with_vertical(rectangular_pulse(peak=-1.1 * G, duration=1.0, delay=0.5))
+    motion = simulate_two_blocks(EQUAL, floor, duration=1.0)
+    assert (motion.ended_by, motion.end) == ("leaves", 0.5)
+
+
+@pytest.mark.parametrize(
+    ("change", "word"), [({"offset": 1.2}, "mass centre"), ({"gravity": 0.0}, "gravity must be positive")]
+)
+def test_bad_stacks_are_refused(change, word):
+    with pytest.raises(ValueError, match=word):
+        TwoBlockStack(**({"lower": BOX, "upper": BOX, "gravity": G} | change))
+
+
+def test_bad_starts_are_refused():
+    with pytest.raises(ValueError, match="below 90 degrees"):
+        simulate_two_blocks(EQUAL, still_floor(), duration=1.0, state=(0.0, 0.0, 1.6, 0.0))
+    with pytest.raises(ValueError, match="duration must be positive"):
+        simulate_two_blocks(EQUAL, still_floor(), duration=0.0)
+    with pytest.raises(ValueError, match="half_width must be positive"):
+        StackedBlock.homogeneous(width=0.0, height=1.0, mass=1.0)
