@@ -45,6 +45,7 @@ class Block:
     mu_kinetic: float = 0.4
     weakening: float = 0.0  #: [m]
     stribeck_velocity: float = 0.0  #: [m/s]
+    cap: float = math.inf  #: of the normal force of a corner [N]
 
     @property
     def rigid(self) -> RigidBlock:
@@ -81,6 +82,7 @@ class Block:
         return Contact(
             normal_stiffness=springs,
             tangential_stiffness=springs,
+            cap=np.full(2, self.cap),
             relaxation_time=self.relaxation_time,
             mu_static=self.mu_static,
             mu_kinetic=self.mu_kinetic,

@@ -5,8 +5,9 @@ slip and tangential force are along x, motion of the container relative to the f
 point that carries a stiffness in N/m (its share of the penalty).
 
 Normal: spring and dashpot that never pull (Kelvin-Voigt with a cut-off; Wriggers, Computational Contact
-Mechanics, 2006, sec. 6). Friction: Coulomb with an elastic stick - a Kelvin-Voigt element in series with
-a slider, solved by return mapping - or Coulomb regularised in velocity.
+Mechanics, 2006, sec. 6), in series with a plastic slider where the floor crushes at a largest force.
+Friction: Coulomb with an elastic stick - a Kelvin-Voigt element in series with a slider, solved by return
+mapping - or Coulomb regularised in velocity.
 """
 
 import math
@@ -19,29 +20,34 @@ REGULARISED = 1  #: code of the friction law regularised in velocity
 
 @compiled(inline=True)
 def normal_force(
-    penetration: float, rate: float, stiffness: float, damping: float, step: float
+    penetration: float, rate: float, stiffness: float, damping: float, cap: float, step: float
 ) -> tuple[float, float, float]:
     """Normal force [N] with its derivatives by penetration [N/m] and by rate [N s/m].
 
-    k p + c min(rate, p/step), never negative, zero when open. The point cannot have moved into the floor
-    faster than p/step within a step that began outside: this makes the force continuous at first touch.
+    k p + c min(rate, p/step), never negative, zero when open, and at most the cap, at which the floor crushes. The
+    point cannot have moved into the floor faster than p/step within a step that began outside: this makes the force
+    continuous at first touch.
 
     Args:
         penetration: > 0 below the floor [m].
         rate: its rate at the end of the step [m/s].
         stiffness: k of this point [N/m].
         damping: c of this point [N s/m].
+        cap: largest force [N]; infinite: the floor does not crush.
         step: the time step [s].
     """
     if penetration <= 0.0:
         return 0.0, 0.0, 0.0
     if rate * step < penetration:
-        force = stiffness * penetration + damping * rate
+        force, slope, by_rate = stiffness * penetration + damping * rate, stiffness, damping
         if force <= 0.0:
             return 0.0, 0.0, 0.0
-        return force, stiffness, damping
-    slope = stiffness + damping / step
-    return slope * penetration, slope, 0.0
+    else:
+        slope, by_rate = stiffness + damping / step, 0.0
+        force = slope * penetration
+    if force >= cap:
+        return cap, 0.0, 0.0
+    return force, slope, by_rate
 
 
 @compiled(inline=True)
@@ -63,7 +69,7 @@ def stick_friction(trial: float, limit: float) -> tuple[float, float, float]:
 def relaxed_stick(stick: float, force: float, stiffness: float, relaxation_time: float, step: float) -> float:
     """Elongation [m] of a Kelvin-Voigt element after one step under a constant force.
 
-    While it slides, the slider keeps the element at the limit force: k s + c s' = F, c/k the relaxation
+    While it slides or crushes, the slider keeps the element at the limit force: k s + c s' = F, c/k the relaxation
     time, integrated exactly, so that large steps end at s = F/k.
     """
     rest = force / stiffness

@@ -27,7 +27,7 @@ FULL_STEPS = 1  #: full Newton steps before the line search begins; problems wit
 NEWTON_LIMIT = 40
 WORTH_KEEPING = 5  #: active points from which an old factorisation is reused before a new one is computed
 FORCE_TOLERANCE = 1e-11  #: residual force over the largest force at which the contact problem is solved
-SLIDING = 1.0 - 1e-6  #: tangential force over its limit above which a point counts as sliding
+SLIDING = 1.0 - 1e-6  #: force over its limit above which a point counts as sliding, or as crushing the floor
 
 
 @compiled(inline=True)
@@ -58,6 +58,7 @@ def evaluate_laws(
             -work.velocity[i, 1],
             contact.normal_stiffness[i],
             contact.normal_stiffness[i] * contact.relaxation_time,
+            contact.cap[i],
             step,
         )
         work.law[i, 1] = normal
@@ -124,6 +125,12 @@ def move_points(velocity_slope: float, force: FloatArray, work: Workspace) -> No
 
 
 @compiled(inline=True)
+def has_tangent(work: Workspace, i: int) -> bool:
+    """Whether the law of a point has a tangent: where the floor crushes, a stuck point has the tangential one."""
+    return work.slope[i, 2] != 0.0 or work.slope[i, 0] != 0.0
+
+
+@compiled(inline=True)
 def factor_is_current(step: float, work: Workspace) -> bool:
     """Whether the factors were computed for these tangents and this step size.
 
@@ -143,7 +150,7 @@ def factor_tangent(step: float, work: Workspace) -> bool:
     """Factor 1 + D G over the points whose law has a tangent, and store for which tangents and step."""
     count = 0
     for i in range(work.force.shape[0]):
-        if work.slope[i, 2] != 0.0:
+        if has_tangent(work, i):
             work.active[count] = i
             count += 1
         for k in range(3):
@@ -172,14 +179,14 @@ def factor_tangent(step: float, work: Workspace) -> bool:
 def newton_change(work: Workspace) -> None:
     """Change of the contact forces (1 + D G) df = law - f, with the present factors.
 
-    A point without tangent loses its force; the change acts on the other points.
+    A point without tangent takes the force of its law; the change acts on the other points.
     """
     n = work.force.shape[0]
     count = work.factored_count[0]
     for i in range(2 * n):
         work.change[i] = 0.0
     for i in range(n):
-        if work.slope[i, 2] == 0.0:
+        if not has_tangent(work, i):
             work.change[2 * i] = work.law[i, 0] - work.force[i, 0]
             work.change[2 * i + 1] = work.law[i, 1] - work.force[i, 1]
     for a in range(count):
@@ -188,7 +195,7 @@ def newton_change(work: Workspace) -> None:
         right_x = work.law[i, 0] - work.force[i, 0]
         right_z = work.law[i, 1] - work.force[i, 1]
         for j in range(n):
-            if work.slope[j, 2] == 0.0:
+            if not has_tangent(work, j):
                 for k in range(2):
                     given = work.change[2 * j + k]
                     if given != 0.0:
@@ -210,9 +217,9 @@ def return_held_points(
     """Move points that were held by the floor back to where they were before the step, to linearise there first.
 
     `work.force` is a guess from before the step. In the positions that follow from it, its error is multiplied by
-    compliance times stiffness: where this exceeds one, the old position is the better guess. An open point or a
-    sliding spring has no stiffness, so there the force is the better guess. Writes the shifts to `work.trial` and
-    returns whether any point was moved.
+    compliance times stiffness: where this exceeds one, the old position is the better guess. An open point, a
+    crushing one or a sliding spring has no stiffness, so there the force is the better guess. Writes the shifts to
+    `work.trial` and returns whether any point was moved.
     """
     placed = False
     magnified = 1.0 + contact.relaxation_time * velocity_slope
@@ -222,7 +229,7 @@ def return_held_points(
         stuck = closed and contact.friction == ELASTIC_STICK and abs(tangential) < SLIDING * mu[i] * normal
         for k in range(2):
             stiffness = contact.tangential_stiffness[i] if k == 0 else contact.normal_stiffness[i]
-            held = stuck if k == 0 else closed
+            held = stuck if k == 0 else closed and normal < SLIDING * contact.cap[i]
             work.trial[i, k] = 0.0
             if held and magnified * stiffness * work.compliance[2 * i + k, 2 * i + k] > 1.0:
                 back = start[i, k] - work.point[i, k]

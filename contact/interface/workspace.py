@@ -12,6 +12,7 @@ class Contact(NamedTuple):
 
     normal_stiffness: FloatArray  #: [N/m]
     tangential_stiffness: FloatArray  #: [N/m]
+    cap: FloatArray  #: largest normal force, dashpot included, at which the floor crushes [N]; infinite: it does not
     relaxation_time: float  #: dashpot over spring, of the normal and of the stuck tangential direction [s]
     mu_static: float
     mu_kinetic: float

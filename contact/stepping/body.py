@@ -36,13 +36,16 @@ class State(NamedTuple):
     internal: FloatArray  #: (n_d,) internal forces with gravity and damping
     damping: FloatArray  #: (n_d,) material damping only
     external: FloatArray  #: (n_d,) contact forces
-    point: FloatArray  #: (n, 2) base points relative to the floor [m]
+    point: FloatArray  #: (n, 2) base points relative to the floor, indented where it has been crushed [m]
     force: FloatArray  #: (n, 2) contact forces on the container, tangential and normal [N]
     descent: FloatArray  #: (n, 2) downward velocity of the base points [m/s] and its rate [m/s2]
     drift: (
         FloatArray  #: (n, 2) tangential velocity of the base points over the floor [m/s] and its rate [m/s2]
     )
     stick: FloatArray  #: (n,) elongation of the stuck tangential springs [m]
+    crushed: (
+        FloatArray  #: (n,) permanent indentation; a base point is above the floor by its height and this [m]
+    )
     pose: FloatArray  #: (6,) best-fit rotation, its rate, mass centre and its velocity (absolute)
     #: (3,) kinetic, strain, gravity potential [J], of heights and vertical velocities relative to the floor
     energy: FloatArray
@@ -52,7 +55,7 @@ class State(NamedTuple):
 
 def make_state(coordinates: int, points: int, monitors: int) -> State:
     """Allocate a state for these numbers of coordinates, base points and monitored points."""
-    shapes: list[tuple[int, ...]] = [*7 * [(coordinates,)], *4 * [(points, 2)], (points,), (6,), (3,)]
+    shapes: list[tuple[int, ...]] = [*7 * [(coordinates,)], *4 * [(points, 2)], *2 * [(points,)], (6,), (3,)]
     numbers = np.zeros(sum(math.prod(shape) for shape in shapes))
     fields, begin = {}, 0
     for name, shape in zip(State._fields, shapes, strict=False):

@@ -12,15 +12,7 @@ from numba.extending import register_jitable
 
 from contact.jit import compiled
 from contact.stepping.body import KINETIC, VELOCITY_X, State
-from contact.stepping.ledger import (
-    CONTACT_DAMPING,
-    FRICTION,
-    GAIN_LIMIT,
-    IMBALANCE,
-    LOSS_LIMIT,
-    LOSS_SHARE_LIMIT,
-    MATERIAL_DAMPING,
-)
+from contact.stepping.ledger import GAIN_LIMIT, IMBALANCE, LOSS_LIMIT, LOSS_SHARE_LIMIT, dissipation
 from contact.stepping.state import Control, RunState
 
 STEPS_PER_OCTAVE = 3  #: sizes per factor of two
@@ -151,8 +143,7 @@ def ledger_allowance(run: RunState, step: float) -> float:
     if change[IMBALANCE] < 0.0:
         aim, used = GAIN_AIM * GAIN_LIMIT * control.reference_energy, -ledger[IMBALANCE]
     else:
-        dissipated = ledger[FRICTION] + ledger[CONTACT_DAMPING] + ledger[MATERIAL_DAMPING]
-        dissipated += change[FRICTION] + change[CONTACT_DAMPING] + change[MATERIAL_DAMPING]
+        dissipated = dissipation(ledger) + dissipation(change)
         aim = LOSS_AIM * max(LOSS_LIMIT * control.reference_energy, LOSS_SHARE_LIMIT * dissipated)
         used = ledger[IMBALANCE]
     if used + abs(change[IMBALANCE]) < AIM_SHARE * aim:

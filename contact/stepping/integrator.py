@@ -29,7 +29,7 @@ from contact.stepping.control import (
     next_step,
     step_level,
 )
-from contact.stepping.ledger import CONTACT_DAMPING, FRICTION, IMBALANCE, MATERIAL_DAMPING
+from contact.stepping.ledger import FRICTION, IMBALANCE, dissipation
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.observables import FALLEN, NEVER, SLIDING, update_observables
 from contact.stepping.sampling import sample
@@ -42,6 +42,7 @@ from contact.stepping.step import (
     attempt,
     copy_state,
     holding_force,
+    indent,
     slide,
 )
 
@@ -104,7 +105,7 @@ def close_step(run: RunState, step: float, slip_step: float, iterations: int) ->
     if run.track[0].overturned_at == NEVER:  # the impact after overturning does not matter
         clock.least_imbalance = min(clock.least_imbalance, run.ledger[IMBALANCE])
         clock.most_imbalance = max(clock.most_imbalance, run.ledger[IMBALANCE])
-        clock.dissipated = run.ledger[FRICTION] + run.ledger[CONTACT_DAMPING] + run.ledger[MATERIAL_DAMPING]
+        clock.dissipated = dissipation(run.ledger)
     clock.slip += slip_step
     clock.time += step
     clock.steps += 1
@@ -145,6 +146,7 @@ def enter_floor_frame(body: Any, run: RunState, floor_velocity: float, lift_velo
     shift_velocity(body, run.old, floor_velocity, lift_velocity)
     shift_contents(run.contents, (floor_velocity, lift_velocity))
     complete(body, run.old, run.floor[0, 0], run.lift[0, 0], 0.0)
+    indent(run.old.point, run.old.crushed)
     for side in range(2):
         run.floor[side, 1], run.floor[side, 2] = 0.0, 0.0
         run.lift[side, 1], run.lift[side, 2] = 0.0, 0.0

@@ -1,7 +1,7 @@
 """The energy ledger: energy terms of the container, and the energy error of the time stepping.
 
     change of (kinetic + strain + gravity + contact springs)
-        = base work - friction - contact damping - material damping - imbalance
+        = base work - friction - contact damping - material damping - crushing - imbalance
 
 Heights and vertical velocities are relative to the floor: in the frame that moves up and down with it gravity is
 g + a_v, and the work of the vertical floor motion is that of -m a_v. Along x the frame is at rest, and the work of the
@@ -15,8 +15,8 @@ from contact.jit import compiled
 from contact.stepping.body import CENTRE_Z
 
 #: rows of the ledger [J]
-BASE_WORK, FRICTION, CONTACT_DAMPING, MATERIAL_DAMPING, IMBALANCE = 0, 1, 2, 3, 4
-ROWS = 5
+BASE_WORK, FRICTION, CONTACT_DAMPING, MATERIAL_DAMPING, CRUSHING, IMBALANCE = 0, 1, 2, 3, 4, 5
+ROWS = 6
 
 #: limits of the final imbalance over the energy to overturn: gain ..
 GAIN_LIMIT = 1e-4
@@ -82,3 +82,20 @@ def contact_losses(
         damping += dashpot * (stick_new[i] - stick[i])
         friction -= 0.5 * (force[i, 0] + force_new[i, 0]) * slip[i]
     return friction, damping
+
+
+@compiled(inline=True)
+def crushing_work(
+    force: FloatArray, force_new: FloatArray, crushed: FloatArray, crushed_new: FloatArray
+) -> float:
+    """Plastic work of one step on the floor [J]: forces (n, 2) and permanent indentations (n,) before and after."""
+    work = 0.0
+    for i in range(crushed.size):
+        work += 0.5 * (force[i, 1] + force_new[i, 1]) * (crushed_new[i] - crushed[i])
+    return work
+
+
+@compiled(inline=True)
+def dissipation(terms: FloatArray) -> float:
+    """Sum of the dissipated energy among the terms of a ledger (6,) [J]."""
+    return terms[FRICTION] + terms[CONTACT_DAMPING] + terms[MATERIAL_DAMPING] + terms[CRUSHING]

@@ -296,9 +296,11 @@ def _state_of_block_on_corners(state: State) -> bool:
         return False
     if state.external.size != 3 or state.pose.size != 6 or state.energy.size != 3 or state.stick.size != 2:
         return False
+    if state.crushed.size != 2:
+        return False
     if state.point.shape[0] != 2 or state.force.shape[0] != 2 or state.descent.shape[0] != 2:
         return False
-    if state.drift.shape[0] != 2 or state.drift.shape[1] != 2 or state.numbers.size != 48:
+    if state.drift.shape[0] != 2 or state.drift.shape[1] != 2 or state.numbers.size != 50:
         return False
     return bool(state.point.shape[1] == 2 and state.force.shape[1] == 2 and state.descent.shape[1] == 2)
 

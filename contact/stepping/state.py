@@ -36,9 +36,10 @@ AT_REST = as_floor_motion(UNIFORM, (0.0, 0.0, 0.0))  #: a floor that does not mo
     ROW_FRICTION,
     ROW_CONTACT_DAMPING,
     ROW_MATERIAL_DAMPING,
+    ROW_CRUSHING,
     ROW_IMBALANCE,
-) = range(16)
-ROW_COLUMNS = 16
+) = range(17)
+ROW_COLUMNS = 17
 
 
 class Control(NamedTuple):
@@ -119,7 +120,7 @@ class Samples(NamedTuple):
     """Samples on an exact grid of times, at most as many as the arrays hold: n_s."""
 
     interval: float  #: [s]
-    columns: FloatArray  #: (n_s, 16 or 0) of a history, see ROW_...
+    columns: FloatArray  #: (n_s, 17 or 0) of a history, see ROW_...
     mode: npt.NDArray[np.int64]  #: (n_s,)
     position: FloatArray  #: (n_s, n_d or 0) coordinates of the body
     velocity: FloatArray  #: (n_s, n_d or 0)
@@ -155,8 +156,8 @@ class RunState(NamedTuple):
     floor: FloatArray  #: (2, 3) displacement, velocity, acceleration of the floor before and after the step, along x
     lift: FloatArray  #: .. and upward
     slip: FloatArray  #: (n,) sliding of the points in the attempted step [m]
-    change: FloatArray  #: (5,) contribution of the attempted step to the ledger [J]
-    ledger: FloatArray  #: (5,) [J]
+    change: FloatArray  #: (6,) contribution of the attempted step to the ledger [J]
+    ledger: FloatArray  #: (6,) [J]
     clock: Any  #: (1,) of STEP_RECORD
     track: Any  #: (1,) of `observables.OBSERVABLES`
     contents: FloatArray  #: (8, 2 n_m) filter of the contents, see `contact.stepping.contents`

@@ -12,7 +12,7 @@ from numba.extending import register_jitable
 from contact.arrays import FloatArray
 from contact.interface.laws import ELASTIC_STICK, relaxed_stick, stribeck_mu
 from contact.interface.solver import solve_contact
-from contact.interface.workspace import Workspace
+from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled
 from contact.motion.kernel import UNIFORM, floor_motion, move_floor
 from contact.stepping.body import (
@@ -31,10 +31,13 @@ from contact.stepping.body import (
 from contact.stepping.ledger import (
     BASE_WORK,
     CONTACT_DAMPING,
+    CRUSHING,
     FRICTION,
     IMBALANCE,
     MATERIAL_DAMPING,
     contact_losses,
+    crushing_work,
+    dissipation,
     spring_energy,
     work_of_lift,
 )
@@ -79,6 +82,35 @@ def store_rates(step: float, old: State, new: State, work: Workspace) -> None:
         new.jerk[j] = (new.acceleration[j] - old.acceleration[j]) * per_second
 
 
+@compiled(inline=True)
+def indent(point: FloatArray, crushed: FloatArray) -> None:
+    """Make heights above the undamaged floor gaps above the indented one: points (n, 2), indentations (n,) [m]."""
+    for i in range(point.shape[0]):
+        point[i, 1] += crushed[i]
+
+
+@compiled(inline=True)
+def crush(contact: Contact, step: float, old: State, new: State, work: Workspace) -> None:
+    """Indent the floor under the points that reached their cap; `new.point` holds their heights.
+
+    As the slider of a stick, a plastic slider keeps spring and dashpot at the cap: they relax, and what the point has
+    moved besides indents the floor.
+    """
+    for i in range(new.point.shape[0]):
+        indented = old.crushed[i]
+        if work.law[i, 1] >= contact.cap[i]:
+            elastic = relaxed_stick(
+                max(0.0, -old.point[i, 1]),
+                contact.cap[i],
+                contact.normal_stiffness[i],
+                contact.relaxation_time,
+                step,
+            )
+            indented = max(indented, -new.point[i, 1] - elastic)
+        new.crushed[i] = indented
+    indent(new.point, new.crushed)
+
+
 @register_jitable(forceinline=True)
 def attempt(body: Any, run: RunState, step: float, mu: float) -> int:
     """Try one step and write the result to `run.new`; returns the number of iterations, or -1."""
@@ -103,6 +135,7 @@ def attempt(body: Any, run: RunState, step: float, mu: float) -> int:
         work.mu[i] = stribeck_mu(mu, contact.mu_kinetic, contact.stribeck_velocity, velocity)
     for iteration in range(ITERATION_LIMIT):
         release(body, scheme, step, old, new, work, floor, floor_velocity, lift, lift_velocity)
+        indent(work.free, old.crushed)
         solved = solve_contact(contact, step, slope, work.mu, old.point, old.stick, work)
         if solved < 0:
             return -1
@@ -111,6 +144,7 @@ def attempt(body: Any, run: RunState, step: float, mu: float) -> int:
             copy_rows(new.force, work.force)
             store_rates(step, old, new, work)
             complete(body, new, floor, lift, lift_velocity)
+            crush(contact, step, old, new, work)
             return iteration + 1
     return -1
 
@@ -171,7 +205,7 @@ def slide(run: RunState, step: float, stops: bool, holding: float) -> tuple[int,
         moved = new.point[i, 0] - old.point[i, 0]
         stick = old.stick[i]
         if old.point[i, 1] >= 0.0:  # open at the beginning: it slides in the closed part of the step only
-            below = max(0.0, -new.point[i, 1])
+            below = max(0.0, new.crushed[i] - old.crushed[i] - new.point[i, 1])
             moved *= below / (below + old.point[i, 1]) if below > 0.0 else 0.0
         run.slip[i] = 0.0
         if new.point[i, 1] >= 0.0:
@@ -234,8 +268,9 @@ def account(run: RunState, step: float) -> float:
     change[FRICTION] = friction
     change[CONTACT_DAMPING] = damping
     change[MATERIAL_DAMPING] = material
-    change[IMBALANCE] = change[BASE_WORK] - friction - damping - material - stored
-    return friction + damping + material
+    change[CRUSHING] = crushing_work(old.force, new.force, old.crushed, new.crushed)
+    change[IMBALANCE] = change[BASE_WORK] - friction - damping - material - change[CRUSHING] - stored
+    return dissipation(change)
 
 
 @compiled(inline=True)

@@ -10,6 +10,7 @@ from contact.interface.penalty import contact_frequency
 from contact.stepping.ledger import (
     BASE_WORK,
     CONTACT_DAMPING,
+    CRUSHING,
     FRICTION,
     GAIN_LIMIT,
     IMBALANCE,
@@ -81,6 +82,7 @@ def verdict_from(
         slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),
         slip_travel_m=track.slip_travel,
         max_uplift_m=track.max_uplift,
+        max_indentation_m=_indentation(model),
         impacts=track.impacts,
         first_opening_s=_finite(track.first_opening),
         first_uplift_s=_finite(track.first_uplift),
@@ -97,6 +99,12 @@ def verdict_from(
     )
 
 
+def _indentation(model: Model) -> float | None:
+    """Largest permanent indentation under a base point [m]; None where the floor does not crush."""
+    run, base = model.run, model.run.control.base_points
+    return float(run.old.crushed[:base].max()) if np.isfinite(run.contact.cap[:base]).any() else None
+
+
 def _is_steel_shell(case: Case) -> bool:
     return case.container.section == "shell" and case.container.youngs_modulus_Pa > STEEL_MODULUS
 
@@ -110,6 +118,7 @@ def energy_of(model: Model) -> Energy:
         friction_J=float(ledger[FRICTION]),
         contact_damping_J=float(ledger[CONTACT_DAMPING]),
         material_damping_J=float(ledger[MATERIAL_DAMPING]),
+        crushing_J=float(ledger[CRUSHING]),
         numerical_J=float(ledger[IMBALANCE]),
         base_work_J=float(ledger[BASE_WORK]),
     )

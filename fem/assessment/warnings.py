@@ -61,7 +61,7 @@ def energy_is_near_its_limits(result: RunResult, case: Case) -> str | None:
             f"numerical energy gain {-final / reference:.1e} of the energy that it takes to overturn (limit "
             f"{GAIN_LIMIT:.0e}); a smaller solver.step_s should reduce it"
         )
-    parts = (energy.friction_J, energy.contact_damping_J, energy.material_damping_J)
+    parts = (energy.friction_J, energy.contact_damping_J, energy.material_damping_J, energy.crushing_J)
     limit = max(LOSS_SHARE_LIMIT * sum(part or 0.0 for part in parts), LOSS_LIMIT * reference)
     largest = (energy.closure_error or 0.0) * reference
     if largest > NEAR * limit:

@@ -1,5 +1,6 @@
 """Static equilibrium of a container on its floor at t = 0: contact, body, settled stance."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,6 +87,7 @@ def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) ->
     return Contact(
         normal_stiffness=springs,
         tangential_stiffness=chosen.tangential_ratio * springs,
+        cap=np.full(springs.size, math.inf),
         relaxation_time=relaxation_time(chosen.damping_ratio, mesh.mass, float(springs[:base].sum())),
         mu_static=chosen.mu_static,
         mu_kinetic=chosen.mu_kinetic,

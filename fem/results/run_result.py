@@ -213,6 +213,7 @@ class Verdict(JsonBlock):
     slip_peak_to_peak_m: float | None = None  #: over the last full cycle of a harmonic drive
     slip_travel_m: float | None = None  #: total path
     max_uplift_m: float | None = None
+    max_indentation_m: float | None = None  #: permanent, where the floor is crushed; None: it does not crush
     impacts: int | None = None
     first_opening_s: float | None = None  #: a base gap opens
     first_uplift_s: float | None = None  #: a side carries nothing
@@ -261,6 +262,7 @@ class Energy(JsonBlock):
     friction_J: float | None = None
     contact_damping_J: float | None = None
     material_damping_J: float | None = None
+    crushing_J: float | None = None  #: plastic work on the floor
     numerical_J: float | None = None  #: final imbalance; > 0 lost, < 0 gained
     base_work_J: float | None = None
 

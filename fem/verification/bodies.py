@@ -148,6 +148,7 @@ def _contact(springs: FloatArray, mass: float) -> Contact:
     return Contact(
         normal_stiffness=springs,
         tangential_stiffness=springs.copy(),
+        cap=np.full(springs.size, math.inf),
         relaxation_time=0.0,
         mu_static=1e-9,
         mu_kinetic=1e-9,

@@ -28,7 +28,7 @@ def central_difference(function, at: float) -> float:
 
 
 def normal(penetration: float, rate: float) -> tuple[float, float, float]:
-    return normal_force(penetration, rate, STIFFNESS, DAMPING, STEP)
+    return normal_force(penetration, rate, STIFFNESS, DAMPING, math.inf, STEP)
 
 
 @pytest.mark.parametrize("penetration", DECADES)
@@ -47,7 +47,7 @@ def test_normal_tangents_are_derivatives(penetration, share):
 
 @given(st.floats(-1e-2, 1e-2), st.floats(-10.0, 10.0), st.floats(1e-7, 1e-1))
 def test_the_floor_never_pulls(penetration, rate, step):
-    force, by_penetration, by_rate = normal_force(penetration, rate, STIFFNESS, DAMPING, step)
+    force, by_penetration, by_rate = normal_force(penetration, rate, STIFFNESS, DAMPING, math.inf, step)
     assert force >= 0.0
     if penetration <= 0.0 or STIFFNESS * penetration + DAMPING * rate <= 0.0:
         assert (force, by_penetration, by_rate) == (0.0, 0.0, 0.0)

@@ -78,6 +78,7 @@ def random_problem(seed: int, points: int, *, friction: int = ELASTIC_STICK) -> 
     contact = Contact(
         normal_stiffness=stiffness * draw.uniform(0.5, 2.0, points),
         tangential_stiffness=stiffness * draw.uniform(0.5, 2.0, points),
+        cap=np.full(points, np.inf),
         relaxation_time=draw.choice([0.0, 0.1, 1.0]) * step * 10.0 ** draw.uniform(-1.0, 1.0),
         mu_static=mu,
         mu_kinetic=mu,

@@ -10,6 +10,7 @@ from contact.stepping.ledger import contact_losses, spring_energy
 CONTACT = Contact(
     normal_stiffness=np.array([2e9, 3e9]),
     tangential_stiffness=np.array([1e9, 4e9]),
+    cap=np.full(2, np.inf),
     relaxation_time=5e-3,
     mu_static=0.4,
     mu_kinetic=0.2,
