@@ -1,14 +1,15 @@
 """The animation of a report: mesh, motion, deformation, stress and contact forces, small enough to be sent.
 
-The motion has two parts: the rigid part (rotation and mass centre, from the history, every few milliseconds) and, in
-every field frame, the elastic displacement in the frame that turns with the container (the mean-axis split: no
-momentum, no angular momentum). So the page can enlarge the one and leave the other. Numbers are sent as integers in
-units of the largest value of their kind: displacement and history with 16 bits, stress with 8. x to the right, z up,
-rotation > 0 toward +x; forces on the container.
+The container is one body, or each box of a loose stack is. The motion of a body has two parts: the rigid part (rotation
+and mass centre, from the history, every few milliseconds) and, in every field frame, the elastic displacement in the
+frame that turns with it (the mean-axis split: no momentum, no angular momentum). So the page can enlarge the one and
+leave the other. Numbers are sent as integers in units of the largest value of their kind: displacement and history with
+16 bits, stress with 8. x to the right, z up, rotation > 0 toward +x; forces on the container.
 """
 
 import base64
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +17,7 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
+from scipy.spatial import ConvexHull
 
 from fem.model.model import Model
 from fem.results.fields import Fields, Frame
@@ -51,28 +52,38 @@ COLUMNS = {
 }
 #: .. of a floor that moves up and down
 LIFT = {"lift": "base_vertical_displacement_m"}
+#: .. of a further box of a loose stack, whose number takes the place of the braces
+BOX = {
+    "rotation_{}": "box_{}_rotation_rad",
+    "slip_{}": "box_{}_slip_m",
+    "x_{}": "box_{}_x_m",
+    "z_{}": "box_{}_z_m",
+}
 SINGLE_PRECISION = 2.0**-24
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class AnimationFrame:
-    """One frame, n nodes."""
+    """One frame, n nodes of b bodies."""
 
     time: float  #: [s]
-    centre: FloatArray  #: (2,) mass centre [m]
-    rotation: float  #: mass-weighted best fit [rad]
+    centre: FloatArray  #: (b, 2) mass centres [m]
+    rotation: FloatArray  #: (b,) mass-weighted best fits [rad]
     floor: tuple[float, float]  #: displacement of the floor, along x and upward [m]
-    elastic: FloatArray  #: (n, 2) in the frame turning with the container [m]
+    elastic: FloatArray  #: (n, 2) in the frame turning with its body [m]
     von_mises: FloatArray | None  #: (n,) [Pa]; None of a rigid container
     normal_force: FloatArray  #: (n_c,) at the contact nodes, compression positive [N]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Animation:
-    """The drawn part of the mesh, and its frames."""
+    """The drawn part of the mesh, and its frames; b bodies from the floor up, one unless the boxes are loose."""
 
-    centroid: FloatArray  #: (2,) of the undeformed container [m]
-    points: FloatArray  #: (n, 2) of the drawn nodes, from the centroid [m]
+    centroid: FloatArray  #: (b, 2) of the undeformed bodies [m]
+    body: IntArray  #: (n,) of each drawn node, from 0
+    points: FloatArray  #: (n, 2) of the drawn nodes, from the centroid of their body [m]
+    corners: IntArray  #: (b, 4) of each body, into `points`: lower left and right, upper left and right
+    rests: FloatArray  #: (k, 4) rectangles that the undeformed boxes fill: left, bottom, right, top [m]
     quads: IntArray  #: (m, 4) into `points`; none where only the outline is sent
     edges: IntArray  #: (k, 2) outline and borders between regions
     contact: IntArray  #: (n_c,) contact nodes, into `points`
@@ -107,57 +118,106 @@ def animation_of(model: Model, fields: Fields | None) -> Animation:
     Raises:
         ValueError, OSError: a frame that cannot be read, or does not belong to the model's mesh.
     """
-    elements = model.container.elements
+    elements, loose = model.container.elements, getattr(model.case.container, "is_loose", False)
     contact = model.container.nodes[: model.container.support.index.size]
     count = len(fields) if fields else 0
-    corners = np.asarray(elements.cells)[:, :4]
-    edges = outline_edges(corners, len(Region) * elements.box + elements.region)
-    whole = np.unique(np.concatenate([corners.ravel(), contact]))
+    quads = np.asarray(elements.cells)[:, :4]
+    edges = outline_edges(quads, len(Region) * elements.box + elements.region)
+    whole = np.unique(np.concatenate([quads.ravel(), contact]))
     enough = FIELD_BYTES // min(max(count, 1), LEAST_FRAMES)
-    quads = corners if 5 * whole.size <= enough else corners[:0]
+    quads = quads if 5 * whole.size <= enough else quads[:0]
     drawn = whole if len(quads) else np.unique(np.concatenate([edges.ravel(), contact]))
     stride = max(1, math.ceil(count * 5 * drawn.size / FIELD_BYTES))
     place = np.full(len(elements.nodes), -1)
     place[drawn] = np.arange(drawn.size)
-    centroid = np.asarray(model.container.mesh.centroid)
+    bodies = bodies_of(elements, loose=loose)
+    centroid = np.array([one.centre for one in bodies])
+    body = np.zeros(len(elements.nodes), dtype=np.int64)
+    for k, one in enumerate(bodies):
+        body[one.nodes] = k
     return Animation(
         centroid=centroid,
-        points=elements.nodes[drawn] - centroid,
+        body=body[drawn],
+        points=elements.nodes[drawn] - centroid[body[drawn]],
+        corners=place[[_corners(one) for one in bodies]],
+        rests=_rests(elements, loose=loose),
         quads=place[quads],
         edges=place[edges],
         contact=place[contact],
-        frames=[_frame(model, fields.frame(k), drawn, contact) for k in range(0, count, stride)]
+        frames=[_frame(model, bodies, fields.frame(k), drawn, contact) for k in range(0, count, stride)]
         if fields
         else [],
     )
 
 
-def rigid_and_elastic(elements: FiniteElements, frame: Frame) -> tuple[FloatArray, float, FloatArray]:
-    """Mass centre (2,) [m], rotation [rad] and elastic displacement (n, 2) [m] of a frame.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BodyFit:
+    """Splits the displacement of a body's n nodes into its rigid and its elastic part."""
 
-    The rotation is the mass-weighted best fit; the elastic part has no momentum and, in the best fit, no angular
-    momentum.
-    """
-    if len(frame.displacement) != len(elements.nodes):
-        raise ValueError(f"a frame of {len(frame.displacement)} nodes on a mesh of {len(elements.nodes)}")
-    mass: csr_array = elements.mass
-    share = mass @ np.ones(len(elements.nodes))
+    nodes: IntArray  #: (n,)
+    rest: FloatArray  #: (n, 2) undeformed positions [m]
+    share: FloatArray  #: (n,) of the mass
+    centre: FloatArray  #: (2,) undeformed mass centre [m]
+    weighted: FloatArray  #: (n, 2) mass times distance from the mass centre [kg m]
+
+    def split(self, displacement: FloatArray) -> tuple[FloatArray, float, FloatArray]:
+        """Mass centre (2,) [m], rotation [rad] and elastic displacement (n, 2) [m], from that of all nodes.
+
+        The rotation is the mass-weighted best fit; the elastic part has no momentum and, in the best fit, no angular
+        momentum.
+        """
+        position = self.rest + np.asarray(displacement, dtype=float)[self.nodes]
+        centre = self.share @ position
+        turned = position - centre
+        moment = np.sum(turned[:, 0] * self.weighted[:, 1] - turned[:, 1] * self.weighted[:, 0])
+        rotation = math.atan2(moment, np.sum(turned * self.weighted))
+        cosine, sine = math.cos(rotation), math.sin(rotation)
+        back = turned @ np.array([[cosine, sine], [-sine, cosine]])
+        return centre, rotation, back - (self.rest - self.centre)
+
+
+def bodies_of(elements: FiniteElements, *, loose: bool) -> list[BodyFit]:
+    """The bodies from the floor up: the container, or each box of a loose stack."""
+    boxes = [elements.box == k for k in np.unique(elements.box)] if loose else [slice(None)]
+    return [_body(elements, np.unique(elements.cells[cells])) for cells in boxes]
+
+
+def _body(elements: FiniteElements, nodes: IntArray) -> BodyFit:
+    mass = elements.mass[nodes][:, nodes]
+    share = mass @ np.ones(len(nodes))
     share = share / share.sum()
-    arm = elements.nodes - share @ elements.nodes
-    position = elements.nodes + np.asarray(frame.displacement, dtype=float)
-    centre = share @ position
-    turned, weighted = position - centre, mass @ arm
-    moment = np.sum(turned[:, 0] * weighted[:, 1] - turned[:, 1] * weighted[:, 0])
-    rotation = math.atan2(moment, np.sum(turned * weighted))
-    cosine, sine = math.cos(rotation), math.sin(rotation)
-    back = turned @ np.array([[cosine, sine], [-sine, cosine]])
-    return centre, rotation, back - arm
+    rest = elements.nodes[nodes]
+    centre = share @ rest
+    return BodyFit(nodes=nodes, rest=rest, share=share, centre=centre, weighted=mass @ (rest - centre))
+
+
+def _corners(body: BodyFit) -> IntArray:
+    """Lower left and right, upper left and right node."""
+    x, z = body.rest.T
+    slack = 1e-6 * np.ptp(z)
+    ends = [np.flatnonzero(z <= z.min() + slack), np.flatnonzero(z >= z.max() - slack)]
+    return np.array([body.nodes[end[pick(x[end])]] for end in ends for pick in (np.argmin, np.argmax)])
+
+
+def _rests(elements: FiniteElements, *, loose: bool) -> FloatArray:
+    """Rectangles (k, 4) of the undeformed boxes; bolted boxes with the same sides are one."""
+    rests: list[list[float]] = []
+    for box in np.unique(elements.box):
+        nodes = elements.nodes[np.unique(elements.cells[elements.box == box])]
+        (left, bottom), (right, top) = nodes.min(axis=0).tolist(), nodes.max(axis=0).tolist()
+        if rests and not loose and np.allclose(rests[-1][::2], (left, right)):
+            rests[-1][3] = top
+        else:
+            rests.append([left, bottom, right, top])
+    return np.array(rests)
 
 
 def player_data(shown: Animation, history: History, *, model: Model) -> dict[str, Any]:
     """What the script `player.js` reads, of a run with samples."""
     stride = max(1, math.ceil(len(history) / MOST_SAMPLES))
     names = COLUMNS | (LIFT if history.vertical else {})
+    further = range(2, len(shown.centroid) + 1)
+    names |= {name.format(k): column.format(k) for k in further for name, column in BOX.items()}
     columns = {name: history[column][::stride] for name, column in names.items()}
     journey = max(float(np.ptp(columns[name])) for name in ("base", "lift") if name in columns)
     modes = sorted(set(history.modes))
@@ -165,7 +225,7 @@ def player_data(shown: Animation, history: History, *, model: Model) -> dict[str
     wide = len(shown.points) >= 65536
     index = "<u4" if wide else "<u2"
     # The page opens at the largest rotation that is not yet a fall: that is what one looks for.
-    rotation = np.abs(history["rotation_rad"])
+    rotation = np.max([np.abs(history[names[name]]) for name in names if name.startswith("rotation")], axis=0)
     opening = int(np.argmax(np.where(rotation < angle, rotation, -1.0)))
     return {
         "step": model.case.output.history_s * stride,
@@ -177,7 +237,16 @@ def player_data(shown: Animation, history: History, *, model: Model) -> dict[str
         "weight": model.static.weight,
         "width": mesh.width,
         "height": mesh.height,
-        "centroid": shown.centroid.tolist(),
+        "bodies": [
+            {
+                "suffix": "" if k == 0 else f"_{k + 1}",
+                "corners": shown.corners[k].tolist(),
+                "hull": hull(shown.points[shown.body == k]).tolist(),
+            }
+            for k in range(len(shown.centroid))
+        ],
+        "body": packed(shown.body, "u1"),
+        "rests": shown.rests.tolist(),
         "follow": journey > WIDE_JOURNEY * mesh.width,
         "points": packed_floats(shown.points.ravel()),
         "quads": packed(shown.quads.ravel(), index),
@@ -192,6 +261,11 @@ def player_data(shown: Animation, history: History, *, model: Model) -> dict[str
         "colours": colour_scale("YlGnBu", COLOURS),
         "first": float(history["time_s"][opening]),
     }
+
+
+def hull(points: FloatArray) -> FloatArray:
+    """Corners of the convex hull of points, shape (h, 2)."""
+    return np.asarray(points[ConvexHull(points).vertices])
 
 
 def exaggeration(shown: Animation, height: float) -> float:
@@ -234,9 +308,17 @@ def packed(values: NDArray[Any], kind: str) -> str:
     return base64.b64encode(np.asarray(values).astype(kind).tobytes()).decode()
 
 
-def _frame(model: Model, frame: Frame, drawn: IntArray, contact: IntArray) -> AnimationFrame:
+def _frame(
+    model: Model, bodies: Sequence[BodyFit], frame: Frame, drawn: IntArray, contact: IntArray
+) -> AnimationFrame:
+    nodes = model.container.elements.nodes
+    if len(frame.displacement) != len(nodes):
+        raise ValueError(f"a frame of {len(frame.displacement)} nodes on a mesh of {len(nodes)}")
     area = model.run.contact.normal_stiffness[: contact.size] / model.penalty
-    centre, rotation, elastic = rigid_and_elastic(model.container.elements, frame)
+    elastic = np.zeros(nodes.shape)
+    centre, rotation = np.zeros((len(bodies), 2)), np.zeros(len(bodies))
+    for k, body in enumerate(bodies):
+        centre[k], rotation[k], elastic[body.nodes] = body.split(frame.displacement)
     if model.case.solver.model == "rigid":  # what is left is the rounding of the files
         elastic = np.zeros_like(elastic)
     return AnimationFrame(

@@ -47,7 +47,7 @@ def stills(
     top = 103.0 / span * max((float(points[:, 1].max()) for points in placed.values()), default=0.0)
     return [
         Still(
-            f"t = {frame.time:.3f} s, {chosen[k]}; rotation ratio {_signed_ratio(frame.rotation, angle)}",
+            f"t = {frame.time:.3f} s, {chosen[k]}; {_rotation_in_words(frame.rotation, angle)}",
             _drawing(shown, frame, placed[k] * [100.0 / span, -100.0 / span], top),
         )
         for k, frame in frames.items()
@@ -59,8 +59,9 @@ def _instants(shown: Animation, history: History, verdict: Verdict) -> dict[int,
     if not shown.frames or not len(history):
         return {}
     times = np.array([frame.time for frame in shown.frames])
-    rotation = np.array([frame.rotation for frame in shown.frames])
-    slip = np.interp(times, history["time_s"], history["slip_m"])
+    rotation = np.array([frame.rotation[_most_turned(frame.rotation)] for frame in shown.frames])
+    slips = [np.abs(history[name]) for name in history.numbers if name.endswith("slip_m")]  # one a loose box
+    slip = np.interp(times, history["time_s"], np.max(slips, axis=0))
     wanted = [(0, "start")]
     if verdict.first_uplift_s is not None:
         wanted.append((int(np.searchsorted(times, verdict.first_uplift_s)), "after the first uplift"))
@@ -69,7 +70,7 @@ def _instants(shown: Animation, history: History, verdict: Verdict) -> dict[int,
         wanted.append((int(np.argmax(rotation)), "farthest to the right"))
         wanted.append((int(np.argmin(rotation)), "farthest to the left"))
     if seen & {"slide", "slide-rock"}:
-        wanted.append((int(np.argmax(np.abs(slip))), "largest slip"))
+        wanted.append((int(np.argmax(slip)), "largest slip"))
     chosen: dict[int, str] = {}
     for k, name in [*wanted, (len(times) - 1, "last frame")]:
         if k < len(times) and len(chosen) < MOST:
@@ -77,18 +78,40 @@ def _instants(shown: Animation, history: History, verdict: Verdict) -> dict[int,
     return dict(sorted(chosen.items()))
 
 
-def _signed_ratio(rotation: float, angle: float) -> str:
-    ratio = ratio_in_words(rotation_ratio(rotation, angle))
-    return f"−{ratio}" if rotation < 0.0 and not ratio.startswith("<") else ratio
+def _most_turned(rotation: FloatArray) -> int:
+    """The body with the largest rotation."""
+    return int(np.argmax(np.abs(rotation)))
+
+
+def _rotation_in_words(rotations: FloatArray, angle: float) -> str:
+    """The rotation ratio, of a loose stack that of the box that has turned most."""
+    most = _most_turned(rotations)
+    ratio, box = ratio_in_words(rotation_ratio(rotations[most], angle)), f" (box {most + 1})"
+    sign = "−" if rotations[most] < 0.0 and not ratio.startswith("<") else ""
+    return f"rotation ratio {sign}{ratio}{box if len(rotations) > 1 and rotations[most] else ''}"
 
 
 def _placed(shown: Animation, frame: AnimationFrame, factor: float) -> FloatArray:
-    """Drawn nodes (n, 2), x from where the container first stood on the floor [m]; the loaded points stay in place."""
+    """Drawn nodes (n, 2), x from where the container first stood on the floor [m].
+
+    An enlarged elastic part leaves the loaded points in place; a loose box stands on the corners of the one below.
+    """
     weight = np.maximum(frame.normal_force, 0.0) + 1e-6 * max(1.0, float(np.abs(frame.normal_force).max()))
-    held = np.average(frame.elastic[shown.contact], axis=0, weights=weight) if factor else np.zeros(2)
-    arm = shown.points + factor * frame.elastic - (factor - 1.0) * held if factor else shown.points
-    cosine, sine = math.cos(frame.rotation), math.sin(frame.rotation)
-    placed: FloatArray = frame.centre - frame.floor + arm @ np.array([[cosine, -sine], [sine, cosine]])
+    placed, ahead = np.empty_like(shown.points), np.zeros(2)
+    for k, (centre, rotation) in enumerate(zip(frame.centre, frame.rotation, strict=True)):
+        own, corners = shown.body == k, shown.corners[k]
+        cosine, sine = math.cos(rotation), math.sin(rotation)
+        turn = np.array([[cosine, -sine], [sine, cosine]])
+        arm = shown.points[own]
+        if factor:
+            arm = arm + factor * frame.elastic[own]
+            held = frame.elastic[corners[:2]].mean(axis=0)
+            if k == 0:
+                held = np.average(frame.elastic[shown.contact], axis=0, weights=weight)
+            ahead = ahead - (factor - 1.0) * held @ turn
+        placed[own] = centre - frame.floor + ahead + arm @ turn
+        if factor:
+            ahead = ahead + (factor - 1.0) * frame.elastic[corners[2:]].mean(axis=0) @ turn
     return placed
 
 

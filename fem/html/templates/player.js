@@ -23,6 +23,7 @@
   const mode = new Uint8Array(bytes(run.mode));
   const points = floats(run.points), quads = indices(run.quads), edges = indices(run.edges);
   const elastic = floats(run.elastic), normals = floats(run.normal), stress = new Uint8Array(bytes(run.stress));
+  const body = new Uint8Array(bytes(run.body)), bodies = run.bodies;  // of each node; the boxes of a loose stack
   const count = points.length / 2, contacts = run.contact.length;
   const last = Math.max(run.samples - 1, 0), end = last * run.step;
 
@@ -46,18 +47,19 @@
   };
 
   // ---- what is in view --------------------------------------------------------------------------------------
-  const corners = [[-0.5, 0], [0.5, 0], [0.5, 1], [-0.5, 1]].map(
-    ([x, z]) => [x * run.width - run.centroid[0], z * run.height - run.centroid[1]]);
   const extents = (onFloor) => {
     const box = { left: -0.75 * run.width, right: 0.75 * run.width, top: run.height, low: 0 };
     for (let i = 0; i <= last; i++) {
       const lift = onFloor || !columns.lift ? 0 : columns.lift[i];
       box.low = Math.min(box.low, lift);
-      const c = Math.cos(columns.rotation[i]), s = Math.sin(columns.rotation[i]);
-      for (const [x, z] of corners) {
-        const right = columns.x[i] + c * x + s * z + (onFloor ? 0 : columns.base[i]);
-        box.left = Math.min(box.left, right); box.right = Math.max(box.right, right);
-        box.top = Math.max(box.top, lift + columns.z[i] - s * x + c * z);
+      for (const { suffix, hull } of bodies) {
+        const rotation = columns[`rotation${suffix}`][i], c = Math.cos(rotation), s = Math.sin(rotation);
+        const x0 = columns[`x${suffix}`][i] + (onFloor ? 0 : columns.base[i]), z0 = lift + columns[`z${suffix}`][i];
+        for (const [x, z] of hull) {
+          const right = x0 + c * x + s * z;
+          box.left = Math.min(box.left, right); box.right = Math.max(box.right, right);
+          box.top = Math.max(box.top, z0 - s * x + c * z);
+        }
       }
     }
     return box;
@@ -102,7 +104,10 @@
     }
     pen.stroke();
     // Where the container first stood, on the floor: the distance from it is slip.
-    pen.setLineDash([4, 4]); pen.strokeRect(X(base - 0.5 * run.width), Z(run.height), scale * run.width, scale * run.height);
+    pen.setLineDash([4, 4]);
+    for (const [left, bottom, right, top] of run.rests) {
+      pen.strokeRect(X(base + left), Z(top), scale * (right - left), scale * (top - bottom));
+    }
     pen.setLineDash([]);
     if (controls.view.value === "ground") {  // a mark that stays, and how far the floor is from it
       pen.fillStyle = INK; pen.beginPath();  // below the words of the friction
@@ -110,26 +115,44 @@
     }
   };
 
+  // Where the bodies are. An enlarged elastic part moves them: the loaded base points stay where they are, and a box on
+  // a box stands on its corners.
+  const posesOf = (frame, factor, origin) => {
+    let ahead = [0, 0];
+    return bodies.map(({ suffix, corners }, k) => {
+      const rotation = value(`rotation${suffix}`, now), c = Math.cos(rotation), s = Math.sin(rotation);
+      const mean = (nodes, weights) => {  // elastic displacement of some nodes, as it is seen
+        let ex = 0, ez = 0, sum = 0;
+        nodes.forEach((i, n) => {
+          ex += weights[n] * between(elastic, 2 * count, frame, 2 * i);
+          ez += weights[n] * between(elastic, 2 * count, frame, 2 * i + 1); sum += weights[n];
+        });
+        return [(c * ex + s * ez) / sum, (c * ez - s * ex) / sum];
+      };
+      if (frame && factor) {
+        const loads = run.contact.map((_, n) => Math.max(between(normals, contacts, frame, n), 0) + 1e-3 * run.weight);
+        const [x, z] = k ? mean(corners.slice(0, 2), [1, 1]) : mean(run.contact, loads);
+        ahead = [ahead[0] - (factor - 1) * x, ahead[1] - (factor - 1) * z];
+      }
+      const pose = { c, s, x: origin + value(`x${suffix}`, now) + ahead[0], z: value(`z${suffix}`, now) + ahead[1] };
+      if (frame && factor) {
+        const [x, z] = mean(corners.slice(2), [1, 1]);
+        ahead = [ahead[0] + (factor - 1) * x, ahead[1] + (factor - 1) * z];
+      }
+      return pose;
+    });
+  };
+
   const placed = new Float32Array(2 * count);
   const drawContainer = (X, Z, origin) => {
-    const c = Math.cos(value("rotation", now)), s = Math.sin(value("rotation", now));
-    const x0 = origin + value("x", now), z0 = value("z", now), frame = frameAt(now);
-    const factor = controls.exaggeration ? Number(controls.exaggeration.value) : 0;
-    let ex = 0, ez = 0;
-    if (frame && factor) {  // the loaded base points stay where they are: the container stands on its floor
-      let sum = 0;
-      for (let k = 0; k < contacts; k++) {
-        const weight = Math.max(between(normals, contacts, frame, k), 0) + 1e-3 * run.weight, i = run.contact[k];
-        ex += weight * between(elastic, 2 * count, frame, 2 * i);
-        ez += weight * between(elastic, 2 * count, frame, 2 * i + 1); sum += weight;
-      }
-      ex *= (factor - 1) / sum; ez *= (factor - 1) / sum;
-    }
+    const frame = frameAt(now), factor = controls.exaggeration ? Number(controls.exaggeration.value) : 0;
+    const poses = posesOf(frame, factor, origin);
     for (let i = 0; i < count; i++) {
+      const { c, s, x: x0, z: z0 } = poses[body[i]];
       let x = points[2 * i], z = points[2 * i + 1];
       if (frame && factor) {
-        x += factor * between(elastic, 2 * count, frame, 2 * i) - ex;
-        z += factor * between(elastic, 2 * count, frame, 2 * i + 1) - ez;
+        x += factor * between(elastic, 2 * count, frame, 2 * i);
+        z += factor * between(elastic, 2 * count, frame, 2 * i + 1);
       }
       placed[2 * i] = X(x0 + c * x + s * z); placed[2 * i + 1] = Z(z0 - s * x + c * z);
     }
@@ -164,8 +187,10 @@
         pen.lineTo(placed[2 * edges[e + 1]], placed[2 * edges[e + 1] + 1]); pen.stroke();
       }
     }
-    pen.fillStyle = "#fff"; pen.strokeStyle = INK; pen.lineWidth = 1.4;  // mass centre
-    pen.beginPath(); pen.arc(X(x0), Z(z0), 4, 0, 7); pen.fill(); pen.stroke();
+    pen.fillStyle = "#fff"; pen.strokeStyle = INK; pen.lineWidth = 1.4;  // mass centres
+    for (const { suffix } of bodies) {
+      pen.beginPath(); pen.arc(X(origin + value(`x${suffix}`, now)), Z(value(`z${suffix}`, now)), 4, 0, 7); pen.fill(); pen.stroke();
+    }
   };
 
   const arrow = (x, y, dx, dy, colour) => {  // ends at (x, y)
@@ -216,10 +241,16 @@
   const minus = (text) => text.replace(/^-(?=[0.]+$)/, "").replace("-", "−");
   const kilo = (force) => minus((force / 1e3).toFixed(Math.abs(force) < 1e5 ? 1 : 0));
   const millimetres = (length) => minus((1e3 * length).toFixed(1));
+  const MOST_SHOWN = 5;  // boxes side by side; of more, the one with the largest value
+  const ofBodies = (name, words) => {
+    const all = bodies.map(({ suffix }) => value(`${name}${suffix}`, now));
+    if (all.length <= MOST_SHOWN) return all.map(words).join(" · ");
+    const most = all.reduce((best, v, k) => (Math.abs(v) > Math.abs(all[best]) ? k : best), 0);
+    return `box ${most + 1}: ${words(all[most])}`;
+  };
   const readOut = () => {
-    const rotation = value("rotation", now);
-    const words = { clock: `${now.toFixed(3)} s`, rotation: `${minus((rotation * 180 / Math.PI).toFixed(3))}°`,
-      ratio: minus((rotation / run.angle).toFixed(3)), slip: `${millimetres(value("slip", now))} mm`,
+    const words = { clock: `${now.toFixed(3)} s`, rotation: `${ofBodies("rotation", (v) => minus((v * 180 / Math.PI).toFixed(3)))}°`,
+      ratio: ofBodies("rotation", (v) => minus((v / run.angle).toFixed(3))), slip: `${ofBodies("slip", millimetres)} mm`,
       uplift: `${millimetres(value("uplift", now))} mm`,
       floor: `${millimetres(value("base", now))} mm` + (columns.lift ? `, ${millimetres(value("lift", now))} mm up` : ""),
       state: modeAt(now) };

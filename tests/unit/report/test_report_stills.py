@@ -17,17 +17,20 @@ CORNERS = np.array([[-0.55, -2.0], [0.55, -2.0], [0.55, 2.0], [-0.55, 2.0]])
 
 def animation():
     return Animation(
-        centroid=np.array([0.0, 2.0]),
+        centroid=np.array([[0.0, 2.0]]),
+        body=np.zeros(4, dtype=int),
         points=CORNERS,
+        corners=np.array([[0, 1, 3, 2]]),
+        rests=np.array([[-0.55, 0.0, 0.55, 4.0]]),
         quads=np.array([[0, 1, 2, 3]]),
         edges=np.array([[0, 1], [1, 2], [2, 3], [3, 0]]),
         contact=np.array([0, 1]),
         frames=[
             AnimationFrame(
                 time=float(time),
-                centre=np.array([0.0, 2.0]),
-                rotation=float(rotation),
-                floor=0.0,
+                centre=np.array([[0.0, 2.0]]),
+                rotation=np.array([rotation]),
+                floor=(0.0, 0.0),
                 elastic=np.zeros((4, 2)),
                 von_mises=None,
                 normal_force=np.ones(2),
