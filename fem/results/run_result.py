@@ -201,6 +201,17 @@ class Band(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
+class BoxResult(JsonBlock):
+    """One box of a loose stack; slip and opening over what is below it."""
+
+    max_rotation_rad: float  #: largest |rotation|
+    max_slip_m: float  #: largest |slip|
+    residual_slip_m: float  #: signed, at the end
+    max_opening_m: float
+    fell: bool
+
+
+@dataclass(frozen=True, kw_only=True)
 class Verdict(JsonBlock):
     """Outcome, extremes and events of a run."""
 
@@ -231,7 +242,11 @@ class Verdict(JsonBlock):
     first_line: str | None = None  #: the verdict in one sentence, as on the page
     sure: str | None = None  #: sure | regime unsure | unsure; None: not tried
     decided_by: tuple[str, ...] = ()  #: inputs that change the outcome, the one of the smallest change first
+    boxes: tuple[BoxResult, ...] | None = None  #: of a loose stack, from the floor up
+    fell_box: int | None = None  #: the first box of a loose stack that fell, from 1 at the floor
     band: Band | None = None
+
+    written_where_given = frozenset({"boxes", "fell_box"})
 
 
 @dataclass(frozen=True, kw_only=True)
