@@ -12,17 +12,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
-from xml.sax.saxutils import quoteattr
 
 import meshio
 import numpy as np
 from numpy.typing import NDArray
 
 from fem.results.files import replacing
+from fem.results.vtu import FrameFormat
 from fem.runtime.arrays import FloatArray, IntArray
 
-#: Names of meshio for cells by their number of nodes, corners first, then mid-sides, then the centre.
-CELL_TYPES = {4: "quad", 9: "quad9"}
 SERIES = "run.pvd"
 
 # Up to so many frames, the list of frames is rewritten with each of them. A longer list is rewritten when it has
@@ -61,10 +59,14 @@ class FieldWriter:
     ) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         self.folder = folder
-        self._points = _padded(points)
-        self._cells = [(CELL_TYPES[cells.shape[1]], cells.astype(np.int32))]
-        self._cell_data = {"region": [region.astype(np.int32)], "box": [box.astype(np.int32)]}
+        self._nodes = len(points)
+        self._format = FrameFormat(
+            points=_padded(points),
+            cells=cells.astype(np.int32),
+            cell_data={"region": region.astype(np.int32), "box": box.astype(np.int32)},
+        )
         self._times = list(kept_times)
+        self._entries = [_entry(i, time) for i, time in enumerate(self._times)]
         self._listed = 0
         self._synced = len(self._times)
         self._list_frames()
@@ -109,24 +111,20 @@ class FieldWriter:
         Returns:
             The file of the frame.
         """
-        floor = np.zeros_like(self._points)
-        floor[:, :2] = floor_displacement, floor_lift
-        stress = {} if von_mises is None else {"von_mises_Pa": von_mises.astype(np.float32)}
-        mesh = meshio.Mesh(
-            self._points,
-            self._cells,
-            point_data={
+        stress = {} if von_mises is None else {"von_mises_Pa": _single(von_mises)}
+        content = self._format.frame(
+            {
                 "displacement_m": _padded(displacement),
                 "velocity_m_s": _padded(velocity),
                 **stress,
-                "contact_pressure_Pa": contact_pressure.astype(np.float32),
-                "floor_displacement_m": floor,
-            },
-            cell_data=self._cell_data,
+                "contact_pressure_Pa": _single(contact_pressure),
+                "floor_displacement_m": _padded(np.full((self._nodes, 2), (floor_displacement, floor_lift))),
+            }
         )
         path = self.folder / frame_name(len(self._times))
         with replacing(path) as part:
-            meshio.write(part, mesh, file_format="vtu", binary=True, compression="zlib")
+            part.write_bytes(content)
+        self._entries.append(_entry(len(self._times), float(time)))
         self._times.append(float(time))
         if len(self._times) - self._listed > len(self._times) // PROMPT_FRAMES:
             self._list_frames()
@@ -138,13 +136,9 @@ class FieldWriter:
             self._list_frames()
 
     def _list_frames(self) -> None:
-        entries = "".join(
-            f'    <DataSet timestep="{time!r}" part="0" file={quoteattr(frame_name(i))}/>\n'
-            for i, time in enumerate(self._times)
-        )
         text = (
             '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n'
-            f"  <Collection>\n{entries}  </Collection>\n</VTKFile>\n"
+            f"  <Collection>\n{''.join(self._entries)}  </Collection>\n</VTKFile>\n"
         )
         with replacing(self.folder / SERIES) as part:
             part.write_text(text, encoding="utf-8")
@@ -311,6 +305,11 @@ def open_fields(folder: Path) -> Fields:
 def frame_name(index: int) -> str:
     """File name of a frame; the first has index 0."""
     return f"frame_{index:05d}.vtu"
+
+
+def _entry(index: int, time: float) -> str:
+    """A frame in the list of frames."""
+    return f'    <DataSet timestep="{time!r}" part="0" file="{frame_name(index)}"/>\n'
 
 
 def _single(values: FloatArray) -> Any:
