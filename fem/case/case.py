@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from pydantic import Field, PrivateAttr
 
+from fem.case.boxes import Box, boxes_of, joint_friction, mass_of_box
 from fem.case.data_files import (
     FILE_KEYS,
     DataFile,
@@ -37,6 +38,7 @@ from fem.case.tables import (
     DocumentTable,
     FloorTable,
     InitialTable,
+    JointsTable,
     MotionTable,
     OutputTable,
     SolverTable,
@@ -65,6 +67,7 @@ class Case(CaseHeading):
     support: SupportTable = Field(default_factory=SupportTable)
     contact: ContactTable
     floor: FloorTable = Field(default_factory=FloorTable)
+    joints: JointsTable = Field(default_factory=JointsTable)
     motion: MotionTable
     vertical: VerticalTable = Field(default_factory=VerticalTable)
     initial: InitialTable = Field(default_factory=InitialTable)
@@ -104,20 +107,31 @@ class Case(CaseHeading):
         return {} if self.document is None else self.document.model_dump()
 
     @property
+    def stack(self) -> tuple[Box, ...]:
+        """All boxes, from the floor up."""
+        return boxes_of(self.container, self.gravity_m_s2)
+
+    @property
+    def joint_friction(self) -> dict[str, float]:
+        """mu_static, mu_kinetic and weakening_m between loose boxes."""
+        return joint_friction(self.joints, self.contact)
+
+    @property
     def box_mass(self) -> float:
-        """Mass of one box with its fill [kg]."""
+        """Mass of one box with its fill, the mean where boxes differ [kg]."""
         box = self.container
-        if box.weight_N is not None:
-            return box.weight_N / self.gravity_m_s2
-        if box.mass_kg is not None:
-            return box.mass_kg
-        if box.density_kg_m3 is not None:
-            return box.density_kg_m3 * box.box_volume
-        raise CaseError("[container] weight_N, mass_kg or density_kg_m3 is missing")  # excluded by a rule
+        if box.box is not None:
+            return self.mass / len(box.box)
+        mass = mass_of_box(box, self.gravity_m_s2, box.width_m * box.height_m * box.depth_m)
+        if mass is None:
+            raise CaseError("[container] weight_N, mass_kg or density_kg_m3 is missing")  # excluded by a rule
+        return mass
 
     @property
     def mass(self) -> float:
         """Mass of all boxes with their fill [kg]."""
+        if self.container.box is not None:
+            return sum(box.mass for box in self.stack)
         return self.container.boxes * self.box_mass
 
     @property
@@ -128,6 +142,8 @@ class Case(CaseHeading):
     @property
     def mean_areal_density(self) -> float:
         """Mass over the area of the elevation, the mean over the cells of the mesh [kg/m2]."""
+        if self.container.box is not None:
+            return self.mass / sum(box.width * box.height for box in self.stack)
         return self.box_mass / (self.container.width_m * self.container.height_m)
 
     @property
@@ -232,11 +248,34 @@ class Case(CaseHeading):
                 for key, value in table.model_dump().items()
                 if value is not None and key not in idle
             }
+        self._resolve_stack(document)
         for dotted in FILE_KEYS:
             name, _, key = dotted.partition(".")
             if key in document.get(name, {}):
                 document[name][key] = copied_name(self.folder, document[name][key])
         return document
+
+    def _resolve_stack(self, document: dict[str, Any]) -> None:
+        """Write what differs from equal bolted boxes; a case of these keeps its file and its hash."""
+        container = document["container"]
+        if self.container.is_loose:
+            document["joints"] = self.joint_friction
+        else:
+            del container["joints"], document["joints"]
+        if self.container.box is None:
+            return
+        del container["boxes"], container["box"]
+        container["box"] = [
+            {
+                "width_m": box.width,
+                "height_m": box.height,
+                "mass_kg": box.mass,
+                "centroid_m": box.centroid,
+                **({} if box.wall is None else {"wall_m": box.wall}),
+                "offset_m": table.offset_m,
+            }
+            for box, table in zip(self.stack, self.container.box, strict=True)
+        ]
 
     def with_values(self, values: Mapping[str, Any]) -> "Case":
         """This case with dotted keys set, such as `contact.mu_static`; alternatives are replaced.

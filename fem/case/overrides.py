@@ -101,7 +101,8 @@ def _replace_alternatives(data: dict[str, Any], dotted: Any) -> None:
     """Remove the alternatives of the keys just set; keys that were set together stay."""
     container = data.get("container")
     if isinstance(container, dict):
-        _drop_others(container, ("weight_N", "mass_kg", "density_kg_m3"), _keys_set("container", dotted))
+        for group in (("weight_N", "mass_kg", "density_kg_m3"), ("boxes", "box")):
+            _drop_others(container, group, _keys_set("container", dotted))
     _replace_floor(data, dotted)
     for table in ("motion", "vertical"):
         motion, explicit = data.get(table), _keys_set(table, dotted)

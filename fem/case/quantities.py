@@ -119,6 +119,7 @@ LENGTH = Quantity(unit="m", least=1e-3, most=100.0, typical=1.0, slips=MILLI_AND
 WALL = Quantity(unit="m", least=1e-6, most=50.0, typical=0.01, slips=MILLI_AND_CENTI)
 FOOT = Quantity(unit="m", least=1e-6, most=100.0, typical=0.1, slips=MILLI_AND_CENTI)
 ELEMENT_SIZE = Quantity(unit="m", least=1e-5, most=100.0, typical=0.1, slips=MILLI_AND_CENTI)
+OFFSET = Quantity(unit="m", least=-100.0, most=100.0, typical=0.1, slips=MILLI_AND_CENTI)
 GRAVITY = Quantity(unit="m/s2", least=1e-2, most=100.0, typical=9.81, slips={"cm/s2": 1e-2, "mm/s2": 1e-3})
 WEIGHT = Quantity(unit="N", above=0.0, typical=25e3, slips={"kilonewtons": 1e3, "meganewtons": 1e6})
 MASS = Quantity(unit="kg", above=0.0, typical=2.5e3, slips={"tonnes": 1e3})

@@ -4,6 +4,7 @@ import math
 from typing import Any
 
 from fem.case import quantities as q
+from fem.case.boxes import BOX_RULES, boxes_of, joint_friction
 from fem.case.floors import FLOOR_CASE_RULES
 from fem.case.motion_rules import harmonic_angular_frequency
 from fem.case.problem import Rule, is_a_file_name, outside_the_folder
@@ -32,6 +33,11 @@ def _masses(box: Any) -> dict[str, float]:
     return {key: value for key in MASSES if (value := getattr(box, key)) is not None}
 
 
+def _needs_mass(box: Any) -> bool:
+    """Whether a box takes its mass from [container]."""
+    return box.box is None or any(one.mass_kg is None for one in box.box)
+
+
 def _not_one_mass(box: Any) -> str:
     given = [f"{key} = {value:g} {MASSES[key].unit}" for key, value in _masses(box).items()]
     rule = ", mass_kg, density_kg_m3: exactly one of the three must be given, "
@@ -41,12 +47,12 @@ def _not_one_mass(box: Any) -> str:
 CONTAINER_RULES = (
     Rule(
         "container.weight_N",
-        lambda box: len(_masses(box)) == 1,
+        lambda box: len(_masses(box)) == 1 or not (_masses(box) or _needs_mass(box)),
         _not_one_mass,
     ),
     Rule(
         "container.wall_m",
-        lambda box: box.section == "solid" or box.wall_m is not None,
+        lambda box: box.section == "solid" or box.wall_m is not None or box.box is not None,
         'is missing: section = "shell" needs the wall thickness, in m',
     ),
     Rule(
@@ -169,14 +175,22 @@ def _plausible_density(key: str) -> Rule:
 
     def holds(case: Any) -> bool:
         value = getattr(case.container, key)
-        return value is None or q.DENSITY.allows(density(case, value))
+        return value is None or case.container.box is not None or q.DENSITY.allows(density(case, value))
 
     return Rule(f"container.{key}", holds, reason)
 
 
 def _largest(case: Any) -> float:
     """Largest dimension of the elevation [m]."""
-    return float(max(case.container.width_m, case.container.boxes * case.container.height_m))
+    if case.container.box is None:
+        return float(max(case.container.width_m, case.container.boxes * case.container.height_m))
+    boxes = boxes_of(case.container, case.gravity_m_s2)
+    return max(boxes[-1].top, *(box.width for box in boxes))
+
+
+def _base_width(case: Any) -> float:
+    """Width of the lowest box [m]."""
+    return boxes_of(case.container, case.gravity_m_s2)[0].width
 
 
 def ends_at_rest(case: Any) -> bool:
@@ -242,8 +256,8 @@ def _samples(case: Any) -> float:
 
 
 def _bytes_of_a_sample(case: Any) -> float:
-    """Memory of one sample, with three columns more for every joint of a stack."""
-    return 8.0 * (16 + 3 * (case.container.boxes - 1))
+    """Memory of one sample, with three columns more for every joint of a stack, five for one without bolts."""
+    return 8.0 * (16 + (5 if case.container.joints == "loose" else 3) * (case.container.boxes - 1))
 
 
 def _too_many_samples(case: Any) -> str:
@@ -260,17 +274,48 @@ def _frames(case: Any) -> float:
     return longest_time(case) / float(interval) + 1.0 if interval else 0.0
 
 
+def _friction(case: Any) -> dict[str, float]:
+    return joint_friction(case.joints, case.contact)
+
+
+JOINT_RULES = (
+    Rule(
+        "container.joints",
+        lambda case: case.container.joints != "loose" or case.container.boxes > 1,
+        '= "loose" needs two boxes or more: a stack of one has no joints; give boxes or [[container.box]]',
+    ),
+    Rule(
+        "joints.",
+        lambda case: (
+            case.container.boxes > 1
+            or (case.joints.mu_static, case.joints.mu_kinetic, case.joints.weakening_m) == (None, None, None)
+        ),
+        "is friction between boxes, but a stack of one has no joints; remove the table, or give boxes or "
+        "[[container.box]]",
+    ),
+    Rule(
+        "joints.mu_kinetic",
+        lambda case: _friction(case)["mu_kinetic"] <= _friction(case)["mu_static"],
+        lambda case: (
+            f"must be at most mu_static = {_friction(case)['mu_static']:g} of the joints, got "
+            f"{_friction(case)['mu_kinetic']:g}; leave it out where the two are equal"
+        ),
+    ),
+)
+
 CASE_RULES = (
     *FLOOR_CASE_RULES,
+    *BOX_RULES,
+    *JOINT_RULES,
     _plausible_density("weight_N"),
     _plausible_density("mass_kg"),
     Rule(
         "support.foot_m",
-        lambda case: case.support.kind != "feet" or case.support.foot_m < 0.5 * case.container.width_m,
+        lambda case: case.support.kind != "feet" or case.support.foot_m < 0.5 * _base_width(case),
         lambda case: (
-            f"must be less than half of width_m = {case.container.width_m:g} m, got {case.support.foot_m:g} m; "
+            f"must be less than half of width_m = {_base_width(case):g} m, got {case.support.foot_m:g} m; "
             + (
-                q.FOOT.guess(case.support.foot_m, lambda meant: meant < 0.5 * case.container.width_m)
+                q.FOOT.guess(case.support.foot_m, lambda meant: meant < 0.5 * _base_width(case))
                 or 'for a base that bears all along take kind = "flat"'
             )
         ),

@@ -4,9 +4,9 @@ A key carries its unit. The type, range and unit of one key are checked by its `
 rules of `fem.case.rules` and `fem.case.motion_rules`. Keys of an option that is not chosen are checked and not used.
 """
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, Strict
+from pydantic import BeforeValidator, Field, Strict, ValidationInfo, field_validator
 
 from fem.case import quantities as q
 from fem.case.floors import FloorTable
@@ -18,15 +18,43 @@ from fem.case.table import CaseTable, case_key
 Unknown = Annotated[list[float], Field(min_length=2, max_length=2)] | Literal["known"] | None
 
 
+class BoxTable(CaseTable):
+    """One box of a stack whose boxes differ, from the floor up, in place of boxes."""
+
+    width_m: Annotated[float, q.LENGTH] | None = case_key("outer width", None, example=1.1)
+    height_m: Annotated[float, q.LENGTH] | None = case_key("outer height", None, example=1.0)
+    mass_kg: Annotated[float, q.MASS] | None = case_key("with its fill", None, example=2500.0)
+    centroid_m: Annotated[float, q.LENGTH] | None = case_key(
+        "height of the mass centre in the box", None, example=0.5
+    )
+    wall_m: Annotated[float, q.WALL] | None = case_key("wall thickness, shell only", None, example=0.008)
+    offset_m: Annotated[float, q.OFFSET] = case_key("along x, from the axis of the box below", 0.0)
+
+
+def _as_tuple(value: object) -> object:
+    return tuple(value) if isinstance(value, list) else value
+
+
 class ContainerTable(CaseTable):
-    """One box of the container, and how many of them are bolted together."""
+    """One box of the container, and how many of them stand on one another."""
 
     width_m: Annotated[float, q.LENGTH] = case_key("outer width, along x", example=1.1)
     height_m: Annotated[float, q.LENGTH] = case_key("outer height of one box", example=1.0)
     depth_m: Annotated[float, q.LENGTH] = case_key(
         "outer depth, out of the plane; default: the width", follows=lambda values: values["width_m"]
     )
-    boxes: Annotated[int, Strict(), q.BOXES] = case_key("number of boxes bolted together", 1)
+    box: Annotated[tuple[BoxTable, ...] | None, BeforeValidator(_as_tuple)] = Field(
+        default=None,
+        description="boxes that differ, [[container.box]] from the floor up; what one leaves out is as [container]",
+    )
+    boxes: Annotated[int, Strict(), q.BOXES] = case_key(
+        "number of equal boxes, one on the other; default: 1",
+        follows=lambda values: len(values["box"] or (None,)),
+        example=4,
+    )
+    joints: Literal["bolted", "loose"] = case_key(
+        '"bolted" | "loose": boxes that stand on one another without bolts', "bolted"
+    )
     weight_N: Annotated[float, q.WEIGHT] | None = case_key(  # noqa: N815
         "of one box with its fill; or mass_kg, or density_kg_m3", None, example=24525.0
     )
@@ -48,7 +76,7 @@ class ContainerTable(CaseTable):
     )
     section: Literal["shell", "solid"] = case_key(
         '"shell" | "solid"; default: shell where wall_m is given',
-        follows=lambda values: "solid" if values["wall_m"] is None else "shell",
+        follows=lambda values: "shell" if _has_walls(values) else "solid",
     )
     youngs_modulus_Pa: Annotated[float, q.STIFFNESS] = case_key("Young's modulus", 2.1e11)  # noqa: N815
     poisson_ratio: Annotated[float, q.POISSON] = case_key("Poisson's ratio", 0.3)
@@ -61,15 +89,33 @@ class ContainerTable(CaseTable):
 
     rules = CONTAINER_RULES
 
+    @field_validator("boxes")
+    @classmethod
+    def _one_kind_of_stack(cls, value: int, info: ValidationInfo) -> int:
+        """Refuse a number of boxes beside [[container.box]]; it sees only a number that is given."""
+        if info.data.get("box") is not None:
+            raise ValueError(
+                f"cannot stand beside [[container.box]], of which each is one box (there are "
+                f"{len(info.data['box'])}); keep one of them"
+            )
+        return value
+
     @property
-    def box_volume(self) -> float:
-        """Outer volume of one box [m3]."""
-        return self.width_m * self.height_m * self.depth_m
+    def is_loose(self) -> bool:
+        """Whether its boxes stand on one another without bolts."""
+        return self.joints == "loose"
 
     @property
     def total_height(self) -> float:
         """Height of all boxes together [m]."""
-        return self.boxes * self.height_m
+        if self.box is None:
+            return self.boxes * self.height_m
+        return sum(self.height_m if one.height_m is None else one.height_m for one in self.box)
+
+
+def _has_walls(values: dict[str, Any]) -> bool:
+    """Whether [container] or one of its boxes has a wall."""
+    return values["wall_m"] is not None or any(one.wall_m is not None for one in values["box"] or ())
 
 
 class SupportTable(CaseTable):
@@ -123,6 +169,20 @@ class ContactTable(CaseTable):
         """Whether mu_static falls to mu_kinetic at once when the support breaks loose."""
         gradual = self.weakening_m > 0.0 or self.stribeck_velocity_m_s > 0.0
         return self.mu_kinetic < self.mu_static and self.friction == "elastic-stick" and not gradual
+
+
+class JointsTable(CaseTable):
+    """Friction between boxes that stand on one another without bolts; what is left out is as on the floor."""
+
+    mu_static: Annotated[float, q.FRICTION] | None = case_key(
+        "loose joints: of static friction; default: that of the floor", None, example=0.4
+    )
+    mu_kinetic: Annotated[float, q.FRICTION] | None = case_key(
+        "loose joints: of kinetic friction; default: that of the floor, at most mu_static", None, example=0.4
+    )
+    weakening_m: Annotated[float, q.WEAKENING] | None = case_key(
+        "loose joints: slip over which mu_static falls; default: that of the floor", None, example=0.0
+    )
 
 
 class InitialTable(CaseTable):
@@ -254,6 +314,7 @@ TABLES: dict[str, type[CaseTable]] = {
     "support": SupportTable,
     "contact": ContactTable,
     "floor": FloorTable,
+    "joints": JointsTable,
     "motion": MotionTable,
     "vertical": VerticalTable,
     "initial": InitialTable,

@@ -3,13 +3,13 @@
 It is generated from the tables, so that no key is missing and no default is wrong.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pydantic.fields import FieldInfo
 
 from fem.case.case import Case
-from fem.case.tables import TABLES, CaseHeading
+from fem.case.tables import TABLES, BoxTable, CaseHeading
 from fem.case.toml import toml_value
 from fem.case.validation import known_keys, quantity_of
 
@@ -23,7 +23,9 @@ def case_template(case: Case) -> str:
         case: gives the values; the file reads back to an equal case.
     """
     resolved = case.resolved()
-    resolved.setdefault("vertical", {"kind": case.vertical.kind})  # "none" is not in a resolved case
+    # What is not in a resolved case, so that it keeps its hash:
+    resolved.setdefault("vertical", {"kind": case.vertical.kind})
+    resolved["container"].setdefault("joints", case.container.joints)
     lines = [
         "# Every key of a case file, with its meaning and [unit]. Keys in comments are alternatives.",
         "",
@@ -31,8 +33,21 @@ def case_template(case: Case) -> str:
     lines += _key_lines(known_keys(CaseHeading), resolved)
     for name, table in TABLES.items():
         lines += ["", f"{'' if name in resolved else '# '}[{name}]  # {_first_line(table.__doc__)}"]
-        lines += _key_lines(known_keys(table), resolved.get(name, {}))
+        fields, values = known_keys(table), resolved.get(name, {})
+        boxes = values.pop("box", ())
+        lines += _key_lines({key: field for key, field in fields.items() if key != "box"}, values)
+        if "box" in fields:
+            lines += _box_lines(boxes)
     return "\n".join(lines) + "\n"
+
+
+def _box_lines(boxes: Sequence[Mapping[str, Any]]) -> list[str]:
+    heading = f"[[container.box]]  # {_first_line(BoxTable.__doc__)}"
+    lines = []
+    for values in boxes or ({},):
+        lines += ["", heading if values else f"# {heading}"]
+        lines += _key_lines(known_keys(BoxTable), values)
+    return lines
 
 
 def _key_lines(fields: Mapping[str, FieldInfo], values: Mapping[str, Any]) -> list[str]:

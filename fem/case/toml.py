@@ -1,4 +1,4 @@
-"""Write the flat tables of a case as TOML that reads back to the same values, bit for bit."""
+"""Write the tables of a case as TOML that reads back to the same values, bit for bit."""
 
 import json
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ def toml_value(value: object) -> str:
     if isinstance(value, str):
         # JSON escapes what TOML wants escaped, except the delete character.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-    if isinstance(value, list):
+    if isinstance(value, list | tuple):
         return f"[{', '.join(map(toml_value, value))}]"
     raise TypeError(f"no TOML scalar: {type(value).__name__}")
 
@@ -34,16 +34,25 @@ def _float(value: float) -> str:
 
 
 def toml_document(tables: Mapping[str, Any]) -> str:
-    """Scalars first, then one table after another.
+    """Scalars first, then one table after another, each with its own tables behind it.
 
     Args:
-        tables: key -> scalar, or table name -> mapping of keys to scalars.
+        tables: key -> scalar, or table name -> mapping of keys to scalars and to sequences of such mappings.
     """
     top = [f"{key} = {toml_value(value)}" for key, value in tables.items() if not isinstance(value, Mapping)]
     blocks = ["\n".join(top)] if top else []
     for name, content in tables.items():
         if isinstance(content, Mapping):
-            blocks.append(
-                "\n".join([f"[{name}]", *(f"{key} = {toml_value(v)}" for key, v in content.items())])
-            )
+            rows = {key: value for key, value in content.items() if _are_tables(value)}
+            own = {key: value for key, value in content.items() if key not in rows}
+            blocks.append(_block(f"[{name}]", own))
+            blocks += [_block(f"[[{name}.{key}]]", one) for key, value in rows.items() for one in value]
     return "\n\n".join(blocks) + "\n"
+
+
+def _are_tables(value: object) -> bool:
+    return isinstance(value, list | tuple) and bool(value) and isinstance(value[0], Mapping)
+
+
+def _block(heading: str, content: Mapping[str, Any]) -> str:
+    return "\n".join([heading, *(f"{key} = {toml_value(value)}" for key, value in content.items())])

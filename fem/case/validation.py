@@ -17,7 +17,7 @@ from pydantic_core import ErrorDetails, PydanticUndefined
 from fem.case.problem import Problem, broken
 from fem.case.quantities import Quantity, with_unit
 from fem.case.rules import CASE_RULES
-from fem.case.tables import OPTIONAL, TABLES, CaseHeading, CaseTable
+from fem.case.tables import OPTIONAL, TABLES, BoxTable, CaseHeading, CaseTable
 
 
 class CaseError(ValueError):
@@ -118,6 +118,9 @@ def read_table(
         if key not in known
     ]
     given = {key: value for key, value in content.items() if key in known}
+    if model is TABLES["container"] and "box" in given:
+        given["box"], found = _read_boxes(given["box"])
+        problems += found
     reasons: dict[str, list[ErrorDetails]] = {}
     try:
         model.model_validate(given)
@@ -129,6 +132,25 @@ def read_table(
         problems.append(Problem(table=name, key=key, reason=_reason(known[key], details)))
     partial = _partial(model, given, reasons.keys())
     return given, partial, problems + broken(model.rules, SimpleNamespace(**partial))
+
+
+def _read_boxes(content: Any) -> tuple[Any, list[Problem]]:
+    """Tables [[container.box]] as far as they can be read, in place of the content; and problems, each with its box."""
+    tables = isinstance(content, list | tuple) and all(isinstance(one, Mapping) for one in content)
+    if not tables or not 1 <= len(content) <= 50:
+        reason = (
+            f"must be 1 to 50 tables [[container.box]], one a box from the floor up, got {_shown(content)}"
+        )
+        return None, [Problem(table="container", key="box", reason=reason)]
+    boxes, problems = [], []
+    for number, one in enumerate(content, 1):
+        given, part, found = read_table("container.box", BoxTable, one)
+        boxes.append(BoxTable.model_construct(**part) if found else BoxTable.model_validate(given))
+        problems += [
+            Problem(table="container", key=f"box {number}: {problem.key}".rstrip(), reason=problem.reason)
+            for problem in found
+        ]
+    return tuple(boxes), problems
 
 
 def _partial(model: type[CaseTable], given: Mapping[str, Any], bad: Iterable[str]) -> dict[str, Any]:
@@ -226,7 +248,7 @@ def _shown(value: object) -> str:
         return f"the text {with_unit(value, '')}"
     if isinstance(value, dict):
         return "a table"
-    if isinstance(value, list):
+    if isinstance(value, list | tuple):
         return "a list"
     if isinstance(value, datetime.date | datetime.time):
         return f"the date or time {value}"

@@ -1,0 +1,182 @@
+"""The boxes of a container, from the floor up, and the rules that hold for boxes that differ.
+
+Each box of [[container.box]] takes what it leaves out from [container]; without such tables all boxes are equal.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from fem.case import quantities as q
+from fem.case.problem import Rule
+
+
+@dataclass(frozen=True, kw_only=True)
+class Box:
+    """One box with its fill, and its place in the stack."""
+
+    width: float  #: along x [m]
+    height: float  #: [m]
+    mass: float  #: [kg]
+    centroid: float  #: height of the mass centre above the bottom of the box [m]
+    wall: float | None  #: thickness; None: a solid block [m]
+    axis: float  #: x of its axis, from that of the lowest box [m]
+    bottom: float  #: above the floor [m]
+
+    @property
+    def top(self) -> float:
+        """Height of its upper face above the floor [m]."""
+        return self.bottom + self.height
+
+    @property
+    def sides(self) -> tuple[float, float]:
+        """x of its left and right side [m]."""
+        return self.axis - 0.5 * self.width, self.axis + 0.5 * self.width
+
+
+def mass_of_box(container: Any, gravity: float, volume: float) -> float | None:
+    """Mass that [container] gives a box of this outer volume [kg]; None where it gives none."""
+    if container.weight_N is not None:
+        return float(container.weight_N / gravity)
+    if container.mass_kg is not None:
+        return float(container.mass_kg)
+    return None if container.density_kg_m3 is None else float(container.density_kg_m3 * volume)
+
+
+def boxes_of(container: Any, gravity: float) -> tuple[Box, ...]:
+    """All boxes of a table [container], from the floor up; raises AttributeError where a box has no mass."""
+    tables = container.box or (None,) * container.boxes
+    boxes: list[Box] = []
+    axis = bottom = 0.0
+    equal = container.box is None
+    for number, table in enumerate(tables):
+        given = (
+            {} if table is None else {key: value for key, value in vars(table).items() if value is not None}
+        )
+        width = given.get("width_m", container.width_m)
+        height = given.get("height_m", container.height_m)
+        mass = given.get("mass_kg") or mass_of_box(container, gravity, width * height * container.depth_m)
+        if mass is None:
+            raise AttributeError("mass_kg")
+        # Half the height is the default of [container]; of a box of another height it is half of that.
+        half = container.centroid_m == 0.5 * container.height_m
+        axis += given.get("offset_m", 0.0)
+        boxes.append(
+            Box(
+                width=width,
+                height=height,
+                mass=mass,
+                centroid=given.get("centroid_m", 0.5 * height if half else container.centroid_m),
+                wall=given.get("wall_m", container.wall_m) if container.section == "shell" else None,
+                axis=axis,
+                bottom=number * height if equal else bottom,
+            )
+        )
+        bottom += height
+    return tuple(boxes)
+
+
+def shared_face(lower: Box, upper: Box) -> tuple[float, float]:
+    """x of the left and right end of the face that two boxes share [m]; the left end is the larger one without any."""
+    (low, high), (left, right) = lower.sides, upper.sides
+    return max(low, left), min(high, right)
+
+
+def centre_above(boxes: tuple[Box, ...], number: int) -> float:
+    """x of the mass centre of the box of this number, from 0, and all boxes above it [m]."""
+    above = boxes[number:]
+    return sum(box.mass * box.axis for box in above) / sum(box.mass for box in above)
+
+
+def joint_friction(joints: Any, floor: Any) -> dict[str, float]:
+    """mu_static, mu_kinetic and weakening_m between loose boxes: those of [contact] where [joints] leaves them out.
+
+    A mu_static below mu_kinetic of the floor takes that with it.
+    """
+    static = floor.mu_static if joints.mu_static is None else joints.mu_static
+    kinetic = min(floor.mu_kinetic, static) if joints.mu_kinetic is None else joints.mu_kinetic
+    weakening = floor.weakening_m if joints.weakening_m is None else joints.weakening_m
+    return {"mu_static": static, "mu_kinetic": kinetic, "weakening_m": weakening}
+
+
+def _each(says: Callable[[Any, Box], str]) -> Rule:
+    """A rule for every box of [[container.box]]; `says` gives what is wrong with one, or an empty string."""
+
+    def reason(case: Any) -> str:
+        if case.container.box is None:
+            return ""
+        boxes = enumerate(boxes_of(case.container, case.gravity_m_s2), 1)
+        return "; box ".join(f"{number}: {said}" for number, box in boxes if (said := says(case, box)))
+
+    return Rule("container.box", lambda case: not reason(case), reason)
+
+
+def _proportions(case: Any, box: Box) -> str:
+    ratio = box.width / box.height
+    if 0.02 * (1.0 - 1e-9) <= ratio <= 20.0 * (1.0 + 1e-9):
+        return ""
+    return f"width_m over height_m must lie between 0.02 and 20, got {box.width:g} m / {box.height:g} m = {ratio:g}"
+
+
+def _centroid(case: Any, box: Box) -> str:
+    if box.centroid < box.height:
+        return ""
+    return (
+        f"centroid_m must be less than its height_m = {box.height:g} m, got {box.centroid:g} m; "
+        "it is measured from the bottom of the box"
+    )
+
+
+def _wall(case: Any, box: Box) -> str:
+    smallest = min(box.width, box.height, case.container.depth_m)
+    if case.container.section == "shell" and box.wall is None:
+        return 'wall_m is missing: section = "shell" needs the wall thickness, here or in [container], in m'
+    if box.wall is None or 2.0 * box.wall < smallest:
+        return ""
+    return f"wall_m must be less than half its smallest outer dimension, {smallest:g} m, got {box.wall:g} m"
+
+
+def _density(case: Any, box: Box) -> str:
+    density = box.mass / (box.width * box.height * case.container.depth_m)
+    if q.DENSITY.allows(density):
+        return ""
+    return (
+        f"{box.mass:g} kg on {box.width:g} x {case.container.depth_m:g} x {box.height:g} m is a mean density of "
+        f"{density:.3g} kg/m3, it must be {q.DENSITY.range_in_words} kg/m3; are mass_kg in kg and all dimensions in m?"
+    )
+
+
+def _unsupported(case: Any) -> str:
+    """Where what is above has its mass centre beyond the face that carries it."""
+    if case.container.box is None:
+        return ""
+    boxes = boxes_of(case.container, case.gravity_m_s2)
+    for number in (
+        *range(1, len(boxes)),
+        0,
+    ):  # of a joint first: what hangs over there may tilt the whole, too
+        upper = boxes[number]
+        low, high = shared_face(boxes[number - 1], upper) if number else upper.sides
+        centre = centre_above(boxes, number)
+        if low < centre < high:
+            continue
+        below = f"box {number}" if number else "the floor"
+        face = f"reaches from x = {low:g} to {high:g} m" if low < high else "has no width"
+        return (
+            f"{number + 1}: the mass centre of what stands on {below} is at x = {centre:.4g} m, outside the face "
+            f"that carries it, which {face} (x from the axis of the lowest box); make the offset_m smaller or "
+            "the box below wider"
+        )
+    return ""
+
+
+def _offset(case: Any, box: Box) -> str:
+    if box.bottom > 0.0 or box.axis == 0.0:
+        return ""
+    return f"offset_m is measured from the axis of the box below, and the lowest box has none; got {box.axis:g} m"
+
+
+BOX_RULES = (
+    *map(_each, (_proportions, _centroid, _wall, _density, _offset)),
+    Rule("container.box", lambda case: not _unsupported(case), _unsupported),
+)
