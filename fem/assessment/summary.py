@@ -15,6 +15,7 @@ from rich.text import Text
 
 from fem.assessment.code_note import code_note
 from fem.assessment.joint_tables import joint_tables, titled_table
+from fem.assessment.loose_boxes import box_table, fall_in_words, joints_in_words, largest_joint_slip
 from fem.assessment.motion_words import covered_in_words, missing_peak, motion_in_words
 from fem.assessment.ranges import (
     LEAST_LENGTH,
@@ -83,6 +84,7 @@ def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
         yield from (Text(f"{sentence}\n") for sentence in believed(result))
         if note := code_note(result.static):
             yield Text(f"{note}\n")
+    yield from box_table(result)
     if result.joints:
         yield from joint_tables(result.joints, verdict)
     if verdict.outcome in ("rock", "slide-rock"):
@@ -99,21 +101,24 @@ def outcome_sentence(result: RunResult) -> str:
     """What happened, and how sure that is: the first line of the verdict."""
     if result.status == "failed":
         return f"No verdict: {result.error or 'the solution failed'}. Results up to there are kept."
-    found = _found(result.verdict or Verdict(), result.motion or MotionResult())
+    found = _found(result)
     if result.status in ("interrupted", "running"):
         return f"Not finished ({result.status}). So far: {found}."
     return " ".join(part for part in (f"Result: {found}.", sureness_in_words(result)) if part)
 
 
-def _found(verdict: Verdict, motion: MotionResult) -> str:
+def _found(result: RunResult) -> str:
+    verdict, motion = result.verdict or Verdict(), result.motion or MotionResult()
     if verdict.outcome is None:
         return "no result yet"
     if verdict.outcome == "overturned":
         at = verdict.overturned_at_s
-        return "overturned" + (f" at t = {at:.3f} s" if at is not None else "")
+        return fall_in_words(verdict) or "overturned" + (f" at t = {at:.3f} s" if at is not None else "")
     restored = ", returned upright" if verdict.restored else ""
     under = f"{covered_in_words(motion)}{missing_peak(motion)}"
-    return f"{VERBS.get(verdict.outcome, verdict.outcome)}{restored} and did not overturn under {under}"
+    found = f"{VERBS.get(verdict.outcome, verdict.outcome)}{restored} and did not overturn under {under}"
+    joints = joints_in_words(verdict, result.static)
+    return f"{found}; {joints}" if joints else found
 
 
 def _static_table(static: StaticResult, verdict: Verdict) -> Table:
@@ -190,17 +195,18 @@ def result_rows(result: RunResult) -> list[tuple[str, str]]:
     """Name and value of what the run found, in the order of reading, without what it did not reach."""
     verdict, static = result.verdict or Verdict(), result.static or StaticResult()
     numerics, motion = result.numerics or Numerics(), result.motion or MotionResult()
-    impacts = verdict.impacts
+    impacts, lowest = verdict.impacts, " of box 1" if verdict.boxes else ""
     rows = [
         ("floor motion", motion_in_words(motion)),
         ("vertical motion", motion_in_words(motion.vertical or MotionResult())),
         ("simulated time", _simulated(verdict, numerics)),
         ("states seen", ", ".join(verdict.modes)),
         ("largest rotation", rotation_in_words(verdict)),
-        ("largest slip", largest_slip(verdict)),
-        ("slip at the end", residual_slip(verdict)),
-        ("path of slip", _lengths(verdict.slip_travel_m)),
-        ("largest uplift", largest_uplift(verdict)),
+        (f"largest slip{lowest}", largest_slip(verdict)),
+        (f"slip at the end{lowest}", residual_slip(verdict)),
+        (f"path of slip{lowest}", _lengths(verdict.slip_travel_m)),
+        ("largest slip between boxes", largest_joint_slip(verdict)),
+        (f"largest uplift{lowest}", largest_uplift(verdict)),
         ("largest corner force", corner_force(verdict, numerics)),
         ("first uplift", _unit(verdict.first_uplift_s, 1.0, "s")),
         ("impacts", "" if impacts is None else str(impacts)),

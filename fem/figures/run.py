@@ -15,6 +15,7 @@ from contact.stepping.observables import ROCKING
 from fem.assessment.ranges import LEAST_DEGREES
 from fem.assessment.summary import ratio_in_words
 from fem.assessment.verdict import SLIDING
+from fem.figures.boxes import OPENING, ROTATION, SLIP, box_figure
 from fem.figures.checks import band_figure, rigid_check_figure
 from fem.figures.energy import energy_figure
 from fem.figures.forces import forces_figure
@@ -136,7 +137,9 @@ def base_motion_figure(run: OpenedRun) -> Figure:
 
 
 def rotation_figure(run: OpenedRun) -> Figure:
-    """Rotation with the slenderness angle marked, the rigid block's beside it where there is one."""
+    """Rotation with the slenderness angle marked, the rigid block's beside it where there is one; of each loose box."""
+    if boxes := run.verdict.boxes:
+        return box_figure(run, ROTATION, boxes)
     verdict, angle = run.typed_result.verdict or Verdict(), math.degrees(run.slenderness_angle)
     rotation, check = np.degrees(run.history["rotation_rad"]), run.rigid_check
     figure, axes = _panel(run, rotation, "rotation [degrees]", f"{run.case.solver.model} model", legend=True)
@@ -165,7 +168,9 @@ def rotation_figure(run: OpenedRun) -> Figure:
 
 
 def slip_figure(run: OpenedRun) -> Figure:
-    """Sliding of the loaded contact points over the floor."""
+    """Sliding of the loaded contact points over the floor; of each loose box over what is below it."""
+    if boxes := run.verdict.boxes:
+        return box_figure(run, SLIP, boxes)
     verdict, slip = run.typed_result.verdict or Verdict(), 1e3 * run.history["slip_m"]
     limit = 1e3 * SLIDING * run.case.container.width_m
     small = bool(np.abs(slip).max() < 10.0 * limit)
@@ -184,7 +189,9 @@ def slip_figure(run: OpenedRun) -> Figure:
 
 
 def uplift_figure(run: OpenedRun) -> Figure:
-    """Uplift of the higher side of the base."""
+    """Uplift of the higher side of the base; of each loose box from what is below it."""
+    if boxes := run.verdict.boxes:
+        return box_figure(run, OPENING, boxes)
     verdict, uplift = run.typed_result.verdict or Verdict(), 1e3 * run.history["uplift_m"]
     struck = verdict.first_impact_s is not None
     figure, axes = _panel(run, uplift, "uplift [mm]", legend=struck)

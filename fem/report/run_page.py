@@ -8,6 +8,7 @@ from importlib import metadata
 from contact.reference.event_driven import EventError
 from fem.assessment.code_note import code_note
 from fem.assessment.joint_tables import joints_note
+from fem.assessment.loose_boxes import BOXES_NOTE, box_rows, largest_joint_slip
 from fem.assessment.ranges import (
     IMPACT,
     largest_rotation,
@@ -143,6 +144,7 @@ def _page(
         ruling=compared[2:4] if case.has_vertical else compared[:2],
         sheet=static_sheet(static, case),
         head=_head(verdict),
+        boxes=[[typeset(cell) for cell in row] for row in box_rows(result)],
         believed=[typeset(sentence) for sentence in believed(result)],
         found=[(name, typeset(value)) for name, value in result_rows(result)],
         warnings=[typeset(warning) for warning in result.warnings or ()],
@@ -167,6 +169,7 @@ def _page(
             "margin": MARGIN_NOTE,
             "band": BAND_NOTE,
             "joints": joints_note(verdict),
+            "boxes": BOXES_NOTE,
             "impact": f"; {IMPACT}" if verdict.impacts else "",
         },
         rotation_ratio=ratio_alone,
@@ -202,6 +205,7 @@ def _head(verdict: Verdict) -> dict[str, str]:
         "ratio": rotation_ratio(verdict),
         "slip": largest_slip(verdict),
         "residual": residual_slip(verdict),
+        "joint_slip": largest_joint_slip(verdict),
         "uplift": largest_uplift(verdict),
     }
     return {name: typeset(words or ABSENT) for name, words in figures.items()}

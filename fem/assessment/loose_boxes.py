@@ -1,0 +1,112 @@
+"""A loose stack in words and as a table: what each box did over what is below it, the floor or the next box."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+
+from rich.console import RenderableType
+from rich.text import Text
+
+from contact.stepping.observables import ROCKING, SLIDING
+from fem.assessment.joint_tables import titled_table
+from fem.assessment.ranges import LEAST_DEGREES, LEAST_LENGTH, in_figures
+from fem.results.run_result import BoxResult, RunResult, StaticResult, Verdict
+
+AS_ONE = "the boxes moved as one"
+FIGURES = 3  #: of a length in the first line
+MOST_BOXES = 12  #: boxes in a table; of more, those with a largest value
+BOXES_NOTE = (
+    "The boxes stand on one another without bolts. Slip and opening of a box are over what is below it: the floor or "
+    "the next box. The rotation ratio is the largest rotation of any box over the slenderness angle of the whole stack."
+)
+LARGEST: tuple[Callable[[BoxResult], float], ...] = (
+    lambda box: box.max_rotation_rad,
+    lambda box: box.max_slip_m,
+    lambda box: abs(box.residual_slip_m),
+    lambda box: box.max_opening_m,
+)
+
+
+def fall_in_words(verdict: Verdict) -> str:
+    """Which box of a loose stack fell, and when; empty where none did."""
+    if verdict.fell_box is None:
+        return ""
+    at = verdict.overturned_at_s
+    return f"box {verdict.fell_box} fell" + (f" at t = {at:.3f} s" if at is not None else "")
+
+
+def joints_in_words(verdict: Verdict, static: StaticResult | None) -> str:
+    """How the boxes of a loose stack moved on one another: the largest slip and opening; empty of one body."""
+    boxes = verdict.boxes or ()
+    if len(boxes) < 2:
+        return ""
+    slip_limit, opening_limit = limits(static or StaticResult())
+    moved = []
+    for verb, preposition, size, limit in (
+        ("slid", "on", LARGEST[1], slip_limit),
+        ("opened", "from", LARGEST[3], opening_limit),
+    ):
+        most = max(range(1, len(boxes)), key=lambda k: size(boxes[k]))
+        if size(boxes[most]) > limit:
+            length = in_figures(size(boxes[most]), FIGURES, 1e3)
+            moved.append(f"box {most + 1} {verb} {length} mm {preposition} box {most}")
+    return ", ".join(moved) or AS_ONE
+
+
+def largest_joint_slip(verdict: Verdict) -> str:
+    """The largest slip of a box on another, and which; empty of a container that moves as one body."""
+    boxes = verdict.boxes or ()
+    if len(boxes) < 2:
+        return ""
+    most = max(range(1, len(boxes)), key=lambda k: boxes[k].max_slip_m)
+    return (
+        f"{in_figures(boxes[most].max_slip_m, FIGURES, 1e3, LEAST_LENGTH)} mm, box {most + 1} on box {most}"
+    )
+
+
+def limits(static: StaticResult) -> tuple[float, float]:
+    """Slip and opening from which a joint counts as sliding and rocking [m], by the limits of the whole stack."""
+    centroid, angle = static.centroid_m, static.slenderness_angle_rad
+    if centroid is None or angle is None:
+        return LEAST_LENGTH, LEAST_LENGTH
+    width = 2.0 * centroid * math.tan(angle)
+    return SLIDING * width, ROCKING * angle * width
+
+
+def box_rows(result: RunResult) -> list[tuple[str, ...]]:
+    """Box, largest rotation in degrees, slip, slip left and opening in mm, and whether it fell; from the floor up."""
+    verdict = result.verdict or Verdict()
+    boxes = verdict.boxes or ()
+    return [
+        (
+            str(number),
+            in_figures(math.degrees(box.max_rotation_rad), FIGURES, least=LEAST_DEGREES),
+            in_figures(box.max_slip_m, FIGURES, 1e3, LEAST_LENGTH),
+            in_figures(box.residual_slip_m, FIGURES, 1e3, LEAST_LENGTH),
+            in_figures(box.max_opening_m, FIGURES, 1e3, LEAST_LENGTH),
+            "fell" if box.fell else "",
+        )
+        for number, box in enumerate(boxes, 1)
+    ]
+
+
+def box_table(result: RunResult) -> Iterator[RenderableType]:
+    """One row a box, from the floor up; nothing of a container that moves as one body."""
+    rows = box_rows(result)
+    if not rows:
+        return
+    shown = _shown((result.verdict or Verdict()).boxes or ())
+    table = titled_table(
+        "Boxes, from the floor up", "box", ">rotation degrees", ">slip mm", ">slip left mm", ">opening mm", ""
+    )
+    for k in shown:
+        table.add_row(*rows[k])
+    yield table
+    left_out = len(rows) - len(shown)
+    yield Text(BOXES_NOTE + (f" {left_out} more boxes are in run.json." if left_out else "") + "\n")
+
+
+def _shown(boxes: Sequence[BoxResult]) -> Sequence[int]:
+    if len(boxes) <= MOST_BOXES:
+        return range(len(boxes))
+    chosen = {max(range(len(boxes)), key=lambda k: size(boxes[k])) for size in LARGEST}
+    return sorted(chosen | {k for k, box in enumerate(boxes) if box.fell})

@@ -1,0 +1,106 @@
+"""Figures of a loose stack, whose boxes move separately: rotation, slip and opening of each box over time."""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+
+from fem.assessment.ranges import LEAST_DEGREES, LEAST_LENGTH
+from fem.figures.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    GREY,
+    NEAR_LIMIT,
+    ORANGE,
+    PURPLE,
+    SKY,
+    VERMILLION,
+    curve_panel,
+    draw_limits,
+    head,
+    keep_visible,
+    legend_above,
+    number,
+    time_panels,
+)
+from fem.results.reader import OpenedRun
+from fem.results.run_result import BoxResult
+
+COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY)  #: of so many boxes; of more, those of a colour map
+LEGEND_COLUMNS = 6
+
+
+class BoxQuantity(NamedTuple):
+    """What is drawn of each box."""
+
+    title: str
+    label: str  #: of the vertical axis, with the unit
+    unit: str  #: behind a number of the title
+    factor: float  #: from SI units
+    least: float  #: a smaller value is rounding, in the units of the figure
+    lowest: str  #: column of the lowest box
+    further: str  #: .. of a box above it, whose number takes the place of the braces
+    largest: Callable[[BoxResult], float]
+
+
+ROTATION = BoxQuantity(
+    *("Rotation of each box", "rotation [degrees]", "°", math.degrees(1.0), LEAST_DEGREES),
+    *("rotation_rad", "box_{}_rotation_rad", lambda box: box.max_rotation_rad),
+)
+SLIP = BoxQuantity(
+    *("Slip of each box over what is below", "slip [mm]", " mm", 1e3, 1e3 * LEAST_LENGTH),
+    *("slip_m", "box_{}_slip_m", lambda box: box.max_slip_m),
+)
+OPENING = BoxQuantity(
+    *("Opening under each box", "opening [mm]", " mm", 1e3, 1e3 * LEAST_LENGTH),
+    *("uplift_m", "box_{}_opening_m", lambda box: box.max_opening_m),
+)
+
+
+def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ...]) -> Figure:
+    """A curve over time for each box of a loose stack, with the states of motion below.
+
+    Args:
+        run: opened.
+        quantity: what is drawn.
+        boxes: of its verdict, from the floor up.
+    """
+    history, verdict = run.history, run.verdict
+    rows = math.ceil((len(boxes) + 2) / LEGEND_COLUMNS)
+    figure, (axes,) = time_panels((2.3,), history=history, header=1 + rows)
+    names = [quantity.lowest, *(quantity.further.format(k) for k in range(2, len(boxes) + 1))]
+    for k, name in enumerate(names):
+        curve = quantity.factor * history[name], colour_of(k, len(boxes)), "-", f"box {k + 1}"
+        curve_panel(axes, quantity.label, history["time_s"], curve, zero=k == 0)
+    keep_visible(axes, 10.0 * quantity.least)
+    if quantity is ROTATION:
+        _draw_slenderness(run, axes, names)
+    if verdict.fell_box is not None and verdict.overturned_at_s is not None:
+        name = f"box {verdict.fell_box} fell, {verdict.overturned_at_s:.3f} s"
+        axes.axvline(verdict.overturned_at_s, color=GREY, linestyle=(0, (1, 2)), linewidth=1.0, label=name)
+    legend_above(axes, LEGEND_COLUMNS)
+    sizes = [quantity.factor * quantity.largest(box) for box in boxes]
+    most = int(np.argmax(sizes))
+    largest = f"< {quantity.least:g}" if 0.0 < sizes[most] < quantity.least else number(sizes[most])
+    title = f"{quantity.title}: {largest}{quantity.unit} at most (box {most + 1})"
+    head(figure, title, status=run.status)
+    return figure
+
+
+def colour_of(box: int, boxes: int) -> str:
+    """Colour of a box, from 0 at the floor, of so many."""
+    return COLOURS[box] if boxes <= len(COLOURS) else str(to_hex(colormaps["viridis"](box / (boxes - 1))))
+
+
+def _draw_slenderness(run: OpenedRun, axes: Axes, names: list[str]) -> None:
+    """The slenderness angle of the whole stack, where a box comes near it."""
+    angle = math.degrees(run.slenderness_angle)
+    if max(float(np.abs(run.history[name]).max()) for name in names) >= NEAR_LIMIT * run.slenderness_angle:
+        keep_visible(axes, 1.12 * angle)
+        draw_limits(axes, angle, f"α of the stack, ±{number(angle, 4)}°", color=BLACK, linestyle="-.")
