@@ -118,7 +118,7 @@ def animation_of(model: Model, fields: Fields | None) -> Animation:
     Raises:
         ValueError, OSError: a frame that cannot be read, or does not belong to the model's mesh.
     """
-    elements, loose = model.container.elements, getattr(model.case.container, "is_loose", False)
+    elements, loose = model.container.elements, model.case.container.is_loose
     contact = model.container.nodes[: model.container.support.index.size]
     count = len(fields) if fields else 0
     quads = np.asarray(elements.cells)[:, :4]
