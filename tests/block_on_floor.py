@@ -46,6 +46,7 @@ class Block:
     weakening: float = 0.0  #: [m]
     stribeck_velocity: float = 0.0  #: [m/s]
     cap: float = math.inf  #: of the normal force of a corner [N]
+    slope: float = 0.0  #: angle of the floor, > 0: it falls toward +x [rad]
 
     @property
     def rigid(self) -> RigidBlock:
@@ -97,11 +98,12 @@ class Block:
     def standing(self) -> Stance:
         """Settled under gravity, in the middle of a floor at x = 0."""
         return standing(
-            weight=self.mass * self.gravity,
+            weight=self.mass * self.gravity * math.cos(self.slope),
             centroid=(0.0, 0.5 * self.height),
             point=self.point,
             compliance=np.zeros((4, 4)),
             normal_stiffness=self.contact().normal_stiffness,
+            shear_ratio=min(math.tan(self.slope), self.mu_static),
         )
 
 
@@ -189,7 +191,8 @@ def rig(
     body = make_modal_body(
         mass=block.mass,
         inertia=block.inertia,
-        gravity=block.gravity,
+        gravity=block.gravity * math.cos(block.slope),
+        downhill=block.gravity * math.sin(block.slope),
         point=block.point,
         rest=(0.0, 0.5 * block.height),
         shape=shape,
@@ -259,9 +262,10 @@ def _control(block: Block, largest_step: float, fixed_step: bool, energy_scale: 
         closing_share=scale * 2e-3 * max(1.0 - rigid.housner_restitution**2, 0.02),
         mass=block.mass,
         inertia=block.inertia,
-        gravity=GRAVITY,
+        gravity=GRAVITY * math.cos(block.slope),
+        downhill=GRAVITY * math.sin(block.slope),
         frequency_parameter=rigid.frequency_parameter,
-        resting_energy=block.mass * block.gravity * 0.5 * block.height,
+        resting_energy=block.mass * block.gravity * math.cos(block.slope) * 0.5 * block.height,
         slenderness_angle=rigid.slenderness_angle,
         width=block.width,
         stop_when_overturned=True,

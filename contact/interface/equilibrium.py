@@ -60,20 +60,22 @@ def standing(
     point: FloatArray,
     compliance: FloatArray,
     normal_stiffness: FloatArray,
+    shear_ratio: float = 0.0,
 ) -> Stance:
-    """Rest under gravity on unilateral springs, without friction forces.
+    """Rest under gravity on unilateral springs; without friction on a level floor.
 
     Args:
-        weight: [N]; centroid: of the undeformed container, x from its middle, z above the base [m].
+        weight: toward the floor [N]; centroid: of the undeformed container, x from its middle, z above the base [m].
         point: (n, 2) base points relative to the centroid [m].
         compliance: (2n, 2n) elastic compliance in the body's frame, inertia relief [m/N].
         normal_stiffness: (n,) [N/m].
+        shear_ratio: friction uphill over the normal force: the slope of a floor that falls toward +x.
 
     Raises:
         SettlingError: the weight acts outside the supporting points.
     """
     n = point.shape[0]
-    vertical = compliance[1::2, 1::2]
+    vertical = compliance[1::2, 1::2] - shear_ratio * compliance[1::2, 0::2]
     carrying = np.ones(n, dtype=bool)
     for _ in range(2 * n + 2):
         chosen = np.flatnonzero(carrying)
@@ -84,6 +86,7 @@ def standing(
         system[:m, m] = 1.0
         system[:m, m + 1] = -point[chosen, 0]
         system[m:, :m] = system[:m, m:].T
+        system[m + 1, :m] -= shear_ratio * point[chosen, 1]
         right = np.zeros(m + 2)
         right[:m] = -(point[chosen, 1] + centroid[1])
         right[m] = weight
@@ -97,7 +100,8 @@ def standing(
         # A point that just touches keeps its state within rounding; it would otherwise change state for ever.
         wrong = np.where(carrying, normal < -ROUNDING * weight, gap < -ROUNDING * weight / normal_stiffness)
         if not wrong.any():
-            force = np.column_stack([np.zeros(n), np.maximum(normal, 0.0)])
+            normal = np.maximum(normal, 0.0)
+            force = np.column_stack([np.zeros(n) - shear_ratio * normal, normal])
             return Stance(
                 centre=(centroid[0], centroid[1] + solution[m]),
                 rotation=float(solution[m + 1]),
@@ -116,6 +120,7 @@ def tilted(
     mass: float,
     inertia: float,
     gravity: float,
+    downhill: float = 0.0,
     point: FloatArray,
     corner_x: float,
     compliance: FloatArray,
@@ -126,7 +131,8 @@ def tilted(
 
     Args:
         rotation: not 0 [rad]; angular_velocity: about that corner [rad/s].
-        mass, inertia: [kg, kg m2]; gravity: [m/s2].
+        mass, inertia: [kg, kg m2].
+        gravity: toward the floor; downhill: along a floor that falls toward +x [m/s2].
         point: (n, 2) base points relative to the mass centre, sorted by x [m].
         corner_x: position of that corner on the floor [m].
         compliance: (2n, 2n) elastic compliance in the body's frame, inertia relief [m/N].
@@ -142,7 +148,7 @@ def tilted(
     # Acceleration of the corner: J M^-1 (weight + J^T f) - omega^2 arm = 0.
     jacobian = np.array([[1.0, 0.0, arm[1]], [0.0, 1.0, -arm[0]]])
     inverse = np.diag([1.0 / mass, 1.0 / mass, 1.0 / inertia])
-    free = np.array([0.0, -gravity]) - angular_velocity**2 * arm
+    free = np.array([downhill, -gravity]) - angular_velocity**2 * arm
     force = np.linalg.solve(jacobian @ inverse @ jacobian.T, -free)
     if force[1] <= 0.0:
         raise SettlingError(

@@ -47,7 +47,7 @@ class State(NamedTuple):
         FloatArray  #: (n,) permanent indentation; a base point is above the floor by its height and this [m]
     )
     pose: FloatArray  #: (6,) best-fit rotation, its rate, mass centre and its velocity (absolute)
-    #: (3,) kinetic, strain, gravity potential [J], of heights and vertical velocities relative to the floor
+    #: (3,) kinetic, strain, gravity potential [J], of positions and vertical velocities relative to the floor
     energy: FloatArray
     monitor: FloatArray  #: (n_m, 4) monitored points: displacement relative to the floor [m], velocity [m/s]
     numbers: FloatArray  #: all but the monitored points; the fields above are views of it

@@ -5,8 +5,10 @@
 
 Heights and vertical velocities are relative to the floor: in the frame that moves up and down with it gravity is
 g + a_v, and the work of the vertical floor motion is that of -m a_v. Along x the frame is at rest, and the work of the
-floor is that of its friction. Each term on the right but the last is integrated independently, by the trapezoidal rule
-over forces and motions at both ends of a step. The imbalance is the remainder: > 0 numerical loss, < 0 numerical gain.
+floor is that of its friction. On a slope the gravity potential is that of the place on the floor; what gravity does
+along the floor's own displacement belongs to the work of the floor, which vanishes where friction balances it. Each
+term on the right but the last is integrated independently, by the trapezoidal rule over forces and motions at both ends
+of a step. The imbalance is the remainder: > 0 numerical loss, < 0 numerical gain.
 """
 
 from contact.arrays import FloatArray

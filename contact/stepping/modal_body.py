@@ -24,7 +24,8 @@ class ModalBody(NamedTuple):
 
     mass: float  #: [kg]
     inertia: float  #: about the mass centre [kg m2]
-    gravity: float  #: [m/s2]
+    gravity: float  #: toward the floor [m/s2]
+    downhill: float  #: along a floor that falls toward +x [m/s2]
     point: FloatArray  #: (n, 2) base points relative to the mass centre, sorted by x [m]
     shape: FloatArray  #: (n, 2, m) mode shapes there [1/sqrt(kg)]
     rest: FloatArray  #: (2,) mass centre of the undeformed container on the floor at x = 0 [m]
@@ -47,6 +48,7 @@ def make_modal_body(
     mass: float,
     inertia: float,
     gravity: float,
+    downhill: float = 0.0,
     point: FloatArray,
     rest: tuple[float, float] = (0.0, 0.0),
     shape: FloatArray | None = None,
@@ -59,7 +61,8 @@ def make_modal_body(
     """Make a body; without modes it is rigid.
 
     Args:
-        mass: [kg]; inertia: about the mass centre [kg m2]; gravity: [m/s2].
+        mass: [kg]; inertia: about the mass centre [kg m2].
+        gravity: toward the floor; downhill: along a floor that falls toward +x [m/s2].
         point: (n, 2) base points relative to the mass centre [m], sorted by x.
         rest: mass centre of the undeformed container standing on the floor [m].
         shape: (n, 2, m) mass-normalised mode shapes at them.
@@ -76,6 +79,7 @@ def make_modal_body(
         mass=float(mass),
         inertia=float(inertia),
         gravity=float(gravity),
+        downhill=float(downhill),
         point=np.array(point, dtype=float, order="C"),
         rest=np.array(rest, dtype=float),
         shape=np.zeros((n, 2, 0)) if shape is None else np.array(shape, dtype=float, order="C"),

@@ -142,7 +142,9 @@ def release(
             mass = body.inertia
         else:
             force -= now * (body.damping[j - 3] * new.velocity[j] + body.stiffness[j - 3] * new.position[j])
-        if j == 1:
+        if j == 0:
+            force += now * body.mass * body.downhill
+        elif j == 1:
             force -= now * body.mass * body.gravity
         force -= mass * ((1.0 - scheme.alpha_m) * new.acceleration[j] + scheme.alpha_m * old.acceleration[j])
         body.free_change[j] = inverse[j] * force
@@ -229,7 +231,8 @@ def complete(body: ModalBody, new: State, floor: float, lift: float, lift_veloci
         body.arm[i, 0], body.arm[i, 1] = cosine * x + sine * z, -sine * x + cosine * z
         new.point[i, 0] = position[0] + body.arm[i, 0] - floor
         new.point[i, 1] = position[1] + body.arm[i, 1] - lift
-    new.internal[0], new.internal[1], new.internal[2] = 0.0, body.mass * body.gravity, 0.0
+    new.internal[0], new.internal[1] = 0.0 - body.mass * body.downhill, body.mass * body.gravity
+    new.internal[2] = 0.0
     rise = velocity[1] - lift_velocity
     kinetic = body.mass * (velocity[0] ** 2 + rise**2) + body.inertia * velocity[2] ** 2
     strain = 0.0
@@ -242,6 +245,7 @@ def complete(body: ModalBody, new: State, floor: float, lift: float, lift_veloci
     new.energy[KINETIC] = 0.5 * kinetic
     new.energy[STRAIN] = 0.5 * strain
     new.energy[POTENTIAL] = body.mass * body.gravity * (position[1] - lift)
+    new.energy[POTENTIAL] -= body.mass * body.downhill * (position[0] - floor)
     new.pose[ROTATION], new.pose[ANGULAR_VELOCITY] = position[2], velocity[2]
     new.pose[CENTRE_X], new.pose[CENTRE_Z] = position[0], position[1]
     new.pose[VELOCITY_X], new.pose[VELOCITY_Z] = velocity[0], velocity[1]

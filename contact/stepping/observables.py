@@ -13,6 +13,7 @@ import numpy as np
 from numba.extending import register_jitable
 
 from contact.arrays import FloatArray
+from contact.jit import compiled
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, POTENTIAL, ROTATION, State
 from contact.stepping.ledger import work_of_lift
 from contact.stepping.scheme import hermite
@@ -224,6 +225,17 @@ def has_impact(track: Any, control: Any, old: State, new: State) -> bool:
     return struck and track.modes & (1 << ROCK | 1 << SLIDE_ROCK) != 0
 
 
+@compiled(inline=True)
+def lifting_energy(control: Any, state: State, floor: float) -> float:
+    """Gravity potential above that of the container resting at its place on the floor [J]; `floor`: displacement [m].
+
+    Where the floor is crushed under the corners, the resting container is lower by the mean of both indentations.
+    """
+    sunk = 0.5 * (state.crushed[0] + state.crushed[control.base_points - 1])
+    downhill = control.mass * control.downhill * (state.pose[CENTRE_X] - floor)
+    return state.energy[POTENTIAL] - control.resting_energy + control.mass * control.gravity * sunk + downhill
+
+
 @register_jitable(forceinline=True)
 def follow_restitution(
     track: Any,
@@ -246,6 +258,7 @@ def follow_restitution(
     moved = new.pose[CENTRE_X] - old.pose[CENTRE_X] - (floor[1, 0] - floor[0, 0])
     work = -control.mass * (floor[1, 1] - floor[0, 1]) / step * moved
     work += work_of_lift(control.mass, old.pose, new.pose, lift, step)
+    work += control.mass * control.downhill * moved
     track.heat += heat
     if track.impacts == 0:
         track.work_before += work
@@ -255,7 +268,7 @@ def follow_restitution(
     aside = abs(new.pose[ROTATION]) > ROCKING * control.slenderness_angle
     if not (before * after < 0.0 or before == 0.0) or not aside or track.left_open + track.right_open != 1:
         return
-    energy = max(old.energy[POTENTIAL], new.energy[POTENTIAL]) - control.resting_energy
+    energy = max(lifting_energy(control, old, floor[0, 0]), lifting_energy(control, new, floor[1, 0]))
     if track.impacts == 0:
         track.turning_energy = energy
         track.work_before, track.work_after, track.heat = 0.0, 0.0, 0.0

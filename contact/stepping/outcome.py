@@ -19,7 +19,7 @@ import numpy as np
 from contact.arrays import FloatArray
 from contact.jit import compiled
 from contact.motion.kernel import UNIFORM, as_floor_motion, floor_motion
-from contact.stepping.body import KINETIC, POTENTIAL, ROTATION, VELOCITY_X
+from contact.stepping.body import KINETIC, ROTATION, VELOCITY_X
 from contact.stepping.control import most_attempts
 from contact.stepping.integrator import (
     AFTERMATH_SLICE,
@@ -30,7 +30,7 @@ from contact.stepping.integrator import (
     enter_floor_frame_compiled,
 )
 from contact.stepping.modal_body import ModalBody, with_own_scratch
-from contact.stepping.observables import NEVER
+from contact.stepping.observables import NEVER, lifting_energy
 from contact.stepping.state import ROW_SLIP, ROW_STRAIN, RunState
 
 #: energy of a container at rest, over that which it takes to overturn; and how long it must stay below [1/p]
@@ -121,9 +121,9 @@ def on_resting_floor(run: RunState, since: float, place: Sequence[float]) -> Run
 def is_over(run: RunState, part: int) -> bool:
     """Whether a part of a run (DRIVEN, FREE or UNDECIDED) is over before its time; asked before each of its slices.
 
-    At rest, kinetic energy in the frame of the floor and gravity potential above that of the resting container are
-    together below a share of the energy to overturn, at every look for some time; the floor must not accelerate. The
-    times of the looks do not depend on the slices.
+    At rest, kinetic energy in the frame of the floor and gravity potential above that of the container resting there
+    are together below a share of the energy to overturn, at every look for some time; the floor must not accelerate.
+    The times of the looks do not depend on the slices.
     """
     clock, track, control = run.clock[0], run.track[0], run.control
     if part == DRIVEN:
@@ -139,7 +139,7 @@ def is_over(run: RunState, part: int) -> bool:
     moving = run.old.energy[KINETIC] + control.mass * floor_velocity * (
         0.5 * floor_velocity - run.old.pose[VELOCITY_X]
     )
-    raised = max(0.0, run.old.energy[POTENTIAL] - control.resting_energy)
+    raised = max(0.0, lifting_energy(control, run.old, run.floor[0, 0]))
     if moving + raised > RESTING_ENERGY * control.reference_energy:
         clock.rest_since = NEVER
         return False

@@ -59,9 +59,10 @@ class Control(NamedTuple):
     closing_share: float  #: imbalance allowed as a gap closes, over the kinetic energy against the floor [-]
     mass: float  #: [kg]
     inertia: float  #: about the mass centre [kg m2]
-    gravity: float  #: [m/s2]
+    gravity: float  #: toward the floor [m/s2]
+    downhill: float  #: along a floor that falls toward +x [m/s2]
     frequency_parameter: float  #: of rocking [1/s]
-    resting_energy: float  #: gravity potential of the container at rest [J]
+    resting_energy: float  #: gravity potential of the container at rest where it was placed [J]
     slenderness_angle: float  #: [rad]
     width: float  #: [m]
     stop_when_overturned: bool

@@ -155,9 +155,11 @@ def holding_force(run: RunState) -> tuple[float, float]:
 
     The forces of a rigid body that stands on both sides of its base, or rocks about the resultant of its normal forces,
     or begins to rock about a corner because it cannot stand. The springs of the contact, and an elastic body, swing
-    around them. In an impact the normal force is larger. On a floor that accelerates upward by a_v gravity is g + a_v.
+    around them. In an impact the normal force is larger. On a floor that accelerates upward by a_v gravity is g + a_v;
+    a slope acts as an acceleration of the floor uphill.
     """
-    new, track, control, acceleration = run.new, run.track[0], run.control, run.floor[1, 2]
+    new, track, control = run.new, run.track[0], run.control
+    acceleration = run.floor[1, 2] - control.downhill
     gravity = control.gravity + run.lift[1, 2]
     normal, x, z = 0.0, 0.0, 0.0
     for i in range(new.point.shape[0]):
@@ -263,7 +265,9 @@ def account(run: RunState, step: float) -> float:
     )
     for row in (KINETIC, STRAIN, POTENTIAL):
         stored += new.energy[row] - old.energy[row]
-    change[BASE_WORK] = shear * (run.floor[1, 0] - run.floor[0, 0])
+    change[BASE_WORK] = (shear + run.control.mass * run.control.downhill) * (
+        run.floor[1, 0] - run.floor[0, 0]
+    )
     change[BASE_WORK] += work_of_lift(run.control.mass, old.pose, new.pose, run.lift, step)
     change[FRICTION] = friction
     change[CONTACT_DAMPING] = damping

@@ -33,7 +33,8 @@ class Joints:
 
     height: FloatArray  #: (J,) above the floor, undeformed [m]
     mass: FloatArray  #: (J,) of what is above [kg]
-    gravity: float  #: [m/s2]
+    gravity: float  #: toward the floor [m/s2]
+    downhill: float  #: along a floor that falls toward +x [m/s2]
     full: bool  #: coordinates are positions of nodes, else those of a floating frame
     #: for positions of nodes:
     layers: tuple[csr_array, ...]  #: J consistent masses (n, n), from each joint up to the next [kg]
@@ -75,12 +76,14 @@ class Joints:
         """
         before, after = motion[:-1], motion[1:]
         mean = 0.5 * (before + after)
-        weight = self.mass * self.gravity
+        weight, pull = self.mass * self.gravity, self.mass * self.downhill
         force = (after[:, :, MOMENTUM] - before[:, :, MOMENTUM]) / interval
+        force[:, :, 0] -= pull
         force[:, :, 1] += weight
         place = mean[:, :, JOINT]
         moment = (_about(place, after) - _about(place, before)) / interval
-        moment -= weight * (mean[:, :, CENTRE] - place)[:, :, 0]
+        arm = mean[:, :, CENTRE] - place
+        moment -= weight * arm[:, :, 0] + pull * arm[:, :, 1]
         cosine, sine = np.cos(mean[:, :, TURN]), np.sin(mean[:, :, TURN])
         normal = sine * force[:, :, 0] + cosine * force[:, :, 1]
         shear = cosine * force[:, :, 0] - sine * force[:, :, 1]
@@ -159,7 +162,8 @@ def joints_of(model: Model, heights: FloatArray | None = None) -> Joints | None:
     return Joints(
         height=lines,
         mass=total,
-        gravity=model.case.gravity_m_s2,
+        gravity=model.run.control.gravity,
+        downhill=model.run.control.downhill,
         full=model.case.solver.model == "full",
         layers=layers,
         ends=ends,

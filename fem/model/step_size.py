@@ -133,6 +133,7 @@ def control_of(
         mass=mesh.mass,
         inertia=mesh.inertia,
         gravity=case.gravity_m_s2,
+        downhill=0.0,
         frequency_parameter=rate,
         resting_energy=mesh.mass * case.gravity_m_s2 * mesh.centroid[1],
         slenderness_angle=static.slenderness_angle,

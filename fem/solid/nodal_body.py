@@ -49,7 +49,7 @@ class FullBody:
         elements: the container, discretised.
         base: (n_c,) its supporting nodes, by rising x.
         monitor: (n_m,) nodes whose motion is observed.
-        gravity: [m/s2].
+        gravity: toward the floor; downhill: along a floor that falls toward +x [m/s2].
         damping: a of the stiffness-proportional damping C = a K in the turned frame [s].
     """
 
@@ -62,12 +62,13 @@ class FullBody:
         monitor: IntArray,
         *,
         gravity: float,
+        downhill: float = 0.0,
         damping: float,
     ) -> None:
         self.elements = elements
         self.base = np.asarray(base)
         self.monitor = np.asarray(monitor)
-        self.gravity = gravity
+        self.gravity, self.downhill = gravity, downhill
         self.damping = damping
         self._vector_mass = elements.vector_mass
         nodal_mass = elements.nodal_mass
@@ -234,6 +235,7 @@ def _without_factors(body: FullBody, nodal_mass: FloatArray, mass_arm: FloatArra
         mass=body.mass,
         inertia=body.inertia,
         gravity=float(body.gravity),
+        downhill=float(body.downhill),
         damping=float(body.damping),
         tolerance=max(RESIDUAL_TOLERANCE * body.mass * float(body.gravity), _rounding(elements)),
         first=elements.lame.first,

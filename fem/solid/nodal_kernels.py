@@ -42,7 +42,8 @@ class NodalBody(NamedTuple):
 
     mass: float  #: [kg]
     inertia: float  #: about the mass centre [kg m2]
-    gravity: float  #: [m/s2]
+    gravity: float  #: toward the floor [m/s2]
+    downhill: float  #: along a floor that falls toward +x [m/s2]
     damping: float  #: a of the damping a K in the turned frame [s]
     tolerance: float  #: residual at which the iterations of a step stop [N]
     first: float  #: Lamé pair of plane stress [Pa]
@@ -146,8 +147,8 @@ def unbalanced(body: NodalBody, scheme: Scheme, old: State, new: State) -> None:
             j = 2 * body.mass_columns[at]
             x += body.mass_values[at] * (share * new.acceleration[j] + rest * old.acceleration[j])
             z += body.mass_values[at] * (share * new.acceleration[j + 1] + rest * old.acceleration[j + 1])
-        weight = body.nodal_mass[i] * body.gravity
-        x += now * (body.internal[i, 0] + body.damping_force[i, 0])
+        weight, pull = body.nodal_mass[i] * body.gravity, body.nodal_mass[i] * body.downhill
+        x += now * (body.internal[i, 0] + body.damping_force[i, 0] - pull)
         z += now * (body.internal[i, 1] + body.damping_force[i, 1] + weight)
         body.residual[2 * i] = x + before * (old.internal[2 * i] - old.external[2 * i])
         body.residual[2 * i + 1] = z + before * (old.internal[2 * i + 1] - old.external[2 * i + 1])
@@ -291,6 +292,7 @@ def complete(body: NodalBody, new: State, floor: float, lift: float, lift_veloci
             new.damping[2 * i + c] = body.damping_force[i, c]
             new.internal[2 * i + c] = body.internal[i, c] + body.damping_force[i, c]
             new.external[2 * i + c] = 0.0
+        new.internal[2 * i] -= body.nodal_mass[i] * body.downhill
         new.internal[2 * i + 1] += body.nodal_mass[i] * body.gravity
     for a in range(body.base.size):
         j = 2 * body.base[a]
@@ -314,6 +316,7 @@ def complete(body: NodalBody, new: State, floor: float, lift: float, lift_veloci
     new.energy[KINETIC] = 0.5 * twice + lift_velocity * (0.5 * body.mass * lift_velocity - up)
     new.energy[STRAIN] = body.strain_energy[0]
     new.energy[POTENTIAL] = body.mass * body.gravity * (centre_z - lift)
+    new.energy[POTENTIAL] -= body.mass * body.downhill * (centre_x - floor)
 
 
 @compiled(sources=SOURCES)
