@@ -19,15 +19,13 @@ from contact.stepping.ledger import (
     MATERIAL_DAMPING,
 )
 from contact.stepping.observables import FALLEN, FORCE_WINDOW, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK, SLIDING
-from fem.case.case import Case
+from fem.model.floor import YIELD_STRENGTH, is_steel_shell
 from fem.model.model import Model
 from fem.results.history import History
 from fem.results.run_result import Energy, Numerics, Verdict
 from fem.runtime.arrays import FloatArray
 
 MODE_NAMES = {REST: "rest", SLIDE: "slide", ROCK: "rock", SLIDE_ROCK: "slide-rock", FALLEN: "overturned"}
-YIELD_STRENGTH = 235e6  #: [Pa], S235, EN 1993-1-1 Table 3.1
-STEEL_MODULUS = 1.5e11  #: [Pa], from which a shell is taken for steel
 RotationT = TypeVar("RotationT", float, FloatArray)
 
 CONTENTS_FILTER = "Butterworth low-pass of two poles, causal"  #: `contact.stepping.contents`
@@ -95,7 +93,7 @@ def verdict_from(
         max_top_displacement_m=track.max_top_displacement if sampled else None,
         max_acceleration_m_s2=track.max_acceleration if sampled else None,
         max_von_mises_Pa=largest_von_mises,
-        yield_strength_Pa=YIELD_STRENGTH if _is_steel_shell(model.case) else None,
+        yield_strength_Pa=YIELD_STRENGTH if is_steel_shell(model.case) else None,
     )
 
 
@@ -103,10 +101,6 @@ def _indentation(model: Model) -> float | None:
     """Largest permanent indentation under a base point [m]; None where the floor does not crush."""
     run, base = model.run, model.run.control.base_points
     return float(run.old.crushed[:base].max()) if np.isfinite(run.contact.cap[:base]).any() else None
-
-
-def _is_steel_shell(case: Case) -> bool:
-    return case.container.section == "shell" and case.container.youngs_modulus_Pa > STEEL_MODULUS
 
 
 def energy_of(model: Model) -> Energy:

@@ -74,12 +74,14 @@ class PenaltyCache:
         self._most = most
         self._held: dict[Hashable, float] = {}
 
-    def of(self, case: Case) -> float:
-        """Normal penalty of a case, chosen where it says "auto" [Pa/m].
+    def of(self, case: Case) -> float | None:
+        """Normal penalty of a case, chosen where it says "auto" [Pa/m]; None of a slab, which has none.
 
         Raises:
             CaseError, MeshError: bad input.
         """
+        if case.floor.is_slab:
+            return None
         key = container_key(case), case.contact.normal_penalty_Pa_m
         if key not in self._held:
             while len(self._held) >= self._most:

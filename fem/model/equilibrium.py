@@ -12,8 +12,9 @@ from contact.interface.workspace import Contact
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from fem.case.case import Case, CaseError
 from fem.model.container import Container
+from fem.model.floor import slab_of
 from fem.model.support import normal_penalty
-from fem.model.validity import require_stiff_contact, require_stiff_container
+from fem.model.validity import require_bearing, require_stiff_contact, require_stiff_container
 from fem.runtime.arrays import FloatArray
 from fem.solid.elasticity import least_principal_strain
 from fem.solid.nodal_body import FullBody, rotation_matrix
@@ -57,6 +58,7 @@ def find_equilibrium(case: Case, container: Container, gravity: float) -> Equili
         stance = _stance(case, container, contact, gravity)
     except SettlingError as error:
         raise CaseError(f"[initial] no equilibrium at the start: {error}") from error
+    require_bearing(case, container.mesh, float(np.max(stance.force[:, 1] / contact.cap)))
     if case.solver.model != "rigid":
         require_stiff_container(case, _compression(container, stance))
     body = _body(case, container, contact)
@@ -67,6 +69,7 @@ def same_equilibrium(case: Case, other: Case) -> bool:
     """Whether two cases of one container share an equilibrium, if their floors begin with one vertical acceleration."""
     return (
         case.contact == other.contact
+        and case.floor == other.floor
         and case.initial == other.initial
         and case.container.damping_ratio == other.container.damping_ratio
         and case.gravity_m_s2 == other.gravity_m_s2
@@ -82,13 +85,21 @@ def _compression(container: Container, stance: Stance) -> float:
 
 
 def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) -> Contact:
+    """The floor under so many springs, those of the base first."""
     laws = {"elastic-stick": ELASTIC_STICK, "regularised": REGULARISED}
-    chosen = case.contact
+    chosen, corner = case.contact, 0.5 * float(springs[:base].sum())
+    if case.floor.is_slab:
+        slab = slab_of(case, mesh.mass)
+        ratio, relaxation = slab.tangential_stiffness / slab.normal_stiffness, slab.relaxation_time
+        cap = slab.cap * springs / corner
+    else:
+        ratio, cap = chosen.tangential_ratio, np.full(springs.size, math.inf)
+        relaxation = relaxation_time(chosen.damping_ratio, mesh.mass, 2.0 * corner)
     return Contact(
         normal_stiffness=springs,
-        tangential_stiffness=chosen.tangential_ratio * springs,
-        cap=np.full(springs.size, math.inf),
-        relaxation_time=relaxation_time(chosen.damping_ratio, mesh.mass, float(springs[:base].sum())),
+        tangential_stiffness=ratio * springs,
+        cap=cap,
+        relaxation_time=relaxation,
         mu_static=chosen.mu_static,
         mu_kinetic=chosen.mu_kinetic,
         weakening=chosen.weakening_m,

@@ -3,6 +3,7 @@
 from contact.interface.penalty import choose_normal_penalty
 from contact.interface.support import Support, choose_support
 from fem.case.case import Case, CaseError
+from fem.model.floor import slab_penalty
 from fem.model.geometry import base_positions
 from fem.model.static_checks import slenderness_angle
 from mesh.container import ContainerMesh
@@ -29,7 +30,9 @@ def build_support(case: Case, mesh: ContainerMesh) -> Support:
 
 
 def normal_penalty(case: Case, mesh: ContainerMesh) -> float:
-    """Normal penalty of the case; "auto" chooses it for the mesh [Pa/m]."""
+    """Normal penalty of the case; a slab has its own, "auto" chooses it for the mesh [Pa/m]."""
+    if case.floor.is_slab:
+        return slab_penalty(case, mesh)
     given = case.contact.normal_penalty_Pa_m
     if given != "auto":
         return given

@@ -7,6 +7,7 @@ import math
 import os
 
 from fem.case.case import Case, CaseError
+from fem.model.floor import slab_of
 from fem.model.support import normal_penalty
 from mesh.container import ContainerMesh
 
@@ -32,14 +33,43 @@ def require_stiff_contact(case: Case, mesh: ContainerMesh, stiffness: float) -> 
     if weight <= LARGEST_SINKING * size * stiffness:
         return
     depth = f"by {weight / stiffness:.3g} m" if stiffness > 0.0 else "without limit"
+    sinks = (
+        f"the container would sink in {depth} under its weight alone; the limit is {LARGEST_SINKING:g} of its smaller "
+        f"dimension, {size:g} m"
+    )
+    if case.floor.is_slab:
+        stiff = f"[floor] youngs_modulus_Pa = {case.floor.youngs_modulus_Pa:g} Pa"
+        raise CaseError(f"{stiff}: {sinks}; take a stiffer floor or a larger corner_patch_m")
     chosen = (
         '"auto" follows container.youngs_modulus_Pa'
         if case.contact.normal_penalty_Pa_m == "auto"
         else '"auto" chooses it'
     )
     raise CaseError(
-        f"[contact] normal_penalty_Pa_m = {normal_penalty(case, mesh):.3g} Pa/m: the container would sink in {depth} "
-        f"under its weight alone; the limit is {LARGEST_SINKING:g} of its smaller dimension, {size:g} m; {chosen}"
+        f"[contact] normal_penalty_Pa_m = {normal_penalty(case, mesh):.3g} Pa/m: {sinks}; {chosen}"
+    )
+
+
+def require_bearing(case: Case, mesh: ContainerMesh, use: float) -> None:
+    """Refuse a slab that crushes under the container at rest, into which it would sink without end.
+
+    `use` is the largest force of a point at the start over its cap; 0 on a rigid floor.
+
+    Raises:
+        CaseError: with the least patch that bears it.
+    """
+    if use < 1.0:
+        return
+    slab = slab_of(case, mesh.mass)
+    patch, force = f"{slab.patch[0]:g} x {slab.patch[1]:g} m", use * slab.cap
+    carries = f"a corner carries {1e-3 * force:.4g} kN on a patch of {patch} and would sink in without end"
+    if slab.yields_first:
+        raise CaseError(
+            f"[container] wall_m = {case.container.wall_m:g} m: {carries}, because its wall yields"
+        )
+    raise CaseError(
+        f"[floor] bearing_strength_Pa = {case.floor.bearing_strength_Pa:g} Pa: {carries}; the least patch has "
+        f"{use * slab.area:.3g} m2, this one {slab.area:.3g} m2: give corner_patch_m all that bears, or spread the load"
     )
 
 

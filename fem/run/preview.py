@@ -10,11 +10,12 @@ from fem.assessment.code_note import code_note
 from fem.assessment.motion_words import doubts
 from fem.case.case import Case
 from fem.case.rules import ends_at_rest
+from fem.model.floor import slab_of
 from fem.model.geometry import node_count
 from fem.model.restitution import apparent_restitution
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.support import build_support, normal_penalty
-from fem.model.validity import require_stiff_contact
+from fem.model.validity import require_bearing, require_stiff_contact
 from fem.results.run_result import MotionResult
 from fem.run.size import frames_of, required_disk, samples_of
 from mesh.container import ContainerMesh
@@ -73,6 +74,9 @@ class Preview:
         springs = build_support(case, mesh).normal_stiffness(penalty)
         stiffness = float(springs.sum())
         require_stiff_contact(case, mesh, stiffness)
+        if case.floor.is_slab:
+            share = 1.0 if case.initial.rotation_rad else 0.5
+            require_bearing(case, mesh, share * self.static.weight / slab_of(case, mesh.mass).cap)
         return {
             "model": solver.model,
             "scheme": solver.scheme,
