@@ -1,0 +1,113 @@
+"""The time stepper of rigid boxes in `moreau` by itself, before anything is compared with it."""
+
+import math
+
+import numpy as np
+import pytest
+from moreau import Boxes, move_boxes, slide_and_rock, slide_and_rock_batch
+
+from contact.reference.floor_acceleration import FloorAcceleration, half_sine_pulse, sine_floor
+from contact.reference.planar_block import PlanarBlock, simulate_planar_block
+from contact.reference.rigid_block import RigidBlock
+from contact.reference.sliding import RigidSlider, simulate_sliding
+from contact.reference.two_block_motion import simulate_two_blocks
+from contact.reference.two_blocks import StackedBlock, TwoBlockStack
+
+WHOLE = RigidBlock.homogeneous(width=1.1, height=4.0)
+ONE = Boxes.homogeneous([1.1], [4.0], [10e3])
+FOUR = Boxes.homogeneous([1.1] * 4, [1.0] * 4, [2500.0] * 4)
+OMEGA = 6.928  # of the default motion [rad/s]
+STEP = 5e-4
+
+
+def shaken(peak, duration, step=STEP):
+    """A floor peak/Omega^2 sin(Omega t): accelerations at the middles of steps."""
+    return -peak * np.sin(OMEGA * step * (np.arange(round(duration / step)) + 0.5))
+
+
+def sampled(floor: FloorAcceleration, duration, step):
+    return np.array([floor.function(step * (k + 0.5)) for k in range(round(duration / step))])
+
+
+def test_one_box_rocks_as_the_event_driven_block():
+    found = move_boxes(ONE, shaken(4.0, 6.0), step=STEP, mu_static=0.4)
+    floor = sine_floor(amplitude=4.0 / OMEGA**2, angular_frequency=OMEGA)
+    exact = simulate_planar_block(
+        PlanarBlock(body=WHOLE, mu_static=0.4, mu_kinetic=0.4), floor, duration=6.0
+    ).largest_rotation
+    assert exact / WHOLE.slenderness_angle == pytest.approx(0.3992, abs=1e-4)
+    assert found.max_rotation[0] == pytest.approx(exact, rel=2e-3)
+    assert found.max_slip[0] < 1e-9
+
+
+def test_one_box_slides_as_the_event_driven_slider():
+    floor = sine_floor(amplitude=6.0 / OMEGA**2, angular_frequency=OMEGA)
+    squat = Boxes.homogeneous([4.0], [1.0], [10e3])
+    found = move_boxes(squat, shaken(6.0, 5.0), step=STEP, mu_static=0.4, mu_kinetic=0.2)
+    slider = RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=9.81)
+    slip = simulate_sliding(slider, floor, duration=5.0).at(found.times)[0]
+    assert found.slip[:, 0] == pytest.approx(slip, abs=2e-3 * np.abs(slip).max())
+
+
+def test_the_kernel_for_one_box_does_the_same():
+    along = shaken(4.0, 6.0)
+    for mu_static, mu_kinetic in ((0.4, 0.4), (0.4, 0.2), (0.2, 0.2)):
+        general = move_boxes(ONE, along, step=STEP, mu_static=mu_static, mu_kinetic=mu_kinetic)
+        q, v = np.array([0.0, 2.0, 0.0]), np.zeros(3)
+        ratio = 10e3 / ONE.inertia[0]
+        rotation, slip, fell = slide_and_rock(
+            0.55, 2.0, ratio, mu_static, mu_kinetic, 9.81, along, STEP, q, v
+        )
+        assert not fell
+        assert rotation == pytest.approx(general.max_rotation[0], abs=2e-5)
+        assert slip == pytest.approx(general.max_slip[0], abs=2e-5)
+    found = np.zeros((2, 3))
+    amplitude = np.array([4.0, 12.0]) / OMEGA**2
+    block, mu = np.tile([0.55, 2.0, ratio], (2, 1)), np.full((2, 2), 0.4)
+    slide_and_rock_batch(block, mu, 9.81, amplitude, np.full(2, OMEGA), False, STEP, 12000, found)
+    assert found[0, 0] == pytest.approx(
+        move_boxes(ONE, along, step=STEP, mu_static=0.4).max_rotation[0], rel=1e-6
+    )
+    assert found[:, 2].tolist() == [0.0, 1.0]
+
+
+@pytest.mark.parametrize("box", [(1.1, 2.0), (0.7, 2.0), (1.4, 0.9)])
+def test_two_boxes_pass_from_pattern_to_pattern_as_the_event_driven_ones(box):
+    lower = StackedBlock.homogeneous(width=1.1, height=2.0, mass=5000.0)
+    upper = StackedBlock.homogeneous(width=box[0], height=box[1], mass=3000.0)
+    stack = TwoBlockStack(lower=lower, upper=upper, gravity=9.81)
+    floor, errors = half_sine_pulse(peak=9.81, duration=0.15), []
+    exact = simulate_two_blocks(stack, floor, duration=1.0)
+    assert len(exact.impacts) >= 1
+    boxes = Boxes.homogeneous([1.1, box[0]], [2.0, box[1]], [5000.0, 3000.0])
+    for step in (1e-3, 2.5e-4):
+        found = move_boxes(
+            boxes, sampled(floor, 1.0, step), step=step, mu_static=3.0, every=round(0.01 / step)
+        )
+        assert found.max_slip.max() < 1e-5  # nothing slides
+        errors.append(np.abs(found.place[:, :, 2] - exact.at(found.times)[:, [0, 2]]).max())
+    assert errors[1] < 0.5 * errors[0] < 5e-3
+
+
+@pytest.mark.parametrize(
+    ("peak", "ratio", "slip"), [(4.0, 0.390, 0.1104), (5.0, 0.4745, 0.2190), (6.0, 0.402, 0.3677)]
+)
+def test_four_boxes_do_what_another_program_of_this_kind_found(peak, ratio, slip):
+    # 0.39, 0.47, 0.40 of the slenderness angle with 0.4 between boxes; 110, 219, 368 mm at the lowest joint with 0.2.
+    rough = move_boxes(FOUR, shaken(peak, 6.0), step=STEP, mu_static=0.4)
+    assert rough.max_rotation.max() / WHOLE.slenderness_angle == pytest.approx(ratio, abs=5e-3)
+    smooth = move_boxes(FOUR, shaken(peak, 6.0), step=STEP, mu_static=np.array([0.4, 0.2, 0.2, 0.2]))
+    assert smooth.max_slip[1] == pytest.approx(slip, abs=1.5e-3)
+    assert rough.fell_box == smooth.fell_box == -1
+
+
+def test_a_box_is_pulled_from_under_another_one_and_that_falls():
+    # frictionless joint: the upper box stays where it is; beyond half a width it tips into the gap beside
+    two = Boxes.homogeneous([1.0, 1.0], [1.0, 1.0], [1000.0, 1000.0])
+    pull = np.where(np.arange(2000) < 500, 3.0, 0.0)
+    found = move_boxes(two, pull, step=1e-3, mu_static=np.array([0.9, 0.0]), every=1)
+    gone = 0.5 * 3.0 * 0.3**2
+    assert found.place[300, 0, 0] == pytest.approx(0.0, abs=1e-9)
+    assert found.slip[300, 1] == pytest.approx(-gone, rel=1e-3)
+    assert found.fell_box == 1
+    assert math.isfinite(found.fell_at)
