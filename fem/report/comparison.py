@@ -6,6 +6,7 @@ from typing import NamedTuple
 from markupsafe import Markup
 
 from fem.assessment.summary import own_motion_name, rule_says, run_slid, run_tilted
+from fem.case.boxes import Box
 from fem.case.case import Case
 from fem.case.motion_tables import FloorMotionTable
 from fem.html.units import degrees, number, quantity, short, typeset
@@ -63,10 +64,8 @@ def compared_rows(static: StaticChecks, verdict: Verdict, case: Case) -> list[Co
 def asked_rows(case: Case) -> list[tuple[str, str]]:
     """The case in words: name and value."""
     box, contact = case.container, case.contact
-    boxes = f"{box.boxes} boxes, bolted, each " if box.boxes > 1 else ""
-    wall = f"shell, walls {short(box.wall_m, 1e3)} mm" if box.section == "shell" else "solid block"
-    size = " × ".join(short(length) for length in (box.width_m, box.depth_m, box.height_m))
-    weight = f"{short(case.weight / box.boxes, 1e-3, 6)} kN"
+    walls = ", ".join(dict.fromkeys(short(one.wall, 1e3) for one in case.stack))
+    section = f"shell, walls {walls} mm" if box.section == "shell" else "solid block"
     supports = {
         "corners": "two bottom corners",
         "feet": f"two feet, {short(case.support.foot_m, 1e3)} mm long",
@@ -79,16 +78,50 @@ def asked_rows(case: Case) -> list[tuple[str, str]]:
     }
     mu = Markup("μ<sub>s</sub> = {}, μ<sub>k</sub> = {}")
     return [
-        ("container", f"{boxes}{size} m (width × depth × height), {weight} with fill"),
-        ("section", f"{wall}, E = {short(box.youngs_modulus_Pa, 1e-9)} GPa, ν = {short(box.poisson_ratio)}"),
+        *_box_rows(case),
+        (
+            "section",
+            f"{section}, E = {short(box.youngs_modulus_Pa, 1e-9)} GPa, ν = {short(box.poisson_ratio)}",
+        ),
         ("support", supports[case.support.kind]),
         ("friction", mu.format(short(contact.mu_static), short(contact.mu_kinetic))),
+        *([("friction between boxes", _joint_friction(case, mu))] if box.is_loose else []),
         ("floor", floor_in_words(case)),
         *([("floor, vertical", motion_in_words(case.vertical))] if case.has_vertical else []),
         ("start", _start(case)),
         ("model", models[case.solver.model]),
         ("time", f"{_duration(case)}, g = {short(case.gravity_m_s2)} m/s²"),
     ]
+
+
+def _box_rows(case: Case) -> list[tuple[str, str]]:
+    """Size and weight of a box, and how many there are; of boxes that differ, of each from the floor up."""
+    boxes, depth, joints = case.stack, short(case.container.depth_m), case.container.joints
+    count = f"{len(boxes)} boxes, {joints}" if len(boxes) > 1 else ""
+
+    def described(box: Box) -> str:
+        size = " × ".join((short(box.width), depth, short(box.height)))
+        return (
+            f"{size} m (width × depth × height), {short(box.mass * case.gravity_m_s2, 1e-3, 6)} kN with fill"
+        )
+
+    if case.container.box is None:
+        return [("container", f"{count}, each {described(boxes[0])}" if count else described(boxes[0]))]
+    rows = [("container", f"{count or 'one box'}, from the floor up:")]
+    for k, box in enumerate(boxes, 1):
+        offset = (
+            f"; {short(abs(box.axis), 1e3)} mm to the {'right' if box.axis > 0.0 else 'left'}"
+            if box.axis
+            else ""
+        )
+        rows.append((f"box {k}", f"{described(box)}, mass centre at {short(box.centroid)} m{offset}"))
+    return rows
+
+
+def _joint_friction(case: Case, mu: Markup) -> Markup:
+    friction = case.joint_friction
+    weakening = f", falling over {short(friction['weakening_m'], 1e3)} mm" if friction["weakening_m"] else ""
+    return mu.format(short(friction["mu_static"]), short(friction["mu_kinetic"])) + weakening
 
 
 def _duration(case: Case) -> str:
@@ -119,12 +152,19 @@ def assumptions(case: Case, result: RunResult | None = None) -> list[str]:
     ]
     if case.container.boxes > 1:
         listed = "; the forces in the joints are listed below" if result and result.joints else ""
-        lines.append(f"The boxes are bolted and do not separate{listed}.")
+        lines.append(
+            "The boxes stand on one another without bolts. Corners of a box meet the face of the next, with the laws "
+            "of the floor."
+            if case.container.is_loose
+            else f"The boxes are bolted and do not separate{listed}."
+        )
     return lines
 
 
 def _material(case: Case) -> str:
     if case.solver.model == "rigid":
+        if case.container.is_loose:
+            return "Every box is rigid: it turns and slides as one body, and has no stress."
         return "The container is rigid: it turns and slides as one body, and has no stress."
     if case.container.section == "solid":
         return "A homogeneous block, linear elastic in plane stress (finite rotation)."
@@ -137,7 +177,7 @@ def _material(case: Case) -> str:
 EXCLUSIONS = (
     "torsion, motion out of the plane, wind",
     "sloshing, plasticity, buckling and bending of the sheets out of their plane",
-    "compliance of floor and soil, neighbouring containers, ropes or stops, loose stacking of boxes",
+    "compliance of floor and soil, neighbouring containers, ropes or stops",
     "partial factors, and further ground motions: EN 1998-1:2004, 3.2.3.1.2 (4) asks for three or more",
 )
 
@@ -145,6 +185,8 @@ EXCLUSIONS = (
 def exclusions(case: Case) -> tuple[str, ...]:
     """What a result leaves out."""
     first, *others = EXCLUSIONS
+    if case.container.boxes > 1 and not case.container.is_loose:
+        others.insert(1, "boxes without bolts, which open and slide on one another")
     return (first if case.has_vertical else f"vertical floor motion, {first}", *others)
 
 

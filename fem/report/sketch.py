@@ -4,6 +4,9 @@ Drawn to scale; lengths in m, x to the right, z up.
 """
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
 
 from markupsafe import Markup
 from matplotlib.axes import Axes
@@ -11,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Rectangle
 from matplotlib.transforms import Affine2D
 
+from fem.case.boxes import Box, centre_above, shared_face
 from fem.case.case import Case
 from fem.figures.style import BLACK, BLUE, GREY, house_style, svg_of
 from fem.html.page import svg_element
@@ -20,6 +24,7 @@ WIDTH = 4.3  #: of the drawing [inch]
 WIDEST, TALLEST = 1.8, 2.6  #: of the container in it [inch]
 ABOVE, BELOW = 0.3, 1.2  #: room above and below the container [inch]
 BODY = "#E4EBF1"
+MOST_HEIGHTS = 4  #: of boxes that differ, in one dimension
 
 
 def sketch(
@@ -33,9 +38,10 @@ def sketch(
         peak_acceleration: largest |acceleration| of the floor in the run [m/s2].
         peak_vertical: .. up or down; None: it does not move so.
     """
-    box = case.container
-    width, height = box.width_m, box.total_height
-    inch = max(height / TALLEST, width / WIDEST)  # so many metres
+    boxes, width = case.stack, case.stack[0].width
+    low, high = min(box.sides[0] for box in boxes), max(box.sides[1] for box in boxes)
+    height = boxes[-1].top
+    inch = max(height / TALLEST, 2.0 * max(-low, high) / WIDEST)  # so many metres
     with house_style():
         figure = Figure(figsize=(WIDTH, ABOVE + height / inch + BELOW))
         axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
@@ -43,14 +49,14 @@ def sketch(
         axes.set_axis_off()
         unit = 0.04 * inch
         _draw_floor(axes, case, unit)
-        _draw_container(axes, case)
-        _draw_mass_centre(axes, 0.5 * width, centroid, unit)
+        _draw_container(axes, case, unit)
+        middle = centre_above(boxes, 0)
+        _draw_mass_centre(axes, 0.5 * width, middle, centroid, unit)
         _dimension(axes, (-0.5 * width, -7 * unit), (0.5 * width, -7 * unit), f"a = {short(width)} m")
-        left, right = -0.5 * width - 8 * unit, 0.5 * width + 22 * unit
-        boxes = f"{box.boxes} × c = {box.boxes} × " if box.boxes > 1 else "c = "
-        _dimension(axes, (left, 0.0), (left, height), f"{boxes}{short(box.height_m)} m")
+        left, right = low - 8 * unit, high + 22 * unit
+        _dimension(axes, (left, 0.0), (left, height), _height(boxes))
         _dimension(axes, (right, 0.0), (right, centroid), f"$z_c$ = {short(centroid)} m")
-        axes.plot((0.0, right + unit), (centroid, centroid), color=GREY, linewidth=0.5)
+        axes.plot((middle, right + unit), (centroid, centroid), color=GREY, linewidth=0.5)
         if case.motion.kind != "none":
             axes.annotate(
                 "", (-10 * unit, -15 * unit), (10 * unit, -15 * unit), arrowprops=_arrow("<|-|>", BLUE)
@@ -62,9 +68,10 @@ def sketch(
         if peak_vertical is not None:
             words = [*words, f"vertical: {case.vertical.kind}, peak {short(peak_vertical)} m/s²"]
         axes.text(0.0, -17 * unit, "\n".join(words), color=BLUE, ha="center", va="top")
+    stack = f" of {len(boxes)} {case.container.joints} boxes" if len(boxes) > 1 else ""
     label = (
-        f"Sketch: container {short(width)} m wide and {short(height)} m high, mass centre at {short(centroid)} m, "
-        f"on {case.support.kind}"
+        f"Sketch: container{stack}, {short(high - low)} m wide and {short(height)} m high, mass centre at "
+        f"{short(centroid)} m, on {case.support.kind}"
     )
     return svg_element(svg_of(figure), label=label, prefix="sketch")
 
@@ -75,7 +82,7 @@ def _arrow(style: str, colour: str) -> dict[str, object]:
 
 def _draw_floor(axes: Axes, case: Case, unit: float) -> None:
     """The floor, and where the base may touch it: thick marks."""
-    reach, width = 0.45 * (axes.get_xlim()[1] - axes.get_xlim()[0]), case.container.width_m
+    reach, width = 0.45 * (axes.get_xlim()[1] - axes.get_xlim()[0]), case.stack[0].width
     axes.add_patch(
         Rectangle((-reach, -2 * unit), 2 * reach, 2 * unit, hatch="////", fill=False, ec=GREY, lw=0)
     )
@@ -89,41 +96,93 @@ def _draw_floor(axes: Axes, case: Case, unit: float) -> None:
         )
 
 
-def _draw_container(axes: Axes, case: Case) -> None:
-    """The boxes with their walls, and dashed the tilted container where it starts so."""
-    box, rotation = case.container, case.initial.rotation_rad
-    left, width, height = -0.5 * box.width_m, box.width_m, box.height_m
-    for k in range(box.boxes):
-        axes.add_patch(Rectangle((left, k * height), width, height, fc=BODY, ec=BLACK, lw=1.1))
-        wall = box.wall_m if box.section == "shell" and box.wall_m else 0.0
-        if wall:
-            inside = (left + wall, k * height + wall), width - 2 * wall, height - 2 * wall
+def _height(boxes: Sequence[Box]) -> str:
+    """Height of the stack: of so many equal boxes, or the sum of heights that differ."""
+    heights = {box.height for box in boxes}
+    if len(boxes) == 1:
+        return f"c = {short(boxes[0].height)} m"
+    if len(heights) == 1:
+        return f"{len(boxes)} × c = {len(boxes)} × {short(boxes[0].height)} m"
+    if len(boxes) <= MOST_HEIGHTS:
+        return f"{' + '.join(short(box.height) for box in boxes)} = {short(boxes[-1].top)} m"
+    return f"{len(boxes)} boxes, {short(boxes[-1].top)} m"
+
+
+def _draw_container(axes: Axes, case: Case, unit: float) -> None:
+    """The boxes with their walls, marks at loose joints, and dashed the tilted container where it starts so."""
+    boxes, rotation = case.stack, case.initial.rotation_rad
+    pivot = math.copysign(0.5 * boxes[0].width, rotation)
+    turn = Affine2D().rotate_around(pivot, 0.0, -rotation) + axes.transData
+    for box in boxes:
+        left, _ = box.sides
+        axes.add_patch(Rectangle((left, box.bottom), box.width, box.height, fc=BODY, ec=BLACK, lw=1.1))
+        if wall := box.wall or 0.0:
+            inside = (left + wall, box.bottom + wall), box.width - 2 * wall, box.height - 2 * wall
             axes.add_patch(Rectangle(*inside, fill=False, ec=GREY, lw=0.5))
-    if rotation:
-        pivot = math.copysign(0.5 * width, rotation)
-        turn = Affine2D().rotate_around(pivot, 0.0, -rotation) + axes.transData
-        outline = Rectangle(
-            (left, 0.0), width, box.total_height, fill=False, ec=BLUE, ls="--", transform=turn
-        )
+    for left, bottom, right, top in _outlines(case) if rotation else ():
+        outline = Rectangle((left, bottom), right - left, top - bottom, fill=False, ec=BLUE, ls="--")
+        outline.set_transform(turn)
         axes.add_patch(outline)
-        place = pivot + math.sin(rotation) * box.total_height, 0.8 * box.total_height
+    if rotation:
+        height = boxes[-1].top
         side = "left" if rotation > 0.0 else "right"
+        place = pivot + math.sin(rotation) * height, 0.8 * height
         axes.text(*place, f" θ = {degrees(rotation)} at t = 0 ", color=BLUE, ha=side)
+    if case.container.is_loose:
+        _draw_loose_joints(axes, case, unit)
+    if case.container.is_loose or case.container.box is not None:
+        _number_boxes(axes, boxes, unit)
 
 
-def _draw_mass_centre(axes: Axes, half_width: float, centroid: float, unit: float) -> None:
-    """Mass centre and weight, and the slenderness angle at the right corner."""
-    angle = math.atan2(half_width, centroid)
-    reach = min(0.7 * math.hypot(half_width, centroid), 28 * unit)
+def _draw_loose_joints(axes: Axes, case: Case, unit: float) -> None:
+    """Marks where a box may touch the next, as on the floor, and the friction between them."""
+    for below, box in pairwise(case.stack):
+        for end, inward in zip(shared_face(below, box), (unit, -unit), strict=True):
+            axes.plot(
+                (end, end + inward),
+                (box.bottom, box.bottom),
+                color=BLUE,
+                linewidth=4,
+                solid_capstyle="butt",
+                zorder=5,
+            )
+    static, kinetic = (case.joint_friction[name] for name in ("mu_static", "mu_kinetic"))
+    words = f"loose, μ {short(static)}" + (f" / {short(kinetic)}" if kinetic != static else "")
+    top = case.stack[-1]
+    axes.text(max(box.sides[1] for box in case.stack[-2:]) + unit, top.bottom, words, color=BLUE, va="center")
+
+
+def _number_boxes(axes: Axes, boxes: Sequence[Box], unit: float) -> None:
+    """Numbers from the floor up."""
+    for number, box in enumerate(boxes, 1):
+        place = box.sides[0] + unit, box.bottom + 0.5 * box.height
+        axes.text(*place, str(number), color=GREY, fontsize=8.0, ha="left", va="center")
+
+
+def _outlines(case: Case) -> list[tuple[float, float, float, float]]:
+    """Left, bottom, right and top of each box; equal boxes are one."""
+    boxes = case.stack
+    if case.container.box is None:
+        boxes = (replace(boxes[0], height=boxes[-1].top),)
+    return [(box.sides[0], box.bottom, box.sides[1], box.top) for box in boxes]
+
+
+def _draw_mass_centre(axes: Axes, half_width: float, middle: float, centroid: float, unit: float) -> None:
+    """Mass centre and weight, and the slenderness angle at the nearer corner."""
+    side = math.copysign(1.0, middle)
+    corner, arm = side * half_width, half_width - abs(middle)
+    angle = math.atan2(arm, centroid)
+    reach = min(0.7 * math.hypot(arm, centroid), 28 * unit)
     top = max(centroid, reach) + 2 * unit
-    for x, z in ((half_width, top), (0.0, centroid)):
-        axes.plot((half_width, x), (0.0, z), color=BLUE, linestyle="--", linewidth=0.9)
-    turn = 90.0, 90.0 + math.degrees(angle)
-    axes.add_patch(Arc((half_width, 0.0), 2 * reach, 2 * reach, theta1=turn[0], theta2=turn[1], ec=BLUE))
-    axes.text(half_width + unit, reach, f"α = {degrees(angle)}", color=BLUE)
-    axes.annotate("", (0.0, centroid - 12 * unit), (0.0, centroid), arrowprops=_arrow("-|>", BLACK))
-    axes.plot(0.0, centroid, "o", color=BLACK, markerfacecoloralt="white", fillstyle="left", markersize=8)
-    axes.text(-1.5 * unit, centroid - 9 * unit, "G", ha="right")
+    for x, z in ((corner, top), (middle, centroid)):
+        axes.plot((corner, x), (0.0, z), color=BLUE, linestyle="--", linewidth=0.9)
+    from_x, to_x = sorted((90.0, 90.0 + side * math.degrees(angle)))
+    axes.add_patch(Arc((corner, 0.0), 2 * reach, 2 * reach, theta1=from_x, theta2=to_x, ec=BLUE))
+    name = f"α = {degrees(angle)}"
+    axes.text(corner + side * unit, reach, name, color=BLUE, ha="left" if side > 0.0 else "right")
+    axes.annotate("", (middle, centroid - 12 * unit), (middle, centroid), arrowprops=_arrow("-|>", BLACK))
+    axes.plot(middle, centroid, "o", color=BLACK, markerfacecoloralt="white", fillstyle="left", markersize=8)
+    axes.text(middle - 1.5 * unit, centroid - 9 * unit, "G", ha="right")
 
 
 def _dimension(axes: Axes, start: tuple[float, float], end: tuple[float, float], words: str) -> None:

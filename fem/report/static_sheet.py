@@ -127,9 +127,15 @@ Numbers = dict[str, _Printed]
 def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[SheetLine]]]:
     """The calculation in groups: title and lines; the case is resolved."""
     numbers = _numbers(static, case)
-    boxes = "n = {n:s4} boxes, bolted" if case.container.boxes > 1 else "n = 1 box"
-    weight = (WEIGHT._replace(source=boxes), MASS)
-    height = [HEIGHT] if case.container.mesh_file is None else []
+    joints = "which move as one here" if case.container.is_loose else "bolted"
+    boxes = f"n = {{n:s4}} boxes, {joints}" if case.container.boxes > 1 else "n = 1 box"
+    weight, height = (
+        (WEIGHT._replace(source=boxes), MASS),
+        [HEIGHT] if case.container.mesh_file is None else [],
+    )
+    if case.container.box is not None:
+        weight = _weight_of_boxes(case), MASS
+        height = [_height_of_boxes(case)] if height else []
     own = numbers | _action(static.own_motion)
     swings = case.motion.kind == "harmonic" and math.isclose(
         own["a_max"], case.nominal_peak_acceleration or 0.0, rel_tol=1e-6
@@ -153,6 +159,25 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
             [*(_line(row, numbers) for row in ROCKING), _line(RESTITUTION, numbers, credible)],
         ),
     ]
+
+
+def _weight_of_boxes(case: Case) -> SheetRow:
+    """The weight of boxes that differ."""
+    weights = " + ".join(short(1e-3 * box.mass * case.gravity_m_s2, figures=6) for box in case.stack)
+    return WEIGHT._replace(formula="G = Σ G_i", numbers=weights, source="boxes from the floor up")
+
+
+def _height_of_boxes(case: Case) -> SheetRow:
+    """The height of the mass centre of boxes that differ."""
+    moments = " + ".join(
+        f"{short(1e-3 * box.mass, figures=6)} × {short(box.bottom + box.centroid, figures=6)}"
+        for box in case.stack
+    )
+    return HEIGHT._replace(
+        formula="z_c = Σ m_i z_i/m",
+        numbers=f"({moments}) / {{m:6}}",
+        source="z_i, of the mass centre of box i",
+    )
 
 
 def _vertical_lines(static: StaticChecks, own: Numbers) -> list[SheetLine]:
@@ -180,7 +205,7 @@ def _numbers(static: StaticChecks, case: Case) -> Numbers:
     box, rule = case.container, case.static
     weight, mass = static.weight / 1e3, static.weight / case.gravity_m_s2 / 1e3
     found = {"n": box.boxes, "G": weight, "G_box": weight / box.boxes, "g": case.gravity_m_s2, "m": mass}
-    found |= {"a": box.width_m, "c": box.height_m, "z_box": box.centroid_m, "z_c": static.centroid}
+    found |= {"a": case.stack[0].width, "c": box.height_m, "z_box": box.centroid_m, "z_c": static.centroid}
     found |= {"α": math.degrees(static.slenderness_angle), "R": static.radius, "I": static.inertia / 1e3}
     found |= {"I_O": static.inertia / 1e3 + mass * static.radius**2, "p": static.frequency_parameter}
     found |= {"e": static.housner_restitution, "a_up": static.uplift_acceleration, "T": static.period_eq3}
