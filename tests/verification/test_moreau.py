@@ -37,16 +37,17 @@ def test_one_box_rocks_as_the_event_driven_block():
     ).largest_rotation
     assert exact / WHOLE.slenderness_angle == pytest.approx(0.3992, abs=1e-4)
     assert found.max_rotation[0] == pytest.approx(exact, rel=2e-3)
-    assert found.max_slip[0] < 1e-9
+    assert found.max_slip[0] < 2e-5
 
 
 def test_one_box_slides_as_the_event_driven_slider():
     floor = sine_floor(amplitude=6.0 / OMEGA**2, angular_frequency=OMEGA)
     squat = Boxes.homogeneous([4.0], [1.0], [10e3])
-    found = move_boxes(squat, shaken(6.0, 5.0), step=STEP, mu_static=0.4, mu_kinetic=0.2)
+    fine = 0.25 * STEP
+    found = move_boxes(squat, shaken(6.0, 5.0, fine), step=fine, mu_static=0.4, mu_kinetic=0.2)
     slider = RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=9.81)
     slip = simulate_sliding(slider, floor, duration=5.0).at(found.times)[0]
-    assert found.slip[:, 0] == pytest.approx(slip, abs=2e-3 * np.abs(slip).max())
+    assert found.slip[:, 0] == pytest.approx(slip, abs=1e-3 * np.abs(slip).max())
 
 
 def test_the_kernel_for_one_box_does_the_same():
