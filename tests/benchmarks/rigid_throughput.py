@@ -4,27 +4,37 @@
 for their outcome alone, on one thread. Accuracy: free rocking of the stack from half its slenderness angle with the
 same penalty and step control; the first six ratios of successive peaks against the closed form of the rigid block.
 A multibody engine tuned for this makes 30 (stack) and 7 (box) runs.
+
+In turns with them, a kernel that does nothing but this (`moreau.slide_and_rock`): one rigid block, plastic impacts,
+steps of 1 ms, no springs, no ledger, no choice of steps.
 """
 
 import math
+import statistics
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
-from measuring import Figure, at_most, cpu_seconds, median_of, report, stepped
+from measuring import Figure, at_least, at_most, cpu_seconds, report, stepped
 
 from contact.reference.closed_forms_rocking import peak_after_impacts
 from contact.reference.rigid_block import RigidBlock
 from contact.stepping.integrator import FAILED
 from contact.stepping.outcome import run_to_end
 from contact.stepping.state import make_samples
+from fem.assessment.rigid_check import block_of
 from fem.case.case import Case, load_case
 from fem.model.model import Model, build_model
 from fem.verification.rocking import turning_points
 
+sys.path.append(str(Path(__file__).parents[1]))
+from moreau import slide_and_rock_batch
+
 REPEATS, ROWS = 5, 200
 DURATION = 20.0  # s
 STACK_RATE, BOX_RATE = 500.0, 100.0  # runs per second and core
+OVER_MOREAU, MOREAU_STEP = 1.5, 1e-3  # ratio of rates; s
 ACCURACY, COUNT = 0.02, 6
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
 #: settings of maps; the penalty is that of the stack and of the box
@@ -33,8 +43,8 @@ JERK = ("solver.model=rigid", "container.section=solid", "contact.mu_static=0.4"
 FLOOR = ("motion.amplitude_m=0.05", "motion.angular_frequency_rad_s=6.93", "motion.start=rest")
 
 
-def throughput(case: Case) -> tuple[float, str]:
-    """Runs per second of one core, and what a run does."""
+def throughput(case: Case) -> tuple[float, str, float]:
+    """Runs per second of one core, what a run does, and the rate over that of the Moreau kernel."""
     container = build_model(case).container
 
     def fresh() -> list[Model]:
@@ -49,14 +59,42 @@ def throughput(case: Case) -> tuple[float, str]:
     failed = step(models).count(FAILED)  # compiles
     if failed:
         raise RuntimeError(f"{case.name}: {failed} rows of {ROWS} failed")
+    moreau(models[0])
     batches = [fresh() for _ in range(REPEATS)]
-    rate = ROWS / median_of(REPEATS, lambda: cpu_seconds(lambda: step(batches.pop())))
+    costs = [(cpu_seconds(lambda: step(batches.pop())), moreau(models[0])[0]) for _ in range(REPEATS)]
     run, model = models[0].run, models[0]
     ratio = float(run.track.max_rotation[0]) / model.static.slenderness_angle
-    return rate, (
+    what = (
         f"penalty {model.penalty:.3g} Pa/m, {int(run.clock.steps[0])} steps, "
-        f"rotation ratio {ratio:.4f}, slip {1e3 * float(run.track.max_slip[0]):.2f} mm"
+        f"rotation ratio {ratio:.4f}, slip {1e3 * float(run.track.max_slip[0]):.2f} mm; "
+        f"Moreau {moreau(model)[1]}"
     )
+    own = statistics.median(own for own, _ in costs)
+    return ROWS / own, what, statistics.median(other / own for own, other in costs)
+
+
+def moreau(model: Model) -> tuple[float, str]:
+    """CPU time of as many runs of the Moreau kernel [s], and what one does."""
+    block, contact, motion = block_of(model), model.case.contact, model.case.motion
+    shape = block.half_width, block.centroid_height
+    inertia = (block.inertia_ratio - 1.0) * block.radius**2
+    friction = np.tile([contact.mu_static, contact.mu_kinetic], (ROWS, 1))
+    found, steps = np.zeros((ROWS, 3)), round(DURATION / MOREAU_STEP)
+    seconds = cpu_seconds(
+        lambda: slide_and_rock_batch(
+            np.tile([*shape, 1.0 / inertia], (ROWS, 1)),
+            friction,
+            model.case.gravity_m_s2,
+            np.full(ROWS, motion.amplitude_m),
+            np.full(ROWS, motion.angular_frequency_rad_s),
+            motion.start == "rest",
+            MOREAU_STEP,
+            steps,
+            found,
+        )
+    )
+    ratio, slip = found[0, 0] / block.slenderness_angle, 1e3 * found[0, 1]
+    return seconds, f"{ROWS / seconds:.0f} runs, ratio {ratio:.4f}, slip {slip:.2f} mm"
 
 
 def accuracy() -> Figure:
@@ -73,10 +111,13 @@ def accuracy() -> Figure:
 def main() -> int:
     figures = []
     for name, limit in (("seed_stack", STACK_RATE), ("seed_box", BOX_RATE)):
-        rate, what = throughput(load_case(name, [*JERK, *FLOOR, *SETTING, f"solver.duration_s={DURATION}"]))
+        rate, what, over = throughput(
+            load_case(name, [*JERK, *FLOOR, *SETTING, f"solver.duration_s={DURATION}"])
+        )
         figures += [
             Figure(f"{name}: runs per second and core", f"{rate:.0f}", f">= {limit:g}", rate >= limit),
             Figure(f"{name}: one run", what),
+            at_least(f"{name}: rate over that of the Moreau kernel", over, OVER_MOREAU),
         ]
     title = f"rigid model, 20 s on a floor that starts with a jerk; {', '.join(SETTING)}"
     return report(title, [*figures, accuracy()])
