@@ -15,7 +15,7 @@ from mesh.cells import FloatArray, IntArray, areas_and_centroids, quadrature
 from mesh.errors import MeshError
 from mesh.fill import BoxCells, MassFill, cell_thickness, distribute_mass
 from mesh.geometry import ContainerGeometry, Section
-from mesh.grid import Segments, column_segments, require_affordable, row_segments
+from mesh.grid import column_segments, require_affordable, row_segments
 from mesh.quality import require_quality
 from mesh.region import Region
 
@@ -85,8 +85,8 @@ class ContainerMesh:
 
     @cached_property
     def width(self) -> float:
-        """Largest extent along x [m]."""
-        return float(np.ptp(self.points[:, 0]))
+        """Width of the base, between its corners [m]."""
+        return float(np.ptp(self.points[self.base_points, 0]))
 
     @cached_property
     def height(self) -> float:
@@ -168,9 +168,9 @@ def build_container_mesh(
     z = np.concatenate([box_z[:-1] + box * geometry.height for box in range(geometry.boxes)])
     z = np.append(z, geometry.total_height)
     points = np.column_stack([np.tile(x, len(z)), np.repeat(z, len(x))])
-    box_region = _box_region(geometry, columns, rows)
+    box_region = ring_regions(geometry, columns.lines(), box_z)
 
-    quads = _grid_quads(columns.count, rows.count * geometry.boxes)
+    quads = grid_quads(columns.count, rows.count * geometry.boxes)
     box_quads = quads[: rows.count * columns.count]
     area, centroid = areas_and_centroids(points, box_quads)
     cells = BoxCells(
@@ -192,24 +192,23 @@ def build_container_mesh(
     )
 
 
-def _box_region(geometry: ContainerGeometry, columns: Segments, rows: Segments) -> IntArray:
-    """Regions of the cells of one box, row by row from the floor up."""
+def ring_regions(geometry: ContainerGeometry, x: FloatArray, z: FloatArray) -> IntArray:
+    """Regions of the cells of one box, row by row from below, between its lines at x and z, both from 0 [m]."""
     if geometry.section is Section.SOLID:
-        return np.full(rows.count * columns.count, Region.SOLID, dtype=np.int64)
-    column_is_wall = _within_walls(geometry, columns, geometry.width)
-    row_is_wall = _within_walls(geometry, rows, geometry.height)
+        return np.full((len(x) - 1) * (len(z) - 1), Region.SOLID, dtype=np.int64)
+    column_is_wall = _within_walls(geometry, x, geometry.width)
+    row_is_wall = _within_walls(geometry, z, geometry.height)
     ring = row_is_wall[:, None] | column_is_wall[None, :]
     return np.where(ring, Region.WALL, Region.FILL).astype(np.int64).ravel()
 
 
-def _within_walls(geometry: ContainerGeometry, segments: Segments, total: float) -> npt.NDArray[np.bool_]:
-    lines = segments.lines()
+def _within_walls(geometry: ContainerGeometry, lines: FloatArray, total: float) -> npt.NDArray[np.bool_]:
     middle = 0.5 * (lines[:-1] + lines[1:])
     wall = geometry.wall or 0.0
     return (middle < wall) | (middle > total - wall)
 
 
-def _grid_quads(columns: int, rows: int) -> IntArray:
+def grid_quads(columns: int, rows: int) -> IntArray:
     """Corners of the cells of a grid, row by row from below, counter-clockwise from lower left."""
     first = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).ravel()
     return np.column_stack([first, first + 1, first + columns + 2, first + columns + 1]).astype(np.int64)

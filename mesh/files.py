@@ -8,6 +8,7 @@ are straight; the order of the elements is chosen where the mesh is used.
 
 import contextlib
 import io
+from collections.abc import Sequence
 from pathlib import Path
 
 import meshio
@@ -22,6 +23,7 @@ from mesh.geometry import ContainerGeometry, Section
 from mesh.grid import MOST_CELLS
 from mesh.quality import require_positions, require_quality
 from mesh.region import Region
+from mesh.stack import StackedBox, joined, placed_apart, require_apart
 from mesh.tags import CellTags, cell_regions
 from mesh.tiling import TOLERANCE, place_on_floor, require_tiling
 from mesh.untrusted import FORMATS, bounded_memory, require_harmless
@@ -59,6 +61,74 @@ def read_container_mesh(path: Path | str, geometry: ContainerGeometry, fill: Mas
         return _container(*_parse(path), geometry, fill)
     except MeshError as error:
         raise type(error)(f"mesh file {path}: {error}") from error
+
+
+def read_stack_mesh(path: Path | str, boxes: Sequence[StackedBox], *, loose: bool) -> ContainerMesh:
+    """Mesh of boxes that differ, or of boxes without bolts, from a file; regions and fill as `read_container_mesh`.
+
+    The cells of each box must tile it, where the lowest box stands in the middle. Bolted boxes must share the nodes of
+    the face between them, loose ones none.
+
+    Raises:
+        MeshError: as `read_container_mesh`; boxes in other places; nodes that are shared or not as they must be.
+    """
+    path = Path(path)
+    require_harmless(path)
+    try:
+        points, quads, tags = _parse(path)
+        points = _plane(points)
+        _require_regions(tags, boxes)
+        meshes, used = [], []
+        for cells, box in zip(_cells_of_boxes(points, quads, boxes), boxes, strict=True):
+            used.append(np.unique(quads[cells]))
+            meshes.append(_container(points, quads[cells], tags.of(cells), box.geometry, box.fill))
+        _require_places(points, used, boxes)
+        return placed_apart(boxes, require_apart(meshes, used)) if loose else joined(boxes, meshes, used)
+    except MeshError as error:
+        raise type(error)(f"mesh file {path}: {error}") from error
+
+
+def _require_regions(tags: CellTags, boxes: Sequence[StackedBox]) -> None:
+    try:
+        cell_regions(tags, _allowed(boxes[0].geometry))
+    except MeshError as error:
+        raise MeshError(
+            "boxes that differ, or that stand loose, need regions, which say what are the walls of each box and "
+            f"what carries its fill: {error}"
+        ) from error
+
+
+def _cells_of_boxes(points: FloatArray, quads: IntArray, boxes: Sequence[StackedBox]) -> list[IntArray]:
+    """Numbers of the cells of each box, by their heights."""
+    heights = points[quads, 1] - points[np.unique(quads), 1].min()
+    lines = np.array([box.bottom for box in boxes] + [boxes[-1].bottom + boxes[-1].geometry.height])
+    number = np.clip(np.searchsorted(lines, heights.mean(axis=1)) - 1, 0, len(boxes) - 1)
+    slack = TOLERANCE * lines[-1]
+    astride = (heights.min(axis=1) < lines[number] - slack) | (
+        heights.max(axis=1) > lines[number + 1] + slack
+    )
+    if astride.any():
+        raise MeshError(
+            f"{int(astride.sum())} cells lie in two boxes or above them, the first at z = "
+            f"{heights[np.argmax(astride)].mean():.4g} m: put mesh lines at z = "
+            f"{', '.join(f'{line:g}' for line in lines[1:])} m"
+        )
+    cells = [np.flatnonzero(number == one) for one in range(len(boxes))]
+    for one, found in enumerate(cells, 1):
+        if not found.size:
+            raise MeshError(f"box {one} has no cells, the case has {len(boxes)} boxes")
+    return cells
+
+
+def _require_places(points: FloatArray, used: Sequence[IntArray], boxes: Sequence[StackedBox]) -> None:
+    """Refuse boxes that do not stand where the case has them."""
+    middles = [0.5 * (points[one, 0].min() + points[one, 0].max()) for one in used]
+    for number, (middle, box) in enumerate(zip(middles, boxes, strict=True), 1):
+        if abs(middle - middles[0] - box.axis) > TOLERANCE * box.geometry.width:
+            raise MeshError(
+                f"the axis of box {number} is {middle - middles[0]:.9g} m beside that of the lowest, "
+                f"in the case {box.axis:.9g} m; change its offset_m, or the mesh"
+            )
 
 
 def _parse(path: Path) -> tuple[FloatArray, IntArray, CellTags]:
@@ -126,9 +196,7 @@ def _container(
     require_quality(points, quads)
     require_tiling(points, quads, geometry.width, geometry.total_height)
 
-    solid = geometry.section is Section.SOLID
-    allowed = (Region.SOLID,) if solid else (Region.WALL, Region.SHEET, Region.FILL)
-    region = cell_regions(tags, allowed)
+    region = cell_regions(tags, _allowed(geometry))
     density, region, box = _fill_boxes(points, quads, region, geometry, fill)
     return ContainerMesh(
         points=points,
@@ -138,6 +206,11 @@ def _container(
         thickness=cell_thickness(geometry, region),
         areal_density=density,
     )
+
+
+def _allowed(geometry: ContainerGeometry) -> tuple[Region, ...]:
+    solid = geometry.section is Section.SOLID
+    return (Region.SOLID,) if solid else (Region.WALL, Region.SHEET, Region.FILL)
 
 
 def _memberships(raw: meshio.Mesh, chosen: list[int]) -> dict[str, npt.NDArray[np.bool_]]:

@@ -38,12 +38,21 @@ class Segments:
 
     def lines(self) -> FloatArray:
         """Mesh lines from 0 to the sum of the lengths, shape (count + 1,) [m]."""
-        ends = np.concatenate(([0.0], np.cumsum(self.lengths)))
+        return self.lines_from(np.concatenate(([0.0], np.cumsum(self.lengths))))
+
+    def lines_from(self, ends: FloatArray) -> FloatArray:
+        """Mesh lines where the ends of the segments are given, shape (count + 1,) [m]."""
         inner = [
             np.linspace(start, stop, count + 1)[:-1]
             for start, stop, count in zip(ends[:-1], ends[1:], self.counts, strict=True)
         ]
         return np.concatenate([*inner, ends[-1:]])
+
+
+def segments_between(ends: FloatArray, element_size: float) -> Segments:
+    """The intervals between rising lines, each divided evenly."""
+    lengths = np.diff(ends).tolist()
+    return Segments(lengths=tuple(lengths), counts=tuple(_cells(length, element_size) for length in lengths))
 
 
 def column_segments(geometry: ContainerGeometry, element_size: float, foot: float | None = None) -> Segments:

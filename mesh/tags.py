@@ -31,6 +31,15 @@ class CellTags:
     data: Mapping[str, npt.NDArray[np.generic]]  #: named fields
     physical_names: Mapping[int, str]  #: names of the two-dimensional physical groups
 
+    def of(self, cells: IntArray) -> "CellTags":
+        """The tags of some of the cells."""
+        return CellTags(
+            count=len(cells),
+            sets={name: members[cells] for name, members in self.sets.items()},
+            data={name: values[cells] for name, values in self.data.items()},
+            physical_names=self.physical_names,
+        )
+
 
 def cell_regions(tags: CellTags, allowed: tuple[Region, ...]) -> IntArray:
     """Region (m,) of every cell.

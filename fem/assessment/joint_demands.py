@@ -7,13 +7,16 @@ The bolts along an edge must carry its tension all together, and more where they
 import numpy as np
 from numpy.typing import NDArray
 
+from fem.case.boxes import shared_face
 from fem.model.model import Model
 from fem.results.history import JOINT_COLUMNS, History
 from fem.results.run_result import JointDemand
 from fem.runtime.arrays import FloatArray
 
 
-def edge_forces(normal: FloatArray, moment: FloatArray, width: float) -> tuple[FloatArray, FloatArray]:
+def edge_forces(
+    normal: FloatArray, moment: FloatArray, width: float | FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Compression at the left and the right edge of a joint of rigid faces [N]; negative: tension."""
     return 0.5 * normal + moment / width, 0.5 * normal - moment / width
 
@@ -30,14 +33,16 @@ def joint_demands(model: Model, history: History) -> tuple[JointDemand, ...] | N
 
 
 def _demands_of(model: Model, history: History, joint: int, standing: NDArray[np.bool_]) -> JointDemand:
-    width, mu = model.container.mesh.width, model.case.contact.mu_static
+    lower, upper = model.case.stack[joint - 1 : joint + 1]
+    start, end = shared_face(lower, upper)
+    width, mu = end - start, model.case.contact.mu_static
     time = history["time_s"][standing]
     normal, shear, moment = (history[name.format(joint)][standing] for name in JOINT_COLUMNS)
     left, right = edge_forces(normal, moment, width)
     carried = mu * np.maximum(normal, 0.0)
     return JointDemand(
         joint=joint,
-        height_m=joint * model.case.container.height_m,
+        height_m=upper.bottom,
         min_normal_N=float(normal.min()),
         max_normal_N=float(normal.max()),
         max_shear_N=float(np.abs(shear).max()),

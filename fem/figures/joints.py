@@ -5,11 +5,14 @@ joints over time would hide one another). Below: the largest bolt force at any j
 joint without bolts opens at an edge or slides.
 """
 
+from itertools import pairwise
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fem.assessment.joint_demands import edge_forces
+from fem.case.boxes import shared_face
 from fem.figures.style import (
     BLACK,
     BLUE,
@@ -47,7 +50,9 @@ def joints_figure(run: OpenedRun) -> Figure | None:
     verdict = run.typed_result.verdict or Verdict()
     overturned_at = verdict.overturned_at_s
     standing = history["time_s"] <= (np.inf if overturned_at is None else overturned_at)
-    time, half, mu = history["time_s"][standing], 0.5 * case.container.width_m, case.contact.mu_static
+    time, mu, stack = history["time_s"][standing], case.contact.mu_static, case.stack
+    faces = np.array([shared_face(lower, upper) for lower, upper in pairwise(stack)])
+    half = 0.5 * (faces[:, 1] - faces[:, 0])
     normal, shear, moment = (
         1e-3 * np.array([history[name.format(joint)][standing] for joint in range(1, history.joints + 1)])
         for name in JOINT_COLUMNS
@@ -55,16 +60,16 @@ def joints_figure(run: OpenedRun) -> Figure | None:
     figure, axes = time_panels(
         (1.1, 0.7), history=history, gaps=(LEGEND_GAP,), header=HEADER, above=RANGES + BELOW
     )
-    box, boxes = case.container.height_m, case.container.boxes
-    weight = 1e-3 * case.weight * (1.0 - np.arange(1, boxes) / boxes)
+    levels = np.array([*(box.bottom for box in stack[1:]), stack[-1].top])
+    weight = 1e-3 * case.gravity_m_s2 * np.cumsum([box.mass for box in stack[:0:-1]])[::-1]
     over_height = _side_by_side(figure)
-    _draw_ranges(over_height[0], box, normal, "normal", "kN", [weight])
-    _draw_ranges(over_height[1], box, shear, "shear", "kN", [mu * weight, -mu * weight])
-    _draw_ranges(over_height[2], box, moment, "moment", "kNm", [half * weight, -half * weight])
+    _draw_ranges(over_height[0], levels, normal, "normal", "kN", [weight])
+    _draw_ranges(over_height[1], levels, shear, "shear", "kN", [mu * weight, -mu * weight])
+    _draw_ranges(over_height[2], levels, moment, "moment", "kNm", [half * weight, -half * weight])
     over_height[0].legend(
         loc="lower left", bbox_to_anchor=(0.0, 1.0 + LINE / RANGES), ncols=3, borderaxespad=0.1
     )
-    left, right = (np.maximum(0.0, -edge) for edge in edge_forces(normal, moment, 2.0 * half))
+    left, right = (np.maximum(0.0, -edge) for edge in edge_forces(normal, moment, 2.0 * half[:, None]))
     beyond = np.maximum(0.0, np.abs(shear) - mu * np.maximum(normal, 0.0))
     zero_line(axes[0])
     _draw_bolt_force(axes[0], time, left, "left edge", BLUE)
@@ -96,10 +101,13 @@ def _side_by_side(figure: Figure) -> list[Axes]:
 
 
 def _draw_ranges(
-    axes: Axes, box: float, forces: FloatArray, name: str, unit: str, marks: list[FloatArray]
+    axes: Axes, levels: FloatArray, forces: FloatArray, name: str, unit: str, marks: list[FloatArray]
 ) -> None:
-    """Bars from the least to the largest of forces (J, n), and marks of the forces from the weight above."""
-    levels = box * np.arange(1, len(forces) + 1)
+    """Bars from the least to the largest of forces (J, n), and marks of the forces from the weight above.
+
+    `levels` are the heights of the joints and of the top, shape (J + 1,) [m].
+    """
+    levels, top, box = levels[:-1], levels[-1], np.diff(levels).min(initial=levels[0])
     low, high = forces.min(axis=1), forces.max(axis=1)
     usually = np.quantile(forces, USUAL, axis=1)
     axes.axvline(0.0, color=BLACK, linewidth=0.7)
@@ -114,7 +122,7 @@ def _draw_ranges(
     for mark in marks:
         axes.plot(mark, levels, "|", color=BLACK, markersize=11.0, markeredgewidth=1.2, label=name_of_marks)
         name_of_marks = None
-    axes.set_ylim(0.0, box * (len(forces) + 1))
+    axes.set_ylim(0.0, top)
     axes.grid(visible=False, axis="y")
     axes.set_xlabel(f"{name} [{unit}]")
     axes.margins(x=0.06)

@@ -1,37 +1,55 @@
 """The mesh of a case: its filled container, standing on the floor."""
 
+from dataclasses import replace
+
 import numpy as np
 
+from fem.case.boxes import Box
 from fem.case.case import Case
 from fem.runtime.arrays import FloatArray
 from mesh.container import ContainerMesh, build_container_mesh
-from mesh.files import read_container_mesh
+from mesh.files import read_container_mesh, read_stack_mesh
 from mesh.fill import MassFill
 from mesh.geometry import ContainerGeometry, Section
+from mesh.stack import StackedBox, build_bolted_mesh, build_loose_mesh
 
 
 def build_container(case: Case) -> ContainerMesh:
-    """The case's container: from its mesh file if it names one, else structured.
+    """The case's container: from its mesh file if it names one, else structured; loose boxes share no node.
 
     Raises:
         MeshError: too many cells, walls heavier than the box, an impossible mass centre or foot, a mesh file
             that does not fit the case.
         CaseError: the mesh file is missing in the folder of the case.
     """
-    box = case.container
-    geometry = ContainerGeometry(
-        width=box.width_m,
-        height=box.height_m,
-        depth=box.depth_m,
-        boxes=box.boxes,
-        section=Section(box.section),
-        wall=box.wall_m if box.section == "shell" else None,
-    )
-    fill = MassFill(mass=case.box_mass, centroid_height=box.centroid_m, wall_density=box.wall_density_kg_m3)
-    if box.mesh_file is not None:
-        return read_container_mesh(case.data_files["container.mesh_file"], geometry, fill)
-    return build_container_mesh(
-        geometry, fill, element_size=case.solver.element_size_m, foot=case.support.foot
+    container, size, foot = case.container, case.solver.element_size_m, case.support.foot
+    file = case.data_files["container.mesh_file"] if container.mesh_file is not None else None
+    boxes = [_stacked(case, box) for box in case.stack]
+    if container.box is None and not container.is_loose:
+        lowest = boxes[0]
+        geometry = replace(lowest.geometry, boxes=container.boxes)
+        if file is not None:
+            return read_container_mesh(file, geometry, lowest.fill)
+        return build_container_mesh(geometry, lowest.fill, element_size=size, foot=foot)
+    if file is not None:
+        return read_stack_mesh(file, boxes, loose=container.is_loose)
+    build = build_loose_mesh if container.is_loose else build_bolted_mesh
+    return build(boxes, element_size=size, foot=foot)
+
+
+def _stacked(case: Case, box: Box) -> StackedBox:
+    container = case.container
+    return StackedBox(
+        geometry=ContainerGeometry(
+            width=box.width,
+            height=box.height,
+            depth=container.depth_m,
+            section=Section(container.section),
+            wall=box.wall,
+        ),
+        fill=MassFill(mass=box.mass, centroid_height=box.centroid, wall_density=container.wall_density_kg_m3),
+        axis=box.axis,
+        bottom=box.bottom,
     )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from contact.stepping.body import ANGULAR_VELOCITY, ROTATION, State
+from fem.case.case import Case
 from fem.model.model import Model
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements
@@ -138,7 +139,7 @@ class Joints:
 
 
 def joints_of(model: Model, heights: FloatArray | None = None) -> Joints | None:
-    """The joints of a model's stack; None for a single box.
+    """The joints of a model's stack; None for a single box, and for boxes without bolts.
 
     Args:
         model: what is stepped.
@@ -146,9 +147,8 @@ def joints_of(model: Model, heights: FloatArray | None = None) -> Joints | None:
     """
     container = model.container
     mesh, elements, shapes = container.mesh, container.elements, container.basis.shapes
-    box = model.case.container
-    lines = box.height_m * np.arange(1.0, box.boxes) if heights is None else np.asarray(heights, dtype=float)
-    if lines.size == 0:
+    lines = joint_heights(model.case) if heights is None else np.asarray(heights, dtype=float)
+    if lines.size == 0 or model.case.container.is_loose:
         return None
     layers = _layers(elements, mesh, np.append(lines, np.inf))
     arm = elements.nodes - np.asarray(mesh.centroid)
@@ -158,7 +158,7 @@ def joints_of(model: Model, heights: FloatArray | None = None) -> Joints | None:
     total = nodal.sum(axis=1)
     centre = nodal @ arm / total[:, None]
     mean_shape = np.einsum("jn,mnd->mjd", nodal, shapes) / total[:, None]
-    ends = np.array([_ends(elements.nodes, height) for height in lines])
+    ends = np.array([_ends(elements, height) for height in lines])
     return Joints(
         height=lines,
         mass=total,
@@ -200,8 +200,17 @@ def _about(place: FloatArray, motion: FloatArray) -> FloatArray:
     return motion[:, :, SPIN] + _moment(motion[:, :, CENTRE] - place, motion[:, :, MOMENTUM])
 
 
-def _ends(nodes: FloatArray, height: float) -> tuple[int, int]:
-    """The outermost nodes on a mesh line."""
-    line = np.flatnonzero(np.abs(nodes[:, 1] - height) <= 1e-6 * np.ptp(nodes[:, 1]))
+def joint_heights(case: Case) -> FloatArray:
+    """Heights of the joints between the boxes of a case above the floor, from the floor up, shape (J,) [m]."""
+    return np.array([box.bottom for box in case.stack[1:]])
+
+
+def _ends(elements: FiniteElements, height: float) -> tuple[int, int]:
+    """The outermost nodes of a mesh line that cells above and below it share."""
+    nodes, cells = elements.nodes, elements.cells
+    z = nodes[:, 1]
+    line = np.flatnonzero(np.abs(z - height) <= 1e-6 * np.ptp(z))
+    above = z[cells].mean(axis=1) > height
+    line = line[np.isin(line, cells[above]) & np.isin(line, cells[~above])]
     x = nodes[line, 0]
     return int(line[np.argmin(x)]), int(line[np.argmax(x)])

@@ -2,9 +2,9 @@
 
 Equilibrium of a rigid container on its corners, after sections 4 and 5 of Knoedel and Hrabowski, "A simple
 stick-slip model for the overturning stability of unanchored containers" (the paper), with the lateral force
-method of EN 1998-1:2004, 4.3.3.2. The container stands on z = 0, its mass centre is above
-the middle of the base; weights, forces and moments are magnitudes. Angles are measured from the vertical:
-the `slenderness_angle` is the complement of the paper's alpha.
+method of EN 1998-1:2004, 4.3.3.2. The container stands on z = 0; weights, forces and moments are magnitudes.
+Angles are measured from the vertical: the `slenderness_angle` is the complement of the paper's alpha. Where the
+mass centre is not above the middle of the base, the nearer corner counts.
 
 A static rule may be compared with a run only under the floor acceleration of that run (`own_motion`). Where the floor
 moves up and down as well, the same rule with the least weight m (g - a_v) stands beside it (`own_motion_vertical`).
@@ -22,6 +22,7 @@ from mesh.container import ContainerMesh
 
 LIMIT_PERIOD = 2.0  # s, EN 1998-1:2004, 4.3.3.2.1 (2) a), Eq. (4.4)
 CREDIBLE_RESTITUTION = 0.5
+ROUNDING = 1e-9  #: of the width, within which the mass centre is above the middle of the base
 CLAUSE_APPLICABLE = "EN 1998-1:2004, 4.3.3.2.1 (2)"
 CLAUSE_SLIDING = "EN 1998-1:2004, 4.4.2.4 (1)P, sliding"
 CLAUSE_OVERTURNING = "EN 1998-1:2004, 4.4.2.4 (1)P, overturning"
@@ -200,6 +201,7 @@ def static_checks(
     centroid: float,
     inertia: float,
     width: float,
+    beside: float = 0.0,
     gravity: float,
     mu_static: float,
     mu_kinetic: float,
@@ -212,9 +214,11 @@ def static_checks(
 
     Args:
         mass: M of all boxes with fill [kg].
-        centroid: z_c above the floor [m]; the mass centre lies above the middle of the base.
+        centroid: z_c above the floor [m].
         inertia: polar in the plane about the mass centre [kg m2].
         width: a, of the base between its corners [m].
+        beside: distance of the mass centre from the middle of the base, to either side [m]. All values are those of
+            the nearer corner, about which it tilts first; the restitution is that of the impact there.
         gravity: g [m/s2].
         mu_static, mu_kinetic: coefficients of friction [-].
         peak_floor_acceleration: largest |acceleration| of the floor in this run [m/s2].
@@ -226,10 +230,11 @@ def static_checks(
     The rocking period that is compared with the limit of the lateral force method is that of Eq. (3), as
     in the paper's section 4.2.
     """
-    weight, arm = mass * gravity, math.hypot(0.5 * width, centroid)
-    angle = slenderness_angle(width=width, centroid=centroid)
+    nearer = 0.5 * width - beside  # corner to mass centre, along x
+    weight, arm = mass * gravity, math.hypot(nearer, centroid)
+    angle = slenderness_angle(width=2.0 * nearer, centroid=centroid)
     about_corner = inertia + mass * arm**2
-    friction, restoring = mu_static * weight, weight * 0.5 * width
+    friction, restoring = mu_static * weight, weight * nearer
     period = period_eq3(radius=arm, gravity=gravity)
 
     def under(base_shear: float, least_weight: float | None = None) -> ActionCheck:
@@ -273,14 +278,16 @@ def static_checks(
         slenderness_angle=angle,
         frequency_parameter=math.sqrt(mass * gravity * arm / about_corner),
         period_eq2=period_eq2(
-            width=width, radius=arm, gravity=gravity, initial_rotation=initial_rotation or 0.5 * angle
+            width=2.0 * nearer, radius=arm, gravity=gravity, initial_rotation=initial_rotation or 0.5 * angle
         ),
         period_eq3=period,
         sliding_limit_static=friction,
         sliding_limit_kinetic=mu_kinetic * weight,
         restoring_moment=restoring,
         uplift_acceleration=gravity * math.tan(angle),
-        housner_restitution=1.0 - mass * arm**2 / about_corner * (1.0 - math.cos(2.0 * angle)),
+        # Of the same angular momentum: 1 - M nearer width/I_O; the last factor is 1 with the mass centre in the middle.
+        housner_restitution=1.0
+        - mass * arm**2 / about_corner * (1.0 - math.cos(2.0 * angle)) * (width / (2.0 * nearer)),
         own_motion=under(mass * peak_floor_acceleration),
         own_motion_vertical=None
         if peak_vertical_acceleration is None
@@ -302,6 +309,7 @@ def static_checks_of(
         centroid=mesh.centroid[1],
         inertia=mesh.inertia,
         width=mesh.width,
+        beside=distance_beside(mesh),
         gravity=case.gravity_m_s2,
         mu_static=case.contact.mu_static,
         mu_kinetic=case.contact.mu_kinetic,
@@ -310,6 +318,12 @@ def static_checks_of(
         code=case.static,
         initial_rotation=case.initial.rotation_rad,
     )
+
+
+def distance_beside(mesh: ContainerMesh) -> float:
+    """Distance of the mass centre from the middle of the base [m]; 0 within rounding."""
+    beside = abs(mesh.centroid[0])
+    return beside if beside > ROUNDING * mesh.width else 0.0
 
 
 def _finite(value: float) -> float | None:

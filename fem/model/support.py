@@ -5,7 +5,7 @@ from contact.interface.support import Support, choose_support
 from fem.case.case import Case, CaseError
 from fem.model.floor import slab_penalty
 from fem.model.geometry import base_positions
-from fem.model.static_checks import slenderness_angle
+from fem.model.static_checks import distance_beside, slenderness_angle
 from mesh.container import ContainerMesh
 
 
@@ -42,7 +42,9 @@ def normal_penalty(case: Case, mesh: ContainerMesh) -> float:
         width=mesh.width,
         height=mesh.height,
         depth=case.container.depth_m,
-        slenderness_angle=slenderness_angle(width=mesh.width, centroid=mesh.centroid[1]),
+        slenderness_angle=slenderness_angle(
+            width=mesh.width - 2.0 * distance_beside(mesh), centroid=mesh.centroid[1]
+        ),
         youngs_modulus=case.container.youngs_modulus_Pa,
         element_size=case.solver.element_size_m,
         foot=case.support.foot or 0.0,
