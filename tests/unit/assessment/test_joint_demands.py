@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from cases import named_case
 
 from fem.assessment.joint_demands import edge_forces, joint_demands
 from fem.assessment.joint_tables import unbolted
@@ -20,10 +21,8 @@ FORCES = np.array([[100.0, 10.0, 0.0], [100.0, -50.0, 20.0], [100.0, 20.0, -65.0
 
 def stack(overturned_at: float = np.inf):
     """As much of a model as is asked for: two boxes of 1 m x 1 m, mu_static 0.4."""
-    contact, container = SimpleNamespace(mu_static=0.4), SimpleNamespace(height_m=1.0)
     return SimpleNamespace(
-        container=SimpleNamespace(mesh=SimpleNamespace(width=1.0)),
-        case=SimpleNamespace(contact=contact, container=container),
+        case=named_case("least", {"container.width_m": 1.0, "container.boxes": 2}),
         run=SimpleNamespace(track=[SimpleNamespace(overturned_at=overturned_at)]),
     )
 
