@@ -85,9 +85,9 @@ class Block:
             tangential_stiffness=springs,
             cap=np.full(2, self.cap),
             relaxation_time=self.relaxation_time,
-            mu_static=self.mu_static,
-            mu_kinetic=self.mu_kinetic,
-            weakening=self.weakening,
+            mu_static=np.full(2, self.mu_static),
+            mu_kinetic=np.full(2, self.mu_kinetic),
+            weakening=np.full(2, self.weakening),
             stribeck_velocity=self.stribeck_velocity,
             friction=ELASTIC_STICK,
             regularisation_velocity=1e-3,
@@ -132,6 +132,10 @@ class Rig:
     @property
     def track(self) -> Any:
         return self.run.track[0]
+
+    @property
+    def joint(self) -> Any:
+        return self.run.joints[0]
 
     @property
     def time(self) -> float:

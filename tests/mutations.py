@@ -68,8 +68,8 @@ MUTATIONS = (
     Mutation(
         name="dashpot that pushes the container off",
         file="contact/interface/laws.py",
-        old="force = stiffness * penetration + damping * rate\n",
-        new="force = stiffness * penetration - damping * rate\n",
+        old="stiffness * penetration + damping * rate, stiffness, damping",
+        new="stiffness * penetration - damping * rate, stiffness, damping",
         tests=LAWS,
     ),
     Mutation(
@@ -116,31 +116,31 @@ MUTATIONS = (
     ),
     Mutation(
         name="a stop with the springs of the slide",
-        file="contact/stepping/integrator.py",
+        file="contact/stepping/joints.py",
         old="if turned and normal < IMPACT_LOAD * weight:",
         new="if turned and normal < 0.0:",
         tests=(*SLIDING, "short and stop"),
     ),
     Mutation(
         name="an elastic swing over the limit of friction that breaks the support loose",
-        file="contact/stepping/integrator.py",
-        old="return abs(holding) > run.contact.mu_static * normal or slid",
+        file="contact/stepping/joints.py",
+        old="return abs(holding) > mu_static * normal or slid",
         new="return slid >= 0.0 or slid",
         tests=(*SLIDING, "pull and stiction"),
     ),
     Mutation(
         name="a support that cannot stand held as if it stood",
-        file="contact/stepping/step.py",
+        file="contact/stepping/joints.py",
         old="    if not stands or turning * acceleration < 0.0:\n",
         new="    if not stands:\n",
         tests=(*SLIDING, "start and rest"),
     ),
     Mutation(
         name="a turn without a stop that restores static friction",
-        file="contact/stepping/integrator.py",
-        old="            every, slip_step = slides_on(run, step, sliding, slip_step, turned)\n",
-        new="            every, slip_step = slides_on(run, step, sliding, slip_step, turned)\n"
-        "            clock.slip_since_break *= not turned\n",
+        file="contact/stepping/joints.py",
+        old="            every = slides_on(run, j, step, turned)\n",
+        new="            every = slides_on(run, j, step, turned)\n"
+        "            joint.slip_since_break *= not turned\n",
         tests=(*SLIDING, "turn and without"),
     ),
     Mutation(
@@ -195,8 +195,8 @@ MUTATIONS = (
     Mutation(
         name="work of the floor with the wrong sign",
         file="contact/stepping/step.py",
-        old="change[BASE_WORK] = shear * (run.floor[1, 0] - run.floor[0, 0])",
-        new="change[BASE_WORK] = -shear * (run.floor[1, 0] - run.floor[0, 0])",
+        old="shear += 0.5 * (old.force",
+        new="shear -= 0.5 * (old.force",
         tests=("verification/test_time_energy.py", "verification/test_contact_rocking.py"),
     ),
     Mutation(
@@ -223,8 +223,8 @@ MUTATIONS = (
     Mutation(
         name="tilted start without the centripetal acceleration",
         file="contact/interface/equilibrium.py",
-        old="free = np.array([0.0, -gravity]) - angular_velocity**2 * arm",
-        new="free = np.array([0.0, -gravity])",
+        old="free = np.array([downhill, -gravity]) - angular_velocity**2 * arm",
+        new="free = np.array([downhill, -gravity])",
         tests=("unit/contact/test_equilibrium.py",),
     ),
     Mutation(

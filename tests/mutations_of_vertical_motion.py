@@ -42,9 +42,9 @@ VERTICAL_MOTION = (
     ),
     Mutation(
         name="gravity less the vertical acceleration where the support holds",
-        file="contact/stepping/step.py",
-        old="gravity = control.gravity + run.lift[1, 2]",
-        new="gravity = control.gravity - run.lift[1, 2]",
+        file="contact/stepping/joints.py",
+        old="gravity = run.control.gravity + run.lift[1, 2]",
+        new="gravity = run.control.gravity - run.lift[1, 2]",
         tests=(VERTICAL, "-k", "slider"),
     ),
     Mutation(

@@ -84,8 +84,8 @@ def evaluate_laws(
             force, by_normal, by_velocity = regularised_friction(
                 normal,
                 work.velocity[i, 0],
-                contact.mu_static,
-                contact.mu_kinetic,
+                contact.mu_static[i],
+                contact.mu_kinetic[i],
                 contact.regularisation_velocity,
             )
             work.excess[i, 0] = 0.0

@@ -8,15 +8,15 @@ from contact.arrays import FloatArray, IntArray
 
 
 class Contact(NamedTuple):
-    """Properties of the contact with the floor: constants of one run, n base points."""
+    """Properties of the contact with the floor: constants of one run, n contact points."""
 
     normal_stiffness: FloatArray  #: [N/m]
     tangential_stiffness: FloatArray  #: [N/m]
     cap: FloatArray  #: largest normal force, dashpot included, at which the floor crushes [N]; infinite: it does not
     relaxation_time: float  #: dashpot over spring, of the normal and of the stuck tangential direction [s]
-    mu_static: float
-    mu_kinetic: float
-    weakening: float  #: slip over which static falls to kinetic friction [m]
+    mu_static: FloatArray  #: (n,) the same for all points of a joint, as the next two
+    mu_kinetic: FloatArray  #: (n,)
+    weakening: FloatArray  #: (n,) slip over which static falls to kinetic friction [m]
     stribeck_velocity: float  #: slip velocity over which it falls; 0: not with velocity [m/s]
     friction: int  #: ELASTIC_STICK or REGULARISED
     regularisation_velocity: float  #: [m/s]

@@ -59,17 +59,22 @@ def closing_time(control: Control, state: State, horizon: float) -> float:
 
 
 @compiled(inline=True)
-def switching_time(clock: Any, horizon: float) -> float:
-    """Time until the sticking support reaches its limit or the sliding support stops [s], at most the horizon."""
-    if clock.sliding == 0:
-        left, rate = 1.0 - clock.utilisation, clock.utilisation_rate
-        if left < AT_LIMIT:  # it slides at its limit, without having broken loose
-            return horizon
-    else:
-        left, rate = abs(clock.slip_velocity), -clock.slip_acceleration
-        if clock.slip_velocity < 0.0:
-            rate = -rate
-    return left / rate if rate * horizon > left > 0.0 else horizon
+def switching_time(joints: Any, horizon: float) -> float:
+    """Time until a sticking joint reaches its limit or a sliding joint stops [s], at most the horizon."""
+    first = horizon
+    for j in range(joints.shape[0]):
+        joint = joints[j]
+        if joint.sliding == 0:
+            left, rate = 1.0 - joint.utilisation, joint.utilisation_rate
+            if left < AT_LIMIT:  # it slides at its limit, without having broken loose
+                continue
+        else:
+            left, rate = abs(joint.slip_velocity), -joint.slip_acceleration
+            if joint.slip_velocity < 0.0:
+                rate = -rate
+        if rate * first > left > 0.0:
+            first = left / rate
+    return first
 
 
 @compiled(inline=True)
@@ -89,7 +94,7 @@ def next_step(run: RunState) -> float:
             if due == control.closing_step:
                 clock.level = due_level
     if step > control.event_step:
-        due = max(switching_time(clock, step), control.event_step)
+        due = max(switching_time(run.joints, step), control.event_step)
         if due < step:
             step = step_of_level(control.largest_step, step_level(control.largest_step, due))
     while run.breaks[clock.next_break] <= clock.time:

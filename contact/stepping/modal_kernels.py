@@ -315,6 +315,8 @@ def sizes_of_block_on_corners(body: ModalBody, run: Any) -> bool:
     work = run.work
     if body.point.shape[0] != 2 or body.stiffness.size != 0 or run.control.base_points != 2:
         return False
+    if run.joints.shape[0] != 1:
+        return False
     if body.elastic_compliance.shape[1] != 4 or body.elastic_compliance.shape[2] != 4:
         return False
     if work.point.shape[0] != 2 or work.slope.shape[0] != 2:

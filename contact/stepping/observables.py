@@ -44,8 +44,6 @@ OBSERVABLES = np.dtype(
     [
         ("max_rotation", "f8"),
         ("max_rocking", "f8"),  # largest rotation while a side carries nothing
-        ("max_slip", "f8"),
-        ("slip_travel", "f8"),
         ("max_uplift", "f8"),
         ("max_penetration", "f8"),
         ("max_corner_force", "f8"),  # mean over a short time
@@ -133,8 +131,6 @@ def update_observables(
     time: float,
     step: float,
     sliding: bool,
-    slip: float,
-    slip_step: float,
     floor: FloatArray,
     lift: FloatArray,
     heat: float,
@@ -147,7 +143,6 @@ def update_observables(
         old, new: states at both ends of the step.
         time: at its end [s]; step: its length [s].
         sliding: every loaded point slides.
-        slip: container against floor so far, signed [m]; slip_step: of this step [m].
         floor, lift: (2, 3) displacement, velocity, acceleration of the floor before and after the step, along x and
             upward.
         heat: of friction in this step [J].
@@ -160,8 +155,6 @@ def update_observables(
         share = before / (before - after)
         peak = hermite(share, step, old.pose[ROTATION], before, rotation, after)
         track.max_rotation = max(track.max_rotation, abs(peak))
-    track.max_slip = max(track.max_slip, abs(slip))
-    track.slip_travel += abs(slip_step)
     left_open, right_open, uplift, left_force, right_force = 1, 1, 0.0, 0.0, 0.0
     first, last = new.point[0, 0], new.point[n - 1, 0]
     for i in range(n):

@@ -36,7 +36,7 @@ SAME_INSTANT = 1e-12  #: difference of two times, over their size, that is round
 
 @compiled(inline=True)
 def write_columns(
-    run: RunState, row: FloatArray, force: FloatArray, time: float, s: float, step: float, slip_step: float
+    run: RunState, row: FloatArray, force: FloatArray, time: float, s: float, step: float
 ) -> None:
     """One row of a history at the share `s` of the step; `force` (n, 2) is the contact force at this instant."""
     old, new = run.old, run.new
@@ -45,7 +45,7 @@ def write_columns(
     lift, _, _ = floor_motion(run.vertical, time)
     row[ROW_ROTATION] = hermite(s, step, a[ROTATION], a[ANGULAR_VELOCITY], b[ROTATION], b[ANGULAR_VELOCITY])
     row[ROW_ANGULAR_VELOCITY] = (1.0 - s) * a[ANGULAR_VELOCITY] + s * b[ANGULAR_VELOCITY]
-    row[ROW_SLIP] = run.clock[0].slip + s * slip_step
+    row[ROW_SLIP] = run.joints[0].slip + s * run.joints[0].slip_step
     row[ROW_CENTRE_X] = hermite(s, step, a[CENTRE_X], a[VELOCITY_X], b[CENTRE_X], b[VELOCITY_X]) - floor
     row[ROW_CENTRE_Z] = hermite(s, step, a[CENTRE_Z], a[VELOCITY_Z], b[CENTRE_Z], b[VELOCITY_Z]) - lift
     row[ROW_UPLIFT], row[ROW_NORMAL], row[ROW_SHEAR] = 0.0, 0.0, 0.0
@@ -72,7 +72,7 @@ def write_coordinates(samples: Samples, at: int, old: State, new: State, s: floa
 
 
 @register_jitable(forceinline=True)
-def sample(run: RunState, samples: Samples, written: int, origin: int, step: float, slip_step: float) -> int:
+def sample(run: RunState, samples: Samples, written: int, origin: int, step: float) -> int:
     """Write the samples from the old time up to and including the new time; returns the number of samples so far.
 
     `written` samples exist before, and the first `origin` of them are no longer in the arrays. Positions are
@@ -92,6 +92,6 @@ def sample(run: RunState, samples: Samples, written: int, origin: int, step: flo
         write_coordinates(samples, at, old, new, s, step)
         samples.mode[at] = run.track[0].mode
         if samples.columns.shape[1] > 0:
-            write_columns(run, samples.columns[at], samples.force[at], time, s, step, slip_step)
+            write_columns(run, samples.columns[at], samples.force[at], time, s, step)
         written += 1
     return written

@@ -75,14 +75,6 @@ class Control(NamedTuple):
 STEP_RECORD = np.dtype(
     [
         ("time", "f8"),
-        # friction
-        ("sliding", "i8"),  # 1 while every loaded point slides: kinetic friction
-        ("slip_since_break", "f8"),  # path since the support broke loose
-        ("slip", "f8"),  # force-weighted sliding of the container, signed
-        ("slip_velocity", "f8"),  # force-weighted
-        ("slip_acceleration", "f8"),
-        ("utilisation", "f8"),  # support's tangential force over mu_s times its normal force
-        ("utilisation_rate", "f8"),
         # step control
         ("level", "i8"),  # of the step size, see `contact.stepping.control`
         ("allowance_used", "f8"),  # recent imbalance over the allowed one
@@ -115,6 +107,44 @@ STEP_RECORD = np.dtype(
     ],
     align=True,
 )
+
+
+#: a joint is where a box stands on what is below it: joint 0 is the floor under the lowest box, joint j carries box j;
+#: a body that moves as one has joint 0 alone. `RunState.joints` has one of these for each
+JOINT_RECORD = np.dtype(
+    [
+        # constants
+        ("mass", "f8"),  # of the box on the joint
+        ("inertia", "f8"),  # .. about its mass centre
+        ("width", "f8"),  # .. of its base
+        # friction
+        ("sliding", "i8"),  # 1 while every loaded point slides: kinetic friction
+        ("slip_since_break", "f8"),  # path since the joint broke loose
+        ("slip", "f8"),  # force-weighted sliding of the box over what is below, signed
+        ("slip_velocity", "f8"),  # force-weighted
+        ("slip_acceleration", "f8"),
+        ("utilisation", "f8"),  # tangential force over mu_s times the normal force
+        ("utilisation_rate", "f8"),
+        # observables
+        ("max_slip", "f8"),
+        ("slip_travel", "f8"),
+        # the attempted step
+        ("mu", "f8"),  # coefficient of friction at no velocity
+        ("motion", "i8"),  # sliding of the loaded points, see `contact.stepping.joints`
+        ("slip_step", "f8"),  # sliding in the step
+        ("velocity", "f8"),  # slip velocity at its end
+        ("slides", "i8"),  # `sliding` after it
+    ],
+    align=True,
+)
+
+
+def make_joints(mass: npt.ArrayLike, inertia: npt.ArrayLike, width: npt.ArrayLike) -> Any:
+    """A record array (N,) of JOINT_RECORD at the start; mass, inertia, width of the boxes (N,), from the floor up."""
+    boxes = np.atleast_1d(mass)
+    joints = np.zeros(boxes.size, JOINT_RECORD).view(np.recarray)
+    joints["mass"], joints["inertia"], joints["width"] = boxes, inertia, width
+    return joints
 
 
 class Samples(NamedTuple):
@@ -160,6 +190,7 @@ class RunState(NamedTuple):
     change: FloatArray  #: (6,) contribution of the attempted step to the ledger [J]
     ledger: FloatArray  #: (6,) [J]
     clock: Any  #: (1,) of STEP_RECORD
+    joints: Any  #: (N,) of JOINT_RECORD
     track: Any  #: (1,) of `observables.OBSERVABLES`
     contents: FloatArray  #: (8, 2 n_m) filter of the contents, see `contact.stepping.contents`
     history: Samples
@@ -202,6 +233,7 @@ def make_run(
         change=np.zeros(LEDGER_ROWS),
         ledger=np.zeros(LEDGER_ROWS),
         clock=clock,
+        joints=make_joints(control.mass, control.inertia, control.width),
         track=make_observables(),
         contents=np.zeros((8, 2 * (old.monitor.shape[0] - control.top_monitors))),
         history=history,

@@ -10,15 +10,12 @@ from typing import Any
 from numba.extending import register_jitable
 
 from contact.arrays import FloatArray
-from contact.interface.laws import ELASTIC_STICK, relaxed_stick, stribeck_mu
+from contact.interface.laws import relaxed_stick, stribeck_mu
 from contact.interface.solver import solve_contact
 from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled
 from contact.motion.kernel import UNIFORM, floor_motion, move_floor
 from contact.stepping.body import (
-    ANGULAR_VELOCITY,
-    CENTRE_X,
-    CENTRE_Z,
     KINETIC,
     POTENTIAL,
     STRAIN,
@@ -28,6 +25,7 @@ from contact.stepping.body import (
     release,
     respond,
 )
+from contact.stepping.joints import points_of
 from contact.stepping.ledger import (
     BASE_WORK,
     CONTACT_DAMPING,
@@ -45,7 +43,6 @@ from contact.stepping.scheme import Scheme
 from contact.stepping.state import RunState
 
 ITERATION_LIMIT = 12  #: of free motion, contact, response within one step
-NO_POINT, SOME, ALL, AIRBORNE = 0, 1, 2, 3  #: sliding of the loaded points
 
 
 @compiled(inline=True)
@@ -112,7 +109,7 @@ def crush(contact: Contact, step: float, old: State, new: State, work: Workspace
 
 
 @register_jitable(forceinline=True)
-def attempt(body: Any, run: RunState, step: float, mu: float) -> int:
+def attempt(body: Any, run: RunState, step: float) -> int:
     """Try one step and write the result to `run.new`; returns the number of iterations, or -1."""
     old, new, work, scheme = run.old, run.new, run.work, run.scheme
     clock = run.clock[0]
@@ -130,9 +127,13 @@ def attempt(body: Any, run: RunState, step: float, mu: float) -> int:
     copy_rows(work.force, old.force)
     # Friction follows the extrapolated velocity: its fall is a negative damping, not to be solved implicitly.
     contact = run.contact
-    for i in range(work.mu.size):
-        velocity = old.drift[i, 0] + step * old.drift[i, 1]
-        work.mu[i] = stribeck_mu(mu, contact.mu_kinetic, contact.stribeck_velocity, velocity)
+    for j in range(run.joints.shape[0]):
+        begin, end = points_of(run, j)
+        for i in range(begin, end):
+            velocity = old.drift[i, 0] + step * old.drift[i, 1]
+            work.mu[i] = stribeck_mu(
+                run.joints[j].mu, contact.mu_kinetic[i], contact.stribeck_velocity, velocity
+            )
     for iteration in range(ITERATION_LIMIT):
         release(body, scheme, step, old, new, work, floor, floor_velocity, lift, lift_velocity)
         indent(work.free, old.crushed)
@@ -150,109 +151,12 @@ def attempt(body: Any, run: RunState, step: float, mu: float) -> int:
 
 
 @compiled(inline=True)
-def holding_force(run: RunState) -> tuple[float, float]:
-    """Tangential force that holds the support at the end of the attempted step, and the normal force for it [N].
-
-    The forces of a rigid body that stands on both sides of its base, or rocks about the resultant of its normal forces,
-    or begins to rock about a corner because it cannot stand. The springs of the contact, and an elastic body, swing
-    around them. In an impact the normal force is larger. On a floor that accelerates upward by a_v gravity is g + a_v;
-    a slope acts as an acceleration of the floor uphill.
-    """
-    new, track, control = run.new, run.track[0], run.control
-    acceleration = run.floor[1, 2] - control.downhill
-    gravity = control.gravity + run.lift[1, 2]
-    normal, x, z = 0.0, 0.0, 0.0
-    for i in range(new.point.shape[0]):
-        normal += new.force[i, 1]
-        x += new.force[i, 1] * new.point[i, 0]
-        z += new.force[i, 1] * new.point[i, 1]
-    stands = normal <= 0.0 or track.left_open == track.right_open
-    if stands:
-        corner = 0 if acceleration > 0.0 else control.base_points - 1
-        x, z = new.point[corner, 0], new.point[corner, 1]
-    else:
-        x, z = x / normal, z / normal
-    arm_x = new.pose[CENTRE_X] - run.floor[1, 0] - x
-    arm_z = new.pose[CENTRE_Z] - run.lift[1, 0] - z
-    inertia = control.inertia / control.mass + arm_x * arm_x + arm_z * arm_z
-    turning = (gravity * arm_x - acceleration * arm_z) / inertia
-    push, load = acceleration, gravity
-    if not stands or turning * acceleration < 0.0:
-        spin = new.pose[ANGULAR_VELOCITY] ** 2
-        push += turning * arm_z - spin * arm_x
-        load -= turning * arm_x + spin * arm_z
-    return control.mass * push, max(normal, control.mass * load)
-
-
-@compiled(inline=True)
-def slide(run: RunState, step: float, stops: bool, holding: float) -> tuple[int, float, float]:
-    """Sliding of the base points and elongation of their springs after a converged step.
-
-    Args:
-        run: with a converged step in `new`.
-        step: [s].
-        stops: the support stops sliding in this step.
-        holding: tangential force with which its springs start then [N]. With the forces of the slide, the motion would
-            have to wind them up first, and the dashpots make that overshoot.
-
-    Returns:
-        The sliding of the loaded points: ALL slide in one direction, SOME or NO_POINT; AIRBORNE without a load. The
-        force-weighted sliding [m], and the force-weighted velocity of the loaded points at the end of the step [m/s].
-    """
-    contact, old, new, work = run.contact, run.old, run.new, run.work
-    every, any_slides, direction, weighted, total, velocity = True, False, 0.0, 0.0, 0.0, 0.0
-    loaded = new.force[:, 1].sum()
-    for i in range(new.point.shape[0]):
-        normal, tangential = new.force[i, 1], new.force[i, 0]
-        moved = new.point[i, 0] - old.point[i, 0]
-        stick = old.stick[i]
-        if old.point[i, 1] >= 0.0:  # open at the beginning: it slides in the closed part of the step only
-            below = max(0.0, new.crushed[i] - old.crushed[i] - new.point[i, 1])
-            moved *= below / (below + old.point[i, 1]) if below > 0.0 else 0.0
-        run.slip[i] = 0.0
-        if new.point[i, 1] >= 0.0:
-            new.stick[i] = 0.0
-            continue
-        if contact.friction != ELASTIC_STICK:
-            new.stick[i] = 0.0
-            run.slip[i] = moved
-        elif stops and normal > 0.0:
-            start = -holding * normal / loaded / contact.tangential_stiffness[i]
-            new.stick[i] = start - contact.relaxation_time * work.velocity[i, 0]
-            run.slip[i] = moved - (new.stick[i] - stick)
-        elif normal <= 0.0 or work.slope[i, 0] == 0.0:
-            new.stick[i] = relaxed_stick(
-                stick, -tangential, contact.tangential_stiffness[i], contact.relaxation_time, step
-            )
-            run.slip[i] = moved - (new.stick[i] - stick)
-        elif old.point[i, 1] >= 0.0:
-            new.stick[i] = 0.0
-        else:
-            new.stick[i] = stick + moved
-        if normal > 0.0:
-            weighted += normal * run.slip[i]
-            velocity += normal * work.velocity[i, 0]
-            total += normal
-            if contact.friction != ELASTIC_STICK:
-                slides = abs(work.velocity[i, 0]) > contact.regularisation_velocity
-                every = every and slides
-            else:
-                slides = work.slope[i, 0] == 0.0
-                every = every and slides and direction * work.law[i, 0] >= 0.0
-            any_slides = any_slides or slides
-            direction = work.law[i, 0]
-    if total <= 0.0:
-        return AIRBORNE, 0.0, 0.0
-    sliding = ALL if every else (SOME if any_slides else NO_POINT)
-    return sliding, weighted / total, velocity / total
-
-
-@compiled(inline=True)
 def account(run: RunState, step: float) -> float:
     """Write the ledger terms of the attempted step to `run.change`; returns its dissipation [J]."""
     old, new, change = run.old, run.new, run.change
     shear = 0.0
-    for i in range(new.force.shape[0]):
+    begin, end = points_of(run, 0)
+    for i in range(begin, end):
         shear += 0.5 * (old.force[i, 0] + new.force[i, 0])
     friction, damping = contact_losses(
         run.contact, old.point, new.point, old.force, new.force, old.stick, new.stick, run.slip

@@ -2,7 +2,7 @@
 
 import math
 from types import SimpleNamespace
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -37,7 +37,7 @@ def outcome_of(model: Model) -> str:
     track = model.run.track[0]
     if math.isfinite(track.overturned_at):
         return "overturned"
-    slides = track.max_slip > SLIDING * model.container.mesh.width
+    slides = model.run.joints[0].max_slip > SLIDING * model.container.mesh.width
     rocks = track.max_rocking > ROCKING * model.static.slenderness_angle
     return MODE_NAMES[(ROCK if rocks else REST) + (SLIDE if slides else REST)]
 
@@ -66,19 +66,18 @@ def verdict_from(
         largest_von_mises: [Pa].
     """
     run, angle, outcome = model.run, model.static.slenderness_angle, outcome_of(model)
-    # plain numbers are read a hundred times faster than those of a numpy record
-    track = SimpleNamespace(**dict(zip(run.track.dtype.names, run.track[0].item(), strict=True)))
+    track, joint = _numbers(run.track), _numbers(run.joints)
     sampled = end is not None and end > 0.0
     rocked = outcome in ("rock", "slide-rock")
     return Verdict(
         outcome=outcome,
-        modes=_modes_seen(model, track, outcome),
+        modes=_modes_seen(model, track.modes, joint.max_slip, outcome),
         max_rotation_rad=track.max_rotation,
         rotation_ratio=rotation_ratio(track.max_rotation, angle),
-        max_slip_m=track.max_slip,
-        residual_slip_m=float(run.clock[0].slip),
+        max_slip_m=joint.max_slip,
+        residual_slip_m=joint.slip,
         slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),
-        slip_travel_m=track.slip_travel,
+        slip_travel_m=joint.slip_travel,
         max_uplift_m=track.max_uplift,
         max_indentation_m=_indentation(model),
         impacts=track.impacts,
@@ -101,6 +100,11 @@ def _indentation(model: Model) -> float | None:
     """Largest permanent indentation under a base point [m]; None where the floor does not crush."""
     run, base = model.run, model.run.control.base_points
     return float(run.old.crushed[:base].max()) if np.isfinite(run.contact.cap[:base]).any() else None
+
+
+def _numbers(records: Any) -> SimpleNamespace:
+    """The first record as plain numbers, which are read a hundred times faster than those of numpy."""
+    return SimpleNamespace(**dict(zip(records.dtype.names, records[0].item(), strict=True)))
 
 
 def energy_of(model: Model) -> Energy:
@@ -180,13 +184,13 @@ def _restitution(track: SimpleNamespace) -> float | None:
     return track.restitution if 0.0 < track.restitution < MOST_RESTITUTION else None
 
 
-def _modes_seen(model: Model, track: SimpleNamespace, outcome: str) -> tuple[str, ...]:
+def _modes_seen(model: Model, modes: int, max_slip: float, outcome: str) -> tuple[str, ...]:
     """States that the history passed through, and the outcome, which may follow from creep alone.
 
     Sliding that is too small to count in the outcome does not count here.
     """
-    seen = {name for mode, name in MODE_NAMES.items() if track.modes & 1 << mode}
-    if track.max_slip <= SLIDING * model.container.mesh.width:
+    seen = {name for mode, name in MODE_NAMES.items() if modes & 1 << mode}
+    if max_slip <= SLIDING * model.container.mesh.width:
         seen = {{"slide": "rest", "slide-rock": "rock"}.get(name, name) for name in seen}
     return tuple(name for name in MODE_NAMES.values() if name in seen or name == outcome)
 

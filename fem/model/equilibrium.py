@@ -100,9 +100,9 @@ def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) ->
         tangential_stiffness=ratio * springs,
         cap=cap,
         relaxation_time=relaxation,
-        mu_static=chosen.mu_static,
-        mu_kinetic=chosen.mu_kinetic,
-        weakening=chosen.weakening_m,
+        mu_static=np.full(springs.size, chosen.mu_static),
+        mu_kinetic=np.full(springs.size, chosen.mu_kinetic),
+        weakening=np.full(springs.size, chosen.weakening_m),
         stribeck_velocity=chosen.stribeck_velocity_m_s,
         friction=laws[chosen.friction],
         regularisation_velocity=chosen.regularisation_velocity_m_s,
@@ -164,6 +164,6 @@ def _stance(case: Case, container: Container, contact: Contact, gravity: float) 
             corner_x=float(elements.nodes[corner, 0]),
             compliance=compliance,
             normal_stiffness=contact.normal_stiffness[:base],
-            mu_static=contact.mu_static,
+            mu_static=case.contact.mu_static,
         )
     return stance.with_points(container.nodes.size).moving(initial.velocity_m_s)

@@ -33,12 +33,12 @@ def follow_decay(case: Case, container: Container, driven: DrivenModel) -> Decay
     """Stop the floor at a section and follow the container; `driven` does not change."""
     stopped = stop_drive(case, container, driven)
     run, control = stopped.run, stopped.run.control
-    clock, track = run.clock[0], run.track[0]
+    clock, track, joint = run.clock[0], run.track[0], run.joints[0]
     look = LOOK / control.frequency_parameter
     largest = abs(float(run.old.pose[ROTATION]))
     moved_at, limit = 0.0, ROCKING * control.slenderness_angle
     while clock.time < PATIENCE / control.frequency_parameter:
-        track.max_rotation, travelled = 0.0, float(track.slip_travel)
+        track.max_rotation, travelled = 0.0, float(joint.slip_travel)
         code = advance_compiled(stopped.body, run, float(clock.time) + look)
         clock.samples_drained = clock.samples
         largest = max(largest, float(track.max_rotation))
@@ -46,7 +46,7 @@ def follow_decay(case: Case, container: Container, driven: DrivenModel) -> Decay
             return Decay(fate="overturns", time=float(track.overturned_at), largest_rotation=largest)
         if code != REACHED:
             return Decay(fate="failed", time=None, largest_rotation=largest)
-        if track.max_rotation > limit or track.slip_travel - travelled > STILL_SLIP * control.width:
+        if track.max_rotation > limit or joint.slip_travel - travelled > STILL_SLIP * control.width:
             moved_at = float(clock.time)
         if clock.time - moved_at > STILL / control.frequency_parameter:
             fate = "failed" if audit(stopped.model) else "dies out"

@@ -20,20 +20,8 @@ from fem.model.model import Model, build_model
 from fem.response.request import Hold
 
 SAMPLES_PER_PERIOD = 128
-#: state of the step control and of friction that is carried from one motion to the next
-CARRIED = (
-    "sliding",
-    "slip_since_break",
-    "slip",
-    "utilisation",
-    "utilisation_rate",
-    "slip_velocity",
-    "slip_acceleration",
-    "allowance_used",
-    "recent_dissipation",
-    "growth_hold",
-    "lag_step",
-)
+#: state of the step control that is carried from one motion to the next
+CARRIED = ("allowance_used", "recent_dissipation", "growth_hold", "lag_step")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -113,6 +101,7 @@ def carry_state(before: RunState, after: RunState) -> None:
     step = step_of_level(before.control.largest_step, int(before.clock.level[0]))
     after.clock.level = step_level(after.control.largest_step, min(step, after.control.largest_step))
     after.track[:] = before.track
+    after.joints[:] = before.joints
 
 
 def section_times(period: float, count: int) -> np.ndarray:

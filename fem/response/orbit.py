@@ -72,7 +72,7 @@ def follow_periods(
     driven = with_sections(driven, count)
     run, track, clock = driven.run, driven.run.track[0], driven.run.clock[0]
     sections, extremes, portraits = [], [], []
-    code, slipped, reason = REACHED, float(clock.slip), None
+    code, slipped, reason = REACHED, float(driven.run.joints[0].slip), None
     _open_ledger(driven)
     for k, end in enumerate(section_times(driven.period, count)):
         impacts = int(track.impacts)
@@ -81,7 +81,7 @@ def follow_periods(
         if code != REACHED:
             break
         _, floor_velocity, _ = floor_motion(run.motion, end)
-        pose, slip = run.old.pose, float(clock.slip)
+        pose, slip = run.old.pose, float(driven.run.joints[0].slip)
         rotation = np.append(samples[:, ROW_ROTATION], pose[ROTATION])
         sliding = np.append(samples[:, ROW_SLIP], slip)
         sections.append(

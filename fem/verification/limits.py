@@ -96,7 +96,7 @@ def stated_motion() -> Iterator[Row]:
     for name, values in models.items():
         done = run(STACK, harmonic(0.05, 6.928) | FRICTION | {"solver.duration_s": 9.07} | values)
         case = f"stack ({name}) under 50 mm at 6.928 rad/s, mu 0.4/0.2"
-        slip, tilt = done.track.max_slip, done.track.max_rotation
+        slip, tilt = done.joint.max_slip, done.track.max_rotation
         yield analytic(case, "largest slip [m]", slip, source=source, absolute=1e-5)
         yield analytic(case, "largest tilt [rad]", tilt, source=source, absolute=1e-4)
 
@@ -113,7 +113,7 @@ def plateau() -> Iterator[Row]:
         compared, found = "largest rotation in 8 s over al", float(done.track.max_rotation) / SLENDERNESS
         yield computed(case, compared, found, 0.399, source=source, absolute=0.01)
         compared, stands = "rocks without slip and stands (1)", done.status == "completed"
-        note = f"slip {1e6 * float(done.track.max_slip):.3g} um"
+        note = f"slip {1e6 * float(done.joint.max_slip):.3g} um"
         found = done.outcome == "rock" and stands
         yield computed(case, compared, found, 1.0, source=PLANAR_BLOCK, absolute=0.0, note=note)
 

@@ -189,7 +189,7 @@ def first_motion(
     growth = 0.05 if ratio <= 1.0 / lam else 0.0
     motion = growing_then_steady(ratio * GRAVITY, growth)
     done = finish(with_motion(build_model(case, containers[lam]), motion, (0.05, 0.05 + growth)))
-    slides = float(done.track.max_slip) > 1e-4
+    slides = float(done.joint.max_slip) > 1e-4
     rocks = float(done.track.max_rocking) > 1e-3 * done.model.static.slenderness_angle
     return {
         (False, False): "rest",

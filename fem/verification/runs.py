@@ -98,6 +98,11 @@ class Finished:
         return self.model.run.track[0]
 
     @property
+    def joint(self) -> Any:
+        """Slip over the floor, see `contact.stepping.state.JOINT_RECORD`."""
+        return self.model.run.joints[0]
+
+    @property
     def outcome(self) -> str:
         """rest | slide | rock | slide-rock | overturned."""
         return outcome_of(self.model)

@@ -112,7 +112,7 @@ def stuck() -> Iterator[Row]:
         done = run(BOX, pulse(0.2 * GRAVITY, 20.0) | held | values)
         slip = done.history["slip_m"]
         case, source = f"{name}, 0.2 g one way for 20 s, mu 0.4", "below the friction limit"
-        yield analytic(case, "largest slip [m]", done.track.max_slip, source=source, absolute=1e-5)
+        yield analytic(case, "largest slip [m]", done.joint.max_slip, source=source, absolute=1e-5)
         grown = np.ptp(slip[slip.size // 2 :])
         yield analytic(case, "slip in the second half [m]", grown, source=source, absolute=1e-12)
 
@@ -143,7 +143,7 @@ def creep() -> Iterator[Row]:
 def friction_heat() -> Iterator[Row]:
     """Heat of friction of a box given a push: mu_k times weight times path."""
     done = run(BOX, FRICTION | {"initial.velocity_m_s": 2.0, "solver.duration_s": 2.0})
-    slip, heat = float(done.track.slip_travel), float(done.model.run.ledger[FRICTION_HEAT])
+    slip, heat = float(done.joint.slip_travel), float(done.model.run.ledger[FRICTION_HEAT])
     case, compared = "rigid box pushed at 2 m/s, mu 0.4/0.2", "friction heat over mu_k M g and path"
     heat /= 0.2 * 24525.0 * slip
     yield analytic(case, compared, heat, 1.0, source="Coulomb", absolute=STROKE_TOLERANCE)
@@ -189,7 +189,7 @@ def half_sine() -> Iterator[Row]:
             yield computed(
                 f"{name}, half-sine of 2.65 m/s2 and 2 s, mu {mu}",
                 "largest slip [m]",
-                run(case, motion | values).track.max_slip,
+                run(case, motion | values).joint.max_slip,
                 exact,
                 source=SLIDER,
                 relative=STROKE_TOLERANCE,
@@ -291,7 +291,7 @@ def paper_slider_position() -> Iterator[Row]:
     times, slip = done.history["time_s"], done.history["slip_m"]
     exact = slip_of_the_papers_slider(times)
     case = "rigid box, A = 0.05 m, Omega = 10 rad/s, mu 0.4/0.2"
-    largest = done.track.max_slip
+    largest = done.joint.max_slip
     yield computed(case, "largest slip [m]", largest, LARGEST, source=SLIDER, relative=STROKE_TOLERANCE)
     compared, source = "slip after ten periods over the largest", f"{SLIDER}, 19.893 of 79.144 mm"
     last = float(slip[-1]) / LARGEST
@@ -344,7 +344,7 @@ def pull_below_stiction() -> Iterator[Row]:
             yield analytic(
                 f"{name}, {share:g} of stiction for 0.5 s, mu 0.4/0.2",
                 "largest slip over the width",
-                run(BOX, values | keys).track.max_slip / 1.1,
+                run(BOX, values | keys).joint.max_slip / 1.1,
                 source="a rigid slider rests",
                 absolute=1e-4,
             )

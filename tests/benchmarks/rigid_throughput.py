@@ -66,7 +66,7 @@ def throughput(case: Case) -> tuple[float, str, float]:
     ratio = float(run.track.max_rotation[0]) / model.static.slenderness_angle
     what = (
         f"penalty {model.penalty:.3g} Pa/m, {int(run.clock.steps[0])} steps, "
-        f"rotation ratio {ratio:.4f}, slip {1e3 * float(run.track.max_slip[0]):.2f} mm; "
+        f"rotation ratio {ratio:.4f}, slip {1e3 * float(run.joints.max_slip[0]):.2f} mm; "
         f"Moreau {moreau(model)[1]}"
     )
     own = statistics.median(own for own, _ in costs)

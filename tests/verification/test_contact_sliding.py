@@ -32,7 +32,7 @@ def test_slip_leaves_out_the_elastic_stick():
     stick = float(state.stick.mean())
     assert abs(stick) == pytest.approx(0.2 * block.mass * GRAVITY / block.base_stiffness, rel=0.01)
     moved = float((state.point[:, 0] - block.point[:, 0]).mean())
-    assert moved - float(run.clock.slip) == pytest.approx(stick, rel=0.02)
+    assert moved - float(run.joint.slip) == pytest.approx(stick, rel=0.02)
 
 
 def steady(run: Rig, period: float) -> FloatArray:
@@ -80,5 +80,5 @@ def test_a_stuck_block_does_not_creep(share, stairs, sign):
 
 def test_a_slip_distance_for_weakening_shortens_the_stroke_and_nothing_else():
     # While it weakens the floor takes more of the block along: the strokes shrink, a little.
-    strokes = [shaken(replace(BOX, weakening=w), 10.0, 12.0).track.max_slip for w in (0.0, 1e-5, 1e-4)]
+    strokes = [shaken(replace(BOX, weakening=w), 10.0, 12.0).joint.max_slip for w in (0.0, 1e-5, 1e-4)]
     assert strokes[0] > strokes[1] > strokes[2] > 0.5 * strokes[0]

@@ -41,7 +41,7 @@ def bouncing(scheme: Scheme, step: float, damping_ratio: float, turning: float =
     run.run.old.stick[:] = 0.0  # the tangential dashpots work at first, their springs do not
     run.advance(0.5)
     assert run.track.first_opening == math.inf
-    assert run.track.slip_travel == 0.0
+    assert run.joint.slip_travel == 0.0
     return run
 
 

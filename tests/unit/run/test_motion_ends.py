@@ -81,7 +81,7 @@ def test_a_pulse_run_ends_at_rest_before_its_cap(name, shape, peak, outcome):
     assert np.abs(done.history["rotation_rad"][tail]).max() < 1e-3 * model.static.slenderness_angle
     # in 5 s more it would still do nothing
     longer = finish(build_model(model.case.with_values({"solver.duration_s": end + 5.0})))
-    assert abs(float(longer.model.run.clock.slip[0] - model.run.clock.slip[0])) < 1e-6
+    assert abs(float(longer.model.run.joints.slip[0] - model.run.joints.slip[0])) < 1e-6
 
 
 def test_a_run_and_a_batch_end_at_the_same_instant_with_the_same_bits():
@@ -90,7 +90,7 @@ def test_a_run_and_a_batch_end_at_the_same_instant_with_the_same_bits():
     finish(one)
     row = run_model(other)
     assert one.run.clock.time[0] == other.run.clock.time[0] < one.duration
-    assert row["residual_slip_m"] == one.run.clock.slip[0]
+    assert row["residual_slip_m"] == one.run.joints.slip[0]
 
 
 def test_free_motion_ends_with_a_fall_or_at_the_cap():

@@ -1,0 +1,252 @@
+"""Friction in the joints of a run: what slides, what breaks loose, what stops.
+
+Static and kinetic friction are states of a joint, not of a point: see "Static and kinetic friction" in
+`contact/README.md`. Forces and slips are those of the box on top of the joint.
+"""
+
+from numba.extending import register_jitable
+
+from contact.interface.laws import ELASTIC_STICK, relaxed_stick, weakened_mu
+from contact.jit import compiled
+from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z
+from contact.stepping.observables import SLIDING
+from contact.stepping.state import RunState
+
+NO_POINT, SOME, ALL, AIRBORNE = 0, 1, 2, 3  #: sliding of the loaded points of a joint
+WEAKENING_TOLERANCE = (
+    1e-9  #: change of a coefficient that weakens with the slip of a step at which it is known
+)
+IMPACT_LOAD = 2.0  #: normal force over the weight from which there is an impact
+
+
+@register_jitable(forceinline=True)
+def points_of(run: RunState, j: int) -> tuple[int, int]:
+    """First contact point of a joint, and the one behind its last."""
+    if run.joints.shape[0] == 1:
+        return 0, run.new.point.shape[0]
+    return (0, 2) if j == 0 else (4 * j - 2, 4 * j + 2)
+
+
+@register_jitable(forceinline=True)
+def _kinetic_friction(run: RunState, j: int, slid: float) -> float:
+    """Coefficient of friction, at no velocity, of a sliding joint after a path of `slid` [m]."""
+    contact, first = run.contact, points_of(run, j)[0]
+    if contact.stribeck_velocity > 0.0 and contact.weakening[first] <= 0.0:
+        return contact.mu_static[first]
+    return weakened_mu(contact.mu_static[first], contact.mu_kinetic[first], contact.weakening[first], slid)
+
+
+@compiled(inline=True)
+def begin_friction(run: RunState) -> None:
+    """Coefficients of friction of the joints at the beginning of a step."""
+    for j in range(run.joints.shape[0]):
+        joint = run.joints[j]
+        joint.mu = run.contact.mu_static[points_of(run, j)[0]]
+        if joint.sliding == 1:
+            joint.mu = _kinetic_friction(run, j, joint.slip_since_break)
+
+
+@compiled(inline=True)
+def weaken_friction(run: RunState) -> bool:
+    """Coefficients of friction after the slip of the attempted step; whether one of them has changed."""
+    changed = False
+    for j in range(run.joints.shape[0]):
+        joint = run.joints[j]
+        if joint.sliding == 1 and run.contact.weakening[points_of(run, j)[0]] > 0.0:
+            weakened = _kinetic_friction(run, j, joint.slip_since_break + abs(joint.slip_step))
+            if abs(weakened - joint.mu) > WEAKENING_TOLERANCE:
+                joint.mu = weakened
+                changed = True
+    return changed
+
+
+@compiled(inline=True)
+def slide_joints(run: RunState, step: float) -> None:
+    """Sliding of all joints after a converged step of this size [s], none of which stops."""
+    for j in range(run.joints.shape[0]):
+        slide(run, j, step, False, 0.0)
+
+
+@compiled(inline=True)
+def settle_friction(run: RunState, step: float) -> bool:
+    """Decide which joints slide after the attempted step [s]; whether one starts to, stops or turns round in it."""
+    switches = False
+    for j in range(run.joints.shape[0]):
+        joint = run.joints[j]
+        every = joint.motion == ALL or (joint.motion == AIRBORNE and joint.sliding == 1)
+        turned = False
+        if run.contact.friction == ELASTIC_STICK and joint.sliding == 1 and joint.motion != AIRBORNE:
+            turned = joint.velocity * joint.slip_velocity < 0.0
+            every = slides_on(run, j, step, turned)
+        elif run.contact.friction == ELASTIC_STICK and every and joint.sliding == 0:
+            every = breaks_loose(run, j)
+        overshoots = joint.sliding == 0 and (joint.motion == ALL) != (joint.slip_since_break > 0.0)
+        changes = turned or overshoots or (joint.sliding == 1) != every
+        switches = switches or (changes and run.contact.mu_static[points_of(run, j)[0]] > 0.0)
+        joint.slides = 1 if every else 0
+    return switches
+
+
+@compiled(inline=True)
+def breaks_loose(run: RunState, j: int) -> bool:
+    """Whether a joint whose points all slide at the limit of static friction breaks loose as a whole.
+
+    A rigid body would slide, or the points have slid as far as counts as sliding. Less is the overshoot of an elastic
+    swing, which lasts milliseconds and slides micrometres: too little for friction to fall.
+    """
+    joint = run.joints[j]
+    holding, normal = holding_force(run, j)
+    slid = joint.slip_since_break + abs(joint.slip_step)
+    mu_static = run.contact.mu_static[points_of(run, j)[0]]
+    return abs(holding) > mu_static * normal or slid > SLIDING * joint.width
+
+
+@compiled(inline=True)
+def slides_on(run: RunState, j: int, step: float, turned: bool) -> bool:
+    """Whether a sliding joint slides on after the attempted step; where it stops, its slip of the step may change.
+
+    It stops where its slip has `turned` round, or none of its points slides, and static friction can hold it. A slip
+    that turns round without a stop goes on: kinetic friction remains, and the path since the joint broke loose.
+    """
+    joint = run.joints[j]
+    if turned or joint.motion == NO_POINT:
+        holding, normal = holding_force(run, j)
+        if abs(holding) <= run.contact.mu_static[points_of(run, j)[0]] * normal:
+            # a stop within an impact does not last
+            weight = joint.mass * (run.control.gravity + run.lift[1, 2])
+            if turned and normal < IMPACT_LOAD * weight:
+                slide(run, j, step, True, holding)
+            return False
+    return True
+
+
+@compiled(inline=True)
+def holding_force(run: RunState, j: int) -> tuple[float, float]:
+    """Tangential force that holds a joint at the end of the attempted step, and the normal force for it [N].
+
+    The forces of a rigid body that stands on both sides of its base, or rocks about the resultant of its normal forces,
+    or begins to rock about a corner because it cannot stand. The springs of the contact, and an elastic body, swing
+    around them. In an impact the normal force is larger. On a floor that accelerates upward by a_v gravity is g + a_v;
+    a slope acts as an acceleration of the floor uphill.
+    """
+    new, track, joint = run.new, run.track[0], run.joints[j]
+    acceleration = run.floor[1, 2] - run.control.downhill
+    gravity = run.control.gravity + run.lift[1, 2]
+    normal, x, z = 0.0, 0.0, 0.0
+    begin, end = points_of(run, j)
+    for i in range(begin, end):
+        normal += new.force[i, 1]
+        x += new.force[i, 1] * new.point[i, 0]
+        z += new.force[i, 1] * new.point[i, 1]
+    stands = normal <= 0.0 or track.left_open == track.right_open
+    if stands:
+        corner = 0 if acceleration > 0.0 else run.control.base_points - 1
+        x, z = new.point[corner, 0], new.point[corner, 1]
+    else:
+        x, z = x / normal, z / normal
+    arm_x = new.pose[CENTRE_X] - run.floor[1, 0] - x
+    arm_z = new.pose[CENTRE_Z] - run.lift[1, 0] - z
+    inertia = joint.inertia / joint.mass + arm_x * arm_x + arm_z * arm_z
+    turning = (gravity * arm_x - acceleration * arm_z) / inertia
+    push, load = acceleration, gravity
+    if not stands or turning * acceleration < 0.0:
+        spin = new.pose[ANGULAR_VELOCITY] ** 2
+        push += turning * arm_z - spin * arm_x
+        load -= turning * arm_x + spin * arm_z
+    return joint.mass * push, max(normal, joint.mass * load)
+
+
+@compiled(inline=True)
+def slide(run: RunState, j: int, step: float, stops: bool, holding: float) -> None:
+    """Sliding of the points of a joint and elongation of their springs after a converged step.
+
+    Writes `run.slip` and `new.stick` of the points. Of the joint it writes `motion` - ALL loaded points slide in one
+    direction, SOME or NO_POINT; AIRBORNE without a load -, the force-weighted sliding [m], and the force-weighted
+    velocity of the loaded points at the end of the step [m/s].
+
+    Args:
+        run: with a converged step in `new`.
+        j: the joint.
+        step: [s].
+        stops: the joint stops sliding in this step.
+        holding: tangential force with which its springs start then [N]. With the forces of the slide, the motion would
+            have to wind them up first, and the dashpots make that overshoot.
+    """
+    contact, old, new, work, joint = run.contact, run.old, run.new, run.work, run.joints[j]
+    every, any_slides, direction, weighted, total, velocity = True, False, 0.0, 0.0, 0.0, 0.0
+    begin, end = points_of(run, j)
+    loaded = 0.0
+    for i in range(begin, end):
+        loaded += new.force[i, 1]
+    for i in range(begin, end):
+        normal, tangential = new.force[i, 1], new.force[i, 0]
+        moved = new.point[i, 0] - old.point[i, 0]
+        stick = old.stick[i]
+        if old.point[i, 1] >= 0.0:  # open at the beginning: it slides in the closed part of the step only
+            below = max(0.0, new.crushed[i] - old.crushed[i] - new.point[i, 1])
+            moved *= below / (below + old.point[i, 1]) if below > 0.0 else 0.0
+        run.slip[i] = 0.0
+        if new.point[i, 1] >= 0.0:
+            new.stick[i] = 0.0
+            continue
+        if contact.friction != ELASTIC_STICK:
+            new.stick[i] = 0.0
+            run.slip[i] = moved
+        elif stops and normal > 0.0:
+            start = -holding * normal / loaded / contact.tangential_stiffness[i]
+            new.stick[i] = start - contact.relaxation_time * work.velocity[i, 0]
+            run.slip[i] = moved - (new.stick[i] - stick)
+        elif normal <= 0.0 or work.slope[i, 0] == 0.0:
+            new.stick[i] = relaxed_stick(
+                stick, -tangential, contact.tangential_stiffness[i], contact.relaxation_time, step
+            )
+            run.slip[i] = moved - (new.stick[i] - stick)
+        elif old.point[i, 1] >= 0.0:
+            new.stick[i] = 0.0
+        else:
+            new.stick[i] = stick + moved
+        if normal > 0.0:
+            weighted += normal * run.slip[i]
+            velocity += normal * work.velocity[i, 0]
+            total += normal
+            if contact.friction != ELASTIC_STICK:
+                slides = abs(work.velocity[i, 0]) > contact.regularisation_velocity
+                every = every and slides
+            else:
+                slides = work.slope[i, 0] == 0.0
+                every = every and slides and direction * work.law[i, 0] >= 0.0
+            any_slides = any_slides or slides
+            direction = work.law[i, 0]
+    if total <= 0.0:
+        joint.motion, joint.slip_step, joint.velocity = AIRBORNE, 0.0, 0.0
+        return
+    joint.slip_step, joint.velocity = weighted / total, velocity / total
+    if stops:  # what decided that it stops remains
+        return
+    joint.motion = ALL if every else (SOME if any_slides else NO_POINT)
+
+
+@compiled(inline=True)
+def update_joints(run: RunState, step: float) -> None:
+    """Update the joints from the step about to be accepted; `close_joints` adds its sliding."""
+    for j in range(run.joints.shape[0]):
+        joint = run.joints[j]
+        joint.slip_since_break = (
+            joint.slip_since_break + abs(joint.slip_step)
+            if joint.sliding == 1 or joint.motion == ALL
+            else 0.0
+        )
+        joint.sliding = joint.slides
+        tangential, normal = 0.0, 0.0
+        begin, end = points_of(run, j)
+        for i in range(begin, end):
+            tangential += run.new.force[i, 0]
+            normal += run.new.force[i, 1]
+        limit = run.contact.mu_static[begin] * normal
+        utilisation = abs(tangential) / limit if limit > 0.0 else 0.0
+        joint.utilisation_rate = (utilisation - joint.utilisation) / step
+        joint.utilisation = utilisation
+        joint.slip_acceleration = (joint.velocity - joint.slip_velocity) / step
+        joint.slip_velocity = joint.velocity
+        joint.max_slip = max(joint.max_slip, abs(joint.slip + joint.slip_step))
+        joint.slip_travel += abs(joint.slip_step)
