@@ -20,6 +20,7 @@ from contact.reference.planar_motion import PlanarImpact, PlanarMode
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import RockingImpact, simulate_rocking
 from contact.stepping.observables import ROCKING, SLIDING
+from fem.assessment.loose_boxes import AS_ONE, joints_in_words
 from fem.case.case import Case
 from fem.model.model import Model
 from fem.results.history import ANALYTIC_COLUMN, History
@@ -231,6 +232,8 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
         reasons.append(
             f"support {kind!r}: the container turns about a moving region, the block about its corners"
         )
+    if (moved := joints_in_words(verdict, static.to_result())) not in ("", AS_ONE):
+        reasons.append(f"its boxes are loose: {moved}")
     if block_slides or _slides_at_impact(model, history, verdict):
         reasons.append("it slides at the first impact, which Housner's block does not")
     if stiffness < STIFF_CONTAINER:

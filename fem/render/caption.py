@@ -17,6 +17,7 @@ from fem.figures.style import number
 from fem.render.scene import BAR, BOTTOM, SIDE, View
 from fem.results.errors import FolderError
 from fem.results.fields import Frame
+from fem.results.history import ANALYTIC_COLUMN
 from fem.results.reader import OpenedRun
 from fem.runtime.arrays import FloatArray
 
@@ -27,8 +28,8 @@ RULER = 120  #: longest ruler [pixels]
 FONTS = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
 
 
-def rotation_at(run: OpenedRun, times: FloatArray | float) -> FloatArray:
-    """Rotation at some times, from the history [rad].
+def rotations_at(run: OpenedRun, times: FloatArray) -> FloatArray:
+    """Rotation at some times (n,) of the container, or of each loose box, from the history, shape (b, n) [rad].
 
     Raises:
         FolderError: the history is missing, damaged or empty.
@@ -36,12 +37,19 @@ def rotation_at(run: OpenedRun, times: FloatArray | float) -> FloatArray:
     history = run.history
     if not len(history):
         raise FolderError(f"{run.place.history}: holds no sample yet")
-    return np.asarray(np.interp(times, history["time_s"], history["rotation_rad"]))
+    names = [name for name in history.numbers if name.endswith("rotation_rad") and name != ANALYTIC_COLUMN]
+    return np.array([np.interp(times, history["time_s"], history[name]) for name in names])
 
 
 def caption(run: OpenedRun, frame: Frame) -> tuple[str, str]:
-    """Title of a picture, and the lines below it: time and state, rotation and rotation ratio."""
-    rotation = float(rotation_at(run, frame.time))
+    """Title of a picture, and the lines below it: time and state, rotation and rotation ratio.
+
+    Of a loose stack the box that has turned most is named.
+    """
+    rotations = rotations_at(run, np.array([frame.time]))[:, 0]
+    most = int(np.argmax(np.abs(rotations)))
+    rotation = float(rotations[most])
+    box = f" (box {most + 1})" if len(rotations) > 1 and rotation else ""
     sample = min(int(np.searchsorted(run.history["time_s"], frame.time - 1e-9)), len(run.history) - 1)
     title = run.typed_result.title or run.name
     title = title if len(title) <= LONGEST else f"{title[: LONGEST - 3]}..."
@@ -49,7 +57,7 @@ def caption(run: OpenedRun, frame: Frame) -> tuple[str, str]:
     degrees = f"{round(math.degrees(rotation), 2) + 0.0:.2f}".replace("-", "−")  # no minus zero
     ratio = ratio_in_words(rotation_ratio(rotation, run.slenderness_angle))
     return title + status, (
-        f"t = {frame.time:.3f} s    {run.history.modes[sample]}\nrotation {degrees}°, rotation ratio {ratio}"
+        f"t = {frame.time:.3f} s    {run.history.modes[sample]}\nrotation {degrees}°{box}, rotation ratio {ratio}"
     )
 
 

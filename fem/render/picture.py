@@ -15,7 +15,7 @@ import numpy as np
 import pyvista
 from PIL import Image
 
-from fem.render.caption import Captions, caption, rotation_at, symbols
+from fem.render.caption import Captions, caption, rotations_at, symbols
 from fem.render.scene import (
     arrow_points,
     arrows,
@@ -170,8 +170,9 @@ def write_picture(run: OpenedRun, *, time: float | None = None, path: Path | Non
 
 
 def time_of_largest_rotation(run: OpenedRun) -> float:
-    """Time of the frame with the largest rotation [s]."""
-    return float(run.fields.times[np.argmax(np.abs(rotation_at(run, run.fields.times)))])
+    """Time of the frame with the largest rotation, of any box of a loose stack [s]."""
+    rotations = np.abs(rotations_at(run, run.fields.times)).max(axis=0)
+    return float(run.fields.times[np.argmax(rotations)])
 
 
 def _round_up(value: float) -> float:
