@@ -218,7 +218,7 @@ def first_peaks(time: FloatArray, rotation: FloatArray, least: float) -> list[tu
 
 def reasons_against(model: Model, history: History, verdict: Verdict, reference: Reference) -> list[str]:
     """Why the container is not the rigid block; none where it is."""
-    mesh, static, contact = model.container.mesh, model.static, model.case.contact
+    mesh, static = model.container.mesh, model.static
     kind, impact = model.case.support.kind, reference.impact
     sinking = static.weight / model.base_stiffness / (mesh.width * static.slenderness_angle)
     stiffness = _first_elastic_frequency(model) / contact_frequency(mesh.mass, model.base_stiffness)
@@ -240,9 +240,9 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
         reasons.append(
             f"it deforms: first elastic over contact frequency is {stiffness:.2g}, below {STIFF_CONTAINER:g}"
         )
-    if contact.damping_ratio < BOUNCING_CONTACT:
+    if model.damping_ratio < BOUNCING_CONTACT:
         reasons.append(
-            f"the contact bounces: its damping ratio is {contact.damping_ratio:g}, below {BOUNCING_CONTACT:g}"
+            f"the contact bounces: its damping ratio is {model.damping_ratio:g}, below {BOUNCING_CONTACT:g}"
         )
     if sinking > SOFT_FLOOR:
         reasons.append(f"soft floor: the weight alone sinks in by {sinking:.1e} of width x slenderness angle")

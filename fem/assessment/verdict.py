@@ -164,6 +164,7 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
         smallest_step_s=float(clock.smallest_step) if clock.steps else None,
         stepping_cpu_s=stepping_cpu,
         normal_penalty_Pa_m=model.penalty,
+        contact_damping_ratio=model.damping_ratio,
         contact_frequency_Hz=contact_frequency(mass, stiffness),
         static_penetration_m=mass * model.case.gravity_m_s2 / stiffness,
         max_penetration_m=float(run.track[0].max_penetration),

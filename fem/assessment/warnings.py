@@ -179,14 +179,15 @@ def strain_is_not_small(result: RunResult, case: Case) -> str | None:
 def contact_relaxes_slowly(result: RunResult, case: Case) -> str | None:
     """A dashpot that carries the weight for a good part of a swing is a floor that creeps."""
     frequency, rate = _numerics(result).contact_frequency_Hz, _static(result).frequency_parameter_1_s
-    if not frequency or not rate:
+    ratio = _numerics(result).contact_damping_ratio or case.contact.damping_ratio
+    if not frequency or not rate or not ratio:
         return None
     # dashpot over spring, of the whole mass on half the base's stiffness: see contact.penalty.relaxation_time
-    relaxation = 2.0 * case.contact.damping_ratio * math.sqrt(2.0) / (2.0 * math.pi * frequency)
+    relaxation = 2.0 * ratio * math.sqrt(2.0) / (2.0 * math.pi * frequency)
     if relaxation * rate <= FAST_RELAXATION:
         return None
     return (
-        f"the contact relaxes in {relaxation:.2g} s (contact.damping_ratio = {case.contact.damping_ratio:g}), not "
+        f"the contact relaxes in {relaxation:.2g} s (contact.damping_ratio = {ratio:g}), not "
         f"fast compared with rocking (1/p = {1.0 / rate:.2g} s): it creeps under the weight; use a smaller "
         "contact.damping_ratio, or a larger contact.normal_penalty_Pa_m"
     )

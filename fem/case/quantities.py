@@ -136,6 +136,14 @@ STIFFNESS = Quantity(
 POISSON = Quantity(unit="", least=0.0, most=0.5, advice="steel has 0.3")
 MATERIAL_DAMPING = Quantity(unit="", least=0.0, below=1.0, typical=0.02, slips=PER_CENT)
 CONTACT_DAMPING = Quantity(unit="", least=0.0, most=1e3, advice="2 is usual")
+RESTITUTION = Quantity(
+    unit="",
+    least=0.5,
+    most=2.0,
+    typical=1.0,
+    slips=PER_CENT,
+    advice="measured on concrete: 0.93 to 1.05",
+)
 FRICTION = Quantity(
     unit="", least=0.0, most=5.0, typical=0.4, slips=PER_CENT, advice="steel on concrete has 0.3 to 0.4"
 )

@@ -158,8 +158,15 @@ class ContactTable(CaseTable):
         0.0,
         only=("friction", "elastic-stick"),
     )
-    damping_ratio: Annotated[float, q.CONTACT_DAMPING] = case_key(
-        "c/(2 sqrt(k m)), the whole mass m on the spring k of one corner", 2.0
+    restitution_over_housner: Annotated[float, q.RESTITUTION] | None = case_key(
+        "of the first impact of a rigid container, over Housner's; in place of damping_ratio and normal_penalty_Pa_m",
+        None,
+        example=0.95,
+    )
+    damping_ratio: Annotated[float, q.CONTACT_DAMPING] | None = case_key(
+        "c/(2 sqrt(k m)), the whole mass m on the spring k of one corner; default: 2",
+        follows=lambda values: None if values["restitution_over_housner"] else 2.0,
+        example=2.0,
     )
 
     rules = CONTACT_RULES
@@ -169,6 +176,17 @@ class ContactTable(CaseTable):
         """Whether mu_static falls to mu_kinetic at once when the support breaks loose."""
         gradual = self.weakening_m > 0.0 or self.stribeck_velocity_m_s > 0.0
         return self.mu_kinetic < self.mu_static and self.friction == "elastic-stick" and not gradual
+
+    @property
+    def dashpot(self) -> float:
+        """The damping ratio of a contact whose restitution is not given, or has been turned into one.
+
+        Raises:
+            ValueError: the restitution has not been turned into one (`fem.model.model.with_found_contact`).
+        """
+        if self.damping_ratio is None:
+            raise ValueError("contact.restitution_over_housner has not been turned into a damping ratio")
+        return self.damping_ratio
 
 
 class JointsTable(CaseTable):
@@ -275,6 +293,11 @@ class UncertaintyTable(CaseTable):
         "of the contact; default: a ninth to three times", None, example=[1e9, 3e10]
     )
     damping_ratio: Unknown = case_key("of the contact; default: half to twice", None, example=[1.0, 4.0])
+    restitution_over_housner: Unknown = case_key(
+        "of the contact, where it is given; default: a loss 1 - e of 0.8 to 1.5 times",
+        None,
+        example=[0.9, 1.0],
+    )
     material_damping_ratio: Unknown = case_key(
         "of the container; default: half to twice", None, example=[0.01, 0.04]
     )

@@ -22,6 +22,7 @@ from fem.case.rules import longest_time
 
 SOFTEST, STIFFEST = 1.0 / 9.0, 3.0  #: contact stiffness over that of the case
 DAMPING = (0.5, 2.0)  #: contact and material damping over those of the case
+LOSS = (0.8, 1.5)  #: loss at an impact, 1 - e, over that of the case where its restitution is given
 WEAKENING_M, STRIBECK_M_S = 5e-3, 0.3  #: largest slip and velocity over which friction falls
 WEAKENINGS_BETWEEN_M = (1e-4, 1e-3)
 RAMP_CYCLES = 2.0
@@ -34,13 +35,14 @@ MOVES = 1e-9  #: cosine of the phase of a floor that starts at rest
 
 MU_KINETIC, WEAKENING, STRIBECK = "contact.mu_kinetic", "contact.weakening_m", "contact.stribeck_velocity_m_s"
 START, RAMP, TOLERANCE = "motion.start", "motion.ramp_cycles", "solver.energy_tolerance"
-PENALTY, DASHPOT, MATERIAL = (
+PENALTY, DASHPOT, RESTITUTION, MATERIAL = (
     "contact.normal_penalty_Pa_m",
     "contact.damping_ratio",
+    "contact.restitution_over_housner",
     "container.damping_ratio",
 )
 #: every input that may vary, those first that decide most often
-INPUTS = (MU_KINETIC, WEAKENING, STRIBECK, START, RAMP, PENALTY, DASHPOT, MATERIAL, TOLERANCE)
+INPUTS = (MU_KINETIC, WEAKENING, STRIBECK, START, RAMP, PENALTY, DASHPOT, RESTITUTION, MATERIAL, TOLERANCE)
 
 Value = float | str
 
@@ -221,11 +223,28 @@ def _ranges(case: Case, penalty: float | None) -> Iterator[InputRange]:
             STRIBECK, velocity, stated.stribeck_velocity_m_s, (0.0, max(STRIBECK_M_S, velocity)), power=2.0
         )
     yield from _beginnings(case)
-    if penalty is not None:
-        yield _factors(PENALTY, penalty, stated.normal_penalty_Pa_m, (SOFTEST, STIFFEST))
-    yield _factors(DASHPOT, contact.damping_ratio, stated.damping_ratio, DAMPING)
+    yield from _impacts(case, penalty)
     if case.solver.model != "rigid":
         yield _factors(MATERIAL, container.damping_ratio, stated.material_damping_ratio, DAMPING)
+
+
+def _impacts(case: Case, penalty: float | None) -> Iterator[InputRange]:
+    """What decides an impact: stiffness and damping of the contact, or its restitution where that is given."""
+    contact, stated = case.contact, case.uncertainty
+    ratio = contact.restitution_over_housner
+    if ratio is not None:
+        box = case.container
+        half_width, centroid = 0.5 * box.width_m, 0.5 * (box.total_height - box.height_m) + box.centroid_m
+        housner = 1.0 - 1.5 * half_width**2 / (half_width**2 + centroid**2)  # of a homogeneous block
+        less, more = ((1.0 - share * (1.0 - ratio * housner)) / housner for share in (LOSS[1], LOSS[0]))
+        least = q.RESTITUTION.least or 0.0
+        yield _numbers(
+            RESTITUTION, ratio, stated.restitution_over_housner, (_short(max(least, less)), _short(more))
+        )
+        return
+    if penalty is not None:
+        yield _factors(PENALTY, penalty, stated.normal_penalty_Pa_m, (SOFTEST, STIFFEST))
+    yield _factors(DASHPOT, contact.dashpot, stated.damping_ratio, DAMPING)
 
 
 def _beginnings(case: Case) -> Iterator[InputRange]:

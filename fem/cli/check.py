@@ -38,15 +38,20 @@ def check(
 def preview_of(case: Case) -> Preview:
     """What is known of a run of the case.
 
-    The motion itself is evaluated only where it must be: its compiled functions take long to load.
+    A motion is evaluated, and the contact of a stated restitution found, only where it must be: compiled functions take
+    long to load.
     """
-    summary, mesh = summary_from_keys(case), build_container(case)
-    if summary is not None:
-        return Preview(case=case, mesh=mesh, motion=summary, duration=longest_time(case))
-    module = importlib.import_module("fem.model.motion")
-    motions = module.build_motions(case)
-    summary, duration = module.motion_result(case, *motions), module.longest_run(case, *motions)
-    return Preview(case=case, mesh=mesh, motion=summary, duration=duration)
+    summary, mesh, duration = summary_from_keys(case), build_container(case), longest_time(case)
+    if summary is None:
+        module = importlib.import_module("fem.model.motion")
+        motions = module.build_motions(case)
+        summary, duration = module.motion_result(case, *motions), module.longest_run(case, *motions)
+    settled = case
+    if case.contact.restitution_over_housner is not None:
+        rigid = case.with_values({"solver.model": "rigid"})
+        container = importlib.import_module("fem.model.container").discretise(rigid, mesh)
+        settled = importlib.import_module("fem.model.model").with_found_contact(case, container)
+    return Preview(case=case, settled=settled, mesh=mesh, motion=summary, duration=duration)
 
 
 def numerics_lines(numerics: Mapping[str, Any]) -> list[str]:
@@ -125,6 +130,9 @@ def _motion_lines(name: str, more: str, keys: FloorMotionTable, motion: MotionRe
 
 def _restitution_of_contact(case: Case, document: Mapping[str, Any]) -> str:
     """From the calibration of the contact damping."""
-    value = document["contact_restitution"]
-    given = f"damping ratio {case.contact.damping_ratio:g} on {case.support.kind}"
+    value, ratio = document["contact_restitution"], case.contact.restitution_over_housner
+    if ratio is not None:
+        damping = f"by damping ratio {document['numerics']['contact_damping_ratio']:.4g}"
+        return f"{value:8.4f} if rigid, {ratio:g} of Housner's, {damping} and the penalty below"
+    given = f"damping ratio {case.contact.dashpot:g} on {case.support.kind}"
     return f"{value:8.4f} if rigid, with {given}" if value is not None else f"not calibrated for {given}"

@@ -29,6 +29,7 @@ class Equilibrium:
     """A container at rest on its floor, at t = 0 with the floor at x = 0."""
 
     penalty: float  #: normal stiffness over width times depth [Pa/m]
+    damping_ratio: float  #: of the contact
     gravity: float  #: under which it is settled: g and the upward acceleration of the floor at t = 0 [m/s2]
     contact: Contact
     body: ModalBody | FullBody
@@ -39,6 +40,9 @@ def find_equilibrium(case: Case, container: Container, gravity: float) -> Equili
     """Settle the container on the floor under this gravity: that of the case and the floor's acceleration at t = 0.
 
     Models of one equilibrium share the scratch arrays of its body: step one at a time.
+
+    Args:
+        case: with numbers for its contact (`fem.model.model.with_found_contact`).
 
     Raises:
         CaseError: no equilibrium at the start, or one that sinks or crushes the container.
@@ -62,7 +66,15 @@ def find_equilibrium(case: Case, container: Container, gravity: float) -> Equili
     if case.solver.model != "rigid":
         require_stiff_container(case, _compression(container, stance))
     body = _body(case, container, contact)
-    return Equilibrium(penalty=penalty, gravity=gravity, contact=contact, body=body, stance=stance)
+    return Equilibrium(
+        penalty=penalty,
+        damping_ratio=contact.relaxation_time
+        / relaxation_time(1.0, container.mesh.mass, float(springs[:base].sum())),
+        gravity=gravity,
+        contact=contact,
+        body=body,
+        stance=stance,
+    )
 
 
 def same_equilibrium(case: Case, other: Case) -> bool:
@@ -94,7 +106,7 @@ def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) ->
         cap = slab.cap * springs / corner
     else:
         ratio, cap = chosen.tangential_ratio, np.full(springs.size, math.inf)
-        relaxation = relaxation_time(chosen.damping_ratio, mesh.mass, 2.0 * corner)
+        relaxation = relaxation_time(chosen.dashpot, mesh.mass, 2.0 * corner)
     return Contact(
         normal_stiffness=springs,
         tangential_stiffness=ratio * springs,

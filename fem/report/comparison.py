@@ -130,6 +130,16 @@ def _duration(case: Case) -> str:
     return f"{short(case.solver.duration_s)} s"
 
 
+def _dashpot(case: Case, numerics: Numerics) -> str:
+    """The damping of the contact, and the restitution by which it was chosen."""
+    ratio = numerics.contact_damping_ratio or case.contact.damping_ratio
+    words = "damping" if ratio is None else f"damping ratio {short(ratio)}"
+    stated = case.contact.restitution_over_housner
+    if stated is None:
+        return words
+    return f"{words}, both found so that the rigid container has {short(stated)} of Housner's restitution"
+
+
 def assumptions(case: Case, result: RunResult | None = None) -> list[str]:
     """What the result rests on; of a run, with its contact frequency."""
     contact, numerics = case.contact, (result and result.numerics) or Numerics()
@@ -145,8 +155,8 @@ def assumptions(case: Case, result: RunResult | None = None) -> list[str]:
     lines = [
         f"Plane elevation; one horizontal{' and one vertical' * case.has_vertical} floor motion, the same under the "
         "whole base.",
-        f"Rigid, level floor under a unilateral contact: penalty {spring}, damping ratio "
-        f"{short(contact.damping_ratio)}. The penalty is a numerical input, not the stiffness of a concrete slab.",
+        f"Rigid, level floor under a unilateral contact: penalty {spring}, {_dashpot(case, numerics)}. "
+        "The penalty is a numerical input, not the stiffness of a concrete slab.",
         f"Coulomb friction, static and kinetic, {law}.",
         _material(case),
     ]

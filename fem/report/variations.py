@@ -1,4 +1,4 @@
-"""The variations in the report of a run: friction, contact damping, penalty, phase, vertical motion, start, strength.
+"""The variations in the report of a run: friction, impacts, penalty, phase, vertical motion, start, strength.
 
 None of these is known exactly. Every variation changes one thing. Where there is time for some of them only, one of
 each subject comes first, and moderate changes come before large ones.
@@ -15,6 +15,7 @@ from fem.html.units import degrees, quantity, short
 
 FRICTION_FACTORS = (0.5, 0.75, 1.25, 1.5)
 DAMPING_RATIOS = (0.5, 1.0, 2.0, 4.0)
+RESTITUTION_FACTORS = (0.9, 0.95)
 PENALTY_FACTORS = (1.0 / 3.0, 3.0)
 PHASES = (0.25, 0.5, 0.75)  #: of half a turn; a whole half turn is the mirror image
 STRENGTHS = (0.8, 0.9, 1.1, 1.25, 1.5, 2.0)
@@ -45,8 +46,15 @@ def variations_of(case: Case) -> Iterator[Variation]:
             change=f"μₛ {short(static)}, μₖ {short(kinetic)} (× {factor:g})",
             values={"contact.mu_static": static, "contact.mu_kinetic": kinetic},
         )
+    if (restitution := contact.restitution_over_housner) is not None:
+        for factor in RESTITUTION_FACTORS:
+            yield Variation(
+                subject="restitution",
+                change=f"{short(factor * restitution)} of Housner's (× {factor:g})",
+                values={"contact.restitution_over_housner": round(factor * restitution, 6)},
+            )
     for ratio in DAMPING_RATIOS:
-        if ratio != contact.damping_ratio:
+        if contact.damping_ratio not in (None, ratio):
             yield Variation(
                 subject="contact damping", change=f"ratio {ratio:g}", values={"contact.damping_ratio": ratio}
             )

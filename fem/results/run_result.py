@@ -297,6 +297,7 @@ class Numerics(JsonBlock):
     smallest_step_s: float | None = None
     stepping_cpu_s: float | None = None  #: without compilation, set-up and output
     normal_penalty_Pa_m: float | None = None
+    contact_damping_ratio: float | None = None
     contact_frequency_Hz: float | None = None
     static_penetration_m: float | None = None
     max_penetration_m: float | None = None

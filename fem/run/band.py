@@ -262,7 +262,7 @@ def _member(
     return replace(
         _without_outcome(change, status),
         normal_penalty_Pa_m=model.penalty,
-        damping_ratio=case.contact.damping_ratio,
+        damping_ratio=model.damping_ratio,
         outcome=verdict.outcome,
         rotation_ratio=verdict.rotation_ratio,
         max_slip_m=verdict.max_slip_m,

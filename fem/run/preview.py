@@ -26,6 +26,7 @@ class Preview:
     """A case with its mesh, before its run."""
 
     case: Case
+    settled: Case  #: with numbers for its contact, where it states a restitution
     mesh: ContainerMesh
     motion: MotionResult
     duration: float  #: simulated time, at most [s]
@@ -68,7 +69,7 @@ class Preview:
         Raises:
             CaseError: the contact is too soft to carry the container.
         """
-        case, mesh, solver = self.case, self.mesh, self.case.solver
+        case, mesh, solver = self.settled, self.mesh, self.case.solver
         nodes = node_count(mesh, solver.order)
         penalty = normal_penalty(case, mesh)
         springs = build_support(case, mesh).normal_stiffness(penalty)
@@ -86,6 +87,7 @@ class Preview:
             "elastic_modes": {"rigid": 0, "reduced": solver.elastic_modes}.get(solver.model),
             "contact_nodes": len(springs),
             "normal_penalty_Pa_m": penalty,
+            "contact_damping_ratio": case.contact.dashpot,
             "contact_frequency_Hz": contact_frequency(mesh.mass, stiffness),
             "static_penetration_m": mesh.mass * case.gravity_m_s2 / stiffness,
             "duration_s": self.duration,
@@ -97,14 +99,17 @@ class Preview:
 
     @property
     def contact_restitution(self) -> float | None:
-        """Restitution of a rigid container with this contact damping ratio; None outside the table of calibration."""
+        """Restitution of a rigid container on this contact; None outside the table of calibration."""
+        given, housner = self.case.contact.restitution_over_housner, self.static.housner_restitution
+        if given is not None:
+            return given * housner
         foot = self.case.support.foot
         return apparent_restitution(
             support=self.case.support.kind,
             foot_over_width=None if foot is None else foot / self.mesh.width,
             slenderness=self.static.centroid / (0.5 * self.mesh.width),
-            damping_ratio=self.case.contact.damping_ratio,
-            housner=self.static.housner_restitution,
+            damping_ratio=self.case.contact.dashpot,
+            housner=housner,
         )
 
     @property

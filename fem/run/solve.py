@@ -36,7 +36,9 @@ def resolve(case: Case, mesh: ContainerMesh) -> Case:
         CaseError: a motion that cannot be built, or that the given step would step over.
     """
     chosen: dict[str, Any] = {}
-    if case.contact.normal_penalty_Pa_m == "auto" and not case.floor.is_slab:
+    # a contact that follows from a slab or a stated restitution stays so
+    numerical = not case.floor.is_slab and case.contact.restitution_over_housner is None
+    if case.contact.normal_penalty_Pa_m == "auto" and numerical:
         chosen["contact.normal_penalty_Pa_m"] = normal_penalty(case, mesh)
     if case.solver.duration_s == "auto" and not ends_at_rest(case):
         chosen["solver.duration_s"] = longest_time(case)
