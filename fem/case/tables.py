@@ -106,6 +106,16 @@ class ContainerTable(CaseTable):
         return self.joints == "loose"
 
     @property
+    def bodies(self) -> int:
+        """How many bodies move each for itself: the boxes of a loose stack, else one."""
+        return self.boxes if self.is_loose else 1
+
+    @property
+    def bolted_joints(self) -> int:
+        """Joints whose bolts carry forces: those between the boxes of a bolted stack."""
+        return self.boxes - self.bodies
+
+    @property
     def total_height(self) -> float:
         """Height of all boxes together [m]."""
         if self.box is None:

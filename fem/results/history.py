@@ -3,8 +3,9 @@
 SI units, named in the columns; x positive to the right, z up, rotation positive toward +x, forces on the container.
 Numbers are written so that reading them gives the same bits (shortest exact decimal form).
 
-A floor that moves up and down has three further columns, positive upward. A stack has three for every joint between its
-boxes (`fem.model.joints`), counted from the floor up.
+A floor that moves up and down has three further columns, positive upward. A bolted stack has three for every joint
+between its boxes (`fem.model.joints`), counted from the floor up. Of a loose stack the columns are those of the lowest
+box, the forces and energies those of all; every further box has five of its own, counted from the floor up, from 2.
 A run that was compared with the rigid block (`fem.assessment.rigid_check`) has the block's rotation as its last
 column, nan where it is not followed. A kill during a write may leave the last line without its end.
 """
@@ -57,24 +58,45 @@ VERTICAL_COLUMNS = (
 )
 #: Columns of one joint.
 JOINT_COLUMNS = ("joint_{}_normal_N", "joint_{}_shear_N", "joint_{}_moment_Nm")
+#: Columns of a further box of a loose stack: slip and opening over the box below, mass centre relative to the floor.
+BOX_COLUMNS = ("box_{}_rotation_rad", "box_{}_slip_m", "box_{}_opening_m", "box_{}_x_m", "box_{}_z_m")
 #: Rotation of the analytic rigid block under the same floor motion.
 ANALYTIC_COLUMN = "analytic_rotation_rad"
 
 
-def history_columns(joints: int = 0, *, vertical: bool = False, analytic: bool = False) -> tuple[str, ...]:
-    """Columns of a history: so many joints, on a floor that moves up and down, compared with the rigid block."""
+def history_columns(
+    joints: int = 0, *, boxes: int = 1, vertical: bool = False, analytic: bool = False
+) -> tuple[str, ...]:
+    """Columns of a history.
+
+    Args:
+        joints: with forces, between bolted boxes.
+        boxes: that move each for itself.
+        vertical: the floor moves up and down.
+        analytic: compared with the rigid block.
+    """
     of_joints = (name.format(joint) for joint in range(1, joints + 1) for name in JOINT_COLUMNS)
+    of_boxes = (name.format(box) for box in range(2, boxes + 1) for name in BOX_COLUMNS)
     upward = VERTICAL_COLUMNS if vertical else ()
-    return HISTORY_COLUMNS + upward + tuple(of_joints) + ((ANALYTIC_COLUMN,) if analytic else ())
+    return (
+        HISTORY_COLUMNS
+        + upward
+        + tuple(of_joints)
+        + tuple(of_boxes)
+        + ((ANALYTIC_COLUMN,) if analytic else ())
+    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class History:
     """Samples of a run, in the order of `history_columns` without `mode`."""
 
-    values: FloatArray  #: shape (n_samples, 20 (+ 3) + 3 joints (+ 1)), units as in the columns' names
+    values: (
+        FloatArray  #: (n_samples, 20 (+ 3) + 3 joints + 5 (boxes - 1) (+ 1)), units as in the columns' names
+    )
     modes: tuple[str, ...]  #: state of motion at each sample, length n_samples
     vertical: bool = False  #: the floor moves up and down, and three columns say how
+    boxes: int = 1  #: that move each for itself: of a loose stack
 
     @classmethod
     def empty(cls) -> Self:
@@ -84,12 +106,12 @@ class History:
     @property
     def joints(self) -> int:
         """Joints between boxes."""
-        return (self.values.shape[1] - NUMBERS) // len(JOINT_COLUMNS) - self.vertical
+        return _joints(self.values.shape[1] - NUMBERS, self.boxes, vertical=self.vertical)
 
     @property
     def numbers(self) -> tuple[str, ...]:
         """Names of the columns of numbers, in the order of `values`."""
-        columns = history_columns(self.joints, vertical=self.vertical)
+        columns = history_columns(self.joints, boxes=self.boxes, vertical=self.vertical)
         columns += (ANALYTIC_COLUMN,) if self.values.shape[1] == len(columns) else ()
         return tuple(name for name in columns if name != "mode")
 
@@ -121,7 +143,7 @@ class HistoryWriter:
     Args:
         path: the file; replaced unless `position` is given.
         position: length of the file to resume from (`position` of its writer); what follows is cut off.
-        joints, vertical: of the history, for the header.
+        joints, boxes, vertical: of the history, for the header.
 
     Raises:
         ValueError: a position beyond the end of the file.
@@ -129,12 +151,18 @@ class HistoryWriter:
     """
 
     def __init__(
-        self, path: Path, *, position: int | None = None, joints: int = 0, vertical: bool = False
+        self,
+        path: Path,
+        *,
+        position: int | None = None,
+        joints: int = 0,
+        boxes: int = 1,
+        vertical: bool = False,
     ) -> None:
         self.path = path
         self._digest = hashlib.sha256()
         if position is None:
-            header = ",".join(history_columns(joints, vertical=vertical)) + "\n"
+            header = ",".join(history_columns(joints, boxes=boxes, vertical=vertical)) + "\n"
             write_atomically(path, header)
             position = len(header)
         if not path.is_file() or path.stat().st_size < position:
@@ -200,9 +228,10 @@ def read_history(path: Path) -> History:
     lines = _whole_lines(path)
     columns = tuple(lines[0].split(",")) if lines else ()
     vertical = VERTICAL_COLUMNS[0] in columns
-    joints = (len(columns) - len(HISTORY_COLUMNS)) // len(JOINT_COLUMNS) - vertical
+    boxes = 1 + sum(name.startswith("box_") for name in columns) // len(BOX_COLUMNS)
+    joints = _joints(len(columns) - len(HISTORY_COLUMNS), boxes, vertical=vertical)
     analytic = columns[-1:] == (ANALYTIC_COLUMN,)
-    if columns != history_columns(joints, vertical=vertical, analytic=analytic):
+    if columns != history_columns(joints, boxes=boxes, vertical=vertical, analytic=analytic):
         raise ValueError(f"{path}: not a history; its first line must be {','.join(HISTORY_COLUMNS)} ..")
     numbers = len(columns) - 1
     values, modes = np.empty((len(lines) - 1, numbers)), []
@@ -214,7 +243,7 @@ def read_history(path: Path) -> History:
         except ValueError:
             raise ValueError(f"{path}, line {number + 2}: {numbers} numbers and a mode are needed") from None
         modes.append(mode)
-    return History(values=values, modes=tuple(modes), vertical=vertical)
+    return History(values=values, modes=tuple(modes), vertical=vertical, boxes=boxes)
 
 
 def add_analytic_rotation(path: Path, rotation: FloatArray) -> None:
@@ -236,6 +265,11 @@ def add_analytic_rotation(path: Path, rotation: FloatArray) -> None:
     lines = [f"{header},{ANALYTIC_COLUMN}"]
     lines += [f"{row},{value!r}" for row, value in zip(rows, rotation.tolist(), strict=True)]
     write_atomically(path, "\n".join(lines) + "\n")
+
+
+def _joints(further: int, boxes: int, *, vertical: bool) -> int:
+    """Joints of so many columns behind those of every history."""
+    return (further - len(BOX_COLUMNS) * (boxes - 1)) // len(JOINT_COLUMNS) - vertical
 
 
 def _whole_lines(path: Path) -> list[str]:

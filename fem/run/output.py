@@ -128,7 +128,8 @@ def open_output(files: RunFiles, model: Model, start: Start) -> Iterator[RunOutp
             HistoryWriter(
                 files.history,
                 position=start.history_bytes,
-                joints=case.container.boxes - 1,
+                joints=case.container.bolted_joints,
+                boxes=case.container.bodies,
                 vertical=case.has_vertical,
             )
         )

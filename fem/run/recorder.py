@@ -16,7 +16,7 @@ from fem.assessment.verdict import MODE_NAMES
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model
 from fem.model.recovery import Recovery
-from fem.results.history import JOINT_COLUMNS, NUMBERS, VERTICAL_COLUMNS, History
+from fem.results.history import BOX_COLUMNS, JOINT_COLUMNS, NUMBERS, VERTICAL_COLUMNS, History
 from fem.runtime.arrays import FloatArray
 
 #: the stepper's columns in the order of a history's, behind time and base motion
@@ -104,12 +104,17 @@ class Recorder:
             values=np.concatenate([empty, *self._rows]),
             modes=tuple(self._modes),
             vertical=self._model.case.has_vertical,
+            boxes=self._model.case.container.bodies,
         )
 
     @property
     def _columns(self) -> int:
         vertical = len(VERTICAL_COLUMNS) if self._model.case.has_vertical else 0
-        return NUMBERS + vertical + self._joint_forces.size
+        return NUMBERS + vertical + self._joint_forces.size + self._of_further_boxes
+
+    @property
+    def _of_further_boxes(self) -> int:
+        return len(BOX_COLUMNS) * (self._model.case.container.bodies - 1)
 
     def memory(self) -> dict[str, FloatArray]:
         """State of the recorder on which the next samples depend, by name."""
@@ -147,7 +152,9 @@ class Recorder:
         rows[:, 4:NUMBERS] = samples.columns[:count, ORDER]
         if self._model.case.has_vertical:
             rows[:, NUMBERS : NUMBERS + len(VERTICAL_COLUMNS)] = floor_history(run.vertical, times).T
-        rows[:, self._columns - self._joint_forces.size :] = self._forces_in_joints(samples, first, count)
+        own = self._columns - self._of_further_boxes
+        rows[:, own - self._joint_forces.size : own] = self._forces_in_joints(samples, first, count)
+        rows[:, own:] = samples.columns[:count, stepper.ROW_COLUMNS :]
         rows += 0.0  # no minus zero
         modes = [MODE_NAMES[int(mode)] for mode in samples.mode[:count]]
         if self._recovery is not None:

@@ -31,7 +31,9 @@ def frames_of(case: Case, duration: float) -> int:
 
 def required_disk(case: Case, nodes: int, duration: float) -> float:
     """Size of the folder of a run of this duration [s], in bytes; `nodes` of the elements."""
-    columns = history_columns(case.container.boxes - 1, vertical=case.has_vertical)
+    columns = history_columns(
+        case.container.bolted_joints, boxes=case.container.bodies, vertical=case.has_vertical
+    )
     history = BYTES_OF_A_NUMBER * len(columns) * samples_of(case, duration)
     frames = (BYTES_OF_A_NODE * nodes + BYTES_OF_A_FRAME) * frames_of(case, duration)
     return history + frames + BYTES_OF_A_CHECKPOINT_NODE * nodes + BYTES_BESIDE

@@ -68,6 +68,21 @@ def test_columns_of_a_vertical_motion_stand_before_those_of_the_joints(tmp_path,
     assert (history.numbers[-1] == "analytic_rotation_rad") is analytic
 
 
+@pytest.mark.parametrize("boxes", [2, 4])
+@pytest.mark.parametrize("vertical", [False, True])
+def test_every_further_box_of_a_loose_stack_has_five_columns(tmp_path, boxes, vertical):
+    path, rows = tmp_path / "history.csv", np.hstack([ROWS, ROWS[:, : 3 * vertical + 5 * (boxes - 1)]])
+    with HistoryWriter(path, boxes=boxes, vertical=vertical) as writer:
+        writer.append(rows, MODES)
+    add_analytic_rotation(path, ROWS[:, 7])
+    history = read_history(path)
+    assert (history.boxes, history.joints, history.vertical) == (boxes, 0, vertical)
+    names = ("rotation_rad", "slip_m", "opening_m", "x_m", "z_m")
+    further = tuple(f"box_{box}_{name}" for box in range(2, boxes + 1) for name in names)
+    assert history.numbers[-1 - len(further) :] == (*further, "analytic_rotation_rad")
+    assert history["box_2_slip_m"].tolist() == ROWS[:, 1 + 3 * vertical].tolist()
+
+
 def test_the_rigid_block_is_the_last_column_and_is_replaced_not_repeated(tmp_path):
     path, rotation = tmp_path / "history.csv", np.array([0.1, math.nan])
     rows = np.arange(2.0 * (NUMBERS + 3)).reshape(2, -1)
