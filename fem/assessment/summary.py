@@ -152,10 +152,14 @@ def share_of_weight(action: ActionResult, static: StaticResult) -> float:
 
 
 def own_motion_name(static: StaticResult) -> str:
-    """The run's own peak floor acceleration: the uplift acceleration times its utilisation."""
+    """The run's own peak floor acceleration, from the uplift acceleration and its utilisation; and the slope."""
     use = static.own_motion.utilisation_overturning if static.own_motion is not None else None
     uplift = static.uplift_acceleration_m_s2
-    return "own peak" if use is None or uplift is None else f"own peak, {use * uplift:.3g} m/s2"
+    if use is None or uplift is None:
+        return "own peak"
+    downhill = static.downhill_m_s2 or 0.0
+    slope = f" and {downhill:.3g} m/s2 downhill" if downhill else ""
+    return f"own peak, {use * (uplift + downhill) - downhill:.3g} m/s2{slope}"
 
 
 def rule_says(check: str, utilisation: float | None) -> str:

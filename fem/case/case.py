@@ -5,6 +5,7 @@ the unit is part of every key. Defaults are in `fem.case.tables`; what follows f
 """
 
 import hashlib
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -138,6 +139,16 @@ class Case(CaseHeading):
     def weight(self) -> float:
         """Weight of all boxes with their fill [N]."""
         return self.mass * self.gravity_m_s2
+
+    @property
+    def gravity_toward_floor(self) -> float:
+        """g cos(slope) [m/s2]."""
+        return self.gravity_m_s2 * math.cos(self.floor.slope)
+
+    @property
+    def gravity_downhill(self) -> float:
+        """g sin(slope), > 0 toward +x [m/s2]."""
+        return self.gravity_m_s2 * math.sin(self.floor.slope)
 
     @property
     def mean_areal_density(self) -> float:

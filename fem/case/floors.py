@@ -5,6 +5,7 @@ elevation, which crushes where the pressure reaches its bearing strength (`fem.m
 preset gives what the case leaves out; no preset is fitted to an experiment.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
@@ -176,6 +177,11 @@ class FloorTable(CaseTable):
     def is_slab(self) -> bool:
         """Whether it gives way and crushes."""
         return self.kind == "slab"
+
+    @property
+    def slope(self) -> float:
+        """Angle of the floor with the horizontal, > 0: it falls toward +x [rad]."""
+        return math.atan(0.01 * self.slope_percent)
 
     @property
     def density(self) -> float | None:

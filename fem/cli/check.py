@@ -94,7 +94,7 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
         f"  frequency parameter    {static.frequency_parameter:8.4f} 1/s",
         f"  rocking period         {static.period_eq2:8.3f} s (Eq. 2), {static.period_eq3:.3f} s (Eq. 3)",
         f"  uplift from            {static.uplift_acceleration:8.4f} m/s2, "
-        f"slip from {static.sliding_limit_static / derived['mass_kg']:.4g} m/s2",
+        f"slip from {static.sliding_limit_static / derived['mass_kg'] - static.downhill:.4g} m/s2",
         f"  restitution, Housner   {static.housner_restitution:8.4f}",
         f"  restitution, contact   {_restitution_of_contact(case, document)}",
         "",

@@ -113,9 +113,10 @@ def base_motion_figure(run: OpenedRun) -> Figure:
         keep_visible(panel, LEAST_MOTION)
     peak, moved = float(np.abs(acceleration).max()), float(np.abs(displacement).max())
     weight = changing_weight(history, run.case.gravity_m_s2)
+    downhill = abs(run.case.gravity_downhill)
     for limit, style, name in (
         (static.uplift_acceleration_m_s2, "--", "tilts"),
-        (run.case.contact.mu_static * run.case.gravity_m_s2, ":", "slides"),
+        (run.case.contact.mu_static * run.case.gravity_toward_floor - downhill, ":", "slides"),
     ):
         if limit and limit < 1.3 * peak:
             label = f"a static load {name} it from {number(limit)} m/s²"

@@ -30,7 +30,7 @@ class Equilibrium:
 
     penalty: float  #: normal stiffness over width times depth [Pa/m]
     damping_ratio: float  #: of the contact
-    gravity: float  #: under which it is settled: g and the upward acceleration of the floor at t = 0 [m/s2]
+    gravity: float  #: toward the floor, with its upward acceleration at t = 0 [m/s2]
     contact: Contact
     body: ModalBody | FullBody
     stance: Stance
@@ -49,8 +49,8 @@ def find_equilibrium(case: Case, container: Container, gravity: float) -> Equili
     """
     if gravity <= 0.0:
         raise CaseError(
-            f"[vertical] at t = 0 the floor accelerates downward by {case.gravity_m_s2 - gravity:.4g} m/s2, which "
-            "leaves nothing of gravity to settle the container; begin with a ramp, a delay or another phase"
+            f"[vertical] at t = 0 the floor accelerates downward by {case.gravity_toward_floor - gravity:.4g} m/s2, "
+            "which leaves nothing of gravity to settle the container; begin with a ramp, a delay or another phase"
         )
     penalty = normal_penalty(case, container.mesh)
     springs = container.support.normal_stiffness(penalty)
@@ -124,17 +124,19 @@ def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) ->
 
 
 def _body(case: Case, container: Container, contact: Contact) -> ModalBody | FullBody:
-    elements, mesh, gravity = container.elements, container.mesh, case.gravity_m_s2
+    elements, mesh = container.elements, container.mesh
+    gravity, downhill = case.gravity_toward_floor, case.gravity_downhill
     nodes, monitors = container.nodes, container.monitors
     damping = container.damping(case.container.damping_ratio)
     if case.solver.model == "full":
-        return FullBody(elements, nodes, monitors, gravity=gravity, damping=damping)
+        return FullBody(elements, nodes, monitors, gravity=gravity, downhill=downhill, damping=damping)
     centroid, basis = np.asarray(mesh.centroid), container.basis
     penetration = mesh.mass * gravity / float(contact.normal_stiffness.sum())
     return make_modal_body(
         mass=mesh.mass,
         inertia=mesh.inertia,
         gravity=gravity,
+        downhill=downhill,
         point=elements.nodes[nodes] - centroid,
         rest=mesh.centroid,
         shape=np.moveaxis(basis.shapes[:, nodes], 0, -1),
@@ -149,6 +151,7 @@ def _body(case: Case, container: Container, contact: Contact) -> ModalBody | Ful
 def _stance(case: Case, container: Container, contact: Contact, gravity: float) -> Stance:
     """Stance of the container at t = 0, with the floor at x = 0."""
     mesh, elements, initial = container.mesh, container.elements, case.initial
+    downhill, mu = case.gravity_downhill, case.contact.mu_static
     base = container.support.index.size
     nodes = container.nodes[:base]
     point = elements.nodes[nodes] - np.asarray(mesh.centroid)
@@ -161,6 +164,7 @@ def _stance(case: Case, container: Container, contact: Contact, gravity: float) 
             point=point,
             compliance=compliance,
             normal_stiffness=contact.normal_stiffness[:base],
+            shear_ratio=min(max(downhill / gravity, -mu), mu),
         )
         if initial.angular_velocity_rad_s != 0.0:
             stance = stance.turning(initial.angular_velocity_rad_s, point)
@@ -172,10 +176,11 @@ def _stance(case: Case, container: Container, contact: Contact, gravity: float) 
             mass=mesh.mass,
             inertia=mesh.inertia,
             gravity=gravity,
+            downhill=downhill,
             point=point,
             corner_x=float(elements.nodes[corner, 0]),
             compliance=compliance,
             normal_stiffness=contact.normal_stiffness[:base],
-            mu_static=case.contact.mu_static,
+            mu_static=mu,
         )
     return stance.with_points(container.nodes.size).moving(initial.velocity_m_s)

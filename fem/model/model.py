@@ -99,7 +99,7 @@ def build_model(
     motion, vertical = build_motions(case)
     compiled_motion, compiled_vertical = motion.compiled(), vertical.compiled()
     z, velocity_z, acceleration_z = floor_motion(compiled_vertical, 0.0)
-    container, gravity = container or discretise(case), case.gravity_m_s2 + acceleration_z
+    container, gravity = container or discretise(case), case.gravity_toward_floor + acceleration_z
     if equilibrium is None or equilibrium.gravity != gravity:
         equilibrium = find_equilibrium(with_found_contact(case, container), container, gravity)
     mesh, nodes = container.mesh, container.nodes

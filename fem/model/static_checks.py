@@ -133,6 +133,7 @@ class StaticChecks:
     """Results of the static rules for one container, and what follows from its mass alone."""
 
     weight: float  #: G, of all boxes with fill [N]
+    gravity: float  #: g [m/s2]
     centroid: float  #: z_c, height of the mass centre above the floor [m]
     inertia: float  #: I, polar in the plane about the mass centre [kg m2]
     radius: float  #: R, corner to mass centre [m]. Paper, section 2
@@ -140,12 +141,13 @@ class StaticChecks:
     frequency_parameter: float  #: sqrt(M g R/I_O), I_O = I + M R^2 about the corner [1/s]. Housner (1963)
     period_eq2: float  #: of a point mass, at the initial rotation or half the slenderness angle [s]
     period_eq3: float  #: of a hanging bar [s]
-    sliding_limit_static: float  #: mu_static G [N]. Paper, Eq. (8)
-    sliding_limit_kinetic: float  #: mu_kinetic G [N]. Paper, Eq. (11)
-    restoring_moment: float  #: of the weight about a corner before it turns, G a/2 [Nm]. Paper, Eq. (10)
-    uplift_acceleration: (
-        float  #: of the floor, g tan al [m/s2]. Paper, Eqs. (9) and (10); West's formula (1885)
+    sliding_limit_static: float  #: mu_static G cos(slope) [N]. Paper, Eq. (8)
+    sliding_limit_kinetic: float  #: mu_kinetic G cos(slope) [N]. Paper, Eq. (11)
+    restoring_moment: (
+        float  #: of the weight about a corner before it turns, G cos(slope) a/2 [Nm]. Paper, Eq. (10)
     )
+    #: of the floor, uphill on a slope: g (cos(slope) tan al - sin(slope)) [m/s2]. Paper, Eqs. (9) and (10); West (1885)
+    uplift_acceleration: float
     #: ratio of the angular velocities after and before an impact, 1 - (M R^2/I_O)(1 - cos 2 al) [-]; angular momentum
     #: about the new corner is kept, Housner (1963). Negative for a squat block: it would not rise on the other corner
     housner_restitution: float
@@ -154,6 +156,7 @@ class StaticChecks:
     own_motion_vertical: ActionCheck | None
     peak_vertical_acceleration: float | None  #: of the floor in this run [m/s2]
     by_code: CodeChecks | None  #: None where the case has no [static]
+    slope: float = 0.0  #: size of the angle of the floor with the horizontal [rad]
 
     @property
     def code(self) -> ActionCheck:
@@ -161,6 +164,11 @@ class StaticChecks:
         if self.by_code is None:
             raise ValueError("the case has no table [static]")
         return self.by_code.as_given
+
+    @property
+    def downhill(self) -> float:
+        """Of the weight along the floor, g sin(slope): it adds to the acceleration of the floor [m/s2]."""
+        return self.gravity * math.sin(self.slope)
 
     @property
     def ruling(self) -> ActionCheck:
@@ -191,6 +199,7 @@ class StaticChecks:
             housner_credible=self.housner_credible,
             own_motion=self.own_motion.to_result(),
             own_motion_vertical=None if upward is None else upward.to_result(),
+            downhill_m_s2=self.downhill or None,
         )
         return found if self.by_code is None else self.by_code.added_to(found)
 
@@ -209,6 +218,7 @@ def static_checks(
     peak_vertical_acceleration: float | None = None,
     code: StaticTable | None = None,
     initial_rotation: float = 0.0,
+    slope: float = 0.0,
 ) -> StaticChecks:
     """All static checks of one container under one motion.
 
@@ -226,6 +236,8 @@ def static_checks(
         code: values of the lateral force method; None: it is left out.
         initial_rotation: phi_0 of Eq. (2) [rad]; where it is 0, half the slenderness angle is taken, as an
             ordinary rotation of a rocking container.
+        slope: of the floor [rad]. The rule under the run's own peak takes the motion uphill, to which the weight adds
+            its part along the floor; the code's rows are those of a level floor.
 
     The rocking period that is compared with the limit of the lateral force method is that of Eq. (3), as
     in the paper's section 4.2.
@@ -236,10 +248,12 @@ def static_checks(
     about_corner = inertia + mass * arm**2
     friction, restoring = mu_static * weight, weight * nearer
     period = period_eq3(radius=arm, gravity=gravity)
+    slope = abs(slope)
+    toward, downhill = math.cos(slope), gravity * math.sin(slope)
 
-    def under(base_shear: float, least_weight: float | None = None) -> ActionCheck:
+    def under(base_shear: float, least_weight: float | None = None, share: float = 1.0) -> ActionCheck:
         moment = base_shear * centroid  # paper, Eq. (9)
-        share = 1.0 if least_weight is None else least_weight / weight
+        share = share if least_weight is None else least_weight / weight
         return ActionCheck(
             sliding=CheckResult(
                 demand=base_shear, capacity=share * friction, unit="N", clause=CLAUSE_SLIDING
@@ -272,6 +286,7 @@ def static_checks(
 
     return StaticChecks(
         weight=weight,
+        gravity=gravity,
         centroid=centroid,
         inertia=inertia,
         radius=arm,
@@ -281,19 +296,23 @@ def static_checks(
             width=2.0 * nearer, radius=arm, gravity=gravity, initial_rotation=initial_rotation or 0.5 * angle
         ),
         period_eq3=period,
-        sliding_limit_static=friction,
-        sliding_limit_kinetic=mu_kinetic * weight,
-        restoring_moment=restoring,
-        uplift_acceleration=gravity * math.tan(angle),
+        sliding_limit_static=toward * friction,
+        sliding_limit_kinetic=toward * mu_kinetic * weight,
+        restoring_moment=toward * restoring,
+        uplift_acceleration=toward * gravity * math.tan(angle) - downhill,
         # Of the same angular momentum: 1 - M nearer width/I_O; the last factor is 1 with the mass centre in the middle.
         housner_restitution=1.0
         - mass * arm**2 / about_corner * (1.0 - math.cos(2.0 * angle)) * (width / (2.0 * nearer)),
-        own_motion=under(mass * peak_floor_acceleration),
+        own_motion=under(mass * (peak_floor_acceleration + downhill), share=toward),
         own_motion_vertical=None
         if peak_vertical_acceleration is None
-        else under(mass * peak_floor_acceleration, mass * max(gravity - peak_vertical_acceleration, 0.0)),
+        else under(
+            mass * (peak_floor_acceleration + downhill),
+            mass * max(toward * gravity - peak_vertical_acceleration, 0.0),
+        ),
         peak_vertical_acceleration=peak_vertical_acceleration,
         by_code=None if code is None else code_checks(code),
+        slope=slope,
     )
 
 
@@ -317,6 +336,7 @@ def static_checks_of(
         peak_vertical_acceleration=peak_vertical_acceleration,
         code=case.static,
         initial_rotation=case.initial.rotation_rad,
+        slope=case.floor.slope,
     )
 
 

@@ -134,7 +134,8 @@ def _page(
         sketch=sketch(
             case,
             centroid=static.centroid,
-            peak_acceleration=static.own_motion.sliding.demand * case.gravity_m_s2 / static.weight,
+            peak_acceleration=static.own_motion.sliding.demand * case.gravity_m_s2 / static.weight
+            - static.downhill,
             peak_vertical=static.peak_vertical_acceleration,
         ),
         asked=asked_rows(case),

@@ -62,6 +62,13 @@ SLIDING = SheetRow(
     *("utilisation, sliding", "F/(μ_s G)", "{F} / ({μ_s:s4} × {G})", "sliding", ""),
     f"{CLAUSE_SLIDING}; capacity {{F_limit}} kN",
 )
+ON_SLOPE = SheetRow(
+    *("weight toward the floor, which slopes by θ", "G_n = G cos θ", "{G} × cos({θ}°)", "G_n", "kN"),
+    "θ = arctan({slope:s4} / 100)",
+)
+SHEAR_ON_SLOPE = SHEAR._replace(
+    formula="F = m (a_max + g sin θ)", numbers="{m} × ({a_max} + {g:s4} × sin({θ}°))"
+)
 LEAST_WEIGHT = SheetRow(
     *("least weight, under the vertical motion", "G_v = m (g − a_v)", "{m} × ({g:s4} − {a_v})", "G_v", "kN"),
     "a_v, largest vertical acceleration of the floor within the run",
@@ -76,15 +83,13 @@ PERIOD = SheetRow(
     f"{PAPER}, Eq. (3); limit min(4 <i>T</i><sub>C</sub>, {LIMIT_PERIOD:.1f} s) with <i>T</i><sub>C</sub> = "
     f"{{T_C:s4}} s, {CLAUSE_APPLICABLE} a), Eq. (4.4)",
 )
+UPLIFT = SheetRow(
+    *("floor acceleration of uplift", "a_up = g tan α", "{g:s4} × tan({α:5}°)", "a_up", "m/s²", "West (1885)")
+)
+UPLIFT_ON_SLOPE = UPLIFT._replace(
+    formula="a_up = g (cos θ tan α − sin θ)", numbers="{g:s4} × (cos({θ}°) × tan({α:5}°) − sin({θ}°))"
+)
 ROCKING = (
-    SheetRow(
-        "floor acceleration of uplift",
-        "a_up = g tan α",
-        "{g:s4} × tan({α:5}°)",
-        "a_up",
-        "m/s²",
-        "West (1885)",
-    ),
     SheetRow("corner to mass centre", "R = √((a/2)² + z_c²)", "√(({a:s4} / 2)² + {z_c}²)", "R", "m"),
     SheetRow(
         *("inertia about a corner", "I_O = I + m R²", "{I:5} + {m:5} × {R:5}²", "I_O", "t m²"),
@@ -140,7 +145,10 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
     swings = case.motion.kind == "harmonic" and math.isclose(
         own["a_max"], case.nominal_peak_acceleration or 0.0, rel_tol=1e-6
     )
-    shear = SHEAR._replace(source="" if swings else "largest |acceleration| of the floor within the run")
+    slopes = static.slope != 0.0
+    shear = (SHEAR_ON_SLOPE if slopes else SHEAR)._replace(
+        source="" if swings else "largest |acceleration| of the floor within the run"
+    )
     credible = "credible" if static.housner_credible else "not credible, below 0.5"
     code = _code_lines(static.by_code, numbers) if static.by_code is not None else []
     return [
@@ -149,14 +157,18 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
             "Static rule under the peak floor acceleration of this run",
             [
                 *(_line(row, own) for row in ((AMPLITUDE, shear) if swings else (shear,))),
-                *_utilisations(static.own_motion, own, "F"),
+                *([_line(ON_SLOPE, own)] if slopes else []),
+                *_utilisations(static.own_motion, own, "F", "G_n" if slopes else "G"),
                 *_vertical_lines(static, own),
             ],
         ),
         *([("Design base shear of the code (not compared with the run)", code)] if code else []),
         (
             "What follows from the mass alone",
-            [*(_line(row, numbers) for row in ROCKING), _line(RESTITUTION, numbers, credible)],
+            [
+                *(_line(row, numbers) for row in (UPLIFT_ON_SLOPE if slopes else UPLIFT, *ROCKING)),
+                _line(RESTITUTION, numbers, credible),
+            ],
         ),
     ]
 
@@ -187,7 +199,10 @@ def _vertical_lines(static: StaticChecks, own: Numbers) -> list[SheetLine]:
         return []
     least = (action.least_weight or 0.0) / 1e3
     upward = own | _action(action) | {"a_v": _Printed(peak), "G_v": _Printed(least)}
-    return [_line(LEAST_WEIGHT, upward), *_utilisations(action, upward, "F", "G_v")]
+    row = LEAST_WEIGHT
+    if static.slope:
+        row = row._replace(formula="G_v = m (g cos θ − a_v)", numbers="{m} × ({g:s4} × cos({θ}°) − {a_v})")
+    return [_line(row, upward), *_utilisations(action, upward, "F", "G_v")]
 
 
 def _code_lines(code: CodeChecks, numbers: Numbers) -> list[SheetLine]:
@@ -213,7 +228,9 @@ def _numbers(static: StaticChecks, case: Case) -> Numbers:
     if rule is not None:
         found |= {"T_C": rule.corner_period_s, "S": rule.soil_factor}
         found |= {"γ_I": rule.importance_factor, "a_gR": rule.ground_acceleration_m_s2}
-    found |= {"a_max": static.own_motion.sliding.demand / 1e3 / mass}
+    found |= {"a_max": static.own_motion.sliding.demand / 1e3 / mass - static.downhill}
+    found |= {"θ": math.degrees(static.slope), "slope": abs(case.floor.slope_percent)}
+    found |= {"G_n": weight * math.cos(static.slope)}
     if case.motion.kind == "harmonic":
         found |= {"A": case.amplitude, "Ω": case.angular_frequency}
     return {name: _Printed(value) for name, value in found.items() if value is not None}

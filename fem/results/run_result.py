@@ -121,8 +121,9 @@ class StaticResult(JsonBlock):
     clause: str | None = None
     period_limit_s: float | None = None  #: up to which the method applies
     code_values: CodeValues | None = None
+    downhill_m_s2: float | None = None  #: of the weight along the floor; left out where it is level
 
-    written_where_given = frozenset({"own_motion_vertical"})
+    written_where_given = frozenset({"own_motion_vertical", "downhill_m_s2"})
 
     @property
     def ruling(self) -> ActionResult:

@@ -76,7 +76,7 @@ class Preview:
         stiffness = float(springs.sum())
         require_stiff_contact(case, mesh, stiffness)
         if case.floor.is_slab:
-            share = 1.0 if case.initial.rotation_rad else 0.5
+            share = 1.0 if case.initial.rotation_rad else 0.5 + abs(mesh.centroid[0]) / mesh.width
             require_bearing(case, mesh, share * self.static.weight / slab_of(case, mesh.mass).cap)
         return {
             "model": solver.model,

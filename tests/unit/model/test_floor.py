@@ -11,6 +11,7 @@ from fem.cli.check import preview_of
 from fem.model.floor import hit_from, plastic_work, slab_of
 from fem.model.half_space import HalfSpace
 from fem.model.model import build_model
+from fem.run.compute import compute
 
 CONCRETE = HalfSpace(youngs_modulus=31e9, poisson_ratio=0.2)
 COARSE = ("solver.element_size_m=0.5", "solver.order=1", "solver.model=rigid", "output.fields_s=0")
@@ -153,3 +154,29 @@ def test_a_corner_below_its_capacity_takes_nothing():
     assert plastic_work(1e6, 2e6, 1e9) == 0.0
     # A mass m at v on a spring k reaches v sqrt(k m); the corner takes its energy but that of the spring at F_c.
     assert plastic_work(0.4 * math.sqrt(1e9 * 8e3), 0.5e6, 1e9) == pytest.approx(0.5 * 8e3 * 0.16 - 0.125e3)
+
+
+@pytest.mark.parametrize("percent", [2.0, -2.0])
+@pytest.mark.parametrize("model", ["rigid", "reduced", "full"])
+def test_on_a_slope_friction_holds_the_part_of_the_weight_along_it(model, percent):
+    keys = [*COARSE, f"solver.model={model}", f"floor.slope_percent={percent}", "motion.kind=none"]
+    begun = build_model(load_case("seed_stack", keys))
+    slope, weight = math.atan(0.01 * percent), begun.case.weight
+    along, normal = begun.run.old.force.sum(axis=0)
+    assert along == pytest.approx(-weight * math.sin(slope), rel=1e-9)
+    assert normal == pytest.approx(weight * math.cos(slope), rel=1e-9)
+    # The resultant passes through the mass centre, up to the tilt of the springs.
+    width, height = begun.container.mesh.width, begun.static.centroid
+    left, right = begun.run.old.force[0, 1], begun.run.old.force[1, 1]
+    assert (right - left) * 0.5 * width == pytest.approx(weight * math.sin(slope) * height, rel=1e-3)
+
+
+def test_a_container_slides_down_a_slope_steeper_than_its_friction():
+    friction = ("contact.mu_static=0.02", "contact.mu_kinetic=0.02")
+    keys = ("floor.slope_percent=5", *friction, "motion.kind=none", "solver.duration_s=1")
+    done = compute(load_case("seed_box", [*COARSE, *keys]))
+    slope = math.atan(0.05)
+    travelled = 0.5 * 9.81 * (math.sin(slope) - 0.02 * math.cos(slope))
+    assert done.history["slip_m"][-1] == pytest.approx(travelled, rel=2e-3)
+    assert done.verdict.outcome == "slide"
+    assert done.result["static"]["own_motion"]["utilisation_sliding"] > 1.0

@@ -60,6 +60,43 @@ def test_sliding_begins_at_friction_times_gravity():
     assert at_limit.sliding_limit_kinetic == pytest.approx(0.5 * at_limit.sliding_limit_static)
 
 
+SLOPE = math.atan(0.02)
+
+
+def test_on_a_slope_uplift_and_sliding_begin_earlier():
+    # Forces along and normal to a floor that falls by 2 %, the floor accelerated uphill by a: m (a + g sin), m g cos.
+    uplift = block(slope=SLOPE).uplift_acceleration
+    assert uplift == pytest.approx(9.81 * (math.cos(SLOPE) / 4.0 - math.sin(SLOPE)))
+    assert block(
+        slope=SLOPE, peak_floor_acceleration=uplift
+    ).own_motion.overturning.utilisation == pytest.approx(1.0)
+    slides = 9.81 * (0.4 * math.cos(SLOPE) - math.sin(SLOPE))
+    assert block(slope=SLOPE, peak_floor_acceleration=slides).own_motion.sliding.utilisation == pytest.approx(
+        1.0
+    )
+
+
+def test_a_floor_as_steep_as_its_friction_slides_the_container_without_any_motion():
+    at_rest = block(slope=math.atan(0.4), peak_floor_acceleration=0.0)
+    assert at_rest.own_motion.sliding.utilisation == pytest.approx(1.0)
+
+
+def test_the_side_to_which_a_floor_falls_plays_no_part_and_the_code_stands_on_a_level_one():
+    assert block(slope=-SLOPE) == block(slope=SLOPE)
+    assert block(slope=SLOPE).by_code == block().by_code
+
+
+def test_a_vertical_motion_on_a_slope_takes_its_part_of_the_weight_toward_the_floor():
+    static = block(slope=SLOPE, peak_vertical_acceleration=2.0)
+    assert static.own_motion_vertical.least_weight == pytest.approx(1000.0 * (9.81 * math.cos(SLOPE) - 2.0))
+    assert static.own_motion_vertical.sliding.demand == pytest.approx(1000.0 * (3.0 + 9.81 * math.sin(SLOPE)))
+
+
+def test_only_a_sloping_floor_is_in_the_result():
+    assert "downhill_m_s2" not in block().to_result().to_json()
+    assert block(slope=SLOPE).to_result().to_json()["downhill_m_s2"] == pytest.approx(9.81 * math.sin(SLOPE))
+
+
 def test_code_with_behaviour_factor_one_is_the_code_times_the_behaviour_factor():
     rows = block(code=code(behaviour_factor=2.5)).by_code
     assert rows.q1.sliding.demand == pytest.approx(2.5 * rows.as_given.sliding.demand)

@@ -36,13 +36,15 @@ def calculated(numbers):
         "arctan": lambda x: math.degrees(math.atan(x)),
         "tan": lambda x: math.tan(math.radians(x)),
         "cos": lambda x: math.cos(math.radians(x)),
+        "sin": lambda x: math.sin(math.radians(x)),
     }
     return eval(text, {"__builtins__": {}}, words)  # printed by our own program
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_every_line_gives_its_result_with_the_numbers_it_prints(name):
-    lines = [line for _, group in sheet_of(name) for line in group]
+@pytest.mark.parametrize("slope", [(), ("floor.slope_percent=-2",)], ids=["level", "slope"])
+def test_every_line_gives_its_result_with_the_numbers_it_prints(name, slope):
+    lines = [line for _, group in sheet_of(name, *slope) for line in group]
     assert len(lines) >= 14
     for line in lines:
         printed = float(line.result.replace("−", "-"))
