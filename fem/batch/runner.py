@@ -49,6 +49,9 @@ SCALARS = (
     "max_top_displacement_m",
     "max_acceleration_m_s2",
     "max_von_mises_Pa",
+    "fell_box",
+    "max_joint_slip_m",
+    "max_joint_opening_m",
 )
 
 #: cases handed to a core at a time

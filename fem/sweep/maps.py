@@ -28,6 +28,11 @@ from fem.sweep.table import SweepTable
 OUTCOME_COLOURS = {**STATE_COLOURS, "failed": VERMILLION, "": "#FFFFFF"}
 MOST_PANELS = 12
 LEAST_SLIP_MM = 1e-2  #: less is no slip
+JOINT_SLIP = "max_joint_slip_m"
+SLIPS = {
+    "slip": ("Largest slip, where it stands", "max_slip_m"),
+    "joint_slip": ("Largest slip between loose boxes, where they stand", JOINT_SLIP),
+}
 
 
 def draw_maps(table: SweepTable, folder: Path, choice: MapChoice) -> list[str]:
@@ -36,7 +41,8 @@ def draw_maps(table: SweepTable, folder: Path, choice: MapChoice) -> list[str]:
     if len(table.axes) == 1 or sum(len(axis.values) > 1 for axis in table.axes) < 2:
         figures = {"rotation": rotation_curve(table)}
     else:
-        figures = {kind: sweep_map(table, kind, choice) for kind in ("outcome", "rotation", "slip")}
+        loose = ("joint_slip",) if np.isfinite(table.columns.get(JOINT_SLIP, np.nan)).any() else ()
+        figures = {kind: sweep_map(table, kind, choice) for kind in ("outcome", "rotation", "slip", *loose)}
     for name, figure in figures.items():
         write_atomically(folder / f"{name}.svg", svg_of(figure))
     return [f"{folder.name}/{name}.svg" for name in figures]
@@ -47,8 +53,8 @@ def sweep_map(table: SweepTable, kind: str, choice: MapChoice) -> Figure:
 
     Args:
         table: of the sweep, which has two axes or more.
-        kind: outcome (by colour) | rotation (largest, over the slenderness angle) | slip (largest); the latter two
-            where the container stands.
+        kind: outcome (by colour) | rotation (largest, over the slenderness angle) | slip (largest) | joint_slip
+            (largest between loose boxes); all but the first where the container stands.
         choice: of axes that the sweep has, and of values on them.
     """
     if kind == "outcome":
@@ -65,13 +71,14 @@ def sweep_map(table: SweepTable, kind: str, choice: MapChoice) -> Figure:
             norm=Normalize(0.0, 1.0),
             bar="rotation ratio [-]",
         )
-    slip = 1e3 * np.where(fallen, np.nan, table["max_slip_m"])
+    title, column = SLIPS[kind]
+    slip = 1e3 * np.where(fallen, np.nan, table[column])
     largest = max(np.nanmax(slip, initial=0.0), 10.0 * LEAST_SLIP_MM)
     return _map(
         table,
         choice,
         np.maximum(slip, LEAST_SLIP_MM),
-        title="Largest slip, where it stands",
+        title=title,
         colours=matplotlib.colormaps["cividis"],
         norm=LogNorm(LEAST_SLIP_MM, largest),
         bar=f"slip [mm] (below {number(LEAST_SLIP_MM)}: none)",
