@@ -69,8 +69,8 @@ DOORS = {
     "jinja2": {"fem/html/page.py"},
 }
 
-#: modules that load others by name, when they are needed: commands, the package's own names, pyvista, matplotlib
-LOADING_LATE = {"fem/__main__.py", "fem/__init__.py", "fem/results/reader.py", "fem/figures/cache.py"}
+#: modules that load others by name, when they are needed: commands, the package's own names, pyvista
+LOADING_LATE = {"fem/__main__.py", "fem/__init__.py", "fem/results/reader.py"}
 
 
 def name_of(path: Path) -> str:

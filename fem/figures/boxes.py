@@ -5,12 +5,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from matplotlib import colormaps
-from matplotlib.axes import Axes
-from matplotlib.colors import to_hex
-from matplotlib.figure import Figure
 
 from fem.assessment.ranges import LEAST_DEGREES, LEAST_LENGTH
+from fem.figures.canvas import Canvas, Chart
 from fem.figures.style import (
     BLACK,
     BLUE,
@@ -32,7 +29,9 @@ from fem.figures.style import (
 from fem.results.reader import OpenedRun
 from fem.results.run_result import BoxResult
 
-COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY)  #: of so many boxes; of more, those of a colour map
+COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY)  #: of so many boxes
+#: of more boxes, from the floor up, and between: the colour map "viridis" of matplotlib
+MANY_COLOURS = np.array([(68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37)])
 LEGEND_COLUMNS = 6
 
 
@@ -63,7 +62,7 @@ OPENING = BoxQuantity(
 )
 
 
-def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ...]) -> Figure:
+def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ...]) -> Canvas:
     """A curve over time for each box of a loose stack, with the states of motion below.
 
     Args:
@@ -95,10 +94,14 @@ def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ..
 
 def colour_of(box: int, boxes: int) -> str:
     """Colour of a box, from 0 at the floor, of so many."""
-    return COLOURS[box] if boxes <= len(COLOURS) else str(to_hex(colormaps["viridis"](box / (boxes - 1))))
+    if boxes <= len(COLOURS):
+        return COLOURS[box]
+    place = (len(MANY_COLOURS) - 1) * box / (boxes - 1)
+    mixed = [np.interp(place, np.arange(len(MANY_COLOURS)), part) for part in MANY_COLOURS.T]
+    return "#" + "".join(f"{round(part):02x}" for part in mixed)
 
 
-def _draw_slenderness(run: OpenedRun, axes: Axes, names: list[str]) -> None:
+def _draw_slenderness(run: OpenedRun, axes: Chart, names: list[str]) -> None:
     """The slenderness angle of the whole stack, where a box comes near it."""
     angle = math.degrees(run.slenderness_angle)
     if max(float(np.abs(run.history[name]).max()) for name in names) >= NEAR_LIMIT * run.slenderness_angle:

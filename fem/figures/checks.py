@@ -4,7 +4,6 @@ import math
 import textwrap
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from fem.assessment.summary import ratio_in_words
 from fem.case.uncertainty import (
@@ -18,6 +17,7 @@ from fem.case.uncertainty import (
     TOLERANCE,
     WEAKENING,
 )
+from fem.figures.canvas import Canvas
 from fem.figures.style import (
     BLACK,
     BLUE,
@@ -48,7 +48,7 @@ GROUPS = {
 }
 
 
-def rigid_check_figure(run: OpenedRun) -> Figure | None:
+def rigid_check_figure(run: OpenedRun) -> Canvas | None:
     """Rotation of run and analytic block with peaks, first impacts and difference; None without a check."""
     check, table = run.typed_result.rigid_check, run.rigid_check
     if table is None or check is None:
@@ -89,7 +89,7 @@ def rigid_check_figure(run: OpenedRun) -> Figure | None:
     return figure
 
 
-def band_figure(run: OpenedRun) -> Figure | None:
+def band_figure(run: OpenedRun) -> Canvas | None:
     """Largest rotation and slip of each run of the band, by what it changes; None without a band."""
     verdict = run.typed_result.verdict or Verdict()
     band = verdict.band
