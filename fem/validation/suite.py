@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from fem.validation import cube, pulses, rocks
+from fem.validation import cube, impacts, pulses, rocks
 from fem.validation.findings import Experiment, ValidationResult
 
 
@@ -27,6 +27,7 @@ def run_validation(
         ("rocks", lambda: rocks.compute(data)),
         ("cube", cube.compute),
         ("pulses", pulses.compute),
+        ("impacts", impacts.compute),
     ):
         before(name)
         began = time.perf_counter()

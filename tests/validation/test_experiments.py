@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fem.validation import cube, pulses, rocks
+from fem.validation import cube, impacts, pulses, rocks
 from fem.validation.suite import run_validation
 
 DATA = Path(__file__).parents[3] / "shared" / "experiments"
@@ -40,6 +40,25 @@ def test_the_kicked_block():
     assert len(kicks) == 65
     right = sum(pulses.predicted(size, kick) == kick.overturned for kick in kicks)
     assert right / len(kicks) > 0.8
+
+
+def test_on_rubber_the_width_of_the_block_decides_and_on_concrete_it_does_not():
+    soft = [impacts.restitution_ratio("rubber", 5.0, width) for width in (0.1, 0.3, 0.5)]
+    assert soft[0] > 0.95 > soft[1] > 0.8 > soft[2] > 0.4
+    # A deeper strip and a stiffer rubber carry more: less sinking, more left.
+    assert impacts.restitution_ratio("rubber", 5.0, 0.5, strip=0.25) > soft[2]
+    assert impacts.restitution_ratio("rubber", 5.0, 0.5, modulus=7.1e6) > soft[2]
+    hard = [impacts.restitution_ratio("concrete", 3.0, width) for width in (0.1, 0.5)]
+    assert hard == pytest.approx([1.01, 1.01], abs=0.01)
+
+
+def test_measured_restitutions():
+    found = impacts.compute()
+    assert found.tests == 3
+    assert not found.missed
+    judged = [one for one in found.findings if one.passed is not None]
+    assert [one.measured for one in judged] == [0.67]
+    assert "fitted" in judged[0].quantity
 
 
 def test_a_folder_of_another_kind_is_refused(tmp_path):
