@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from fem.assessment.verdict import MODE_NAMES
-from fem.case.uncertainty import INPUTS, PENALTY, InputChange
+from fem.case.uncertainty import INPUTS, InputChange
 from fem.results.run_result import Band, BandMember, RunResult, StaticResult, Verdict
 
 SURE, REGIME_UNSURE, UNSURE = "sure", "regime unsure", "unsure"
@@ -89,7 +89,8 @@ def judged(
         members=tuple(members),
         **{name: _reach(getattr(one, name) for one in alike) for name in FIGURES},
     )
-    deciding = [*deciding_inputs(levels, changes), *([PENALTY] if below_uplift(members) else [])]
+    stiff = [key for change in changes if change.kind == "floor" for key in change.inputs]
+    deciding = [*deciding_inputs(levels, changes), *(stiff if below_uplift(members) else [])]
     return replace(verdict, sure=sure, decided_by=tuple(dict.fromkeys(deciding)), band=band)
 
 

@@ -132,6 +132,8 @@ RANGES = {
     "weakening_m": q.WEAKENING,
     "stribeck_velocity_m_s": q.STRIBECK_VELOCITY,
     "normal_penalty_Pa_m": q.PENALTY,
+    "bearing_strength_Pa": q.BEARING_STRENGTH,
+    "floor_youngs_modulus_Pa": q.FLOOR_STIFFNESS,
     "damping_ratio": q.CONTACT_DAMPING,
     "restitution_over_housner": q.RESTITUTION,
     "material_damping_ratio": q.MATERIAL_DAMPING,

@@ -302,6 +302,12 @@ class UncertaintyTable(CaseTable):
     normal_penalty_Pa_m: Unknown = case_key(  # noqa: N815
         "of the contact; default: a ninth to three times", None, example=[1e9, 3e10]
     )
+    bearing_strength_Pa: Unknown = case_key(  # noqa: N815
+        "of the floor, slab only; default: half to twice", None, example=[25e6, 1e8]
+    )
+    floor_youngs_modulus_Pa: Unknown = case_key(  # noqa: N815
+        "of the floor, slab only; default: half to twice", None, example=[1.5e10, 6e10]
+    )
     damping_ratio: Unknown = case_key("of the contact; default: half to twice", None, example=[1.0, 4.0])
     restitution_over_housner: Unknown = case_key(
         "of the contact, where it is given; default: a loss 1 - e of 0.8 to 1.5 times",

@@ -2,9 +2,10 @@
 
 This module alone knows the ranges. A run repeats itself over these changes (its band); a sweep takes its perturbed
 copies from them. Where the case says nothing in its table [uncertainty], a range follows the case: friction falls from
-`mu_static` by an amount and a way not measured for this floor; its stiffness is known within a factor of
-nine downwards (the point of a corner) and three upwards (a casting); damping within a factor of two either way; and
-a harmonic motion begins in one of several ways. The numerics are no input and are always tried, ten times tighter.
+`mu_static` by an amount and a way not measured for this floor; the stiffness of a rigid floor is known within a factor
+of nine downwards (the point of a corner) and three upwards (a casting), stiffness and strength of a slab and damping
+within a factor of two either way; and a harmonic motion begins in one of several ways. The numerics are no input and are
+always tried, ten times tighter.
 """
 
 import math
@@ -22,6 +23,7 @@ from fem.case.rules import longest_time
 
 SOFTEST, STIFFEST = 1.0 / 9.0, 3.0  #: contact stiffness over that of the case
 DAMPING = (0.5, 2.0)  #: contact and material damping over those of the case
+SLAB = (0.5, 2.0)  #: Young's modulus and bearing strength of a slab over those of the case
 LOSS = (0.8, 1.5)  #: loss at an impact, 1 - e, over that of the case where its restitution is given
 WEAKENING_M, STRIBECK_M_S = 5e-3, 0.3  #: largest slip and velocity over which friction falls
 WEAKENINGS_BETWEEN_M = (1e-4, 1e-3)
@@ -41,8 +43,12 @@ PENALTY, DASHPOT, RESTITUTION, MATERIAL = (
     "contact.restitution_over_housner",
     "container.damping_ratio",
 )
+STRENGTH, MODULUS = "floor.bearing_strength_Pa", "floor.youngs_modulus_Pa"
 #: every input that may vary, those first that decide most often
-INPUTS = (MU_KINETIC, WEAKENING, STRIBECK, START, RAMP, PENALTY, DASHPOT, RESTITUTION, MATERIAL, TOLERANCE)
+INPUTS = (
+    *(MU_KINETIC, WEAKENING, STRIBECK, START, RAMP),
+    *(PENALTY, STRENGTH, MODULUS, DASHPOT, RESTITUTION, MATERIAL, TOLERANCE),
+)
 
 Value = float | str
 
@@ -154,15 +160,18 @@ def draws_of(case: Case, penalty: float | None, count: int | None = None) -> tup
     )
 
 
-def stiff_floor(penalty: float) -> InputChange:
-    """A floor so stiff that a container on a flat base is a rigid block on a rigid floor."""
-    return InputChange(kind="floor", values={PENALTY: _short(STIFF_FLOOR * penalty)}, share=1.0)
+def stiff_floor(case: Case, penalty: float) -> InputChange:
+    """A floor so stiff that a container on a flat base is a rigid block on a rigid floor; arguments as `ranges_of`."""
+    own = case.floor.youngs_modulus_Pa
+    key, value = (PENALTY, penalty) if own is None else (MODULUS, own)
+    most = QUANTITIES[key].most or math.inf
+    return InputChange(kind="floor", values={key: min(most, _short(STIFF_FLOOR * value))}, share=1.0)
 
 
 def sobol_points(count: int, dimensions: int) -> NDArray[np.float64]:
     """The first points of Sobol's sequence, each in the middle of its cell, shape (count, dimensions).
 
-    Direction numbers of Joe and Kuo, SIAM J. Sci. Comput. 30 (2008) 2635, for at most eight dimensions. (The sequence
+    Direction numbers of Joe and Kuo, SIAM J. Sci. Comput. 30 (2008) 2635, for at most ten dimensions. (The sequence
     of scipy is the same; importing it takes longer than a run.)
     """
     bits = math.ceil(math.log2(max(count, 1)))
@@ -184,6 +193,8 @@ POLYNOMIALS = (
     (1, (1, 1, 3, 3)),
     (4, (1, 3, 5, 13)),
     (2, (1, 1, 5, 5, 17)),
+    (4, (1, 1, 5, 5, 5)),
+    (7, (1, 1, 7, 11, 19)),
 )
 
 
@@ -229,7 +240,7 @@ def _ranges(case: Case, penalty: float | None) -> Iterator[InputRange]:
 
 
 def _impacts(case: Case, penalty: float | None) -> Iterator[InputRange]:
-    """What decides an impact: stiffness and damping of the contact, or its restitution where that is given."""
+    """What decides an impact: stiffness and strength of a slab; else those of the contact, or its restitution."""
     contact, stated = case.contact, case.uncertainty
     ratio = contact.restitution_over_housner
     if ratio is not None:
@@ -241,6 +252,13 @@ def _impacts(case: Case, penalty: float | None) -> Iterator[InputRange]:
         yield _numbers(
             RESTITUTION, ratio, stated.restitution_over_housner, (_short(max(least, less)), _short(more))
         )
+        return
+    floor = case.floor
+    if floor.bearing_strength_Pa is not None and floor.youngs_modulus_Pa is not None:  # a slab
+        yield _factors(STRENGTH, floor.bearing_strength_Pa, stated.bearing_strength_Pa, SLAB)
+        yield _factors(MODULUS, floor.youngs_modulus_Pa, stated.floor_youngs_modulus_Pa, SLAB)
+        if case.contact_damping_ratio is not None:  # else its own, which matters little where it crushes
+            yield _factors(DASHPOT, case.contact_damping_ratio, stated.damping_ratio, DAMPING)
         return
     if penalty is not None:
         yield _factors(PENALTY, penalty, stated.normal_penalty_Pa_m, (SOFTEST, STIFFEST))
@@ -300,7 +318,13 @@ def _factors(
     return InputRange(key=key, own=own, ends=_others((low, high), own), drawn=drawn)
 
 
-QUANTITIES = {PENALTY: q.PENALTY, DASHPOT: q.CONTACT_DAMPING, MATERIAL: q.MATERIAL_DAMPING}
+QUANTITIES = {
+    PENALTY: q.PENALTY,
+    STRENGTH: q.BEARING_STRENGTH,
+    MODULUS: q.FLOOR_STIFFNESS,
+    DASHPOT: q.CONTACT_DAMPING,
+    MATERIAL: q.MATERIAL_DAMPING,
+}
 
 
 def _ends(

@@ -16,6 +16,7 @@ from fem.html.units import degrees, quantity, short
 FRICTION_FACTORS = (0.5, 0.75, 1.25, 1.5)
 DAMPING_RATIOS = (0.5, 1.0, 2.0, 4.0)
 RESTITUTION_FACTORS = (0.9, 0.95)
+SLAB_FACTORS = (0.5, 2.0)  #: on strength and stiffness of a slab
 PENALTY_FACTORS = (1.0 / 3.0, 3.0)
 PHASES = (0.25, 0.5, 0.75)  #: of half a turn; a whole half turn is the mirror image
 STRENGTHS = (0.8, 0.9, 1.1, 1.25, 1.5, 2.0)
@@ -53,7 +54,16 @@ def variations_of(case: Case) -> Iterator[Variation]:
                 change=f"{short(factor * restitution)} of Housner's (× {factor:g})",
                 values={"contact.restitution_over_housner": round(factor * restitution, 6)},
             )
-    for ratio in DAMPING_RATIOS:
+    if case.floor.is_slab:
+        for name, key in (
+            ("bearing strength", "bearing_strength_Pa"),
+            ("stiffness of the floor", "youngs_modulus_Pa"),
+        ):
+            for factor in SLAB_FACTORS:
+                values = {f"floor.{key}": factor * getattr(case.floor, key)}
+                yield Variation(subject=name, change=f"× {factor:g}", values=values)
+        yield Variation(subject="floor", change="rigid, with elastic impacts", values={"floor.kind": "rigid"})
+    for ratio in DAMPING_RATIOS if not case.floor.is_slab else ():
         if contact.damping_ratio not in (None, ratio):
             yield Variation(
                 subject="contact damping", change=f"ratio {ratio:g}", values={"contact.damping_ratio": ratio}

@@ -126,7 +126,7 @@ def plan_of(model: Model, result: RunResult) -> Plan:
     own = (result.static or StaticResult()).ruling
     low, high = BELOW_UPLIFT
     soft = case.support.kind != "corners" and low <= (own.utilisation_overturning or 0.0) <= high
-    floor = (stiff_floor(penalty),) if soft else ()
+    floor = (stiff_floor(case, penalty),) if soft else ()
     one, pairs, draws = changes_of(case, penalty), pairs_of(case), draws_of(case, penalty)
     largest = {change.inputs: change for change in one}  # the last of each input is the end of its range
     first = tuple(largest.values())

@@ -74,9 +74,13 @@ class Perturbation(CaseTable):
         if case.motion.kind == "harmonic" and self.phase_rad > 0.0:
             for step in (-self.phase_rad, self.phase_rad):
                 yield {"motion.phase_rad": math.remainder(case.motion.phase_rad + step, TURN)}
-        if friction.damping_ratio is None or (
-            case.uncertainty.damping_ratio == "known"
-            and "contact_damping_ratios" not in self.model_fields_set
+        if (
+            case.floor.is_slab
+            or friction.damping_ratio is None
+            or (
+                case.uncertainty.damping_ratio == "known"
+                and "contact_damping_ratios" not in self.model_fields_set
+            )
         ):
             return
         for ratio in self.contact_damping_ratios:

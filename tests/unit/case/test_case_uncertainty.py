@@ -57,6 +57,42 @@ def test_what_makes_no_difference_is_not_varied(name, values, missing):
     assert set(given) - set(ends(name, values)) == missing
 
 
+SLAB = FRICTION | {"floor.preset": "concrete C25/30", "floor.corner_patch_m": [0.1, 0.2]}
+
+
+def test_a_slab_is_tried_at_half_and_twice_its_strength_and_stiffness_in_place_of_the_contact():
+    slab, rigid = ends("harmonic", SLAB), ends("harmonic", FRICTION)
+    assert slab["floor.bearing_strength_Pa"] == (25e6, 100e6)
+    assert slab["floor.youngs_modulus_Pa"] == (15.5e9, 62e9)
+    assert set(rigid) - set(slab) == {"contact.normal_penalty_Pa_m", "contact.damping_ratio"}
+    assert len(slab) == len(rigid)
+
+
+def test_ranges_of_a_slab_may_be_stated_and_its_damping_where_it_is_given():
+    stated = SLAB | {
+        "uncertainty.bearing_strength_Pa": [30e6, 50e6],
+        "uncertainty.floor_youngs_modulus_Pa": "known",
+    }
+    found = ends("harmonic", stated | {"contact.damping_ratio": 0.1})
+    assert found["floor.bearing_strength_Pa"] == (30e6,)
+    assert "floor.youngs_modulus_Pa" not in found
+    assert found["contact.damping_ratio"] == (0.05, 0.2)
+
+
+def test_draws_of_a_slab_make_cases_that_can_be_read():
+    case = named_case("harmonic", SLAB | {"contact.damping_ratio": 0.1})
+    drawn = [case.with_values(one.values) for one in draws_of(case, None)]
+    strengths = np.log([one.floor.bearing_strength_Pa for one in drawn])
+    assert np.mean(strengths) == pytest.approx(np.log(50e6), abs=0.05)
+    assert len(drawn) == 32
+
+
+def test_a_slab_thirty_times_as_stiff_has_thirty_times_the_modulus():
+    assert stiff_floor(named_case("harmonic", SLAB), PENALTY).values == {
+        "floor.youngs_modulus_Pa": 30.0 * 31e9
+    }
+
+
 def test_the_numerics_are_always_tried():
     for name in ("harmonic", "pulse", "least"):
         assert changes(name)[-1] == "solver.energy_tolerance = 0.1"
@@ -117,9 +153,9 @@ def test_draws_fill_every_range_and_make_cases_that_can_be_read():
 def test_points_are_those_of_sobol(count):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the count is no power of two
-        expected = qmc.Sobol(8, scramble=False).random(count)
+        expected = qmc.Sobol(10, scramble=False).random(count)
     bits = int(np.ceil(np.log2(count)))
-    np.testing.assert_allclose(sobol_points(count, 8), expected + 0.5 / 2**bits, atol=1e-15)
+    np.testing.assert_allclose(sobol_points(count, 10), expected + 0.5 / 2**bits, atol=1e-15)
 
 
 def test_a_ramp_fits_the_motion():
@@ -135,7 +171,9 @@ def test_a_ramp_fits_the_motion():
 
 
 def test_a_stiff_floor_is_thirty_times_as_stiff():
-    assert stiff_floor(PENALTY).values == {"contact.normal_penalty_Pa_m": 30.0 * PENALTY}
+    assert stiff_floor(named_case("harmonic"), PENALTY).values == {
+        "contact.normal_penalty_Pa_m": 30.0 * PENALTY
+    }
 
 
 @pytest.mark.parametrize(
