@@ -4,8 +4,8 @@ This module alone knows the ranges. A run repeats itself over these changes (its
 copies from them. Where the case says nothing in its table [uncertainty], a range follows the case: friction falls from
 `mu_static` by an amount and a way not measured for this floor; the stiffness of a rigid floor is known within a factor
 of nine downwards (the point of a corner) and three upwards (a casting), stiffness and strength of a slab and damping
-within a factor of two either way; and a harmonic motion begins in one of several ways. The numerics are no input and are
-always tried, ten times tighter.
+within a factor of two either way; and a harmonic motion begins in one of several ways. The numerics are no input and
+are always tried, ten times tighter.
 """
 
 import math

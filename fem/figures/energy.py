@@ -21,7 +21,7 @@ from fem.figures.style import (
     number,
     time_panels,
 )
-from fem.results.history import History
+from fem.results.history import CRUSHING_COLUMN, History
 from fem.results.reader import OpenedRun
 from fem.results.run_result import Energy, StaticResult
 
@@ -74,7 +74,9 @@ def _draw_stored(axes: Chart, run: OpenedRun, reference: float | None, unit: str
 
 def _draw_supplied(axes: Chart, history: History, unit: str, size: float) -> None:
     """Energies since the start; the rest of the floor's work is stored, also in the springs of the contact."""
-    stored = history["base_work_J"] - sum(history[name] for name in (*DISSIPATED, "imbalance_J"))
+    crushing = history[CRUSHING_COLUMN] if history.crushing else np.zeros(len(history))
+    stored = history["base_work_J"] - sum(history[name] for name in (*DISSIPATED, "imbalance_J")) - crushing
+    crushed = [(crushing, "crushing of the floor", PURPLE, "-")] if history.crushing else []
     curves = []
     for values, name, colour, line in (
         (history["base_work_J"], "work of the floor", BLUE, "-"),
@@ -82,6 +84,7 @@ def _draw_supplied(axes: Chart, history: History, unit: str, size: float) -> Non
         (history["friction_J"], "friction", VERMILLION, "--"),
         (history["contact_damping_J"], "contact damping", GREEN, "-."),
         (history["material_damping_J"], "material damping", ORANGE, ":"),
+        *crushed,
     ):
         end = round(float(values[-1]) / size, DECIMALS) + 0.0  # no minus zero
         curves.append((values / size, colour, line, f"{name}, {number(end)} {unit}"))
@@ -93,7 +96,7 @@ def _imbalance_limits(energy: Energy) -> str:
     text, reference = "lost (> 0) or gained by the time stepping", energy.reference_J
     if not reference:
         return text
-    dissipated = sum(getattr(energy, key) or 0.0 for key in DISSIPATED)
+    dissipated = sum(getattr(energy, key) or 0.0 for key in (*DISSIPATED, CRUSHING_COLUMN))
     loss = max(LOSS_SHARE_LIMIT * dissipated, LOSS_LIMIT * reference)
     return (
         f"{text}; a loss of {number(loss)} J or a gain of {number(GAIN_LIMIT * reference, 2)} J fails the run"

@@ -3,7 +3,8 @@
 SI units, named in the columns; x positive to the right, z up, rotation positive toward +x, forces on the container.
 Numbers are written so that reading them gives the same bits (shortest exact decimal form).
 
-A floor that moves up and down has three further columns, positive upward. A bolted stack has three for every joint
+A floor that crushes has one further column, the work of that since the start. A floor that moves up and down has three,
+positive upward. A bolted stack has three for every joint
 between its boxes (`fem.model.joints`), counted from the floor up. Of a loose stack the columns are those of the lowest
 box, the forces and energies those of all; every further box has five of its own, counted from the floor up, from 2.
 A run that was compared with the rigid block (`fem.assessment.rigid_check`) has the block's rotation as its last
@@ -50,6 +51,8 @@ HISTORY_COLUMNS = (
 )
 MODE = HISTORY_COLUMNS.index("mode")  #: column of the word
 NUMBERS = len(HISTORY_COLUMNS) - 1
+#: Column of a floor that crushes.
+CRUSHING_COLUMN = "crushing_J"
 #: Columns of a floor that moves up and down.
 VERTICAL_COLUMNS = (
     "base_vertical_displacement_m",
@@ -65,38 +68,38 @@ ANALYTIC_COLUMN = "analytic_rotation_rad"
 
 
 def history_columns(
-    joints: int = 0, *, boxes: int = 1, vertical: bool = False, analytic: bool = False
+    joints: int = 0,
+    *,
+    boxes: int = 1,
+    crushing: bool = False,
+    vertical: bool = False,
+    analytic: bool = False,
 ) -> tuple[str, ...]:
     """Columns of a history.
 
     Args:
         joints: with forces, between bolted boxes.
         boxes: that move each for itself.
+        crushing: the floor crushes.
         vertical: the floor moves up and down.
         analytic: compared with the rigid block.
     """
     of_joints = (name.format(joint) for joint in range(1, joints + 1) for name in JOINT_COLUMNS)
     of_boxes = (name.format(box) for box in range(2, boxes + 1) for name in BOX_COLUMNS)
     upward = VERTICAL_COLUMNS if vertical else ()
-    return (
-        HISTORY_COLUMNS
-        + upward
-        + tuple(of_joints)
-        + tuple(of_boxes)
-        + ((ANALYTIC_COLUMN,) if analytic else ())
-    )
+    crushed, block = (CRUSHING_COLUMN,) * crushing, (ANALYTIC_COLUMN,) * analytic
+    return (*HISTORY_COLUMNS, *crushed, *upward, *of_joints, *of_boxes, *block)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class History:
     """Samples of a run, in the order of `history_columns` without `mode`."""
 
-    values: (
-        FloatArray  #: (n_samples, 20 (+ 3) + 3 joints + 5 (boxes - 1) (+ 1)), units as in the columns' names
-    )
+    values: FloatArray  #: (n_samples, 20 (+ 1) (+ 3) + 3 joints + 5 (boxes - 1) (+ 1)), units as in the columns' names
     modes: tuple[str, ...]  #: state of motion at each sample, length n_samples
     vertical: bool = False  #: the floor moves up and down, and three columns say how
     boxes: int = 1  #: that move each for itself: of a loose stack
+    crushing: bool = False  #: the floor crushes, and a column has its work
 
     @classmethod
     def empty(cls) -> Self:
@@ -111,7 +114,8 @@ class History:
     @property
     def numbers(self) -> tuple[str, ...]:
         """Names of the columns of numbers, in the order of `values`."""
-        columns = history_columns(self.joints, boxes=self.boxes, vertical=self.vertical)
+        kinds = {"crushing": self.crushing, "vertical": self.vertical}
+        columns = history_columns(self.joints, boxes=self.boxes, **kinds)
         columns += (ANALYTIC_COLUMN,) if self.values.shape[1] == len(columns) else ()
         return tuple(name for name in columns if name != "mode")
 
@@ -143,7 +147,7 @@ class HistoryWriter:
     Args:
         path: the file; replaced unless `position` is given.
         position: length of the file to resume from (`position` of its writer); what follows is cut off.
-        joints, boxes, vertical: of the history, for the header.
+        joints, boxes, crushing, vertical: of the history, for the header.
 
     Raises:
         ValueError: a position beyond the end of the file.
@@ -157,12 +161,14 @@ class HistoryWriter:
         position: int | None = None,
         joints: int = 0,
         boxes: int = 1,
+        crushing: bool = False,
         vertical: bool = False,
     ) -> None:
         self.path = path
         self._digest = hashlib.sha256()
         if position is None:
-            header = ",".join(history_columns(joints, boxes=boxes, vertical=vertical)) + "\n"
+            columns = history_columns(joints, boxes=boxes, crushing=crushing, vertical=vertical)
+            header = ",".join(columns) + "\n"
             write_atomically(path, header)
             position = len(header)
         if not path.is_file() or path.stat().st_size < position:
@@ -227,11 +233,13 @@ def read_history(path: Path) -> History:
     """
     lines = _whole_lines(path)
     columns = tuple(lines[0].split(",")) if lines else ()
-    vertical = VERTICAL_COLUMNS[0] in columns
+    crushing, vertical = CRUSHING_COLUMN in columns, VERTICAL_COLUMNS[0] in columns
     boxes = 1 + sum(name.startswith("box_") for name in columns) // len(BOX_COLUMNS)
     joints = _joints(len(columns) - len(HISTORY_COLUMNS), boxes, vertical=vertical)
     analytic = columns[-1:] == (ANALYTIC_COLUMN,)
-    if columns != history_columns(joints, boxes=boxes, vertical=vertical, analytic=analytic):
+    if columns != history_columns(
+        joints, boxes=boxes, crushing=crushing, vertical=vertical, analytic=analytic
+    ):
         raise ValueError(f"{path}: not a history; its first line must be {','.join(HISTORY_COLUMNS)} ..")
     numbers = len(columns) - 1
     values, modes = np.empty((len(lines) - 1, numbers)), []
@@ -243,7 +251,7 @@ def read_history(path: Path) -> History:
         except ValueError:
             raise ValueError(f"{path}, line {number + 2}: {numbers} numbers and a mode are needed") from None
         modes.append(mode)
-    return History(values=values, modes=tuple(modes), vertical=vertical, boxes=boxes)
+    return History(values=values, modes=tuple(modes), vertical=vertical, boxes=boxes, crushing=crushing)
 
 
 def add_analytic_rotation(path: Path, rotation: FloatArray) -> None:
@@ -268,7 +276,7 @@ def add_analytic_rotation(path: Path, rotation: FloatArray) -> None:
 
 
 def _joints(further: int, boxes: int, *, vertical: bool) -> int:
-    """Joints of so many columns behind those of every history."""
+    """Joints of so many columns behind those of every history; two columns more or fewer are no joint."""
     return (further - len(BOX_COLUMNS) * (boxes - 1)) // len(JOINT_COLUMNS) - vertical
 
 

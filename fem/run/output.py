@@ -130,6 +130,7 @@ def open_output(files: RunFiles, model: Model, start: Start) -> Iterator[RunOutp
                 position=start.history_bytes,
                 joints=case.container.bolted_joints,
                 boxes=case.container.bodies,
+                crushing=case.floor.is_slab,
                 vertical=case.has_vertical,
             )
         )

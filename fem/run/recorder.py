@@ -105,12 +105,19 @@ class Recorder:
             modes=tuple(self._modes),
             vertical=self._model.case.has_vertical,
             boxes=self._model.case.container.bodies,
+            crushing=self._model.case.floor.is_slab,
         )
 
     @property
     def _columns(self) -> int:
         vertical = len(VERTICAL_COLUMNS) if self._model.case.has_vertical else 0
-        return NUMBERS + vertical + self._joint_forces.size + self._of_further_boxes
+        return (
+            NUMBERS
+            + self._model.case.floor.is_slab
+            + vertical
+            + self._joint_forces.size
+            + self._of_further_boxes
+        )
 
     @property
     def _of_further_boxes(self) -> int:
@@ -150,8 +157,12 @@ class Recorder:
         rows[:, 0] = as_written(times)
         rows[:, 1:4] = floor_history(run.motion, times).T
         rows[:, 4:NUMBERS] = samples.columns[:count, ORDER]
+        behind = NUMBERS
+        if self._model.case.floor.is_slab:
+            rows[:, behind] = samples.columns[:count, stepper.ROW_CRUSHING]
+            behind += 1
         if self._model.case.has_vertical:
-            rows[:, NUMBERS : NUMBERS + len(VERTICAL_COLUMNS)] = floor_history(run.vertical, times).T
+            rows[:, behind : behind + len(VERTICAL_COLUMNS)] = floor_history(run.vertical, times).T
         own = self._columns - self._of_further_boxes
         rows[:, own - self._joint_forces.size : own] = self._forces_in_joints(samples, first, count)
         rows[:, own:] = samples.columns[:count, stepper.ROW_COLUMNS :]

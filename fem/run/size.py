@@ -32,7 +32,10 @@ def frames_of(case: Case, duration: float) -> int:
 def required_disk(case: Case, nodes: int, duration: float) -> float:
     """Size of the folder of a run of this duration [s], in bytes; `nodes` of the elements."""
     columns = history_columns(
-        case.container.bolted_joints, boxes=case.container.bodies, vertical=case.has_vertical
+        case.container.bolted_joints,
+        boxes=case.container.bodies,
+        crushing=case.floor.is_slab,
+        vertical=case.has_vertical,
     )
     history = BYTES_OF_A_NUMBER * len(columns) * samples_of(case, duration)
     frames = (BYTES_OF_A_NODE * nodes + BYTES_OF_A_FRAME) * frames_of(case, duration)

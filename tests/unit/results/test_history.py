@@ -68,6 +68,23 @@ def test_columns_of_a_vertical_motion_stand_before_those_of_the_joints(tmp_path,
     assert (history.numbers[-1] == "analytic_rotation_rad") is analytic
 
 
+@pytest.mark.parametrize("joints", [0, 1, 2])
+@pytest.mark.parametrize("vertical", [False, True])
+@pytest.mark.parametrize("analytic", [False, True])
+def test_the_work_of_crushing_stands_behind_the_other_energies(tmp_path, joints, vertical, analytic):
+    path, rows = tmp_path / "history.csv", np.hstack([ROWS, ROWS[:, : 1 + 3 * vertical + 3 * joints]])
+    with HistoryWriter(path, joints=joints, crushing=True, vertical=vertical) as writer:
+        writer.append(rows, MODES)
+    if analytic:
+        add_analytic_rotation(path, ROWS[:, 7])
+    history = read_history(path)
+    assert (history.joints, history.crushing, history.vertical) == (joints, True, vertical)
+    assert history.numbers[20] == "crushing_J"
+    assert history["crushing_J"].tolist() == ROWS[:, 0].tolist()
+    if joints:
+        assert history["joint_1_normal_N"].tolist() == ROWS[:, 1 + 3 * vertical].tolist()
+
+
 @pytest.mark.parametrize("boxes", [2, 4])
 @pytest.mark.parametrize("vertical", [False, True])
 def test_every_further_box_of_a_loose_stack_has_five_columns(tmp_path, boxes, vertical):
