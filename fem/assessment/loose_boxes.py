@@ -52,15 +52,14 @@ def joints_in_words(verdict: Verdict, static: StaticResult | None) -> str:
     return ", ".join(moved) or AS_ONE
 
 
-def largest_joint_slip(verdict: Verdict) -> str:
-    """The largest slip of a box on another, and which; empty of a container that moves as one body."""
+def largest_joint_slip(verdict: Verdict) -> tuple[str, str]:
+    """The largest slip of a box on another, and which slid on which; empty of a container that moves as one body."""
     boxes = verdict.boxes or ()
     if len(boxes) < 2:
-        return ""
+        return "", ""
     most = max(range(1, len(boxes)), key=lambda k: boxes[k].max_slip_m)
-    return (
-        f"{in_figures(boxes[most].max_slip_m, FIGURES, 1e3, LEAST_LENGTH)} mm, box {most + 1} on box {most}"
-    )
+    slip = in_figures(boxes[most].max_slip_m, FIGURES, 1e3, LEAST_LENGTH)
+    return f"{slip} mm", f"box {most + 1} on box {most}"
 
 
 def limits(static: StaticResult) -> tuple[float, float]:

@@ -209,7 +209,7 @@ def result_rows(result: RunResult) -> list[tuple[str, str]]:
         (f"largest slip{lowest}", largest_slip(verdict)),
         (f"slip at the end{lowest}", residual_slip(verdict)),
         (f"path of slip{lowest}", _lengths(verdict.slip_travel_m)),
-        ("largest slip between boxes", largest_joint_slip(verdict)),
+        ("largest slip between boxes", ", ".join(filter(None, largest_joint_slip(verdict)))),
         (f"largest uplift{lowest}", largest_uplift(verdict)),
         ("largest corner force", corner_force(verdict, numerics)),
         ("first uplift", _unit(verdict.first_uplift_s, 1.0, "s")),

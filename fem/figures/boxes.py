@@ -32,7 +32,8 @@ from fem.results.run_result import BoxResult
 COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY)  #: of so many boxes
 #: of more boxes, from the floor up, and between: the colour map "viridis" of matplotlib
 MANY_COLOURS = np.array([(68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37)])
-LEGEND_COLUMNS = 6
+LEGEND_COLUMNS = 5
+FARTHEST = 2.0  #: end of the scale of rotations, over the slenderness angle
 
 
 class BoxQuantity(NamedTuple):
@@ -80,6 +81,9 @@ def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ..
     keep_visible(axes, 10.0 * quantity.least)
     if quantity is ROTATION:
         _draw_slenderness(run, axes, names)
+        low, high = axes.get_ylim()
+        far = FARTHEST * math.degrees(run.slenderness_angle)  # a box that falls leaves the scale
+        axes.set_ylim(max(low, -far), min(high, far))
     if verdict.fell_box is not None and verdict.overturned_at_s is not None:
         name = f"box {verdict.fell_box} fell, {verdict.overturned_at_s:.3f} s"
         axes.axvline(verdict.overturned_at_s, color=GREY, linestyle=(0, (1, 2)), linewidth=1.0, label=name)

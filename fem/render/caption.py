@@ -49,13 +49,13 @@ def caption(run: OpenedRun, frame: Frame) -> tuple[str, str]:
     rotations = rotations_at(run, np.array([frame.time]))[:, 0]
     most = int(np.argmax(np.abs(rotations)))
     rotation = float(rotations[most])
-    box = f" (box {most + 1})" if len(rotations) > 1 and rotation else ""
     sample = min(int(np.searchsorted(run.history["time_s"], frame.time - 1e-9)), len(run.history) - 1)
     title = run.typed_result.title or run.name
     title = title if len(title) <= LONGEST else f"{title[: LONGEST - 3]}..."
     status = "" if run.status in ("completed", "overturned") else f" ({run.status})"
     degrees = f"{round(math.degrees(rotation), 2) + 0.0:.2f}".replace("-", "−")  # no minus zero
     ratio = ratio_in_words(rotation_ratio(rotation, run.slenderness_angle))
+    box = f" (box {most + 1})" if len(rotations) > 1 and not ratio.startswith("<") and ratio != "0" else ""
     return title + status, (
         f"t = {frame.time:.3f} s    {run.history.modes[sample]}\nrotation {degrees}°{box}, rotation ratio {ratio}"
     )

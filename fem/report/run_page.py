@@ -201,12 +201,14 @@ def _floor_moves(case: Case) -> bool:
 
 def _head(verdict: Verdict) -> dict[str, str]:
     """The first figures of the page, with their ranges."""
+    slip, joint = largest_joint_slip(verdict)
     figures = {
         "rotation": largest_rotation(verdict),
         "ratio": rotation_ratio(verdict),
         "slip": largest_slip(verdict),
         "residual": residual_slip(verdict),
-        "joint_slip": largest_joint_slip(verdict),
+        "joint_slip": slip,
+        "joint": joint,
         "uplift": largest_uplift(verdict),
     }
     return {name: typeset(words or ABSENT) for name, words in figures.items()}

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from markupsafe import Markup
 
+from fem.assessment.ranges import LEAST_LENGTH
 from fem.assessment.summary import ratio_in_words
 from fem.assessment.verdict import rotation_ratio
 from fem.report.animation import Animation, AnimationFrame, colour_scale, exaggeration
@@ -69,7 +70,7 @@ def _instants(shown: Animation, history: History, verdict: Verdict) -> dict[int,
     if seen & {"rock", "slide-rock", "overturned"}:
         wanted.append((int(np.argmax(rotation)), "farthest to the right"))
         wanted.append((int(np.argmin(rotation)), "farthest to the left"))
-    if seen & {"slide", "slide-rock"}:
+    if seen & {"slide", "slide-rock"} or (verdict.max_joint_slip_m or 0.0) > LEAST_LENGTH:
         wanted.append((int(np.argmax(slip)), "largest slip"))
     chosen: dict[int, str] = {}
     for k, name in [*wanted, (len(times) - 1, "last frame")]:
@@ -88,7 +89,8 @@ def _rotation_in_words(rotations: FloatArray, angle: float) -> str:
     most = _most_turned(rotations)
     ratio, box = ratio_in_words(rotation_ratio(rotations[most], angle)), f" (box {most + 1})"
     sign = "−" if rotations[most] < 0.0 and not ratio.startswith("<") else ""
-    return f"rotation ratio {sign}{ratio}{box if len(rotations) > 1 and rotations[most] else ''}"
+    named = len(rotations) > 1 and not ratio.startswith("<") and ratio != "0"
+    return f"rotation ratio {sign}{ratio}{box if named else ''}"
 
 
 def _placed(shown: Animation, frame: AnimationFrame, factor: float) -> FloatArray:
