@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fem.assessment.ranges import LEAST_DEGREES, LEAST_LENGTH
-from fem.figures.canvas import Canvas, Chart
+from fem.figures.canvas import Canvas
 from fem.figures.style import (
     BLACK,
     BLUE,
@@ -32,7 +32,7 @@ from fem.results.run_result import BoxResult
 COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY)  #: of so many boxes
 #: of more boxes, from the floor up, and between: the colour map "viridis" of matplotlib
 MANY_COLOURS = np.array([(68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37)])
-LEGEND_COLUMNS = 5
+LEGEND_COLUMNS = 6
 FARTHEST = 2.0  #: end of the scale of rotations, over the slenderness angle
 
 
@@ -72,26 +72,31 @@ def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ..
         boxes: of its verdict, from the floor up.
     """
     history, verdict = run.history, run.verdict
-    rows = math.ceil((len(boxes) + 2) / LEGEND_COLUMNS)
-    figure, (axes,) = time_panels((2.3,), history=history, header=1 + rows)
     names = [quantity.lowest, *(quantity.further.format(k) for k in range(2, len(boxes) + 1))]
+    largest = max(float(np.abs(history[name]).max()) for name in names)
+    tilted = quantity is ROTATION and largest >= NEAR_LIMIT * run.slenderness_angle
+    entries = len(boxes) + tilted + (verdict.fell_box is not None)
+    figure, (axes,) = time_panels((2.3,), history=history, header=1 + math.ceil(entries / LEGEND_COLUMNS))
     for k, name in enumerate(names):
         curve = quantity.factor * history[name], colour_of(k, len(boxes)), "-", f"box {k + 1}"
         curve_panel(axes, quantity.label, history["time_s"], curve, zero=k == 0)
     keep_visible(axes, 10.0 * quantity.least)
-    if quantity is ROTATION:
-        _draw_slenderness(run, axes, names)
+    if tilted:
+        angle = math.degrees(run.slenderness_angle)
+        keep_visible(axes, 1.12 * angle)
+        draw_limits(axes, angle, f"α, ±{number(angle, 4)}°", color=BLACK, linestyle="-.")
         low, high = axes.get_ylim()
-        far = FARTHEST * math.degrees(run.slenderness_angle)  # a box that falls leaves the scale
-        axes.set_ylim(max(low, -far), min(high, far))
+        axes.set_ylim(
+            max(low, -FARTHEST * angle), min(high, FARTHEST * angle)
+        )  # a box that falls leaves the scale
     if verdict.fell_box is not None and verdict.overturned_at_s is not None:
-        name = f"box {verdict.fell_box} fell, {verdict.overturned_at_s:.3f} s"
+        name = f"fell, {verdict.overturned_at_s:.3f} s"
         axes.axvline(verdict.overturned_at_s, color=GREY, linestyle=(0, (1, 2)), linewidth=1.0, label=name)
     legend_above(axes, LEGEND_COLUMNS)
     sizes = [quantity.factor * quantity.largest(box) for box in boxes]
     most = int(np.argmax(sizes))
-    largest = f"< {quantity.least:g}" if 0.0 < sizes[most] < quantity.least else number(sizes[most])
-    title = f"{quantity.title}: {largest}{quantity.unit} at most (box {most + 1})"
+    most_words = f"< {quantity.least:g}" if 0.0 < sizes[most] < quantity.least else number(sizes[most])
+    title = f"{quantity.title}: {most_words}{quantity.unit} at most (box {most + 1})"
     head(figure, title, status=run.status)
     return figure
 
@@ -103,11 +108,3 @@ def colour_of(box: int, boxes: int) -> str:
     place = (len(MANY_COLOURS) - 1) * box / (boxes - 1)
     mixed = [np.interp(place, np.arange(len(MANY_COLOURS)), part) for part in MANY_COLOURS.T]
     return "#" + "".join(f"{round(part):02x}" for part in mixed)
-
-
-def _draw_slenderness(run: OpenedRun, axes: Chart, names: list[str]) -> None:
-    """The slenderness angle of the whole stack, where a box comes near it."""
-    angle = math.degrees(run.slenderness_angle)
-    if max(float(np.abs(run.history[name]).max()) for name in names) >= NEAR_LIMIT * run.slenderness_angle:
-        keep_visible(axes, 1.12 * angle)
-        draw_limits(axes, angle, f"α of the stack, ±{number(angle, 4)}°", color=BLACK, linestyle="-.")
