@@ -1,4 +1,4 @@
-"""Meshes from files; the only module of this package that imports meshio.
+"""Meshes from files; the only module of this package that loads meshio, when a file is read.
 
 Read are Gmsh (.msh, 2.2 to 4.1), VTU, legacy VTK and Abaqus (.inp) meshes of quadrilaterals in a plane:
 x in the first column, z in the second (the third the same everywhere), or z in the third (the second the
@@ -7,11 +7,12 @@ are straight; the order of the elements is chosen where the mesh is used.
 """
 
 import contextlib
+import importlib
 import io
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import meshio
 import numpy as np
 import numpy.typing as npt
 
@@ -28,6 +29,9 @@ from mesh.tags import CellTags, cell_regions
 from mesh.tiling import TOLERANCE, place_on_floor, require_tiling
 from mesh.untrusted import FORMATS, bounded_memory, require_harmless
 
+if TYPE_CHECKING:
+    import meshio
+
 #: Cell types with four corners first, and types of points and lines that are ignored.
 QUADS = ("quad", "quad8", "quad9")
 BYSTANDERS = ("vertex", "line", "line3")
@@ -35,12 +39,8 @@ BYSTANDERS = ("vertex", "line", "line3")
 #: Largest distance of a mid-side node from the middle of its side, as a share of the side.
 STRAIGHT_SHARE = 1e-3
 
-_READERS = {
-    ".msh": meshio.gmsh.read,
-    ".vtu": meshio.vtu.read,
-    ".vtk": meshio.vtk.read,
-    ".inp": meshio.abaqus.read,
-}
+#: modules of the readers
+_READERS = {".msh": "meshio.gmsh", ".vtu": "meshio.vtu", ".vtk": "meshio.vtk", ".inp": "meshio.abaqus"}
 
 
 def read_container_mesh(path: Path | str, geometry: ContainerGeometry, fill: MassFill) -> ContainerMesh:
@@ -135,13 +135,14 @@ def _parse(path: Path) -> tuple[FloatArray, IntArray, CellTags]:
     """Points (n, 2 or 3) [m], corners (m, 4) and tags; every error of a reader becomes a MeshError."""
     chatter = io.StringIO()
     suffix = path.suffix.lower()
+    reader = importlib.import_module(_READERS[suffix])
     try:
         with (
             contextlib.redirect_stdout(chatter),
             contextlib.redirect_stderr(chatter),
             bounded_memory(path),
         ):
-            mesh = _READERS[suffix](str(path))
+            mesh = reader.read(str(path))
         return _checked(mesh)
     except MeshError:
         raise
@@ -151,7 +152,7 @@ def _parse(path: Path) -> tuple[FloatArray, IntArray, CellTags]:
         raise MeshError(f"not readable as {FORMATS[suffix]} ({reason}); is it complete?") from error
 
 
-def _checked(mesh: meshio.Mesh) -> tuple[FloatArray, IntArray, CellTags]:
+def _checked(mesh: "meshio.Mesh") -> tuple[FloatArray, IntArray, CellTags]:
     others = sorted({block.type for block in mesh.cells if block.type not in (*QUADS, *BYSTANDERS)})
     if others:
         raise MeshError(
@@ -213,7 +214,7 @@ def _allowed(geometry: ContainerGeometry) -> tuple[Region, ...]:
     return (Region.SOLID,) if solid else (Region.WALL, Region.SHEET, Region.FILL)
 
 
-def _memberships(raw: meshio.Mesh, chosen: list[int]) -> dict[str, npt.NDArray[np.bool_]]:
+def _memberships(raw: "meshio.Mesh", chosen: list[int]) -> dict[str, npt.NDArray[np.bool_]]:
     """Named sets of the file, as one flag per quadrilateral."""
     sets = {}
     for name, members in raw.cell_sets.items():

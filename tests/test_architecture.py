@@ -69,8 +69,16 @@ DOORS = {
     "jinja2": {"fem/html/page.py"},
 }
 
-#: modules that load others by name, when they are needed: commands, the package's own names, pyvista
-LOADING_LATE = {"fem/__main__.py", "fem/__init__.py", "fem/results/reader.py"}
+#: modules that load others by name, when they are needed: commands, the package's own names, pyvista, meshio, and with
+#: the rigid check scipy.integrate
+LOADING_LATE = {
+    "fem/__main__.py",
+    "fem/__init__.py",
+    "fem/results/fields.py",
+    "fem/results/reader.py",
+    "fem/run/checks.py",
+    "mesh/files.py",
+}
 
 
 def name_of(path: Path) -> str:

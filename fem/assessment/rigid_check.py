@@ -21,7 +21,6 @@ from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import RockingImpact, simulate_rocking
 from contact.stepping.observables import ROCKING, SLIDING
 from fem.assessment.loose_boxes import AS_ONE, joints_in_words
-from fem.case.case import Case
 from fem.model.model import Model
 from fem.results.history import ANALYTIC_COLUMN, History
 from fem.results.run_result import PeakPair, RigidCheckResult, RunAndBlock, Verdict
@@ -64,11 +63,6 @@ class Reference:
     at: RotationAt
     impact: PlanarImpact | RockingImpact | None  #: the first after it had tilted
     left_model_at: float | None = None  #: outside its model from here on [s]
-
-
-def wants_rigid_check(asked: bool, case: Case) -> bool:
-    """Free rocking always has the check, other runs where asked."""
-    return asked or (case.motion.kind == "none" and case.initial.rotation_rad != 0.0)
 
 
 def check_against_rigid_block(model: Model, history: History, verdict: Verdict) -> RigidCheck:

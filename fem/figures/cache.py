@@ -12,7 +12,7 @@ from typing import Any
 
 from fem.figures.run import draw_all
 from fem.figures.style import Drawing
-from fem.html.page import require_drawing
+from fem.html.drawing import require_drawing
 from fem.model.container import Container
 from fem.results.files import to_json, write_atomically
 from fem.results.reader import OpenedRun

@@ -18,12 +18,9 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
+from fem.html.drawing import require_drawing
+
 TEMPLATES = "templates"
-#: the tag of an element that drawings of matplotlib never hold; a comment begins like one
-FOREIGN = re.compile(
-    r"<(?!/|!--|(?:svg|g|defs|clipPath|path|pattern|rect|circle|line|polyline|polygon|use|text|tspan|image|style|title"
-    r"|desc|metadata|rdf:RDF|cc:Work|cc:Agent|dc:(?:type|format|date|creator|title))[\s/>])[^\s/>]*"
-)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,19 +90,6 @@ def svg_element(text: str, *, label: str, prefix: str) -> Markup:
     element = text[text.index("<svg") :]
     element = re.sub(r'(\bid="|href="#|url\(#)', rf"\g<1>{prefix}-", element)
     return Markup(element.replace("<svg", f'<svg role="img" aria-label="{escape(label)}"', 1))
-
-
-def require_drawing(text: str) -> None:
-    """Refuse what is no drawing.
-
-    Raises:
-        ValueError: no SVG, or elements in it that no drawing has.
-    """
-    _, start, inside = text.partition("<svg")
-    if not start:
-        raise ValueError("no drawing")
-    if foreign := FOREIGN.search(inside):
-        raise ValueError(f"a drawing must not hold {foreign[0]}>")
 
 
 @cache

@@ -6,6 +6,7 @@ includes the floor's motion: warping by it shows the container where it is. Numb
 A frame is complete before the list, replaced in one step, names it: the series is valid at every moment.
 """
 
+import importlib
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -13,7 +14,6 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-import meshio
 import numpy as np
 from numpy.typing import NDArray
 
@@ -212,7 +212,7 @@ class Fields:
         if not path.is_file():
             raise FieldError(f"{path}: this frame is missing; run the case again with --force")
         try:
-            mesh = meshio.vtu.read(path)
+            mesh = importlib.import_module("meshio.vtu").read(path)
             (block,), data = mesh.cells, mesh.point_data
             return Frame(
                 time=float(self.times[index]),

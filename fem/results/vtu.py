@@ -12,11 +12,12 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float32] | NDArray[np.int32] | NDArray[np.uint8]
+Reals = NDArray[np.float32] | NDArray[np.float64]
+Array = Reals | NDArray[np.int32] | NDArray[np.uint8]
 
 #: VTK's numbers of cells by their nodes: corners first, then mid-sides, then the centre
 CELL_TYPES = {4: 9, 9: 28}
-TYPES = {"float32": "Float32", "int32": "Int32", "uint8": "UInt8"}
+TYPES = {"float32": "Float32", "float64": "Float64", "int32": "Int32", "uint8": "UInt8"}
 HEAD = (
     '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" '
     'header_type="UInt32" compressor="vtkZLibDataCompressor">\n<UnstructuredGrid>\n'
@@ -35,7 +36,7 @@ class FrameFormat:
     def __init__(
         self,
         *,
-        points: NDArray[np.float32],
+        points: Reals,
         cells: NDArray[np.int32],
         cell_data: Mapping[str, NDArray[np.int32]],
     ) -> None:
@@ -50,7 +51,7 @@ class FrameFormat:
         }
         self._cell_data = {name: _shared(values) for name, values in cell_data.items()}
 
-    def frame(self, point_data: Mapping[str, NDArray[np.float32]]) -> bytes:
+    def frame(self, point_data: Mapping[str, Reals]) -> bytes:
         """A frame with these arrays at its points, shape (n,) or (n, 3)."""
         parts, offset, blocks = [HEAD, self._piece], 0, []
         for section, arrays in (

@@ -3,11 +3,11 @@
 Both can be added to a run that was finished without them.
 """
 
+import importlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
-from contact.reference.event_driven import EventError
-from fem.assessment.rigid_check import RigidCheck, check_against_rigid_block, wants_rigid_check
 from fem.assessment.sureness import SURE
 from fem.case.case import Case
 from fem.model.model import Model
@@ -16,6 +16,9 @@ from fem.results.kinds import RUN
 from fem.results.run_result import RigidCheckResult, RunResult
 from fem.run.band import MemberStore, rests_far_below_limits, wants_band, with_band
 from fem.runtime.progress import Reporter
+
+if TYPE_CHECKING:
+    from fem.assessment.rigid_check import RigidCheck
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +38,7 @@ def add_checks(
     *,
     reporter: Reporter,
     stop: Callable[[], bool],
-) -> tuple[RunResult, RigidCheck | None]:
+) -> tuple[RunResult, "RigidCheck | None"]:
     """Add the rigid check and the band to a finished run, where they are wanted and missing.
 
     Args:
@@ -54,10 +57,11 @@ def add_checks(
         return result, None
     if _lacks_rigid_check(result, model.case, wanted):
         history = history_of()
+        block = importlib.import_module("fem.assessment.rigid_check")
         try:
-            check = check_against_rigid_block(model, history, verdict)
+            check = block.check_against_rigid_block(model, history, verdict)
             result = replace(result, rigid_check=check.result)
-        except (ValueError, EventError) as error:  # a run too short, a block that bounces without end
+        except (ValueError, block.EventError) as error:  # a run too short, a block that bounces without end
             result = replace(result, rigid_check=RigidCheckResult(reasons=(str(error),)))
     if lacks_band(result, model.case, wanted) and not stop():
         reporter.message("band: repeating the run over what is not known of its inputs")
@@ -78,6 +82,11 @@ def lacks_band(result: RunResult, case: Case, wanted: WantedChecks) -> bool:
     """Whether a finished run is still to have its band."""
     verdict = result.verdict
     return verdict is not None and wants_band(wanted.band, case, result) and verdict.band is None
+
+
+def wants_rigid_check(asked: bool, case: Case) -> bool:
+    """Free rocking always has the check, other runs where asked."""
+    return asked or (case.motion.kind == "none" and case.initial.rotation_rad != 0.0)
 
 
 def _lacks_rigid_check(result: RunResult, case: Case, wanted: WantedChecks) -> bool:

@@ -11,19 +11,18 @@ from dataclasses import dataclass
 from itertools import count as count_from
 from pathlib import Path
 
-import meshio
 import numpy as np
 from scipy.linalg import cholesky, eigh, qr, solve_triangular
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh
 
+from fem.results.vtu import FrameFormat
 from fem.runtime.arrays import FloatArray
 from fem.solid.array_cache import ArrayCache, no_cache
 from fem.solid.assembly import FiniteElements, factorised
 
 FEW = 5  #: modes in the table and the figure of a run: one row of shapes
 _DENSE_UNKNOWNS = 400  # up to here a dense solution is as fast, and gives all modes
-_VTK_CELLS = {4: "quad", 9: "quad9"}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -91,14 +90,14 @@ def write_modes(elements: FiniteElements, modes: ElasticModes, folder: Path) -> 
     folder.mkdir(parents=True, exist_ok=True)
     names = [f"mode {i:02d} ({f:.6g} Hz)" for i, f in enumerate(modes.frequencies_Hz, start=1)]
     largest = np.linalg.norm(modes.shapes, axis=2).max(axis=1)
-    file = meshio.Mesh(
-        _padded(elements.nodes),
-        [(_VTK_CELLS[elements.cells.shape[1]], elements.cells)],
-        point_data={n: _padded(s / a) for n, s, a in zip(names, modes.shapes, largest, strict=True)},
-        cell_data={"region": [np.asarray(elements.region, dtype=np.int32)]},
+    file = FrameFormat(
+        points=_padded(elements.nodes),
+        cells=elements.cells.astype(np.int32),
+        cell_data={"region": np.asarray(elements.region, dtype=np.int32)},
     )
+    shapes = {n: _padded(s / a) for n, s, a in zip(names, modes.shapes, largest, strict=True)}
     path = folder / "modes.vtu"
-    file.write(path)
+    path.write_bytes(file.frame(shapes))
     return path
 
 

@@ -14,12 +14,12 @@ from fem.assessment.rigid_check import (
     check_against_rigid_block,
     first_peaks,
     floor_of,
-    wants_rigid_check,
 )
 from fem.assessment.verdict import verdict_of
 from fem.case.case import load_case
 from fem.model.model import Model, build_model
 from fem.results.history import read_history
+from fem.run.checks import wants_rigid_check
 from fem.run.recorder import Recorder
 from fem.run.run import RunOptions, run_case
 from fem.run.simulation import simulate
