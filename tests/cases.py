@@ -16,7 +16,23 @@ kind = "none"
 HARMONIC = LEAST.replace('"none"', '"harmonic"\namplitude_m = 0.05\nangular_frequency_rad_s = 6.928')
 PULSE = LEAST.replace('"none"', '"pulse"\nshape = "sine"\npeak_acceleration_m_s2 = -3.0\npulse_s = 0.5')
 TABLE = LEAST.replace('"none"', '"table"\nfile = "floor.csv"\nquantity = "acceleration"\nunit = "g"')
-TEXTS = {"least": LEAST, "harmonic": HARMONIC, "pulse": PULSE, "table": TABLE}
+#: three boxes that differ in size and mass; the mass centre is beside the middle of the base
+UNEVEN = HARMONIC.replace(
+    "[contact]",
+    """[[container.box]]
+mass_kg = 2500.0
+[[container.box]]
+width_m = 0.9
+height_m = 0.8
+mass_kg = 800.0
+offset_m = 0.1
+[[container.box]]
+width_m = 1.3
+mass_kg = 2000.0
+offset_m = -0.05
+[contact]""",
+)
+TEXTS = {"least": LEAST, "harmonic": HARMONIC, "pulse": PULSE, "table": TABLE, "uneven": UNEVEN}
 
 
 def named_case(name: str, overrides: dict[str, object] | None = None) -> Case:

@@ -48,6 +48,11 @@ ANGLE = SheetRow(
     *("slenderness angle, from the vertical", "α = arctan(a/2/z_c)", "arctan({a:s4} / 2 / {z_c})", "α", "°"),
     f"a, width of the base; 90° minus the α of {PAPER}",
 )
+NEARER = SheetRow(
+    *("mass centre to the nearer corner, along the floor", "b = a/2 − |x_c|", "{a:s4} / 2 − {x_c}", "b", "m"),
+    "a, width of the base; x_c, of the mass centre from its middle",
+)
+OFF_CENTRE = 1e-6  #: of the width, from which the mass centre is not above the middle of the base
 AMPLITUDE = SheetRow(
     *("largest floor acceleration of this run", "a_max = A Ω²", "{A:5} × {Ω:5}²"),
     *("a_max", "m/s²", "x = A sin(Ωt + φ)"),
@@ -141,6 +146,7 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
     if case.container.box is not None:
         weight = _weight_of_boxes(case), MASS
         height = [_height_of_boxes(case)] if height else []
+    nearer = [NEARER] if "b" in numbers else []
     own = numbers | _action(static.own_motion)
     swings = case.motion.kind == "harmonic" and math.isclose(
         own["a_max"], case.nominal_peak_acceleration or 0.0, rel_tol=1e-6
@@ -152,7 +158,7 @@ def static_sheet(static: StaticChecks, case: Case) -> list[tuple[str, list[Sheet
     credible = "credible" if static.housner_credible else "not credible, below 0.5"
     code = _code_lines(static.by_code, numbers) if static.by_code is not None else []
     return [
-        ("Container", [_line(row, numbers) for row in (*weight, *height, ANGLE)]),
+        ("Container", [_line(row, numbers) for row in (*weight, *height, *nearer, ANGLE)]),
         (
             "Static rule under the peak floor acceleration of this run",
             [
@@ -233,6 +239,9 @@ def _numbers(static: StaticChecks, case: Case) -> Numbers:
     found |= {"G_n": weight * math.cos(static.slope)}
     if case.motion.kind == "harmonic":
         found |= {"A": case.amplitude, "Ω": case.angular_frequency}
+    nearer = static.centroid * math.tan(static.slenderness_angle)
+    if (beside := 0.5 * case.stack[0].width - nearer) > OFF_CENTRE * case.stack[0].width:
+        found |= {"b": nearer, "x_c": beside}
     return {name: _Printed(value) for name, value in found.items() if value is not None}
 
 
@@ -268,6 +277,8 @@ def _utilisations(action: ActionCheck, numbers: Numbers, force: str, weight: str
 
 
 def _line(row: SheetRow, numbers: Numbers, verdict: str = "") -> SheetLine:
+    if "b" in numbers and row is not NEARER:
+        row = _off_centre(row)
     value = numbers[row.value]
     return SheetLine(
         name=row.name.format(**numbers),
@@ -278,4 +289,14 @@ def _line(row: SheetRow, numbers: Numbers, verdict: str = "") -> SheetLine:
         unit=row.unit,
         source=Markup(row.source).format(**numbers),
         verdict=verdict,
+    )
+
+
+def _off_centre(row: SheetRow) -> SheetRow:
+    """A row with the distance b from the nearer corner in place of half the width."""
+    factor = (" a/(2 b)", " × {a:s4} / (2 × {b})") if row is RESTITUTION else ("", "")
+    return row._replace(
+        formula=row.formula.replace("(a/2)", "b").replace("a/2", "b") + factor[0],
+        numbers=row.numbers.replace("({a:s4} / 2)", "{b}").replace("{a:s4} / 2", "{b}") + factor[1],
+        source="" if row is ANGLE else row.source,
     )

@@ -4,6 +4,7 @@ import math
 import re
 
 import pytest
+from cases import named_case
 
 from contact.motion.base_motion import HarmonicMotion
 from fem.case.case import load_case, read_case
@@ -12,14 +13,12 @@ from fem.model.geometry import build_container
 from fem.model.static_checks import static_checks_of
 from fem.report.static_sheet import static_sheet
 
-CASES = ("seed_stack_plateau", "seed_box", "overturning", "sliding")
+CASES = ("seed_stack_plateau", "seed_box", "overturning", "sliding", "uneven")
 
 
-def sheet_of(name, *overrides):
-    case = load_case(name, overrides)
-    motion = HarmonicMotion(
-        amplitude=case.amplitude, angular_frequency=case.angular_frequency, duration=case.solver.duration_s
-    )
+def sheet_of(name, values=None):
+    case = named_case(name, values)
+    motion = HarmonicMotion(amplitude=case.amplitude, angular_frequency=case.angular_frequency, duration=10.0)
     static = static_checks_of(case, build_container(case), motion.peak_acceleration)
     return static_sheet(static, case)
 
@@ -42,9 +41,9 @@ def calculated(numbers):
 
 
 @pytest.mark.parametrize("name", CASES)
-@pytest.mark.parametrize("slope", [(), ("floor.slope_percent=-2",)], ids=["level", "slope"])
+@pytest.mark.parametrize("slope", [{}, {"floor.slope_percent": -2.0}], ids=["level", "slope"])
 def test_every_line_gives_its_result_with_the_numbers_it_prints(name, slope):
-    lines = [line for _, group in sheet_of(name, *slope) for line in group]
+    lines = [line for _, group in sheet_of(name, slope) for line in group]
     assert len(lines) >= 14
     for line in lines:
         printed = float(line.result.replace("−", "-"))
@@ -71,7 +70,7 @@ def test_a_case_without_static_has_no_lines_of_the_code():
 
 
 def test_without_friction_there_is_no_utilisation_in_sliding():
-    groups = dict(sheet_of("seed_box", "contact.mu_static=0", "contact.mu_kinetic=0"))
+    groups = dict(sheet_of("seed_box", {"contact.mu_static": 0.0, "contact.mu_kinetic": 0.0}))
     names = [line.name for line in groups["Static rule under the peak floor acceleration of this run"]]
     assert "utilisation, overturning" in names
     assert "utilisation, sliding" not in names

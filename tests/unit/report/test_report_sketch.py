@@ -1,0 +1,53 @@
+"""The sketch and the words of a case: every box as it is given."""
+
+import re
+
+import pytest
+from cases import named_case
+
+from fem.report.comparison import asked_rows, assumptions, exclusions
+from fem.report.sketch import sketch
+
+LOOSE = {"container.joints": "loose", "joints.mu_static": 0.3, "joints.mu_kinetic": 0.25}
+
+
+def words_of(name, values=None):
+    """Texts and name of a sketch."""
+    svg = sketch(named_case(name, values), centroid=1.3, peak_acceleration=2.4)
+    return re.findall(r">([^<>]+)</text>", svg), re.search(r'aria-label="([^"]*)"', svg)[1]
+
+
+def test_equal_boxes_have_one_height_and_no_numbers():
+    texts, name = words_of("seed_stack_plateau")
+    assert "4 × c = 4 × 1 m" in texts
+    assert not {"1", "2", "3", "4"} & set(texts)
+    assert "4 bolted boxes" in name
+
+
+def test_boxes_that_differ_are_numbered_and_their_heights_added_up():
+    texts, name = words_of("uneven")
+    assert {"1", "2", "3"} <= set(texts)
+    assert "1 + 0.8 + 1 = 2.8 m" in texts
+    # from -0.6 m, the left side of the upper box, to 0.7 m
+    assert "3 bolted boxes, 1.3 m wide and 2.8 m high" in name
+
+
+def test_loose_joints_are_marked_with_their_friction():
+    texts, name = words_of("seed_stack_plateau", LOOSE)
+    assert "loose, μ 0.3 / 0.25" in texts and {"1", "2", "3", "4"} <= set(texts)
+    assert "4 loose boxes" in name
+
+
+def test_the_case_lists_boxes_that_differ_one_by_one():
+    rows = dict(asked_rows(named_case("uneven")))
+    assert rows["container"] == "3 boxes, bolted, from the floor up:"
+    assert rows["box 2"].endswith("7.848 kN with fill, mass centre at 0.4 m; 100 mm to the right")
+    assert "box 1" not in dict(asked_rows(named_case("seed_stack")))
+
+
+@pytest.mark.parametrize(("values", "loose"), [({}, False), (LOOSE, True)])
+def test_the_page_says_whether_boxes_may_separate(values, loose):
+    case = named_case("seed_stack", values)
+    assert ("friction between boxes" in dict(asked_rows(case))) is loose
+    assert any("without bolts" in line for line in assumptions(case)) is loose
+    assert any("boxes without bolts" in line for line in exclusions(case)) is not loose
