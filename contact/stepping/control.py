@@ -112,8 +112,8 @@ def allowed_imbalance(run: RunState, step: float, dissipated: float) -> float:
     """Allowed energy error of the attempted step [J].
 
     It includes a share of the dissipation of this step and of the recent dissipation, so that the ringing after an
-    impact is resolved in proportion to the impact. A first touch switches a dashpot on: the error there is of first
-    order in the step, so it is compared with the energy that meets the floor.
+    impact is resolved in proportion to the impact; crushing does not ring and is left out. A first touch switches a
+    dashpot on: the error there is of first order in the step, so it is compared with the energy that meets the floor.
     """
     control, old, new = run.control, run.old, run.new
     allowed = control.reference_energy * (control.energy_floor + control.energy_rate * step)

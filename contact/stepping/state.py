@@ -53,7 +53,7 @@ class Control(NamedTuple):
     reference_energy: float  #: energy to overturn the container [J]
     energy_rate: float  #: imbalance allowed per second, over the reference energy [1/s]
     energy_floor: float  #: imbalance allowed in any step, over the reference energy [-]
-    energy_share: float  #: imbalance allowed over the dissipation of the step [-]
+    energy_share: float  #: imbalance allowed over the dissipation of the step but for crushing [-]
     recent_share: float  #: imbalance allowed over the recent dissipation [-]
     recent_time: float  #: decay time of the recent dissipation [s]
     closing_share: float  #: imbalance allowed as a gap closes, over the kinetic energy against the floor [-]
@@ -78,7 +78,7 @@ STEP_RECORD = np.dtype(
         # step control
         ("level", "i8"),  # of the step size, see `contact.stepping.control`
         ("allowance_used", "f8"),  # recent imbalance over the allowed one
-        ("recent_dissipation", "f8"),  # fading sum [J]
+        ("recent_dissipation", "f8"),  # fading sum, without crushing [J]
         ("growth_hold", "i8"),  # accepted steps until the step may grow freely again
         ("lag_step", "f8"),  # step that the lag of the old acceleration belongs to
         ("unprepared_step", "f8"),  # step that the body was not prepared for

@@ -35,7 +35,6 @@ from contact.stepping.ledger import (
     MATERIAL_DAMPING,
     contact_losses,
     crushing_work,
-    dissipation,
     spring_energy,
     work_of_lift,
 )
@@ -105,7 +104,7 @@ def crush(contact: Contact, step: float, old: State, new: State, work: Workspace
             )
             indented = max(indented, -new.point[i, 1] - elastic)
         new.crushed[i] = indented
-    indent(new.point, new.crushed)
+        new.point[i, 1] += indented
 
 
 @register_jitable(forceinline=True)
@@ -152,7 +151,7 @@ def attempt(body: Any, run: RunState, step: float) -> int:
 
 @compiled(inline=True)
 def account(run: RunState, step: float) -> float:
-    """Write the ledger terms of the attempted step to `run.change`; returns its dissipation [J]."""
+    """Write the ledger terms of the attempted step to `run.change`; returns its dissipation but for crushing [J]."""
     old, new, change = run.old, run.new, run.change
     shear = 0.0
     begin, end = points_of(run, 0)
@@ -178,7 +177,7 @@ def account(run: RunState, step: float) -> float:
     change[MATERIAL_DAMPING] = material
     change[CRUSHING] = crushing_work(old.force, new.force, old.crushed, new.crushed)
     change[IMBALANCE] = change[BASE_WORK] - friction - damping - material - change[CRUSHING] - stored
-    return dissipation(change)
+    return friction + damping + material
 
 
 @compiled(inline=True)
