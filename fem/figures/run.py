@@ -50,7 +50,7 @@ from fem.model.container import Container
 from fem.results.reader import OpenedRun
 from fem.results.run_result import StaticResult, Verdict
 from fem.runtime.arrays import FloatArray
-from fem.solid.modes import FEW, elastic_modes
+from fem.solid.modes import FEW
 
 LEAST_MOTION = 1e-3  #: of the floor, on its axes [mm, m/s, m/s2]
 
@@ -78,7 +78,7 @@ def draw_all(run: OpenedRun, container: Container) -> list[Drawing]:
         points=elements.nodes,
         cells=elements.cells,
         box=elements.box,
-        modes=elastic_modes(elements, FEW),
+        modes=container.lowest_modes(FEW),
         name=run.name,
     )
     return [

@@ -82,7 +82,7 @@ def _search(
 ) -> RockingContact:
     """The contact with which the rigid container has a restitution of this ratio to Housner's."""
     none = ReducedBasis(angular_frequencies=np.zeros(0), shapes=container.basis.shapes[:0])
-    rigid = replace(container, basis=none, first=math.inf)
+    rigid = replace(container, basis=none, free_modes=0, first=math.inf)
     mesh, static = container.mesh, static_checks_of(case, container.mesh, 0.0)
     housner = static.housner_restitution
     released = _released(case, static)

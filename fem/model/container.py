@@ -14,7 +14,7 @@ from fem.runtime.arrays import IntArray
 from fem.runtime.threads import use_one_blas_thread
 from fem.solid.array_cache import ArrayCache, no_cache
 from fem.solid.assembly import FiniteElements, assemble
-from fem.solid.modes import elastic_modes
+from fem.solid.modes import ElasticModes, elastic_modes, signs_of
 from fem.solid.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
 from mesh.container import ContainerMesh
 from mesh.region import Region
@@ -31,11 +31,21 @@ class Container:
     monitors: IntArray  #: (n_m,) nodes whose motion is observed
     response: StaticResponse
     basis: ReducedBasis  #: elastic modes of a reduced model; none of the others
+    free_modes: int  #: of the basis, the lowest so many are those of the free container
     first: float  #: lowest elastic angular frequency; infinite for a rigid container [rad/s]
 
     def damping(self, ratio: float) -> float:
         """a of C = a K [s], with this damping ratio of the first elastic mode."""
         return 2.0 * ratio / self.first
+
+    def lowest_modes(self, count: int) -> ElasticModes:
+        """The lowest elastic modes of the free container: those of a reduced model, or computed."""
+        if count > self.free_modes:
+            return elastic_modes(self.elements, count)
+        basis = self.basis
+        shapes = basis.shapes[:count]
+        frequencies = basis.angular_frequencies[:count] / (2.0 * math.pi)
+        return ElasticModes(frequencies_Hz=frequencies, shapes=shapes * signs_of(shapes))
 
 
 def discretise(case: Case, mesh: ContainerMesh | None = None, cache: ArrayCache = no_cache) -> Container:
@@ -61,10 +71,10 @@ def discretise(case: Case, mesh: ContainerMesh | None = None, cache: ArrayCache 
         nodes = np.concatenate([nodes, _upper_corners(elements)])
     response = static_response(elements, nodes, cache)
     basis = ReducedBasis(angular_frequencies=np.zeros(0), shapes=np.zeros((0, *elements.nodes.shape)))
-    first = math.inf
+    free_modes, first = 0, math.inf
     if case.solver.model == "reduced":
         basis = reduced_basis(elements, response, case.solver.elastic_modes, cache)
-        first = float(basis.angular_frequencies[0])
+        free_modes, first = case.solver.elastic_modes, float(basis.angular_frequencies[0])
     elif case.solver.model == "full":
         first = float(elastic_modes(elements, 1, cache).angular_frequencies[0])
     return Container(
@@ -75,6 +85,7 @@ def discretise(case: Case, mesh: ContainerMesh | None = None, cache: ArrayCache 
         monitors=_monitors(elements),
         response=response,
         basis=basis,
+        free_modes=free_modes,
         first=first,
     )
 

@@ -50,7 +50,7 @@ from fem.results.history import History
 from fem.results.kinds import RUN
 from fem.results.reader import OpenedRun
 from fem.results.run_result import RigidCheckResult, Verdict
-from fem.solid.modes import FEW, elastic_mode_table, elastic_modes
+from fem.solid.modes import FEW, elastic_mode_table
 
 #: figures beside the animation, in the order of reading; the others have their own sections
 MOTION = ("rotation", "slip", "base_motion", "spectrum", "uplift", "forces", "phase_portrait", "energy")
@@ -160,7 +160,7 @@ def _page(
         drawn=drawn,
         svg_of=lambda drawing: svg_element(drawing.svg, label=drawing.title, prefix=drawing.name),
         check=rigid_check(run, model, history),
-        modes=elastic_mode_table(elastic_modes(model.container.elements, FEW)),  # also of a rigid run
+        modes=elastic_mode_table(model.container.lowest_modes(FEW)),  # also of a rigid run
         resolved=run.place.resolved.read_text(encoding="utf-8"),
         computed=computed.strftime("%Y-%m-%d %H:%M"),
         version=metadata.version("unanchored"),

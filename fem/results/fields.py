@@ -23,9 +23,9 @@ from fem.runtime.arrays import FloatArray, IntArray
 
 SERIES = "run.pvd"
 
-# Up to so many frames, the list of frames is rewritten with each of them. A longer list is rewritten when it has
-# grown by a thousandth, since rewriting it with every frame would take a time that grows as the square of their number.
-PROMPT_FRAMES = 1000
+# Up to so many frames, the list of frames is rewritten with each of them. A longer list is rewritten when it has grown by
+# one in so many: rewriting it with every frame would take longer than the frames.
+PROMPT_FRAMES = 20
 
 
 class FieldError(ValueError):

@@ -64,7 +64,7 @@ def elastic_modes(elements: FiniteElements, count: int, cache: ArrayCache = no_c
         squares, vectors = _lanczos_modes(elements, rigid, count, cache)
     shapes = vectors.T.reshape(count, -1, 2)
     shapes /= np.sqrt(_modal_masses(elements, shapes))[:, None, None]
-    return ElasticModes(frequencies_Hz=np.sqrt(squares) / (2.0 * np.pi), shapes=shapes * _signs(shapes))
+    return ElasticModes(frequencies_Hz=np.sqrt(squares) / (2.0 * np.pi), shapes=shapes * signs_of(shapes))
 
 
 def elastic_mode_table(modes: ElasticModes) -> list[dict[str, float]]:
@@ -176,7 +176,7 @@ def _modal_masses(elements: FiniteElements, shapes: FloatArray) -> FloatArray:
     return np.array([np.sum(shape * (elements.mass @ shape)) for shape in shapes])
 
 
-def _signs(shapes: FloatArray) -> FloatArray:
+def signs_of(shapes: FloatArray) -> FloatArray:
     """+1 or -1 for each shape, (k, 1, 1); of components that tie up to rounding the first node's counts."""
     flat = shapes.reshape(len(shapes), -1)
     size = np.abs(flat)
