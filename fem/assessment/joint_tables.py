@@ -7,7 +7,7 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from fem.assessment.ranges import impact_note
+from fem.assessment.ranges import crushes, impact_note
 from fem.results.run_result import JointDemand, Verdict
 
 LEAST_N = 1e-6  #: smaller joint forces [N] and moments [Nm] are rounding
@@ -27,7 +27,9 @@ LARGEST = ("max_shear_N", "max_moment_Nm", "bolt_tension_left_N", "bolt_tension_
 
 def joints_note(verdict: Verdict) -> str:
     """How to read the joints of a bolted stack, whose table is only an estimate of what loose boxes do."""
-    return " ".join([JOINTS_NOTE, *([OVERSTATED] if verdict.impacts else []), LOOSE_RUN])
+    return " ".join(
+        [JOINTS_NOTE, *([OVERSTATED] if verdict.impacts and not crushes(verdict) else []), LOOSE_RUN]
+    )
 
 
 def titled_table(title: str, *columns: str) -> Table:

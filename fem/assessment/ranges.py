@@ -13,6 +13,8 @@ Reach = tuple[float, float]
 WIDE = 0.1  #: width of a range over its larger end, from which two figures are enough
 FEW, MANY = 2, 4  #: significant figures
 IMPACT = "impact, not for design unless the floor is known"
+#: .. of a floor that crushes, whose strength and stiffness nothing has varied
+UNTRIED = "impact, on a slab of which other strengths were not tried"
 #: limits below which only they are shown: lengths [m], rotation ratios [-], rotations [degrees]
 LEAST_LENGTH, LEAST_RATIO = 1e-5, 1e-3
 LEAST_DEGREES = 0.01
@@ -85,8 +87,15 @@ def reach_of(verdict: Verdict, name: str) -> Reach | None:
 
 
 def impact_note(verdict: Verdict) -> str:
-    """What is said behind a force, an acceleration or a stress that an impact decides."""
-    return f"; {IMPACT}" if verdict.impacts else ""
+    """What is said behind a force or stress that an impact decides; nothing where the band has tried the floor."""
+    if not verdict.impacts or (crushes(verdict) and verdict.band is not None):
+        return ""
+    return f"; {UNTRIED if crushes(verdict) else IMPACT}"
+
+
+def crushes(verdict: Verdict) -> bool:
+    """Whether the run is on a floor that crushes."""
+    return verdict.max_indentation_m is not None
 
 
 def of_band(verdict: Verdict, name: str, unit: str, factor: float = 1.0, least: float = 0.0) -> str:
@@ -137,8 +146,24 @@ def largest_stress(verdict: Verdict) -> str:
         or max(reach or (0.0,)) <= limit >= verdict.max_von_mises_Pa
     ):
         return f"{stress}{impact_note(verdict)}" if stress else ""
-    where = "beyond yield" if verdict.max_von_mises_Pa > limit else "beyond yield within the band"
-    return f"{where} ({1e-6 * limit:g} MPa); the elastic model has {stress}{impact_note(verdict)}"
+    beyond = verdict.max_von_mises_Pa > limit
+    where = "beyond yield" if beyond else "beyond yield within the band"
+    plastic = f"; {words}" if beyond and (words := plastic_corner(verdict)) else ""
+    return f"{where} ({1e-6 * limit:g} MPa); the shell stays elastic and has {stress}{plastic}{impact_note(verdict)}"
+
+
+def plastic_corner(verdict: Verdict) -> str:
+    """What a corner that yields as a whole would take of the impacts; empty where it has no capacity."""
+    capacity, force, work = verdict.corner_capacity_N, verdict.max_corner_force_N, verdict.plastic_work_J
+    if capacity is None or force is None or work is None:
+        return ""
+    yields = f"the wall over a corner yields at {in_figures(capacity, 3, 1e-3)} kN"
+    if work == 0.0:
+        return f"{yields}, more than the largest corner force, so a rigid-plastic corner would take no work"
+    return (
+        f"{yields}; a rigid-plastic corner would take {in_figures(work, 2)} J there, "
+        f"{in_figures(work / capacity, 2, 1e3)} mm of crushing"
+    )
 
 
 def largest_bolt_forces(joints: Sequence[JointDemand]) -> tuple[float, float]:
@@ -178,6 +203,11 @@ def largest_rotation(verdict: Verdict) -> str:
 def largest_uplift(verdict: Verdict) -> str:
     """The largest uplift with its range."""
     return of_band(verdict, "max_uplift_m", "mm", 1e3, LEAST_LENGTH)
+
+
+def indentation(verdict: Verdict) -> str:
+    """The largest permanent indentation of the floor with its range."""
+    return of_band(verdict, "max_indentation_m", "mm", 1e3, LEAST_LENGTH)
 
 
 def rotation_ratio(verdict: Verdict) -> str:

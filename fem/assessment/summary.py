@@ -14,6 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from fem.assessment.code_note import code_note
+from fem.assessment.floor_words import floor_rows
 from fem.assessment.joint_tables import joint_tables, titled_table
 from fem.assessment.loose_boxes import box_table, fall_in_words, joints_in_words, largest_joint_slip
 from fem.assessment.motion_words import covered_in_words, missing_peak, motion_in_words
@@ -23,6 +24,8 @@ from fem.assessment.ranges import (
     bolt_forces,
     contents_acceleration,
     corner_force,
+    crushes,
+    indentation,
     largest_slip,
     largest_stress,
     largest_uplift,
@@ -212,6 +215,9 @@ def result_rows(result: RunResult) -> list[tuple[str, str]]:
         ("largest slip between boxes", ", ".join(filter(None, largest_joint_slip(verdict)))),
         (f"largest uplift{lowest}", largest_uplift(verdict)),
         ("largest corner force", corner_force(verdict, numerics)),
+        *floor_rows(result.floor),
+        ("indentation of the floor", indentation(verdict)),
+        ("work of crushing", _crushing(result.energy or Energy(), verdict)),
         ("first uplift", _unit(verdict.first_uplift_s, 1.0, "s")),
         ("impacts", "" if impacts is None else str(impacts)),
         ("velocity ratio, first impact", _restitution(verdict, static)),
@@ -259,6 +265,16 @@ def _restitution(verdict: Verdict, static: StaticResult) -> str:
     if found is None:
         return "-" if verdict.impacts else ""
     return f"{found:.3f}" + (f" (Housner {housner:.3f})" if housner is not None else "")
+
+
+def _crushing(energy: Energy, verdict: Verdict) -> str:
+    """The work of crushing, and its share of all that was dissipated."""
+    if not crushes(verdict) or energy.crushing_J is None:
+        return ""
+    parts = (energy.friction_J, energy.contact_damping_J, energy.material_damping_J, energy.crushing_J)
+    lost = sum(part or 0.0 for part in parts)
+    share = f", {energy.crushing_J / lost:.0%} of all losses" if lost > 0.0 else ""
+    return f"{_number(energy.crushing_J, 1.0, '.3g')} J{share}"
 
 
 def _band(band: Band | None) -> str:

@@ -21,6 +21,7 @@ FIGURES = (
     "max_slip_m",
     "residual_slip_m",
     "max_uplift_m",
+    "max_indentation_m",
     "max_corner_force_N",
     "max_acceleration_m_s2",
     "max_von_mises_Pa",

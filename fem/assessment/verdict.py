@@ -19,7 +19,7 @@ from contact.stepping.ledger import (
     MATERIAL_DAMPING,
 )
 from contact.stepping.observables import FALLEN, FORCE_WINDOW, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK, SLIDING
-from fem.model.floor import YIELD_STRENGTH, is_steel_shell
+from fem.model.floor import YIELD_STRENGTH, is_steel_shell, plastic_work, steel_capacity
 from fem.model.model import Model
 from fem.results.history import History
 from fem.results.run_result import Energy, Numerics, Verdict
@@ -67,6 +67,7 @@ def verdict_from(
     """
     run, angle, outcome = model.run, model.static.slenderness_angle, outcome_of(model)
     track, joint = _numbers(run.track), _numbers(run.joints)
+    capacity = steel_capacity(model.case)
     sampled = end is not None and end > 0.0
     rocked = outcome in ("rock", "slide-rock")
     return Verdict(
@@ -93,6 +94,10 @@ def verdict_from(
         max_acceleration_m_s2=track.max_acceleration if sampled else None,
         max_von_mises_Pa=largest_von_mises,
         yield_strength_Pa=YIELD_STRENGTH if is_steel_shell(model.case) else None,
+        corner_capacity_N=capacity,
+        plastic_work_J=None
+        if capacity is None
+        else plastic_work(track.max_corner_force, capacity, 0.5 * model.base_stiffness),
     )
 
 
@@ -126,10 +131,8 @@ def audit(model: Model) -> str | None:
     """Why the energy balance fails this run, or None; of an overturned run, up to its fall."""
     clock, reference = model.run.clock[0], model.run.control.reference_energy
     gained, lost = -float(clock.least_imbalance), float(clock.most_imbalance)
-    remedy = (
-        f"set solver.step_s below the {model.run.control.largest_step:.2g} s used, "
-        "or a softer contact.normal_penalty_Pa_m"
-    )
+    softer = "floor" if model.case.floor.is_slab else "contact.normal_penalty_Pa_m"
+    remedy = f"set solver.step_s below the {model.run.control.largest_step:.2g} s used, or a softer {softer}"
     if not np.all(np.isfinite(model.run.ledger)):
         return (
             f"t = {float(clock.time):.6g} s: the energy balance is not finite, as the motion grew; {remedy}"
@@ -163,7 +166,7 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
         largest_step_s=run.control.largest_step,
         smallest_step_s=float(clock.smallest_step) if clock.steps else None,
         stepping_cpu_s=stepping_cpu,
-        normal_penalty_Pa_m=model.penalty,
+        normal_penalty_Pa_m=None if model.case.floor.is_slab else model.penalty,
         contact_damping_ratio=model.damping_ratio,
         contact_frequency_Hz=contact_frequency(mass, stiffness),
         static_penetration_m=mass * model.case.gravity_m_s2 / stiffness,

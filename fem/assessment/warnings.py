@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable
 
 from fem.assessment.motion_words import doubts
+from fem.assessment.ranges import plastic_corner
 from fem.assessment.sureness import SURE, sureness_in_words
 from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from fem.case.case import Case
@@ -15,6 +16,7 @@ from fem.case.rules import MOST_FREE_MOTION, ends_at_rest, longest_time
 from fem.results.run_result import (
     ActionResult,
     Energy,
+    FloorNumbers,
     MotionResult,
     Numerics,
     RunResult,
@@ -80,7 +82,15 @@ def contact_penetrates(result: RunResult, case: Case) -> str | None:
     return (
         f"penetration reached {1e3 * depth:.3g} mm: that alone tilts the container by "
         f"{depth / (case.container.width_m * angle):.2g} of its slenderness angle (rocking counts from "
-        f"{ROCKING_RATIO}); a larger contact.normal_penalty_Pa_m reduces it"
+        f"{ROCKING_RATIO}); {_stiffer(case)} reduces it"
+    )
+
+
+def _stiffer(case: Case) -> str:
+    return (
+        "a stiffer floor or a larger floor.corner_patch_m"
+        if case.floor.is_slab
+        else "a larger contact.normal_penalty_Pa_m"
     )
 
 
@@ -155,9 +165,23 @@ def stress_is_beyond_yield(result: RunResult, case: Case) -> str | None:
     stress, limit = _verdict(result).max_von_mises_Pa, _verdict(result).yield_strength_Pa
     if limit is None or stress is None or stress <= limit:
         return None
+    corner = plastic_corner(_verdict(result))
     return (
         f"von Mises stress reached {stress / 1e6:.0f} MPa, beyond the yield strength of S235 (235 MPa): the "
         "model is elastic, and stress at a corner that carries the weight grows as the mesh is refined"
+        + (f"; {corner}" if corner else "")
+    )
+
+
+def floor_is_crushed_deeply(result: RunResult, case: Case) -> str | None:
+    """A strength that does not change with the indentation is that of a patch at the surface."""
+    depth, floor = _verdict(result).max_indentation_m, result.floor or FloorNumbers(kind="rigid")
+    if depth is None or floor.corner_patch_m is None or depth <= min(floor.corner_patch_m):
+        return None
+    patch = " x ".join(f"{1e3 * side:g}" for side in floor.corner_patch_m)
+    return (
+        f"a corner crushed the floor by {1e3 * depth:.2g} mm in all, more than the smaller side of its patch of "
+        f"{patch} mm: the bearing strength holds for the surface, so take this as a sign of damage, not as a depth"
     )
 
 
@@ -189,7 +213,7 @@ def contact_relaxes_slowly(result: RunResult, case: Case) -> str | None:
     return (
         f"the contact relaxes in {relaxation:.2g} s (contact.damping_ratio = {ratio:g}), not "
         f"fast compared with rocking (1/p = {1.0 / rate:.2g} s): it creeps under the weight; use a smaller "
-        "contact.damping_ratio, or a larger contact.normal_penalty_Pa_m"
+        f"contact.damping_ratio, or {_stiffer(case)}"
     )
 
 
@@ -212,6 +236,7 @@ CHECKS: tuple[Callable[[RunResult, Case], str | None], ...] = (
     steps_were_rejected,
     strain_is_not_small,
     stress_is_beyond_yield,
+    floor_is_crushed_deeply,
     housner_is_not_credible,
     opening_is_not_uplift,
     rest_proves_nothing,

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from textwrap import fill
 from typing import Any
 
+from fem.assessment.floor_words import floor_rows
 from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak, motion_in_words
 from fem.case.case import Case, case_hash, load_case
 from fem.case.motion_tables import FloorMotionTable
@@ -57,13 +58,14 @@ def preview_of(case: Case) -> Preview:
 def numerics_lines(numerics: Mapping[str, Any]) -> list[str]:
     """The numerical settings, for people."""
     modes = f", {numerics['elastic_modes']} elastic modes" if numerics["elastic_modes"] else ""
+    pascals = numerics["normal_penalty_Pa_m"]
+    penalty = "" if pascals is None else f"penalty {pascals:.4g} Pa/m, "
     most = "at most " if numerics["ends_at_rest"] else ""
     return [
         f"  model       {numerics['model']}{modes}, {numerics['scheme']}",
         f"  mesh        {numerics['elements']} elements, {numerics['nodes']} nodes "
         f"({numerics['mesh_unknowns']} unknowns), {numerics['contact_nodes']} contact nodes",
-        f"  contact     penalty {numerics['normal_penalty_Pa_m']:.4g} Pa/m, bounces at "
-        f"{numerics['contact_frequency_Hz']:.4g} Hz, "
+        f"  contact     {penalty}bounces at {numerics['contact_frequency_Hz']:.4g} Hz, "
         f"sinks in by {1e6 * numerics['static_penetration_m']:.3g} um",
         f"  output      {numerics['history_samples']} samples, {numerics['field_frames']} frames "
         f"over {most}{numerics['duration_s']:g} s, about {in_units(numerics['output_bytes'])}",
@@ -87,6 +89,10 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
         *(
             [f"  run         {covered_in_words(preview.motion)}{missing_peak(preview.motion)}"]
             * is_cut(preview.motion)
+        ),
+        *(
+            fill(f"{name:<11} {value}", WIDTH, initial_indent="  ", subsequent_indent=14 * " ")
+            for name, value in floor_rows(preview.floor)
         ),
         "",
         f"  slenderness angle      {math.degrees(static.slenderness_angle):8.3f} deg   "
@@ -134,5 +140,7 @@ def _restitution_of_contact(case: Case, document: Mapping[str, Any]) -> str:
     if ratio is not None:
         damping = f"by damping ratio {document['numerics']['contact_damping_ratio']:.4g}"
         return f"{value:8.4f} if rigid, {ratio:g} of Housner's, {damping} and the penalty below"
+    if case.floor.is_slab:
+        return "follows from the slab; one that crushes leaves about Housner's"
     given = f"damping ratio {case.contact.dashpot:g} on {case.support.kind}"
     return f"{value:8.4f} if rigid, with {given}" if value is not None else f"not calibrated for {given}"

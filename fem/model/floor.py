@@ -9,14 +9,16 @@ bearing strength times the area of its patch; a steel shell that stands on its w
 import math
 from dataclasses import dataclass
 
-from contact.interface.penalty import relaxation_time
+from contact.interface.penalty import contact_frequency, relaxation_time
 from fem.case.case import Case, CaseError
 from fem.model.half_space import HalfSpace
 from fem.model.static_checks import StaticChecks
+from fem.results.run_result import FloorNumbers
 from mesh.container import ContainerMesh
 
 YIELD_STRENGTH = 235e6  #: [Pa], S235, EN 1993-1-1 Table 3.1
 STEEL_MODULUS = 1.5e11  #: [Pa], from which a shell is taken for steel
+HIT_RATIO = 0.2  #: rotation over the slenderness angle from which a typical impact is reckoned
 #: least damping ratio of a slab for which the case gives none. Waves into the floor alone (0.004 for the edge of a wall
 #: on concrete) let a corner ring after each hit: ten times the steps of a rigid container and the same motion, because
 #: crushing takes the energy, not the dashpot (`rocking`: restitution 0.867 and 0.866, rotation ratio 0.385 and 0.391)
@@ -133,6 +135,39 @@ def hit_from(ratio: float, static: StaticChecks, slab: Slab, width: float) -> Hi
     work = plastic_work(math.sqrt(2.0 * slab.normal_stiffness * lost), slab.cap, slab.normal_stiffness)
     speed = width * math.sqrt(2.0 * energy / inertia)
     return Hit(closing_speed=speed, plastic_work=work, crushing=work / slab.cap)
+
+
+def floor_result(case: Case, mesh: ContainerMesh, static: StaticChecks) -> FloorNumbers | None:
+    """What the floor of a case amounts to; None where it is rigid and level."""
+    floor = case.floor
+    if not floor.is_slab:
+        slope = floor.slope_percent
+        return FloorNumbers(kind=floor.kind, slope_percent=slope) if slope else None
+    slab = slab_of(case, mesh.mass)
+    hit = hit_from(HIT_RATIO, static, slab, mesh.width)
+    return FloorNumbers(
+        kind=floor.kind,
+        slope_percent=floor.slope_percent,
+        preset=floor.preset,
+        youngs_modulus_Pa=floor.youngs_modulus_Pa,
+        poisson_ratio=floor.poisson_ratio,
+        bearing_strength_Pa=floor.bearing_strength_Pa,
+        corner_patch_m=slab.patch,
+        corner_stiffness_N_m=slab.normal_stiffness,
+        corner_tangential_stiffness_N_m=slab.tangential_stiffness,
+        contact_frequency_Hz=contact_frequency(mesh.mass, 2.0 * slab.normal_stiffness),
+        damping_ratio=slab.relaxation_time / relaxation_time(1.0, mesh.mass, 2.0 * slab.normal_stiffness),
+        static_indentation_m=0.5 * static.weight / slab.normal_stiffness,
+        corner_cap_N=slab.cap,
+        bearing_capacity_N=slab.bearing_capacity,
+        steel_capacity_N=slab.steel_capacity,
+        governs="container" if slab.yields_first else "floor",
+        cap_over_weight=slab.cap / static.weight,
+        hit_rotation_ratio=HIT_RATIO,
+        closing_speed_m_s=hit.closing_speed,
+        crushing_per_hit_m=hit.crushing,
+        crushing_per_hit_J=hit.plastic_work,
+    )
 
 
 def plastic_work(force: float, capacity: float, stiffness: float) -> float:

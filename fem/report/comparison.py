@@ -143,10 +143,6 @@ def _dashpot(case: Case, numerics: Numerics) -> str:
 def assumptions(case: Case, result: RunResult | None = None) -> list[str]:
     """What the result rests on; of a run, with its contact frequency."""
     contact, numerics = case.contact, (result and result.numerics) or Numerics()
-    penalty, bounce = contact.normal_penalty_Pa_m, numerics.contact_frequency_Hz
-    spring = "chosen by the program" if isinstance(penalty, str) else quantity(penalty, "GPa/m", 1e-9)
-    if bounce is not None:
-        spring += f" (bounce at {quantity(bounce, 'Hz', figures=3)})"
     law = (
         "regularised in displacement: a container at rest does not creep"
         if contact.friction == "elastic-stick"
@@ -155,8 +151,7 @@ def assumptions(case: Case, result: RunResult | None = None) -> list[str]:
     lines = [
         f"Plane elevation; one horizontal{' and one vertical' * case.has_vertical} floor motion, the same under the "
         "whole base.",
-        f"Rigid, level floor under a unilateral contact: penalty {spring}, {_dashpot(case, numerics)}. "
-        "The penalty is a numerical input, not the stiffness of a concrete slab.",
+        _floor(case, numerics),
         f"Coulomb friction, static and kinetic, {law}.",
         _material(case),
     ]
@@ -169,6 +164,26 @@ def assumptions(case: Case, result: RunResult | None = None) -> list[str]:
             else f"The boxes are bolted and do not separate{listed}."
         )
     return lines
+
+
+def _floor(case: Case, numerics: Numerics) -> str:
+    """What the floor is, and how the contact stands for it."""
+    bounce, penalty = numerics.contact_frequency_Hz, case.contact.normal_penalty_Pa_m
+    slope = case.floor.slope_percent
+    lies = (
+        "level" if not slope else f"{short(abs(slope))} % falling to the {'right' if slope > 0.0 else 'left'}"
+    )
+    bounces = f" (bounce at {quantity(bounce, 'Hz', figures=3)})" if bounce is not None else ""
+    if case.floor.is_slab:
+        return (
+            f"Floor {lies}: an elastic half-space under each corner{bounces} that crushes at its bearing strength and "
+            f"keeps the indentation, which does not change the strength; {_dashpot(case, numerics)}."
+        )
+    spring = "chosen by the program" if isinstance(penalty, str) else quantity(penalty, "GPa/m", 1e-9)
+    return (
+        f"Rigid, {lies} floor under a unilateral contact: penalty {spring}{bounces}, {_dashpot(case, numerics)}. "
+        "The penalty is a numerical input, not the stiffness of a concrete slab."
+    )
 
 
 def _material(case: Case) -> str:

@@ -10,7 +10,7 @@ from fem.assessment.code_note import code_note
 from fem.assessment.joint_tables import joints_note
 from fem.assessment.loose_boxes import BOXES_NOTE, box_rows, largest_joint_slip
 from fem.assessment.ranges import (
-    IMPACT,
+    impact_note,
     largest_rotation,
     largest_slip,
     largest_uplift,
@@ -171,7 +171,7 @@ def _page(
             "band": BAND_NOTE,
             "joints": joints_note(verdict),
             "boxes": BOXES_NOTE,
-            "impact": f"; {IMPACT}" if verdict.impacts else "",
+            "impact": impact_note(verdict),
         },
         rotation_ratio=ratio_alone,
         millimetres=millimetres,

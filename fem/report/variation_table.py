@@ -20,7 +20,8 @@ from fem.batch.runner import run_cases
 from fem.case.case import Case
 from fem.report.variations import Variation, by_importance, variations_of
 from fem.results.files import to_json, write_atomically
-from fem.results.run_result import JsonBlock, RunResult
+from fem.results.json_block import JsonBlock
+from fem.results.run_result import RunResult
 from fem.runtime.identity import versions
 
 NO_SAMPLES_S = 1e4  #: interval of a history of which only the first row is taken

@@ -5,70 +5,11 @@ older version did not write, is None. Rotation > 0 toward +x, slip > 0 moves the
 """
 # ruff: noqa: N815 - a field is named as its key in the file, unit and all
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
-from functools import cache
-from types import UnionType
-from typing import Any, ClassVar, Self, get_args, get_origin, get_type_hints
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
 
-
-class JsonBlock:
-    """A dataclass that is written as a JSON object, with its fields as keys; `block[key]` is `block.key`."""
-
-    #: keys that are left out where they are None, in place of null
-    written_where_given: ClassVar[frozenset[str]] = frozenset()
-
-    @classmethod
-    def from_json(cls, block: Mapping[str, Any]) -> Self:
-        """Read a block; missing keys and null take the default, unknown keys are ignored.
-
-        Raises:
-            ValueError: the block is no object, or a required key is missing.
-        """
-        try:
-            readers = _readers(cls)  # type: ignore[arg-type]
-            return cls(
-                **{name: readers[name](block[name]) for name in readers if block.get(name) is not None}
-            )
-        except (AttributeError, TypeError) as error:
-            raise ValueError(f"cannot be read as {cls.__name__} ({error})") from None
-
-    def __getitem__(self, key: str) -> Any:
-        """A value by its key in the file; KeyError names the keys there are."""
-        names = [one.name for one in fields(self)]  # type: ignore[arg-type]
-        if key not in names:
-            raise KeyError(f"no key {key!r}; known: {', '.join(names)}")
-        return getattr(self, key)
-
-    def to_json(self) -> dict[str, Any]:
-        """The block as JSON types, its keys in the order of the fields."""
-        block = {one.name: _plain(getattr(self, one.name)) for one in fields(self)}  # type: ignore[arg-type]
-        idle = {key for key in self.written_where_given if block[key] is None}
-        return {key: value for key, value in block.items() if key not in idle}
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, JsonBlock):
-        return value.to_json()
-    return [_plain(item) for item in value] if isinstance(value, tuple) else value
-
-
-@cache
-def _readers(kind: type[JsonBlock]) -> dict[str, Callable[[Any], Any]]:
-    """For each field, what makes its value from JSON types."""
-    hints = get_type_hints(kind)
-    return {one.name: _reader(hints[one.name]) for one in fields(kind)}  # type: ignore[arg-type]
-
-
-def _reader(hint: Any) -> Callable[[Any], Any]:
-    if isinstance(hint, UnionType):  # X | None
-        hint = get_args(hint)[0]
-    if isinstance(hint, type) and issubclass(hint, JsonBlock):
-        return hint.from_json
-    if get_origin(hint) is tuple:
-        item = _reader(get_args(hint)[0])
-        return lambda values: tuple(item(value) for value in values)
-    return lambda value: value
+from fem.results.json_block import JsonBlock
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,6 +95,37 @@ class MotionResult(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
+class FloorNumbers(JsonBlock):
+    """What the floor amounts to (`fem.model.floor`); of a rigid one that slopes, the slope alone."""
+
+    kind: str  #: rigid | slab
+    slope_percent: float = 0.0  #: > 0: it falls toward +x
+    preset: str | None = None
+    youngs_modulus_Pa: float | None = None
+    poisson_ratio: float | None = None
+    bearing_strength_Pa: float | None = None
+    corner_patch_m: tuple[float, ...] | None = (
+        None  #: under one corner of the elevation, along x and out of plane
+    )
+    corner_stiffness_N_m: float | None = None
+    corner_tangential_stiffness_N_m: float | None = None
+    contact_frequency_Hz: float | None = None  #: of the container on both corners
+    damping_ratio: float | None = None  #: c/(2 sqrt(k m)), the whole mass on the spring of one corner
+    static_indentation_m: float | None = None  #: elastic, under the weight
+    corner_cap_N: float | None = None  #: largest normal force of a corner
+    bearing_capacity_N: float | None = None  #: strength times patch
+    steel_capacity_N: float | None = (
+        None  #: at which the wall over the corner yields; None without such a wall
+    )
+    governs: str | None = None  #: floor | container: what gives way first
+    cap_over_weight: float | None = None
+    hit_rotation_ratio: float | None = None  #: from which the container falls back, for what follows
+    closing_speed_m_s: float | None = None
+    crushing_per_hit_m: float | None = None
+    crushing_per_hit_J: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
 class BandMember(JsonBlock):
     """One run of a band."""
 
@@ -169,6 +141,7 @@ class BandMember(JsonBlock):
     max_slip_m: float | None = None
     residual_slip_m: float | None = None  #: signed, at the end
     max_uplift_m: float | None = None
+    max_indentation_m: float | None = None
     max_corner_force_N: float | None = None
     max_acceleration_m_s2: float | None = None
     max_von_mises_Pa: float | None = None
@@ -193,6 +166,7 @@ class Band(JsonBlock):
     max_slip_m: tuple[float, float] | None = None
     residual_slip_m: tuple[float, float] | None = None
     max_uplift_m: tuple[float, float] | None = None
+    max_indentation_m: tuple[float, float] | None = None
     max_corner_force_N: tuple[float, float] | None = None
     max_acceleration_m_s2: tuple[float, float] | None = None
     max_von_mises_Pa: tuple[float, float] | None = None
@@ -239,6 +213,9 @@ class Verdict(JsonBlock):
     max_acceleration_m_s2: float | None = None  #: of the contents
     max_von_mises_Pa: float | None = None  #: None of a rigid container
     yield_strength_Pa: float | None = None  #: that of S235 of a steel shell; None of another container
+    #: at which the wall over a corner yields, and the work that a rigid-plastic corner would take (`fem.model.floor`)
+    corner_capacity_N: float | None = None
+    plastic_work_J: float | None = None
     basis: str = "study"
     first_line: str | None = None  #: the verdict in one sentence, as on the page
     sure: str | None = None  #: sure | regime unsure | unsure; None: not tried
@@ -247,7 +224,7 @@ class Verdict(JsonBlock):
     fell_box: int | None = None  #: the first box of a loose stack that fell, from 1 at the floor
     band: Band | None = None
 
-    written_where_given = frozenset({"boxes", "fell_box"})
+    written_where_given = frozenset({"boxes", "fell_box", "corner_capacity_N", "plastic_work_J"})
 
     @property
     def max_joint_slip_m(self) -> float | None:
@@ -368,6 +345,7 @@ class RunResult(JsonBlock):
     case_hash: str | None = None
     static: StaticResult | None = None
     motion: MotionResult | None = None
+    floor: FloorNumbers | None = None  #: None: rigid and level
     versions: Mapping[str, str] | None = None
     verdict: Verdict | None = None
     joints: tuple[JointDemand, ...] | None = None  #: None for a single box

@@ -261,13 +261,14 @@ def _member(
     tension, shear = largest_bolt_forces(joints) if joints else (None, None)
     return replace(
         _without_outcome(change, status),
-        normal_penalty_Pa_m=model.penalty,
+        normal_penalty_Pa_m=None if case.floor.is_slab else model.penalty,
         damping_ratio=model.damping_ratio,
         outcome=verdict.outcome,
         rotation_ratio=verdict.rotation_ratio,
         max_slip_m=verdict.max_slip_m,
         residual_slip_m=verdict.residual_slip_m,
         max_uplift_m=verdict.max_uplift_m,
+        max_indentation_m=verdict.max_indentation_m,
         max_corner_force_N=verdict.max_corner_force_N,
         max_acceleration_m_s2=verdict.max_acceleration_m_s2,
         max_von_mises_Pa=verdict.max_von_mises_Pa,

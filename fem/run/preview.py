@@ -10,13 +10,13 @@ from fem.assessment.code_note import code_note
 from fem.assessment.motion_words import doubts
 from fem.case.case import Case
 from fem.case.rules import ends_at_rest
-from fem.model.floor import slab_of
+from fem.model.floor import floor_result, slab_of
 from fem.model.geometry import node_count
 from fem.model.restitution import apparent_restitution
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.support import build_support, normal_penalty
 from fem.model.validity import require_bearing, require_stiff_contact
-from fem.results.run_result import MotionResult
+from fem.results.run_result import FloorNumbers, MotionResult
 from fem.run.size import frames_of, required_disk, samples_of
 from mesh.container import ContainerMesh
 
@@ -86,8 +86,8 @@ class Preview:
             "mesh_unknowns": 2 * nodes,
             "elastic_modes": {"rigid": 0, "reduced": solver.elastic_modes}.get(solver.model),
             "contact_nodes": len(springs),
-            "normal_penalty_Pa_m": penalty,
-            "contact_damping_ratio": case.contact.dashpot,
+            "normal_penalty_Pa_m": None if case.floor.is_slab else penalty,
+            "contact_damping_ratio": self.floor.damping_ratio or case.contact.dashpot,
             "contact_frequency_Hz": contact_frequency(mesh.mass, stiffness),
             "static_penetration_m": mesh.mass * case.gravity_m_s2 / stiffness,
             "duration_s": self.duration,
@@ -97,12 +97,19 @@ class Preview:
             "output_bytes": required_disk(case, nodes, self.duration),
         }
 
+    @cached_property
+    def floor(self) -> FloorNumbers:
+        """What the floor amounts to; of a rigid one its slope alone."""
+        return floor_result(self.case, self.mesh, self.static) or FloorNumbers(kind="rigid")
+
     @property
     def contact_restitution(self) -> float | None:
-        """Restitution of a rigid container on this contact; None outside the table of calibration."""
+        """Restitution of a rigid container on this contact; None on a slab, and outside the table of calibration."""
         given, housner = self.case.contact.restitution_over_housner, self.static.housner_restitution
         if given is not None:
             return given * housner
+        if self.case.floor.is_slab:
+            return None
         foot = self.case.support.foot
         return apparent_restitution(
             support=self.case.support.kind,
@@ -132,6 +139,15 @@ class Preview:
                 f"Housner's restitution is {static.housner_restitution:.3f}, below 0.5: for a container so squat "
                 "the rigid block's impact model is not credible",
             ),
+            (
+                (self.floor.cap_over_weight or 1.0) < 1.0,
+                f"a corner crushes at {self.floor.cap_over_weight or 1.0:.2g} of the weight: the container stands, but "
+                "on one corner it sinks in as long as it rocks",
+            ),
+            (
+                static.own_motion.sliding.utilisation > 1.0 and self.peak == 0.0,
+                "the floor is steeper than static friction holds: the container slides from the beginning",
+            ),
             (static.by_code is not None, code_note(static.to_result())),
             *((True, note) for note in doubts(self.motion, case.gravity_m_s2)),
             (
@@ -160,6 +176,7 @@ class Preview:
         return {
             "derived": self.derived,
             "motion": self.motion.to_json(),
+            "floor": self.floor.to_json(),
             "static": self.static.to_result().to_json(),
             "contact_restitution": self.contact_restitution,
             "numerics": self.numerics,

@@ -13,6 +13,7 @@ from fem.assessment.verdict import energy_of, numerics_of, verdict_of
 from fem.assessment.warnings import warnings_for
 from fem.case.case import Case
 from fem.case.rules import ends_at_rest, longest_time
+from fem.model.floor import floor_result
 from fem.model.model import Model
 from fem.model.motion import build_motions, motion_result, peaks_in_run
 from fem.model.static_checks import static_checks_of
@@ -59,6 +60,7 @@ def begun(model: Model, case_hash: str) -> RunResult:
         case_hash=case_hash,
         static=model.static.to_result(),
         motion=motion_result(case, model.motion, model.vertical),
+        floor=floor_result(case, model.container.mesh, model.static),
         versions=versions(),
     )
 

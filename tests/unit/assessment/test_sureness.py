@@ -157,7 +157,7 @@ def test_an_elastic_stress_beyond_yield_is_no_bare_number():
         max_von_mises_Pa=1107e6, yield_strength_Pa=235e6, impacts=3, band=Band(max_von_mises_Pa=(7e8, 1.3e9))
     )
     assert largest_stress(beyond) == (
-        f"beyond yield (235 MPa); the elastic model has 1100 (700 to 1300) MPa; {IMPACT}"
+        f"beyond yield (235 MPa); the shell stays elastic and has 1100 (700 to 1300) MPa; {IMPACT}"
     )
     within = replace(beyond, max_von_mises_Pa=1e8, band=Band(max_von_mises_Pa=(5e7, 3e8)), impacts=0)
     assert largest_stress(within).startswith("beyond yield within the band (235 MPa)")

@@ -1,0 +1,66 @@
+"""A dataclass that is written as a JSON object and read back, with its fields as keys."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import fields
+from functools import cache
+from types import UnionType
+from typing import Any, ClassVar, Self, get_args, get_origin, get_type_hints
+
+
+class JsonBlock:
+    """A dataclass that is written as a JSON object, with its fields as keys; `block[key]` is `block.key`."""
+
+    #: keys that are left out where they are None, in place of null
+    written_where_given: ClassVar[frozenset[str]] = frozenset()
+
+    @classmethod
+    def from_json(cls, block: Mapping[str, Any]) -> Self:
+        """Read a block; missing keys and null take the default, unknown keys are ignored.
+
+        Raises:
+            ValueError: the block is no object, or a required key is missing.
+        """
+        try:
+            readers = _readers(cls)  # type: ignore[arg-type]
+            return cls(
+                **{name: readers[name](block[name]) for name in readers if block.get(name) is not None}
+            )
+        except (AttributeError, TypeError) as error:
+            raise ValueError(f"cannot be read as {cls.__name__} ({error})") from None
+
+    def __getitem__(self, key: str) -> Any:
+        """A value by its key in the file; KeyError names the keys there are."""
+        names = [one.name for one in fields(self)]  # type: ignore[arg-type]
+        if key not in names:
+            raise KeyError(f"no key {key!r}; known: {', '.join(names)}")
+        return getattr(self, key)
+
+    def to_json(self) -> dict[str, Any]:
+        """The block as JSON types, its keys in the order of the fields."""
+        block = {one.name: _plain(getattr(self, one.name)) for one in fields(self)}  # type: ignore[arg-type]
+        idle = {key for key in self.written_where_given if block[key] is None}
+        return {key: value for key, value in block.items() if key not in idle}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, JsonBlock):
+        return value.to_json()
+    return [_plain(item) for item in value] if isinstance(value, tuple) else value
+
+
+@cache
+def _readers(kind: type[JsonBlock]) -> dict[str, Callable[[Any], Any]]:
+    """For each field, what makes its value from JSON types."""
+    hints = get_type_hints(kind)
+    return {one.name: _reader(hints[one.name]) for one in fields(kind)}  # type: ignore[arg-type]
+
+
+def _reader(hint: Any) -> Callable[[Any], Any]:
+    if isinstance(hint, UnionType):  # X | None
+        hint = get_args(hint)[0]
+    if isinstance(hint, type) and issubclass(hint, JsonBlock):
+        return hint.from_json
+    if get_origin(hint) is tuple:
+        item = _reader(get_args(hint)[0])
+        return lambda values: tuple(item(value) for value in values)
+    return lambda value: value

@@ -1,0 +1,69 @@
+"""A run on a slab, from the case file to its files: floor block, work of crushing over time, band, summary."""
+
+import json
+
+import pytest
+
+import fem
+from fem.case.case import load_case, read_case
+from fem.run.run import run_case
+
+KEYS = (
+    "floor.preset=concrete C25/30",
+    "solver.model=rigid",
+    "solver.element_size_m=0.5",
+    "solver.order=1",
+    "solver.duration_s=4",
+    "output.fields_s=0",
+    "output.figures=false",
+    "uncertainty.draws=2",
+)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    place = tmp_path_factory.mktemp("slab") / "run"
+    case = load_case("rocking", KEYS)
+    run_case(case, case_text=case.text, folder=place)
+    return place
+
+
+def test_the_floor_stands_in_the_result_and_its_force_is_capped(folder):
+    found = json.loads((folder / "run.json").read_text())
+    floor, verdict = found["floor"], found["verdict"]
+    assert (floor["kind"], floor["governs"], floor["corner_patch_m"]) == ("slab", "floor", [0.008, 1.1])
+    assert verdict["max_corner_force_N"] <= floor["corner_cap_N"] * (1.0 + 1e-9)
+    assert verdict["max_indentation_m"] > 0.0
+    assert found["numerics"]["normal_penalty_Pa_m"] is None
+
+
+def test_the_work_of_crushing_rises_to_that_of_the_energy_balance(folder):
+    run = fem.open_run(folder)
+    crushing = run.history["crushing_J"]
+    assert (crushing[1:] >= crushing[:-1]).all()
+    assert crushing[-1] == pytest.approx(run.typed_result.energy.crushing_J)
+    # All of it is the cap over the indentations of both corners, of which the largest is in the verdict.
+    deepest = run.typed_result.verdict.max_indentation_m * run.typed_result.floor.corner_cap_N
+    assert deepest <= crushing[-1] * (1.0 + 1e-9) <= 2.0 * deepest * (1.0 + 1e-9)
+
+
+def test_its_band_tries_strength_and_stiffness_of_the_slab(folder):
+    verdict = fem.open_run(folder).typed_result.verdict
+    tried = {key for member in verdict.band.members if member.kind == "one" for key in member.values}
+    assert {"floor.bearing_strength_Pa", "floor.youngs_modulus_Pa"} <= tried
+    assert tried.isdisjoint({"contact.normal_penalty_Pa_m", "contact.damping_ratio"})
+    low, high = verdict.band.max_indentation_m
+    assert low < verdict.max_indentation_m < high
+
+
+def test_the_resolved_case_is_the_same_slab(folder):
+    resolved = read_case((folder / "resolved.toml").read_text())
+    assert resolved.floor.bearing_strength_Pa == 50e6
+    assert "normal_penalty_Pa_m" not in resolved.given()["contact"]
+
+
+def test_summary_and_figures_say_what_was_crushed(folder):
+    summary = " ".join((folder / "summary.txt").read_text().split())
+    assert "indentation of the floor" in summary
+    assert "work of crushing" in summary
+    assert "not for design" not in summary
