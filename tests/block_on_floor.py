@@ -221,7 +221,7 @@ def rig(
         motion=along,
         vertical=upward,
         breaks=np.zeros(0) if breaks is None else breaks,
-        control=_control(block, largest_step, fixed_step, energy_scale),
+        control=limits_of(block, largest_step, fixed_step, energy_scale),
         old=old,
         new=new,
         work=make_workspace(2),
@@ -242,7 +242,7 @@ def piecewise_motion(knots: list[float], accelerations: list[float]) -> FloorMot
     return as_floor_motion(PIECEWISE, breaks=np.array(knots), coefficients=np.array(rows))
 
 
-def _control(block: Block, largest_step: float, fixed_step: bool, energy_scale: float) -> Control:
+def limits_of(block: Block, largest_step: float, fixed_step: bool, energy_scale: float) -> Control:
     """The limits that a case gets by default; or none, for steps of one size."""
     rigid, reference = block.rigid, block.reference_energy
     scale = LOOSE if fixed_step else energy_scale

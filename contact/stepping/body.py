@@ -1,10 +1,11 @@
 """The interface between the time stepping and a body.
 
 A body has coordinates, whose number and meaning only the body knows, and base points that may touch the floor. The
-stepping calls the functions of this module: `predict`, `release`, `respond`, `complete`, `observe`, `shift_velocity`,
-`prepared` and `sizes_match`. In compiled code they are those of `contact.stepping.modal_kernels` (a floating frame with
-elastic modes) or of `fem.solid.nodal_kernels` (the nodes of a mesh), see `implements`. In Python they call the method
-of the body with the same name.
+stepping calls the functions of this module: `weigh`, `predict`, `release`, `respond`, `complete`, `observe`,
+`shift_velocity`, `prepared` and `sizes_match`. In compiled code they are those of `contact.stepping.modal_kernels` (a
+floating frame with elastic modes), of `fem.solid.nodal_kernels` (the nodes of a mesh) or of
+`contact.stepping.loose_stack` (boxes that stand on one another), see `implements`. In Python they call the method of
+the body with the same name.
 """
 
 import math
@@ -15,7 +16,7 @@ import numpy as np
 from numba.extending import overload
 
 from contact.arrays import FloatArray
-from contact.interface.workspace import Workspace
+from contact.interface.workspace import Contact, Workspace
 from contact.stepping.scheme import Scheme
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
@@ -46,16 +47,21 @@ class State(NamedTuple):
     crushed: (
         FloatArray  #: (n,) permanent indentation; a base point is above the floor by its height and this [m]
     )
-    pose: FloatArray  #: (6,) best-fit rotation, its rate, mass centre and its velocity (absolute)
+    #: (6,) best-fit rotation, its rate, mass centre and its velocity (absolute); of a loose stack the rotation is that
+    #: of the lowest box
+    pose: FloatArray
     #: (3,) kinetic, strain, gravity potential [J], of positions and vertical velocities relative to the floor
     energy: FloatArray
+    boxes: FloatArray  #: (N, 6) poses of the boxes of a loose stack, from the floor up; (0, 6) for one body
+    corner: FloatArray  #: (4 N, 2) corners of its boxes relative to the floor [m]
     monitor: FloatArray  #: (n_m, 4) monitored points: displacement relative to the floor [m], velocity [m/s]
     numbers: FloatArray  #: all but the monitored points; the fields above are views of it
 
 
-def make_state(coordinates: int, points: int, monitors: int) -> State:
-    """Allocate a state for these numbers of coordinates, base points and monitored points."""
+def make_state(coordinates: int, points: int, monitors: int, boxes: int = 0) -> State:
+    """Allocate a state for these numbers of coordinates, base points, monitored points and boxes of a loose stack."""
     shapes: list[tuple[int, ...]] = [*7 * [(coordinates,)], *4 * [(points, 2)], *2 * [(points,)], (6,), (3,)]
+    shapes += [(boxes, 6), (4 * boxes, 2)]
     numbers = np.zeros(sum(math.prod(shape) for shape in shapes))
     fields, begin = {}, 0
     for name, shape in zip(State._fields, shapes, strict=False):
@@ -80,6 +86,11 @@ def implements(
         return implementation
 
     return register
+
+
+def weigh(body: Any, contact: Contact, old: State) -> None:
+    """Set the stiffness of the contact points for a step that begins with `old`."""
+    body.weigh(contact, old)
 
 
 def predict(body: Any, scheme: Scheme, step: float, old: State, new: State) -> None:

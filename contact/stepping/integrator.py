@@ -11,13 +11,13 @@ the same compiled laws, contact solver and ledger.
 
 from typing import Any
 
-import numpy as np
 from numba.extending import register_jitable
 
 from contact.jit import compiled
 from contact.motion.kernel import UNIFORM
 from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
-from contact.stepping.body import ROTATION, complete, prepared, shift_velocity, sizes_match
+from contact.stepping.body import complete, prepared, shift_velocity, sizes_match, weigh
+from contact.stepping.boxes import follow_boxes, has_fallen
 from contact.stepping.contents import follow_contents, shift_contents
 from contact.stepping.control import (
     STEPS_PER_OCTAVE,
@@ -34,7 +34,7 @@ from contact.stepping.joints import (
     update_joints,
     weaken_friction,
 )
-from contact.stepping.ledger import FRICTION, IMBALANCE, dissipation
+from contact.stepping.ledger import FRICTION, IMBALANCE, dissipation, spring_energy
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.observables import FALLEN, NEVER, update_observables
 from contact.stepping.sampling import sample
@@ -47,9 +47,6 @@ FADING = 0.8  #: of the remembered imbalance, per step
 
 #: what `advance` returns
 REACHED, OVERTURNED, FAILED, UNPREPARED = 0, 1, 2, 3
-OVERTURNING_ROTATION = 0.5 * np.pi
-#: without stop at overturning, it counts this much earlier, where the side of the container meets the floor [rad]
-LYING_MARGIN = 2e-3
 AFTERMATH_SLICE = 0.05  #: interval of the checks after the end of the floor motion [s]
 
 
@@ -70,6 +67,8 @@ def close_step(run: RunState, step: float, iterations: int) -> None:
     clock.iterations += iterations
     clock.smallest_step = min(clock.smallest_step, step)
     copy_state(run.old, run.new)
+    if run.joints.shape[0] > 1:
+        clock.spring_energy = spring_energy(run.contact, run.old.point, run.old.stick)
     for k in range(3):
         run.floor[0, k] = run.floor[1, k]
     if run.vertical.kind != UNIFORM:
@@ -109,9 +108,9 @@ def advance(body: Any, run: RunState, until: float) -> int:
     It also returns when the sample arrays are full, so that no sample is lost, and at `clock.attempt_limit`.
 
     Returns:
-        REACHED; OVERTURNED (90 degrees, with `control.stop_when_overturned`); FAILED: no convergence at the smallest
-        step, `run.old` is the last good state; or UNPREPARED: prepare the body for steps of `clock.unprepared_step`
-        and call again.
+        REACHED; OVERTURNED (90 degrees, with `control.stop_when_overturned`; or a box of a loose stack fell); FAILED:
+        no convergence at the smallest step, `run.old` is the last good state; or UNPREPARED: prepare the body for
+        steps of `clock.unprepared_step` and call again.
     """
     control, clock, track = run.control, run.clock[0], run.track[0]
     if not sizes_match(body, run):
@@ -122,6 +121,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
             clock.unprepared_step = step
             return UNPREPARED
         iterations = 0
+        weigh(body, run.contact, run.old)
         begin_friction(run)
         for _ in range(WEAKENING_LIMIT):  # friction that weakens with the slip of this step
             iterations = attempt(body, run, step)
@@ -168,6 +168,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
             run.lift,
             run.change[FRICTION],
         )
+        follow_boxes(run, step)
         follow_contents(body, run, step)
         clock.samples = sample(run, run.history, clock.samples, clock.samples_drained, step)
         clock.frames = sample(run, run.frames, clock.frames, clock.frames_drained, step)
@@ -179,12 +180,11 @@ def advance(body: Any, run: RunState, until: float) -> int:
             clock.level = level
         clock.allowance_used = recent
         clock.growth_hold = max(clock.growth_hold - 1, 0)
-        fallen = OVERTURNING_ROTATION if control.stop_when_overturned else OVERTURNING_ROTATION - LYING_MARGIN
-        if abs(run.old.pose[ROTATION]) >= fallen and track.overturned_at == NEVER:
+        if track.overturned_at == NEVER and has_fallen(run):
             track.overturned_at = clock.time
             track.mode = FALLEN
             track.modes |= 1 << FALLEN
-            if control.stop_when_overturned:
+            if control.stop_when_overturned or run.joints.shape[0] > 1:
                 return OVERTURNED
     return REACHED
 

@@ -4,11 +4,13 @@ Static and kinetic friction are states of a joint, not of a point: see "Static a
 `contact/README.md`. Forces and slips are those of the box on top of the joint.
 """
 
+import math
+
 from numba.extending import register_jitable
 
 from contact.interface.laws import ELASTIC_STICK, relaxed_stick, weakened_mu
 from contact.jit import compiled
-from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z
+from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION, VELOCITY_X, VELOCITY_Z
 from contact.stepping.observables import SLIDING
 from contact.stepping.state import RunState
 
@@ -113,7 +115,9 @@ def slides_on(run: RunState, j: int, step: float, turned: bool) -> bool:
         holding, normal = holding_force(run, j)
         if abs(holding) <= run.contact.mu_static[points_of(run, j)[0]] * normal:
             # a stop within an impact does not last
-            weight = joint.mass * (run.control.gravity + run.lift[1, 2])
+            weight = 0.0
+            for k in range(j, run.joints.shape[0]):
+                weight += run.joints[k].mass * (run.control.gravity + run.lift[1, 2])
             if turned and normal < IMPACT_LOAD * weight:
                 slide(run, j, step, True, holding)
             return False
@@ -129,6 +133,8 @@ def holding_force(run: RunState, j: int) -> tuple[float, float]:
     around them. In an impact the normal force is larger. On a floor that accelerates upward by a_v gravity is g + a_v;
     a slope acts as an acceleration of the floor uphill.
     """
+    if run.joints.shape[0] > 1:
+        return holding_in_stack(run, j)
     new, track, joint = run.new, run.track[0], run.joints[j]
     acceleration = run.floor[1, 2] - run.control.downhill
     gravity = run.control.gravity + run.lift[1, 2]
@@ -154,6 +160,103 @@ def holding_force(run: RunState, j: int) -> tuple[float, float]:
         push += turning * arm_z - spin * arm_x
         load -= turning * arm_x + spin * arm_z
     return joint.mass * push, max(normal, joint.mass * load)
+
+
+@register_jitable(forceinline=True)
+def touching_corner(i: int) -> int:
+    """The corner that touches a face at a contact point of a loose stack, see `contact.interface.faces`."""
+    joint, k = (i + 2) // 4, (i + 2) % 4
+    if k % 2 == 1:
+        return 4 * joint - 2 + k // 2
+    return 4 * joint + k // 2
+
+
+@compiled
+def load_from_above(run: RunState, j: int) -> tuple[float, float, float]:
+    """Forces on a box from the joint on top of it, x and z [N], and their moment about its centre, > 0 as rotation."""
+    new, x, z, moment = run.new, 0.0, 0.0, 0.0
+    if j + 1 == run.joints.shape[0]:
+        return x, z, moment
+    begin, end = points_of(run, j + 1)
+    for i in range(begin, end):
+        lean = new.boxes[j + (i % 2), ROTATION]  # of the box whose face it is
+        cosine, sine = math.cos(lean), math.sin(lean)
+        along = -cosine * new.force[i, 0] - sine * new.force[i, 1]
+        up = sine * new.force[i, 0] - cosine * new.force[i, 1]
+        c = touching_corner(i)
+        arm_x = new.corner[c, 0] + run.floor[1, 0] - new.boxes[j, CENTRE_X]
+        arm_z = new.corner[c, 1] + run.lift[1, 0] - new.boxes[j, CENTRE_Z]
+        x += along
+        z += up
+        moment += arm_z * along - arm_x * up
+    return x, z, moment
+
+
+@compiled
+def holding_in_stack(run: RunState, j: int) -> tuple[float, float]:
+    """`holding_force` of a joint of a loose stack: of the box on it, under the present forces from above.
+
+    The box stands on the face below, which moves it and turns it; or it rocks on that face as a container on its floor.
+    """
+    new, joint, box = run.new, run.joints[j], run.new.boxes[j]
+    begin, end = points_of(run, j)
+    half = (end - begin) // 2
+    x, z, left, right = 0.0, 0.0, 0.0, 0.0
+    for i in range(begin, end):
+        c = touching_corner(i)
+        x += new.force[i, 1] * new.corner[c, 0]
+        z += new.force[i, 1] * new.corner[c, 1]
+        if i < begin + half:
+            left += new.force[i, 1]
+        else:
+            right += new.force[i, 1]
+    normal, stands = left + right, (left > 0.0) == (right > 0.0)
+    above_x, above_z, moment = load_from_above(run, j)
+    cosine, sine, swing, swung = 1.0, 0.0, 0.0, 0.0
+    if j > 0:
+        lean = new.boxes[j - 1, ROTATION]
+        cosine, sine, swung = math.cos(lean), math.sin(lean), new.boxes[j - 1, ANGULAR_VELOCITY]
+        swing = (swung - run.old.boxes[j - 1, ANGULAR_VELOCITY]) / run.clock[0].lag_step
+    push, load, arm_x, arm_z = 0.0, 0.0, 0.0, 0.0
+    for side in range(2 if stands else 1):  # about which corner it would rock depends on the push
+        if stands:
+            first = begin + side * half
+            heavier = run.contact.normal_stiffness[first + half - 1] > run.contact.normal_stiffness[first]
+            c = touching_corner(first + half - 1 if heavier else first)
+            x, z = new.corner[c, 0], new.corner[c, 1]
+        else:
+            x, z = x / normal, z / normal
+        shake_x, shake_z = acceleration_below(run, j, x, z)
+        force_x = above_x / joint.mass - shake_x + run.control.downhill
+        force_z = above_z / joint.mass - shake_z - run.control.gravity
+        push, load = sine * force_z - cosine * force_x, -sine * force_x - cosine * force_z
+        along, up = box[CENTRE_X] - run.floor[1, 0] - x, box[CENTRE_Z] - run.lift[1, 0] - z
+        arm_x, arm_z = cosine * along - sine * up, sine * along + cosine * up
+        if push > 0.0:
+            break
+    inertia = joint.inertia / joint.mass + arm_x * arm_x + arm_z * arm_z
+    turning = (load * arm_x - push * arm_z + moment / joint.mass) / inertia
+    spin = box[ANGULAR_VELOCITY] ** 2
+    if stands and (turning - swing) * push >= 0.0:
+        turning, spin = swing, swung * swung
+    push += turning * arm_z - spin * arm_x
+    load -= turning * arm_x + spin * arm_z
+    return joint.mass * push, max(normal, joint.mass * load)
+
+
+@compiled
+def acceleration_below(run: RunState, j: int, x: float, z: float) -> tuple[float, float]:
+    """Acceleration of the floor or the box below a joint, at a place relative to the floor [m/s2]."""
+    if j == 0:
+        return run.floor[1, 2], run.lift[1, 2]
+    box, before, step = run.new.boxes[j - 1], run.old.boxes[j - 1], run.clock[0].lag_step
+    along, up = x + run.floor[1, 0] - box[CENTRE_X], z + run.lift[1, 0] - box[CENTRE_Z]
+    turning = (box[ANGULAR_VELOCITY] - before[ANGULAR_VELOCITY]) / step
+    spin = box[ANGULAR_VELOCITY] ** 2
+    return (
+        (box[VELOCITY_X] - before[VELOCITY_X]) / step + turning * up - spin * along,
+        (box[VELOCITY_Z] - before[VELOCITY_Z]) / step - turning * along - spin * up,
+    )
 
 
 @compiled(inline=True)

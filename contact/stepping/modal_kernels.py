@@ -9,7 +9,7 @@ from numba.extending import register_jitable
 from contact.arrays import FloatArray
 from contact.interface.equilibrium import Stance
 from contact.interface.solver import add_turned
-from contact.interface.workspace import Workspace
+from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled
 from contact.stepping import body as interface
 from contact.stepping.body import (
@@ -27,6 +27,11 @@ from contact.stepping.body import (
 )
 from contact.stepping.modal_body import MODAL, BlockOnCorners, ModalBody
 from contact.stepping.scheme import Scheme
+
+
+@implements(interface.weigh, *MODAL, inline=True)
+def weigh(body: ModalBody, contact: Contact, old: State) -> None:
+    """The stiffness of the base points does not change."""
 
 
 @implements(interface.predict, *MODAL, inline=True)

@@ -14,13 +14,21 @@ from contact.stepping.body import (
     VELOCITY_Z,
     State,
 )
+from contact.stepping.joints import points_of
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.scheme import hermite
 from contact.stepping.state import (
+    BOX_CENTRE_X,
+    BOX_CENTRE_Z,
+    BOX_COLUMNS,
+    BOX_OPENING,
+    BOX_ROTATION,
+    BOX_SLIP,
     ROW_ANGULAR_VELOCITY,
     ROW_BASE_WORK,
     ROW_CENTRE_X,
     ROW_CENTRE_Z,
+    ROW_COLUMNS,
     ROW_KINETIC,
     ROW_NORMAL,
     ROW_ROTATION,
@@ -49,15 +57,41 @@ def write_columns(
     row[ROW_CENTRE_X] = hermite(s, step, a[CENTRE_X], a[VELOCITY_X], b[CENTRE_X], b[VELOCITY_X]) - floor
     row[ROW_CENTRE_Z] = hermite(s, step, a[CENTRE_Z], a[VELOCITY_Z], b[CENTRE_Z], b[VELOCITY_Z]) - lift
     row[ROW_UPLIFT], row[ROW_NORMAL], row[ROW_SHEAR] = 0.0, 0.0, 0.0
-    for i in range(new.point.shape[0]):
+    begin, end = points_of(run, 0)
+    for i in range(begin, end):
         if i < run.control.base_points:
             row[ROW_UPLIFT] = max(row[ROW_UPLIFT], (1.0 - s) * old.point[i, 1] + s * new.point[i, 1])
         row[ROW_SHEAR] += force[i, 0]
         row[ROW_NORMAL] += force[i, 1]
+    if run.joints.shape[0] > 1:
+        write_boxes(run, row, s, step, floor, lift)
     for k in range(3):
         row[ROW_KINETIC + k] = (1.0 - s) * old.energy[k] + s * new.energy[k]
     for k in range(LEDGER_ROWS):
         row[ROW_BASE_WORK + k] = run.ledger[k] + s * run.change[k]
+
+
+@compiled(inline=True)
+def write_boxes(run: RunState, row: FloatArray, s: float, step: float, floor: float, lift: float) -> None:
+    """What a row of a history holds of the boxes of a loose stack; `floor`, `lift`: place of the floor [m]."""
+    a = run.old.boxes[0]
+    b = run.new.boxes[0]
+    row[ROW_CENTRE_X] = hermite(s, step, a[CENTRE_X], a[VELOCITY_X], b[CENTRE_X], b[VELOCITY_X]) - floor
+    row[ROW_CENTRE_Z] = hermite(s, step, a[CENTRE_Z], a[VELOCITY_Z], b[CENTRE_Z], b[VELOCITY_Z]) - lift
+    for j in range(1, run.joints.shape[0]):
+        joint, first = run.joints[j], ROW_COLUMNS + BOX_COLUMNS * (j - 1)
+        a, b = run.old.boxes[j], run.new.boxes[j]
+        row[first + BOX_ROTATION] = hermite(
+            s, step, a[ROTATION], a[ANGULAR_VELOCITY], b[ROTATION], b[ANGULAR_VELOCITY]
+        )
+        row[first + BOX_SLIP] = joint.slip + s * joint.slip_step
+        row[first + BOX_OPENING] = (1.0 - s) * joint.opening + s * joint.opens
+        row[first + BOX_CENTRE_X] = (
+            hermite(s, step, a[CENTRE_X], a[VELOCITY_X], b[CENTRE_X], b[VELOCITY_X]) - floor
+        )
+        row[first + BOX_CENTRE_Z] = (
+            hermite(s, step, a[CENTRE_Z], a[VELOCITY_Z], b[CENTRE_Z], b[VELOCITY_Z]) - lift
+        )
 
 
 @compiled(inline=True)

@@ -13,6 +13,7 @@ from contact.interface.workspace import Contact, Workspace
 from contact.motion.kernel import UNIFORM, FloorMotion, as_floor_motion, floor_motion
 from contact.stepping.body import State
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
+from contact.stepping.ledger import spring_energy
 from contact.stepping.observables import NEVER, make_observables
 from contact.stepping.scheme import Scheme
 
@@ -71,6 +72,10 @@ class Control(NamedTuple):
     base_points: int  #: number of contact points of the base; they come first
 
 
+#: .. and behind them for each further box of a loose stack
+BOX_ROTATION, BOX_SLIP, BOX_OPENING, BOX_CENTRE_X, BOX_CENTRE_Z = range(5)
+BOX_COLUMNS = 5
+
 #: what changes from step to step besides the state; `RunState.clock` is one of these
 STEP_RECORD = np.dtype(
     [
@@ -104,6 +109,7 @@ STEP_RECORD = np.dtype(
         ("least_imbalance", "f8"),
         ("most_imbalance", "f8"),
         ("dissipated", "f8"),  # when these were taken
+        ("spring_energy", "f8"),  # of the contacts of a loose stack, with the stiffness of the last step
     ],
     align=True,
 )
@@ -128,12 +134,18 @@ JOINT_RECORD = np.dtype(
         # observables
         ("max_slip", "f8"),
         ("slip_travel", "f8"),
+        # .. of a loose stack only
+        ("opening", "f8"),  # largest gap between the box and what is below it
+        ("max_opening", "f8"),
+        ("max_rotation", "f8"),  # of the box
+        ("fell_at", "f8"),  # when the box fell
         # the attempted step
         ("mu", "f8"),  # coefficient of friction at no velocity
         ("motion", "i8"),  # sliding of the loaded points, see `contact.stepping.joints`
         ("slip_step", "f8"),  # sliding in the step
         ("velocity", "f8"),  # slip velocity at its end
         ("slides", "i8"),  # `sliding` after it
+        ("opens", "f8"),  # `opening` after it
     ],
     align=True,
 )
@@ -144,6 +156,7 @@ def make_joints(mass: npt.ArrayLike, inertia: npt.ArrayLike, width: npt.ArrayLik
     boxes = np.atleast_1d(mass)
     joints = np.zeros(boxes.size, JOINT_RECORD).view(np.recarray)
     joints["mass"], joints["inertia"], joints["width"] = boxes, inertia, width
+    joints["fell_at"] = NEVER
     return joints
 
 
@@ -151,7 +164,7 @@ class Samples(NamedTuple):
     """Samples on an exact grid of times, at most as many as the arrays hold: n_s."""
 
     interval: float  #: [s]
-    columns: FloatArray  #: (n_s, 17 or 0) of a history, see ROW_...
+    columns: FloatArray  #: (n_s, 17 + 5 (N - 1) or 0) of a history of N boxes, see ROW_... and BOX_...
     mode: npt.NDArray[np.int64]  #: (n_s,)
     position: FloatArray  #: (n_s, n_d or 0) coordinates of the body
     velocity: FloatArray  #: (n_s, n_d or 0)
@@ -159,12 +172,19 @@ class Samples(NamedTuple):
 
 
 def make_samples(
-    interval: float, count: int, points: int, *, columns: bool = False, position: int = 0, velocity: int = 0
+    interval: float,
+    count: int,
+    points: int,
+    *,
+    columns: bool = False,
+    boxes: int = 1,
+    position: int = 0,
+    velocity: int = 0,
 ) -> Samples:
-    """Allocate `count` samples; `position` and `velocity`: number of coordinates to keep."""
+    """Allocate `count` samples; `position` and `velocity`: number of coordinates to keep; `boxes` of a loose stack."""
     return Samples(
         interval=float(interval),
-        columns=np.zeros((count, ROW_COLUMNS if columns else 0)),
+        columns=np.zeros((count, ROW_COLUMNS + BOX_COLUMNS * (boxes - 1) if columns else 0)),
         mode=np.zeros(count, dtype=np.int64),
         position=np.zeros((count, position)),
         velocity=np.zeros((count, velocity)),
@@ -210,13 +230,19 @@ def make_run(
     work: Workspace,
     history: Samples,
     frames: Samples,
+    joints: Any = None,
 ) -> RunState:
-    """Assemble a run at t = 0; `old` is the initial state, completed."""
+    """Assemble a run at t = 0.
+
+    `old` is the initial state, completed; `joints` those of a loose stack, see `make_joints`. The stiffness in the
+    `contact` of a loose stack changes in place.
+    """
     n = old.point.shape[0]
     clock = np.zeros(1, STEP_RECORD).view(np.recarray)
     clock["smallest_step"] = NEVER
     clock["attempt_limit"] = UNLIMITED
     clock["rest_since"] = NEVER
+    clock["spring_energy"] = spring_energy(contact, old.point, old.stick)
     return RunState(
         scheme=scheme,
         contact=contact,
@@ -233,7 +259,7 @@ def make_run(
         change=np.zeros(LEDGER_ROWS),
         ledger=np.zeros(LEDGER_ROWS),
         clock=clock,
-        joints=make_joints(control.mass, control.inertia, control.width),
+        joints=make_joints(control.mass, control.inertia, control.width) if joints is None else joints,
         track=make_observables(),
         contents=np.zeros((8, 2 * (old.monitor.shape[0] - control.top_monitors))),
         history=history,

@@ -14,7 +14,7 @@ import scipy.sparse.linalg
 from scipy.sparse import csr_array
 
 from contact.interface.equilibrium import Stance
-from contact.interface.workspace import Workspace
+from contact.interface.workspace import Contact, Workspace
 from contact.stepping.body import State
 from contact.stepping.integrator import UNPREPARED, advance, advance_compiled, enter_floor_frame_compiled
 from contact.stepping.modal_body import ModalBody
@@ -141,6 +141,9 @@ class FullBody:
     def sizes_match(self, run: RunState) -> bool:
         """See `contact.stepping.body.sizes_match`."""
         return True
+
+    def weigh(self, contact: Contact, old: State) -> None:
+        """See `contact.stepping.body.weigh`."""
 
     def predict(self, scheme: Scheme, step: float, old: State, new: State) -> None:
         """See `contact.stepping.body.predict`."""

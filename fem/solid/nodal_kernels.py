@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import fem.solid.elasticity
 from contact.interface.solver import add_turned
-from contact.interface.workspace import Workspace
+from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled
 from contact.stepping import body as interface
 from contact.stepping.body import (
@@ -185,6 +185,11 @@ def substitute(body: NodalBody, slot: int) -> None:
 def prepared(body: NodalBody, step: float) -> bool:
     """The factors of this step size are at hand."""
     return slot_of(body, step) >= 0
+
+
+@implements(interface.weigh, NodalBody)
+def weigh(body: NodalBody, contact: Contact, old: State) -> None:
+    """The stiffness of the base points does not change."""
 
 
 @compiled(sources=SOURCES)

@@ -1,0 +1,166 @@
+"""Boxes that stand on one another without bolts, as one body: corners of any body over `contact.interface.faces`.
+
+The body beneath has the corners of all boxes as its base points, four of each from the floor up, and no compliance
+between boxes; in `complete` it writes `State.boxes`. This layer gives the stepping the contact points in their place.
+"""
+
+from typing import Any, NamedTuple
+
+from numba.extending import register_jitable
+
+from contact.arrays import FloatArray
+from contact.interface.faces import (
+    Faces,
+    condense_points,
+    linearise_points,
+    move_corners,
+    open_unweighted,
+    place_points,
+    share_forces,
+    weigh_points,
+)
+from contact.interface.workspace import Contact, Workspace
+from contact.stepping import body as interface
+from contact.stepping.body import (
+    ANGULAR_VELOCITY,
+    CENTRE_X,
+    CENTRE_Z,
+    ROTATION,
+    VELOCITY_X,
+    VELOCITY_Z,
+    State,
+    implements,
+)
+from contact.stepping.scheme import Scheme
+
+
+class LooseStack(NamedTuple):
+    """N boxes on one another."""
+
+    body: Any  #: of all boxes; its base points are their corners
+    faces: Faces
+    mass: FloatArray  #: (N,) of the boxes [kg]
+    tolerance: float  #: error of a contact point at which an iteration stops [m]
+    corners: Workspace  #: scratch, of the corners
+
+
+@register_jitable(forceinline=True)
+def over_corners(stack: LooseStack, state: State) -> State:
+    """The state with the corners, and the forces on them, in place of the contact points."""
+    return State(
+        state.position,
+        state.velocity,
+        state.acceleration,
+        state.jerk,
+        state.internal,
+        state.damping,
+        state.external,
+        state.corner,
+        stack.corners.force,
+        state.descent,
+        state.drift,
+        state.stick,
+        state.crushed,
+        state.pose,
+        state.energy,
+        state.boxes,
+        state.corner,
+        state.monitor,
+        state.numbers,
+    )
+
+
+@implements(interface.weigh, LooseStack, inline=True)
+def weigh(stack: LooseStack, contact: Contact, old: State) -> None:
+    """Stiffness of the contact points: less where a corner is about to leave its face."""
+    weigh_points(stack.faces, old.corner, old.point, contact)
+
+
+@implements(interface.predict, LooseStack, inline=True)
+def predict(stack: LooseStack, scheme: Scheme, step: float, old: State, new: State) -> None:
+    """Coordinates after `step`, for the last acceleration."""
+    interface.predict(stack.body, scheme, step, old, new)
+
+
+@implements(interface.release, LooseStack, inline=True)
+def release(
+    stack: LooseStack,
+    scheme: Scheme,
+    step: float,
+    old: State,
+    new: State,
+    work: Workspace,
+    floor: float,
+    floor_velocity: float,
+    lift: float,
+    lift_velocity: float,
+) -> None:
+    """Contact points at the end of the step without contact force, and their compliance.
+
+    Linearised about the corners under the present forces, not about the free ones: at the last iteration these are
+    the forces that are found.
+    """
+    corners = stack.corners
+    interface.release(stack.body, scheme, step, old, new, corners, floor, floor_velocity, lift, lift_velocity)
+    share_forces(stack.faces, work.force, corners.force)
+    move_corners(corners)
+    linearise_points(stack.faces, corners.point, work.free)
+    condense_points(stack.faces, corners, work)
+
+
+@implements(interface.respond, LooseStack, inline=True)
+def respond(stack: LooseStack, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
+    """Apply `work.force` to the iterate; returns the remaining error over its tolerance."""
+    corners = stack.corners
+    share_forces(stack.faces, work.force, corners.force)
+    error = interface.respond(stack.body, scheme, step, old, new, corners)
+    move_corners(corners)
+    place_points(stack.faces, corners.point, work.trial)
+    for i in range(2, work.trial.shape[0]):
+        if stack.faces.weight[i] > 0.0:
+            for k in range(2):
+                error = max(error, abs(work.trial[i, k] - work.point[i, k]) / stack.tolerance)
+    return error
+
+
+@implements(interface.complete, LooseStack, inline=True)
+def complete(stack: LooseStack, new: State, floor: float, lift: float, lift_velocity: float) -> None:
+    """Internal forces, contact points, poses and energy at the converged coordinates."""
+    share_forces(stack.faces, new.force, stack.corners.force)
+    interface.complete(stack.body, over_corners(stack, new), floor, lift, lift_velocity)
+    place_points(stack.faces, new.corner, new.point)
+    open_unweighted(stack.faces, new.point)
+    total = 0.0
+    for row in range(6):
+        new.pose[row] = 0.0
+    for b in range(stack.mass.size):
+        total += stack.mass[b]
+    for b in range(stack.mass.size):
+        for row in (CENTRE_X, CENTRE_Z, VELOCITY_X, VELOCITY_Z):
+            new.pose[row] += stack.mass[b] / total * new.boxes[b, row]
+    new.pose[ROTATION] = new.boxes[0, ROTATION]
+    new.pose[ANGULAR_VELOCITY] = new.boxes[0, ANGULAR_VELOCITY]
+
+
+@implements(interface.observe, LooseStack, inline=True)
+def observe(stack: LooseStack, state: State, floor: float, lift: float) -> None:
+    """Displacement and velocity of the monitored points."""
+    interface.observe(stack.body, state, floor, lift)
+
+
+@implements(interface.shift_velocity, LooseStack, inline=True)
+def shift_velocity(stack: LooseStack, state: State, velocity: float, lift_velocity: float) -> None:
+    """Subtract the velocity of a new frame."""
+    interface.shift_velocity(stack.body, state, velocity, lift_velocity)
+
+
+@implements(interface.prepared, LooseStack, inline=True)
+def prepared(stack: LooseStack, step: float) -> bool:
+    """Whether the body beneath is prepared."""
+    return bool(interface.prepared(stack.body, step))
+
+
+@implements(interface.sizes_match, LooseStack, inline=True)
+def any_sizes(stack: LooseStack, run: Any) -> bool:
+    """Compiled for arrays of any size."""
+    return True

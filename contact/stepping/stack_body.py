@@ -1,0 +1,336 @@
+"""The boxes of a loose stack in floating frames: for each the kernels of a `ModalBody`.
+
+Coordinates are those of the boxes in turn, from the floor up: 3 + m for each, with as many modes m for every box.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numba.extending import register_jitable
+
+from contact.arrays import FloatArray, IntArray
+from contact.interface.faces import CORNERS, linearise_points, make_faces, weigh_points
+from contact.interface.laws import ELASTIC_STICK
+from contact.interface.stacking import stacked
+from contact.interface.workspace import Contact, Workspace, make_workspace
+from contact.jit import compiled
+from contact.stepping import body as interface
+from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
+from contact.stepping.body import State, implements
+from contact.stepping.loose_stack import LooseStack
+from contact.stepping.modal_body import STEP_SLOTS, ModalBody
+from contact.stepping.scheme import Scheme
+
+
+class StackBody(NamedTuple):
+    """Constants of N boxes with m modes each, k monitored points; the fields of `ModalBody` with an axis of boxes."""
+
+    mass: FloatArray  #: (N,)
+    inertia: FloatArray  #: (N,)
+    gravity: float
+    downhill: float
+    point: FloatArray  #: (N, 4, 2) corners relative to the mass centre of their box
+    shape: FloatArray  #: (N, 4, 2, m)
+    rest: FloatArray  #: (N, 2) mass centres of the boxes in the undeformed stack on the floor
+    monitor: FloatArray  #: (k, 2) monitored points relative to the mass centre of their box
+    monitor_shape: FloatArray  #: (k, 2, m)
+    monitors: IntArray  #: (N, 2) first monitored point of a box, and the one behind its last
+    stiffness: FloatArray  #: (N, m)
+    damping: FloatArray  #: (N, m)
+    tolerance: float
+    #: scratch of the stepping
+    cached_step: FloatArray  #: (N, slots + 1)
+    recent: IntArray  #: (N, 1)
+    inverse: FloatArray  #: (N, slots, 3 + m)
+    elastic_compliance: FloatArray  #: (N, slots, 8, 8)
+    arm: FloatArray  #: (N, 4, 2)
+    free_change: FloatArray  #: (N, 3 + m)
+    energy: FloatArray  #: (N, 3)
+
+    @property
+    def modes(self) -> int:
+        """Modes of each box."""
+        return self.stiffness.shape[1]
+
+
+def make_stack(
+    boxes: Sequence[ModalBody], normal_stiffness: FloatArray, tangential_stiffness: FloatArray
+) -> LooseStack:
+    """A loose stack of boxes, from the floor up.
+
+    Args:
+        boxes: each with its four corners as base points, see `contact.interface.faces`, and `rest` its mass centre in
+            the undeformed stack. Monitored points are those of the uppermost box first, then downwards.
+        normal_stiffness, tangential_stiffness: (4 N - 2,) of the contact points at full weight [N/m].
+    """
+    n, most = len(boxes), max(box.stiffness.size for box in boxes)
+    # A mode without shape stays at rest.
+    wider = [(0, most - box.stiffness.size) for box in boxes]
+    downwards = list(zip(boxes, wider, strict=True))[::-1]
+    ends = np.cumsum([0, *(len(box.monitor) for box, _ in downwards)])
+    body = StackBody(
+        mass=np.array([box.mass for box in boxes]),
+        inertia=np.array([box.inertia for box in boxes]),
+        gravity=boxes[0].gravity,
+        downhill=boxes[0].downhill,
+        point=np.array([box.point for box in boxes]),
+        shape=np.array(
+            [np.pad(box.shape, [(0, 0), (0, 0), pad]) for box, pad in zip(boxes, wider, strict=True)]
+        ),
+        rest=np.array([box.rest for box in boxes]),
+        monitor=np.concatenate([box.monitor for box, _ in downwards]),
+        monitor_shape=np.concatenate(
+            [np.pad(box.monitor_shape, [(0, 0), (0, 0), pad]) for box, pad in downwards]
+        ),
+        monitors=np.column_stack([ends[:-1], ends[1:]])[::-1].copy(),
+        stiffness=np.array(
+            [np.pad(box.stiffness, pad, constant_values=1.0) for box, pad in zip(boxes, wider, strict=True)]
+        ),
+        damping=np.array([np.pad(box.damping, pad) for box, pad in zip(boxes, wider, strict=True)]),
+        tolerance=min(box.tolerance for box in boxes),
+        cached_step=np.tile(np.append(np.full(STEP_SLOTS, -1.0), 0.0), (n, 1)),
+        recent=np.zeros((n, 1), dtype=np.int64),
+        inverse=np.zeros((n, STEP_SLOTS, 3 + most)),
+        elastic_compliance=np.zeros((n, STEP_SLOTS, 2 * CORNERS, 2 * CORNERS)),
+        arm=np.zeros((n, CORNERS, 2)),
+        free_change=np.zeros((n, 3 + most)),
+        energy=np.zeros((n, 3)),
+    )
+    corner = (body.rest[:, None] + body.point).reshape(-1, 2)
+    return LooseStack(
+        body=body,
+        faces=make_faces(corner, normal_stiffness, tangential_stiffness),
+        mass=body.mass,
+        tolerance=body.tolerance,
+        corners=make_workspace(CORNERS * n),
+    )
+
+
+@register_jitable(forceinline=True)
+def box_of(stack: StackBody, b: int) -> ModalBody:
+    """One of the boxes."""
+    begin, end = stack.monitors[b, 0], stack.monitors[b, 1]
+    return ModalBody(
+        stack.mass[b],
+        stack.inertia[b],
+        stack.gravity,
+        stack.downhill,
+        stack.point[b],
+        stack.shape[b],
+        stack.rest[b],
+        stack.monitor[begin:end],
+        stack.monitor_shape[begin:end],
+        stack.stiffness[b],
+        stack.damping[b],
+        stack.tolerance,
+        stack.cached_step[b],
+        stack.recent[b],
+        stack.inverse[b],
+        stack.elastic_compliance[b],
+        stack.arm[b],
+        stack.free_change[b],
+    )
+
+
+@register_jitable(forceinline=True)
+def state_of(stack: StackBody, state: State, b: int) -> State:
+    """What a state holds of one of the boxes; its points are the corners."""
+    size = 3 + stack.stiffness.shape[1]
+    i, j = size * b, size * (b + 1)
+    k, m = CORNERS * b, CORNERS * (b + 1)
+    begin, end = stack.monitors[b, 0], stack.monitors[b, 1]
+    return State(
+        state.position[i:j],
+        state.velocity[i:j],
+        state.acceleration[i:j],
+        state.jerk[i:j],
+        state.internal[i:j],
+        state.damping[i:j],
+        state.external[i:j],
+        state.corner[k:m],
+        state.corner[k:m],
+        state.descent,
+        state.drift,
+        state.stick,
+        state.crushed,
+        state.boxes[b],
+        stack.energy[b],
+        state.boxes,
+        state.corner,
+        state.monitor[begin:end],
+        state.numbers,
+    )
+
+
+@register_jitable(forceinline=True)
+def work_of(work: Workspace, b: int) -> Workspace:
+    """What the workspace of all corners holds of one of the boxes."""
+    k, m = CORNERS * b, CORNERS * (b + 1)
+    return Workspace(
+        work.free[k:m],
+        work.free_velocity[k:m],
+        work.compliance[2 * k : 2 * m, 2 * k : 2 * m],
+        work.point[k:m],
+        work.velocity[k:m],
+        work.force[k:m],
+        work.law,
+        work.slope,
+        work.matrix,
+        work.change,
+        work.solution,
+        work.excess,
+        work.mu,
+        work.side,
+        work.pivot,
+        work.factored_slope,
+        work.factored_step,
+        work.factored_count,
+        work.trial,
+        work.active,
+    )
+
+
+@implements(interface.predict, StackBody, inline=True)
+def predict(stack: StackBody, scheme: Scheme, step: float, old: State, new: State) -> None:
+    """Coordinates after `step`, for the last acceleration."""
+    for b in range(stack.mass.size):
+        interface.predict(box_of(stack, b), scheme, step, state_of(stack, old, b), state_of(stack, new, b))
+
+
+@implements(interface.release, StackBody, inline=True)
+def release(
+    stack: StackBody,
+    scheme: Scheme,
+    step: float,
+    old: State,
+    new: State,
+    work: Workspace,
+    floor: float,
+    floor_velocity: float,
+    lift: float,
+    lift_velocity: float,
+) -> None:
+    """Corners at the end of the step without contact force, and their compliance."""
+    for b in range(stack.mass.size):
+        interface.release(
+            box_of(stack, b),
+            scheme,
+            step,
+            state_of(stack, old, b),
+            state_of(stack, new, b),
+            work_of(work, b),
+            floor,
+            floor_velocity,
+            lift,
+            lift_velocity,
+        )
+
+
+@implements(interface.respond, StackBody, inline=True)
+def respond(stack: StackBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
+    """Apply the forces on the corners to the iterate; returns the remaining error over its tolerance."""
+    largest = 0.0
+    for b in range(stack.mass.size):
+        error = interface.respond(
+            box_of(stack, b), scheme, step, state_of(stack, old, b), state_of(stack, new, b), work_of(work, b)
+        )
+        largest = max(largest, error)
+    return largest
+
+
+@implements(interface.complete, StackBody, inline=True)
+def complete(stack: StackBody, new: State, floor: float, lift: float, lift_velocity: float) -> None:
+    """Internal forces, corners, poses and energy at the converged coordinates."""
+    for row in range(new.energy.size):
+        new.energy[row] = 0.0
+    for b in range(stack.mass.size):
+        interface.complete(box_of(stack, b), state_of(stack, new, b), floor, lift, lift_velocity)
+        for row in range(new.energy.size):
+            new.energy[row] += stack.energy[b, row]
+
+
+@implements(interface.observe, StackBody, inline=True)
+def observe(stack: StackBody, state: State, floor: float, lift: float) -> None:
+    """Displacement and velocity of the monitored points."""
+    for b in range(stack.mass.size):
+        interface.observe(box_of(stack, b), state_of(stack, state, b), floor, lift)
+
+
+@implements(interface.shift_velocity, StackBody, inline=True)
+def shift_velocity(stack: StackBody, state: State, velocity: float, lift_velocity: float) -> None:
+    """Subtract the velocity of a new frame."""
+    for b in range(stack.mass.size):
+        interface.shift_velocity(box_of(stack, b), state_of(stack, state, b), velocity, lift_velocity)
+
+
+@implements(interface.prepared, StackBody, inline=True)
+def prepared(stack: StackBody, step: float) -> bool:
+    """Boxes in floating frames can take a step of any size."""
+    return True
+
+
+def settle_stack(
+    stack: LooseStack,
+    contact: Contact,
+    state: State,
+    *,
+    gravity: float,
+    place: tuple[float, float] = (0.0, 0.0),
+    velocity: tuple[float, float] = (0.0, 0.0),
+) -> None:
+    """Write the initial state of a stack at rest on its floor, and move with the floor.
+
+    Args:
+        stack: of boxes in floating frames.
+        contact: its laws; the stiffness is written.
+        state: written, completed.
+        gravity: toward the floor, with the acceleration of the floor upward [m/s2].
+        place, velocity: of the floor, along x and upward [m, m/s].
+
+    Raises:
+        SettlingError: the stack does not stand.
+    """
+    body = stack.body
+    n, size = body.mass.size, 3 + body.modes
+    flat = body.shape.reshape(n, 2 * CORNERS, body.modes)
+    weigh_points(stack.faces, (body.rest[:, None] + body.point).reshape(-1, 2), state.point, contact)
+    rest = stacked(
+        faces=stack.faces,
+        centre=body.rest,
+        point=body.point,
+        compliance=np.einsum("bim,bm,bjm->bij", flat, 1.0 / body.stiffness, flat),
+        load=body.mass[:, None] * np.array([body.downhill, -gravity]),
+    )
+    state.force[:] = rest.force
+    if contact.friction == ELASTIC_STICK:  # friction regularised in velocity has no springs
+        state.stick[:] = -rest.force[:, 0] / np.maximum(contact.tangential_stiffness, 1e-300)
+    coordinates, rates = state.position.reshape(n, size), state.velocity.reshape(n, size)
+    coordinates[:, :2], coordinates[:, 2] = rest.centre + place, rest.rotation
+    cosine, sine = np.cos(rest.rotation), np.sin(rest.rotation)
+    turn = np.moveaxis(np.array([[cosine, sine], [-sine, cosine]]), -1, 0)
+    own = rest.corner_force.reshape(n, CORNERS, 2) @ turn  # in the frames of the boxes
+    coordinates[:, 3:] = np.einsum("bi,bim->bm", own.reshape(n, -1), flat) / body.stiffness
+    rates[:] = 0.0
+    rates[:, :2] = velocity
+    complete_compiled(stack, state, place[0], place[1], velocity[1])
+    masses = np.ones((n, size))
+    masses[:, :2], masses[:, 2] = body.mass[:, None], body.inertia
+    external = np.zeros((n, size))
+    corner = state.corner.reshape(n, CORNERS, 2) + np.array(place) - coordinates[:, None, :2]
+    forces = stack.corners.force.reshape(n, CORNERS, 2)
+    external[:, :2] = forces.sum(axis=1)
+    external[:, 2] = (corner[..., 1] * forces[..., 0] - corner[..., 0] * forces[..., 1]).sum(axis=1)
+    external[:, 3:] = np.einsum("bi,bim->bm", (forces @ turn).reshape(n, -1), flat)
+    state.external[:] = external.ravel()
+    state.acceleration[:] = ((external - state.internal.reshape(n, size)) / masses).ravel()
+
+
+@compiled
+def complete_compiled(
+    stack: LooseStack, state: State, floor: float, lift: float, lift_velocity: float
+) -> None:
+    """Linearise the contact at the corners of the state, and complete it."""
+    interface.complete(stack, state, floor, lift, lift_velocity)
+    linearise_points(stack.faces, state.corner, stack.corners.trial)
+    interface.complete(stack, state, floor, lift, lift_velocity)
