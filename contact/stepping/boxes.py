@@ -5,9 +5,9 @@ import math
 from numba.extending import register_jitable
 
 from contact.jit import compiled
-from contact.stepping.body import ANGULAR_VELOCITY, ROTATION
+from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION
 from contact.stepping.joints import points_of
-from contact.stepping.observables import NEVER, OPENING, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
+from contact.stepping.observables import FALLEN, NEVER, OPENING, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
 from contact.stepping.scheme import hermite
 from contact.stepping.state import RunState
 
@@ -68,3 +68,36 @@ def has_fallen(run: RunState) -> bool:
     for j in range(run.joints.shape[0]):
         fallen = fallen or run.joints[j].fell_at < NEVER
     return fallen
+
+
+@register_jitable
+def has_footing(run: RunState, j: int) -> bool:
+    """Whether the mass centre of a box of a loose stack is between the ends of the face below."""
+    if j == 0:
+        return True
+    left, right = run.old.corner[4 * j - 2], run.old.corner[4 * j - 1]
+    x = run.old.boxes[j, CENTRE_X] - run.floor[0, 0] - left[0]
+    z = run.old.boxes[j, CENTRE_Z] - run.lift[0, 0] - left[1]
+    along, up = right[0] - left[0], right[1] - left[1]
+    return bool(0.0 <= x * along + z * up <= along * along + up * up)
+
+
+@register_jitable
+def is_unsettled(run: RunState) -> bool:
+    """Whether a box of a loose stack has lost its footing, or is beyond the slenderness angle of the stack."""
+    unsettled = False
+    for j in range(run.joints.shape[0]):
+        turned = abs(run.old.boxes[j, ROTATION]) > run.control.slenderness_angle
+        unsettled = unsettled or turned or not has_footing(run, j)
+    return unsettled
+
+
+@register_jitable
+def lose_footing(run: RunState) -> None:
+    """Count the boxes without footing as fallen now."""
+    for j in range(run.joints.shape[0]):
+        if not has_footing(run, j):
+            run.joints[j].fell_at = run.clock[0].time
+            run.track[0].overturned_at = run.clock[0].time
+            run.track[0].mode = FALLEN
+            run.track[0].modes |= 1 << FALLEN

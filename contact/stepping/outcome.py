@@ -3,7 +3,9 @@
 A run has three parts. It is driven until `rest_from`, the end of a pulse or a record, or else to its duration. From
 `rest_from` on it ends when the container is at rest or has fallen, at the latest at its duration. A container that is
 beyond its slenderness angle then has neither fallen nor come back: it is followed on a resting floor until it has done
-one or the other. No history is kept here, and no Python runs within a slice.
+one or the other; so is a loose stack of which a box is beyond it, or has its mass centre beyond the face below. A
+box that comes to rest there has lost its footing, and counts as fallen. No history is kept here, and no Python runs
+within a slice.
 
 Of the samples that a history would have, the stepper follows the largest acceleration and the sway of the contents.
 The slip of the last cycle is kept, and the coordinates of the samples with the largest strain energy, from which
@@ -20,6 +22,7 @@ from contact.arrays import FloatArray
 from contact.jit import compiled
 from contact.motion.kernel import UNIFORM, as_floor_motion, floor_motion
 from contact.stepping.body import KINETIC, ROTATION, VELOCITY_X
+from contact.stepping.boxes import is_unsettled, lose_footing
 from contact.stepping.control import most_attempts
 from contact.stepping.integrator import (
     AFTERMATH_SLICE,
@@ -29,8 +32,10 @@ from contact.stepping.integrator import (
     advance_compiled,
     enter_floor_frame_compiled,
 )
+from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody, with_own_scratch
 from contact.stepping.observables import NEVER, lifting_energy
+from contact.stepping.stack_body import stack_with_own_scratch
 from contact.stepping.state import ROW_SLIP, ROW_STRAIN, RunState
 
 #: energy of a container at rest, over that which it takes to overturn; and how long it must stay below [1/p]
@@ -57,7 +62,7 @@ class Outcome(NamedTuple):
 
 
 def run_to_end(
-    body: ModalBody,
+    body: ModalBody | LooseStack,
     run: RunState,
     duration: float,
     *,
@@ -70,7 +75,8 @@ def run_to_end(
     """Step a run from t = 0 to its end, in place; the result does not depend on other runs or threads.
 
     Args:
-        body: its container, which runs may share: the scratch arrays are not touched.
+        body: its container, or a loose stack of boxes in floating frames. Runs may share it: the scratch arrays are
+            not touched.
         run: with samples at the interval of its history, if that has columns.
         duration: at most [s].
         rest_from: from here on the run ends where the container is at rest or has fallen [s].
@@ -78,7 +84,7 @@ def run_to_end(
         slip_until, cycle: the slip is kept of the last `cycle` before `slip_until` [s].
         strained: keep the most strained samples of every slice.
     """
-    own = with_own_scratch(body)
+    own = stack_with_own_scratch(body) if isinstance(body, LooseStack) else with_own_scratch(body)
     clock, samples = run.clock[0], run.history
     clock["attempt_limit"] = most_attempts(run.control, duration + aftermath)
     room = MOST_STRAINED * (math.ceil(duration / SLICE) + 2) if strained else 0
@@ -130,8 +136,10 @@ def is_over(run: RunState, part: int) -> bool:
         return False
     if track.overturned_at < NEVER:
         return True
-    if part == UNDECIDED:
+    if part == UNDECIDED and run.joints.shape[0] == 1:
         return abs(run.old.pose[ROTATION]) <= control.slenderness_angle
+    if part == UNDECIDED and not is_unsettled(run):
+        return True
     if clock.time < clock.next_look:
         return False
     clock.next_look = clock.time + AFTERMATH_SLICE
@@ -139,17 +147,21 @@ def is_over(run: RunState, part: int) -> bool:
     moving = run.old.energy[KINETIC] + control.mass * floor_velocity * (
         0.5 * floor_velocity - run.old.pose[VELOCITY_X]
     )
-    raised = max(0.0, lifting_energy(control, run.old, run.floor[0, 0]))
+    raised = max(0.0, lifting_energy(control, run.old, run.floor[0, 0])) if part == FREE else 0.0
     if moving + raised > RESTING_ENERGY * control.reference_energy:
         clock.rest_since = NEVER
         return False
     clock.rest_since = min(clock.rest_since, clock.time)
-    return clock.time - clock.rest_since >= RESTING_TIME / control.frequency_parameter
+    if clock.time - clock.rest_since < RESTING_TIME / control.frequency_parameter:
+        return False
+    if part == UNDECIDED:
+        lose_footing(run)
+    return True
 
 
 @compiled
 def advance_in_slices(
-    body: ModalBody, run: RunState, kept: KeptSamples, ahead: float, until: float, part: int
+    body: ModalBody | LooseStack, run: RunState, kept: KeptSamples, ahead: float, until: float, part: int
 ) -> int:
     """Step to `until` or until this part of the run is over, looking at the samples every `ahead` [s] or sooner."""
     clock = run.clock[0]

@@ -107,6 +107,28 @@ def make_stack(
     )
 
 
+def stack_with_own_scratch(stack: LooseStack) -> LooseStack:
+    """The same stack, of boxes in floating frames, with scratch arrays of its own."""
+    body, faces = stack.body, stack.faces
+    own = body._replace(
+        cached_step=np.tile(np.append(np.full(STEP_SLOTS, -1.0), 0.0), (body.mass.size, 1)),
+        recent=np.zeros_like(body.recent),
+        **{
+            name: np.empty_like(getattr(body, name))
+            for name in ("inverse", "elastic_compliance", "arm", "free_change", "energy")
+        },
+    )
+    return stack._replace(
+        body=own,
+        faces=faces._replace(
+            weight=np.ones_like(faces.weight),
+            gradient=faces.gradient.copy(),
+            moved=np.empty_like(faces.moved),
+        ),
+        corners=make_workspace(CORNERS * body.mass.size),
+    )
+
+
 @register_jitable(forceinline=True)
 def box_of(stack: StackBody, b: int) -> ModalBody:
     """One of the boxes."""

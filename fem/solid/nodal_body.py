@@ -17,6 +17,7 @@ from contact.interface.equilibrium import Stance
 from contact.interface.workspace import Contact, Workspace
 from contact.stepping.body import State
 from contact.stepping.integrator import UNPREPARED, advance, advance_compiled, enter_floor_frame_compiled
+from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.scheme import Scheme
 from contact.stepping.state import RunState
@@ -197,11 +198,11 @@ def full_model_memory(nodes: int) -> float:
     return FACTOR_MEMORY + BYTES_OF_A_NODE * nodes
 
 
-def advance_body(body: ModalBody | FullBody, run: RunState, until: float) -> int:
+def advance_body(body: ModalBody | LooseStack | FullBody, run: RunState, until: float) -> int:
     """`contact.stepping.integrator.advance` for any body, compiled; factors of the full model are made where they
     are missing.
     """
-    if isinstance(body, ModalBody):
+    if isinstance(body, ModalBody | LooseStack):
         return int(advance_compiled(body, run, until))
     while True:
         code = int(advance_nodal(body.nodal, run, until) if body.compiled else advance(body, run, until))
@@ -211,10 +212,10 @@ def advance_body(body: ModalBody | FullBody, run: RunState, until: float) -> int
 
 
 def leave_body_alone(
-    body: ModalBody | FullBody, run: RunState, floor_velocity: float, lift_velocity: float
+    body: ModalBody | LooseStack | FullBody, run: RunState, floor_velocity: float, lift_velocity: float
 ) -> None:
     """`contact.stepping.integrator.enter_floor_frame` for any body."""
-    if isinstance(body, ModalBody):
+    if isinstance(body, ModalBody | LooseStack):
         enter_floor_frame_compiled(body, run, floor_velocity, lift_velocity)
     else:
         enter_floor_frame_nodal(body.nodal, run, floor_velocity, lift_velocity)
