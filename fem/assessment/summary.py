@@ -175,11 +175,14 @@ def rule_says(check: str, utilisation: float | None) -> str:
 
 
 def run_slid(verdict: Verdict) -> str:
-    """Whether the run slid, and how far."""
+    """Whether the run slid, and how far; of a loose stack, on the floor and between the boxes."""
     if verdict.max_slip_m is None:
         return "-"
-    sliding = {"slide", "slide-rock"} & {verdict.outcome, *verdict.modes}
-    return f"{'slid' if sliding else 'held'}, slip {largest_slip(verdict)}"
+    sliding = bool({"slide", "slide-rock"} & {verdict.outcome, *verdict.modes})
+    if not verdict.boxes:
+        return f"{'slid' if sliding else 'held'}, slip {largest_slip(verdict)}"
+    between, _ = largest_joint_slip(verdict)
+    return f"slip {largest_slip(verdict)}" + (f", {between} between boxes" if between else "")
 
 
 def run_tilted(verdict: Verdict) -> str:

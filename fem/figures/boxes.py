@@ -33,6 +33,7 @@ COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY)  #: of so many boxes
 #: of more boxes, from the floor up, and between: the colour map "viridis" of matplotlib
 MANY_COLOURS = np.array([(68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37)])
 LEGEND_COLUMNS = 6
+THICK, THIN = 3.2, 0.9  #: lines of the lowest and the uppermost box
 FARTHEST = 2.0  #: end of the scale of rotations, over the slenderness angle
 
 
@@ -79,7 +80,9 @@ def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ..
     figure, (axes,) = time_panels((2.3,), history=history, header=1 + math.ceil(entries / LEGEND_COLUMNS))
     for k, name in enumerate(names):
         curve = quantity.factor * history[name], colour_of(k, len(boxes)), "-", f"box {k + 1}"
-        curve_panel(axes, quantity.label, history["time_s"], curve, zero=k == 0)
+        # of boxes that move as one, each is seen below the next
+        width = THIN + (THICK - THIN) * (1.0 - k / (len(boxes) - 1))
+        curve_panel(axes, quantity.label, history["time_s"], curve, zero=k == 0, linewidth=width)
     keep_visible(axes, 10.0 * quantity.least)
     if tilted:
         angle = math.degrees(run.slenderness_angle)
