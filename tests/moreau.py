@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 
-SWEEPS, CONVERGED = 400, 1e-7  #: of Gauss-Seidel; largest change of an impulse over the weight in a step
+SWEEPS, CONVERGED = 400, 1e-6  #: of Gauss-Seidel; largest change of an impulse over the weight in a step
 CLOSED = 1e-8  #: gap of a contact that is closed but for rounding [m]
 LARGEST_ROTATION = 1.2  #: of a box that stands [rad]
 
