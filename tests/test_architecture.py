@@ -69,11 +69,12 @@ DOORS = {
     "jinja2": {"fem/html/page.py"},
 }
 
-#: modules that load others by name, when they are needed: commands, the package's own names, pyvista, meshio, and with
-#: the rigid check scipy.integrate
+#: modules that load others by name, when they are needed: commands, the package's own names, pyvista, meshio,
+#: matplotlib, and with the rigid check scipy.integrate
 LOADING_LATE = {
     "fem/__main__.py",
     "fem/__init__.py",
+    "fem/figures/cache.py",
     "fem/results/fields.py",
     "fem/results/reader.py",
     "fem/run/checks.py",

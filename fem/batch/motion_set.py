@@ -17,7 +17,7 @@ from fem.batch.log import table_text
 from fem.batch.runner import motion_left_out
 from fem.case.case import Case, CaseError
 from fem.figures.motions import draw_spectra
-from fem.figures.plotting import svg_of
+from fem.figures.style import svg_of
 from fem.model.motion import build_motion, build_vertical
 from fem.records.intensity import intensity
 from fem.records.spectrum import Spectrum, evenly_sampled, log_spaced_periods, response_spectrum

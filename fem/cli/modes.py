@@ -9,7 +9,7 @@ from cyclopts import Parameter
 from fem.case.case import CaseError, load_case
 from fem.cli.console import ELSEWHERE_OUT, AsJson, CaseName, Overrides, whole
 from fem.figures.modes import modes_figure
-from fem.figures.svg import svg_document
+from fem.figures.style import house_style, svg_of
 from fem.model.geometry import build_container
 from fem.results.errors import writing_into
 from fem.results.files import write_atomically
@@ -41,18 +41,19 @@ def modes(
         raise CaseError(f"--count {count}: this mesh has from 1 to {available} elastic modes")
     # A case may keep no elastic modes, or more than a coarse mesh has.
     found = elastic_modes(elements, count or min(loaded.solver.elastic_modes or SHOWN, available))
-    drawn = modes_figure(
-        points=elements.nodes,
-        cells=elements.cells,
-        box=elements.box,
-        modes=found,
-        name=loaded.name,
-    )
+    with house_style():
+        drawn = modes_figure(
+            points=elements.nodes,
+            cells=elements.cells,
+            box=elements.box,
+            modes=found,
+            name=loaded.name,
+        )
     folder = out if out is not None else Path("outputs") / loaded.name / "modes"
     with writing_into(folder, ELSEWHERE_OUT):
         path = write_modes(elements, found, folder)
         figure = path.with_suffix(".svg")
-        write_atomically(figure, svg_document(drawn))
+        write_atomically(figure, svg_of(drawn))
     rows = elastic_mode_table(found)
     if as_json:
         print(

@@ -82,7 +82,7 @@ def _write_motion(components: list[Component], path: Path, to: Path | None) -> P
     if target.suffix.lower() not in SUFFIXES:
         raise CaseError(f"--to {target}: a motion is drawn as {' or '.join(SUFFIXES)}")
     # Loads matplotlib.
-    figures, style = (importlib.import_module(f"fem.figures.{name}") for name in ("motions", "plotting"))
+    figures, style = (importlib.import_module(f"fem.figures.{name}") for name in ("recorded", "style"))
     figure = figures.record_figure(components, path.name)
     with writing_into(target.parent, ELSEWHERE_TO):
         if target.suffix.lower() == ".svg":

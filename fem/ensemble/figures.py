@@ -15,8 +15,18 @@ from fem.ensemble.plan import Ensemble
 from fem.ensemble.statistics import PointResult
 from fem.ensemble.unknown import UnknownInputs
 from fem.figures.heat_map import Panel, draw_heat_map
-from fem.figures.plotting import house_style, plotted_panels, svg_of
-from fem.figures.style import BLACK, BLUE, GREY, SKY, VERMILLION, head, legend_above
+from fem.figures.style import (
+    BLACK,
+    BLUE,
+    GREY,
+    SKY,
+    VERMILLION,
+    head,
+    house_style,
+    legend_above,
+    panels,
+    svg_of,
+)
 from fem.runtime.arrays import FloatArray
 from fem.sweep.maps import map_axis
 
@@ -48,7 +58,7 @@ def draw_fragility(
 ) -> Figure:
     """Counts with their intervals, and the lognormal curve with its band."""
     statement = fill(_statement(ensemble, unknown), SMALL_LINE)
-    figure, (axes,) = plotted_panels((3.2,), header=3 + statement.count("\n"))
+    figure, (axes,) = panels((3.2,), header=3 + statement.count("\n"))
     axis = ensemble.axes[0]
     head(figure, ensemble.title or ensemble.name, statement)
     fitted = fragility.get("lognormal")

@@ -5,9 +5,11 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
 
 from fem.assessment.ranges import LEAST_DEGREES, LEAST_LENGTH
-from fem.figures.canvas import Canvas
 from fem.figures.style import (
     BLACK,
     BLUE,
@@ -29,9 +31,7 @@ from fem.figures.style import (
 from fem.results.reader import OpenedRun
 from fem.results.run_result import BoxResult
 
-COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY)  #: of so many boxes
-#: of more boxes, from the floor up, and between: the colour map "viridis" of matplotlib
-MANY_COLOURS = np.array([(68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37)])
+COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY)  #: of so many boxes; of more, those of a colour map
 LEGEND_COLUMNS = 6
 THICK, THIN = 3.2, 0.9  #: lines of the lowest and the uppermost box
 FARTHEST = 2.0  #: end of the scale of rotations, over the slenderness angle
@@ -64,7 +64,7 @@ OPENING = BoxQuantity(
 )
 
 
-def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ...]) -> Canvas:
+def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ...]) -> Figure:
     """A curve over time for each box of a loose stack, with the states of motion below.
 
     Args:
@@ -106,8 +106,4 @@ def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ..
 
 def colour_of(box: int, boxes: int) -> str:
     """Colour of a box, from 0 at the floor, of so many."""
-    if boxes <= len(COLOURS):
-        return COLOURS[box]
-    place = (len(MANY_COLOURS) - 1) * box / (boxes - 1)
-    mixed = [np.interp(place, np.arange(len(MANY_COLOURS)), part) for part in MANY_COLOURS.T]
-    return "#" + "".join(f"{round(part):02x}" for part in mixed)
+    return COLOURS[box] if boxes <= len(COLOURS) else str(to_hex(colormaps["viridis"](box / (boxes - 1))))

@@ -1,16 +1,16 @@
 """Figure cache: the figures of a run in its folder, SVG files and `drawn.json` with their metadata.
 
-A report reuses the figures if the metadata match: drawn by the same program from the same results, and not changed
-since.
+Drawing takes longer than all the rest of a report, so a report reuses the figures if the metadata match: drawn by the
+same program from the same results, and not changed since.
 """
 
 import hashlib
+import importlib
 import json
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from fem.figures.run import draw_all
 from fem.figures.style import Drawing
 from fem.html.drawing import require_drawing
 from fem.model.container import Container
@@ -27,7 +27,7 @@ def write_figures(run: OpenedRun, container: Container) -> list[Path]:
         FolderError: the history is missing or damaged.
         OSError: the folder or a file cannot be written.
     """
-    place, drawings = run.place, draw_all(run, container)
+    place, drawings = run.place, _draw(run, container)
     place.figures.mkdir(parents=True, exist_ok=True)
     place.drawn.unlink(missing_ok=True)
     for drawing in drawings:
@@ -45,8 +45,14 @@ def drawings_of(run: OpenedRun, container: Container) -> dict[str, Drawing]:
     """
     drawings = _cached(run.place)
     if drawings is None:
-        drawings = draw_all(run, container)
+        drawings = _draw(run, container)
     return {drawing.name: drawing for drawing in drawings}
+
+
+def _draw(run: OpenedRun, container: Container) -> list[Drawing]:
+    # Importing matplotlib takes most of a second, which a cached figure does not need.
+    drawings: list[Drawing] = importlib.import_module("fem.figures.run").draw_all(run, container)
+    return drawings
 
 
 def _cached(place: RunFiles) -> list[Drawing] | None:

@@ -4,6 +4,7 @@ import math
 import textwrap
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from fem.assessment.summary import ratio_in_words
 from fem.case.uncertainty import (
@@ -19,7 +20,6 @@ from fem.case.uncertainty import (
     TOLERANCE,
     WEAKENING,
 )
-from fem.figures.canvas import Canvas
 from fem.figures.style import (
     BLACK,
     BLUE,
@@ -52,7 +52,7 @@ GROUPS = {
 }
 
 
-def rigid_check_figure(run: OpenedRun) -> Canvas | None:
+def rigid_check_figure(run: OpenedRun) -> Figure | None:
     """Rotation of run and analytic block with peaks, first impacts and difference; None without a check."""
     check, table = run.typed_result.rigid_check, run.rigid_check
     if table is None or check is None:
@@ -93,7 +93,7 @@ def rigid_check_figure(run: OpenedRun) -> Canvas | None:
     return figure
 
 
-def band_figure(run: OpenedRun) -> Canvas | None:
+def band_figure(run: OpenedRun) -> Figure | None:
     """Largest rotation and slip of each run of the band, by what it changes; None without a band."""
     verdict = run.typed_result.verdict or Verdict()
     band = verdict.band

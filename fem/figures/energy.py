@@ -1,9 +1,10 @@
 """Figure of the energy over time: stored, supplied by the floor and dissipated, lost or gained by the time stepping."""
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
-from fem.figures.canvas import Canvas, Chart
 from fem.figures.style import (
     BLACK,
     BLUE,
@@ -30,7 +31,7 @@ SMALL = 1e3  #: largest energy below which J is the unit, not kJ [J]
 DECIMALS = 3  #: of an energy in a legend
 
 
-def energy_figure(run: OpenedRun) -> Canvas:
+def energy_figure(run: OpenedRun) -> Figure:
     """Energy stored; supplied and dissipated since the start; imbalance of the time stepping."""
     history, energy = run.history, run.typed_result.energy or Energy()
     figure, axes = time_panels((1.7, 1.9, 0.9), gaps=(LEGEND_GAP + LINE, LEGEND_GAP))
@@ -52,7 +53,7 @@ def energy_figure(run: OpenedRun) -> Canvas:
     return figure
 
 
-def _draw_stored(axes: Chart, run: OpenedRun, reference: float | None, unit: str, size: float) -> None:
+def _draw_stored(axes: Axes, run: OpenedRun, reference: float | None, unit: str, size: float) -> None:
     """Kinetic, gravitational and strain energy, and the energy to overturn [J]; drawn in units of `size` [J]."""
     history = run.history
     # From the mass centre of the standing container: the work that its weight can still do.
@@ -72,7 +73,7 @@ def _draw_stored(axes: Chart, run: OpenedRun, reference: float | None, unit: str
         axes.axhline(reference / size, color=BLACK, linestyle="-.", linewidth=0.9, label=label)
 
 
-def _draw_supplied(axes: Chart, history: History, unit: str, size: float) -> None:
+def _draw_supplied(axes: Axes, history: History, unit: str, size: float) -> None:
     """Energies since the start; the rest of the floor's work is stored, also in the springs of the contact."""
     crushing = history[CRUSHING_COLUMN] if history.crushing else np.zeros(len(history))
     stored = history["base_work_J"] - sum(history[name] for name in (*DISSIPATED, "imbalance_J")) - crushing

@@ -5,8 +5,9 @@ given in words.
 """
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from fem.figures.canvas import Canvas, Chart
 from fem.figures.style import (
     BLACK,
     BLUE,
@@ -29,7 +30,7 @@ OFF_SCALE = 1.3  #: over the limit of the scale: larger forces are cut off
 MARKS = 300  #: of cut-off forces, that fit side by side
 
 
-def forces_figure(run: OpenedRun) -> Canvas:
+def forces_figure(run: OpenedRun) -> Figure:
     """Normal and shear force of the floor on the container."""
     history, contact = run.history, run.case.contact
     time, normal, shear = history["time_s"], 1e-3 * history["normal_force_N"], 1e-3 * history["shear_force_N"]
@@ -79,7 +80,7 @@ def scale_without_impacts(force: FloatArray, large: float) -> float | None:
     return limit if np.abs(force).max() > OFF_SCALE * limit else None
 
 
-def cut_off(axes: Chart, time: FloatArray, force: FloatArray, limit: float) -> None:
+def cut_off(axes: Axes, time: FloatArray, force: FloatArray, limit: float) -> None:
     """End the scale at a limit, with a mark at the edge for each force beyond it."""
     axes.set_ylim(0.0 if axes.get_ylim()[0] == 0.0 else -limit, limit)
     for sign, marker in ((1.0, "^"), (-1.0, "v")):

@@ -19,8 +19,7 @@ from matplotlib.patheffects import AbstractPathEffect, withStroke
 from matplotlib.ticker import LogLocator, MaxNLocator
 from matplotlib.transforms import Affine2D
 
-from fem.figures.plotting import house_style
-from fem.figures.style import BLACK, GREY, WIDTH, number
+from fem.figures.style import BLACK, GREY, WIDTH, house_style, number
 from fem.runtime.arrays import BoolArray, FloatArray
 
 COLUMNS = 3  #: of panels at most

@@ -8,10 +8,11 @@ joint without bolts opens at an edge or slides.
 from itertools import pairwise
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from fem.assessment.joint_demands import edge_forces
 from fem.case.boxes import shared_face
-from fem.figures.canvas import Canvas, Chart
 from fem.figures.style import (
     BLACK,
     BLUE,
@@ -41,7 +42,7 @@ THICK = 0.5  #: of a bar, over the height of a box
 LEAST_FORCE = 1.0  #: on the axes of bolt forces [kN]
 
 
-def joints_figure(run: OpenedRun) -> Canvas | None:
+def joints_figure(run: OpenedRun) -> Figure | None:
     """Ranges of normal force, shear and moment over the height; bolt forces over time; None for one box."""
     history, case = run.history, run.case
     if history.joints == 0:
@@ -85,12 +86,12 @@ def joints_figure(run: OpenedRun) -> Canvas | None:
     return figure
 
 
-def _side_by_side(figure: Canvas) -> list[Chart]:
+def _side_by_side(figure: Figure) -> list[Axes]:
     """Three panels side by side below the header, over the height above the floor."""
     wide, tall = figure.get_size_inches()
     each = (wide - LEFT - RIGHT - 2.0 * BETWEEN) / 3.0
     bottom = tall - 0.08 - HEADER * LINE - RANGES
-    found: list[Chart] = []
+    found: list[Axes] = []
     for place in range(3):
         rectangle = ((LEFT + place * (each + BETWEEN)) / wide, bottom / tall, each / wide, RANGES / tall)
         found.append(figure.add_axes(rectangle, sharey=found[0] if found else None))
@@ -100,7 +101,7 @@ def _side_by_side(figure: Canvas) -> list[Chart]:
 
 
 def _draw_ranges(
-    axes: Chart, levels: FloatArray, forces: FloatArray, name: str, unit: str, marks: list[FloatArray]
+    axes: Axes, levels: FloatArray, forces: FloatArray, name: str, unit: str, marks: list[FloatArray]
 ) -> None:
     """Bars from the least to the largest of forces (J, n), and marks of the forces from the weight above.
 
@@ -114,9 +115,9 @@ def _draw_ranges(
         ((low, high), SKY, "least to largest"),
         (usually, BLUE, "nine tenths of the time"),
     ):
-        axes.barh(
-            levels, end - start, left=start, height=THICK * box, label=label, color=colour, linewidth=0.8
-        )
+        bars = axes.barh(levels, end - start, left=start, height=THICK * box, label=label)
+        for bar in bars:
+            bar.set(color=colour, linewidth=0.8)
     name_of_marks: str | None = "weight above: N, ±μN, ±N × width/2"
     for mark in marks:
         axes.plot(mark, levels, "|", color=BLACK, markersize=11.0, markeredgewidth=1.2, label=name_of_marks)
@@ -131,7 +132,7 @@ def _draw_ranges(
 
 
 def _draw_bolt_force(
-    axes: Chart, time: FloatArray, forces: FloatArray, name: str, colour: str, sign: float = 1.0
+    axes: Axes, time: FloatArray, forces: FloatArray, name: str, colour: str, sign: float = 1.0
 ) -> None:
     """The largest of forces (J, n) >= 0 at every instant, drawn upwards or, with `sign` -1, downwards."""
     largest = forces.max(axis=0)

@@ -3,9 +3,9 @@
 import math
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from fem.figures.canvas import Canvas
 from fem.figures.style import BLUE, GREY, LINE, WIDTH, head, number
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.edges import chained, outline_edges
@@ -19,8 +19,8 @@ TALLEST = 2.6  #: panel [inch]
 
 def modes_figure(
     *, points: FloatArray, cells: IntArray, box: NDArray[np.integer], modes: ElasticModes, name: str = ""
-) -> Canvas:
-    """Deformed outlines over the undeformed one, all to the same amplitude.
+) -> Figure:
+    """Deformed outlines over the undeformed one, all to the same amplitude; drawn in the house style.
 
     Args:
         points: undeformed nodes (n, 2) [m].
@@ -39,7 +39,7 @@ def modes_figure(
     tall = min(TALLEST, wide * (high - low)[1] / (high - low)[0])
     top = 0.15 + 2 * LINE
     height = top + rows * (tall + LINE) + 0.1
-    figure = Canvas(figsize=(WIDTH, height))
+    figure = Figure(figsize=(WIDTH, height))
     lines = chained(outline_edges(cells, box))
     for k in range(shown):
         row, column = divmod(k, columns)

@@ -1,4 +1,4 @@
-"""Figures of motions: a record with its spectrum; of a set, response spectra and the share that overturns."""
+"""Figures of a set of motions: response spectra, and the share that overturns over the strength."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -6,8 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
-from fem.figures.plotting import house_style, plotted_panels
-from fem.figures.recorded import DAMPED, draw_record_spectra
 from fem.figures.style import (
     BLACK,
     BLUE,
@@ -17,16 +15,13 @@ from fem.figures.style import (
     ORANGE,
     PURPLE,
     SKY,
-    TIME,
     VERMILLION,
-    curve_panel,
     head,
+    house_style,
     legend_above,
-    number,
+    panels,
     spectrum_axes,
 )
-from fem.records.processing import motion_of
-from fem.records.record import Component
 from fem.runtime.arrays import FloatArray
 
 COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, SKY, PURPLE, GREY)
@@ -46,45 +41,6 @@ class ShareCurve:
     high: FloatArray  #: (n,)
 
 
-def record_figure(components: Sequence[Component], title: str) -> Figure:
-    """Acceleration, velocity and displacement of processed components over time, and their response spectra.
-
-    Args:
-        components: three at most; those of one record lie over each other.
-        title: such as the name of the file.
-    """
-    named = [(one.name or one.direction or "", one) for one in components]
-    with house_style():
-        figure, axes = plotted_panels(
-            (1.3, 1.3, 1.3, 2.2), gaps=(0.1, 0.1, 0.75), header=2 + (len(named) > 1)
-        )
-        for k, (name, one) in enumerate(named):
-            displacement, velocity, acceleration = motion_of(one)
-            for panel, label, values in (
-                (axes[0], "acceleration [m/s²]", acceleration),
-                (axes[1], "velocity [m/s]", velocity),
-                (axes[2], "displacement [mm]", 1e3 * displacement),
-            ):
-                curve = (
-                    values,
-                    COLOURS[k % len(COLOURS)],
-                    "-",
-                    name if panel is axes[0] and len(named) > 1 else None,
-                )
-                curve_panel(panel, label, one.times, curve, zero=k == 0)
-        for panel in axes[:2]:
-            panel.tick_params(labelbottom=False)
-        axes[2].set_xlabel(TIME)
-        draw_record_spectra(axes[3], named)
-        if len(named) > 1:
-            legend_above(axes[0])
-        first = components[0]
-        peak = float(np.abs(motion_of(first)[2]).max())
-        statement = f"{first.times.size} samples of {number(first.step)} s; below: {DAMPED}"
-        head(figure, f"{title}: {number(peak)} m/s² at most", statement)
-        return figure
-
-
 def draw_spectra(
     periods: FloatArray, spectra: Mapping[str, FloatArray], *, vertical: Sequence[str] = ()
 ) -> Figure:
@@ -101,7 +57,7 @@ def draw_spectra(
     with house_style():
         lines = max(_legend_lines(len(names)) for _, names in groups)
         gaps = [0.35 + LINE * lines] * (len(groups) - 1)
-        figure, axes = plotted_panels([2.6] * len(groups), gaps=gaps, header=2 + lines)
+        figure, axes = panels([2.6] * len(groups), gaps=gaps, header=2 + lines)
         head(figure, "Response spectra of the motions", "pseudo-acceleration, 5 % damping")
         for panel, (direction, names) in zip(axes, groups, strict=True):
             for k, name in enumerate(names):
@@ -134,7 +90,7 @@ def draw_shares(curves: Sequence[ShareCurve], *, title: str, label: str) -> Figu
         label: of the strength, with its unit.
     """
     with house_style():
-        figure, (axes,) = plotted_panels((3.0,), header=2 + -(-len(curves) // NAMES_A_LINE))
+        figure, (axes,) = panels((3.0,), header=2 + -(-len(curves) // NAMES_A_LINE))
         head(figure, title, "share of the motions that overturn, worse sign of each, with 95 % intervals")
         widths = [float(np.ptp(one.strengths)) for one in curves]
         for k, one in enumerate(curves):

@@ -1,18 +1,21 @@
-"""Figure of the recorded motions of a run: their response spectra."""
+"""Figures of recorded motions: acceleration, velocity, displacement and response spectrum."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from fem.case.case import CaseError
 from fem.case.recorded import MotionKey, recorded_motion
-from fem.figures.canvas import Canvas
 from fem.figures.style import (
     BLUE,
     GREEN,
+    TIME,
     VERMILLION,
+    curve_panel,
     head,
+    house_style,
     legend_above,
     number,
     panels,
@@ -22,9 +25,6 @@ from fem.records.processing import motion_of
 from fem.records.record import Component
 from fem.records.spectrum import Spectrum, evenly_sampled, log_spaced_periods, response_spectrum
 from fem.results.reader import OpenedRun
-
-if TYPE_CHECKING:
-    from fem.figures.style import AnyAxes
 
 COLOURS = (BLUE, VERMILLION, GREEN)
 LINES = ("-", "--", ":")
@@ -37,7 +37,7 @@ def spectrum_of(component: Component) -> Spectrum:
     return response_spectrum(step, values, log_spaced_periods(component.step))
 
 
-def spectrum_figure(run: OpenedRun) -> Canvas | None:
+def spectrum_figure(run: OpenedRun) -> Figure | None:
     """Response spectra of the records that move the floor of a run; None where none does, or its file is gone."""
     case = run.case
     tables: dict[MotionKey, str] = {"motion": "along x", "vertical": "upward"}
@@ -52,7 +52,7 @@ def spectrum_figure(run: OpenedRun) -> Canvas | None:
     if not found:
         return None
     figure, (axes,) = panels((2.4,), header=2 + (len(found) > 1))
-    draw_record_spectra(axes, found)
+    _draw_spectra(axes, found)
     periods, largest = _largest(found[0][1])
     head(
         figure,
@@ -62,14 +62,50 @@ def spectrum_figure(run: OpenedRun) -> Canvas | None:
     return figure
 
 
+def record_figure(components: Sequence[Component], title: str) -> Figure:
+    """Acceleration, velocity and displacement of processed components over time, and their response spectra.
+
+    Args:
+        components: three at most; those of one record lie over each other.
+        title: such as the name of the file.
+    """
+    named = [(one.name or one.direction or "", one) for one in components]
+    with house_style():
+        figure, axes = panels((1.3, 1.3, 1.3, 2.2), gaps=(0.1, 0.1, 0.75), header=2 + (len(named) > 1))
+        for k, (name, one) in enumerate(named):
+            displacement, velocity, acceleration = motion_of(one)
+            for panel, label, values in (
+                (axes[0], "acceleration [m/s²]", acceleration),
+                (axes[1], "velocity [m/s]", velocity),
+                (axes[2], "displacement [mm]", 1e3 * displacement),
+            ):
+                curve = (
+                    values,
+                    COLOURS[k % len(COLOURS)],
+                    "-",
+                    name if panel is axes[0] and len(named) > 1 else None,
+                )
+                curve_panel(panel, label, one.times, curve, zero=k == 0)
+        for panel in axes[:2]:
+            panel.tick_params(labelbottom=False)
+        axes[2].set_xlabel(TIME)
+        _draw_spectra(axes[3], named)
+        if len(named) > 1:
+            legend_above(axes[0])
+        first = components[0]
+        peak = float(np.abs(motion_of(first)[2]).max())
+        statement = f"{first.times.size} samples of {number(first.step)} s; below: {DAMPED}"
+        head(figure, f"{title}: {number(peak)} m/s² at most", statement)
+        return figure
+
+
 def _largest(component: Component) -> tuple[float, float]:
     spectrum = spectrum_of(component)
     at = int(np.argmax(spectrum.pseudo_acceleration_m_s2))
     return float(spectrum.periods_s[at]), float(spectrum.pseudo_acceleration_m_s2[at])
 
 
-def draw_record_spectra(axes: "AnyAxes", named: Sequence[tuple[str, Component]]) -> None:
-    """Response spectra of processed components with their names."""
+def _draw_spectra(axes: Axes, named: Sequence[tuple[str, Component]]) -> None:
     for k, (name, one) in enumerate(named):
         spectrum = spectrum_of(one)
         axes.plot(

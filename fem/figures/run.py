@@ -1,6 +1,6 @@
 """Figures of a run: floor motion, rotation, slip, uplift and phase portrait; the list of all figures.
 
-Each function takes an opened run and returns a Canvas, or None where the run has no such data. Rotation in
+Each function takes an opened run and returns a matplotlib Figure, or None where the run has no such data. Rotation in
 degrees, lengths in mm, forces in kN; x to the right, rotation > 0 toward +x, forces on the container.
 """
 
@@ -8,13 +8,14 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from contact.stepping.observables import ROCKING
 from fem.assessment.ranges import LEAST_DEGREES
 from fem.assessment.summary import ratio_in_words
 from fem.assessment.verdict import SLIDING
 from fem.figures.boxes import OPENING, ROTATION, SLIP, box_figure
-from fem.figures.canvas import Canvas, Chart
 from fem.figures.checks import band_figure, rigid_check_figure
 from fem.figures.energy import energy_figure
 from fem.figures.forces import forces_figure
@@ -38,14 +39,15 @@ from fem.figures.style import (
     curve_panel,
     draw_limits,
     head,
+    house_style,
     keep_visible,
     kept_samples,
     legend_above,
     number,
     panels,
+    svg_of,
     time_panels,
 )
-from fem.figures.svg import svg_document
 from fem.model.container import Container
 from fem.results.reader import OpenedRun
 from fem.results.run_result import StaticResult, Verdict
@@ -55,7 +57,7 @@ from fem.solid.modes import FEW
 LEAST_MOTION = 1e-3  #: of the floor, on its axes [mm, m/s, m/s2]
 
 
-def figures_of(run: OpenedRun) -> dict[str, Canvas]:
+def figures_of(run: OpenedRun) -> dict[str, Figure]:
     """All figures of this run by name, in the order of reading.
 
     Raises:
@@ -63,7 +65,8 @@ def figures_of(run: OpenedRun) -> dict[str, Canvas]:
     """
     if len(run.history) < 2:
         return {}
-    drawn = {name: draw(run) for name, draw in FIGURES.items()}
+    with house_style():
+        drawn = {name: draw(run) for name, draw in FIGURES.items()}
     return {name: figure for name, figure in drawn.items() if figure is not None}
 
 
@@ -74,21 +77,23 @@ def draw_all(run: OpenedRun, container: Container) -> list[Drawing]:
         FolderError: the history is missing or damaged.
     """
     figures, elements = figures_of(run), container.elements
-    figures["modes"] = modes_figure(
-        points=elements.nodes,
-        cells=elements.cells,
-        box=elements.box,
-        modes=container.lowest_modes(FEW),
-        name=run.name,
-    )
-    return [
-        # `head` writes the title first
-        Drawing(name=name, title=one.texts[0].text, cursor=cursor_axes(one), svg=svg_document(one))
-        for name, one in figures.items()
-    ]
+    with house_style():
+        figures["modes"] = modes_figure(
+            points=elements.nodes,
+            cells=elements.cells,
+            box=elements.box,
+            modes=container.lowest_modes(FEW),
+            name=run.name,
+        )
+    drawings = []
+    for name, figure in figures.items():
+        svg = svg_of(figure)  # lays the figure out
+        title = figure.texts[0].get_text()  # written by `head`
+        drawings.append(Drawing(name=name, title=title, cursor=cursor_axes(figure), svg=svg))
+    return drawings
 
 
-def base_motion_figure(run: OpenedRun) -> Canvas:
+def base_motion_figure(run: OpenedRun) -> Figure:
     """Displacement, velocity and acceleration of the floor, along x and upward."""
     history, static = run.history, run.typed_result.static or StaticResult()
     displacement, acceleration = 1e3 * history["base_displacement_m"], history["base_acceleration_m_s2"]
@@ -132,7 +137,7 @@ def base_motion_figure(run: OpenedRun) -> Canvas:
     return figure
 
 
-def rotation_figure(run: OpenedRun) -> Canvas:
+def rotation_figure(run: OpenedRun) -> Figure:
     """Rotation with the slenderness angle marked, the rigid block's beside it where there is one; of each loose box."""
     if boxes := run.verdict.boxes:
         return box_figure(run, ROTATION, boxes)
@@ -163,7 +168,7 @@ def rotation_figure(run: OpenedRun) -> Canvas:
     return figure
 
 
-def slip_figure(run: OpenedRun) -> Canvas:
+def slip_figure(run: OpenedRun) -> Figure:
     """Sliding of the loaded contact points over the floor; of each loose box over what is below it."""
     if boxes := run.verdict.boxes:
         return box_figure(run, SLIP, boxes)
@@ -184,7 +189,7 @@ def slip_figure(run: OpenedRun) -> Canvas:
     return figure
 
 
-def uplift_figure(run: OpenedRun) -> Canvas:
+def uplift_figure(run: OpenedRun) -> Figure:
     """Uplift of the higher side of the base; of each loose box from what is below it."""
     if boxes := run.verdict.boxes:
         return box_figure(run, OPENING, boxes)
@@ -202,7 +207,7 @@ def uplift_figure(run: OpenedRun) -> Canvas:
     return figure
 
 
-def phase_portrait_figure(run: OpenedRun) -> Canvas:
+def phase_portrait_figure(run: OpenedRun) -> Figure:
     """Angular velocity over rotation, with the curve within which a free rigid block returns."""
     static = run.typed_result.static or StaticResult()
     angle, parameter = run.slenderness_angle, static.frequency_parameter_1_s
@@ -229,7 +234,7 @@ def phase_portrait_figure(run: OpenedRun) -> Canvas:
     return figure
 
 
-FIGURES: dict[str, Callable[[OpenedRun], Canvas | None]] = {
+FIGURES: dict[str, Callable[[OpenedRun], Figure | None]] = {
     "base_motion": base_motion_figure,
     "spectrum": spectrum_figure,
     "rotation": rotation_figure,
@@ -252,7 +257,7 @@ def _panel(
     *,
     legend: bool,
     zero: bool = False,
-) -> tuple[Canvas, Chart]:
+) -> tuple[Figure, Axes]:
     """One curve over time with the states of motion below it, and room for a legend above."""
     figure, (axes,) = time_panels((2.3,), history=run.history, header=2 if legend else 1)
     curve_panel(axes, label, run.history["time_s"], (values, BLUE, "-", name), zero=zero)
@@ -264,7 +269,7 @@ def _millimetres(value: float) -> str:
     return "< 0.01 mm" if 0.0 < abs(value) < 0.01 else f"{number(value)} mm"
 
 
-def _mark_impact(axes: Chart, verdict: Verdict) -> None:
+def _mark_impact(axes: Axes, verdict: Verdict) -> None:
     """A line at the first impact, if any."""
     impact = verdict.first_impact_s
     if impact is not None:

@@ -1,29 +1,28 @@
-"""The style of all figures: one palette, panels at fixed places, curves without needless points.
+"""The style of all figures and their export as SVG: one palette, and the same bytes for the same numbers.
 
-Figures of a run are drawn on `fem.figures.canvas`; what draws in a panel draws as well in the axes of matplotlib, which
-`fem.figures.plotting` lays out. Colours are those of Okabe and Ito (https://jfly.uni-koeln.de/color/), distinguishable
-by the colour-blind; line styles differ as well, for print in grey. Units are mm, kN, degrees and s.
+Drawn through matplotlib's objects, without its global state. Colours are those of Okabe and Ito
+(https://jfly.uni-koeln.de/color/), distinguishable by the colour-blind; line styles differ as well, for print in
+grey. Units are mm, kN, degrees and s.
 """
 
+import io
 import math
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
-from fem.figures.canvas import Canvas, Chart
 from fem.html.units import times_ten_to
 from fem.results.history import History
 from fem.runtime.arrays import FloatArray
-
-if TYPE_CHECKING:  # a run draws its figures without matplotlib
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    AnyAxes = Chart | Axes
-    AnyFigure = Canvas | Figure
 
 BLACK, GREY = "#222222", "#6E6E6E"
 BLUE, VERMILLION, GREEN = "#0072B2", "#D55E00", "#009E73"
@@ -39,7 +38,35 @@ STATE_COLOURS = {
 WIDTH = 7.0  #: of a figure [inch], the text width of an A4 page
 LEFT, RIGHT, FOOTER = 0.8, 0.15, 0.45  #: margins [inch]
 GAP, LEGEND_GAP = 0.1, 0.3  #: between panels, without and with a legend [inch]
+COORDINATE = re.compile(r"(?<=\.\d\d)\d+")  #: digits beyond a hundredth of a point
 LINE = 0.21  #: height of a line of text above the panels [inch]
+STYLE: dict[Any, Any] = {
+    "svg.fonttype": "none",  # text stays text: small, searchable
+    "svg.hashsalt": "unanchored",
+    "font.family": "sans-serif",
+    "font.size": 9.0,
+    "axes.titlesize": 10.0,
+    "axes.titlelocation": "left",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": GREY,
+    "axes.labelcolor": BLACK,
+    "axes.formatter.useoffset": False,
+    "axes.xmargin": 0.0,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#DDDDDD",
+    "grid.linewidth": 0.6,
+    "lines.linewidth": 1.1,
+    "legend.frameon": False,
+    "legend.fontsize": 8.0,
+    "legend.columnspacing": 1.4,
+    "legend.handlelength": 2.2,
+    "hatch.linewidth": 0.6,
+    "text.color": BLACK,
+    "xtick.color": BLACK,
+    "ytick.color": BLACK,
+}
 TIME = "time [s]"
 PLANE = "plane"
 #: share of the slenderness angle, or of the energy to overturn, from which that limit is drawn to scale
@@ -57,17 +84,16 @@ class Drawing:
     svg: str  #: the text of the file
 
 
-def panels(heights: Sequence[float], **layout: Any) -> tuple[Canvas, list[Chart]]:
-    """A figure of panels of equal width, one below the other, at fixed positions; arguments as of `layout_of`."""
-    size, places, beside = layout_of(heights, **layout)
-    canvas = Canvas(figsize=size)
-    drawn = [canvas.add_axes(place) for place in places]
-    for panel in drawn:
-        panel.yaxis.set_label_coords(beside, 0.5)
-    return canvas, drawn
+@contextmanager
+def house_style() -> Iterator[None]:
+    """Draw in this style, whatever the user's settings of matplotlib."""
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(STYLE)
+        yield
 
 
-def layout_of(
+def panels(
     heights: Sequence[float],
     *,
     gaps: Sequence[float] = (),
@@ -75,8 +101,8 @@ def layout_of(
     width: float = WIDTH,
     right: float = RIGHT,
     above: float = 0.0,
-) -> tuple[tuple[float, float], list[tuple[float, float, float, float]], float]:
-    """Panels of equal width, one below the other, at fixed positions.
+) -> tuple[Figure, list[Axes]]:
+    """A figure of panels of equal width, one below the other, at fixed positions.
 
     Args:
         heights: of the panels [inch], downwards.
@@ -85,18 +111,17 @@ def layout_of(
         width: of the figure [inch].
         right: margin beside the panels [inch].
         above: space between header and first panel, for other panels [inch].
-
-    Returns:
-        Width and height of the figure [inch]; left, bottom, width and height of each panel as shares of them; place of
-        the vertical labels as a share of a panel's width.
     """
     gaps = gaps or [GAP] * (len(heights) - 1)
     tall = 0.08 + header * LINE + above + sum(heights) + sum(gaps) + FOOTER
-    places, top = [], tall - 0.08 - header * LINE - above
+    figure = Figure(figsize=(width, tall))
+    axes, top = [], tall - 0.08 - header * LINE - above
     for height, gap in zip(heights, [*gaps, 0.0], strict=True):
-        places.append((LEFT / width, (top - height) / tall, (width - LEFT - right) / width, height / tall))
+        box = (LEFT / width, (top - height) / tall, (width - LEFT - right) / width, height / tall)
+        axes.append(figure.add_axes(box))
+        axes[-1].yaxis.set_label_coords(-0.62 / (width - LEFT - right), 0.5)
         top -= height + gap
-    return (width, tall), places, -0.62 / (width - LEFT - right)
+    return figure, axes
 
 
 def time_panels(
@@ -106,7 +131,7 @@ def time_panels(
     gaps: Sequence[float] = (),
     header: int = 2,
     above: float = 0.0,
-) -> tuple[Canvas, list[Chart]]:
+) -> tuple[Figure, list[Axes]]:
     """Panels over a common time axis.
 
     Args:
@@ -135,7 +160,7 @@ def time_panels(
 
 
 def curve_panel(
-    axes: "AnyAxes",
+    axes: Axes,
     label: str,
     time: FloatArray,
     *curves: tuple[FloatArray, str, str, str | None],
@@ -159,7 +184,7 @@ def curve_panel(
         axes.plot(time[kept], values[kept], color=colour, linestyle=line, label=name, **style)
 
 
-def head(figure: "AnyFigure", title: str, statement: str = "", *, status: str = "completed") -> None:
+def head(figure: Figure, title: str, statement: str = "", *, status: str = "completed") -> None:
     """Title, with the status of an unfinished run, and below it a statement in smaller letters."""
     title = title if status in ("completed", "overturned") else f"{title} ({status})"
     width, height = figure.get_size_inches()
@@ -169,21 +194,21 @@ def head(figure: "AnyFigure", title: str, statement: str = "", *, status: str = 
             figure.text(*place, text, fontsize=size, color=colour, va="top")
 
 
-def legend_above(axes: "AnyAxes", columns: int = 4) -> None:
+def legend_above(axes: Axes, columns: int = 4) -> None:
     """Legend above a panel, where it hides nothing."""
     axes.legend(
         loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, borderaxespad=0.1, handlelength=2.4
     )
 
 
-def spectrum_axes(axes: "AnyAxes") -> None:
+def spectrum_axes(axes: Axes) -> None:
     """Logarithmic periods with plain numbers, and ordinates from zero."""
     axes.set_xscale("log")
-    axes.xaxis.set_major_formatter(lambda value, _: number(value))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: number(value)))
     axes.set_ylim(bottom=0.0)
 
 
-def _draw_states(axes: Chart, time: FloatArray, modes: Sequence[str], states: Sequence[str]) -> None:
+def _draw_states(axes: Axes, time: FloatArray, modes: Sequence[str], states: Sequence[str]) -> None:
     """One row for each state, filled while the container is in it; a state of one sample is visible."""
     names = np.asarray(modes)
     ends = np.append(time[1:], time[-1])
@@ -218,7 +243,7 @@ def kept_samples(*columns: FloatArray) -> NDArray[np.int64]:
 
 
 def draw_limits(
-    axes: "AnyAxes",
+    axes: Axes,
     value: float,
     label: str,
     *,
@@ -244,7 +269,7 @@ def changing_weight(history: History, gravity: float) -> tuple[FloatArray, Float
     return history["time_s"], 1.0 + history["base_vertical_acceleration_m_s2"] / gravity
 
 
-def zero_line(axes: "AnyAxes") -> None:
+def zero_line(axes: Axes) -> None:
     """A thin line at zero."""
     axes.axhline(0.0, color=GREY, linewidth=0.7)
 
@@ -255,17 +280,25 @@ def number(value: float, digits: int = 3) -> str:
     return mantissa.replace("-", "−") + (times_ten_to(exponent) if power else "")
 
 
-def keep_visible(axes: "AnyAxes", least: float) -> None:
+def keep_visible(axes: Axes, least: float) -> None:
     """Extend the vertical axis to at least ± least, so that rounding does not look like motion."""
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, -least), max(high, least))
 
 
-def cursor_axes(figure: Canvas) -> dict[str, Any] | None:
+def svg_of(figure: Figure) -> str:
+    """A figure, drawn in the house style, as an SVG document; the same bytes for the same drawing."""
+    stream = io.StringIO()
+    with house_style():
+        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+    return re.sub(r' d="[^"]*"', lambda path: COORDINATE.sub("", path[0]), stream.getvalue())
+
+
+def cursor_axes(figure: Figure) -> dict[str, Any] | None:
     """Axes over which a cursor moves, as shares of the figure's width and height from the lower left; None without.
 
-    Reads the labels of the axes: `TIME`, or `PLANE` for the phase portrait. A cursor over time spans all panels over
-    time.
+    Reads the labels of the axes: `TIME`, or `PLANE` for the phase portrait. Call it after `svg_of`, which lays the
+    figure out. A cursor over time spans all panels over time.
     """
     over_time = [axes for axes in figure.axes if axes.get_label() == TIME]
     found = over_time or [axes for axes in figure.axes if axes.get_label() == PLANE]

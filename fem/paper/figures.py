@@ -7,8 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fem.figures.heat_map import MapCurve, Panel, draw_heat_map
-from fem.figures.plotting import house_style, svg_of
-from fem.figures.style import GREY, WIDTH
+from fem.figures.style import GREY, WIDTH, house_style, svg_of
 from fem.paper.claims import ClaimFigure
 from fem.paper.maps import OutcomeMap
 from fem.runtime.arrays import FloatArray

@@ -16,8 +16,7 @@ from matplotlib.transforms import Affine2D
 
 from fem.case.boxes import Box, centre_above, shared_face
 from fem.case.case import Case
-from fem.figures.plotting import house_style, svg_of
-from fem.figures.style import BLACK, BLUE, GREY
+from fem.figures.style import BLACK, BLUE, GREY, house_style, svg_of
 from fem.html.page import svg_element
 from fem.html.units import degrees, quantity, short
 

@@ -9,8 +9,18 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fem.figures.plotting import house_style, plotted_panels, svg_of
-from fem.figures.style import BLACK, BLUE, GREY, VERMILLION, WIDTH, head, legend_above
+from fem.figures.style import (
+    BLACK,
+    BLUE,
+    GREY,
+    VERMILLION,
+    WIDTH,
+    head,
+    house_style,
+    legend_above,
+    panels,
+    svg_of,
+)
 from fem.response.branches import coexistences
 from fem.response.records import PointRecord
 from fem.response.request import ResponseRequest
@@ -35,7 +45,7 @@ def response_figures(request: ResponseRequest, records: Sequence[PointRecord]) -
 
 def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Figure:
     """Largest rotation and slip stroke over frequency, up and down."""
-    figure, (rotation, slip, life) = plotted_panels((2.4, 1.2, 1.2), gaps=(0.12, 0.12), header=3)
+    figure, (rotation, slip, life) = panels((2.4, 1.2, 1.2), gaps=(0.12, 0.12), header=3)
     head(
         figure,
         f"{request.case.title or request.case.name}: frequency swept, the motion carried on",
@@ -81,7 +91,7 @@ def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Fig
 
 def draw_sections(request: ResponseRequest, records: Sequence[PointRecord]) -> Figure:
     """Rotation at the sections over frequency: n dots for a motion of period n, a smear for one without period."""
-    figure, (up, down) = plotted_panels((2.0, 2.0), gaps=(0.12,), header=2)
+    figure, (up, down) = panels((2.0, 2.0), gaps=(0.12,), header=2)
     head(
         figure,
         "Poincaré sections: rotation at the instant at which the floor turns back at +A",

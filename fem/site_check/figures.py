@@ -6,7 +6,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fem.figures.plotting import house_style, plotted_panels, svg_of
 from fem.figures.style import (
     BLACK,
     BLUE,
@@ -21,7 +20,10 @@ from fem.figures.style import (
     WIDTH,
     curve_panel,
     head,
+    house_style,
     legend_above,
+    panels,
+    svg_of,
     zero_line,
 )
 from fem.runtime.arrays import FloatArray
@@ -78,7 +80,7 @@ def draw_spectra(action: SiteActionResult, motions: MotionSet) -> str:
 def draw_floor(action: SiteActionResult, floor: FloorResult) -> str:
     """Mean spectrum of the floor, with that of the ground and what formula (4.25) gives an element."""
     with house_style():
-        figure, (axes,) = plotted_panels((2.0,), header=3)
+        figure, (axes,) = panels((2.0,), header=3)
         period = floor.building_periods_s[len(floor.building_periods_s) // 2]
         head(
             figure,
@@ -199,7 +201,7 @@ def _over(
 ) -> tuple[Figure, list[Axes]]:
     """Three panels over a value: rotation ratio and slip with their limits, and the share that overturned."""
     values = [point.factor if isinstance(point, ScanPoint) else point.value for point in points]
-    figure, (tilt, slip, fell) = plotted_panels([1.3, 1.1, 0.9], gaps=[0.12, 0.12], header=3)
+    figure, (tilt, slip, fell) = panels([1.3, 1.1, 0.9], gaps=[0.12, 0.12], header=3)
     head(figure, title, statement)
     _limited(tilt, values, [point.rotation_ratio for point in points], inputs.rotation_ratio_limit)
     tilt.set_ylabel("rotation ratio [-]")
@@ -224,7 +226,7 @@ def draw_methods(methods: Sequence[SiteMethod], answer: SiteAnswer, name: str) -
         (one for one in methods if one.factor is not None), key=lambda one: list(COLOURS).index(one.quantity)
     )
     with house_style():
-        figure, (axes,) = plotted_panels([0.17 * len(drawn) + 0.1], header=3, width=WIDTH)
+        figure, (axes,) = panels([0.17 * len(drawn) + 0.1], header=3, width=WIDTH)
         box = axes.get_position()
         axes.set_position((0.47, box.y0, 0.50, box.height))
         head(

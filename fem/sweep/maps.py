@@ -20,8 +20,7 @@ from fem.assessment.sureness import REGIME_UNSURE
 from fem.batch.axes import Axis
 from fem.batch.labels import axis_label, axis_name
 from fem.figures.heat_map import MapAxis, Panel, draw_heat_map, value_label
-from fem.figures.plotting import house_style, svg_of
-from fem.figures.style import BLACK, GREY, STATE_COLOURS, VERMILLION, WIDTH, number
+from fem.figures.style import BLACK, GREY, STATE_COLOURS, VERMILLION, WIDTH, house_style, number, svg_of
 from fem.results.files import write_atomically
 from fem.sweep.plan import MapChoice
 from fem.sweep.table import SweepTable

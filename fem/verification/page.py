@@ -9,7 +9,7 @@ import numpy as np
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from fem.figures.plotting import house_style, svg_of
+from fem.figures.style import house_style, svg_of
 from fem.html.page import render_page, svg_element
 from fem.html.units import ABSENT, short, typeset
 from fem.runtime.arrays import FloatArray

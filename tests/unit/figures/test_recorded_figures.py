@@ -88,7 +88,7 @@ def test_a_run_on_a_record_from_elsewhere_holds_its_copy_and_its_spectrum(folder
         "vertical"
     ]
     figure = spectrum_figure(open_run(out))
-    assert figure is not None and "Response spectrum of the floor's motion" in figure.texts[0].text
+    assert figure is not None and "Response spectrum of the floor's motion" in figure.texts[0].get_text()
     (out / "data" / "station.v2").unlink()
     assert spectrum_figure(open_run(out)) is None
 

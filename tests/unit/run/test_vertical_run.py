@@ -98,7 +98,7 @@ def test_frames_and_animation_move_with_the_floor(run):
 
 def test_figure_and_page_show_both_motions(run):
     figure = figures_of(run)["base_motion"]
-    assert "3 m/s² upward or downward" in figure.texts[0].text
+    assert "3 m/s² upward or downward" in figure.texts[0].get_text()
     assert [len(axes.lines) for axes in figure.axes[:2]] == [3, 3]  # zero, along x, upward
     page = run_report(run)
     for words in ("floor, vertical", "the other sign", '"lift"', "least weight, under the vertical motion"):

@@ -5,7 +5,7 @@ import pytest
 
 from fem.batch.axes import Axis
 from fem.batch.labels import axis_label
-from fem.figures.plotting import svg_of
+from fem.figures.style import svg_of
 from fem.sweep.maps import draw_maps, sweep_map
 from fem.sweep.plan import MapChoice
 from fem.sweep.table import SweepTable
