@@ -14,7 +14,7 @@ WIDE = 0.1  #: width of a range over its larger end, from which two figures are 
 FEW, MANY = 2, 4  #: significant figures
 IMPACT = "impact, not for design unless the floor is known"
 #: .. of a floor that crushes, whose strength and stiffness nothing has varied
-UNTRIED = "impact, on a slab of which other strengths were not tried"
+UNTRIED = "impact; the band tries other floors (--band)"
 #: limits below which only they are shown: lengths [m], rotation ratios [-], rotations [degrees]
 LEAST_LENGTH, LEAST_RATIO = 1e-5, 1e-3
 LEAST_DEGREES = 0.01

@@ -1,7 +1,7 @@
 """Figure of the contact forces of the floor on the container.
 
-The force of an impact is far larger than those between impacts. It is cut off, marked at the edge of the panel and
-given in words.
+The force of an impact on a rigid floor is far larger than those between impacts. It is cut off, marked at the edge of
+the panel and given in words. A slab crushes before that.
 """
 
 import numpy as np
@@ -13,6 +13,7 @@ from fem.figures.style import (
     BLUE,
     GREY,
     LEGEND_GAP,
+    NEAR_LIMIT,
     VERMILLION,
     changing_weight,
     curve_panel,
@@ -35,9 +36,10 @@ def forces_figure(run: OpenedRun) -> Figure:
     history, contact = run.history, run.case.contact
     time, normal, shear = history["time_s"], 1e-3 * history["normal_force_N"], 1e-3 * history["shear_force_N"]
     weight = 1e-3 * run.case.weight
+    cap = run.typed_result.floor.corner_cap_N if run.typed_result.floor else None
     limits = [
-        scale_without_impacts(normal, LARGE_FORCE * weight),
-        scale_without_impacts(shear, LARGE_FORCE * contact.mu_static * weight),
+        scale_without_impacts(force, LARGE_FORCE * large) if cap is None else None
+        for force, large in ((normal, weight), (shear, contact.mu_static * weight))
     ]
     cut = any(limit is not None for limit in limits)
     figure, axes = time_panels((1.5, 1.7), history=history, gaps=(LEGEND_GAP,), header=3 if cut else 2)
@@ -55,6 +57,9 @@ def forces_figure(run: OpenedRun) -> Figure:
         axes[0].plot(
             changing[0], weight * changing[1], color=BLACK, linestyle="--", linewidth=0.9, label=name
         )
+    if cap is not None and NEAR_LIMIT * 1e-3 * cap < normal.max():
+        label = f"a corner crushes at {number(1e-3 * cap)} kN"
+        axes[0].axhline(1e-3 * cap, color=BLACK, linestyle=":", linewidth=0.9, label=label)
     axes[0].set_ylim(bottom=0.0)
     friction = {"static": (contact.mu_static, "--"), "kinetic": (contact.mu_kinetic, ":")}
     for name, (mu, style) in friction.items():

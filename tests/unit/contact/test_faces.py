@@ -105,7 +105,9 @@ def test_the_compliance_of_the_points_is_how_they_move_under_forces(seed):
         force[index] = 1.0
         share_forces(faces, force.reshape(n, 2), under.force)
         motion = under.compliance @ under.force.ravel()
-        change = placed(faces, corners + motion.reshape(-1, 2)) - placed(faces, corners - motion.reshape(-1, 2))
+        change = placed(faces, corners + motion.reshape(-1, 2)) - placed(
+            faces, corners - motion.reshape(-1, 2)
+        )
         assert work.compliance[:, index] == pytest.approx(0.5 * change.ravel(), rel=1e-5, abs=1e-11)
     drift = 1e-7 * under.free_velocity
     rates = (placed(faces, corners + drift) - placed(faces, corners - drift)) / 2e-7
@@ -124,7 +126,8 @@ def test_forces_of_a_joint_are_in_equilibrium_and_work_on_the_motion_of_the_poin
     share_forces(faces, force, shared)
     assert shared.sum(axis=0) == pytest.approx([0.0, 0.0], abs=1e-12)
     assert float(np.sum(corners[:, 1] * shared[:, 0] - corners[:, 0] * shared[:, 1])) == pytest.approx(
-        0.0, abs=2e-2  # the boxes are strained by a thousandth, which a moment does not know
+        0.0,
+        abs=2e-2,  # the boxes are strained by a thousandth, which a moment does not know
     )
     push, step = draw.normal(size=corners.shape), 1e-6
     rate = (placed(faces, corners + step * push) - placed(faces, corners - step * push)) / (2.0 * step)
