@@ -99,8 +99,8 @@ VERTICAL_MOTION = (
     Mutation(
         name="centre above the ground in the history",
         file="contact/stepping/sampling.py",
-        old="b[CENTRE_Z], b[VELOCITY_Z]) - lift",
-        new="b[CENTRE_Z], b[VELOCITY_Z]) + 0.0 * lift",
+        old="b[CENTRE_Z], b[VELOCITY_Z]) - lift\n    row[ROW_UPLIFT]",
+        new="b[CENTRE_Z], b[VELOCITY_Z]) + 0.0 * lift\n    row[ROW_UPLIFT]",
         tests=(VERTICAL, "-k", "gravity"),
     ),
     Mutation(
