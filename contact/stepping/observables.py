@@ -219,12 +219,14 @@ def has_impact(track: Any, control: Any, old: State, new: State) -> bool:
 
 
 @compiled(inline=True)
-def lifting_energy(control: Any, state: State, floor: float) -> float:
-    """Gravity potential above that of the container resting at its place on the floor [J]; `floor`: displacement [m].
+def lifting_energy(control: Any, state: State, floor: float, sunk: float) -> float:
+    """Gravity potential above that of the container standing upright at its place on the floor [J].
 
-    Where the floor is crushed under the corners, the resting container is lower by the mean of both indentations.
+    Args:
+        control: constants of the container; state: of it.
+        floor: its displacement [m].
+        sunk: how much lower than in the beginning the container stands, where the floor is crushed [m].
     """
-    sunk = 0.5 * (state.crushed[0] + state.crushed[control.base_points - 1])
     downhill = control.mass * control.downhill * (state.pose[CENTRE_X] - floor)
     return state.energy[POTENTIAL] - control.resting_energy + control.mass * control.gravity * sunk + downhill
 
@@ -245,7 +247,8 @@ def follow_restitution(
     Energy of rocking is the potential energy above rest at a turning point. The work of the floor's motion between a
     turning point and the impact is added to it, so both energies are those at the impact: of a rigid block, half its
     inertia about the pivot times the angular velocity squared. Vibration of the container or its contact does not
-    enter. Bounces on the way from one turning point to the other belong to the impact. There is no restitution if the
+    enter. Where the floor is crushed, "at rest" is upright at the height of the corner about which the container turns.
+    Bounces on the way from one turning point to the other belong to the impact. There is no restitution if the
     container slides on the way (`SLIDING_HEAT`), or if it does not turn.
     """
     moved = new.pose[CENTRE_X] - old.pose[CENTRE_X] - (floor[1, 0] - floor[0, 0])
@@ -261,7 +264,11 @@ def follow_restitution(
     aside = abs(new.pose[ROTATION]) > ROCKING * control.slenderness_angle
     if not (before * after < 0.0 or before == 0.0) or not aside or track.left_open + track.right_open != 1:
         return
-    energy = max(lifting_energy(control, old, floor[0, 0]), lifting_energy(control, new, floor[1, 0]))
+    pivot = control.base_points - 1 if track.left_open == 1 else 0
+    energy = max(
+        lifting_energy(control, old, floor[0, 0], old.crushed[pivot]),
+        lifting_energy(control, new, floor[1, 0], new.crushed[pivot]),
+    )
     if track.impacts == 0:
         track.turning_energy = energy
         track.work_before, track.work_after, track.heat = 0.0, 0.0, 0.0

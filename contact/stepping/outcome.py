@@ -147,7 +147,8 @@ def is_over(run: RunState, part: int) -> bool:
     moving = run.old.energy[KINETIC] + control.mass * floor_velocity * (
         0.5 * floor_velocity - run.old.pose[VELOCITY_X]
     )
-    raised = max(0.0, lifting_energy(control, run.old, run.floor[0, 0])) if part == FREE else 0.0
+    sunk = 0.5 * (run.old.crushed[0] + run.old.crushed[control.base_points - 1])
+    raised = max(0.0, lifting_energy(control, run.old, run.floor[0, 0], sunk)) if part == FREE else 0.0
     if moving + raised > RESTING_ENERGY * control.reference_energy:
         clock.rest_since = NEVER
         return False
