@@ -23,8 +23,8 @@ from fem.runtime.arrays import FloatArray, IntArray
 
 SERIES = "run.pvd"
 
-# Up to so many frames, the list of frames is rewritten with each of them. A longer list is rewritten when it has grown by
-# one in so many: rewriting it with every frame would take longer than the frames.
+# Up to so many frames, the list of frames is rewritten with each of them. A longer list is rewritten when it has grown
+# by one in so many: rewriting it with every frame would take longer than the frames.
 PROMPT_FRAMES = 20
 
 
