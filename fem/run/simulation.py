@@ -24,6 +24,7 @@ from contact.stepping.integrator import AFTERMATH_SLICE, FAILED, OVERTURNED, REA
 from contact.stepping.outcome import DRIVEN, FREE, UNDECIDED, is_over, on_resting_floor
 from contact.stepping.state import RunState
 from fem.assessment.verdict import MODE_NAMES, audit, rotation_ratio
+from fem.case.case import Case
 from fem.model.model import Model
 from fem.run.recorder import Recorder
 from fem.runtime.progress import Reporter, SilentReporter
@@ -211,19 +212,24 @@ def crushing_failure(model: Model) -> str | None:
     return (
         f"step {int(clock.steps)}, t = {float(clock.time):.6g} s: the container is crushed, an element is "
         f"inverted (det F = {ratio:.2g}); take a larger container.youngs_modulus_Pa, thicker walls, "
-        'a softer contact.normal_penalty_Pa_m, or solver.model = "rigid"'
+        f'{softer_contact(model.case)}, or solver.model = "rigid"'
     )
+
+
+def softer_contact(case: Case) -> str:
+    """What to try where the contact is too stiff to be stepped."""
+    return "a softer floor" if case.floor.is_slab else "a softer contact.normal_penalty_Pa_m"
 
 
 def stepping_failure(model: Model, residual: float) -> str:
     """Where and why the stepping failed, and what to try; `residual` is that of the contact forces [N]."""
-    control, clock = model.run.control, model.run.clock[0]
+    control, clock, softer = model.run.control, model.run.clock[0], softer_contact(model.case)
     if _attempts(model.run) >= most_attempts(control, float(clock.time)):
         smallest = min(float(clock.smallest_step), control.largest_step)
         return (
             f"t = {float(clock.time):.6g} s: no progress: {int(clock.steps)} steps accepted, "
-            f"{int(clock.rejected)} rejected, the smallest of {smallest:.1g} s; try a softer "
-            "contact.normal_penalty_Pa_m, contact.weakening_m > 0, or a larger solver.energy_tolerance"
+            f"{int(clock.rejected)} rejected, the smallest of {smallest:.1g} s; try {softer}, "
+            "contact.weakening_m > 0, or a larger solver.energy_tolerance"
         )
     place = f"step {int(clock.steps) + 1}, t = {float(clock.time):.6g} s: "
     smallest_tried = f"at the smallest step ({control.smallest_step:.1g} s)"
@@ -236,9 +242,9 @@ def stepping_failure(model: Model, residual: float) -> str:
         return (
             f"{place}the iteration between container and floor did not converge {smallest_tried}, although "
             f"the contact forces balance within {residual:.2g} N; try a smaller solver.step_s, a larger "
-            "container.youngs_modulus_Pa, or a softer contact.normal_penalty_Pa_m"
+            f"container.youngs_modulus_Pa, or {softer}"
         )
     return (
         f"{place}the contact forces are out of balance by {residual:.2g} N after the last iteration {smallest_tried}; "
-        "try a softer contact.normal_penalty_Pa_m, contact.weakening_m > 0, or a smaller solver.step_s"
+        f"try {softer}, contact.weakening_m > 0, or a smaller solver.step_s"
     )
