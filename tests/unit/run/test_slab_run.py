@@ -6,6 +6,8 @@ import pytest
 
 import fem
 from fem.case.case import load_case, read_case
+from fem.figures.energy import energy_figure
+from fem.figures.forces import forces_figure
 from fem.run.run import run_case
 
 KEYS = (
@@ -67,3 +69,19 @@ def test_summary_and_figures_say_what_was_crushed(folder):
     assert "indentation of the floor" in summary
     assert "work of crushing" in summary
     assert "not for design" not in summary
+
+
+def test_the_energies_that_are_drawn_add_up_with_the_work_of_crushing(folder):
+    axes = energy_figure(fem.open_run(folder)).axes[1]
+    curves = {line.get_label().partition(",")[0]: line.get_ydata()[-1] for line in axes.lines}
+    parts = ("stored", "friction", "contact damping", "material damping", "crushing of the floor")
+    history = fem.open_run(folder).history
+    unit = history["crushing_J"][-1] / curves["crushing of the floor"]
+    lost = history["imbalance_J"][-1] / unit
+    assert sum(curves[part] for part in parts) + lost == pytest.approx(curves["work of the floor"], rel=1e-6)
+
+
+def test_forces_on_a_slab_are_drawn_whole_with_the_force_at_which_a_corner_crushes(folder):
+    panel = forces_figure(fem.open_run(folder)).axes[0]
+    assert "a corner crushes at 440 kN" in [line.get_label() for line in panel.lines]
+    assert panel.get_ylim()[1] > 1e-3 * fem.open_run(folder).history["normal_force_N"].max()
