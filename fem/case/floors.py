@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from fem.case import quantities as q
+from fem.case.boxes import boxes_of
 from fem.case.problem import Rule
 from fem.case.table import CaseTable, case_key
 
@@ -191,10 +192,11 @@ class FloorTable(CaseTable):
 
 def _patch_does_not_fit(case: Any) -> str:
     """Why the patches do not fit below the base; empty where they do."""
-    patch, box = case.floor.corner_patch_m, case.container
+    patch, depth = case.floor.corner_patch_m, case.container.depth_m
     if case.floor.kind != "slab" or patch is None:
         return ""
-    limits = (("along x", "half of width_m", 0.5 * box.width_m), ("out of plane", "depth_m", box.depth_m))
+    half = 0.5 * boxes_of(case.container, case.gravity_m_s2)[0].width
+    limits = (("along x", "half of width_m", half), ("out of plane", "depth_m", depth))
     for value, (name, of, most) in zip(patch, limits, strict=True):
         if value > most * (1.0 + 1e-9):
             guess = q.PATCH.guess(value) if value > 10.0 * most else ""

@@ -62,7 +62,7 @@ def steel_capacity(case: Case) -> float | None:
 
     None where no wall of steel carries a corner: solid blocks, feet, a flat base.
     """
-    wall = case.container.wall_m
+    wall = case.stack[0].wall
     if not is_steel_shell(case) or wall is None or case.support.kind != "corners":
         return None
     return YIELD_STRENGTH * wall * corner_patch(case)[1]
@@ -72,12 +72,12 @@ def corner_patch(case: Case) -> tuple[float, float]:
     """What bears under one corner of the elevation, along x and out of plane [m]."""
     if case.floor.corner_patch_m is not None:
         return case.floor.corner_patch_m[0], case.floor.corner_patch_m[1]
-    box = case.container
-    touching = {"corners": box.wall_m, "feet": case.support.foot, "flat": 0.5 * box.width_m}
+    lowest = case.stack[0]
+    touching = {"corners": lowest.wall, "feet": case.support.foot, "flat": 0.5 * lowest.width}
     along = touching[case.support.kind]
     if along is None:  # a solid block on corners: excluded by a rule where the floor is a slab
         raise CaseError("[floor] corner_patch_m is missing: a solid block has no wall")
-    return along, box.depth_m
+    return along, case.container.depth_m
 
 
 def slab_of(case: Case, mass: float) -> Slab:

@@ -64,9 +64,7 @@ def require_bearing(case: Case, mesh: ContainerMesh, use: float) -> None:
     patch, force = f"{slab.patch[0]:g} x {slab.patch[1]:g} m", use * slab.cap
     carries = f"a corner carries {1e-3 * force:.4g} kN on a patch of {patch} and would sink in without end"
     if slab.yields_first:
-        raise CaseError(
-            f"[container] wall_m = {case.container.wall_m:g} m: {carries}, because its wall yields"
-        )
+        raise CaseError(f"[container] wall_m = {case.stack[0].wall:g} m: {carries}, because its wall yields")
     raise CaseError(
         f"[floor] bearing_strength_Pa = {case.floor.bearing_strength_Pa:g} Pa: {carries}; the least patch has "
         f"{use * slab.area:.3g} m2, this one {slab.area:.3g} m2: give corner_patch_m all that bears, or spread the load"

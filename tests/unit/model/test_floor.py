@@ -180,3 +180,14 @@ def test_a_container_slides_down_a_slope_steeper_than_its_friction():
     assert done.history["slip_m"][-1] == pytest.approx(travelled, rel=2e-3)
     assert done.verdict.outcome == "slide"
     assert done.result["static"]["own_motion"]["utilisation_sliding"] > 1.0
+
+
+def test_of_boxes_that_differ_the_lowest_stands_on_the_floor():
+    boxes = [{"width_m": 1.4, "wall_m": 0.012}, {"width_m": 1.1}]
+    case = load_case("seed_stack", ["floor.preset=concrete C25/30"]).with_values({"container.box": boxes})
+    slab = slab_of(case, mass=5e3)
+    assert slab.patch == (0.012, 1.1)
+    assert slab.steel_capacity == pytest.approx(235e6 * 0.012 * 1.1)
+    assert slab_of(case.with_values({"support.kind": "flat"}), mass=5e3).patch == (0.7, 1.1)
+    with pytest.raises(CaseError, match=r"along x at most half of width_m = 0\.7 m, got 0\.8 m"):
+        case.with_values({"floor.corner_patch_m": [0.8, 0.2]})
