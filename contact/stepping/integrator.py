@@ -69,6 +69,8 @@ def close_step(run: RunState, step: float, iterations: int) -> None:
     copy_state(run.old, run.new)
     if run.joints.shape[0] > 1:
         clock.spring_energy = spring_energy(run.contact, run.old.point, run.old.stick)
+        for j in range(run.joints.shape[0]):
+            run.joints[j].opening = run.joints[j].opens
     for k in range(3):
         run.floor[0, k] = run.floor[1, k]
     if run.vertical.kind != UNIFORM:

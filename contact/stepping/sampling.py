@@ -19,7 +19,6 @@ from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.scheme import hermite
 from contact.stepping.state import (
     BOX_CENTRE_X,
-    BOX_CENTRE_Z,
     BOX_COLUMNS,
     BOX_OPENING,
     BOX_ROTATION,
@@ -49,6 +48,8 @@ def write_columns(
     """One row of a history at the share `s` of the step; `force` (n, 2) is the contact force at this instant."""
     old, new = run.old, run.new
     a, b = old.pose, new.pose
+    if run.joints.shape[0] > 1:
+        a, b = old.boxes[0], new.boxes[0]
     floor, _, _ = floor_motion(run.motion, time)
     lift, _, _ = floor_motion(run.vertical, time)
     row[ROW_ROTATION] = hermite(s, step, a[ROTATION], a[ANGULAR_VELOCITY], b[ROTATION], b[ANGULAR_VELOCITY])
@@ -73,11 +74,7 @@ def write_columns(
 
 @compiled(inline=True)
 def write_boxes(run: RunState, row: FloatArray, s: float, step: float, floor: float, lift: float) -> None:
-    """What a row of a history holds of the boxes of a loose stack; `floor`, `lift`: place of the floor [m]."""
-    a = run.old.boxes[0]
-    b = run.new.boxes[0]
-    row[ROW_CENTRE_X] = hermite(s, step, a[CENTRE_X], a[VELOCITY_X], b[CENTRE_X], b[VELOCITY_X]) - floor
-    row[ROW_CENTRE_Z] = hermite(s, step, a[CENTRE_Z], a[VELOCITY_Z], b[CENTRE_Z], b[VELOCITY_Z]) - lift
+    """What a row of a history holds of the upper boxes of a loose stack; `floor`, `lift`: place of the floor [m]."""
     for j in range(1, run.joints.shape[0]):
         joint, first = run.joints[j], ROW_COLUMNS + BOX_COLUMNS * (j - 1)
         a, b = run.old.boxes[j], run.new.boxes[j]
@@ -86,12 +83,10 @@ def write_boxes(run: RunState, row: FloatArray, s: float, step: float, floor: fl
         )
         row[first + BOX_SLIP] = joint.slip + s * joint.slip_step
         row[first + BOX_OPENING] = (1.0 - s) * joint.opening + s * joint.opens
-        row[first + BOX_CENTRE_X] = (
-            hermite(s, step, a[CENTRE_X], a[VELOCITY_X], b[CENTRE_X], b[VELOCITY_X]) - floor
-        )
-        row[first + BOX_CENTRE_Z] = (
-            hermite(s, step, a[CENTRE_Z], a[VELOCITY_Z], b[CENTRE_Z], b[VELOCITY_Z]) - lift
-        )
+        for k in range(2):
+            x, v = CENTRE_X + k, VELOCITY_X + k
+            row[first + BOX_CENTRE_X + k] = hermite(s, step, a[x], a[v], b[x], b[v])
+            row[first + BOX_CENTRE_X + k] -= floor if k == 0 else lift
 
 
 @compiled(inline=True)

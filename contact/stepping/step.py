@@ -164,9 +164,10 @@ def account(run: RunState, step: float) -> float:
     for j in range(new.damping.size):
         material += 0.5 * (old.damping[j] + new.damping[j]) * (new.position[j] - old.position[j])
     before = spring_energy(run.contact, old.point, old.stick)
-    stored = spring_energy(run.contact, new.point, new.stick) - before
     if run.joints.shape[0] > 1:  # what the springs of a corner lose as it leaves its face
         damping += run.clock[0].spring_energy - before
+        before = run.clock[0].spring_energy
+    stored = spring_energy(run.contact, new.point, new.stick) - before
     for row in (KINETIC, STRAIN, POTENTIAL):
         stored += new.energy[row] - old.energy[row]
     change[BASE_WORK] = (shear + run.control.mass * run.control.downhill) * (
