@@ -1,0 +1,174 @@
+"""Loose stacks in motion: friction in the joints, stacks that move as one, falls.
+
+The boxes are those of the seed paper, 1.1 m x 1.0 m of 2500 kg, with the springs of four of them as one on two corners.
+"""
+
+import math
+
+import numpy as np
+import pytest
+from block_on_floor import GRAVITY, piecewise_motion, rig
+from stack_on_floor import Box, StackRig, stack_rig
+
+from contact.motion.base_motion import HarmonicMotion
+from contact.reference.floor_acceleration import sine_floor
+from contact.reference.sliding import RigidSlider, simulate_sliding
+from contact.stepping.integrator import OVERTURNED
+from contact.stepping.observables import NEVER
+from contact.stepping.outcome import run_to_end
+from contact.stepping.state import (
+    BOX_CENTRE_X,
+    BOX_OPENING,
+    BOX_ROTATION,
+    BOX_SLIP,
+    ROW_CENTRE_X,
+    ROW_ROTATION,
+)
+
+OMEGA = 6.928  #: of the default motion [rad/s]
+
+
+def shaken(
+    peak: float, count: int = 4, *, omega: float = OMEGA, phase: float = 0.0, until: float = 10.0, **options
+) -> StackRig:
+    """So many boxes on a floor of this peak acceleration [m/s2], followed to the end or a fall."""
+    motion = HarmonicMotion(amplitude=peak / omega**2, angular_frequency=omega, phase=phase, duration=60.0)
+    stack = stack_rig([Box()] * count, motion=motion, **options)
+    stack.advance(until)
+    return stack
+
+
+def ratio(stack: StackRig) -> float:
+    """Largest rotation of a box over the slenderness angle of the stack [-]."""
+    return float(stack.joints.max_rotation.max()) / stack.whole.slenderness_angle
+
+
+def test_a_box_on_a_frictionless_joint_stays_while_the_lower_one_moves_away_under_it():
+    pull = piecewise_motion([0.0], [1.5])
+    stack = stack_rig([Box(), Box()], motion=pull, mu=2.0, joint_mu=0.0)
+    stack.advance(
+        0.85
+    )  # the floor has moved by 0.54 m; the mass centre is above the end of the face at 0.55 m
+    times = stack.run.history.interval * np.arange(len(stack.columns))
+    floor = 0.5 * 1.5 * times**2
+    assert floor[-1] > 0.53
+    assert np.abs(stack.box(1, BOX_CENTRE_X) + floor).max() < 1e-4 * floor[-1]
+    assert stack.box(1, BOX_SLIP) == pytest.approx(-floor, abs=1e-4)
+    assert np.abs(stack.columns[:, ROW_CENTRE_X]).max() < 1e-4
+    assert stack.joints[1].fell_at == NEVER
+    fallen = run_to_end(stack.stack, stack.run, 2.0)  # then it tips over the edge
+    assert fallen.status == OVERTURNED
+    assert stack.joints[1].fell_at == stack.run.track[0].overturned_at < 2.0
+    assert stack.joints[0].fell_at == NEVER
+
+
+@pytest.mark.parametrize(("static", "kinetic"), [(0.2, 0.2), (0.25, 0.15)])
+def test_a_low_box_on_a_box_that_is_held_moves_as_the_analytic_slider(static, kinetic):
+    boxes = [Box(width=4.0, height=0.5, mass=50_000.0), Box(width=1.1, height=0.1, mass=500.0)]
+    motion = HarmonicMotion(amplitude=0.05, angular_frequency=10.0, duration=60.0)
+    stack = stack_rig(
+        boxes, motion=motion, mu=3.0, joint_mu=static, mu_kinetic=kinetic, bounce_frequency=300.0
+    )
+    stack.advance(4.0)
+    times = stack.run.history.interval * np.arange(len(stack.columns))
+    exact = simulate_sliding(
+        RigidSlider(mu_static=static, mu_kinetic=kinetic, gravity=GRAVITY),
+        sine_floor(amplitude=0.05, angular_frequency=10.0),
+        duration=4.5,
+    ).at(times)[0]
+    assert np.ptp(exact) > 0.02
+    assert np.abs(stack.box(1, BOX_SLIP) - exact).max() < 0.01 * np.ptp(exact)
+    assert stack.joints[0].max_slip < 1e-4
+
+
+def test_a_stack_whose_joints_hold_moves_as_one_block():
+    """Joints of friction 2 under a motion that opens none of them: the bolted stack."""
+    motion = HarmonicMotion(amplitude=3.2 / OMEGA**2, angular_frequency=OMEGA, duration=60.0)
+    stack = stack_rig([Box()] * 4, motion=motion, joint_mu=2.0, bounce_frequency=300.0)
+    stack.advance(10.0)
+    block = rig(stack.whole, motion=motion).advance(10.0)
+    count = min(len(stack.columns), int(block.clock.samples))
+    limit = 1e-3 * stack.whole.slenderness_angle
+    assert np.abs(block.rotation).max() > 0.2 * stack.whole.slenderness_angle
+    assert np.abs(stack.columns[:count, ROW_ROTATION] - block.rotation[:count]).max() < limit
+    for k in range(1, 4):
+        assert np.abs(stack.box(k, BOX_ROTATION)[:count] - block.rotation[:count]).max() < limit
+        assert stack.joints[k].max_opening < 1e-3 and stack.joints[k].max_slip < 1e-3
+
+
+def test_the_default_stack_rocks_as_one_and_slips_at_its_top():
+    # prototype with Newmark steps, and a Moreau stepper: 0.390; one block 0.399; top joint slips 50 to 77 mm
+    stack = shaken(4.0)
+    assert ratio(stack) == pytest.approx(0.390, abs=0.003)
+    assert 0.04 < stack.joints[3].max_slip < 0.09
+    assert (stack.joints.max_slip[:3] < 0.01).all()
+
+
+def test_a_faster_motion_rocks_a_loose_stack_less_than_a_block():
+    assert ratio(shaken(6.4, omega=8.0, until=8.0)) == pytest.approx(0.282, abs=0.004)  # one block 0.403
+
+
+@pytest.mark.parametrize(("peak", "slip"), [(4.0, 0.110), (5.0, 0.219), (6.0, 0.3668)])
+def test_low_friction_between_boxes_replaces_rocking_by_sliding(peak, slip):
+    # a Moreau stepper; at 6 m/s2 a box leans by 0.05 of the slenderness angle
+    stack = shaken(peak, joint_mu=0.2, until=6.0)
+    assert ratio(stack) < 0.06
+    assert stack.joints[1].max_slip == pytest.approx(slip, rel=0.015)
+    assert stack.joints[0].max_slip < 2e-3
+
+
+def test_the_mirrored_motion_gives_the_mirrored_answer():
+    one, other = (shaken(5.0, phase=phase, until=3.0) for phase in (0.0, math.pi))
+    count = min(len(one.columns), len(other.columns))
+    assert np.ptp(one.columns[:, ROW_ROTATION]) > 0.02
+    for k in (1, 2, 3):
+        for column in (BOX_ROTATION, BOX_SLIP, BOX_CENTRE_X):
+            assert one.box(k, column)[:count] == pytest.approx(-other.box(k, column)[:count], abs=1e-4)
+        assert one.box(k, BOX_OPENING)[:count] == pytest.approx(other.box(k, BOX_OPENING)[:count], abs=1e-4)
+
+
+def test_a_stack_of_ten_settles_and_stays():
+    boxes = [Box(offset=0.02 * (-1) ** k) for k in range(10)]
+    stack = stack_rig(boxes)
+    before = stack.run.old.position.copy()
+    assert stack.advance(5.0) == 0
+    sunk = GRAVITY * stack.whole.mass / stack.whole.base_stiffness
+    assert np.abs(stack.run.old.position - before).max() < 1e-4 * sunk
+    assert (stack.joints.max_slip < 1e-9).all() and (stack.joints.max_opening == 0.0).all()
+    assert stack.run.track[0].modes == 1
+
+
+def test_the_slip_converges_with_the_tolerance():
+    slips = [
+        shaken(5.0, joint_mu=0.2, until=6.0, energy_scale=scale).joints[1].max_slip for scale in (1.0, 0.1)
+    ]
+    assert slips[0] == pytest.approx(slips[1], rel=2e-3)
+
+
+@pytest.mark.parametrize("joint_mu", [0.1, 0.3])
+def test_a_strong_motion_makes_a_box_fall(joint_mu):
+    stack = shaken(12.0, joint_mu=joint_mu, until=20.0)
+    fell = stack.joints.fell_at
+    assert np.isfinite(fell).sum() == 1 and fell.min() == stack.run.track[0].overturned_at
+    box = int(np.argmin(fell))
+    corners = stack.run.old.corner.reshape(4, 4, 2)
+    met = corners[box, :, 1].min() <= 0.0 and box > 0
+    assert met or abs(stack.run.old.boxes[box, 0]) >= 0.5 * math.pi
+    assert (corners[1:, :, 1].min(axis=1) > 0.0).sum() == 3 - int(met)  # no other upper box is on the floor
+    assert stack.run.clock[0].least_imbalance > -1e-4 * stack.whole.reference_energy
+
+
+def test_a_box_left_beyond_the_face_below_has_lost_its_footing():
+    """A long box is pushed to where only a heavy one on its inner end holds it; it comes to rest, without footing."""
+    long, heavy = (
+        Box(width=2.0, mass=1000.0, offset=0.9),
+        Box(width=0.4, height=0.3, mass=9000.0, offset=-0.8),
+    )
+    boxes = [Box(width=2.0), long, heavy]
+    pull = piecewise_motion([0.0, 0.8, 4.8], [-2.0, 0.4, 1e-12])
+    stack = stack_rig(boxes, motion=pull, mu=2.0, joint_mu=0.1)
+    outcome = run_to_end(stack.stack, stack.run, 5.0, aftermath=30.0)
+    over = stack.run.old.boxes[1, 2] - stack.run.old.corner[3, 0] - stack.run.floor[0, 0]
+    assert over > 0.0  # its mass centre is beyond the end of the face
+    assert outcome.status == OVERTURNED
+    assert stack.joints[1].fell_at < 10.0 and stack.joints[2].fell_at == NEVER
