@@ -58,10 +58,11 @@ def add_checks(
     if _lacks_rigid_check(result, model.case, wanted):
         history = history_of()
         block = importlib.import_module("fem.assessment.rigid_check")
+        events = importlib.import_module("contact.reference.event_driven")
         try:
             check = block.check_against_rigid_block(model, history, verdict)
             result = replace(result, rigid_check=check.result)
-        except (ValueError, block.EventError) as error:  # a run too short, a block that bounces without end
+        except (ValueError, events.EventError) as error:  # a run too short, a block that bounces without end
             result = replace(result, rigid_check=RigidCheckResult(reasons=(str(error),)))
     if lacks_band(result, model.case, wanted) and not stop():
         reporter.message("band: repeating the run over what is not known of its inputs")
