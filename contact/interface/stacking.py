@@ -9,6 +9,7 @@ from contact.interface.equilibrium import ROUNDING, SettlingError
 from contact.interface.faces import CORNERS, Faces, linearise_points, points_of_joint
 
 MOST_ROUNDS = 50
+ROUNDING_OF_PLACES = 1e-14  #: of a corner, over its distance from the origin
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,7 +108,9 @@ def stacked(
         corner_force = np.tensordot(force, gradient, 2)
         wrong = np.where(carrying, normal < -ROUNDING * weight, springs * gap < -ROUNDING * weight)
         carrying = carrying ^ wrong
-        if not wrong.any() and np.abs(force - before).max() <= ROUNDING * weight:
+        # Springs see the rounding of the positions.
+        rounding = max(ROUNDING * weight, ROUNDING_OF_PLACES * float(np.abs(corner).max() * springs.max()))
+        if not wrong.any() and np.abs(force - before).max() <= rounding:
             return StackedStances(
                 centre=np.column_stack([centre[:, 0], height]),
                 rotation=rotation,

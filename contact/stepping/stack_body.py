@@ -300,15 +300,17 @@ def settle_stack(
     gravity: float,
     place: tuple[float, float] = (0.0, 0.0),
     velocity: tuple[float, float] = (0.0, 0.0),
+    lift_velocity: float = 0.0,
 ) -> None:
-    """Write the initial state of a stack at rest on its floor, and move with the floor.
+    """Write the initial state of a stack at rest on its floor, and moving with a velocity.
 
     Args:
         stack: of boxes in floating frames.
         contact: its laws; the stiffness is written.
         state: written, completed.
         gravity: toward the floor, with the acceleration of the floor upward [m/s2].
-        place, velocity: of the floor, along x and upward [m, m/s].
+        place: of the floor, along x and upward [m]; velocity: of the stack, absolute [m/s].
+        lift_velocity: of the floor, upward [m/s].
 
     Raises:
         SettlingError: the stack does not stand.
@@ -335,7 +337,7 @@ def settle_stack(
     coordinates[:, 3:] = np.einsum("bi,bim->bm", own.reshape(n, -1), flat) / body.stiffness
     rates[:] = 0.0
     rates[:, :2] = velocity
-    complete_compiled(stack, state, place[0], place[1], velocity[1])
+    complete_compiled(stack, state, place[0], place[1], lift_velocity)
     masses = np.ones((n, size))
     masses[:, :2], masses[:, 2] = body.mass[:, None], body.inertia
     external = np.zeros((n, size))

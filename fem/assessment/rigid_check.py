@@ -261,7 +261,7 @@ def _first_elastic_frequency(model: Model) -> float:
     """Of the container [Hz]; infinite for the rigid model."""
     if model.case.solver.model == "full":
         return float(elastic_modes(model.container.elements, 1).frequencies_Hz[0])
-    return math.inf if model.case.solver.model == "rigid" else float(model.frequencies[0])
+    return math.inf if model.case.solver.model == "rigid" else float(model.spectra[0][0])
 
 
 def _slides_at_impact(model: Model, history: History, verdict: Verdict) -> bool:

@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from contact.interface.penalty import contact_frequency
+from contact.stepping.body import ROTATION, State
 from contact.stepping.ledger import (
     BASE_WORK,
     CONTACT_DAMPING,
@@ -22,7 +23,7 @@ from contact.stepping.observables import FALLEN, FORCE_WINDOW, REST, ROCK, ROCKI
 from fem.model.floor import YIELD_STRENGTH, is_steel_shell, plastic_work, steel_capacity
 from fem.model.model import Model
 from fem.results.history import History
-from fem.results.run_result import Energy, Numerics, Verdict
+from fem.results.run_result import BoxResult, Energy, Numerics, Verdict
 from fem.runtime.arrays import FloatArray
 
 MODE_NAMES = {REST: "rest", SLIDE: "slide", ROCK: "rock", SLIDE_ROCK: "slide-rock", FALLEN: "overturned"}
@@ -37,8 +38,12 @@ def outcome_of(model: Model) -> str:
     track = model.run.track[0]
     if math.isfinite(track.overturned_at):
         return "overturned"
+    angle = ROCKING * model.static.slenderness_angle
     slides = model.run.joints[0].max_slip > SLIDING * model.container.mesh.width
-    rocks = track.max_rocking > ROCKING * model.static.slenderness_angle
+    rocks = track.max_rocking > angle
+    for joint in model.run.joints[1:]:  # of a loose stack, what its other boxes do counts as well
+        slides = slides or joint.max_slip > SLIDING * joint.width
+        rocks = rocks or min(joint.max_rotation, joint.max_opening / joint.width) > angle
     return MODE_NAMES[(ROCK if rocks else REST) + (SLIDE if slides else REST)]
 
 
@@ -68,13 +73,15 @@ def verdict_from(
     run, angle, outcome = model.run, model.static.slenderness_angle, outcome_of(model)
     track, joint = _numbers(run.track), _numbers(run.joints)
     capacity = steel_capacity(model.case)
+    boxes = box_results(model)
+    rotation = max((box.max_rotation_rad for box in boxes), default=track.max_rotation)
     sampled = end is not None and end > 0.0
     rocked = outcome in ("rock", "slide-rock")
     return Verdict(
         outcome=outcome,
         modes=_modes_seen(model, track.modes, joint.max_slip, outcome),
-        max_rotation_rad=track.max_rotation,
-        rotation_ratio=rotation_ratio(track.max_rotation, angle),
+        max_rotation_rad=rotation,
+        rotation_ratio=rotation_ratio(rotation, angle),
         max_slip_m=joint.max_slip,
         residual_slip_m=joint.slip,
         slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),
@@ -86,7 +93,7 @@ def verdict_from(
         first_uplift_s=_finite(track.first_uplift),
         first_impact_s=_finite(track.first_impact),
         overturned_at_s=_finite(track.overturned_at),
-        restored=rocked and abs(float(run.old.pose[0])) < ROCKING * angle,
+        restored=rocked and _largest_rotation(run.old) < ROCKING * angle,
         at_rest_s=_finite(float(run.clock[0].rest_since)),
         restitution_first=_restitution(track),
         max_corner_force_N=track.max_corner_force,
@@ -98,7 +105,38 @@ def verdict_from(
         plastic_work_J=None
         if capacity is None
         else plastic_work(track.max_corner_force, capacity, 0.5 * model.base_stiffness),
+        boxes=boxes or None,
+        fell_box=first_fallen_box(model),
     )
+
+
+def box_results(model: Model) -> tuple[BoxResult, ...]:
+    """What each box of a loose stack did, from the floor up; empty for a container that moves as one body."""
+    if not model.container.boxes:
+        return ()
+    return tuple(
+        BoxResult(
+            max_rotation_rad=float(joint.max_rotation),
+            max_slip_m=float(joint.max_slip),
+            residual_slip_m=float(joint.slip),
+            max_opening_m=float(joint.max_opening),
+            fell=math.isfinite(joint.fell_at),
+        )
+        for joint in model.run.joints
+    )
+
+
+def first_fallen_box(model: Model) -> int | None:
+    """Number of the box of a loose stack that fell first, from 1 at the floor; None where none did."""
+    fell_at = model.run.joints["fell_at"]
+    if not model.container.boxes or not np.isfinite(fell_at).any():
+        return None
+    return 1 + int(np.argmin(fell_at))
+
+
+def _largest_rotation(state: State) -> float:
+    """|rotation| of a container, or of the box of a loose stack that is turned most [rad]."""
+    return float(np.abs(state.boxes[:, ROTATION] if len(state.boxes) else state.pose[ROTATION]).max())
 
 
 def _indentation(model: Model) -> float | None:
@@ -154,10 +192,11 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
     clock = run.clock[0]
     mass, stiffness = container.mesh.mass, model.base_stiffness
     # Rayleigh and Ritz: the modes of the free container come first, then the attachment modes of its contact points.
-    elastic = model.case.solver.elastic_modes if model.case.solver.model == "reduced" else 1
+    elastic = model.elastic_modes if model.case.solver.model == "reduced" else 1
+    spectra = model.spectra
     return Numerics(
         unknowns=int(run.old.position.size),
-        contact_nodes=int(container.support.index.size),
+        contact_nodes=int(container.nodes.size if container.boxes else container.support.index.size),
         steps=int(clock.steps),
         rejected=int(clock.rejected),
         newton_iterations=int(clock.contact_iterations),
@@ -171,8 +210,8 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
         contact_frequency_Hz=contact_frequency(mass, stiffness),
         static_penetration_m=mass * model.case.gravity_m_s2 / stiffness,
         max_penetration_m=float(run.track[0].max_penetration),
-        elastic_frequencies_Hz=tuple(model.frequencies[:elastic].tolist()),
-        attachment_frequencies_Hz=tuple(model.frequencies[elastic:].tolist()),
+        elastic_frequencies_Hz=tuple(sorted(f for one in spectra for f in one[:elastic].tolist())),
+        attachment_frequencies_Hz=tuple(sorted(f for one in spectra for f in one[elastic:].tolist())),
         corner_force_window_s=FORCE_WINDOW / run.control.frequency_parameter,
         contents_filter=CONTENTS_FILTER,
         contents_filter_Hz=model.case.output.contents_filter_Hz,

@@ -76,12 +76,13 @@ def contact_penetrates(result: RunResult, case: Case) -> str | None:
     depth, angle = _numerics(result).max_penetration_m, _static(result).slenderness_angle_rad
     if depth is None or not angle:
         return None
-    limit = ROCKING_RATIO * angle * case.container.width_m
+    width = case.stack[0].width
+    limit = ROCKING_RATIO * angle * width
     if depth <= NEAR * limit:
         return None
     return (
         f"penetration reached {1e3 * depth:.3g} mm: that alone tilts the container by "
-        f"{depth / (case.container.width_m * angle):.2g} of its slenderness angle (rocking counts from "
+        f"{depth / (width * angle):.2g} of its slenderness angle (rocking counts from "
         f"{ROCKING_RATIO}); {_stiffer(case)} reduces it"
     )
 

@@ -180,3 +180,75 @@ BOX_RULES = (
     *map(_each, (_proportions, _centroid, _wall, _density, _offset)),
     Rule("container.box", lambda case: not _unsupported(case), _unsupported),
 )
+
+
+def _friction(case: Any) -> dict[str, float]:
+    return joint_friction(case.joints, case.contact)
+
+
+def _of_one_body(place: str, applies: Callable[[Any], bool], reason: str) -> Rule:
+    """A key that has no meaning for loose boxes."""
+    return Rule(place, lambda case: case.container.joints != "loose" or not applies(case), reason)
+
+
+JOINT_RULES = (
+    _of_one_body(
+        "support.kind",
+        lambda case: case.support.kind != "corners",
+        'must be "corners" with container.joints = "loose": every box touches with its corners, on faces and on the '
+        "floor; leave it out",
+    ),
+    _of_one_body(
+        "initial.rotation_rad",
+        lambda case: case.initial.rotation_rad != 0.0,
+        'does not apply to container.joints = "loose": a loose stack starts settled; leave it out, or take "bolted"',
+    ),
+    _of_one_body(
+        "initial.angular_velocity_rad_s",
+        lambda case: case.initial.angular_velocity_rad_s != 0.0,
+        'does not apply to container.joints = "loose": a loose stack starts settled; leave it out, or take "bolted"',
+    ),
+    _of_one_body(
+        "contact.restitution_over_housner",
+        lambda case: case.contact.restitution_over_housner is not None,
+        'does not apply to container.joints = "loose": it is that of one rigid body; give damping_ratio',
+    ),
+    _of_one_body(
+        "output.stop_when_overturned",
+        lambda case: not case.output.stop_when_overturned,
+        'must be true with container.joints = "loose": what a fallen box strikes is not modelled; leave it out',
+    ),
+    Rule(
+        "container.joints",
+        lambda case: case.container.joints != "loose" or case.container.boxes > 1,
+        '= "loose" needs two boxes or more: a stack of one has no joints; give boxes or [[container.box]]',
+    ),
+    Rule(
+        "joints.",
+        lambda case: (
+            case.container.boxes > 1
+            or (case.joints.mu_static, case.joints.mu_kinetic, case.joints.weakening_m) == (None, None, None)
+        ),
+        "is friction between boxes, but a stack of one has no joints; remove the table, or give boxes or "
+        "[[container.box]]",
+    ),
+    Rule(
+        "joints.mu_kinetic",
+        lambda case: _friction(case)["mu_kinetic"] <= _friction(case)["mu_static"],
+        lambda case: (
+            f"must be at most mu_static = {_friction(case)['mu_static']:g} of the joints, got "
+            f"{_friction(case)['mu_kinetic']:g}; leave it out where the two are equal"
+        ),
+    ),
+    Rule(
+        "uncertainty.joints_mu_kinetic",
+        lambda case: (
+            not isinstance(case.uncertainty.joints_mu_kinetic, list)
+            or case.uncertainty.joints_mu_kinetic[1] <= _friction(case)["mu_static"]
+        ),
+        lambda case: (
+            f"must be at most mu_static = {_friction(case)['mu_static']:g} of the joints, got up to "
+            f"{case.uncertainty.joints_mu_kinetic[1]:g}; end the range there, or raise joints.mu_static"
+        ),
+    ),
+)

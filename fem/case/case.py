@@ -15,20 +15,19 @@ import numpy as np
 import numpy.typing as npt
 from pydantic import Field, PrivateAttr
 
-from fem.case.boxes import Box, boxes_of, joint_friction, mass_of_box
+from fem.case.boxes import Box, boxes_of, joint_friction
 from fem.case.data_files import (
     FILE_KEYS,
     DataFile,
     as_named_from,
-    copied_name,
     find_data_files,
     outside_problems,
     place_of,
     without_channel,
 )
 from fem.case.files import CASES, DEFAULT_CASE, Origin, parse_case
-from fem.case.floors import PENALTY_KEYS
 from fem.case.overrides import naming_overrides, parse_override, with_overrides
+from fem.case.resolved import resolved_tables
 from fem.case.rules import CASE_RULES
 from fem.case.tables import (
     OPTIONAL,
@@ -120,13 +119,7 @@ class Case(CaseHeading):
     @property
     def box_mass(self) -> float:
         """Mass of one box with its fill, the mean where boxes differ [kg]."""
-        box = self.container
-        if box.box is not None:
-            return self.mass / len(box.box)
-        mass = mass_of_box(box, self.gravity_m_s2, box.width_m * box.height_m * box.depth_m)
-        if mass is None:
-            raise CaseError("[container] weight_N, mass_kg or density_kg_m3 is missing")  # excluded by a rule
-        return mass
+        return self.stack[0].mass if self.container.box is None else self.mass / self.container.boxes
 
     @property
     def mass(self) -> float:
@@ -149,13 +142,6 @@ class Case(CaseHeading):
     def gravity_downhill(self) -> float:
         """g sin(slope), > 0 toward +x [m/s2]."""
         return self.gravity_m_s2 * math.sin(self.floor.slope)
-
-    @property
-    def mean_areal_density(self) -> float:
-        """Mass over the area of the elevation, the mean over the cells of the mesh [kg/m2]."""
-        if self.container.box is not None:
-            return self.mass / sum(box.width * box.height for box in self.stack)
-        return self.box_mass / (self.container.width_m * self.container.height_m)
 
     @property
     def kinds(self) -> dict[str, object]:
@@ -215,20 +201,6 @@ class Case(CaseHeading):
         """The motion given by `with_motion`; None where a recorded motion has a file."""
         return self._origin.recorded
 
-    @property
-    def _absent(self) -> set[str]:
-        """Tables that say nothing."""
-        level = not self.floor.is_slab and self.floor.slope_percent == 0.0
-        absent = {"vertical": not self.has_vertical, "floor": level}
-        return {name for name, says_nothing in absent.items() if says_nothing}
-
-    @property
-    def _idle_on_slab(self) -> set[str]:
-        """Keys of [contact] that a slab does not use."""
-        if not self.floor.is_slab:
-            return set()
-        return {*PENALTY_KEYS} | ({"damping_ratio"} if self.contact_damping_ratio is None else set())
-
     def _file_names(self) -> dict[str, str | None]:
         named = {"container.mesh_file": self.container.mesh_file}
         if self.recorded is not None:
@@ -248,45 +220,7 @@ class Case(CaseHeading):
 
     def resolved(self) -> dict[str, Any]:
         """Every key that is used, defaults included, by table; files are named as their copies in the results are."""
-        document = self.model_dump(by_alias=True, exclude=set(TABLES))
-        for name in TABLES:
-            table = getattr(self, name)
-            if table is None or name in self._absent:
-                continue  # a case without vertical motion, or on a level rigid floor, keeps its file and its hash
-            idle = table.idle_keys() | (self._idle_on_slab if name == "contact" else set())
-            document[name] = {
-                key: value
-                for key, value in table.model_dump().items()
-                if value is not None and key not in idle
-            }
-        self._resolve_stack(document)
-        for dotted in FILE_KEYS:
-            name, _, key = dotted.partition(".")
-            if key in document.get(name, {}):
-                document[name][key] = copied_name(self.folder, document[name][key])
-        return document
-
-    def _resolve_stack(self, document: dict[str, Any]) -> None:
-        """Write what differs from equal bolted boxes; a case of these keeps its file and its hash."""
-        container = document["container"]
-        if self.container.is_loose:
-            document["joints"] = self.joint_friction
-        else:
-            del container["joints"], document["joints"]
-        if self.container.box is None:
-            return
-        del container["boxes"], container["box"]
-        container["box"] = [
-            {
-                "width_m": box.width,
-                "height_m": box.height,
-                "mass_kg": box.mass,
-                "centroid_m": box.centroid,
-                **({} if box.wall is None else {"wall_m": box.wall}),
-                "offset_m": table.offset_m,
-            }
-            for box, table in zip(self.stack, self.container.box, strict=True)
-        ]
+        return resolved_tables(self)
 
     def with_values(self, values: Mapping[str, Any]) -> "Case":
         """This case with dotted keys set, such as `contact.mu_static`; alternatives are replaced.

@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from fem.case import quantities as q
-from fem.case.boxes import BOX_RULES, boxes_of, joint_friction
+from fem.case.boxes import BOX_RULES, JOINT_RULES, boxes_of
 from fem.case.floors import FLOOR_CASE_RULES
 from fem.case.motion_rules import harmonic_angular_frequency
 from fem.case.problem import Rule, is_a_file_name, outside_the_folder
@@ -129,6 +129,7 @@ SOLVER_RULES = (
 #: keys of [uncertainty] that hold a range, and what both ends are
 RANGES = {
     "mu_kinetic": q.FRICTION,
+    "joints_mu_kinetic": q.FRICTION,
     "weakening_m": q.WEAKENING,
     "stribeck_velocity_m_s": q.STRIBECK_VELOCITY,
     "normal_penalty_Pa_m": q.PENALTY,
@@ -288,35 +289,6 @@ def _frames(case: Any) -> float:
     interval = case.output.fields_s
     return longest_time(case) / float(interval) + 1.0 if interval else 0.0
 
-
-def _friction(case: Any) -> dict[str, float]:
-    return joint_friction(case.joints, case.contact)
-
-
-JOINT_RULES = (
-    Rule(
-        "container.joints",
-        lambda case: case.container.joints != "loose" or case.container.boxes > 1,
-        '= "loose" needs two boxes or more: a stack of one has no joints; give boxes or [[container.box]]',
-    ),
-    Rule(
-        "joints.",
-        lambda case: (
-            case.container.boxes > 1
-            or (case.joints.mu_static, case.joints.mu_kinetic, case.joints.weakening_m) == (None, None, None)
-        ),
-        "is friction between boxes, but a stack of one has no joints; remove the table, or give boxes or "
-        "[[container.box]]",
-    ),
-    Rule(
-        "joints.mu_kinetic",
-        lambda case: _friction(case)["mu_kinetic"] <= _friction(case)["mu_static"],
-        lambda case: (
-            f"must be at most mu_static = {_friction(case)['mu_static']:g} of the joints, got "
-            f"{_friction(case)['mu_kinetic']:g}; leave it out where the two are equal"
-        ),
-    ),
-)
 
 CASE_RULES = (
     *FLOOR_CASE_RULES,

@@ -293,6 +293,9 @@ class UncertaintyTable(CaseTable):
     mu_kinetic: Unknown = case_key(
         "of kinetic friction; default: as given to mu_static", None, example=[0.2, 0.4]
     )
+    joints_mu_kinetic: Unknown = case_key(
+        "loose joints: of kinetic friction; default: as given to mu_static", None, example=[0.2, 0.4]
+    )
     weakening_m: Unknown = case_key(
         "of the contact; default: 0 to 5 mm where mu_kinetic < mu_static", None, example=[0.0, 0.005]
     )

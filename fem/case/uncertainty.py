@@ -36,6 +36,7 @@ TURN = 2.0 * math.pi
 MOVES = 1e-9  #: cosine of the phase of a floor that starts at rest
 
 MU_KINETIC, WEAKENING, STRIBECK = "contact.mu_kinetic", "contact.weakening_m", "contact.stribeck_velocity_m_s"
+JOINTS_MU_KINETIC = "joints.mu_kinetic"  #: between loose boxes
 START, RAMP, TOLERANCE = "motion.start", "motion.ramp_cycles", "solver.energy_tolerance"
 PENALTY, DASHPOT, RESTITUTION, MATERIAL = (
     "contact.normal_penalty_Pa_m",
@@ -46,7 +47,7 @@ PENALTY, DASHPOT, RESTITUTION, MATERIAL = (
 STRENGTH, MODULUS = "floor.bearing_strength_Pa", "floor.youngs_modulus_Pa"
 #: every input that may vary, those first that decide most often
 INPUTS = (
-    *(MU_KINETIC, WEAKENING, STRIBECK, START, RAMP),
+    *(MU_KINETIC, WEAKENING, STRIBECK, JOINTS_MU_KINETIC, START, RAMP),
     *(PENALTY, STRENGTH, MODULUS, DASHPOT, RESTITUTION, MATERIAL, TOLERANCE),
 )
 
@@ -232,6 +233,14 @@ def _ranges(case: Case, penalty: float | None) -> Iterator[InputRange]:
         )
         yield _numbers(
             STRIBECK, velocity, stated.stribeck_velocity_m_s, (0.0, max(STRIBECK_M_S, velocity)), power=2.0
+        )
+    if container.is_loose:
+        between = case.joint_friction
+        friction = (between["mu_kinetic"], between["mu_static"])
+        low, high = _ends(stated.joints_mu_kinetic, between["mu_kinetic"], friction)
+        middle = _short(0.5 * (low + high))
+        yield _numbers(
+            JOINTS_MU_KINETIC, between["mu_kinetic"], stated.joints_mu_kinetic, friction, (middle,)
         )
     yield from _beginnings(case)
     yield from _impacts(case, penalty)

@@ -1,10 +1,11 @@
 """The container of a case, discretised: mesh, elements, contact nodes, elastic modes."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from contact.interface.faces import TOUCHING, make_faces
 from contact.interface.support import Support
 from fem.case.case import Case
 from fem.model.geometry import build_container, node_count
@@ -18,6 +19,22 @@ from fem.solid.modes import ElasticModes, elastic_modes, signs_of
 from fem.solid.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
 from mesh.container import ContainerMesh
 from mesh.region import Region
+from mesh.stack import box_mesh
+
+ROUNDED = 9  #: decimals of the numbers by which boxes are equal
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BoxModel:
+    """One box of a loose stack, discretised on z = 0 and centred on x = 0; equal boxes share one."""
+
+    mesh: ContainerMesh
+    elements: FiniteElements
+    corners: IntArray  #: (4,) nodes: lower left and right, upper left and right
+    monitors: IntArray  #: nodes whose motion is observed
+    response: StaticResponse  #: to forces at the corners; none of a rigid box
+    basis: ReducedBasis  #: elastic modes of a reduced box; none of the others
+    first: float  #: lowest elastic angular frequency; infinite for a rigid box [rad/s]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -27,25 +44,56 @@ class Container:
     mesh: ContainerMesh
     elements: FiniteElements
     support: Support
-    nodes: IntArray  #: (n_c,) contact nodes, those of the base first, by rising x
+    nodes: IntArray  #: (n_c,) contact nodes, those of the base first, by rising x; see `BoxModel` for a loose stack
     monitors: IntArray  #: (n_m,) nodes whose motion is observed
-    response: StaticResponse
+    response: StaticResponse  #: none of a loose stack
     basis: ReducedBasis  #: elastic modes of a reduced model; none of the others
     free_modes: int  #: of the basis, the lowest so many are those of the free container
     first: float  #: lowest elastic angular frequency; infinite for a rigid container [rad/s]
+    boxes: tuple[BoxModel, ...] = ()  #: of a loose stack, from the floor up
+    box_nodes: tuple[IntArray, ...] = ()  #: .. the node of the container for each node of a box
+
+    @property
+    def corners(self) -> IntArray:
+        """Nodes at the corners of all boxes of a loose stack, in the order of `contact.interface.faces`, (4 N,)."""
+        found = [nodes[box.corners] for box, nodes in zip(self.boxes, self.box_nodes, strict=True)]
+        return np.concatenate(found)
 
     def damping(self, ratio: float) -> float:
         """a of C = a K [s], with this damping ratio of the first elastic mode."""
         return 2.0 * ratio / self.first
 
     def lowest_modes(self, count: int) -> ElasticModes:
-        """The lowest elastic modes of the free container: those of a reduced model, or computed."""
+        """The lowest elastic modes of the free container: those of a reduced model, or computed.
+
+        Of a loose stack those of its boxes, of equal boxes once.
+        """
+        if self.boxes:
+            return self._modes_of_boxes(count)
         if count > self.free_modes:
             return elastic_modes(self.elements, count)
         basis = self.basis
         shapes = basis.shapes[:count]
         frequencies = basis.angular_frequencies[:count] / (2.0 * math.pi)
         return ElasticModes(frequencies_Hz=frequencies, shapes=shapes * signs_of(shapes))
+
+    def _modes_of_boxes(self, count: int) -> ElasticModes:
+        frequencies, shapes = [], []
+        distinct = {id(box): (box, nodes) for box, nodes in zip(self.boxes, self.box_nodes, strict=True)}
+        for box, nodes in distinct.values():
+            found = elastic_modes(box.elements, count)
+            frequencies.append(found.frequencies_Hz)
+            shapes.append(np.zeros((count, *self.elements.nodes.shape)))
+            shapes[-1][:, nodes] = found.shapes
+        rising = np.argsort(np.concatenate(frequencies), kind="stable")[:count]
+        return ElasticModes(
+            frequencies_Hz=np.concatenate(frequencies)[rising], shapes=np.concatenate(shapes)[rising]
+        )
+
+
+def modes_of_a_body(case: Case) -> int:
+    """Elastic modes of each body: the boxes of a loose stack share those of the case, rounded up."""
+    return math.ceil(case.solver.elastic_modes / case.container.bodies)
 
 
 def discretise(case: Case, mesh: ContainerMesh | None = None, cache: ArrayCache = no_cache) -> Container:
@@ -66,17 +114,13 @@ def discretise(case: Case, mesh: ContainerMesh | None = None, cache: ArrayCache 
         poisson_ratio=case.container.poisson_ratio,
         order=case.solver.order,
     )
+    if case.container.is_loose:
+        return _loose(case, mesh, elements, support, cache)
     nodes = elements.base_nodes[support.index]
     if not case.output.stop_when_overturned:  # lying on its side it touches with the upper corners, too
         nodes = np.concatenate([nodes, _upper_corners(elements)])
     response = static_response(elements, nodes, cache)
-    basis = ReducedBasis(angular_frequencies=np.zeros(0), shapes=np.zeros((0, *elements.nodes.shape)))
-    free_modes, first = 0, math.inf
-    if case.solver.model == "reduced":
-        basis = reduced_basis(elements, response, case.solver.elastic_modes, cache)
-        free_modes, first = case.solver.elastic_modes, float(basis.angular_frequencies[0])
-    elif case.solver.model == "full":
-        first = float(elastic_modes(elements, 1, cache).angular_frequencies[0])
+    basis, first = _elastic(case, elements, response, modes_of_a_body(case), cache)
     return Container(
         mesh=mesh,
         elements=elements,
@@ -85,7 +129,92 @@ def discretise(case: Case, mesh: ContainerMesh | None = None, cache: ArrayCache 
         monitors=_monitors(elements),
         response=response,
         basis=basis,
-        free_modes=free_modes,
+        free_modes=case.solver.elastic_modes if case.solver.model == "reduced" else 0,
+        first=first,
+    )
+
+
+def _elastic(
+    case: Case, elements: FiniteElements, response: StaticResponse, modes: int, cache: ArrayCache
+) -> tuple[ReducedBasis, float]:
+    """Elastic modes of a reduced model, and the lowest angular frequency [rad/s]."""
+    none = _no_modes(elements)
+    if case.solver.model == "reduced":
+        basis = reduced_basis(elements, response, modes, cache)
+        return basis, float(basis.angular_frequencies[0])
+    if case.solver.model == "full":
+        return none, float(elastic_modes(elements, 1, cache).angular_frequencies[0])
+    return none, math.inf
+
+
+def _no_modes(elements: FiniteElements) -> ReducedBasis:
+    return ReducedBasis(angular_frequencies=np.zeros(0), shapes=np.zeros((0, *elements.nodes.shape)))
+
+
+def _no_response(elements: FiniteElements) -> StaticResponse:
+    return StaticResponse(displacement=np.zeros((0, *elements.nodes.shape)), compliance=np.zeros((0, 0)))
+
+
+def _loose(
+    case: Case, mesh: ContainerMesh, elements: FiniteElements, support: Support, cache: ArrayCache
+) -> Container:
+    """A container of boxes that share no node; boxes with equal meshes are analysed once."""
+    known: dict[tuple[bytes, ...], BoxModel] = {}
+    boxes, nodes = [], []
+    for number in range(case.container.boxes):
+        own = box_mesh(mesh, number)
+        key = tuple(
+            np.round(part, ROUNDED).tobytes()
+            for part in (own.points, own.quads, own.region, own.thickness, own.areal_density)
+        )
+        if key not in known:
+            known[key] = _box(case, own, lambda name, *rest, k=number: cache(f"box {k} {name}", *rest))
+        boxes.append(known[key])
+        place = np.empty(len(boxes[-1].elements.nodes), dtype=np.int64)
+        place[boxes[-1].elements.cells] = elements.cells[mesh.box == number]
+        nodes.append(place)
+    container = Container(
+        mesh=mesh,
+        elements=elements,
+        support=support,
+        nodes=np.zeros(0, dtype=np.int64),
+        # Those of the uppermost box first, with its upper corners; then box by box downwards.
+        monitors=np.concatenate(
+            [
+                place[box.monitors[0 if place is nodes[-1] else 2 :]]
+                for box, place in zip(boxes, nodes, strict=True)
+            ][::-1]
+        ),
+        response=_no_response(elements),
+        basis=_no_modes(elements),
+        free_modes=0,
+        first=min(box.first for box in boxes),
+        boxes=tuple(boxes),
+        box_nodes=tuple(nodes),
+    )
+    touching = make_faces(elements.nodes[container.corners], np.ones(0), np.ones(0)).corner[:, TOUCHING]
+    return replace(container, nodes=container.corners[touching])
+
+
+def _box(case: Case, mesh: ContainerMesh, cache: ArrayCache) -> BoxModel:
+    elements = assemble(
+        mesh,
+        youngs_modulus=case.container.youngs_modulus_Pa,
+        poisson_ratio=case.container.poisson_ratio,
+        order=case.solver.order,
+    )
+    corners = np.concatenate([elements.base_nodes[[0, -1]], _upper_corners(elements)])
+    response = _no_response(elements)
+    if case.solver.model != "rigid":
+        response = static_response(elements, corners, cache)
+    basis, first = _elastic(case, elements, response, modes_of_a_body(case), cache)
+    return BoxModel(
+        mesh=mesh,
+        elements=elements,
+        corners=corners,
+        monitors=_monitors(elements),
+        response=response,
+        basis=basis,
         first=first,
     )
 

@@ -9,15 +9,21 @@ from contact.interface.equilibrium import SettlingError, Stance, standing, tilte
 from contact.interface.laws import ELASTIC_STICK, REGULARISED
 from contact.interface.penalty import relaxation_time
 from contact.interface.workspace import Contact
+from contact.stepping.body import ROTATION
+from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from fem.case.case import Case, CaseError
 from fem.model.container import Container
 from fem.model.floor import slab_of
-from fem.model.support import normal_penalty
+from fem.model.loose_stack import make_stack_state, own_stiffness, settle, stack_of, with_joints
+from fem.model.support import normal_penalty, steel_penalty
 from fem.model.validity import require_bearing, require_stiff_contact, require_stiff_container
 from fem.runtime.arrays import FloatArray
+from fem.solid.assembly import FiniteElements
 from fem.solid.elasticity import least_principal_strain
-from fem.solid.nodal_body import FullBody, rotation_matrix
+from fem.solid.nodal_body import Body, FullBody, rotation_matrix
+from fem.solid.nodal_stack import FullStack
+from fem.solid.reduction import StaticResponse
 from mesh.container import ContainerMesh
 
 #: error of a base point at which the iterations of a step stop, over the static penetration
@@ -31,9 +37,9 @@ class Equilibrium:
     penalty: float  #: normal stiffness over width times depth [Pa/m]
     damping_ratio: float  #: of the contact
     gravity: float  #: toward the floor, with its upward acceleration at t = 0 [m/s2]
-    contact: Contact
-    body: ModalBody | FullBody
-    stance: Stance
+    contact: Contact  #: of a loose stack at the full weight of all its points
+    body: Body
+    stance: Stance | None  #: None of a loose stack, which is settled by `settle_stack`
 
 
 def find_equilibrium(case: Case, container: Container, gravity: float) -> Equilibrium:
@@ -56,16 +62,23 @@ def find_equilibrium(case: Case, container: Container, gravity: float) -> Equili
     springs = container.support.normal_stiffness(penalty)
     base = springs.size
     require_stiff_contact(case, container.mesh, float(springs.sum()))
-    springs = np.concatenate([springs, np.full(container.nodes.size - base, 0.5 * springs.sum())])
+    if not container.boxes:
+        springs = np.concatenate([springs, np.full(container.nodes.size - base, 0.5 * springs.sum())])
     contact = _contact(case, container.mesh, springs, base)
+    stance: Stance | None = None
+    body: Body
     try:
-        stance = _stance(case, container, contact, gravity)
+        if container.boxes:
+            contact = with_joints(case, contact, steel_penalty(case, container.mesh))
+            body, force, compression = _settled_stack(case, container, contact, gravity)
+        else:
+            stance = _stance(case, container, contact, gravity)
+            body, force = _body(case, container, contact), stance.force
+            compression = _compression(container, stance) if case.solver.model != "rigid" else 0.0
     except SettlingError as error:
         raise CaseError(f"[initial] no equilibrium at the start: {error}") from error
-    require_bearing(case, container.mesh, float(np.max(stance.force[:, 1] / contact.cap)))
-    if case.solver.model != "rigid":
-        require_stiff_container(case, _compression(container, stance))
-    body = _body(case, container, contact)
+    require_bearing(case, container.mesh, float(np.max(force[:, 1] / contact.cap)))
+    require_stiff_container(case, compression)
     return Equilibrium(
         penalty=penalty,
         damping_ratio=contact.relaxation_time
@@ -77,10 +90,26 @@ def find_equilibrium(case: Case, container: Container, gravity: float) -> Equili
     )
 
 
+def _settled_stack(
+    case: Case, container: Container, contact: Contact, gravity: float
+) -> tuple[LooseStack | FullStack, FloatArray, float]:
+    """A loose stack, its contact forces at rest (n, 2) [N] and the largest compressive strain of its boxes."""
+    penetration = container.mesh.mass * case.gravity_toward_floor / float(contact.normal_stiffness[:2].sum())
+    stack = stack_of(case, container, contact, POINT_TOLERANCE * penetration)
+    state = make_stack_state(stack)
+    forces = settle(stack, own_stiffness(contact), state, gravity=gravity)
+    strains = [
+        _strain(box.elements, box.response, force, float(state.boxes[b, ROTATION]))
+        for b, (box, force) in enumerate(zip(container.boxes, forces, strict=True))
+    ]
+    return stack, state.force, max(strains) if case.solver.model != "rigid" else 0.0
+
+
 def same_equilibrium(case: Case, other: Case) -> bool:
     """Whether two cases of one container share an equilibrium, if their floors begin with one vertical acceleration."""
     return (
         case.contact == other.contact
+        and case.joints == other.joints
         and case.floor == other.floor
         and case.initial == other.initial
         and case.container.damping_ratio == other.container.damping_ratio
@@ -91,9 +120,15 @@ def same_equilibrium(case: Case, other: Case) -> bool:
 
 def _compression(container: Container, stance: Stance) -> float:
     """Largest compressive strain of the container under its contact forces [-]."""
-    force = stance.with_points(container.nodes.size).force @ rotation_matrix(stance.rotation)
-    displacement = np.tensordot(force.ravel(), container.response.displacement, axes=1)
-    return -least_principal_strain(container.elements.displacement_gradient(displacement))
+    force = stance.with_points(container.nodes.size).force
+    return _strain(container.elements, container.response, force, stance.rotation)
+
+
+def _strain(elements: FiniteElements, response: StaticResponse, force: FloatArray, rotation: float) -> float:
+    """Largest compressive strain under forces (n, 2) [N] at the points of the response [-]."""
+    own = (force @ rotation_matrix(rotation)).ravel()
+    displacement = np.tensordot(own[: len(response.displacement)], response.displacement, axes=1)
+    return -least_principal_strain(elements.displacement_gradient(displacement))
 
 
 def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) -> Contact:

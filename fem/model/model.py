@@ -18,20 +18,23 @@ from contact.stepping import modal_kernels
 from contact.stepping.body import State, make_state
 from contact.stepping.integrator import REACHED
 from contact.stepping.ledger import spring_energy
+from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.observables import record_start
 from contact.stepping.outcome import run_to_end
 from contact.stepping.state import RunState, make_run, make_samples
 from fem.case.case import Case, CaseError
 from fem.model.calibration import found_contact
-from fem.model.container import Container, discretise
+from fem.model.container import Container, discretise, modes_of_a_body
 from fem.model.equilibrium import Equilibrium, find_equilibrium
+from fem.model.loose_stack import joints_of_stack, make_stack_state, own_stiffness, settle
 from fem.model.motion import build_motions, longest_run, peaks_in_run, rest_sought_from
 from fem.model.static_checks import StaticChecks, static_checks_of
 from fem.model.step_size import control_of, largest_step_of, scheme_of
 from fem.model.validity import require_stiff_corner
 from fem.runtime.arrays import FloatArray
-from fem.solid.nodal_body import FullBody
+from fem.solid.nodal_body import Body, FullBody
+from fem.solid.nodal_stack import FullStack
 from fem.solid.reduction import StaticResponse
 
 HISTORY_CHUNK, FRAME_CHUNK = 1024, 64
@@ -66,7 +69,7 @@ class Model:
         return self.equilibrium.damping_ratio
 
     @property
-    def body(self) -> ModalBody | FullBody:
+    def body(self) -> Body:
         """What is stepped."""
         return self.equilibrium.body
 
@@ -76,11 +79,18 @@ class Model:
         return float(self.run.contact.normal_stiffness[: self.container.support.index.size].sum())
 
     @property
-    def frequencies(self) -> FloatArray:
-        """Elastic frequencies of the model's modes [Hz]: all of `reduced`, the first of `full`, none of `rigid`."""
+    def spectra(self) -> list[FloatArray]:
+        """Elastic frequencies of each body, rising [Hz]: all of `reduced`, the first of `full`, none of `rigid`."""
         container = self.container
-        full = np.array([container.first]) if self.case.solver.model == "full" else np.zeros(0)
-        return np.append(container.basis.angular_frequencies, full) / (2.0 * np.pi)
+        if self.case.solver.model == "full":
+            return [np.array([container.first]) / (2.0 * np.pi)]
+        bodies = container.boxes or (container,)
+        return [body.basis.angular_frequencies / (2.0 * np.pi) for body in bodies]
+
+    @property
+    def elastic_modes(self) -> int:
+        """Modes of each free body of a reduced model, before its attachment modes."""
+        return modes_of_a_body(self.case)
 
 
 def build_model(
@@ -109,14 +119,23 @@ def build_model(
     largest, breaks = largest_step_of(case, static, motion, vertical)
     control = control_of(case, container, static, largest, contact)
     scheme = scheme_of(case, container, equilibrium.penalty, control, contact)
-    full = isinstance(body, FullBody)
-    coordinates = body.coordinates if isinstance(body, FullBody) else 3 + body.stiffness.size
-    old, new = (make_state(coordinates, nodes.size, container.monitors.size) for _ in range(2))
+    full = case.solver.model == "full"
     x, velocity_x, _ = floor_motion(compiled_motion, 0.0)
-    stance = equilibrium.stance.moved(x, z)
-    if case.starts_moving:
-        stance = stance.moving(velocity_x, velocity_z)
-    _place(body, old, stance, container.response, (x, z, velocity_z), contact)
+    velocity = (velocity_x, velocity_z) if case.starts_moving else (0.0, 0.0)
+    if isinstance(body, LooseStack | FullStack):
+        contact = own_stiffness(contact)
+        old, new = make_stack_state(body), make_stack_state(body)
+        velocity = velocity[0] + case.initial.velocity_m_s, velocity[1]
+        settle(body, contact, old, gravity=gravity, place=(x, z), velocity=velocity, lift_velocity=velocity_z)
+    else:
+        assert equilibrium.stance is not None
+        coordinates = 3 + body.stiffness.size if isinstance(body, ModalBody) else body.coordinates
+        old, new = (make_state(coordinates, nodes.size, container.monitors.size) for _ in range(2))
+        stance = equilibrium.stance.moved(x, z)
+        if case.starts_moving:
+            stance = stance.moving(*velocity)
+        _place(body, old, stance, container.response, (x, z, velocity_z), contact)
+    coordinates = old.position.size
     require_stiff_corner(
         case,
         width=mesh.width,
@@ -124,7 +143,7 @@ def build_model(
         stored=float(spring_energy(contact, old.point, old.stick)) / control.reference_energy,
     )
     interval, fields = case.output.history_s, case.output.fields_s
-    stacked = case.container.boxes > 1  # the forces in its joints follow from the motion
+    stacked = case.container.bolted_joints > 0  # the forces in its joints follow from the motion
     run = make_run(
         scheme=scheme,
         contact=contact,
@@ -140,6 +159,7 @@ def build_model(
             _chunk(FULL_HISTORY_CHUNK if full else HISTORY_CHUNK, control.largest_step, interval),
             nodes.size,
             columns=True,
+            boxes=case.container.bodies,
             position=0 if full and not stacked else coordinates,
             velocity=coordinates if stacked else 0,
         ),
@@ -150,6 +170,7 @@ def build_model(
             position=coordinates if fields > 0.0 else 0,
             velocity=coordinates if fields > 0.0 else 0,
         ),
+        joints=joints_of_stack(container) if container.boxes else None,
     )
     record_start(run.track[0], control, old)
     return Model(

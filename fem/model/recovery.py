@@ -7,10 +7,11 @@ from functools import cached_property
 import numpy as np
 
 from fem.model.model import Model
-from fem.runtime.arrays import FloatArray
+from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import FiniteElements
 from fem.solid.elasticity import von_mises
-from fem.solid.nodal_body import FullBody, rotation_matrix
+from fem.solid.nodal_body import rotation_matrix
+from fem.solid.reduction import ReducedBasis
 
 #: largest elastic displacement used to probe the stress of a mode, over the size of the container
 PROBE = 1e-6
@@ -30,11 +31,11 @@ class NodalFields:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Recovery:
-    """Fields of a model from its coordinates (for `full` these are the nodes' positions)."""
+class BodyRecovery:
+    """Fields of one body from its coordinates (for `full` these are the nodes' positions)."""
 
     elements: FiniteElements
-    centroid: FloatArray  #: (2,) of the undeformed container [m]
+    centroid: FloatArray  #: (2,) of the undeformed body [m]
     shapes: FloatArray  #: (m, n, 2) elastic modes [1/sqrt(kg)]
     full: bool
     angular_frequencies: FloatArray  #: (m,) of the modes [rad/s]
@@ -87,9 +88,80 @@ class Recovery:
         return np.asarray(np.linalg.norm(np.moveaxis(rooted, -1, 0), ord=2, axis=(1, 2)))
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PlacedBody:
+    """One body of a model: its coordinates among all, its nodes, and where it stands undeformed."""
+
+    body: BodyRecovery
+    coordinates: slice
+    nodes: IntArray | slice  #: of the container, for each node of the body
+    place: FloatArray  #: (2,) of the body's own origin [m]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Recovery:
+    """Fields of a model from its coordinates: of one body, or of the boxes of a loose stack."""
+
+    elements: FiniteElements  #: of the container
+    full: bool
+    bodies: tuple[PlacedBody, ...]
+
+    def frame(self, position: FloatArray, velocity: FloatArray) -> NodalFields:
+        """Fields for one row of coordinates and their rates."""
+        parts = [
+            (one, one.body.frame(position[one.coordinates], velocity[one.coordinates])) for one in self.bodies
+        ]
+        if len(parts) == 1:
+            return parts[0][1]
+        displacement, speed = np.empty_like(self.elements.nodes), np.empty_like(self.elements.nodes)
+        stress = np.zeros(len(displacement))
+        for one, part in parts:
+            displacement[one.nodes], speed[one.nodes] = part.displacement - one.place, part.velocity
+            if part.von_mises is not None:
+                stress[one.nodes] = part.von_mises
+        stressed = any(part.von_mises is not None for _, part in parts)
+        return NodalFields(displacement=displacement, velocity=speed, von_mises=stress if stressed else None)
+
+    def largest_von_mises(self, position: FloatArray) -> float:
+        """Largest nodal von Mises stress over rows of coordinates (n_s, n_d) [Pa]; 0 without modes."""
+        return max(one.body.largest_von_mises(position[:, one.coordinates]) for one in self.bodies)
+
+
 def recovery_of(model: Model) -> Recovery:
     """Recovery of the fields of this model."""
-    elements, basis = model.container.elements, model.container.basis
+    container, full = model.container, model.case.solver.model == "full"
+    if not container.boxes:
+        centroid = np.asarray(container.mesh.centroid)
+        whole = PlacedBody(
+            body=_of_body(container.elements, container.basis, centroid, full=full),
+            coordinates=slice(None),
+            nodes=slice(None),
+            place=np.zeros(2),
+        )
+        return Recovery(elements=container.elements, full=full, bodies=(whole,))
+    known: dict[int, BodyRecovery] = {}
+    bodies, start = [], 0
+    size = 3 + max(box.basis.angular_frequencies.size for box in container.boxes)
+    for box, nodes in zip(container.boxes, container.box_nodes, strict=True):
+        if id(box) not in known:
+            centroid = np.asarray(box.mesh.centroid)
+            known[id(box)] = _of_body(box.elements, box.basis, centroid, full=full)
+        own = 2 * len(nodes) if full else 3 + box.basis.angular_frequencies.size
+        bodies.append(
+            PlacedBody(
+                body=known[id(box)],
+                coordinates=slice(start, start + own),
+                nodes=nodes,
+                place=container.elements.nodes[nodes[0]] - box.elements.nodes[0],
+            )
+        )
+        start += own if full else size
+    return Recovery(elements=container.elements, full=full, bodies=tuple(bodies))
+
+
+def _of_body(
+    elements: FiniteElements, basis: ReducedBasis, centroid: FloatArray, *, full: bool
+) -> BodyRecovery:
     shapes = basis.shapes
     stress = np.zeros((3, len(shapes), len(elements.nodes)))
     size = float(np.ptp(elements.nodes, axis=0).max())
@@ -98,11 +170,11 @@ def recovery_of(model: Model) -> Recovery:
         # The difference of both signs leaves the part of the stress that is linear in the displacement.
         both = elements.nodal_stress(probe * shape) - elements.nodal_stress(-probe * shape)
         stress[:, k] = both.T / (2.0 * probe)
-    return Recovery(
+    return BodyRecovery(
         elements=elements,
-        centroid=np.asarray(model.container.mesh.centroid),
+        centroid=centroid,
         shapes=shapes,
-        full=isinstance(model.body, FullBody),
+        full=full,
         angular_frequencies=basis.angular_frequencies,
         _stress=stress,
     )

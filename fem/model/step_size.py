@@ -10,6 +10,7 @@ from contact.stepping.scheme import Scheme, generalised_alpha, newmark
 from contact.stepping.state import Control
 from fem.case.case import Case, CaseError
 from fem.model.container import Container
+from fem.model.loose_stack import struck_mass
 from fem.model.motion import longest_run, motion_span
 from fem.model.static_checks import StaticChecks
 from fem.runtime.arrays import FloatArray
@@ -92,9 +93,12 @@ def _apart(instants: list[float], end: float, least: float) -> FloatArray:
 def _struck_mass(case: Case, container: Container) -> float:
     """Effective mass of a corner in the first instant of an impact [kg].
 
-    For a rigid container that of the whole, rotating body; for an elastic one little more than the corner's own.
+    For a rigid container that of the whole, rotating body; for an elastic one little more than the corner's own. Of a
+    loose stack the least of all boxes.
     """
     mesh, corner = container.mesh, container.nodes[0]
+    if container.boxes and case.solver.model != "full":
+        return min(struck_mass(box, corner) for box in container.boxes for corner in range(box.corners.size))
     if case.solver.model == "full":
         return float(container.elements.nodal_mass[corner])
     arm = container.elements.nodes[corner, 0] - mesh.centroid[0]

@@ -31,8 +31,11 @@ def build_support(case: Case, mesh: ContainerMesh) -> Support:
 
 def normal_penalty(case: Case, mesh: ContainerMesh) -> float:
     """Normal penalty of the case; a slab has its own, "auto" chooses it for the mesh [Pa/m]."""
-    if case.floor.is_slab:
-        return slab_penalty(case, mesh)
+    return slab_penalty(case, mesh) if case.floor.is_slab else steel_penalty(case, mesh)
+
+
+def steel_penalty(case: Case, mesh: ContainerMesh) -> float:
+    """Normal penalty of a rigid floor, and of the faces between loose boxes on any floor [Pa/m]."""
     given = case.contact.normal_penalty_Pa_m
     if given != "auto":
         return given

@@ -56,6 +56,11 @@ class ResponseRequest:
                 "of the horizontal motion is swept, and a vertical one would have to be changed with it; "
                 "take --set vertical.kind=none, or a sweep over motion.frequency_Hz"
             )
+        if self.case.container.is_loose:
+            raise CaseError(
+                '[container] joints must be "bolted" for a response curve, which follows one body; take a sweep over '
+                "motion.frequency_Hz"
+            )
         if solver.model == "full":
             raise CaseError(
                 '[solver] model = "full" would take days over the hundreds of periods of a response curve; '

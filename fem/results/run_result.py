@@ -226,6 +226,11 @@ class Verdict(JsonBlock):
 
     written_where_given = frozenset({"boxes", "fell_box", "corner_capacity_N", "plastic_work_J"})
 
+    def to_json(self) -> dict[str, Any]:
+        """The block; of a loose stack with the box that fell, or null."""
+        block = super().to_json()
+        return block if self.boxes is None else block | {"fell_box": self.fell_box}
+
     @property
     def max_joint_slip_m(self) -> float | None:
         """Largest slip of a box on another, of a loose stack."""

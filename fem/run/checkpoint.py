@@ -18,13 +18,14 @@ from numpy.typing import NDArray
 
 from contact.interface.workspace import Workspace
 from contact.stepping.body import State
+from contact.stepping.loose_stack import LooseStack
+from contact.stepping.modal_body import ModalBody
 from contact.stepping.state import RunState
 from fem.model.model import Model
 from fem.results.archive import CheckpointError, read_checkpoint, write_archive
 from fem.run.recorder import Recorder
 from fem.run.simulation import BEGINNING, Progress
 from fem.runtime.identity import program_identity
-from fem.solid.nodal_body import FullBody
 
 #: wall time between checkpoints [s]; the stepping pauses every five seconds or so, and writing frames takes time, too
 CHECKPOINT_S = 15.0
@@ -52,7 +53,7 @@ class SavedState:
             np.copyto(array, self.arrays[name])
         for name, array in _waiting(model.run, model.run.clock).items():  # the clock is restored by now
             np.copyto(array, self.arrays[name])
-        if isinstance(model.body, FullBody):
+        if not isinstance(model.body, ModalBody | LooseStack):
             model.body.recall(_named(self.arrays, BODY))
         recorder.recall(_named(self.arrays, RECORDED))
 
@@ -131,7 +132,7 @@ def misfit(path: Path, reason: str) -> CheckpointError:
 def state_of(model: Model, recorder: Recorder) -> Arrays:
     """Everything that changes in a run, by name; the arrays themselves, not copies."""
     found = _changing(model) | _waiting(model.run, model.run.clock)
-    if isinstance(model.body, FullBody):
+    if not isinstance(model.body, ModalBody | LooseStack):
         found |= {BODY + name: array for name, array in model.body.memory().items()}
     return found | {RECORDED + name: array for name, array in recorder.memory().items()}
 
@@ -145,6 +146,9 @@ def _changing(model: Model) -> Arrays:
             found |= {f"{name}.{key}": array for key, array in part._asdict().items()}
         else:
             found[name] = part
+    if model.container.boxes:  # the weights of the contact points of a loose stack change
+        found["contact.normal_stiffness"] = model.run.contact.normal_stiffness
+        found["contact.tangential_stiffness"] = model.run.contact.tangential_stiffness
     return found
 
 

@@ -53,7 +53,7 @@ class Preview:
         return {
             "mass_kg": mesh.mass,
             "box_mass_kg": case.box_mass,
-            "mean_areal_density_kg_m2": case.mean_areal_density,
+            "mean_areal_density_kg_m2": case.mass / sum(box.width * box.height for box in case.stack),
             "width_m": mesh.width,
             "height_m": mesh.height,
             "peak_floor_acceleration_m_s2": self.peak,

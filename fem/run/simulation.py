@@ -30,6 +30,7 @@ from fem.run.recorder import Recorder
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.solid.elasticity import least_volume_ratio
 from fem.solid.nodal_body import FullBody, advance_body, leave_body_alone
+from fem.solid.nodal_stack import FullStack
 
 #: length of a slice in simulated seconds
 SLICE_REDUCED, SLICE_FULL = 1.0, 0.01
@@ -99,7 +100,7 @@ def simulate(
         progress: of the simulation that is resumed.
     """
     reporter = reporter or SilentReporter()
-    full = isinstance(model.body, FullBody)
+    full = model.case.solver.model == "full"
     advance_body(model.body, model.run, 0.0)
     duration, control, run = model.duration, model.run.control, model.run
     clock, track = run.clock[0], run.track[0]
@@ -202,11 +203,17 @@ def _leave_alone(model: Model, run: RunState, recorder: Recorder) -> tuple[float
 
 def crushing_failure(model: Model) -> str | None:
     """The message of a full model with an inverted element, or None; what follows is no motion of a container."""
-    if not isinstance(model.body, FullBody):
+    if model.case.solver.model != "full":
         return None
-    elements, clock = model.container.elements, model.run.clock[0]
-    displacement = model.run.old.position.reshape(-1, 2) - elements.nodes
-    ratio = least_volume_ratio(elements.displacement_gradient(displacement))
+    clock, positions = model.run.clock[0], model.run.old.position.reshape(-1, 2)
+    body = model.body
+    bodies = body.boxes if isinstance(body, FullStack) else (body,) if isinstance(body, FullBody) else ()
+    ratio, first = math.inf, 0
+    for one in bodies:
+        elements = one.elements
+        displacement = positions[first : first + len(elements.nodes)] - elements.nodes
+        ratio = min(ratio, least_volume_ratio(elements.displacement_gradient(displacement)))
+        first += len(elements.nodes)
     if ratio > 0.0:  # false for nan
         return None
     return (

@@ -250,6 +250,13 @@ def _request(data: Mapping[str, Any], origin: Origin, container: Case | None = N
 
 def _check(request: SiteRequest) -> None:
     """Ask for everything that may be refused, so that it is refused before anything is computed."""
+    container = request.container.container
+    if container.is_loose or container.box is not None:
+        differs = 'joints = "loose"' if container.is_loose else "[[container.box]]"
+        raise CaseError(
+            f"container: {differs} is not verified at a site, whose rules are those of equal boxes that move as one "
+            "body; take bolted boxes, or run the motions one by one"
+        )
     _ = request.action, request.variants, request.wind_pressure
     if request.heading.empty_centroid_m is not None and request.heading.empty_mass_kg is None:
         raise CaseError("empty_centroid_m has no effect without empty_mass_kg")

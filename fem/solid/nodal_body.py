@@ -7,6 +7,7 @@ functions as for the reduced container. Coordinates are the absolute positions o
 
 import math
 from collections.abc import Mapping
+from typing import Protocol
 
 import numpy as np
 import scipy.sparse
@@ -135,6 +136,14 @@ class FullBody:
         nodal.base_compliance[slot] = 0.5 * (answers[dofs] + answers[dofs].T)
         nodal.cached_step[slot] = step
 
+    def advance(self, run: RunState, until: float) -> int:
+        """`contact.stepping.integrator.advance` with the factors there are."""
+        return int(advance_nodal(self.nodal, run, until) if self.compiled else advance(self, run, until))
+
+    def leave_alone(self, run: RunState, floor_velocity: float, lift_velocity: float) -> None:
+        """`contact.stepping.integrator.enter_floor_frame`."""
+        enter_floor_frame_nodal(self.nodal, run, floor_velocity, lift_velocity)
+
     def prepared(self, step: float) -> bool:
         """See `contact.stepping.body.prepared`."""
         return bool(nodal_kernels.prepared(self.nodal, step))
@@ -198,27 +207,52 @@ def full_model_memory(nodes: int) -> float:
     return FACTOR_MEMORY + BYTES_OF_A_NODE * nodes
 
 
-def advance_body(body: ModalBody | LooseStack | FullBody, run: RunState, until: float) -> int:
+class NodalModel(Protocol):
+    """A container with all its nodes, of one body or of several."""
+
+    @property
+    def coordinates(self) -> int:
+        """Number of coordinates."""
+
+    def prepare(self, scheme: Scheme, step: float) -> None:
+        """Factor what a step of this size needs [s]."""
+
+    def advance(self, run: RunState, until: float) -> int:
+        """`contact.stepping.integrator.advance` with the factors there are."""
+
+    def leave_alone(self, run: RunState, floor_velocity: float, lift_velocity: float) -> None:
+        """`contact.stepping.integrator.enter_floor_frame`."""
+
+    def memory(self) -> dict[str, FloatArray]:
+        """Arrays of the last residual by name; everything else follows from the state."""
+
+    def recall(self, memory: Mapping[str, FloatArray]) -> None:
+        """Restore the arrays that `memory` gave for a model of the same container."""
+
+
+#: what is stepped: a container or a loose stack in floating frames, or with all their nodes
+Body = ModalBody | LooseStack | NodalModel
+
+
+def advance_body(body: Body, run: RunState, until: float) -> int:
     """`contact.stepping.integrator.advance` for any body, compiled; factors of the full model are made where they
     are missing.
     """
     if isinstance(body, ModalBody | LooseStack):
         return int(advance_compiled(body, run, until))
     while True:
-        code = int(advance_nodal(body.nodal, run, until) if body.compiled else advance(body, run, until))
+        code = body.advance(run, until)
         if code != UNPREPARED:
             return code
         body.prepare(run.scheme, float(run.clock[0].unprepared_step))
 
 
-def leave_body_alone(
-    body: ModalBody | LooseStack | FullBody, run: RunState, floor_velocity: float, lift_velocity: float
-) -> None:
+def leave_body_alone(body: Body, run: RunState, floor_velocity: float, lift_velocity: float) -> None:
     """`contact.stepping.integrator.enter_floor_frame` for any body."""
     if isinstance(body, ModalBody | LooseStack):
         enter_floor_frame_compiled(body, run, floor_velocity, lift_velocity)
     else:
-        enter_floor_frame_nodal(body.nodal, run, floor_velocity, lift_velocity)
+        body.leave_alone(run, floor_velocity, lift_velocity)
 
 
 def _rounding(elements: FiniteElements) -> float:

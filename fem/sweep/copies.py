@@ -73,7 +73,7 @@ class CellCopies:
             if len(self._known) >= REMEMBERED:
                 self._known.clear()
             case = self._sweep.case(cell)
-            self._known[cell] = case.container.width_m, tuple(self._copies(case))
+            self._known[cell] = case.stack[0].width, tuple(self._copies(case))
         return self._known[cell]
 
     def _copies(self, case: Case) -> Iterator[Copy]:

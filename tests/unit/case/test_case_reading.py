@@ -90,7 +90,6 @@ def test_mass_follows_from_weight_or_density():
     assert from_weight.box_mass == pytest.approx(2500.0)
     assert from_weight.mass == pytest.approx(7500.0)
     assert from_weight.weight == pytest.approx(75e3)
-    assert from_weight.mean_areal_density == pytest.approx(2500.0 / 1.1)
     assert from_density.box_mass == pytest.approx(2000.0 * 1.1 * 1.0 * 2.0)
     from_mass = case_of("least", "container.boxes=3 & gravity_m_s2=10 & container.mass_kg=2500")
     assert (from_mass.container.weight_N, from_mass.box_mass) == (None, 2500.0)

@@ -6,6 +6,7 @@ from cases import LEAST
 from fem.case.case import Case, CaseError, case_hash, read_case, to_toml
 from fem.case.template import case_template
 
+LOOSE = "joints = 'loose'"
 BOX = "[[container.box]]\n"
 LIGHT = f"{BOX}width_m = 0.8\nheight_m = 0.6\nmass_kg = 800.0\noffset_m = 0.1\n"
 
@@ -81,6 +82,11 @@ def test_a_resolved_stack_and_its_template_are_the_same_case(boxes):
         assert (again.stack, again.resolved()) == (case.stack, case.resolved())
 
 
+def test_a_restitution_of_one_body_is_refused_for_loose_boxes():
+    with pytest.raises(CaseError, match="restitution_over_housner does not apply to container"):
+        stack(f"boxes = 2\n{LOOSE}").with_values({"contact.restitution_over_housner": 0.9})
+
+
 def test_joints_of_a_bolted_stack_play_no_part():
     given = stack("boxes = 2\njoints = 'bolted'", more="[joints]\nmu_static = 0.3\n")
     assert case_hash(given) == case_hash(stack("boxes = 2"))
@@ -103,6 +109,15 @@ def test_a_number_of_boxes_replaces_tables_of_boxes():
             "boxes = 2\njoints = 'loose'",
             "[joints]\nmu_static = 0.3\nmu_kinetic = 0.4",
             "[joints] mu_kinetic must be at most mu_static = 0.3 of the joints, got 0.4",
+        ),
+        (f"boxes = 2\n{LOOSE}", "[support]\nkind = 'flat'", "[support] kind must be \"corners\" with container.joints"),
+        (f"boxes = 2\n{LOOSE}", "[initial]\nrotation_rad = 0.1", "[initial] rotation_rad does not apply to container"),
+        (f"boxes = 2\n{LOOSE}", "[initial]\nangular_velocity_rad_s = 0.1", "[initial] angular_velocity_rad_s does not"),
+        (f"boxes = 2\n{LOOSE}", "[output]\nstop_when_overturned = false", "[output] stop_when_overturned must be true"),
+        (
+            f"boxes = 2\n{LOOSE}",
+            "[uncertainty]\njoints_mu_kinetic = [0.2, 0.6]",
+            "[uncertainty] joints_mu_kinetic must be at most mu_static = 0.4 of the joints, got up to 0.6",
         ),
         ("boxes = 2", "[joints]\nmu_static = 30.0", "[joints] mu_static must be between 0 and 5, got 30"),
         (

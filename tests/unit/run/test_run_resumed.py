@@ -27,7 +27,15 @@ FREE = (
 
 UP = ("vertical.kind=harmonic", "vertical.peak_acceleration_m_s2=3", "vertical.frequency_Hz=3")
 
+LOOSE = ("container.joints=loose", "motion.peak_acceleration_m_s2=9")
+
 CASES = {
+    "loose": ("seed_stack_plateau", (*RIGID, *LOOSE)),
+    "loose, reduced": (
+        "seed_stack_plateau",
+        (*REDUCED, *LOOSE, "container.boxes=2", "solver.elastic_modes=4"),
+    ),
+    "loose, full": ("seed_stack_plateau", (*FULL, *LOOSE, "container.boxes=2")),
     "vertical": ("rocking", (*RIGID, *UP)),
     "vertical, full": ("seed_stack_plateau", (*FULL, *UP)),
     "vertical, aftermath": ("free_rocking", (*FALLING, *UP)),

@@ -1,0 +1,65 @@
+"""The keys of a case with every default, as its resolved file has them.
+
+A case without vertical motion, on a level rigid floor, of equal bolted boxes has no keys of these, and keeps its hash.
+"""
+
+from typing import Any
+
+from fem.case.data_files import FILE_KEYS, copied_name
+from fem.case.floors import PENALTY_KEYS
+from fem.case.tables import TABLES
+
+
+def resolved_tables(case: Any) -> dict[str, Any]:
+    """Every key of a case that is used, defaults included, by table."""
+    document = case.model_dump(by_alias=True, exclude=set(TABLES))
+    absent = _absent(case)
+    for name in TABLES:
+        table = getattr(case, name)
+        if table is None or name in absent:
+            continue
+        idle = table.idle_keys() | (_idle_on_slab(case) if name == "contact" else set())
+        document[name] = {
+            key: value for key, value in table.model_dump().items() if value is not None and key not in idle
+        }
+    if case.container.is_loose:
+        document["joints"] = case.joint_friction
+    else:
+        del document["container"]["joints"]
+    if case.container.box is not None:
+        del document["container"]["boxes"]
+        document["container"]["box"] = _boxes(case)
+    for dotted in FILE_KEYS:
+        name, _, key = dotted.partition(".")
+        if key in document.get(name, {}):
+            document[name][key] = copied_name(case.folder, document[name][key])
+    return document
+
+
+def _absent(case: Any) -> set[str]:
+    """Tables that say nothing."""
+    level = not case.floor.is_slab and case.floor.slope_percent == 0.0
+    absent = {"vertical": not case.has_vertical, "floor": level, "joints": not case.container.is_loose}
+    return {name for name, says_nothing in absent.items() if says_nothing}
+
+
+def _idle_on_slab(case: Any) -> set[str]:
+    """Keys of [contact] that a slab does not use."""
+    if not case.floor.is_slab:
+        return set()
+    return {*PENALTY_KEYS} | ({"damping_ratio"} if case.contact_damping_ratio is None else set())
+
+
+def _boxes(case: Any) -> list[dict[str, float]]:
+    """Each box with all that it takes from [container], so that the file reads back to the same boxes."""
+    return [
+        {
+            "width_m": box.width,
+            "height_m": box.height,
+            "mass_kg": box.mass,
+            "centroid_m": box.centroid,
+            **({} if box.wall is None else {"wall_m": box.wall}),
+            "offset_m": table.offset_m,
+        }
+        for box, table in zip(case.stack, case.container.box, strict=True)
+    ]

@@ -1,0 +1,169 @@
+"""A loose stack at rest on its floor: its contact points, its boxes as one body, its joints.
+
+A joint between two boxes has the springs of a rigid floor under the face that they share, its own friction, and the
+dashpot of the floor. Each contact point has the spring of a corner; two corners that face each other share it.
+"""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from contact.interface.workspace import Contact
+from contact.stepping.body import State, make_state
+from contact.stepping.loose_stack import LooseStack
+from contact.stepping.modal_body import ModalBody, make_modal_body
+from contact.stepping.stack_body import make_stack, settle_stack
+from contact.stepping.state import make_joints
+from fem.case.boxes import shared_face
+from fem.case.case import Case
+from fem.model.container import BoxModel, Container
+from fem.runtime.arrays import FloatArray, IntArray
+from fem.solid.nodal_body import FullBody
+from fem.solid.nodal_stack import FullStack
+
+POINTS = 4  #: of a joint between boxes
+
+
+def with_joints(case: Case, floor: Contact, penalty: float) -> Contact:
+    """The contact of the floor under the lowest box, extended by the joints between the boxes.
+
+    Args:
+        case: of a loose stack.
+        floor: of its two corners on the floor.
+        penalty: normal stiffness of a face over width times depth [Pa/m].
+    """
+    stack, friction, chosen = case.stack, case.joint_friction, case.contact
+    faces = [shared_face(*pair) for pair in pairwise(stack)]
+    springs = np.repeat(
+        [0.5 * penalty * (right - left) * case.container.depth_m for left, right in faces], POINTS
+    )
+
+    def extended(of_floor: FloatArray, of_joints: FloatArray | float) -> FloatArray:
+        return np.concatenate([of_floor, np.broadcast_to(of_joints, springs.shape)])
+
+    return floor._replace(
+        normal_stiffness=extended(floor.normal_stiffness, springs),
+        tangential_stiffness=extended(floor.tangential_stiffness, chosen.tangential_ratio * springs),
+        cap=extended(floor.cap, math.inf),
+        mu_static=extended(floor.mu_static, friction["mu_static"]),
+        mu_kinetic=extended(floor.mu_kinetic, friction["mu_kinetic"]),
+        weakening=extended(floor.weakening, friction["weakening_m"]),
+    )
+
+
+def stack_of(case: Case, container: Container, contact: Contact, tolerance: float) -> LooseStack | FullStack:
+    """The boxes of a loose stack as one body.
+
+    Args:
+        contact: of all its points at full weight.
+        tolerance: error of a corner at which the iterations of a step stop [m].
+    """
+    numbers = range(len(container.boxes))
+    springs = contact.normal_stiffness.copy(), contact.tangential_stiffness.copy()
+    if case.solver.model == "full":
+        bodies = [_nodal_body(case, container, number) for number in numbers]
+        return FullStack(bodies, [box.response for box in container.boxes], *springs, tolerance)
+    return make_stack([_modal_body(case, container, number, tolerance) for number in numbers], *springs)
+
+
+def _nodal_body(case: Case, container: Container, number: int) -> FullBody:
+    box = container.boxes[number]
+    return FullBody(
+        replace(box.elements, nodes=container.elements.nodes[container.box_nodes[number]]),
+        box.corners,
+        _watched(container, number),
+        gravity=case.gravity_toward_floor,
+        downhill=case.gravity_downhill,
+        damping=container.damping(case.container.damping_ratio),
+    )
+
+
+def _watched(container: Container, number: int) -> IntArray:
+    """Nodes of a box that are monitored: its contents; of the uppermost box its upper corners before them."""
+    monitors = container.boxes[number].monitors
+    return monitors if number == len(container.boxes) - 1 else monitors[2:]
+
+
+def _modal_body(case: Case, container: Container, number: int, tolerance: float) -> ModalBody:
+    box, place = container.boxes[number], case.stack[number]
+    centroid = np.asarray(box.mesh.centroid)
+    damping = container.damping(case.container.damping_ratio)
+    watched = _watched(container, number)
+    return make_modal_body(
+        mass=box.mesh.mass,
+        inertia=box.mesh.inertia,
+        gravity=case.gravity_toward_floor,
+        downhill=case.gravity_downhill,
+        point=box.elements.nodes[box.corners] - centroid,
+        rest=(place.axis + float(centroid[0]), place.bottom + float(centroid[1])),
+        shape=np.moveaxis(box.basis.shapes[:, box.corners], 0, -1),
+        frequencies=box.basis.angular_frequencies,
+        damping_ratios=0.5 * damping * box.basis.angular_frequencies,
+        monitor=box.elements.nodes[watched] - centroid,
+        monitor_shape=np.moveaxis(box.basis.shapes[:, watched], 0, -1),
+        tolerance=tolerance,
+    )
+
+
+def make_stack_state(stack: LooseStack | FullStack) -> State:
+    """A state of a stack, all zero."""
+    if isinstance(stack, FullStack):
+        coordinates, beneath = stack.coordinates, stack.stack
+        monitors = int(beneath.body.monitors.max())
+    else:
+        beneath, body = stack, stack.body
+        coordinates, monitors = body.mass.size * (3 + body.modes), len(body.monitor)
+    return make_state(coordinates, beneath.faces.weight.size, monitors, beneath.mass.size)
+
+
+def settle(
+    stack: LooseStack | FullStack,
+    contact: Contact,
+    state: State,
+    *,
+    gravity: float,
+    place: tuple[float, float] = (0.0, 0.0),
+    velocity: tuple[float, float] = (0.0, 0.0),
+    lift_velocity: float = 0.0,
+) -> FloatArray:
+    """Write the state of a stack at rest, as `contact.stepping.stack_body.settle_stack`.
+
+    Returns:
+        The forces on its corners, along x and z, shape (N, 4, 2) [N].
+    """
+    if isinstance(stack, FullStack):
+        stack.settle(
+            contact, state, gravity=gravity, place=place, velocity=velocity, lift_velocity=lift_velocity
+        )
+        return stack.stack.corners.force.reshape(-1, POINTS, 2)
+    settle_stack(
+        stack, contact, state, gravity=gravity, place=place, velocity=velocity, lift_velocity=lift_velocity
+    )
+    return stack.corners.force.reshape(-1, POINTS, 2)
+
+
+def own_stiffness(contact: Contact) -> Contact:
+    """The contact with springs of its own, which the weights of its points change."""
+    return contact._replace(
+        normal_stiffness=contact.normal_stiffness.copy(),
+        tangential_stiffness=contact.tangential_stiffness.copy(),
+    )
+
+
+def joints_of_stack(container: Container) -> Any:
+    """Records of the joints of a loose stack, see `contact.stepping.state.JOINT_RECORD`."""
+    meshes = [box.mesh for box in container.boxes]
+    return make_joints(
+        [mesh.mass for mesh in meshes], [mesh.inertia for mesh in meshes], [mesh.width for mesh in meshes]
+    )
+
+
+def struck_mass(box: BoxModel, corner: int) -> float:
+    """Effective mass of a corner of a box in the first instant of an impact [kg]."""
+    node = box.corners[corner]
+    arm = float(box.elements.nodes[node, 0] - box.mesh.centroid[0])
+    elastic = float(np.sum(box.basis.shapes[:, node, 1] ** 2))
+    return 1.0 / (1.0 / box.mesh.mass + arm * arm / box.mesh.inertia + elastic)

@@ -1,0 +1,324 @@
+"""The full model of a loose stack: the nodes of every box free to move, boxes touching at their corners.
+
+Each box is a `FullBody` of its own, with its own turned frame. Boxes that are equal share the factors of their
+matrices. Coordinates are the positions of the nodes, box by box from the floor up.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import scipy.sparse.linalg
+
+from contact.interface.faces import CORNERS, linearise_points, make_faces, weigh_points
+from contact.interface.laws import ELASTIC_STICK
+from contact.interface.stacking import stacked
+from contact.interface.workspace import Contact, Workspace, make_workspace
+from contact.jit import compiled
+from contact.stepping import body as interface
+from contact.stepping.body import State, implements
+from contact.stepping.integrator import advance, enter_floor_frame
+from contact.stepping.loose_stack import LooseStack
+from contact.stepping.scheme import Scheme
+from contact.stepping.stack_body import work_of
+from contact.stepping.state import RunState
+from fem.runtime.arrays import FloatArray, IntArray
+from fem.solid import nodal_kernels
+from fem.solid.nodal_body import FullBody, rotation_matrix
+from fem.solid.nodal_kernels import SOURCES, NodalBody
+from fem.solid.reduction import StaticResponse
+
+#: factors of a box, the same for equal boxes
+FACTORS = (
+    "cached_step",
+    "order",
+    "lower_starts",
+    "lower_rows",
+    "lower",
+    "inverse_pivot",
+    "to_base",
+    "base_compliance",
+)
+
+
+class NodalStack(NamedTuple):
+    """The nodes of N boxes."""
+
+    boxes: tuple[NodalBody, ...]
+    starts: IntArray  #: (N + 1,) first coordinate of a box
+    monitors: IntArray  #: (N, 2) first monitored point of a box, and the one behind its last
+    energy: FloatArray  #: (N, 3) scratch
+
+
+@compiled(sources=SOURCES)
+def state_of(stack: NodalStack, state: State, b: int) -> State:
+    """What a state holds of one of the boxes; its points are the corners."""
+    i, j = stack.starts[b], stack.starts[b + 1]
+    k, m = CORNERS * b, CORNERS * (b + 1)
+    begin, end = stack.monitors[b, 0], stack.monitors[b, 1]
+    return State(
+        state.position[i:j],
+        state.velocity[i:j],
+        state.acceleration[i:j],
+        state.jerk[i:j],
+        state.internal[i:j],
+        state.damping[i:j],
+        state.external[i:j],
+        state.corner[k:m],
+        state.force[k:m],
+        state.descent,
+        state.drift,
+        state.stick,
+        state.crushed,
+        state.boxes[b],
+        stack.energy[b],
+        state.boxes,
+        state.corner,
+        state.monitor[begin:end],
+        state.numbers,
+    )
+
+
+@compiled(sources=SOURCES)
+@implements(interface.predict, NodalStack)
+def predict(stack: NodalStack, scheme: Scheme, step: float, old: State, new: State) -> None:
+    """Coordinates after `step`, for the last acceleration."""
+    for b in range(len(stack.boxes)):
+        nodal_kernels.predict(stack.boxes[b], scheme, step, state_of(stack, old, b), state_of(stack, new, b))
+
+
+@compiled(sources=SOURCES)
+@implements(interface.release, NodalStack)
+def release(
+    stack: NodalStack,
+    scheme: Scheme,
+    step: float,
+    old: State,
+    new: State,
+    work: Workspace,
+    floor: float,
+    floor_velocity: float,
+    lift: float,
+    lift_velocity: float,
+) -> None:
+    """Corners at the end of the step without contact force, and their compliance."""
+    for b in range(len(stack.boxes)):
+        nodal_kernels.release(
+            stack.boxes[b],
+            scheme,
+            step,
+            state_of(stack, old, b),
+            state_of(stack, new, b),
+            work_of(work, b),
+            floor,
+            floor_velocity,
+            lift,
+            lift_velocity,
+        )
+
+
+@compiled(sources=SOURCES)
+@implements(interface.respond, NodalStack)
+def respond(stack: NodalStack, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
+    """Apply the forces on the corners to the iterate; returns the remaining error over its tolerance."""
+    largest = 0.0
+    for b in range(len(stack.boxes)):
+        error = nodal_kernels.respond(
+            stack.boxes[b],
+            scheme,
+            step,
+            state_of(stack, old, b),
+            state_of(stack, new, b),
+            work_of(work, b),
+        )
+        largest = max(largest, error)
+    return largest
+
+
+@compiled(sources=SOURCES)
+@implements(interface.complete, NodalStack)
+def complete(stack: NodalStack, new: State, floor: float, lift: float, lift_velocity: float) -> None:
+    """Internal forces, corners, poses and energy at the converged coordinates."""
+    for row in range(new.energy.size):
+        new.energy[row] = 0.0
+    for b in range(len(stack.boxes)):
+        nodal_kernels.complete(stack.boxes[b], state_of(stack, new, b), floor, lift, lift_velocity)
+        for row in range(new.energy.size):
+            new.energy[row] += stack.energy[b, row]
+
+
+@compiled(sources=SOURCES)
+@implements(interface.observe, NodalStack)
+def observe(stack: NodalStack, new: State, floor: float, lift: float) -> None:
+    """Displacement and velocity of the monitored points."""
+    for b in range(len(stack.boxes)):
+        nodal_kernels.observe(stack.boxes[b], state_of(stack, new, b), floor, lift)
+
+
+@compiled(sources=SOURCES)
+@implements(interface.shift_velocity, NodalStack)
+def shift_velocity(stack: NodalStack, state: State, velocity: float, lift_velocity: float) -> None:
+    """Subtract the velocity of a new frame."""
+    for b in range(len(stack.boxes)):
+        nodal_kernels.shift_velocity(stack.boxes[b], state_of(stack, state, b), velocity, lift_velocity)
+
+
+@compiled(sources=SOURCES)
+@implements(interface.prepared, NodalStack)
+def prepared(stack: NodalStack, step: float) -> bool:
+    """The factors of this step size are at hand for all boxes."""
+    ready = True
+    for b in range(len(stack.boxes)):
+        ready = ready and nodal_kernels.prepared(stack.boxes[b], step)
+    return ready
+
+
+advance_nodal_stack = compiled(advance, sources=SOURCES)
+enter_floor_frame_nodal_stack = compiled(enter_floor_frame, sources=SOURCES)
+
+
+class FullStack:
+    """A loose stack of boxes with all their nodes.
+
+    Args:
+        boxes: from the floor up, their nodes where the undeformed box stands; their base points are their corners,
+            their monitors those of the uppermost box first.
+        responses: of each box to forces at its corners; boxes with the same one are equal.
+        normal_stiffness, tangential_stiffness: (4 N - 2,) of the contact points at full weight [N/m].
+        tolerance: error of a contact point at which the iterations of a step stop [m].
+    """
+
+    def __init__(
+        self,
+        boxes: Sequence[FullBody],
+        responses: Sequence[StaticResponse],
+        normal_stiffness: FloatArray,
+        tangential_stiffness: FloatArray,
+        tolerance: float,
+    ) -> None:
+        self.boxes, self._responses = tuple(boxes), tuple(responses)
+        corner = np.concatenate([box.elements.nodes[box.base] for box in boxes])
+        self._faces = make_faces(corner, normal_stiffness, tangential_stiffness)
+        self._corners = make_workspace(len(corner))
+        self._tolerance = tolerance
+        self._leader = [responses.index(one) for one in responses]
+        self.stack = self._compose()
+
+    @property
+    def coordinates(self) -> int:
+        """Number of coordinates."""
+        return sum(box.coordinates for box in self.boxes)
+
+    def prepare(self, scheme: Scheme, step: float) -> None:
+        """Factor the Newmark matrices of this step size, once for equal boxes."""
+        for number, box in enumerate(self.boxes):
+            leader = self.boxes[self._leader[number]]
+            if leader is box:
+                box.prepare(scheme, step)
+            else:
+                shared = {name: getattr(leader.nodal, name) for name in FACTORS}
+                box.nodal = box.nodal._replace(**shared)
+        self.stack = self._compose()
+
+    def advance(self, run: RunState, until: float) -> int:
+        """`contact.stepping.integrator.advance` with the factors there are."""
+        return int(advance_nodal_stack(self.stack, run, until))
+
+    def leave_alone(self, run: RunState, floor_velocity: float, lift_velocity: float) -> None:
+        """`contact.stepping.integrator.enter_floor_frame`."""
+        enter_floor_frame_nodal_stack(self.stack, run, floor_velocity, lift_velocity)
+
+    def settle(
+        self,
+        contact: Contact,
+        state: State,
+        *,
+        gravity: float,
+        place: tuple[float, float] = (0.0, 0.0),
+        velocity: tuple[float, float] = (0.0, 0.0),
+        lift_velocity: float = 0.0,
+    ) -> None:
+        """Write the initial state of a stack at rest on its floor, and moving with a velocity.
+
+        Args:
+            contact: its laws; the stiffness is written.
+            state: written, completed.
+            gravity: toward the floor, with the acceleration of the floor upward [m/s2].
+            place: of the floor, along x and upward [m]; velocity: of the stack, absolute [m/s].
+            lift_velocity: of the floor, upward [m/s].
+
+        Raises:
+            SettlingError: the stack does not stand.
+        """
+        centre = np.array([box.centroid for box in self.boxes])
+        point = np.array([box.elements.nodes[box.base] - box.centroid for box in self.boxes])
+        weigh_points(self._faces, (centre[:, None] + point).reshape(-1, 2), state.point, contact)
+        downhill = self.boxes[0].downhill
+        rest = stacked(
+            faces=self._faces,
+            centre=centre,
+            point=point,
+            compliance=np.array([one.compliance for one in self._responses]),
+            load=np.array([[box.mass * downhill, -box.mass * gravity] for box in self.boxes]),
+        )
+        state.force[:] = rest.force
+        if contact.friction == ELASTIC_STICK:  # friction regularised in velocity has no springs
+            state.stick[:] = -rest.force[:, 0] / np.maximum(contact.tangential_stiffness, 1e-300)
+        force = rest.corner_force.reshape(-1, CORNERS, 2)
+        for b, (box, response) in enumerate(zip(self.boxes, self._responses, strict=True)):
+            own = state_of.py_func(self.stack.body, state, b)
+            turn = rotation_matrix(float(rest.rotation[b]))
+            elastic = np.tensordot((force[b] @ turn).ravel(), response.displacement, axes=1)
+            arm = (box.elements.nodes - box.centroid + elastic) @ turn.T
+            own.position[:] = (rest.centre[b] + place + arm).ravel()
+            own.velocity.reshape(-1, 2)[:] = velocity
+            box.evaluate(own)
+        interface_complete(self.stack, state, place[0], place[1], lift_velocity)
+        for b, box in enumerate(self.boxes):
+            own = state_of.py_func(self.stack.body, state, b)
+            factor = scipy.sparse.linalg.splu(box.elements.mass.tocsc())
+            own.acceleration[:] = factor.solve((own.external - own.internal).reshape(-1, 2)).ravel()
+
+    def memory(self) -> dict[str, FloatArray]:
+        """Arrays of the last residuals by name; everything else follows from the state."""
+        return {
+            f"{b}.{name}": array for b, box in enumerate(self.boxes) for name, array in box.memory().items()
+        }
+
+    def recall(self, memory: Mapping[str, FloatArray]) -> None:
+        """Restore the arrays that `memory` gave for a stack of the same boxes."""
+        for b, box in enumerate(self.boxes):
+            box.recall(
+                {
+                    name.removeprefix(f"{b}."): array
+                    for name, array in memory.items()
+                    if name.startswith(f"{b}.")
+                }
+            )
+
+    def _compose(self) -> LooseStack:
+        sizes = [box.coordinates for box in self.boxes]
+        ends = np.cumsum([0, *(box.monitor.size for box in self.boxes[::-1])])
+        body = NodalStack(
+            boxes=tuple(box.nodal for box in self.boxes),
+            starts=np.cumsum([0, *sizes]),
+            monitors=np.column_stack([ends[:-1], ends[1:]])[::-1].copy(),
+            energy=np.zeros((len(self.boxes), 3)),
+        )
+        return LooseStack(
+            body=body,
+            faces=self._faces,
+            mass=np.array([box.mass for box in self.boxes]),
+            tolerance=self._tolerance,
+            corners=self._corners,
+        )
+
+
+@compiled(sources=SOURCES)
+def interface_complete(
+    stack: LooseStack, state: State, floor: float, lift: float, lift_velocity: float
+) -> None:
+    """Linearise the contact at the corners of the state, and complete it."""
+    interface.complete(stack, state, floor, lift, lift_velocity)
+    linearise_points(stack.faces, state.corner, stack.corners.trial)
+    interface.complete(stack, state, floor, lift, lift_velocity)
