@@ -1,20 +1,23 @@
 """`modes`: elastic frequencies and shapes of the free container."""
 
 import json
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
-from fem.case.case import CaseError, load_case
+from fem.case.case import Case, CaseError, load_case
 from fem.cli.console import ELSEWHERE_OUT, AsJson, CaseName, Overrides, whole
 from fem.figures.modes import modes_figure
 from fem.figures.style import house_style, svg_of
+from fem.model.container import discretise
 from fem.model.geometry import build_container
 from fem.results.errors import writing_into
 from fem.results.files import write_atomically
-from fem.solid.assembly import assemble
-from fem.solid.modes import elastic_mode_table, elastic_modes, write_modes
+from fem.solid.assembly import FiniteElements, assemble
+from fem.solid.modes import ElasticModes, elastic_mode_table, elastic_modes, write_modes
 
 RIGID_MODES, SHOWN = 3, 20
 
@@ -30,17 +33,12 @@ def modes(
 ) -> None:
     """Print elastic frequencies of the free container; the shapes go to modes.vtu and modes.svg."""
     loaded = load_case(case, overrides)
-    elements = assemble(
-        build_container(loaded),
-        youngs_modulus=loaded.container.youngs_modulus_Pa,
-        poisson_ratio=loaded.container.poisson_ratio,
-        order=loaded.solver.order,
-    )
-    available = elements.unknowns - RIGID_MODES
+    elements, free, modes_of = _free_bodies(loaded)
+    available = min(one.unknowns for one in free) - RIGID_MODES
     if count is not None and not 1 <= count <= available:
         raise CaseError(f"--count {count}: this mesh has from 1 to {available} elastic modes")
     # A case may keep no elastic modes, or more than a coarse mesh has.
-    found = elastic_modes(elements, count or min(loaded.solver.elastic_modes or SHOWN, available))
+    found = modes_of(count or min(loaded.solver.elastic_modes or SHOWN, available))
     with house_style():
         drawn = modes_figure(
             points=elements.nodes,
@@ -62,7 +60,8 @@ def modes(
             )
         )
         return
-    print(f"{loaded.name}: elastic modes of the free container\n")
+    bodies = "boxes, of equal boxes once" if loaded.container.is_loose else "container"
+    print(f"{loaded.name}: elastic modes of the free {bodies}\n")
     print("  mode   frequency [Hz]   period [ms]   to the first")
     for row in rows:
         print(
@@ -70,3 +69,19 @@ def modes(
             f"{row['ratio_to_first']:12.3f}"
         )
     print(f"\n{figure} shows the shapes, {path} in ParaView (Warp By Vector)")
+
+
+def _free_bodies(
+    case: Case,
+) -> tuple[FiniteElements, list[FiniteElements], Callable[[int], ElasticModes]]:
+    """Elements of the container and of its free bodies, and what finds their lowest modes."""
+    if case.container.is_loose:
+        stack = discretise(case.with_values({"solver.model": "rigid"}))
+        return stack.elements, [box.elements for box in stack.boxes], stack.lowest_modes
+    elements = assemble(
+        build_container(case),
+        youngs_modulus=case.container.youngs_modulus_Pa,
+        poisson_ratio=case.container.poisson_ratio,
+        order=case.solver.order,
+    )
+    return elements, [elements], partial(elastic_modes, elements)

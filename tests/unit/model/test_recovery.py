@@ -11,7 +11,7 @@ from fem.model.recovery import recovery_of
 @pytest.fixture(scope="module")
 def recovery():
     case = load_case("seed_box", ["solver.elastic_modes=6", "solver.element_size_m=0.25", "solver.order=1"])
-    return recovery_of(build_model(case))
+    return recovery_of(build_model(case)).bodies[0].body
 
 
 @pytest.mark.parametrize("seed", range(4))

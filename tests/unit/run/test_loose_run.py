@@ -1,0 +1,103 @@
+"""Runs of loose stacks: what they write, run again from what they resolved, in a batch, with a band."""
+
+import json
+
+import pytest
+from cases import named_case
+
+import fem
+from fem.case.case import CaseError, read_case, to_toml
+from fem.case.uncertainty import ranges_of
+from fem.response.request import ResponseRequest
+from fem.results.history import BOX_COLUMNS, read_history
+from fem.results.reader import open_run
+from fem.run.run import RunOptions, run_case
+
+#: three boxes that slide on one another
+SLIPPERY = {
+    "container.boxes": 3,
+    "container.joints": "loose",
+    "joints.mu_static": 0.2,
+    "motion.kind": "harmonic",
+    "motion.peak_acceleration_m_s2": 5.0,
+    "motion.frequency_Hz": 1.0,
+    "solver.model": "rigid",
+    "solver.duration_s": 2.0,
+    "output.fields_s": 0.5,
+    "output.figures": False,
+}
+KEYS = {"max_rotation_rad", "max_slip_m", "residual_slip_m", "max_opening_m", "fell"}
+
+
+@pytest.fixture(scope="module")
+def case():
+    return named_case("least", SLIPPERY)
+
+
+@pytest.fixture(scope="module")
+def run(case):
+    return fem.compute(case, band=False)
+
+
+def test_a_run_says_what_each_box_did(case, run, tmp_path):
+    stored = run_case(case, case_text=to_toml(case), folder=tmp_path / "run", options=RunOptions(band=False))
+    result = json.loads((tmp_path / "run" / "run.json").read_text())
+    verdict = result["verdict"]
+    assert [set(box) for box in verdict["boxes"]] == [KEYS] * 3
+    assert verdict["fell_box"] is None and not any(box["fell"] for box in verdict["boxes"])
+    assert verdict["max_slip_m"] == verdict["boxes"][0]["max_slip_m"]
+    assert verdict["residual_slip_m"] == verdict["boxes"][0]["residual_slip_m"]
+    assert verdict["boxes"][1]["max_slip_m"] > 0.02  # 5 m/s2 against 0.2 g
+    assert verdict["outcome"] == "slide"
+    assert result["joints"] is None
+    assert stored.typed_result.verdict.boxes == run.verdict.boxes
+    history = read_history(tmp_path / "run" / "history.csv")
+    assert (history.boxes, history.joints) == (3, 0)
+    assert history.values.tobytes() == run.history.values.tobytes()
+    assert history.numbers[-10:] == tuple(name.format(k) for k in (2, 3) for name in BOX_COLUMNS)
+    assert abs(history["box_2_slip_m"]).max() == pytest.approx(verdict["boxes"][1]["max_slip_m"], rel=1e-2)
+    assert history["box_3_z_m"] == pytest.approx(2.5, abs=1e-3)
+    assert set(open_run(tmp_path / "run").fields().frame(0).box.tolist()) == {1, 2, 3}
+
+
+def test_the_resolved_case_runs_again_to_the_same_result(run):
+    again = fem.compute(read_case(to_toml(run.case)), band=False)
+    assert again.history.values.tobytes() == run.history.values.tobytes()
+    assert again.verdict.boxes == run.verdict.boxes
+
+
+def test_a_batch_finds_what_a_run_finds(case, run):
+    (found,) = fem.compute_many([case], jobs=1)
+    assert found.verdict.boxes == run.verdict.boxes
+
+
+def test_a_box_that_slides_off_its_footing_has_fallen(case):
+    off = case.replace(
+        {"joints.mu_static": 0.01, "motion.peak_acceleration_m_s2": 9.0, "contact.mu_static": 2.0}
+    )
+    run = fem.compute(off.replace({"solver.duration_s": 4.0, "motion.frequency_Hz": 0.5}), band=False)
+    assert (run.status, run.verdict.outcome) == ("overturned", "overturned")
+    assert run.verdict.fell_box in (2, 3)
+    assert run.verdict.boxes[run.verdict.fell_box - 1].fell
+    assert run.history["time_s"][-1] <= run.verdict.overturned_at_s + 0.01
+
+
+def test_friction_between_loose_boxes_is_an_unknown_input(case):
+    kinetic = case.replace({"joints.mu_kinetic": 0.1})
+    (one,) = [one for one in ranges_of(kinetic, 1e9) if one.key == "joints.mu_kinetic"]
+    assert (one.own, one.between, one.ends) == (0.1, (0.15,), (0.2,))
+    bolted = {one.key for one in ranges_of(kinetic.replace({"container.joints": "bolted"}), 1e9)}
+    assert "joints.mu_kinetic" not in bolted
+
+
+def test_a_band_tries_the_friction_between_the_boxes(case):
+    kinetic = case.replace({"joints.mu_kinetic": 0.1, "solver.duration_s": 1.0, "uncertainty.draws": 2})
+    run = fem.compute(kinetic, band=True)
+    tried = [member for member in run.verdict.band.members if "joints.mu_kinetic" in (member.values or {})]
+    assert len(tried) >= 4
+    assert all(member.error is None for member in run.verdict.band.members)
+
+
+def test_what_a_loose_stack_cannot_be_asked_is_refused(case):
+    with pytest.raises(CaseError, match='must be "bolted" for a response curve'):
+        ResponseRequest(case=case, first_Hz=0.5, last_Hz=1.0, count=2)
