@@ -62,6 +62,7 @@ class FloorMotionPair:
     case: Case  #: the base case with this motion
     horizontal: FloorComponent
     vertical: FloorComponent | None
+    left_out: str | None  #: the part of the motion that a run covers, where it ends before it
 
     @property
     def name(self) -> str:
@@ -124,7 +125,7 @@ def motions_left_out(base: Case, motions: Sequence[FloorMotionPair]) -> str | No
     """
     if not motions:
         return motion_left_out(base)
-    cut = [(one.name, words) for one in motions if (words := motion_left_out(one.case)) is not None]
+    cut = [(one.name, one.left_out) for one in motions if one.left_out is not None]
     if not cut:
         return None
     name, words = cut[0]
@@ -173,10 +174,13 @@ def _motions_table(measures: Sequence[Mapping[str, Any]]) -> str:
 
 def _read_pair(case: Case) -> FloorMotionPair:
     horizontal = FloorComponent(name=case.motion.file or "", motion=_table(build_motion(case)))
-    if case.vertical.kind != "table" or case.vertical.file is None:
-        return FloorMotionPair(case=case, horizontal=horizontal, vertical=None)
-    vertical = FloorComponent(name=case.vertical.file, motion=_table(build_vertical(case)))
-    return FloorMotionPair(case=case, horizontal=horizontal, vertical=vertical)
+    vertical = None
+    if case.vertical.kind == "table" and case.vertical.file is not None:
+        vertical = FloorComponent(name=case.vertical.file, motion=_table(build_vertical(case)))
+    # Asked now: of a large set, the files are no longer in memory later.
+    return FloorMotionPair(
+        case=case, horizontal=horizontal, vertical=vertical, left_out=motion_left_out(case)
+    )
 
 
 def _tables_of(pair: FloorMotionPair) -> tuple[str, ...]:

@@ -140,8 +140,9 @@ def run_ensemble(
         place.require_room(required_disk(ensemble, unknown), "the ensemble", "take fewer draws")
         texts = {"ensemble.toml": ensemble.text, "base.toml": to_toml(ensemble.base)}
         place.begin({"status": "running", "asked": asked} | program_of_results(), texts)
-        for case in (ensemble.base, *(one.case for one in motions)):
-            copy_data_files(case, folder)
+        copy_data_files(ensemble.base, folder)
+        for motion in motions:
+            copy_data_files(motion.case, folder, read=True)
         draws = DrawRows(ensemble, unknown)
         with LocalWorkers(jobs or cores()) as workers_of:
             LoggedRuns(

@@ -54,8 +54,10 @@ class RunFiles:
                 )
 
 
-def copy_data_files(case: Case, folder: Path) -> None:
+def copy_data_files(case: Case, folder: Path, *, read: bool = False) -> None:
     """Copy mesh and motion files into a folder, under the names that the resolved case gives them.
+
+    `read`: its motions have been read, so they are motions.
 
     Raises:
         CaseError: a motion file holds no motion; results go to others, and may not carry what else it holds.
@@ -63,9 +65,9 @@ def copy_data_files(case: Case, folder: Path) -> None:
     if case.recorded is not None:
         (folder / case.recorded.name).write_text(written(case.recorded), encoding="ascii")
     for key, file in case.files.items():
-        if key == "motion.file":
+        if key == "motion.file" and not read:
             recorded_motion(case, "motion")
-        elif key == "vertical.file":
+        elif key == "vertical.file" and not read:
             recorded_motion(case, "vertical")
         path, target = file.path, folder / file.copy
         target.parent.mkdir(parents=True, exist_ok=True)

@@ -183,8 +183,9 @@ class _Work:
             place.remove(MEMBERS, TRIED, CHANGES, ANSWERS)
         base = toml_document(self.sweep.base.given())
         place.begin(self.info, {"sweep.toml": self.sweep.text, "base.toml": base}, keep=keep)
-        for case in (self.sweep.base, *(one.case for one in self.motions)):
-            copy_data_files(case, place.path)
+        copy_data_files(self.sweep.base, place.path)
+        for motion in self.motions:
+            copy_data_files(motion.case, place.path, read=True)
         self._compute_rows()
         copies = None if stop() else perturb_cells(self.runner, self.sweep, self.cells, place.path / MEMBERS)
         changes = None if stop() else refine(self.runner, self.sweep, self.cells, place.path / TRIED)
