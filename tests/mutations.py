@@ -4,6 +4,7 @@ Signs, factors, dropped terms, one coefficient for another, tangents, the ledger
 """
 
 from mutation import Mutation
+from mutations_of_floor import FLOOR_FAULTS
 from mutations_of_vertical_motion import VERTICAL_MOTION
 
 ELASTICITY = (
@@ -361,4 +362,5 @@ MUTATIONS = (
         tests=("verification/test_sure_verdicts.py", "-k", "flat"),
     ),
     *VERTICAL_MOTION,
+    *FLOOR_FAULTS,
 )

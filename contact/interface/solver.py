@@ -267,6 +267,37 @@ def stick_where_turned(iteration: int, work: Workspace) -> bool:
 
 
 @compiled(inline=True)
+def press_where_turned(
+    contact: Contact, step: float, velocity_slope: float, iteration: int, work: Workspace
+) -> bool:
+    """Linearise as elastic what has changed from open to the cap, or back, since the last iteration.
+
+    The elastic range may be so small that iterations between its ends never meet it, as that of `stick_where_turned`.
+    Returns whether there is such a point.
+    """
+    turned = False
+    for i in range(work.law.shape[0]):
+        level = 0
+        if work.law[i, 1] <= 0.0:
+            level = -1
+        elif work.law[i, 1] >= contact.cap[i]:
+            level = 1
+        if iteration > 0 and level * work.level[i] < 0:
+            stiffness = contact.normal_stiffness[i]
+            damping = stiffness * contact.relaxation_time
+            penetration, rate = -work.point[i, 1], -work.velocity[i, 1]
+            if rate * step < penetration:
+                work.law[i, 1] = stiffness * penetration + damping * rate
+                work.slope[i, 2] = stiffness + damping * velocity_slope
+            else:
+                work.slope[i, 2] = stiffness + damping / step
+                work.law[i, 1] = work.slope[i, 2] * penetration
+            level, turned = 0, True
+        work.level[i] = level
+    return turned
+
+
+@compiled(inline=True)
 def solve_contact(
     contact: Contact,
     step: float,
@@ -303,6 +334,7 @@ def solve_contact(
         if not placed and residual <= FORCE_TOLERANCE * largest + contact.resolution * stiffest:
             return iteration
         turned = stick_where_turned(iteration, work)
+        turned = press_where_turned(contact, step, velocity_slope, iteration, work) or turned
         # Keep old factors while they converge well: usually the contact has not changed.
         if not factor_is_current(step, work) or residual > 0.1 * before:
             if not factor_tangent(step, work):

@@ -41,6 +41,7 @@ class Workspace(NamedTuple):
     excess: FloatArray  #: (n, 2) what friction cuts off [N]; minus d/dx of the uncut force [N/m]
     mu: FloatArray  #: (n,) coefficients of friction in this step
     side: IntArray  #: (n,) limit of friction reached in the last iteration: -1, 1; 0: none
+    level: IntArray  #: (n,) of the normal force in the last iteration: -1 open, 1 at the cap; 0: elastic
     pivot: IntArray  #: (2 n,) pivots of `matrix`
     factored_slope: FloatArray  #: (n, 3) tangents for which `matrix` was factored
     factored_step: FloatArray  #: (1,) and step size; < 0: none [s]
@@ -67,6 +68,7 @@ def make_workspace(points: int) -> Workspace:
         excess=np.zeros((n, 2)),
         mu=np.zeros(n),
         side=np.zeros(n, dtype=np.int64),
+        level=np.zeros(n, dtype=np.int64),
         pivot=np.zeros(2 * n, dtype=np.int64),
         factored_slope=np.zeros((n, 3)),
         factored_step=np.full(1, -1.0),

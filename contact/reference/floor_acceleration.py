@@ -71,6 +71,14 @@ class FloorAcceleration:
             longest_step=min(self.longest_step, vertical.longest_step),
         )
 
+    def on_slope(self, downhill: float) -> "FloorAcceleration":
+        """This motion along a slope, for a block with the gravity toward it; `downhill`: gravity along it [m/s2].
+
+        In the frame of the floor, gravity downhill (> 0: toward +x) is an acceleration of the floor uphill.
+        """
+        level = self.function
+        return replace(self, function=lambda time: level(time) - downhill)
+
     def segments(self, start: float, end: float) -> Iterator[FloorSegment]:
         """The intervals between breaks from start to end [s]."""
         inner = [t for t in self.break_times if start < t < end]

@@ -204,6 +204,7 @@ def work_of(work: Workspace, b: int) -> Workspace:
         work.excess,
         work.mu,
         work.side,
+        work.level,
         work.pivot,
         work.factored_slope,
         work.factored_step,

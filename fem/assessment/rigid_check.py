@@ -72,13 +72,11 @@ def check_against_rigid_block(model: Model, history: History, verdict: Verdict) 
         model, history, verdict: of the run; the model may be stepped or not.
 
     Raises:
-        ValueError: the history has less than two samples, or the floor slopes.
+        ValueError: the history has less than two samples.
         EventError: the block changes its state too often.
     """
     if len(history) < 2:
         raise ValueError(f"rigid check: the history needs two samples and has {len(history)}")
-    if model.case.floor.slope_percent:
-        raise ValueError("rigid check: the floor slopes, and the block stands on a level one")
     time, angle = history["time_s"], model.static.slenderness_angle
     reference = follow_block(model, float(time[-1]))
     rotation, rate = reference.at(time)
@@ -117,7 +115,7 @@ def block_of(model: Model) -> RigidBlock:
     return RigidBlock(
         half_width=half,
         centroid_height=height,
-        gravity=model.case.gravity_m_s2,
+        gravity=model.case.gravity_toward_floor,
         inertia_ratio=1.0 + mesh.inertia / (mesh.mass * (half**2 + height**2)),
     )
 
@@ -127,10 +125,10 @@ def follow_block(model: Model, end: float) -> Reference:
 
     A floor that starts with a velocity under a container at rest gives the block a slip velocity. Where the
     block never slides, the block that cannot slide is the reference. In the frame of a floor that moves up and down,
-    gravity is g + a_v.
+    gravity is g + a_v; on a slope, the part of gravity along it is an acceleration of the floor uphill.
     """
     case, block = model.case, block_of(model)
-    floor = floor_of(model.motion, driven_until=model.duration)
+    floor = floor_of(model.motion, driven_until=model.duration).on_slope(case.gravity_downhill)
     if case.has_vertical:
         floor = floor.with_vertical(floor_of(model.vertical, driven_until=model.duration))
     jerk = 0.0 if case.starts_moving else floor_motion(model.motion.compiled(), 0.0)[1]

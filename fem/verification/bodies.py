@@ -78,6 +78,8 @@ def free_run(
     modal_position: float = 0.0,
     height: float = 0.0,
     springs: FloatArray | None = None,
+    caps: FloatArray | None = None,
+    speed: float = 0.0,
     until: float = math.inf,
 ) -> Flight:
     """Put a body into the stepper, every step of one size.
@@ -89,6 +91,8 @@ def free_run(
         modal_position: amplitude of a modal body's modes at t = 0.
         height: above its place on the floor at t = 0 [m].
         springs: (n,) contact springs, without damping and friction [N/m]; None: negligible ones.
+        caps: (n,) at which they crush the floor [N]; None: never.
+        speed: upward velocity of a modal body at t = 0 [m/s].
         until: an instant at which a step ends [s].
     """
     if isinstance(body, FullBody):
@@ -99,7 +103,7 @@ def free_run(
     stance = Stance(
         centre=(float(x), float(z) + height),
         rotation=0.0,
-        velocity=(0.0, 0.0),
+        velocity=(0.0, speed),
         angular_velocity=0.0,
         force=np.zeros((points, 2)),
     )
@@ -117,7 +121,7 @@ def free_run(
     samples = coordinates if isinstance(body, ModalBody) else 0
     run = make_run(
         scheme=scheme,
-        contact=_contact(np.full(points, 1.0) if springs is None else springs, body.mass),
+        contact=_contact(np.full(points, 1.0) if springs is None else springs, caps, body.mass),
         motion=as_floor_motion(UNIFORM, (0.0, 0.0, 0.0)),
         breaks=np.full(1, until),
         control=with_steps_of(build_model(STACK), step).run.control._replace(
@@ -144,11 +148,11 @@ def full_body(elements: FiniteElements, *, gravity: float = 1e-3) -> FullBody:
     return FullBody(elements, ends, no_monitors, gravity=gravity, damping=0.0)
 
 
-def _contact(springs: FloatArray, mass: float) -> Contact:
+def _contact(springs: FloatArray, caps: FloatArray | None, mass: float) -> Contact:
     return Contact(
         normal_stiffness=springs,
         tangential_stiffness=springs.copy(),
-        cap=np.full(springs.size, math.inf),
+        cap=np.full(springs.size, math.inf) if caps is None else caps,
         relaxation_time=0.0,
         mu_static=np.full(springs.size, 1e-9),
         mu_kinetic=np.full(springs.size, 1e-9),

@@ -14,6 +14,7 @@ from fem.runtime.identity import versions
 from fem.verification import (
     contact_laws,
     elasticity,
+    floor,
     limits,
     overturning,
     restitution,
@@ -36,6 +37,7 @@ MODULES = (
     restitution,
     overturning,
     vertical,
+    floor,
     limits,
 )
 CHECKS = tuple(check for module in MODULES for check in vars(module).values() if isinstance(check, Check))

@@ -53,6 +53,13 @@ def test_the_floor_never_pulls(penetration, rate, step):
         assert (force, by_penetration, by_rate) == (0.0, 0.0, 0.0)
 
 
+@given(st.floats(-1e-2, 1e-2), st.floats(-10.0, 10.0), st.floats(1e3, 1e8))
+def test_a_floor_that_crushes_bears_the_cap_and_no_more(penetration, rate, cap):
+    elastic = normal(penetration, rate)
+    capped = normal_force(penetration, rate, STIFFNESS, DAMPING, cap, STEP)
+    assert capped == (elastic if elastic[0] < cap else (cap, 0.0, 0.0))
+
+
 @given(st.floats(1e-9, 1e-2), st.floats(-10.0, 10.0))
 def test_a_point_long_closed_is_a_spring_and_a_dashpot(penetration, rate):
     if rate < penetration / STEP:

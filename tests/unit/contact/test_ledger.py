@@ -5,7 +5,7 @@ import pytest
 
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.workspace import Contact
-from contact.stepping.ledger import contact_losses, spring_energy
+from contact.stepping.ledger import contact_losses, crushing_work, dissipation, spring_energy
 
 CONTACT = Contact(
     normal_stiffness=np.array([2e9, 3e9]),
@@ -75,3 +75,13 @@ def test_sliding_heats_by_kinetic_friction_times_path(direction):
     assert losses(points, forces, sticks, (slip, 0.0)) == pytest.approx(
         (0.2 * normal * abs(slip), 0.0), abs=1e-9
     )
+
+
+def test_crushing_takes_the_area_under_force_and_indentation():
+    forces = np.array([[[7.0, 0.0], [0.0, 3e5]], [[0.0, 4e5], [-2.0, 3e5]]])
+    crushed = np.array([[1e-3, 2e-3], [1.5e-3, 2.5e-3]])
+    assert crushing_work(*forces, *crushed) == pytest.approx(2e5 * 5e-4 + 3e5 * 5e-4, rel=1e-12)
+
+
+def test_every_loss_counts_once_as_dissipation():
+    assert dissipation(np.array([1e5, 1.0, 20.0, 300.0, 4000.0, 5e6])) == 4321.0

@@ -23,6 +23,11 @@ MOTIONS = (
     ({"motion.peak_acceleration_m_s2": 4.0, "contact.mu_static": 0.3}, REACHED),
     ({"contact.damping_ratio": 0.5, "contact.normal_penalty_Pa_m": 2e9}, REACHED),
     ({"motion.start": "rest"}, REACHED),
+    (
+        {"floor.kind": "slab", "floor.preset": "concrete C25/30", "floor.corner_patch_m": [0.008, 1.1]},
+        REACHED,
+    ),
+    ({"floor.slope_percent": 2.0}, REACHED),
 )
 
 

@@ -1,0 +1,143 @@
+"""Faults in the physical floor: cap, indentation, its work, slope."""
+
+from mutation import Mutation
+
+DROP = "verification/test_contact_drop.py"
+FLOOR = "verification/test_floor.py"
+SOLVER = "unit/contact/test_contact_solver.py"
+
+FLOOR_FAULTS = (
+    Mutation(
+        name="a cap on the spring alone, not on the dashpot",
+        file="contact/interface/laws.py",
+        old="    if force >= cap:\n        return cap, 0.0, 0.0\n",
+        new="    if stiffness * penetration >= cap:\n        return cap, 0.0, 0.0\n",
+        tests=("unit/contact/test_contact_laws.py",),
+    ),
+    Mutation(
+        name="the tangent of the spring kept at the cap",
+        file="contact/interface/laws.py",
+        old="return cap, 0.0, 0.0",
+        new="return cap, slope, by_rate",
+        tests=("unit/contact/test_contact_laws.py",),
+    ),
+    Mutation(
+        name="a point at its cap without its tangential tangent",
+        file="contact/interface/solver.py",
+        old="return work.slope[i, 2] != 0.0 or work.slope[i, 0] != 0.0",
+        new="return work.slope[i, 2] != 0.0",
+        tests=(SOLVER,),
+    ),
+    Mutation(
+        name="no elastic guess between open and the cap",
+        file="contact/interface/solver.py",
+        old="if iteration > 0 and level * work.level[i] < 0:",
+        new="if iteration < 0 and level * work.level[i] < 0:",
+        tests=(SOLVER, "-k", "gives_up"),
+    ),
+    Mutation(
+        name="an indentation that is forgotten at each step",
+        file="contact/stepping/step.py",
+        old="indented = old.crushed[i]",
+        new="indented = 0.0 * old.crushed[i]",
+        tests=(DROP,),
+    ),
+    Mutation(
+        name="points above the undamaged floor in the contact problem",
+        file="contact/stepping/step.py",
+        old="        indent(work.free, old.crushed)\n",
+        new="",
+        tests=(DROP,),
+    ),
+    Mutation(
+        name="the elastic part indents the floor, too",
+        file="contact/stepping/step.py",
+        old="indented = max(indented, -new.point[i, 1] - elastic)",
+        new="indented = max(indented, -new.point[i, 1])",
+        tests=(DROP,),
+    ),
+    Mutation(
+        name="points above the undamaged floor in the frame of the floor",
+        file="contact/stepping/integrator.py",
+        old="    indent(run.old.point, run.old.crushed)\n",
+        new="",
+        tests=(FLOOR, "-k", "frame"),
+    ),
+    Mutation(
+        name="half the work of crushing",
+        file="contact/stepping/ledger.py",
+        old="work += 0.5 * (force[i, 1]",
+        new="work += 0.25 * (force[i, 1]",
+        tests=("unit/contact/test_ledger.py",),
+    ),
+    Mutation(
+        name="the work of crushing left out of the balance",
+        file="contact/stepping/step.py",
+        old="- material - change[CRUSHING] - stored",
+        new="- material - 0.0 * change[CRUSHING] - stored",
+        tests=(DROP,),
+    ),
+    Mutation(
+        name="the work of crushing left out of the dissipation",
+        file="contact/stepping/ledger.py",
+        old=" + terms[MATERIAL_DAMPING] + terms[CRUSHING]",
+        new=" + terms[MATERIAL_DAMPING]",
+        tests=("unit/contact/test_ledger.py",),
+    ),
+    Mutation(
+        name="gravity uphill in the floating frame",
+        file="contact/stepping/modal_kernels.py",
+        old="force += now * body.mass * body.downhill",
+        new="force -= now * body.mass * body.downhill",
+        tests=(FLOOR, "-k", "stands_still"),
+    ),
+    Mutation(
+        name="gravity uphill at the nodes",
+        file="fem/solid/nodal_kernels.py",
+        old="body.damping_force[i, 0] - pull)",
+        new="body.damping_force[i, 0] + pull)",
+        tests=(FLOOR, "-k", "full_model_slides"),
+    ),
+    Mutation(
+        name="gravity's internal forces at the nodes without their part along the slope",
+        file="fem/solid/nodal_kernels.py",
+        old="        new.internal[2 * i] -= body.nodal_mass[i] * body.downhill\n",
+        new="",
+        tests=(FLOOR, "-k", "full_model_slides"),
+    ),
+    Mutation(
+        name="a potential without the way down",
+        file="contact/stepping/modal_kernels.py",
+        old="    new.energy[POTENTIAL] -= body.mass * body.downhill * (position[0] - floor)\n",
+        new="",
+        tests=(FLOOR,),
+    ),
+    Mutation(
+        name="no work of gravity along the floor's displacement",
+        file="contact/stepping/step.py",
+        old="(shear + run.control.mass * run.control.downhill)",
+        new="(shear + 0.0 * run.control.mass * run.control.downhill)",
+        tests=(FLOOR, "-k", "no_work"),
+    ),
+    Mutation(
+        name="the force that holds on a slope taken downhill",
+        file="contact/stepping/joints.py",
+        old="run.floor[1, 2] - run.control.downhill",
+        new="run.floor[1, 2] + run.control.downhill",
+        tests=("validation/test_verification_checks.py", "-k", "floor and slider"),
+    ),
+    Mutation(
+        name="settled as on a level floor",
+        file="contact/interface/equilibrium.py",
+        old="        system[m + 1, :m] -= shear_ratio * point[chosen, 1]\n",
+        new="",
+        tests=(FLOOR, "-k", "stands_still"),
+    ),
+    Mutation(
+        name="at rest only at the height of the place it was set down",
+        file="contact/stepping/observables.py",
+        old="* sunk + downhill",
+        new="* sunk",
+        tests=(FLOOR, "-k", "comes_to_rest"),
+    ),
+)

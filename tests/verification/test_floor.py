@@ -1,0 +1,144 @@
+"""The physical floor in every model: indentations that stay, and a container at rest on a slope."""
+
+import math
+
+import numpy as np
+import pytest
+
+from contact.stepping.body import CENTRE_X, POTENTIAL
+from contact.stepping.integrator import REACHED, enter_floor_frame_compiled
+from contact.stepping.ledger import BASE_WORK, CONTACT_DAMPING, CRUSHING, FRICTION, IMBALANCE
+from contact.stepping.outcome import FREE, is_over
+from fem.model.model import Model, build_model
+from fem.run.checkpoint import CheckpointWriter, read_state
+from fem.run.recorder import Recorder
+from fem.run.simulation import BEGINNING
+from fem.solid.nodal_body import advance_body
+from fem.verification.runs import BOX, GRAVITY, STACK, harmonic, pulse
+
+MODELS = {
+    "rigid": {},
+    "reduced": {"solver.model": "reduced", "solver.element_size_m": 0.5},
+    "full": {"solver.model": "full", "solver.element_size_m": 0.5},
+}
+SLAB = {"floor.kind": "slab", "floor.preset": "concrete C25/30", "floor.corner_patch_m": [0.008, 1.1]}
+SLOPE = 0.08  # it falls toward +x
+
+
+def stepped(model: Model, until: float) -> Model:
+    run = model.run
+    while run.clock[0].time < until:
+        assert advance_body(model.body, run, until) == REACHED
+        run.clock[0].samples_drained = run.clock[0].samples
+    return model
+
+
+def tilted_box(model: str, **values) -> Model:
+    """A box that falls back on its corner from 0.02 rad, within a few hundredths of a second."""
+    keys = {"initial.rotation_rad": 0.02, "solver.duration_s": 0.3, "output.history_s": 0.01}
+    return build_model(BOX.with_values(MODELS[model] | keys | SLAB | values))
+
+
+@pytest.mark.parametrize("kind", ["corners", "feet", "flat"])
+@pytest.mark.parametrize("model", ["rigid", "reduced"])
+def test_a_container_stands_still_on_a_slope(model, kind):
+    keys = {"floor.slope_percent": 100.0 * SLOPE, "support.kind": kind, "solver.element_size_m": 0.275}
+    on_slope = build_model(STACK.with_values(MODELS[model] | keys | {"contact.mu_static": 0.1}))
+    run, mass = on_slope.run, on_slope.run.control.mass
+    weight, angle = mass * GRAVITY, math.atan(SLOPE)
+    tangential, normal = run.old.force.sum(axis=0)
+    assert normal == pytest.approx(weight * math.cos(angle), rel=1e-9)
+    assert tangential == pytest.approx(-weight * math.sin(angle), rel=1e-9)  # it holds uphill
+    # the resultant passes through the mass centre: towards the lower corner
+    assert run.old.force[:, 1] @ run.old.point[:, 0] / normal == pytest.approx(2.0 * SLOPE, abs=1e-3)
+    forces = run.old.force.copy()
+    stepped(on_slope, 1.0)
+    assert run.joints[0].max_slip == 0.0
+    assert run.track[0].modes == 1  # at rest
+    assert run.old.force == pytest.approx(forces, abs=1e-3 * weight)
+    assert np.abs(run.ledger).max() <= 1e-7 * run.control.reference_energy
+
+
+def test_the_full_model_slides_down_a_slope_as_the_closed_form_says():
+    # mu below the slope: g (sin - mu cos)
+    keys = {"floor.slope_percent": 100.0 * SLOPE, "contact.mu_static": 0.05, "contact.mu_kinetic": 0.05}
+    model = build_model(BOX.with_values(MODELS["full"] | keys))
+    before = float(model.run.old.energy[POTENTIAL])
+    stepped(model, 0.2)
+    angle, run = math.atan(SLOPE), model.run
+    expected = 0.5 * GRAVITY * (math.sin(angle) - 0.05 * math.cos(angle)) * run.clock[0].time ** 2
+    assert run.joints[0].slip == pytest.approx(expected, rel=5e-3)
+    lost = model.run.control.mass * GRAVITY * math.sin(angle) * run.old.pose[CENTRE_X]
+    assert run.old.energy[POTENTIAL] - before == pytest.approx(-lost, rel=1e-3)
+    assert abs(run.ledger[IMBALANCE]) <= 1e-3 * run.ledger[FRICTION]
+
+
+def test_a_floor_that_carries_a_container_along_a_slope_does_no_work_on_it():
+    # At constant velocity friction balances gravity: neither does the height change, nor anything else.
+    keys = {"floor.slope_percent": 100.0 * SLOPE, "motion.start": "moving"}
+    model = build_model(STACK.with_values(pulse(1.0, 0.2) | keys | {"contact.mu_static": 0.3}))
+    before = float(model.run.old.energy[POTENTIAL])
+    stepped(model, 1.0)
+    energy, ledger = model.run.old.energy, model.run.ledger
+    kinetic = 0.5 * model.run.control.mass * float(model.run.floor[0, 1]) ** 2
+    assert energy[POTENTIAL] == pytest.approx(before, abs=1e-3 * kinetic)
+    assert ledger[BASE_WORK] == pytest.approx(kinetic, rel=1e-2)
+
+
+def test_a_container_comes_to_rest_where_it_has_slid_down():
+    keys = {"floor.slope_percent": 5.0, "contact.mu_static": 0.1, "solver.duration_s": 3.0}
+    model = build_model(BOX.with_values(pulse(-3.0, 0.1) | keys))
+    run = model.run
+    over = 0.0
+    while not over and run.clock[0].time < 3.0:
+        stepped(model, float(run.clock[0].time) + 0.05)
+        over = float(run.clock[0].time) * is_over.py_func(run, FREE)
+    assert run.joints[0].max_slip > 0.01
+    assert 0.0 < over < 1.5
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_every_model_crushes_the_floor_alike(model):
+    run = stepped(tilted_box(model), 0.12).run
+    rigid = stepped(tilted_box("rigid"), 0.12).run
+    assert run.old.crushed[0] > 1e-5
+    assert run.old.crushed[0] == pytest.approx(rigid.old.crushed[0], rel=0.05)
+    assert run.ledger[CRUSHING] == pytest.approx(run.contact.cap @ run.old.crushed, rel=2e-2)
+    assert (run.old.force[:, 1] <= run.contact.cap * (1.0 + 1e-9)).all()
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_an_interrupted_run_keeps_its_indentations_to_the_byte(model, tmp_path):
+    whole, first, second = (tilted_box(model) for _ in range(3))
+    for one in (whole, first):
+        stepped(one, 0.1)
+        one.run.clock[0].attempt_limit = 2**62
+    assert first.run.old.crushed.max() > 0.0
+    recorder = Recorder(first)
+    write = CheckpointWriter(tmp_path / "checkpoint.npz", first, recorder, case_hash="", notes=dict)
+    write(BEGINNING, True)
+    read_state(tmp_path / "checkpoint.npz", second, "").restore(second, Recorder(second))
+    for one in (whole, second):
+        stepped(one, 0.12)
+    assert second.run.old.numbers.tobytes() == whole.run.old.numbers.tobytes()
+    assert second.run.ledger.tobytes() == whole.run.ledger.tobytes()
+
+
+def test_indentations_are_kept_where_the_frame_of_the_floor_is_entered():
+    model = stepped(tilted_box("rigid"), 0.12)
+    point = model.run.old.point.copy()
+    enter_floor_frame_compiled(model.body, model.run, 0.0, 0.0)
+    assert model.run.old.point == pytest.approx(point, abs=1e-15)
+
+
+def test_a_cap_above_all_forces_changes_no_bit_of_an_elastic_container():
+    keys = harmonic(4.0 / 6.928**2, 6.928) | MODELS["reduced"] | {"solver.duration_s": 1.5}
+    runs = []
+    for cap in (math.inf, 1e15):
+        model = build_model(STACK.with_values(keys))
+        model.run.contact.cap[:] = cap
+        runs.append(stepped(model, 1.5).run)
+    assert runs[0].old.numbers.tobytes() == runs[1].old.numbers.tobytes()
+    assert runs[0].track[0].impacts > 0
+    assert runs[0].ledger.tobytes() == runs[1].ledger.tobytes()
+    assert runs[0].ledger[CONTACT_DAMPING] > 0.0
