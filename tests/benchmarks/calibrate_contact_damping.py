@@ -100,7 +100,7 @@ def stiff_solid(kind: str, foot: float, slenderness: float) -> tuple[Case, Conta
     case = case_of(kind, foot, slenderness, "reduced")
     model = build_model(case)
     given = case.container.youngs_modulus_Pa
-    ratio = model.frequencies[0] / contact_frequency(model.container.mesh.mass, model.base_stiffness)
+    ratio = model.spectra[0][0] / contact_frequency(model.container.mesh.mass, model.base_stiffness)
     modulus = min(given * (STIFFNESS_RATIO / ratio) ** 2, STIFFEST)
     chosen = {"container.youngs_modulus_Pa": modulus, "contact.normal_penalty_Pa_m": model.penalty}
     case = case.with_values(chosen)

@@ -55,8 +55,8 @@ def test_each_corner_lifts_at_its_own_acceleration(sign, arm, share):
     # A floor that accelerates to the left tilts the stack to the right, about the nearer corner.
     z = (4000.0 * 0.5 + 800.0 * 1.3) / 4800.0
     peak = share * sign * 9.81 * arm / z
-    motion = f'kind = "pulse"\nshape = "rectangular"\npeak_acceleration_m_s2 = {peak!r}\npulse_s = 0.3'
-    more = '[solver]\nmodel = "rigid"\nduration_s = 0.3\n[output]\nfields_s = 0.0\n'
+    motion = f'kind = "pulse"\nshape = "rectangular"\npeak_acceleration_m_s2 = {peak!r}\npulse_s = 1.0'
+    more = '[solver]\nmodel = "rigid"\nduration_s = 1.0\n[output]\nfields_s = 0.0\n'
     model = build_model(stack(motion=motion, more=more))
     simulate(model, Recorder(model))
     rotation = float(model.run.old.pose[0])

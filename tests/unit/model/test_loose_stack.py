@@ -43,7 +43,7 @@ def test_each_joint_carries_the_weight_above_it_at_rest(model):
     force, weight = built.run.old.force, 9.81 * np.array([4800.0, 800.0])
     assert force[:2, 1].sum() == pytest.approx(weight[0], rel=1e-9)
     assert force[2:, 1].sum() == pytest.approx(weight[1], rel=1e-7)  # along the tilted face
-    assert np.abs(force[:, 0]).max() < 1e-5 * weight[1]  # the faces tilt by as much
+    assert np.abs(force[:, 0]).max() < 1e-4 * weight[1]  # the faces tilt by as much
     # The mass centre of the upper box is 0.1 m beside the axis of the lower one, that of both 0.1 x 800/4800 m.
     left, right = force[:2, 1]
     assert (right - left) / (right + left) * 0.55 == pytest.approx(0.1 * 800.0 / 4800.0, rel=1e-3)

@@ -57,7 +57,7 @@ def test_a_run_says_what_each_box_did(case, run, tmp_path):
     assert history.numbers[-10:] == tuple(name.format(k) for k in (2, 3) for name in BOX_COLUMNS)
     assert abs(history["box_2_slip_m"]).max() == pytest.approx(verdict["boxes"][1]["max_slip_m"], rel=1e-2)
     assert history["box_3_z_m"] == pytest.approx(2.5, abs=1e-3)
-    assert set(open_run(tmp_path / "run").fields().frame(0).box.tolist()) == {1, 2, 3}
+    assert set(open_run(tmp_path / "run").fields.frame(0).box.tolist()) == {1, 2, 3}
 
 
 def test_the_resolved_case_runs_again_to_the_same_result(run):
