@@ -30,8 +30,9 @@ def fall_in_words(verdict: Verdict) -> str:
     """Which box of a loose stack fell, and when; empty where none did."""
     if verdict.fell_box is None:
         return ""
-    at = verdict.overturned_at_s
-    return f"box {verdict.fell_box} fell" + (f" at t = {at:.3f} s" if at is not None else "")
+    at, above = verdict.overturned_at_s, verdict.fell_box < len(verdict.boxes or ())
+    when = f" at t = {at:.3f} s" if at is not None else ""
+    return f"box {verdict.fell_box} fell{when}{', with what stood on it' if above else ''}"
 
 
 def joints_in_words(verdict: Verdict, static: StaticResult | None) -> str:

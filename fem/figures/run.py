@@ -230,7 +230,8 @@ def phase_portrait_figure(run: OpenedRun) -> Figure:
     axes.set_xlabel("rotation [degrees]")
     axes.set_ylabel("angular velocity [degrees/s]")
     legend_above(axes)
-    head(figure, "Phase portrait of the rotation", status=run.status)
+    of_box = " of box 1" if run.verdict.boxes else ""
+    head(figure, f"Phase portrait of the rotation{of_box}", status=run.status)
     return figure
 
 

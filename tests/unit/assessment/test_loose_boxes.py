@@ -45,8 +45,10 @@ def test_the_first_line_says_how_the_boxes_moved_on_one_another(changed, says):
 
 
 def test_the_first_line_names_the_box_that_fell():
-    fell = result(outcome="overturned", fell_box=3, overturned_at_s=4.21)
-    assert outcome_sentence(fell) == "Result: box 3 fell at t = 4.210 s."
+    fell = result(outcome="overturned", fell_box=4, overturned_at_s=4.21)
+    assert outcome_sentence(fell) == "Result: box 4 fell at t = 4.210 s."
+    below = result(outcome="overturned", fell_box=2, overturned_at_s=4.21)
+    assert outcome_sentence(below) == "Result: box 2 fell at t = 4.210 s, with what stood on it."
 
 
 def test_a_container_that_moves_as_one_body_has_no_boxes():
