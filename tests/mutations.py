@@ -5,6 +5,7 @@ Signs, factors, dropped terms, one coefficient for another, tangents, the ledger
 
 from mutation import Mutation
 from mutations_of_floor import FLOOR_FAULTS
+from mutations_of_loose_stacks import LOOSE_STACKS
 from mutations_of_vertical_motion import VERTICAL_MOTION
 
 ELASTICITY = (
@@ -363,4 +364,5 @@ MUTATIONS = (
     ),
     *VERTICAL_MOTION,
     *FLOOR_FAULTS,
+    *LOOSE_STACKS,
 )

@@ -20,6 +20,7 @@ from fem.verification import (
     restitution,
     rocking,
     sliding,
+    stacks,
     statics,
     time_stepping,
     vertical,
@@ -38,6 +39,7 @@ MODULES = (
     overturning,
     vertical,
     floor,
+    stacks,
     limits,
 )
 CHECKS = tuple(check for module in MODULES for check in vars(module).values() if isinstance(check, Check))

@@ -1,0 +1,58 @@
+"""Faults in boxes that stand loose on one another."""
+
+from mutation import Mutation
+
+FACES = ("unit/contact/test_faces.py",)
+STACKS = ("validation/test_verification_checks.py", "-k", "stacks")
+
+LOOSE_STACKS = (
+    Mutation(
+        name="a lever rule that loads the far end of a face",
+        file="contact/interface/faces.py",
+        old="(share - 1.0 if k == LEFT else -share)",
+        new="(-share if k == LEFT else share - 1.0)",
+        tests=FACES,
+    ),
+    Mutation(
+        name="a corner that carries all up to the edge of a face and nothing beyond",
+        file="contact/interface/faces.py",
+        old="weight = min(max(0.5 + 0.5 * inside, 0.0), 1.0)",
+        new="weight = 1.0 if inside >= 0.0 else 0.0",
+        tests=FACES,
+    ),
+    Mutation(
+        name="a force on the face that points as that on the corner",
+        file="contact/interface/faces.py",
+        old="corner_force[c, d] += (",
+        new="corner_force[c, d] += (1.0 if k == TOUCHING else -1.0) * (",
+        tests=FACES,
+    ),
+    Mutation(
+        name="slips of a corner of the lower box counted the other way",
+        file="contact/interface/faces.py",
+        old="faces.origin[i] + faces.side[i] * share",
+        new="faces.origin[i] + share",
+        tests=FACES,
+    ),
+    Mutation(
+        name="friction of the floor in every joint",
+        file="contact/stepping/joints.py",
+        old="joint.mu = run.contact.mu_static[points_of(run, j)[0]]\n        if",
+        new="joint.mu = run.contact.mu_static[0]\n        if",
+        tests=STACKS,
+    ),
+    Mutation(
+        name="a joint held by the floor's acceleration alone",
+        file="contact/stepping/joints.py",
+        old="(box[VELOCITY_X] - before[VELOCITY_X]) / step + turning * up",
+        new="0.0 * step + turning * up",
+        tests=STACKS,
+    ),
+    Mutation(
+        name="a box that may lie on the floor without having fallen",
+        file="contact/stepping/boxes.py",
+        old="fallen = fallen or new.corner[c, 1] <= 0.0",
+        new="fallen = fallen or new.corner[c, 1] <= -1e9",
+        tests=STACKS,
+    ),
+)
