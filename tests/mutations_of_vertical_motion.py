@@ -78,8 +78,8 @@ VERTICAL_MOTION = (
     Mutation(
         name="a container left at rest by a floor that moves up",
         file="fem/model/model.py",
-        old="stance = stance.moving(velocity_x, velocity_z)",
-        new="stance = stance.moving(velocity_x)",
+        old="stance = stance.moving(*velocity)",
+        new="stance = stance.moving(velocity[0])",
         tests=(VERTICAL, "-k", "start"),
     ),
     Mutation(
