@@ -137,6 +137,8 @@ def run_suite(
     """
     checks = chosen_checks(quick=quick, topics=topics)
     run(STACK, {"solver.duration_s": 0.01})
+    if any(check.topic == "stacks" for check in checks):
+        run(STACK, {"container.boxes": 2, "container.joints": "loose", "solver.duration_s": 0.01})
     began = time.perf_counter()
     results = []
     for number, check in enumerate(checks, start=1):
