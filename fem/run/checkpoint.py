@@ -26,6 +26,7 @@ from fem.results.archive import CheckpointError, read_checkpoint, write_archive
 from fem.run.recorder import Recorder
 from fem.run.simulation import BEGINNING, Progress
 from fem.runtime.identity import program_identity
+from fem.solid.nodal_stack import FullStack
 
 #: wall time between checkpoints [s]; the stepping pauses every five seconds or so, and writing frames takes time, too
 CHECKPOINT_S = 15.0
@@ -146,7 +147,11 @@ def _changing(model: Model) -> Arrays:
             found |= {f"{name}.{key}": array for key, array in part._asdict().items()}
         else:
             found[name] = part
-    if model.container.boxes:  # the weights of the contact points of a loose stack change
+    stack = model.body.stack if isinstance(model.body, FullStack) else model.body
+    if isinstance(
+        stack, LooseStack
+    ):  # a step begins with the weights and the linearisation of the one before
+        found["faces.weight"], found["faces.gradient"] = stack.faces.weight, stack.faces.gradient
         found["contact.normal_stiffness"] = model.run.contact.normal_stiffness
         found["contact.tangential_stiffness"] = model.run.contact.tangential_stiffness
     return found
