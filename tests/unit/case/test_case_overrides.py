@@ -94,10 +94,26 @@ def test_who_names_a_floor_stands_on_it_with_all_its_numbers():
 
 
 def test_another_kind_of_floor_takes_nothing_of_the_former_one():
-    case = load_case(BASE, ["contact.normal_penalty_Pa_m=1e9"])
-    slab = case.with_values({"floor.preset": "asphalt"})
+    rigid = load_case(BASE, ["floor.kind=rigid"])
+    penalty = rigid.with_values({"contact.normal_penalty_Pa_m": 1e9})
+    slab = penalty.with_values({"floor.preset": "asphalt"})
     assert slab.contact.normal_penalty_Pa_m == "auto"
-    assert slab.with_values({"floor.kind": "rigid"}).resolved() == load_case(BASE).resolved()
+    assert slab.with_values({"floor.kind": "rigid"}).resolved() == rigid.resolved()
+
+
+def test_a_numerical_penalty_replaces_a_slab():
+    rigid = load_case(BASE, ["floor.kind=rigid", "contact.normal_penalty_Pa_m=1e9"])
+    assert (
+        load_case(BASE, SLAB).with_values({"contact.normal_penalty_Pa_m": 1e9}).resolved() == rigid.resolved()
+    )
+    assert load_case(BASE, [*SLAB, "contact.damping_ratio=1.0"]).floor.kind == "slab"
+    said = refused(*SLAB, "contact.normal_penalty_Pa_m=1e9")
+    assert 'normal_penalty_Pa_m belongs to floor.kind = "rigid"' in said
+
+
+def test_another_support_does_not_stand_on_the_patch_of_the_former_one():
+    assert load_case(BASE, SLAB).with_values({"support.kind": "flat"}).floor.corner_patch_m is None
+    assert load_case(BASE, [*SLAB, "support.kind=feet"]).floor.corner_patch_m == [0.1, 0.2]
 
 
 def test_overrides_go_through_the_same_checks_and_are_named():

@@ -24,6 +24,7 @@ def test_a_resolved_slab_has_the_numbers_of_its_preset_and_no_penalty():
         "youngs_modulus_Pa": 31e9,
         "poisson_ratio": 0.2,
         "bearing_strength_Pa": 50e6,
+        "corner_patch_m": [0.008, 1.1],
         "slope_percent": 0.0,
     }
     assert resolved["contact"].keys().isdisjoint({"normal_penalty_Pa_m", "tangential_ratio", "damping_ratio"})
@@ -43,7 +44,7 @@ def test_a_slab_has_its_own_damping_unless_one_is_given():
     assert given.contact_damping_ratio == 2.0
     assert given.resolved()["contact"]["damping_ratio"] == 2.0
     assert case_hash(given) != case_hash(slab)
-    assert load_case("seed_stack").contact_damping_ratio == 2.0
+    assert load_case("free_rocking").contact_damping_ratio == 2.0
 
 
 def test_a_level_rigid_floor_is_no_part_of_a_resolved_case():

@@ -16,7 +16,7 @@ from fem.solid.elasticity import stress_and_energy
 
 COARSE = ("solver.element_size_m=0.5", "output.fields_s=0", "solver.duration_s=0.5")
 SOFT = ("container.youngs_modulus_Pa=1e6", *COARSE)
-TILTED = (*COARSE, "solver.model=rigid", "initial.rotation_rad=0.1")
+TILTED = (*COARSE, "floor.kind=rigid", "solver.model=rigid", "initial.rotation_rad=0.1")
 FLAT = ("container.section=solid", "container.youngs_modulus_Pa=1e6", "support.kind=flat")
 
 
