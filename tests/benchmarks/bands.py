@@ -26,7 +26,7 @@ CASES: dict[str, tuple[list[str], float | None]] = {
     "shell on feet": (["support.kind=feet"], None),
     "shell on a flat base": (["support.kind=flat"], None),
 }
-QUICK = ["output.figures=false", "output.fields_s=0"]
+QUICK = ["floor.kind=rigid", "output.figures=false", "output.fields_s=0"]
 
 
 def band(changes: list[str], folder: Path) -> tuple[Verdict, float]:

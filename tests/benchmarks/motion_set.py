@@ -19,6 +19,7 @@ SWEEP = """
 case = "seed_stack_plateau"
 [set]
 "solver.model" = "rigid"
+"floor.kind" = "rigid"
 "motion.scale_to_m_s2" = 3.8
 "contact.mu_kinetic" = 0.3
 [axes]

@@ -54,7 +54,9 @@ def single_runs() -> list[Figure]:
     figures = []
     for kind, limit in (("corners", CORNERS), ("flat", FLAT)):
         for name in CASES:
-            case = load_case(name, [f"support.kind={kind}", f"solver.duration_s={DURATION}"])
+            case = load_case(
+                name, ["floor.kind=rigid", f"support.kind={kind}", f"solver.duration_s={DURATION}"]
+            )
             container = discretise(case)
             cpu, run = cost(case, container)
             what = f"{name}, {kind}, {container.support.index.size} contact nodes"
@@ -68,7 +70,7 @@ def single_runs() -> list[Figure]:
 
 def scaling() -> list[Figure]:
     """Growth of the cost; with the modes the steps change a little too, so this measures the cost of a step."""
-    base = load_case("rocking")
+    base = load_case("rocking", ["floor.kind=rigid"])
     container = discretise(base)
     by_duration = [cost(base.with_values({"solver.duration_s": one}), container)[0] for one in DURATIONS]
     by_modes = []
