@@ -6,6 +6,7 @@ SMALL = """
 case = "seed_stack_plateau"
 [set]
 "solver.model" = "rigid"
+"floor.kind" = "rigid"
 "solver.duration_s" = 2.0
 [axes]
 "motion.angular_frequency_rad_s" = { from = 2.0, to = 6.0, count = 4 }

@@ -39,9 +39,6 @@ ORDER = (
     stepper.ROW_MATERIAL_DAMPING,
 )
 
-#: samples searched for the largest stress each time: those of the largest strain energy
-STRAINED = 4
-
 #: decimals of times that people write [s]; relative error of multiplication
 DECIMALS, ROUNDING = 12, 4.0 * float(np.finfo(float).eps)
 
@@ -76,7 +73,7 @@ class Recorder:
         self._modes: list[str] = []
         #: tributary area of each contact node (n_c,) [m2]
         self._area = model.equilibrium.contact.normal_stiffness / model.penalty
-        self.largest_von_mises: float | None = None  #: over frames and the most strained samples, if any [Pa]
+        self.largest_von_mises: float | None = None  #: over frames and samples, if any [Pa]
         #: of the joints at the last sample (J, 8), see `fem.model.joints`; the next forces follow from its change
         self.joint_motion = np.zeros((0, 0))
         self._joint_forces = np.zeros((0, len(JOINT_COLUMNS)))
@@ -168,10 +165,8 @@ class Recorder:
         rows[:, own:] = samples.columns[:count, stepper.ROW_COLUMNS :]
         rows += 0.0  # no minus zero
         modes = [MODE_NAMES[int(mode)] for mode in samples.mode[:count]]
-        if self._recovery is not None:
-            strained = np.argsort(samples.columns[:count, stepper.ROW_STRAIN])[-STRAINED:]
-            if samples.position.shape[1] > 0 and not self._recovery.full:
-                self._note_stress(self._recovery.largest_von_mises(samples.position[strained]))
+        if self._recovery is not None and samples.position.shape[1] > 0 and not self._recovery.full:
+            self._note_stress(self._recovery.largest_von_mises(samples.position[:count]))
         self._rows.append(rows)
         self._modes += modes
         if self._history_sink is not None:

@@ -24,6 +24,7 @@ probability = 0.5
 seed = 4
 [set]
 "solver.model" = "rigid"
+"floor.kind" = "rigid"
 "solver.duration_s" = 3.0
 "solver.energy_tolerance" = 10.0
 "motion.frequency_Hz" = 0.5

@@ -154,7 +154,7 @@ class TestWhatDoesNotFitTheTime:
 
 @pytest.mark.parametrize(("share", "members"), [(0.8, 0), (0.9, 1), (1.05, 0)])
 def test_a_flat_base_near_uplift_is_tried_on_a_stiff_floor(share, members):
-    case = load_case("seed_stack", ["solver.model=rigid", "support.kind=flat"])
+    case = load_case("seed_stack", ["solver.model=rigid", "floor.kind=rigid", "support.kind=flat"])
     model = build_model(case)
     floors = [one for one in plan_of(model, result("rock", share)).changes if one.kind == "floor"]
     assert len(floors) == members

@@ -25,7 +25,7 @@ VERTICAL = (
     f"vertical.phase_rad={PHASE}",
     "vertical.scale=-1",
 )
-RIGID = ("solver.model=rigid", "solver.duration_s=1.5", "contact.mu_static=0.8")
+RIGID = ("solver.model=rigid", "floor.kind=rigid", "solver.duration_s=1.5", "contact.mu_static=0.8")
 
 
 @pytest.fixture(scope="module")
