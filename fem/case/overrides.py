@@ -126,14 +126,14 @@ def _replace_alternatives(data: dict[str, Any], dotted: Any) -> None:
 def _replace_floor(data: dict[str, Any], dotted: Any) -> None:
     """Another floor takes nothing of the former one: kind, preset; a numerical penalty replaces a slab.
 
-    What bears under a corner is that of the former support.
+    Feet and a flat base do not stand on the patch of a corner.
     """
     floor, contact, explicit = data.get("floor"), data.get("contact"), _keys_set("floor", dotted)
     if not isinstance(floor, dict):
         return
     if not explicit and not _keys_set("contact", dotted).isdisjoint(PENALTY_KEYS):
         floor["kind"], explicit = "rigid", {"kind"}
-    if "kind" in _keys_set("support", dotted):
+    if "kind" in _keys_set("support", dotted) and data["support"]["kind"] != "corners":
         _drop(floor, ("corner_patch_m",), explicit)
     if "kind" in explicit and floor.get("kind") == "rigid":
         _drop(floor, SLAB_KEYS, explicit)

@@ -141,6 +141,6 @@ def _restitution_of_contact(case: Case, document: Mapping[str, Any]) -> str:
         damping = f"by damping ratio {document['numerics']['contact_damping_ratio']:.4g}"
         return f"{value:8.4f} if rigid, {ratio:g} of Housner's, {damping} and the penalty below"
     if case.floor.is_slab:
-        return "follows from the slab; one that crushes leaves about Housner's"
+        return "of the slab: where it crushes about Housner's"
     given = f"damping ratio {case.contact.dashpot:g} on {case.support.kind}"
     return f"{value:8.4f} if rigid, with {given}" if value is not None else f"not calibrated for {given}"

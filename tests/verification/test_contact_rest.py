@@ -14,6 +14,7 @@ def standing(model: str, support: str, section: str) -> Model:
     case = load_case("seed_stack").with_values(
         {
             "motion.kind": "none",
+            "floor.kind": "rigid",
             "solver.model": model,
             "solver.element_size_m": 0.275,
             "solver.duration_s": 2.0,

@@ -13,7 +13,7 @@ FLAT = ("support.kind=flat", "contact.mu_kinetic=0.4")
 
 
 def verdict(name: str, *changes: str) -> Verdict:
-    done = run(load_case(name, ("output.fields_s=0", *changes)))
+    done = run(load_case(name, ("floor.kind=rigid", "output.fields_s=0", *changes)))
     return verdict_of(done.model, done.history, None)
 
 

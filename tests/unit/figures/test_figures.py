@@ -59,7 +59,7 @@ class Collecting(SilentReporter):
 
 
 def run_into(folder, name, *overrides, reporter=None, **options):
-    case = load_case(name, [*QUICK, *overrides])
+    case = load_case(name, ["floor.kind=rigid", *QUICK, *overrides])
     options = {"band": False} | options
     run_case(case, case_text=case.text, folder=folder, options=RunOptions(**options), reporter=reporter)
     return fem.open_run(folder)
