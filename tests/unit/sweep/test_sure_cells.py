@@ -90,7 +90,7 @@ def test_an_axis_is_not_varied_over_its_range(sweep_of):
 
 
 def test_a_deformable_container_leaves_out_what_takes_long(sweep_of):
-    sweep = sweep_of(SMALL.replace('"rigid"', '"reduced"'))
+    sweep = sweep_of(SMALL.replace('model" = "rigid"', 'model" = "reduced"'))
     copies = CellCopies(sweep).of(0)
     assert {copy.change.kind for copy in copies} == {"one"}
     assert "container.damping_ratio" in {key for copy in copies for key in copy.change.values}
