@@ -122,6 +122,22 @@ def test_a_run_in_pieces_has_the_bits_of_a_run_at_once():
     assert at_once.joints.tobytes() == in_pieces.joints.tobytes()
 
 
+def test_a_run_goes_on_from_its_state_alone():
+    """All that changes is copied to a fresh stack, as from a checkpoint; scratch arrays and weights are not."""
+    done, resumed = (stack_rig([Box()] * 3, motion=SHAKE, joint_mu=0.3) for _ in range(2))
+    done.advance(1.7)
+    for name, part in done.run._asdict().items():
+        if name in ("old", "new", "work"):
+            for target, source in zip(getattr(resumed.run, name), part, strict=True):
+                target[:] = source
+        elif name in ("floor", "lift", "slip", "change", "ledger", "clock", "joints", "track", "contents"):
+            getattr(resumed.run, name)[:] = part
+    done.advance(4.0)
+    resumed.advance(4.0)
+    assert done.run.old.numbers.tobytes() == resumed.run.old.numbers.tobytes()
+    assert done.joints.tobytes() == resumed.joints.tobytes()
+
+
 def test_stacks_with_scratch_of_their_own_do_not_disturb_one_another():
     one, other = (stack_rig([Box()] * 3, motion=SHAKE, joint_mu=0.3) for _ in range(2))
     run_to_end(one.stack, one.run, 3.0)
