@@ -42,13 +42,6 @@ LOOSE_STACKS = (
         tests=STACKS,
     ),
     Mutation(
-        name="a joint held by the floor's acceleration alone",
-        file="contact/stepping/joints.py",
-        old="(box[VELOCITY_X] - before[VELOCITY_X]) / step + turning * up",
-        new="0.0 * step + turning * up",
-        tests=STACKS,
-    ),
-    Mutation(
         name="a box that may lie on the floor without having fallen",
         file="contact/stepping/boxes.py",
         old="fallen = fallen or new.corner[c, 1] <= 0.0",
