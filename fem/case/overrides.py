@@ -72,6 +72,8 @@ def with_overrides(data: Mapping[str, Any], overrides: Mapping[str, Any]) -> dic
         if isinstance(content, dict):  # else refused when the case is read
             content[key] = value
     _replace_alternatives(changed, overrides.keys())
+    if "floor.corner_patch_m" not in overrides:
+        _keep_patch_under_wall(changed, data)
     return changed
 
 
@@ -141,6 +143,24 @@ def _replace_floor(data: dict[str, Any], dotted: Any) -> None:
         _drop(contact, PENALTY_KEYS, _keys_set("contact", dotted))
     if "preset" in explicit:
         _drop(floor, PRESET_KEYS, explicit)
+
+
+def _keep_patch_under_wall(data: dict[str, Any], former: Mapping[str, Any]) -> None:
+    """A patch that was as long as the wall is thick, or as wide as the container deep, stays so."""
+    floor, box, old = data.get("floor"), data.get("container"), former.get("container")
+    patch = floor.get("corner_patch_m") if isinstance(floor, dict) else None
+    if not (
+        isinstance(floor, dict)
+        and isinstance(box, dict)
+        and isinstance(old, Mapping)
+        and isinstance(patch, list)
+    ):
+        return
+    sides = [(one.get("wall_m"), one.get("depth_m", one.get("width_m"))) for one in (old, box)]
+    floor["corner_patch_m"] = [
+        new if side is not None and side == was else side
+        for side, was, new in zip(patch, *sides, strict=False)
+    ]
 
 
 def _keys_set(table: str, dotted: Any) -> set[str]:

@@ -111,6 +111,14 @@ def test_a_numerical_penalty_replaces_a_slab():
     assert 'normal_penalty_Pa_m belongs to floor.kind = "rigid"' in said
 
 
+def test_a_patch_under_the_wall_follows_wall_and_depth():
+    case = load_case(BASE, ["container.depth_m=0.8"])
+    assert case.floor.corner_patch_m == [0.008, 0.8]
+    assert case.with_values({"container.wall_m": 0.01}).floor.corner_patch_m == [0.01, 0.8]
+    castings = load_case(BASE, [*SLAB, "container.depth_m=0.8", "container.wall_m=0.01"])
+    assert castings.floor.corner_patch_m == [0.1, 0.2]
+
+
 def test_another_support_does_not_stand_on_the_patch_of_the_former_one():
     assert load_case(BASE, SLAB).with_values({"support.kind": "flat"}).floor.corner_patch_m is None
     assert load_case(BASE, [*SLAB, "support.kind=feet"]).floor.corner_patch_m == [0.1, 0.2]
