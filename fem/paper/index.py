@@ -8,6 +8,7 @@ from fem.paper import (
     rocking,
     shape,
     sliding,
+    stacking,
 )
 from fem.paper.claims import Claim
 
@@ -21,6 +22,7 @@ TOPICS = {
         "Rocking and response": rocking,
         "Overturning": overturning,
         "The body": shape,
+        "Boxes without bolts": stacking,
     }.items()
 }
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fem.paper import example, quasi_static, rocking, shape
+from fem.paper import example, quasi_static, rocking, shape, stacking
 from fem.paper.claims import Conclusion
 from fem.paper.experiments import Experiments
 
@@ -27,6 +27,8 @@ def experiments():
         # T p/4 = arccosh(1/(1 - theta/al)), which 2 pi/4 meets near 0.6 al
         (rocking.eq_3, Conclusion.BOUNDED),
         (rocking.control_periods, Conclusion.BOUNDED),  # the same
+        # Coulomb: what stands on a box that sticks to the floor slides as one box on a floor with that friction
+        (stacking.slip_between_loose_boxes, Conclusion.CONFIRMED),
     ],
 )
 def test_conclusion_on_a_claim_that_theory_decides(experiments, claim, conclusion):
