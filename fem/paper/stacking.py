@@ -3,6 +3,7 @@
 Kinetic friction equals static friction in all runs: a drop would add chance to what is compared.
 """
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -17,12 +18,12 @@ from fem.paper.experiments import Experiments, capped_ratio, stands
 
 FLOOR_MU = 0.4
 SHARES = (0.5, 0.75, 1.0, 1.5)  #: friction between the boxes over that of the floor
-STACKS = (2, 3, 4)  #: boxes
+STACKS = (2, 3, 4, 6)  #: boxes
 PEAKS = (STATED_PEAK, PLATEAU_PEAK, 6.0)  #: [m/s2]
 AS_ONE = 0.01  #: of the rotation ratio, and of the width
 FEW = 0.1  #: share of cells
-FREQUENCY = MapAxis(label="angular frequency [rad/s]", values=(2.5, 4.0, 5.5, 7.0, 8.5, 10.0))
-PEAK = MapAxis(label="peak floor acceleration [m/s²]", values=(3.5, 5.0, 6.5, 8.0, 9.5, 11.0))
+FREQUENCY = MapAxis(label="angular frequency [rad/s]", values=(2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 9.5))
+PEAK = MapAxis(label="peak floor acceleration [m/s²]", values=(3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 9.5, 10.5, 11.5))
 
 
 class Pair(NamedTuple):
@@ -33,6 +34,11 @@ class Pair(NamedTuple):
     peak: float
     bolted: Row
     loose: Row
+
+    @property
+    def rocks(self) -> bool:
+        """Whether the bolted stack does."""
+        return bool(self.bolted["rotation_ratio"] > AS_ONE)
 
     @property
     def apart(self) -> float:
@@ -62,11 +68,11 @@ def loosened(case: PaperCase, share: float, what: str) -> PaperCase:
 @claim(
     "3",
     "the stack remains rigid, “whipping” is excluded",
-    bounds="up to four boxes without bolts, up to the plateau value, with at least one and a half times the friction "
-    "of the floor between them",
+    bounds="without bolts as long as the bolted stack does not rock, with at least the friction of the floor between the "
+    "boxes",
 )
 def loose_stack_moves_as_one(experiments: Experiments) -> Evidence:
-    """Bolted and loose stacks of two, three and four rigid boxes under three peaks at 6.928 rad/s; friction on the
+    """Bolted and loose stacks of two, three, four and six rigid boxes under three peaks at 6.928 rad/s; friction on the
     floor 0.4, between the boxes 0.2 to 0.6. A loose stack moves as one if its rotation ratio is within 0.01 of that
     with bolts and no joint slides or opens by more than 1 % of the width.
     """
@@ -81,13 +87,12 @@ def loose_stack_moves_as_one(experiments: Experiments) -> Evidence:
     every = experiments.rows([*plain.values(), *loose.values()], also_failed=True)  # one batch
     halves = every[: len(points)], every[len(points) :]
     found = [Pair(*key, *rows) for key, *rows in zip(points, *halves, strict=True) if computed(*rows)]
-    for peak in PEAKS:
+    for rocks, which in ((False, "do not rock"), (True, "rock")):
         for share in SHARES:
-            group = [pair for pair in found if (pair.share, pair.peak) == (share, peak)]
-            what = f"largest difference, {share:g} of the floor's friction, {peak:g} m/s²"
-            yield at_most(
-                what, max(one.apart for one in group), AS_ONE, inside=share >= 1.5 and peak <= PLATEAU_PEAK
-            )
+            group = [one for one in found if one.share == share and one.rocks is rocks]
+            what = f"largest difference of stacks that {which} when bolted, {share:g} of the floor's friction"
+            apart = max((one.apart for one in group), default=math.nan)
+            yield at_most(what, apart, AS_ONE, inside=not rocks and share >= 1.0)
     yield _reading(found)
     yield from (loose[4, share, PLATEAU_PEAK] for share in SHARES)
     yield table(
@@ -108,8 +113,8 @@ def loose_stack_moves_as_one(experiments: Experiments) -> Evidence:
 
 def _reading(found: Sequence[Pair]) -> str:
     as_one = [one for one in found if one.apart <= AS_ONE]
-    rocking = [one for one in found if one.bolted["rotation_ratio"] > AS_ONE]
-    flat = [one for one in found if one not in rocking and one.share >= 1.0]
+    rocking = [one for one in found if one.rocks]
+    flat = [one for one in found if not one.rocks and one.share >= 1.0]
     most = max(found, key=lambda one: one.loose["max_joint_slip_m"])
     return (
         f"{len(as_one)} of {len(found)} loose stacks move as one. Of those that do not rock when bolted, "
@@ -143,7 +148,7 @@ def slip_between_loose_boxes(experiments: Experiments) -> Evidence:
             FOR_MAPS, friction(mu, mu), boxes=1, duration=10.0, peak=peak, frequency=ANGULAR_FREQUENCY
         )
         slider = experiments.row(alone)["max_slip_m"]
-        for boxes in STACKS:
+        for boxes in STACKS[:3]:  # six rock
             what = f"{boxes} loose boxes, 0.2 between them, {peak:g} m/s²"
             case = loosened(bolted(boxes, peak=peak, frequency=ANGULAR_FREQUENCY), share, what)
             row = experiments.row(case)
@@ -181,7 +186,7 @@ def slip_between_loose_boxes(experiments: Experiments) -> Evidence:
     bounds="the friction of the floor between the boxes, too",
 )
 def loose_or_bolted_outcome(experiments: Experiments) -> Evidence:
-    """Stack of four over frequency and peak acceleration, 36 cells: does it end otherwise without bolts? Friction on
+    """Stack of four over frequency and peak acceleration, 72 cells: does it end otherwise without bolts? Friction on
     the floor 0.4; between the boxes the same, and half of it.
     """
     cells = [(peak, frequency) for peak in PEAK.values for frequency in FREQUENCY.values]
