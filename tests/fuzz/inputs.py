@@ -23,6 +23,7 @@ from fem.case.files import CASES
 from fem.case.overrides import with_overrides
 from fem.case.quantities import Quantity
 from fem.case.rules import RANGES
+from fem.case.table import CaseTable
 from fem.case.tables import TABLES, CaseHeading
 from fem.case.toml import toml_value
 from fem.case.validation import known_keys, quantity_of
@@ -135,7 +136,10 @@ def bound_the_cost(tables: Tables) -> None:
 
 def values_of(key: str, now: Any) -> st.SearchStrategy[Any]:
     """What a field allows, of each of the types that it may hold."""
-    info = FIELDS[key]
+    return values_of_field(key, FIELDS[key], now)
+
+
+def values_of_field(key: str, info: FieldInfo, now: Any) -> st.SearchStrategy[Any]:
     quantity = quantity_of(info.annotation, info.metadata)
     kinds = [kind for kind in types_in(info.annotation) if kind is not NoneType]
     return st.one_of(*(values_of_type(key, kind, quantity, now) for kind in kinds))
@@ -153,8 +157,14 @@ def values_of_type(key: str, kind: Any, quantity: Quantity | None, now: Any) -> 
     if get_origin(kind) is Literal:
         return st.sampled_from(get_args(kind))
     if get_origin(kind) is list:
-        one = numbers(RANGES[key.partition(".")[2]], None, float, now)
-        return st.lists(one, min_size=2, max_size=2).map(sorted)
+        table, _, name = key.partition(".")
+        stated = RANGES[name] if table == "uncertainty" else quantity
+        assert stated is not None, key
+        pair = st.lists(numbers(stated, None, float, None), min_size=2, max_size=2)
+        return pair.map(sorted) if table == "uncertainty" else pair
+    if isinstance(kind, type) and issubclass(kind, CaseTable):  # one of a list of tables
+        keys = {name: values_of_field(f"{key}.{name}", info, None) for name, info in known_keys(kind).items()}
+        return st.lists(st.fixed_dictionaries({}, optional=keys), min_size=1, max_size=3)
     if kind is bool:
         # figures take a second to draw
         return st.sampled_from((False,) * 20 + (True,)) if key == "output.figures" else st.booleans()
@@ -199,11 +209,19 @@ def damages(draw: Draw) -> tuple[str, str, str, str]:
     return kind, table, key, draw(st.sampled_from(NASTY) | st.floats().map(repr))
 
 
+def written_value(value: Any) -> str:
+    """A value as TOML; of a list of tables each in braces."""
+    if not (isinstance(value, list) and value and isinstance(value[0], dict)):
+        return toml_value(value)
+    inline = (", ".join(f"{key} = {toml_value(item)}" for key, item in table.items()) for table in value)
+    return "[" + ", ".join(f"{{{one}}}" for one in inline) + "]"
+
+
 def document_of(tables: Tables, wrong: list[tuple[str, str, str, str]]) -> bytes:
     """The text of a case with these damages."""
     top = {key: toml_value(value) for key, value in tables.items() if not isinstance(value, dict)}
     text = {
-        name: {key: toml_value(value) for key, value in content.items()}
+        name: {key: written_value(value) for key, value in content.items()}
         for name, content in tables.items()
         if isinstance(content, dict)
     }

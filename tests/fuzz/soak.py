@@ -67,7 +67,9 @@ def end_of(make: Callable[[], Case], stuck: float = STUCK) -> str:
     outcome, energy = outcome_of(built), energy_of(built)
     if outcome not in OUTCOMES or (outcome == "overturned") != (ending.status == "overturned"):
         return f"BROKEN outcome {outcome} of a run that {ending.status}"
-    dissipated = energy.friction_J + energy.contact_damping_J + energy.material_damping_J
+    dissipated = (
+        energy.friction_J + energy.contact_damping_J + energy.material_damping_J + (energy.crushing_J or 0.0)
+    )
     limit = max(LOSS_SHARE_LIMIT * dissipated, max(LOSS_LIMIT, GAIN_LIMIT) * energy.reference_J)
     if ending.status == "completed" and not abs(energy.numerical_J) <= limit:
         return f"BROKEN energy balance: {energy}"
