@@ -26,7 +26,7 @@ FREQUENCY = MapAxis(label="angular frequency [rad/s]", values=(2.5, 3.5, 4.5, 5.
 PEAK = MapAxis(label="peak floor acceleration [m/s²]", values=(3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 9.5, 10.5, 11.5))
 
 
-class Pair(NamedTuple):
+class BoltedAndLoose(NamedTuple):
     """A bolted and a loose stack under the same motion."""
 
     boxes: int
@@ -68,8 +68,7 @@ def loosened(case: PaperCase, share: float, what: str) -> PaperCase:
 @claim(
     "3",
     "the stack remains rigid, “whipping” is excluded",
-    bounds="without bolts as long as the bolted stack does not rock, with at least the friction of the floor between the "
-    "boxes",
+    bounds="boxes without bolts, at least the friction of the floor between them, and no rocking with bolts",
 )
 def loose_stack_moves_as_one(experiments: Experiments) -> Evidence:
     """Bolted and loose stacks of two, three, four and six rigid boxes under three peaks at 6.928 rad/s; friction on the
@@ -86,7 +85,9 @@ def loose_stack_moves_as_one(experiments: Experiments) -> Evidence:
     }
     every = experiments.rows([*plain.values(), *loose.values()], also_failed=True)  # one batch
     halves = every[: len(points)], every[len(points) :]
-    found = [Pair(*key, *rows) for key, *rows in zip(points, *halves, strict=True) if computed(*rows)]
+    found = [
+        BoltedAndLoose(*key, *rows) for key, *rows in zip(points, *halves, strict=True) if computed(*rows)
+    ]
     for rocks, which in ((False, "do not rock"), (True, "rock")):
         for share in SHARES:
             group = [one for one in found if one.share == share and one.rocks is rocks]
@@ -111,7 +112,7 @@ def loose_stack_moves_as_one(experiments: Experiments) -> Evidence:
     )
 
 
-def _reading(found: Sequence[Pair]) -> str:
+def _reading(found: Sequence[BoltedAndLoose]) -> str:
     as_one = [one for one in found if one.apart <= AS_ONE]
     rocking = [one for one in found if one.rocks]
     flat = [one for one in found if not one.rocks and one.share >= 1.0]
@@ -127,7 +128,7 @@ def _reading(found: Sequence[Pair]) -> str:
     )
 
 
-def _count(pairs: Sequence[Pair]) -> str:
+def _count(pairs: Sequence[BoltedAndLoose]) -> str:
     return f"{sum(one.apart <= AS_ONE for one in pairs)} of {len(pairs)}"
 
 
