@@ -85,14 +85,16 @@ def test_a_floor_that_carries_a_container_along_a_slope_does_no_work_on_it():
     assert ledger[BASE_WORK] == pytest.approx(kinetic, rel=1e-2)
 
 
-def test_a_container_comes_to_rest_where_it_has_slid_down():
+@pytest.mark.parametrize("downhill", [True, False])
+def test_a_container_comes_to_rest_where_it_has_slid(downhill):
     keys = {"floor.slope_percent": 5.0, "contact.mu_static": 0.1, "solver.duration_s": 3.0}
-    model = build_model(BOX.with_values(pulse(-3.0, 0.1) | keys))
+    model = build_model(BOX.with_values(pulse(-3.0 if downhill else 3.0, 0.1) | keys))
     run = model.run
     over = 0.0
     while not over and run.clock[0].time < 3.0:
         stepped(model, float(run.clock[0].time) + 0.05)
         over = float(run.clock[0].time) * is_over.py_func(run, FREE)
+    assert (run.joints[0].slip > 0.0) == downhill
     assert run.joints[0].max_slip > 0.01
     assert 0.0 < over < 1.5
 
