@@ -22,7 +22,8 @@ def axis_name(axis: Axis) -> str:
     if name == "scale_to_m_s2":  # of a record
         name = "peak_acceleration_m_s2"
     name = name.removesuffix("_" + axis.unit.replace("/", "_").replace(" ", "_")).replace("_", " ")
-    return f"vertical {name}" if table == "vertical" else name
+    before = {"vertical": "vertical ", "joints": "joint "}.get(table, "")
+    return f"{before}{name}"
 
 
 def axis_label(axis: Axis) -> str:

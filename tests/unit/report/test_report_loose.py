@@ -1,0 +1,62 @@
+"""The page, the figures and the picture of a loose stack: every box is seen, and the first line says what they did."""
+
+import re
+
+import pytest
+
+import fem
+from fem.case.case import load_case
+from fem.figures.cache import drawings_of
+from fem.model.model import build_model
+from fem.render.caption import caption
+from fem.report.animation import animation_of
+from fem.report.run_page import run_report
+from fem.run.run import RunOptions, run_case
+
+#: two boxes, of which the upper slides from the first instant on and the lower never
+SLIDING = (
+    *("solver.model=rigid", "solver.duration_s=1", "container.boxes=2", "container.joints=loose"),
+    *("joints.mu_static=0.1", "joints.mu_kinetic=0.1", "floor.kind=rigid"),
+)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    case, folder = load_case("seed_stack", SLIDING), tmp_path_factory.mktemp("loose") / "run"
+    run_case(case, case_text=case.text, folder=folder, options=RunOptions(band=False))
+    return fem.open_run(folder)
+
+
+def test_the_first_line_says_which_box_slid(run):
+    assert re.search(r"; box 2 slid \d+\.\d mm on box 1\.", run.verdict.first_line)
+
+
+def test_each_box_has_a_curve_of_its_rotation_slip_and_opening(run):
+    drawings = drawings_of(run, build_model(run.case).container)
+    assert all(
+        {"box 1", "box 2"} <= set(re.findall(r"box \d", drawings[name].svg))
+        for name in ("rotation", "slip", "uplift")
+    )
+    assert drawings["slip"].title.startswith("Slip of each box") and "box 2" in drawings["slip"].title
+    assert "joints" not in drawings
+
+
+def test_the_page_has_the_boxes_and_no_bolts(run):
+    page = run_report(run, brief=True)
+    assert 'id="boxes"' in page and 'id="joints"' not in page
+    assert "2 loose boxes" in page
+
+
+def test_the_animation_moves_the_boxes_as_the_history_does(run):
+    shown = animation_of(build_model(run.case), run.fields)
+    last = shown.frames[-1]
+    instant = round(last.time / run.case.output.history_s)
+    lower, upper = run.history["centre_x_m"][instant], run.history["box_2_x_m"][instant]
+    assert last.centre[:, 0] - last.floor[0] == pytest.approx([lower, upper], abs=1e-6)
+    assert abs(upper - lower) > 1e-3
+
+
+def test_frames_name_their_boxes_in_files_and_in_memory(run):
+    frame = run.frame(0.5)
+    assert set(frame.box.tolist()) == {1, 2}
+    assert caption(run, frame)[1].startswith("t = 0.500 s")
