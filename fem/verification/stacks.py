@@ -36,7 +36,7 @@ BLOCKS = "event-driven blocks, plastic impacts"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Pair:
+class BoxPair:
     """Two boxes that differ, under a half-sine pulse."""
 
     boxes: tuple[Keys, Keys]
@@ -140,10 +140,10 @@ def rough_joints() -> Iterator[Row]:
 
 
 STARTS = {
-    Pattern.AS_ONE: Pair(boxes=(TALL, TALL), peak=GRAVITY, length=0.15, duration=0.3),
-    Pattern.UPPER_ALONE: Pair(boxes=BESIDE, peak=GRAVITY, length=0.15, duration=0.3),
-    Pattern.SAME_WAY: Pair(boxes=(TALL, SLENDER), peak=GRAVITY, length=0.15, duration=0.3),
-    Pattern.OPPOSITE_WAYS: Pair(boxes=(TALL, TALL), peak=4.0 * GRAVITY, length=0.3, duration=0.24),
+    Pattern.AS_ONE: BoxPair(boxes=(TALL, TALL), peak=GRAVITY, length=0.15, duration=0.3),
+    Pattern.UPPER_ALONE: BoxPair(boxes=BESIDE, peak=GRAVITY, length=0.15, duration=0.3),
+    Pattern.SAME_WAY: BoxPair(boxes=(TALL, SLENDER), peak=GRAVITY, length=0.15, duration=0.3),
+    Pattern.OPPOSITE_WAYS: BoxPair(boxes=(TALL, TALL), peak=4.0 * GRAVITY, length=0.3, duration=0.24),
 }
 
 
@@ -179,7 +179,7 @@ def four_patterns() -> Iterator[Row]:
 def impacts() -> Iterator[Row]:
     """All four patterns and the impacts between them, on stiffer and stiffer contact."""
     for name, boxes in (("slender on tall", (TALL, SLENDER)), ("tall beside the axis of a low one", BESIDE)):
-        pair = Pair(boxes=boxes, peak=GRAVITY, length=0.15, duration=1.0)
+        pair = BoxPair(boxes=boxes, peak=GRAVITY, length=0.15, duration=1.0)
         exact, errors = pair.exact, {}
         for penalty in (1e9, 1e10, 1e11):
             history = pair.run(contact__normal_penalty_Pa_m=penalty).history
@@ -203,7 +203,7 @@ def impacts() -> Iterator[Row]:
 @check("stacks", "momentum, energy and mirror image")
 def balance() -> Iterator[Row]:
     """What the impacts of two boxes keep and lose."""
-    pair = Pair(boxes=(TALL, SLENDER), peak=GRAVITY, length=0.15, duration=1.0)
+    pair = BoxPair(boxes=(TALL, SLENDER), peak=GRAVITY, length=0.15, duration=1.0)
     exact, case = pair.exact, "slender on tall, 1 g for 0.15 s"
     # every 10 us, since forces at an impact jump
     fine = {"output__history_s": 1e-5, "solver__step_s": 2e-4, "solver__duration_s": 0.5}
@@ -242,7 +242,7 @@ def balance() -> Iterator[Row]:
     low, tall = BESIDE
     mirrored = (low, tall | {"offset_m": -tall["offset_m"]})
     sides = [
-        rotations(Pair(boxes=boxes, peak=sign * GRAVITY, length=0.15, duration=1.0).run().history)
+        rotations(BoxPair(boxes=boxes, peak=sign * GRAVITY, length=0.15, duration=1.0).run().history)
         for sign, boxes in ((1.0, BESIDE), (-1.0, mirrored))
     ]
     yield analytic(

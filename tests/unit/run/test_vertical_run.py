@@ -92,7 +92,7 @@ def test_frames_and_animation_move_with_the_floor(run):
     lifts = [run.fields.frame(k).floor_lift for k in range(0, len(run.fields), 5)]
     assert lifts == pytest.approx(-3.0 / OMEGA**2 * np.sin(OMEGA * run.fields.times[::5] + PHASE), abs=1e-7)
     shown = animation_of(build_model(run.case), run.fields)
-    heights = [frame.centre[1] - frame.floor[1] for frame in shown.frames[:3]]
+    heights = [frame.centre[0, 1] - frame.floor[1] for frame in shown.frames[:3]]
     assert heights == pytest.approx([2.0] * 3, abs=1e-3)
 
 
