@@ -211,6 +211,7 @@ def _ends(elements: FiniteElements, height: float) -> tuple[int, int]:
     z = nodes[:, 1]
     line = np.flatnonzero(np.abs(z - height) <= 1e-6 * np.ptp(z))
     above = z[cells].mean(axis=1) > height
-    line = line[np.isin(line, cells[above]) & np.isin(line, cells[~above])]
+    if above.any() and not above.all():  # else a face of the whole stack
+        line = line[np.isin(line, cells[above]) & np.isin(line, cells[~above])]
     x = nodes[line, 0]
     return int(line[np.argmin(x)]), int(line[np.argmax(x)])
