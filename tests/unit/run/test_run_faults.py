@@ -120,7 +120,7 @@ def test_a_history_that_cannot_grow_ends_the_run_with_3(tmp_path, capsys, monkey
 @pytest.mark.parametrize(
     ("module", "name", "after"),
     [
-        (fem.results.fields.meshio, "write", 5),
+        (fem.results.fields.FrameFormat, "frame", 5),
         (fem.results.files.os, "replace", 30),
         (fem.results.history.os, "fsync", 7),
         (fem.results.archive.zipfile.ZipFile, "writestr", 60),
