@@ -174,14 +174,13 @@ def test_on_a_slope_friction_holds_the_part_of_the_weight_along_it(model, percen
 def test_a_container_slides_down_a_slope_steeper_than_its_friction():
     friction = ("contact.mu_static=0.02", "contact.mu_kinetic=0.02")
     keys = ("floor.slope_percent=5", *friction, "motion.kind=none", "solver.duration_s=1")
-    done = compute(load_case("seed_box", [*COARSE, *keys]), check_rigid=True)
+    done = compute(load_case("seed_box", [*COARSE, *keys]))
     slope = math.atan(0.05)
     travelled = 0.5 * 9.81 * (math.sin(slope) - 0.02 * math.cos(slope))
     assert done.history["slip_m"][-1] == pytest.approx(travelled, rel=2e-3)
     assert done.verdict.outcome == "slide"
     assert done.result["static"]["own_motion"]["utilisation_sliding"] > 1.0
     assert done.result["floor"]["slope_percent"] == 5.0
-    assert any("the block stands on a level one" in one for one in done.result["rigid_check"]["reasons"])
 
 
 def test_of_boxes_that_differ_the_lowest_stands_on_the_floor():
