@@ -48,4 +48,11 @@ LOOSE_STACKS = (
         new="fallen = fallen or new.corner[c, 1] <= -1e9",
         tests=STACKS,
     ),
+    Mutation(
+        name="a stop that the swing of the box below ends",
+        file="contact/stepping/joints.py",
+        old="while box >= 0 and run.joints[box].slides == 0:",
+        new="while box >= j and run.joints[box].slides == 0:",
+        tests=STACKS,
+    ),
 )

@@ -198,7 +198,7 @@ def holding_in_stack(run: RunState, j: int) -> tuple[float, float]:
 
     The box stands on the face below, which moves it and turns it; or it rocks on that face as a container on its floor.
     """
-    new, joint, box = run.new, run.joints[j], run.new.boxes[j]
+    new, joint, box, carrier = run.new, run.joints[j], run.new.boxes[j], carrier_of(run, j)
     begin, end = points_of(run, j)
     half = (end - begin) // 2
     x, z, left, right = 0.0, 0.0, 0.0, 0.0
@@ -215,8 +215,10 @@ def holding_in_stack(run: RunState, j: int) -> tuple[float, float]:
     cosine, sine, swing, swung = 1.0, 0.0, 0.0, 0.0
     if j > 0:
         lean = new.boxes[j - 1, ROTATION]
-        cosine, sine, swung = math.cos(lean), math.sin(lean), new.boxes[j - 1, ANGULAR_VELOCITY]
-        swing = (swung - run.old.boxes[j - 1, ANGULAR_VELOCITY]) / run.clock[0].lag_step
+        cosine, sine = math.cos(lean), math.sin(lean)
+    if carrier >= 0:
+        swung = new.boxes[carrier, ANGULAR_VELOCITY]
+        swing = (swung - run.old.boxes[carrier, ANGULAR_VELOCITY]) / run.clock[0].lag_step
     push, load, arm_x, arm_z = 0.0, 0.0, 0.0, 0.0
     for side in range(2 if stands else 1):  # about which corner it would rock depends on the push
         if stands:
@@ -226,7 +228,7 @@ def holding_in_stack(run: RunState, j: int) -> tuple[float, float]:
             x, z = new.corner[c, 0], new.corner[c, 1]
         else:
             x, z = x / normal, z / normal
-        shake_x, shake_z = acceleration_below(run, j, x, z)
+        shake_x, shake_z = acceleration_of(run, carrier, x, z)
         force_x = above_x / joint.mass - shake_x + run.control.downhill
         force_z = above_z / joint.mass - shake_z - run.control.gravity
         push, load = sine * force_z - cosine * force_x, -sine * force_x - cosine * force_z
@@ -244,18 +246,38 @@ def holding_in_stack(run: RunState, j: int) -> tuple[float, float]:
     return joint.mass * push, max(normal, joint.mass * load)
 
 
+@register_jitable
+def carrier_of(run: RunState, j: int) -> int:
+    """The box that moves what is below a joint, -1: the floor.
+
+    A box that sticks to what is below it and stands on both sides of its base moves with that. On its springs it swings
+    about this motion, most of all when the friction on top of it turns round: that does not end a stop.
+    """
+    box = j - 1
+    while box >= 0 and run.joints[box].slides == 0:
+        begin, end = points_of(run, box)
+        half, left, right = (end - begin) // 2, 0.0, 0.0
+        for i in range(half):
+            left += run.new.force[begin + i, 1]
+            right += run.new.force[begin + half + i, 1]
+        if left <= 0.0 or right <= 0.0:
+            break
+        box -= 1
+    return box
+
+
 @compiled
-def acceleration_below(run: RunState, j: int, x: float, z: float) -> tuple[float, float]:
-    """Acceleration of the floor or the box below a joint, at a place relative to the floor [m/s2]."""
-    if j == 0:
+def acceleration_of(run: RunState, box: int, x: float, z: float) -> tuple[float, float]:
+    """Acceleration of a box (-1: the floor) at a place relative to the floor [m/s2]."""
+    if box < 0:
         return run.floor[1, 2], run.lift[1, 2]
-    box, before, step = run.new.boxes[j - 1], run.old.boxes[j - 1], run.clock[0].lag_step
-    along, up = x + run.floor[1, 0] - box[CENTRE_X], z + run.lift[1, 0] - box[CENTRE_Z]
-    turning = (box[ANGULAR_VELOCITY] - before[ANGULAR_VELOCITY]) / step
-    spin = box[ANGULAR_VELOCITY] ** 2
+    now, before, step = run.new.boxes[box], run.old.boxes[box], run.clock[0].lag_step
+    along, up = x + run.floor[1, 0] - now[CENTRE_X], z + run.lift[1, 0] - now[CENTRE_Z]
+    turning = (now[ANGULAR_VELOCITY] - before[ANGULAR_VELOCITY]) / step
+    spin = now[ANGULAR_VELOCITY] ** 2
     return (
-        (box[VELOCITY_X] - before[VELOCITY_X]) / step + turning * up - spin * along,
-        (box[VELOCITY_Z] - before[VELOCITY_Z]) / step - turning * along - spin * up,
+        (now[VELOCITY_X] - before[VELOCITY_X]) / step + turning * up - spin * along,
+        (now[VELOCITY_Z] - before[VELOCITY_Z]) / step - turning * along - spin * up,
     )
 
 

@@ -105,7 +105,7 @@ def slider_at_joint() -> Iterator[Row]:
         absolute=0.15,
     )
     floor = sine_floor(amplitude=4.0 / OMEGA**2, angular_frequency=OMEGA)
-    for static, kinetic in ((0.2, 0.2), (0.35, 0.2)):
+    for static, kinetic in ((0.2, 0.2), (0.3, 0.2), (0.35, 0.2)):
         friction = {"joints.mu_static": static, "joints.mu_kinetic": kinetic}
         motion = harmonic(4.0 / OMEGA**2, OMEGA) | {"solver.duration_s": 3.0}
         done = run(STACK, two | motion | friction)
