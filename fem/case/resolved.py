@@ -1,6 +1,7 @@
 """The keys of a case with every default, as its resolved file has them.
 
 A case without vertical motion, on a level rigid floor, of equal bolted boxes has no keys of these, and keeps its hash.
+What [joints] leaves out stays out: the floor's friction stands in its place, and the band treats it as unknown.
 """
 
 from typing import Any
@@ -22,9 +23,7 @@ def resolved_tables(case: Any) -> dict[str, Any]:
         document[name] = {
             key: value for key, value in table.model_dump().items() if value is not None and key not in idle
         }
-    if case.container.is_loose:
-        document["joints"] = case.joint_friction
-    else:
+    if not case.container.is_loose:
         del document["container"]["joints"]
     if case.container.box is not None:
         del document["container"]["boxes"]
@@ -39,7 +38,8 @@ def resolved_tables(case: Any) -> dict[str, Any]:
 def _absent(case: Any) -> set[str]:
     """Tables that say nothing."""
     level = not case.floor.is_slab and case.floor.slope_percent == 0.0
-    absent = {"vertical": not case.has_vertical, "floor": level, "joints": not case.container.is_loose}
+    joints = case.container.is_loose and any(value is not None for value in vars(case.joints).values())
+    absent = {"vertical": not case.has_vertical, "floor": level, "joints": not joints}
     return {name for name, says_nothing in absent.items() if says_nothing}
 
 

@@ -129,7 +129,9 @@ SOLVER_RULES = (
 #: keys of [uncertainty] that hold a range, and what both ends are
 RANGES = {
     "mu_kinetic": q.FRICTION,
+    "joints_mu_static": q.FRICTION,
     "joints_mu_kinetic": q.FRICTION,
+    "joints_weakening_m": q.WEAKENING,
     "weakening_m": q.WEAKENING,
     "stribeck_velocity_m_s": q.STRIBECK_VELOCITY,
     "normal_penalty_Pa_m": q.PENALTY,

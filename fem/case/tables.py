@@ -293,8 +293,16 @@ class UncertaintyTable(CaseTable):
     mu_kinetic: Unknown = case_key(
         "of kinetic friction; default: as given to mu_static", None, example=[0.2, 0.4]
     )
+    joints_mu_static: Unknown = case_key(
+        "loose joints: of static friction; default: half to twice where [joints] leaves it out",
+        None,
+        example=[0.2, 0.8],
+    )
     joints_mu_kinetic: Unknown = case_key(
         "loose joints: of kinetic friction; default: as given to mu_static", None, example=[0.2, 0.4]
+    )
+    joints_weakening_m: Unknown = case_key(
+        "loose joints: default: 0 to 5 mm where mu_kinetic < mu_static", None, example=[0.0, 0.005]
     )
     weakening_m: Unknown = case_key(
         "of the contact; default: 0 to 5 mm where mu_kinetic < mu_static", None, example=[0.0, 0.005]

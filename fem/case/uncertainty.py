@@ -6,6 +6,10 @@ copies from them. Where the case says nothing in its table [uncertainty], a rang
 of nine downwards (the point of a corner) and three upwards (a casting), stiffness and strength of a slab and damping
 within a factor of two either way; and a harmonic motion begins in one of several ways. The numerics are no input and
 are always tried, ten times tighter.
+
+Friction between loose boxes is not that of the floor: other surfaces meet there. Where [joints] does not give it, a
+case takes the floor's, but a changed case keeps what its case had (`apart_from_floor`), and the joints have ranges of
+their own: `mu_static` within a factor of two unless it is given, its fall as on the floor.
 """
 
 import math
@@ -24,6 +28,7 @@ from fem.case.rules import longest_time
 SOFTEST, STIFFEST = 1.0 / 9.0, 3.0  #: contact stiffness over that of the case
 DAMPING = (0.5, 2.0)  #: contact and material damping over those of the case
 SLAB = (0.5, 2.0)  #: Young's modulus and bearing strength of a slab over those of the case
+JOINTS = (0.5, 2.0)  #: static friction between loose boxes over that of the case, where this has the floor's
 LOSS = (0.8, 1.5)  #: loss at an impact, 1 - e, over that of the case where its restitution is given
 WEAKENING_M, STRIBECK_M_S = 5e-3, 0.3  #: largest slip and velocity over which friction falls
 WEAKENINGS_BETWEEN_M = (1e-4, 1e-3)
@@ -36,7 +41,9 @@ TURN = 2.0 * math.pi
 MOVES = 1e-9  #: cosine of the phase of a floor that starts at rest
 
 MU_KINETIC, WEAKENING, STRIBECK = "contact.mu_kinetic", "contact.weakening_m", "contact.stribeck_velocity_m_s"
-JOINTS_MU_KINETIC = "joints.mu_kinetic"  #: between loose boxes
+#: between loose boxes
+JOINTS_MU_STATIC, JOINTS_MU_KINETIC = "joints.mu_static", "joints.mu_kinetic"
+JOINTS_WEAKENING = "joints.weakening_m"
 START, RAMP, TOLERANCE = "motion.start", "motion.ramp_cycles", "solver.energy_tolerance"
 PENALTY, DASHPOT, RESTITUTION, MATERIAL = (
     "contact.normal_penalty_Pa_m",
@@ -47,7 +54,7 @@ PENALTY, DASHPOT, RESTITUTION, MATERIAL = (
 STRENGTH, MODULUS = "floor.bearing_strength_Pa", "floor.youngs_modulus_Pa"
 #: every input that may vary, those first that decide most often
 INPUTS = (
-    *(MU_KINETIC, WEAKENING, STRIBECK, JOINTS_MU_KINETIC, START, RAMP),
+    *(MU_KINETIC, WEAKENING, STRIBECK, JOINTS_MU_STATIC, JOINTS_MU_KINETIC, JOINTS_WEAKENING, START, RAMP),
     *(PENALTY, STRENGTH, MODULUS, DASHPOT, RESTITUTION, MATERIAL, TOLERANCE),
 )
 
@@ -151,14 +158,37 @@ def draws_of(case: Case, penalty: float | None, count: int | None = None) -> tup
         return ()
     places = sobol_points(case.uncertainty.draws if count is None else count, len(ranges))
     return tuple(
-        InputChange(
-            kind="draw",
-            values={one.key: one.drawn(place) for one, place in zip(ranges, row, strict=True)},
-            share=1.0,
-            place=tuple(row),
-        )
+        InputChange(kind="draw", values=drawn_values(ranges, row), share=1.0, place=tuple(row))
         for row in places.tolist()
     )
+
+
+def drawn_values(ranges: Sequence[InputRange], places: Sequence[float]) -> dict[str, Value]:
+    """The values at places from 0 to 1 in these ranges, by key.
+
+    A range of `joints.mu_kinetic` holds for the `joints.mu_static` of the case, and scales with it.
+    """
+    values = {one.key: one.drawn(place) for one, place in zip(ranges, places, strict=True)}
+    own = {one.key: one.own for one in ranges}
+    if JOINTS_MU_STATIC in values and JOINTS_MU_KINETIC in values:
+        share = float(values[JOINTS_MU_STATIC]) / float(own[JOINTS_MU_STATIC])
+        values[JOINTS_MU_KINETIC] = _short(share * float(values[JOINTS_MU_KINETIC]))
+    return values
+
+
+def apart_from_floor(case: Case, values: Mapping[str, Value]) -> dict[str, Value]:
+    """The values that change a case, with those of friction between its loose boxes, which do not follow the floor's.
+
+    Where `joints.mu_static` changes alone, `joints.mu_kinetic` keeps its share of it.
+    """
+    if not case.container.is_loose:
+        return dict(values)
+    own = {f"joints.{key}": value for key, value in case.joint_friction.items()}
+    if JOINTS_MU_STATIC in values and own[JOINTS_MU_STATIC] > 0.0:
+        own[JOINTS_MU_KINETIC] *= float(values[JOINTS_MU_STATIC]) / own[JOINTS_MU_STATIC]
+    changed = {**own, **values}
+    changed[JOINTS_MU_KINETIC] = min(float(changed[JOINTS_MU_KINETIC]), float(changed[JOINTS_MU_STATIC]))
+    return changed
 
 
 def stiff_floor(case: Case, penalty: float) -> InputChange:
@@ -172,7 +202,7 @@ def stiff_floor(case: Case, penalty: float) -> InputChange:
 def sobol_points(count: int, dimensions: int) -> NDArray[np.float64]:
     """The first points of Sobol's sequence, each in the middle of its cell, shape (count, dimensions).
 
-    Direction numbers of Joe and Kuo, SIAM J. Sci. Comput. 30 (2008) 2635, for at most ten dimensions. (The sequence
+    Direction numbers of Joe and Kuo, SIAM J. Sci. Comput. 30 (2008) 2635, for at most twelve dimensions. (The sequence
     of scipy is the same; importing it takes longer than a run.)
     """
     bits = math.ceil(math.log2(max(count, 1)))
@@ -196,6 +226,8 @@ POLYNOMIALS = (
     (2, (1, 1, 5, 5, 17)),
     (4, (1, 1, 5, 5, 5)),
     (7, (1, 1, 7, 11, 19)),
+    (11, (1, 1, 5, 1, 1)),
+    (13, (1, 1, 1, 3, 11)),
 )
 
 
@@ -217,35 +249,43 @@ def _directions(column: int, bits: int) -> list[int]:
 def _ranges(case: Case, penalty: float | None) -> Iterator[InputRange]:
     contact, container, stated = case.contact, case.container, case.uncertainty
     friction = (contact.mu_kinetic, contact.mu_static)
-    low, high = _ends(stated.mu_kinetic, contact.mu_kinetic, friction)
-    middle = _short(0.5 * (low + high))
-    yield _numbers(MU_KINETIC, contact.mu_kinetic, stated.mu_kinetic, friction, (middle,))
+    yield _kinetic(MU_KINETIC, stated.mu_kinetic, friction)
     falls = contact.mu_kinetic < contact.mu_static or isinstance(stated.mu_kinetic, list)
+    between = case.joint_friction
+    slips = between["mu_kinetic"] < between["mu_static"] or isinstance(stated.joints_mu_kinetic, list)
+    slips = slips and container.is_loose
     if contact.friction == "elastic-stick" and falls:
-        slip, velocity = contact.weakening_m, contact.stribeck_velocity_m_s
-        yield _numbers(
-            WEAKENING,
-            slip,
-            stated.weakening_m,
-            (0.0, max(WEAKENING_M, slip)),
-            WEAKENINGS_BETWEEN_M,
-            power=3.0,
-        )
+        yield _weakening(WEAKENING, contact.weakening_m, stated.weakening_m)
+    if contact.friction == "elastic-stick" and (falls or slips):
+        velocity = contact.stribeck_velocity_m_s
         yield _numbers(
             STRIBECK, velocity, stated.stribeck_velocity_m_s, (0.0, max(STRIBECK_M_S, velocity)), power=2.0
         )
     if container.is_loose:
-        between = case.joint_friction
-        friction = (between["mu_kinetic"], between["mu_static"])
-        low, high = _ends(stated.joints_mu_kinetic, between["mu_kinetic"], friction)
-        middle = _short(0.5 * (low + high))
-        yield _numbers(
-            JOINTS_MU_KINETIC, between["mu_kinetic"], stated.joints_mu_kinetic, friction, (middle,)
+        given = case.joints.mu_static is not None
+        yield _factors(
+            JOINTS_MU_STATIC, between["mu_static"], stated.joints_mu_static, (1.0, 1.0) if given else JOINTS
         )
+        yield _kinetic(
+            JOINTS_MU_KINETIC, stated.joints_mu_kinetic, (between["mu_kinetic"], between["mu_static"])
+        )
+        if contact.friction == "elastic-stick" and slips:
+            yield _weakening(JOINTS_WEAKENING, between["weakening_m"], stated.joints_weakening_m)
     yield from _beginnings(case)
     yield from _impacts(case, penalty)
     if case.solver.model != "rigid":
         yield _factors(MATERIAL, container.damping_ratio, stated.material_damping_ratio, DAMPING)
+
+
+def _kinetic(key: str, stated: Sequence[float] | str | None, friction: tuple[float, float]) -> InputRange:
+    """The range of kinetic friction: unless stated, from that of the case to static friction."""
+    own = friction[0]
+    low, high = _ends(stated, own, friction)
+    return _numbers(key, own, stated, friction, (_short(0.5 * (low + high)),))
+
+
+def _weakening(key: str, own: float, stated: Sequence[float] | str | None) -> InputRange:
+    return _numbers(key, own, stated, (0.0, max(WEAKENING_M, own)), WEAKENINGS_BETWEEN_M, power=3.0)
 
 
 def _impacts(case: Case, penalty: float | None) -> Iterator[InputRange]:
@@ -328,6 +368,7 @@ def _factors(
 
 
 QUANTITIES = {
+    JOINTS_MU_STATIC: q.FRICTION,
     PENALTY: q.PENALTY,
     STRENGTH: q.BEARING_STRENGTH,
     MODULUS: q.FLOOR_STIFFNESS,

@@ -13,7 +13,7 @@ import numpy as np
 from fem.batch.container_cache import PenaltyCache
 from fem.batch.held import held_inputs
 from fem.case.case import Case
-from fem.case.uncertainty import INPUTS, Value, ranges_of
+from fem.case.uncertainty import INPUTS, Value, drawn_values, ranges_of
 from fem.case.validation import CaseError
 from fem.ensemble.distributions import draw_shares
 from fem.ensemble.plan import Draw, Ensemble
@@ -64,7 +64,8 @@ class UnknownInputs:
             ranges = ranges_of(case, self._penalties.of(case))
         except (CaseError, ValueError):
             return {}
-        return {one.key: one.drawn(place[one.key]) for one in ranges if one.key in place}
+        drawn = [one for one in ranges if one.key in place]
+        return drawn_values(drawn, [place[one.key] for one in drawn])
 
 
 def _cases(ensemble: Ensemble) -> Iterator[Case]:

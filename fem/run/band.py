@@ -21,7 +21,16 @@ from fem.assessment.ranges import largest_bolt_forces
 from fem.assessment.sureness import judged, static_use
 from fem.assessment.verdict import verdict_of
 from fem.case.case import Case
-from fem.case.uncertainty import TOLERANCE, InputChange, Value, changes_of, draws_of, pairs_of, stiff_floor
+from fem.case.uncertainty import (
+    TOLERANCE,
+    InputChange,
+    Value,
+    apart_from_floor,
+    changes_of,
+    draws_of,
+    pairs_of,
+    stiff_floor,
+)
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model, build_model
 from fem.model.recovery import Recovery, recovery_of
@@ -223,7 +232,7 @@ def _run_member(
         values = {**change.values, "output.fields_s": 0.0}
         if change.kind == "draw":
             values[TOLERANCE] = max(DRAWN_TOLERANCE, run.case.solver.energy_tolerance)
-        case = run.case.with_values(values)
+        case = run.case.with_values(apart_from_floor(run.case, values))
         model = build_model(case, run.container)
         if plan.short and (change.kind != "one" or case.container.bolted_joints == 0):
             verdict, error = run_without_history(model, shared.recovery)
@@ -274,6 +283,8 @@ def _member(
         max_von_mises_Pa=verdict.max_von_mises_Pa,
         bolt_tension_N=tension,
         bolt_shear_N=shear,
+        boxes=verdict.boxes,
+        fell_box=verdict.fell_box,
     )
 
 

@@ -41,8 +41,6 @@ def resolve(case: Case, mesh: ContainerMesh) -> Case:
     numerical = not case.floor.is_slab and case.contact.restitution_over_housner is None
     if case.contact.normal_penalty_Pa_m == "auto" and numerical:
         chosen["contact.normal_penalty_Pa_m"] = normal_penalty(case, mesh)
-    if case.container.is_loose:
-        chosen |= {f"joints.{key}": value for key, value in case.joint_friction.items()}
     if case.solver.duration_s == "auto" and not ends_at_rest(case):
         chosen["solver.duration_s"] = longest_time(case)
     if case.solver.step_s == "auto":

@@ -35,7 +35,8 @@ class Perturbation(CaseTable):
         default=0.02, description="of the floor's amplitude, up and down"
     )
     mu: Annotated[float, FRICTION_STEP] = Field(
-        default=0.02, description="added to and taken from both coefficients of friction"
+        default=0.02,
+        description="added to and taken from both coefficients of friction, of the floor and of loose joints",
     )
     phase_rad: Annotated[float, PHASE_STEP] = Field(
         default=0.3142, description="added to and taken from the phase; a twentieth of a turn"
@@ -64,13 +65,10 @@ class Perturbation(CaseTable):
             if scaled and factor != 1.0:
                 yield scaled
         friction = case.contact
-        for step in (-self.mu, self.mu):
-            moved = {
-                "contact.mu_static": _rounded(max(0.0, friction.mu_static + step)),
-                "contact.mu_kinetic": _rounded(max(0.0, friction.mu_kinetic + step)),
-            }
-            if step != 0.0:
-                yield moved
+        yield from self._frictions("contact", friction.mu_static, friction.mu_kinetic)
+        if case.container.is_loose:
+            between = case.joint_friction
+            yield from self._frictions("joints", between["mu_static"], between["mu_kinetic"])
         if case.motion.kind == "harmonic" and self.phase_rad > 0.0:
             for step in (-self.phase_rad, self.phase_rad):
                 yield {"motion.phase_rad": math.remainder(case.motion.phase_rad + step, TURN)}
@@ -86,6 +84,14 @@ class Perturbation(CaseTable):
         for ratio in self.contact_damping_ratios:
             if ratio != friction.damping_ratio:
                 yield {"contact.damping_ratio": ratio}
+
+    def _frictions(self, table: str, static: float, kinetic: float) -> Iterator[dict[str, Any]]:
+        """Both coefficients of the floor, or of loose boxes, a little smaller and larger."""
+        for step in (-self.mu, self.mu) if self.mu else ():
+            yield {
+                f"{table}.mu_static": _rounded(max(0.0, static + step)),
+                f"{table}.mu_kinetic": _rounded(max(0.0, kinetic + step)),
+            }
 
 
 def _rounded(value: float) -> float:

@@ -18,6 +18,7 @@ from fem.batch.case_maker import CaseMaker
 from fem.batch.derived import Derived, with_derived
 from fem.case.case import Case
 from fem.case.tables import CaseTable
+from fem.case.uncertainty import apart_from_floor
 from fem.case.validation import CaseError
 from fem.sweep.perturbation import Perturbation
 from fem.sweep.threshold import Threshold
@@ -114,8 +115,11 @@ class Sweep:
         return found
 
     def copy_case(self, item: CopyItem) -> Case:
-        """The case of a copy of a cell."""
-        return self.case_at(self.point(item.cell), item.values)
+        """The case of a copy of a cell, whose loose boxes keep the friction that they have in the cell."""
+        point, values = self.point(item.cell), item.values
+        if self.values(point).get("container.joints", self.base.container.joints) == "loose":
+            values = apart_from_floor(self.case_at(point), values)
+        return self.case_at(point, values)
 
     def tried_case(self, item: tuple[int, float]) -> Case:
         """The case between cells that a threshold tries: a cell of the line, and the value on the axis."""

@@ -5,6 +5,7 @@ from cases import LEAST
 
 from fem.case.case import Case, CaseError, case_hash, read_case, to_toml
 from fem.case.template import case_template
+from fem.case.uncertainty import ranges_of
 
 LOOSE = "joints = 'loose'"
 BOX = "[[container.box]]\n"
@@ -69,6 +70,15 @@ def test_friction_between_loose_boxes_is_that_of_the_floor_unless_given():
     slippery = case.with_values({"joints.mu_static": 0.2, "contact.weakening_m": 1e-3})
     assert slippery.joint_friction == {"mu_static": 0.2, "mu_kinetic": 0.2, "weakening_m": 1e-3}
     assert case.with_values({"contact.mu_static": 0.3}).joint_friction["mu_static"] == 0.3
+
+
+def test_friction_that_is_left_out_stays_so_in_the_resolved_case():
+    case = stack("boxes = 2\njoints = 'loose'")
+    assert "joints" not in case.resolved()
+    assert "joints.mu_static" in {one.key for one in ranges_of(read_case(to_toml(case)), 1e9)}
+    stated = case.with_values({"joints.mu_static": 0.4})
+    assert stated.resolved()["joints"] == {"mu_static": 0.4}
+    assert case_hash(stated) != case_hash(case)  # its band is another one
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,15 @@ from cases import named_case
 from scipy.stats import qmc
 
 from fem.case.case import CaseError
-from fem.case.uncertainty import changes_of, draws_of, pairs_of, ranges_of, sobol_points, stiff_floor
+from fem.case.uncertainty import (
+    apart_from_floor,
+    changes_of,
+    draws_of,
+    pairs_of,
+    ranges_of,
+    sobol_points,
+    stiff_floor,
+)
 
 PENALTY = 1e9
 FRICTION = {"contact.mu_kinetic": 0.2}
@@ -153,9 +161,70 @@ def test_draws_fill_every_range_and_make_cases_that_can_be_read():
 def test_points_are_those_of_sobol(count):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the count is no power of two
-        expected = qmc.Sobol(10, scramble=False).random(count)
+        expected = qmc.Sobol(12, scramble=False).random(count)
     bits = int(np.ceil(np.log2(count)))
-    np.testing.assert_allclose(sobol_points(count, 10), expected + 0.5 / 2**bits, atol=1e-15)
+    np.testing.assert_allclose(sobol_points(count, 12), expected + 0.5 / 2**bits, atol=1e-15)
+
+
+LOOSE = FRICTION | {"container.boxes": 3, "container.joints": "loose"}
+JOINTS = ("joints.mu_static", "joints.mu_kinetic", "joints.weakening_m")
+
+
+def of_joints(values=None):
+    return {key: some for key, some in ends("harmonic", LOOSE | (values or {})).items() if key in JOINTS}
+
+
+def test_friction_between_loose_boxes_is_unknown_apart_from_that_of_the_floor():
+    assert of_joints() == dict(zip(JOINTS, ((0.2, 0.8), (0.4,), (0.005,)), strict=True))
+    assert of_joints({"joints.mu_static": 0.3}) == {
+        "joints.mu_kinetic": (0.3,),
+        "joints.weakening_m": (0.005,),
+    }
+    assert of_joints({"joints.mu_static": 0.2}) == {}
+    known = dict.fromkeys(("uncertainty.joints_mu_static", "uncertainty.joints_mu_kinetic"), "known")
+    assert of_joints(known) == {"joints.weakening_m": (0.005,)}
+    stated = {"uncertainty.joints_mu_static": [0.3, 0.5], "uncertainty.joints_weakening_m": [0.0, 1e-3]}
+    assert of_joints(stated)["joints.mu_static"] == (0.3, 0.5)
+    assert of_joints(stated)["joints.weakening_m"] == (1e-3,)
+    # where the floor's friction does not fall, that of the joints may, and with the slip velocity, too
+    kept = {"contact.mu_kinetic": 0.4, "joints.mu_kinetic": 0.2}
+    assert "contact.stribeck_velocity_m_s" in ends("harmonic", LOOSE | kept)
+    assert "contact.weakening_m" not in ends("harmonic", LOOSE | kept)
+
+
+@pytest.mark.parametrize(
+    ("given", "changed", "expected"),
+    [
+        ({}, {"contact.mu_kinetic": 0.4, "contact.weakening_m": 1e-3}, (0.4, 0.2, 0.0)),
+        ({}, {"contact.mu_static": 0.42, "contact.mu_kinetic": 0.22}, (0.4, 0.2, 0.0)),
+        ({}, {"joints.mu_static": 0.8}, (0.8, 0.4, 0.0)),
+        ({}, {"joints.mu_static": 0.8, "joints.mu_kinetic": 0.3}, (0.8, 0.3, 0.0)),
+        ({}, {"joints.mu_kinetic": 0.4}, (0.4, 0.4, 0.0)),
+        ({"joints.mu_static": 0.15}, {"contact.mu_kinetic": 0.1}, (0.15, 0.15, 0.0)),
+    ],
+)
+def test_a_changed_case_keeps_the_friction_between_its_boxes(given, changed, expected):
+    case = named_case("harmonic", LOOSE | given)
+    found = case.with_values(apart_from_floor(case, changed)).joint_friction
+    assert tuple(found.values()) == pytest.approx(expected)
+
+
+def test_draws_of_a_loose_stack_draw_its_joints_and_its_floor_apart():
+    case = named_case("harmonic", LOOSE)
+    drawn = [case.with_values(apart_from_floor(case, one.values)) for one in draws_of(case, PENALTY)]
+    static = np.array([one.joint_friction["mu_static"] for one in drawn])
+    share = np.array([one.joint_friction["mu_kinetic"] for one in drawn]) / static
+    assert 0.2 < static.min() < 0.21 and 0.76 < static.max() < 0.8
+    assert 0.5 < share.min() < 0.52 and 0.98 < share.max() < 1.0
+    floor = [one.contact.mu_kinetic for one in drawn]
+    assert abs(np.corrcoef(floor, share)[0, 1]) < 0.2
+    assert len({one.joint_friction["weakening_m"] / one.contact.weakening_m for one in drawn}) > 16
+
+
+def test_one_body_has_no_friction_between_boxes():
+    bolted = named_case("harmonic", LOOSE | {"container.joints": "bolted"})
+    assert apart_from_floor(bolted, {"contact.mu_kinetic": 0.3}) == {"contact.mu_kinetic": 0.3}
+    assert not set(JOINTS) & {one.key for one in ranges_of(bolted, PENALTY)}
 
 
 def test_a_ramp_fits_the_motion():

@@ -100,6 +100,15 @@ def test_known_inputs_are_held(tmp_path):
     assert unknown.held == "with a start with the floor"
 
 
+def test_joints_of_a_loose_stack_are_drawn_apart_from_the_floor(tmp_path):
+    drawn = load_ensemble(changed(tmp_path, ("[axes]", '"container.joints" = "loose"\n[axes]')))
+    unknown = UnknownInputs(drawn)
+    assert {"joints.mu_static", "joints.mu_kinetic", "joints.weakening_m"} < set(unknown.keys)
+    for draw in unknown.draws_at(1):
+        between = drawn.case(draw).joint_friction
+        assert between == {key: draw.unknown[f"joints.{key}"] for key in between}
+
+
 @pytest.mark.parametrize("sampling", ["latin-hypercube", "sobol"])
 def test_unknown_inputs_do_not_follow_the_others(sampling):
     """Over many replicates, the first column of the one stream and of the other are independent."""
