@@ -8,8 +8,15 @@ from rich.text import Text
 
 from contact.stepping.observables import ROCKING, SLIDING
 from fem.assessment.joint_tables import titled_table
-from fem.assessment.ranges import LEAST_DEGREES, LEAST_LENGTH, in_figures
-from fem.results.run_result import BoxResult, RunResult, StaticResult, Verdict
+from fem.assessment.ranges import (
+    LEAST_DEGREES,
+    LEAST_LENGTH,
+    Reach,
+    in_figures,
+    signed_with_range,
+    with_range,
+)
+from fem.results.run_result import BoxReach, BoxResult, RunResult, StaticResult, Verdict
 
 AS_ONE = "the boxes moved as one"
 FIGURES = 3  #: of a length in the first line
@@ -54,13 +61,14 @@ def joints_in_words(verdict: Verdict, static: StaticResult | None) -> str:
 
 
 def largest_joint_slip(verdict: Verdict) -> tuple[str, str]:
-    """The largest slip of a box on another, and which slid on which; empty of a container that moves as one body."""
+    """The largest slip of a box on another with its range, and which slid on which; empty of one body."""
     boxes = verdict.boxes or ()
     if len(boxes) < 2:
         return "", ""
     most = max(range(1, len(boxes)), key=lambda k: boxes[k].max_slip_m)
-    slip = in_figures(boxes[most].max_slip_m, FIGURES, 1e3, LEAST_LENGTH)
-    return f"{slip} mm", f"box {most + 1} on box {most}"
+    reach = _reaches(verdict)[most]
+    slip = _length(boxes[most].max_slip_m, reach.max_slip_m, "mm")
+    return slip, f"box {most + 1} on box {most}"
 
 
 def limits(static: StaticResult) -> tuple[float, float]:
@@ -73,20 +81,43 @@ def limits(static: StaticResult) -> tuple[float, float]:
 
 
 def box_rows(result: RunResult) -> list[tuple[str, ...]]:
-    """Box, largest rotation in degrees, slip, slip left and opening in mm, and whether it fell; from the floor up."""
+    """Box, largest rotation in degrees, slip, slip left and opening in mm, whether it fell; from the floor up.
+
+    With their ranges over the band, and in how many of its runs the box fell first.
+    """
     verdict = result.verdict or Verdict()
-    boxes = verdict.boxes or ()
-    return [
-        (
-            str(number),
-            in_figures(math.degrees(box.max_rotation_rad), FIGURES, least=LEAST_DEGREES),
-            in_figures(box.max_slip_m, FIGURES, 1e3, LEAST_LENGTH),
-            in_figures(box.residual_slip_m, FIGURES, 1e3, LEAST_LENGTH),
-            in_figures(box.max_opening_m, FIGURES, 1e3, LEAST_LENGTH),
-            "fell" if box.fell else "",
+    rows: list[tuple[str, ...]] = []
+    for number, (box, reach) in enumerate(zip(verdict.boxes or (), _reaches(verdict), strict=True), 1):
+        degrees, least = math.degrees(1.0), math.radians(LEAST_DEGREES)
+        turned, left = reach.max_rotation_rad, reach.residual_slip_m
+        of_band = f"in {reach.fell} of {_members(verdict)} runs" if reach.fell else ""
+        rows.append(
+            (
+                str(number),
+                with_range(box.max_rotation_rad, turned, factor=degrees, least=least, many=FIGURES),
+                _length(box.max_slip_m, reach.max_slip_m),
+                signed_with_range(
+                    box.residual_slip_m, left, "", factor=1e3, least=LEAST_LENGTH, many=FIGURES
+                ),
+                _length(box.max_opening_m, reach.max_opening_m),
+                ", ".join(filter(None, ("fell" if box.fell else "", of_band))),
+            )
         )
-        for number, box in enumerate(boxes, 1)
-    ]
+    return rows
+
+
+def _length(value: float, reach: Reach | None, unit: str = "") -> str:
+    return with_range(value, reach, unit, factor=1e3, least=LEAST_LENGTH, many=FIGURES)
+
+
+def _reaches(verdict: Verdict) -> Sequence[BoxReach]:
+    """The ranges of each box over the band; empty ones where there is none."""
+    found = verdict.band.boxes if verdict.band is not None else None
+    return found or [BoxReach()] * len(verdict.boxes or ())
+
+
+def _members(verdict: Verdict) -> int:
+    return len(verdict.band.members) if verdict.band is not None else 0
 
 
 def box_table(result: RunResult) -> Iterator[RenderableType]:
@@ -99,7 +130,7 @@ def box_table(result: RunResult) -> Iterator[RenderableType]:
         "Boxes, from the floor up", "box", ">rotation degrees", ">slip mm", ">slip left mm", ">opening mm", ""
     )
     for k in shown:
-        table.add_row(*rows[k])
+        table.add_row(*(cell.replace(" (", "\n(").replace(", ", ",\n") for cell in rows[k]))
     yield table
     left_out = len(rows) - len(shown)
     yield Text(BOXES_NOTE + (f" {left_out} more boxes are in run.json." if left_out else "") + "\n")

@@ -50,12 +50,12 @@ def with_range(
 
 
 def signed_with_range(
-    value: float | None, reach: Reach | None, unit: str, *, factor: float, least: float
+    value: float | None, reach: Reach | None, unit: str, *, factor: float, least: float, many: int = MANY
 ) -> str:
     """A number whose sign means something: where it changes over the band, only its largest size is known."""
     if value is None or reach is None or not reach[0] < 0.0 < reach[1] or max(map(abs, reach)) <= least:
-        return with_range(value, reach, unit, factor=factor, least=least)
-    return f"about zero, up to {in_figures(max(map(abs, reach)), FEW, factor, least)} {unit}"
+        return with_range(value, reach, unit, factor=factor, least=least, many=many)
+    return f"about zero, up to {in_figures(max(map(abs, reach)), FEW, factor, least)} {unit}".rstrip()
 
 
 def figures_of(reach: Reach | None, many: int = MANY) -> int:

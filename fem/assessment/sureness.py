@@ -1,9 +1,12 @@
 """How sure a verdict is: what the members of its band show, and which inputs decide.
 
 A member stands in the same way as the run where its outcome is the same and neither rotation nor slip is another order
-of magnitude: a container that rocks and slips 2 mm at its impacts does not move like one that slips 200 mm.
+of magnitude: a container that rocks and slips 2 mm at its impacts does not move like one that slips 200 mm. Of a loose
+stack this holds for every box and every joint, and it falls in the same way where the same box falls.
 """
 
+import math
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Protocol
@@ -12,7 +15,7 @@ import numpy as np
 
 from fem.assessment.verdict import MODE_NAMES
 from fem.case.uncertainty import INPUTS, InputChange
-from fem.results.run_result import Band, BandMember, RunResult, StaticResult, Verdict
+from fem.results.run_result import Band, BandMember, BoxReach, RunResult, StaticResult, Verdict
 
 SURE, REGIME_UNSURE, UNSURE = "sure", "regime unsure", "unsure"
 #: figures of a band, each [low, high]
@@ -28,6 +31,8 @@ FIGURES = (
     "bolt_tension_N",
     "bolt_shear_N",
 )
+#: and of each box of a loose stack
+BOX_FIGURES = ("max_rotation_rad", "max_slip_m", "residual_slip_m", "max_opening_m")
 ANOTHER_SIZE = 10.0
 #: slip over the width, and rotation ratio, from which another size is another way to stand
 LARGE_SLIP, LARGE_ROTATION = 0.01, 0.1
@@ -36,6 +41,19 @@ SAME, OTHER_REGIME, OTHER_END = 0, 1, 2
 ORDER = {key: k for k, key in enumerate(INPUTS)}
 MOST_DRAWN = 3  #: inputs named where only draws differ
 ROCKING = ("rock", "slide-rock")
+
+
+class BoxStanding(Protocol):
+    """What a box of a loose stack shows; slip and opening over what is below it."""
+
+    @property
+    def max_rotation_rad(self) -> float: ...
+
+    @property
+    def max_slip_m(self) -> float: ...
+
+    @property
+    def max_opening_m(self) -> float: ...
 
 
 class Standing(Protocol):
@@ -50,6 +68,13 @@ class Standing(Protocol):
 
     @property
     def max_slip_m(self) -> float | None: ...
+
+    @property
+    def fell_box(self) -> int | None: ...
+
+    @property
+    def boxes(self) -> Sequence[BoxStanding] | None:
+        """From the floor up; none of a container that moves as one body."""
 
 
 def judged(
@@ -88,6 +113,7 @@ def judged(
         left_out=tuple(one.label for one in missing),
         draws_left_out=len(left_out) - len(missing),
         members=tuple(members),
+        boxes=_reach_of_boxes(alike, members),
         **{name: _reach(getattr(one, name) for one in alike) for name in FIGURES},
     )
     stiff = [key for change in changes if change.kind == "floor" for key in change.inputs]
@@ -165,23 +191,41 @@ def difference(own: Standing, other: Standing, width: float) -> int:
     if _stands(own) != _stands(other):
         return OTHER_END
     if not _stands(own):
-        return SAME
-    sizes = (
-        (own.max_slip_m, other.max_slip_m, LARGE_SLIP * width),
-        (own.rotation_ratio, other.rotation_ratio, LARGE_ROTATION),
-    )
-    another = any(_another_size(*pair) for pair in sizes)
+        return SAME if own.fell_box == other.fell_box else OTHER_REGIME
+    pairs = zip(_sizes(own, width), _sizes(other, width), strict=True)
+    another = any(high > 1.0 and high > ANOTHER_SIZE * low for low, high in map(sorted, pairs))
     return OTHER_REGIME if own.outcome != other.outcome or another else SAME
 
 
-def _another_size(one: float | None, other: float | None, large: float) -> bool:
-    low, high = sorted((one or 0.0, other or 0.0))
-    return high > large and high > ANOTHER_SIZE * low
+def _sizes(one: Standing, width: float) -> Iterator[float]:
+    """Slips, rotations and openings, each over the size from which it is large."""
+    ratio, boxes = one.rotation_ratio or 0.0, one.boxes or ()
+    yield (one.max_slip_m or 0.0) / (LARGE_SLIP * width)
+    yield ratio / LARGE_ROTATION
+    most = max((box.max_rotation_rad for box in boxes), default=0.0)
+    large = LARGE_ROTATION * most / ratio if ratio else math.inf  #: rotation [rad]
+    for box in boxes:
+        yield box.max_slip_m / (LARGE_SLIP * width)
+        yield box.max_rotation_rad / large
+        yield box.max_opening_m / (large * width)
 
 
 def _reach(values: Iterator[float | None]) -> tuple[float, float] | None:
     known = [value for value in values if value is not None]
     return (min(known), max(known)) if known else None
+
+
+def _reach_of_boxes(
+    alike: Sequence[BandMember], members: Sequence[BandMember]
+) -> tuple[BoxReach, ...] | None:
+    """The ranges of each box over the members that end as the run does, and in how many of all it fell first."""
+    fell = Counter(one.fell_box for one in members)
+    found = []
+    for number, same in enumerate(zip(*(one.boxes for one in alike if one.boxes), strict=True), 1):
+        values = {name: [getattr(box, name) for box in same] for name in BOX_FIGURES}
+        reach = {name: (min(some), max(some)) for name, some in values.items()}
+        found.append(BoxReach(fell=fell[number], **reach))
+    return tuple(found) or None
 
 
 def deciding_inputs(levels: Sequence[int], changes: Sequence[InputChange]) -> Iterator[str]:

@@ -37,6 +37,11 @@ def number_in(field: str) -> float | None:
     return float(field) if field else None
 
 
+def numbers_in(field: str) -> tuple[float, ...]:
+    """A field as numbers; none for an empty one."""
+    return tuple(map(float, field.split()))
+
+
 def table_text(columns: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
     """A table as text."""
     return table_of_lines(columns, map(line_of, rows))
@@ -125,9 +130,11 @@ class LoggedRuns(Generic[ItemT]):
 
 
 def _text(value: Any) -> str:
-    """One field: nothing for None, text on one line."""
+    """One field: nothing for None, text on one line, spaces between several numbers."""
     if value is None:
         return ""
+    if isinstance(value, tuple):
+        return " ".join(map(_text, value))
     if isinstance(value, bool | np.bool_):
         return "true" if value else "false"
     if isinstance(value, float | np.floating):

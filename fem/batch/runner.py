@@ -53,6 +53,12 @@ SCALARS = (
     "max_joint_slip_m",
     "max_joint_opening_m",
 )
+#: columns with one number for each box of a loose stack, from the floor up, by what they hold of it
+BOXES = {
+    "box_rotations_rad": "max_rotation_rad",
+    "box_slips_m": "max_slip_m",
+    "box_openings_m": "max_opening_m",
+}
 
 #: cases handed to a core at a time
 CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}
@@ -213,6 +219,8 @@ def run_model(model: Model) -> Row:
 def _row(status: str, reason: str | None, verdict: Verdict) -> Row:
     """The row of a run; a failed one has figures, and no outcome."""
     row = _row_without_outcome(status, reason) | {name: getattr(verdict, name) for name in SCALARS}
+    if verdict.boxes is not None:
+        row |= {name: tuple(getattr(box, key) for box in verdict.boxes) for name, key in BOXES.items()}
     return row | {"outcome": None} if status == "failed" else row
 
 
@@ -225,7 +233,7 @@ def _run_full(case: Case) -> Row:
 
 
 def _row_without_outcome(status: str, reason: str | None) -> Row:
-    return {"status": status, "reason": reason, "wall_s": 0.0} | dict.fromkeys(SCALARS)
+    return {"status": status, "reason": reason, "wall_s": 0.0} | dict.fromkeys((*SCALARS, *BOXES))
 
 
 def _progress(what: str, done: int, total: int, failed: int, elapsed: float) -> str:

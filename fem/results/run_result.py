@@ -126,6 +126,28 @@ class FloorNumbers(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
+class BoxResult(JsonBlock):
+    """One box of a loose stack; slip and opening over what is below it."""
+
+    max_rotation_rad: float  #: largest |rotation|
+    max_slip_m: float  #: largest |slip|
+    residual_slip_m: float  #: signed, at the end
+    max_opening_m: float
+    fell: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoxReach(JsonBlock):
+    """What one box of a loose stack does over the band; figures are [low, high], as those of `Band`."""
+
+    max_rotation_rad: tuple[float, float] | None = None
+    max_slip_m: tuple[float, float] | None = None
+    residual_slip_m: tuple[float, float] | None = None
+    max_opening_m: tuple[float, float] | None = None
+    fell: int = 0  #: members in which this box fell first
+
+
+@dataclass(frozen=True, kw_only=True)
 class BandMember(JsonBlock):
     """One run of a band."""
 
@@ -149,6 +171,10 @@ class BandMember(JsonBlock):
         None  #: largest of all joints and sides; of short members that change one input
     )
     bolt_shear_N: float | None = None  #: largest of all joints; likewise
+    boxes: tuple[BoxResult, ...] | None = None  #: of a loose stack, as of the verdict
+    fell_box: int | None = None
+
+    written_where_given = frozenset({"boxes", "fell_box"})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,18 +198,10 @@ class Band(JsonBlock):
     max_von_mises_Pa: tuple[float, float] | None = None
     bolt_tension_N: tuple[float, float] | None = None
     bolt_shear_N: tuple[float, float] | None = None
+    boxes: tuple[BoxReach, ...] | None = None  #: of a loose stack, from the floor up
     members: tuple[BandMember, ...] = ()  #: the run itself first
 
-
-@dataclass(frozen=True, kw_only=True)
-class BoxResult(JsonBlock):
-    """One box of a loose stack; slip and opening over what is below it."""
-
-    max_rotation_rad: float  #: largest |rotation|
-    max_slip_m: float  #: largest |slip|
-    residual_slip_m: float  #: signed, at the end
-    max_opening_m: float
-    fell: bool
+    written_where_given = frozenset({"boxes"})
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,14 +2,27 @@
 
 from collections import Counter
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from fem.batch.log import fields_of, number_in
+from fem.batch.log import fields_of, number_in, numbers_in
+from fem.batch.runner import BOXES
 from fem.runtime.arrays import BoolArray, FloatArray, IntArray
 from fem.sweep.neighbours import OVERTURNED, STANDING, UNKNOWN, kind_of
 from fem.sweep.plan import Sweep
 from fem.sweep.table import row_columns
+
+#: columns of what a row shows
+SHOWN = ("status", "outcome", "rotation_ratio", "max_slip_m", "fell_box", *BOXES)
+
+
+class BoxShown(NamedTuple):
+    """What a box of a loose stack shows; slip and opening over what is below it."""
+
+    max_rotation_rad: float
+    max_slip_m: float
+    max_opening_m: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,16 +33,22 @@ class Shown:
     outcome: str | None  #: None where it failed
     rotation_ratio: float | None
     max_slip_m: float | None
+    fell_box: int | None = None  #: of a loose stack, as the following
+    boxes: tuple[BoxShown, ...] = ()
 
 
-def shown_in(status: str, outcome: str, ratio: str, slip: str) -> Shown:
-    """What the fields of a row show."""
+def shown_in(
+    status: str, outcome: str, ratio: str, slip: str, fell_box: str, rotations: str, slips: str, openings: str
+) -> Shown:
+    """What the fields of a row show, those of `SHOWN`."""
     kind = kind_of(status, outcome)
     return Shown(
         kind=kind,
         outcome=outcome if kind in (STANDING, OVERTURNED) else None,
         rotation_ratio=number_in(ratio),
         max_slip_m=number_in(slip),
+        fell_box=int(fell_box) if fell_box else None,
+        boxes=tuple(map(BoxShown, *map(numbers_in, (rotations, slips, openings)))),
     )
 
 
@@ -43,8 +62,7 @@ class CellRows:
         self.kind: IntArray = np.full(sweep.count, UNKNOWN)  #: (n_cells,) see `neighbours`
         self.rotation_ratio: FloatArray = np.full(sweep.count, np.nan)  #: (n_cells,)
         self.outcomes = Counter[str]()  #: how often there is each; "failed" too
-        names = ("status", "outcome", "rotation_ratio", "max_slip_m")
-        self._places = [self.columns.index(name) for name in names]
+        self._places = [self.columns.index(name) for name in SHOWN]
 
     def note(self, line: str) -> None:
         """Add a line of the log."""

@@ -26,12 +26,12 @@ from fem.assessment.sureness import (
 from fem.batch.log import LoggedRuns, fields_of
 from fem.batch.runner import Row, Runner
 from fem.runtime.arrays import BoolArray
-from fem.sweep.cells import CellRows, Shown, shown_in
+from fem.sweep.cells import SHOWN, CellRows, Shown, shown_in
 from fem.sweep.copies import CellCopies, Copy
 from fem.sweep.neighbours import around, band_width, coarse_cells, near_cells
 from fem.sweep.plan import CopyItem, Sweep
 
-COLUMNS = ("cell", "member", "change", "status", "outcome", "rotation_ratio", "reason", "max_slip_m")
+COLUMNS = ("cell", "member", "change", *SHOWN[:3], "reason", *SHOWN[3:])
 #: cells around one with another outcome that try the same change
 REACH = 2
 
@@ -58,10 +58,10 @@ class PerturbedRows:
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
-        cell_text, number_text, _, status, outcome, ratio, _, slip = fields_of(line)
+        cell_text, number_text, _, *fields = fields_of(line)
         cell, number = int(cell_text), int(number_text)
         copy, own = self.copies.of(cell)[number], self._cells.shown[cell]
-        shown = shown_in(status, outcome, ratio, slip)
+        shown = shown_in(*fields[:3], *fields[4:])
         level = OTHER_END
         if shown.outcome is not None:
             level = difference(own, shown, self.copies.width(cell))

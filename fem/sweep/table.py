@@ -15,16 +15,16 @@ from numpy.typing import NDArray
 
 from fem.batch.axes import Axis, shape_of
 from fem.batch.log import fields_of, read_lines
-from fem.batch.runner import SCALARS
+from fem.batch.runner import BOXES, SCALARS
 from fem.results.errors import FolderError
 from fem.results.kinds import SWEEP, read_result
 
 #: columns behind the values of axes and derived keys in every row
-FOUND = ("status", *SCALARS, "reason", "wall_s")
+FOUND = ("status", *SCALARS, *BOXES, "reason", "wall_s")
 #: columns of the perturbed copies of a cell; the width of the band along each numeric axis follows
 BAND = ("perturbed", "unsure", "sure", "decided_by", "band_rotation_ratio_low", "band_rotation_ratio_high")
 WIDTH = "band_width."  #: before the key of an axis
-WORDS = frozenset({"status", "outcome", "reason", "sure", "decided_by"})
+WORDS = frozenset({"status", "outcome", "reason", "sure", "decided_by", *BOXES})
 
 
 def row_columns(axes: Sequence[Axis], derived: Iterable[str]) -> tuple[str, ...]:

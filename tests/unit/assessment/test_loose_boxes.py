@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from fem.assessment.loose_boxes import box_rows, largest_joint_slip
 from fem.assessment.summary import outcome_sentence, plain_summary
-from fem.results.run_result import BoxResult, RunResult, StaticResult, Verdict
+from fem.results.run_result import Band, BandMember, BoxReach, BoxResult, RunResult, StaticResult, Verdict
 
 STILL = BoxResult(max_rotation_rad=0.0, max_slip_m=0.0, residual_slip_m=0.0, max_opening_m=0.0, fell=False)
 #: four boxes of 1.1 m x 1 m: slip counts from 0.11 mm, an opening from 3 mm
@@ -65,6 +66,24 @@ def test_the_table_has_a_row_a_box_from_the_floor_up():
     rows = [line.split() for line in lines[start + 4 : start + 8]]
     assert rows[1] == ["2", "0", "219", "-100", "0"]
     assert rows[3] == ["4", "5.73", "0", "0", "0", "fell"]
+
+
+def test_the_figures_of_a_box_have_their_ranges_over_the_band():
+    reach = BoxReach(
+        max_rotation_rad=(0.0, 0.1),
+        max_slip_m=(0.1, 0.25),
+        residual_slip_m=(-0.3, 0.1),
+        max_opening_m=(0.0, 0.0),
+    )
+    band = Band(
+        boxes=(BoxReach(), reach, BoxReach(), replace(reach, fell=2)), members=(BandMember(status=""),) * 9
+    )
+    run = result((2, {"max_slip_m": 0.2194, "residual_slip_m": -0.1}), band=band)
+    assert box_rows(run)[1] == ("2", "0 (0 to 5.7)", "220 (100 to 250)", "about zero, up to 300", "0", "")
+    assert box_rows(run)[3][-1] == "in 2 of 9 runs"
+    assert largest_joint_slip(run.verdict) == ("220 (100 to 250) mm", "box 2 on box 1")
+    text = plain_summary(run, folder=Path("outputs"))
+    assert max(map(len, text.splitlines())) <= 80
 
 
 def test_of_many_boxes_the_table_has_those_that_decide():

@@ -8,7 +8,15 @@ from fem.assessment.ranges import IMPACT, in_figures, largest_stress, residual_s
 from fem.assessment.rule_or_run import believed
 from fem.assessment.sureness import judged, sureness_in_words
 from fem.case.uncertainty import InputChange
-from fem.results.run_result import ActionResult, Band, BandMember, RunResult, StaticResult, Verdict
+from fem.results.run_result import (
+    ActionResult,
+    Band,
+    BandMember,
+    BoxResult,
+    RunResult,
+    StaticResult,
+    Verdict,
+)
 
 MU, SLIP, PENALTY = "contact.mu_kinetic", "contact.weakening_m", "contact.normal_penalty_Pa_m"
 OWN = {"outcome": "slide-rock", "rotation_ratio": 0.2, "max_slip_m": 0.2, "residual_slip_m": -0.2}
@@ -78,6 +86,59 @@ def test_the_members_say_how_sure_a_verdict_is_and_what_decides(found, sure, dec
     judgement = verdict(*found)
     assert (judgement.sure, judgement.decided_by) == (sure, decided_by)
     assert judgement.band.unsure is (sure == "unsure")
+
+
+def boxes(**changed):
+    """Of a stack of three; `rotations`, `slips` and `openings` of some of them, from the floor up."""
+    figures = {"rotations": (0.05, 0.05, 0.05), "slips": (0.2, 0.002, 0.0), "openings": (0.05, 0.0, 0.0)}
+    columns = (figures | changed).values()
+    return tuple(
+        BoxResult(
+            max_rotation_rad=rotation, max_slip_m=slip, residual_slip_m=-slip, max_opening_m=gap, fell=False
+        )
+        for rotation, slip, gap in zip(*columns, strict=True)
+    )
+
+
+@pytest.mark.parametrize(
+    ("changed", "sure"),
+    [
+        ({}, "sure"),
+        ({"slips": (0.2, 0.2, 0.0)}, "regime unsure"),
+        ({"slips": (0.2, 0.0105, 0.0)}, "sure"),  # small: below a hundredth of the width
+        ({"rotations": (0.05, 0.05, 0.001)}, "regime unsure"),
+        ({"openings": (0.05, 0.1, 0.0)}, "regime unsure"),
+        ({"openings": (0.05, 0.02, 0.0)}, "sure"),  # small: below 0.1 of the angle times the width
+    ],
+    ids=[
+        "alike",
+        "slip of a joint",
+        "a small slip",
+        "a box at rest",
+        "opening of a joint",
+        "a small opening",
+    ],
+)
+def test_every_box_and_joint_of_a_loose_stack_counts(changed, sure):
+    found = verdict((HALF, {"boxes": boxes(**changed)}), boxes=boxes())
+    assert found.sure == sure
+    assert (verdict((HALF, {"boxes": boxes()}), boxes=boxes(**changed))).sure == sure
+
+
+def test_another_box_that_falls_is_another_way_to_fall():
+    fell = FELL | {"boxes": boxes(), "fell_box": 3}
+    assert verdict((HALF, fell), **fell).sure == "sure"
+    other = verdict((HALF, fell | {"fell_box": 2}), **fell)
+    assert (other.sure, other.decided_by) == ("regime unsure", (MU,))
+    assert [box.fell for box in other.band.boxes] == [0, 1, 1]
+
+
+def test_every_box_has_its_range():
+    slid = {"boxes": boxes(slips=(0.3, 0.1, 0.0)), "rotation_ratio": 0.3}
+    band = verdict((HALF, slid), (STIFF, FELL | {"boxes": boxes(), "fell_box": 2}), boxes=boxes()).band
+    assert band.boxes[1].max_slip_m == (0.002, 0.1) and band.boxes[1].residual_slip_m == (-0.1, -0.002)
+    assert band.boxes[1].fell == 1
+    assert verdict((HALF, {})).band.boxes is None
 
 
 def test_a_run_that_overturns_is_sure_only_where_all_do():

@@ -11,6 +11,7 @@ from fem.case.uncertainty import ranges_of
 from fem.response.request import ResponseRequest
 from fem.results.history import BOX_COLUMNS, read_history
 from fem.results.reader import open_run
+from fem.results.run_result import Verdict
 from fem.run.run import RunOptions, run_case
 
 #: three boxes that slide on one another
@@ -93,9 +94,23 @@ def test_friction_between_loose_boxes_is_an_unknown_input(case):
 def test_a_band_tries_the_friction_between_the_boxes(case):
     kinetic = case.replace({"joints.mu_kinetic": 0.1, "solver.duration_s": 1.0, "uncertainty.draws": 2})
     run = fem.compute(kinetic, band=True)
-    tried = [member for member in run.verdict.band.members if "joints.mu_kinetic" in (member.values or {})]
+    band = run.verdict.band
+    tried = [member for member in band.members if "joints.mu_kinetic" in (member.values or {})]
     assert len(tried) >= 4
-    assert all(member.error is None for member in run.verdict.band.members)
+    assert all(member.error is None and len(member.boxes) == 3 for member in band.members)
+    slips = [member.boxes[1].max_slip_m for member in band.members]
+    assert band.boxes[1].max_slip_m == (min(slips), max(slips)) and min(slips) < max(slips)
+    assert band.members[0].boxes == run.verdict.boxes
+    again = Verdict.from_json(json.loads(json.dumps(run.verdict.to_json())))
+    assert again.band.boxes == band.boxes and again.band.members == band.members
+
+
+def test_the_friction_of_the_joints_does_not_follow_the_floors_in_a_band(case):
+    floor = {"contact.mu_kinetic": 0.2, "contact.mu_static": 2.0, "uncertainty.draws": 0}
+    stuck = case.replace({**floor, "solver.duration_s": 1.0, "joints.mu_kinetic": 0.1})
+    given = fem.compute(stuck, band=True).verdict.band
+    floors = [one for one in given.members if set(one.values or {}) == {"contact.mu_kinetic"}]
+    assert floors and {one.boxes[1] for one in floors} == {given.members[0].boxes[1]}
 
 
 def test_what_a_loose_stack_cannot_be_asked_is_refused(case):

@@ -12,6 +12,7 @@ from fem.case.case import load_case
 from fem.sweep.copies import CellCopies, left_out
 from fem.sweep.file import load_sweep
 from fem.sweep.neighbours import around, coarse_cells
+from fem.sweep.plan import CopyItem
 from fem.sweep.run import run_sweep
 from fem.sweep.table import open_sweep
 
@@ -61,6 +62,33 @@ def test_the_copies_of_the_shipped_case_try_all_unknown_inputs(sweep_of):
         "motion.ramp_cycles",
         "solver.energy_tolerance",
     }
+
+
+LOOSE = SMALL.replace("[axes]", '"container.joints" = "loose"\n[axes]')
+
+
+def test_copies_of_a_loose_cell_change_floor_and_joints_apart(sweep_of):
+    sweep = sweep_of(LOOSE.replace("count = 5", "count = 2"))
+    copies = CellCopies(sweep).of(0)
+    own = sweep.case(0).joint_friction
+    for number, copy in enumerate(copies):
+        case = sweep.copy_case(CopyItem(0, number, copy.change.values))
+        kept = not any(key.startswith("joints.") for key in copy.change.values)
+        assert (case.joint_friction == own) == kept
+    assert keys_of(sweep) >= {"joints.mu_static", "joints.mu_kinetic", "joints.weakening_m"}
+
+
+def test_cells_of_a_loose_stack_show_every_box(sweep_of, tmp_path):
+    text = LOOSE.replace("count = 5", "count = 2").replace("count = 4", "count = 2")
+    sweep = sweep_of(text + '[perturbation]\ncells = "all"\ndraws = 2\n')
+    run_sweep(sweep, tmp_path / "out")
+    table = open_sweep(tmp_path / "out")
+    with (tmp_path / "out" / "members.csv").open() as stream:
+        members = list(csv.DictReader(stream))
+    assert len(str(table["box_slips_m"][0]).split()) == 4
+    assert max(map(float, str(table["box_slips_m"][0]).split()[1:])) == table["max_joint_slip_m"][0]
+    for name in ("box_rotations_rad", "box_slips_m", "box_openings_m"):
+        assert {len(row[name].split()) for row in members if row["outcome"]} == {4}
 
 
 @pytest.mark.parametrize(
