@@ -53,21 +53,27 @@ class FrameFormat:
 
     def frame(self, point_data: Mapping[str, Reals]) -> bytes:
         """A frame with these arrays at its points, shape (n,) or (n, 3)."""
-        parts, offset, blocks = [HEAD, self._piece], 0, []
-        for section, arrays in (
-            ("PointData", {name: _coded(values) for name, values in point_data.items()}),
-            ("CellData", self._cell_data),
-            ("Points", self._points),
-            ("Cells", self._cells),
-        ):
+        sections = {
+            "PointData": {name: _coded(values) for name, values in point_data.items()},
+            "CellData": self._cell_data,
+            "Points": self._points,
+            "Cells": self._cells,
+        }
+        parts = [HEAD, self._piece]
+        # The last array is the first of the bytes: meshio 5.3 replaces one offset after the other and looks for the
+        # next among all, the first in the document first; in the same order one that it replaced may be taken for it.
+        blocks = [block for arrays in sections.values() for _, block in arrays.values()]
+        offset = sum(map(len, blocks))
+        for section, arrays in sections.items():
             parts.append(f"<{section}>\n")
             for name, (kind, block) in arrays.items():
+                offset -= len(block)
                 parts.append(f'<DataArray Name="{name}" {kind} format="appended" offset="{offset}"/>\n')
-                offset += len(block)
-                blocks.append(block)
             parts.append(f"</{section}>\n")
         parts.append('</Piece>\n</UnstructuredGrid>\n<AppendedData encoding="raw">\n_')
-        return b"".join([*(part.encode() for part in parts), *blocks, b"\n</AppendedData>\n</VTKFile>\n"])
+        return b"".join(
+            [*(part.encode() for part in parts), *blocks[::-1], b"\n</AppendedData>\n</VTKFile>\n"]
+        )
 
 
 def _shared(values: Array) -> tuple[str, bytes]:
