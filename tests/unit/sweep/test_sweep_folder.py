@@ -104,10 +104,10 @@ def kill_in_the_middle(arguments, folder, pause):
     process.wait()
 
 
-@pytest.mark.parametrize(("kills", "peaks"), [(2, 6), pytest.param(20, 15, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("kills", "peaks"), [(2, 5), pytest.param(20, 20, marks=pytest.mark.slow)])
 def test_a_sweep_killed_and_resumed_gives_the_same_table(tmp_path, monkeypatch, capsys, kills, peaks):
     monkeypatch.chdir(tmp_path)
-    text = SMALL.replace("count = 4", "count = 12").replace("count = 5", f"count = {peaks}")
+    text = SMALL.replace("count = 4", "count = 8").replace("count = 5", f"count = {peaks}")
     (tmp_path / "small.toml").write_text(text, encoding="utf-8")
     choice = random.Random(0)
     for k in range(kills):
