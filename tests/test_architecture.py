@@ -45,7 +45,7 @@ NARROW = {
     "contact.motion": {"contact.arrays", "contact.jit"},
     "contact.interface": {"contact.arrays", "contact.jit", "contact.motion"},
     "contact.stepping": {"contact.arrays", "contact.jit", "contact.motion", "contact.interface"},
-    "fem.records": {"contact.arrays", "contact.motion", "fem.runtime"},
+    "fem.records": {"contact.arrays", "contact.jit", "contact.motion", "fem.runtime"},
     # what the package offers by name
     "fem": {"fem.runtime", "fem.case", "fem.results", "fem.run", "fem.batch"},
     "fem.__main__": {"fem.runtime", "fem.cli"},

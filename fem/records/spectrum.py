@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fem.records.peak_response import peaks_of
 from fem.runtime.arrays import FloatArray
 
 #: samples of a period from which the peaks between samples are found within 0.05 %
@@ -87,13 +88,9 @@ def response_spectrum(
     ten samples a period the lines are sampled more densely, and each peak is that of a cubic.
     """
     values, periods = _checked(step_s, acceleration, periods_s, damping_ratio)
-    denser: dict[int, FloatArray] = {}
-    displacement, absolute = np.empty(periods.size), np.empty(periods.size)
-    for k, period in enumerate(periods.tolist()):
-        parts = _parts(step_s, period)
-        if parts not in denser:
-            denser[parts] = _denser(values, parts)
-        displacement[k], absolute[k] = _peaks(step_s / parts, denser[parts], period, damping_ratio)
+    found = np.empty((periods.size, 2))
+    peaks_of(values, step_s, damping_ratio, _steps_of(step_s, periods, damping_ratio), found)
+    displacement, absolute = found.T
     rates = 2.0 * math.pi / periods
     return Spectrum(
         periods_s=periods,
@@ -142,6 +139,17 @@ def _checked(
             f"{LEAST_STEPS * step_s:g} s, two steps"
         )
     return values, periods
+
+
+def _steps_of(step: float, periods: FloatArray, damping_ratio: float) -> FloatArray:
+    """The steps of oscillators as `peaks_of` takes them, shape (k, 10)."""
+    rows = []
+    for period in periods.tolist():
+        parts = _parts(step, period)
+        root, before, after = _step(step / parts, period, damping_ratio)
+        turns = (root, complex(np.exp(root * step / parts)), before, after)
+        rows.append([2.0 * math.pi / period, parts, *(x for one in turns for x in (one.real, one.imag))])
+    return np.array(rows, dtype=np.float64).reshape(-1, 10)
 
 
 def _parts(step: float, period: float) -> int:
@@ -206,34 +214,3 @@ def _summed_up(impulses: ComplexArray, turn: complex) -> ComplexArray:
         block += before
         before = over * complex(block[-1] * turns[-1])
     return (blocks * turns).reshape(-1)[:count]
-
-
-def _peaks(step: float, values: FloatArray, period: float, damping_ratio: float) -> tuple[float, float]:
-    """Largest |relative displacement| [m] and |absolute acceleration| [m/s2] of an oscillator."""
-    x, v = _response(step, values, period, damping_ratio)
-    rate = 2.0 * math.pi / period
-    y = -rate * (rate * x + 2.0 * damping_ratio * v)  # absolute acceleration
-    slope = -rate * (rate * v + 2.0 * damping_ratio * (y - values))
-    free_slope = -rate * (rate * v[-1] + 2.0 * damping_ratio * y[-1])
-    return (
-        max(_largest(step, x, v), _largest_free(rate, damping_ratio, float(x[-1]), float(v[-1]))),
-        max(_largest(step, y, slope), _largest_free(rate, damping_ratio, float(y[-1]), float(free_slope))),
-    )
-
-
-def _largest(step: float, values: FloatArray, slopes: FloatArray) -> float:
-    """Largest magnitude of the cubics through values and slopes at the samples."""
-    turning = np.flatnonzero(slopes[:-1] * slopes[1:] < 0.0)
-    y0, y1, m0, m1 = values[turning], values[turning + 1], slopes[turning], slopes[turning + 1]
-    s = m0 / (m0 - m1)  # the slope is nearly linear there, and an error of s counts only squared
-    t = 1.0 - s
-    peaks = t * t * ((1.0 + 2.0 * s) * y0 + s * step * m0) + s * s * ((1.0 + 2.0 * t) * y1 - t * step * m1)
-    return float(max(np.abs(values).max(), np.abs(peaks).max(initial=0.0)))
-
-
-def _largest_free(rate: float, damping_ratio: float, value: float, slope: float) -> float:
-    """Magnitude at the first turning point of free vibration."""
-    decay, damped = damping_ratio * rate, rate * math.sqrt(1.0 - damping_ratio**2)
-    angle = math.atan2(slope * damped, decay * slope + rate**2 * value) % math.pi
-    swing = value * math.cos(angle) + (slope + decay * value) / damped * math.sin(angle)
-    return abs(math.exp(-decay * angle / damped) * swing)
