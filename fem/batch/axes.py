@@ -1,5 +1,6 @@
 """The axes of a study: each is one key of a case and its values."""
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -180,7 +181,7 @@ def read_motion_files(given: Any) -> tuple[tuple[str, ...], dict[str, tuple[str 
         )
     pairs = [_pair(one) for one in given]
     named = [name for horizontal, vertical in pairs for name in {horizontal, vertical} if name is not None]
-    if twice := [name for name in dict.fromkeys(named) if named.count(name) > 1]:
+    if twice := [name for name, count in Counter(named).items() if count > 1]:
         raise AxisError(
             f"names {twice[0]!r} twice; the motions of a set are of different files: leave one out"
         )

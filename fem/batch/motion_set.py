@@ -4,55 +4,54 @@ A set is the values of `motion.file` in a study: recorded motions, alone or with
 """
 
 import hashlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
+from itertools import repeat
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from contact.motion.table import TableMotion
-from fem.batch.axes import MOTION_FILE, Axis, set_axis, with_following
+from fem.batch.axes import MOTION_FILE, Axis, set_axis
+from fem.batch.case_maker import CaseMaker
 from fem.batch.log import table_text
-from fem.batch.runner import motion_left_out
-from fem.case.case import Case, CaseError
+from fem.batch.runner import Runner, motion_left_out
+from fem.batch.workers import FoundT, ItemT
+from fem.case.case import Case, CaseError, case_hash
+from fem.case.recorded import MotionKey
 from fem.figures.motions import draw_spectra
 from fem.figures.style import svg_of
 from fem.model.motion import build_motion, build_vertical
 from fem.records.intensity import intensity
-from fem.records.spectrum import Spectrum, evenly_sampled, log_spaced_periods, response_spectrum
+from fem.records.spectrum import evenly_sampled, log_spaced_periods, response_spectrum
 from fem.results.folder import ResultFolder
 from fem.runtime.arrays import FloatArray
 
 LONGEST_PERIOD_S = 4.0
 SPECTRA = "figures/spectra.svg"
+LARGE_SET = 32  #: motions from which several workers read them
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FloorComponent:
-    """A horizontal or vertical motion, as the runs follow it."""
+    """A horizontal or vertical motion, as the runs follow it; its samples are read when they are asked for."""
 
     name: str  #: of its file
-    motion: TableMotion
+    case: Case  #: whose motion it is
+    table: MotionKey  #: of the case
+    numbers: Mapping[str, Any]  #: length, interval, peaks and duration, by the names of `run.json`
+
+    @property
+    def motion(self) -> TableMotion:
+        """The samples, read again unless they were read lately."""
+        return _table(build_vertical(self.case) if self.table == "vertical" else build_motion(self.case))
 
     @property
     def step_s(self) -> float:
         """Mean interval of its samples [s]."""
-        return float(np.ptp(self.motion.times)) / (self.motion.times.size - 1)
-
-    def numbers(self) -> dict[str, Any]:
-        """Length, interval, peaks and duration, by the names of `run.json`."""
-        times = self.motion.times
-        return {
-            "file": self.name,
-            "duration_s": float(np.ptp(times)),
-            "step_s": self.step_s,
-            "samples": times.size,
-        } | asdict(intensity(times, self.motion.accelerations))
-
-    def spectrum(self, periods_s: FloatArray) -> Spectrum:
-        """Response spectrum for 5 % of damping."""
-        return response_spectrum(*evenly_sampled(self.motion.times, self.motion.accelerations), periods_s)
+        return float(self.numbers["step_s"])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,9 +59,11 @@ class FloorMotionPair:
     """One motion of a set."""
 
     case: Case  #: the base case with this motion
+    keys: Mapping[str, Any]  #: that set it
     horizontal: FloorComponent
     vertical: FloorComponent | None
     left_out: str | None  #: the part of the motion that a run covers, where it ends before it
+    case_hash: str  #: of its case
 
     @property
     def name(self) -> str:
@@ -76,38 +77,53 @@ class FloorMotionPair:
 
     def numbers(self) -> dict[str, Any]:
         """Those of the horizontal motion, and of the vertical one as `vertical`; None without one."""
-        vertical = None if self.vertical is None else self.vertical.numbers()
-        return self.horizontal.numbers() | {"vertical": vertical}
+        vertical = None if self.vertical is None else self.vertical.numbers
+        return {**self.horizontal.numbers, "vertical": vertical}
+
+
+class MotionFacts(NamedTuple):
+    """What is kept of a motion of a set once it has been read."""
+
+    numbers: tuple[dict[str, Any], ...]  #: of its components
+    contents: tuple[str, ...]  #: digests, equal for the same motion whatever its scale and sign
+    left_out: str | None
+    case_hash: str
 
 
 def motion_cases(base: Case, axes: Iterable[Axis]) -> list[Case]:
     """The base case with each motion of a set; none without a set."""
-    axis = set_axis(axes)
-    if axis is None:
-        return []
-    return [base.with_values(with_following([axis], {MOTION_FILE: name})) for name in axis.values]
+    return list(map(CaseMaker(base), _keys_of(axes)))
 
 
-def read_motion_set(base: Case, axes: Iterable[Axis]) -> tuple[FloorMotionPair, ...]:
+def read_motion_set(
+    base: Case, axes: Iterable[Axis], runner: Runner | None = None
+) -> tuple[FloorMotionPair, ...]:
     """Read the motions of a set, as the base case takes them; none without a set.
+
+    Args:
+        base: case of the study.
+        axes: of which one may hold a set.
+        runner: whose workers read a large set; None: this process.
 
     Raises:
         CaseError: a file that cannot be used, components that were not sampled together, two motions of one file, two
             files that hold the same motion.
     """
+    keys = _keys_of(axes)
+    make = CaseMaker(base)
     found: list[FloorMotionPair] = []
     contents: dict[str, str] = {}
     owners: dict[Path, str] = {}
-    for case in motion_cases(base, axes):
-        pair = _read_pair(case)
-        for path in {case.data_files[f"{table}.file"].resolve() for table in _tables_of(pair)}:
+    for some, facts in zip(keys, _each(runner, "motions read", keys, partial(_read, make)), strict=True):
+        pair = _pair_of(make(some), some, facts)
+        for path in {pair.case.data_files[f"{one.table}.file"].resolve() for one in pair.components}:
             if path in owners:
                 raise CaseError(
                     f"{MOTION_FILE!r}: {owners[path]!r} and {pair.name!r} are motions of one file, {path.name}; those "
                     "of a set must be of different ones: leave one out"
                 )
             owners[path] = pair.name
-        for component, content in zip(pair.components, _contents(pair), strict=True):
+        for component, content in zip(pair.components, facts.contents, strict=True):
             if content in contents:
                 raise CaseError(
                     f"{MOTION_FILE!r}: {component.name!r} and {contents[content]!r} hold the same motion; those of a "
@@ -133,7 +149,10 @@ def motions_left_out(base: Case, motions: Sequence[FloorMotionPair]) -> str | No
 
 
 def write_motions(
-    place: ResultFolder, motions: Sequence[FloorMotionPair], measures: Sequence[Mapping[str, Any]]
+    place: ResultFolder,
+    motions: Sequence[FloorMotionPair],
+    measures: Sequence[Mapping[str, Any]],
+    runner: Runner | None = None,
 ) -> list[str]:
     """Write `motions.csv`, `spectra.csv` and the figure of the spectra; returns the names of figures.
 
@@ -141,9 +160,10 @@ def write_motions(
         place: the folder of a study.
         motions: of the set.
         measures: of each motion, with its outcomes.
+        runner: as for `read_motion_set`.
     """
     place.write_text("motions.csv", _motions_table(measures))
-    periods, spectra = spectra_of(motions)
+    periods, spectra = spectra_of(motions, runner)
     rows = np.column_stack([periods, *spectra.values()]).tolist()
     place.write_text("spectra.csv", table_text(["period_s", *spectra], rows))
     vertical = [one.vertical.name for one in motions if one.vertical is not None]
@@ -151,12 +171,19 @@ def write_motions(
     return [SPECTRA]
 
 
-def spectra_of(motions: Sequence[FloorMotionPair]) -> tuple[FloatArray, dict[str, FloatArray]]:
-    """Periods (k,) [s] that all motions resolve, and pseudo-accelerations (k,) [m/s2] by `file`."""
-    components = [one for motion in motions for one in motion.components]
-    step = max(one.step_s for one in components)
+def spectra_of(
+    motions: Sequence[FloorMotionPair], runner: Runner | None = None
+) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Periods (k,) [s] that all motions resolve, and pseudo-accelerations (k,) [m/s2] by `file`, 5 % damping."""
+    step = max(one.step_s for motion in motions for one in motion.components)
     periods = log_spaced_periods(step, longest_s=max(LONGEST_PERIOD_S, 10.0 * step))
-    return periods, {one.name: one.spectrum(periods).pseudo_acceleration_m_s2 for one in components}
+    work = partial(_spectra, CaseMaker(motions[0].case), periods)
+    found = _each(runner, "spectra", [one.keys for one in motions], work)
+    return periods, {
+        one.name: values
+        for motion, spectra in zip(motions, found, strict=True)
+        for one, values in zip(motion.components, spectra, strict=True)
+    }
 
 
 def _motions_table(measures: Sequence[Mapping[str, Any]]) -> str:
@@ -172,19 +199,74 @@ def _motions_table(measures: Sequence[Mapping[str, Any]]) -> str:
     )
 
 
-def _read_pair(case: Case) -> FloorMotionPair:
-    horizontal = FloorComponent(name=case.motion.file or "", motion=_table(build_motion(case)))
-    vertical = None
+def _keys_of(axes: Iterable[Axis]) -> list[dict[str, Any]]:
+    """The keys that set each motion of a set; none without a set."""
+    axis = set_axis(axes)
+    if axis is None:
+        return []
+    rows = zip(*axis.following.values(), strict=True) if axis.following else repeat((), len(axis.values))
+    return [
+        {MOTION_FILE: name}
+        | {key: value for key, value in zip(axis.following, row, strict=True) if value is not None}
+        for name, row in zip(axis.values, rows, strict=True)
+    ]
+
+
+def _each(
+    runner: Runner | None, what: str, items: Sequence[ItemT], work: Callable[[ItemT], FoundT]
+) -> list[FoundT]:
+    return runner.each(what, items, work) if runner and len(items) >= LARGE_SET else list(map(work, items))
+
+
+def _components_of(case: Case, numbers: Iterable[Mapping[str, Any]]) -> tuple[FloorComponent, ...]:
+    tables: list[tuple[MotionKey, str | None]] = [("motion", case.motion.file)]
     if case.vertical.kind == "table" and case.vertical.file is not None:
-        vertical = FloorComponent(name=case.vertical.file, motion=_table(build_vertical(case)))
-    # Asked now: of a large set, the files are no longer in memory later.
-    return FloorMotionPair(
-        case=case, horizontal=horizontal, vertical=vertical, left_out=motion_left_out(case)
+        tables.append(("vertical", case.vertical.file))
+    return tuple(
+        FloorComponent(name=name or "", case=case, table=table, numbers=found)
+        for (table, name), found in zip(tables, numbers, strict=False)
     )
 
 
-def _tables_of(pair: FloorMotionPair) -> tuple[str, ...]:
-    return ("motion",) if pair.vertical is None else ("motion", "vertical")
+def _pair_of(case: Case, keys: Mapping[str, Any], facts: MotionFacts) -> FloorMotionPair:
+    horizontal, *rest = _components_of(case, facts.numbers)
+    return FloorMotionPair(
+        case=case,
+        keys=keys,
+        horizontal=horizontal,
+        vertical=rest[0] if rest else None,
+        left_out=facts.left_out,
+        case_hash=facts.case_hash,
+    )
+
+
+def _read(make: CaseMaker, keys: Mapping[str, Any]) -> MotionFacts:
+    case = make(keys)
+    numbers, contents = [], []
+    for one in _components_of(case, repeat({})):
+        motion = one.motion
+        times, file = motion.times, case.data_files[f"{one.table}.file"]
+        numbers.append(
+            {
+                "file": one.name,
+                "duration_s": float(np.ptp(times)),
+                "step_s": float(np.ptp(times)) / (times.size - 1),
+                "samples": times.size,
+            }
+            | asdict(intensity(times, motion.accelerations))
+            | {"sha256": hashlib.sha256(file.read_bytes()).hexdigest()}
+        )
+        contents.append(_content(motion))
+    # Asked now, while the file is in memory.
+    return MotionFacts(tuple(numbers), tuple(contents), motion_left_out(case), case_hash(case))
+
+
+def _spectra(make: CaseMaker, periods: FloatArray, keys: Mapping[str, Any]) -> list[FloatArray]:
+    motions = (one.motion for one in _components_of(make(keys), repeat({})))
+    return [
+        response_spectrum(*evenly_sampled(one.times, one.accelerations), periods).pseudo_acceleration_m_s2
+        for one in motions
+    ]
 
 
 def _table(motion: object) -> TableMotion:
@@ -193,11 +275,10 @@ def _table(motion: object) -> TableMotion:
     return motion
 
 
-def _contents(pair: FloorMotionPair) -> Iterator[str]:
-    """A digest that is equal for components of the same motion, whatever their scale and sign."""
-    for one in pair.components:
-        values = one.motion.accelerations
-        largest = values[np.argmax(np.abs(values))] or 1.0
-        times = one.motion.times - one.motion.times[0]
-        shape = np.round(np.concatenate([times / (times[-1] or 1.0), values / largest]), 6) + 0.0
-        yield hashlib.sha256(shape.tobytes()).hexdigest()
+def _content(motion: TableMotion) -> str:
+    """A digest that is equal for the same motion, whatever its scale and sign."""
+    values = motion.accelerations
+    largest = values[np.argmax(np.abs(values))] or 1.0
+    times = motion.times - motion.times[0]
+    shape = np.round(np.concatenate([times / (times[-1] or 1.0), values / largest]), 6) + 0.0
+    return hashlib.sha256(shape.tobytes()).hexdigest()

@@ -10,12 +10,12 @@ from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from operator import itemgetter
-from typing import Any, TypeVar
+from typing import Any
 
 from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak
 from fem.assessment.verdict import verdict_of
 from fem.batch.container_cache import ContainerCache, container_key
-from fem.batch.workers import LocalWorkers, WorkersOf, hand_out, never
+from fem.batch.workers import FoundT, ItemT, LocalWorkers, WorkersOf, hand_out, never
 from fem.case.case import Case, CaseError
 from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
@@ -66,7 +66,6 @@ CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}
 _CONTAINERS = ContainerCache()
 
 Row = dict[str, Any]
-ItemT = TypeVar("ItemT")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -123,6 +122,60 @@ class Runner:
                 failed += sum(row["status"] == "failed" for row in rows)
                 self.reporter.tell(progress)
         self.reporter.finish()
+
+    def each(self, what: str, items: Sequence[ItemT], work: Callable[[ItemT], FoundT]) -> list[FoundT]:
+        """Let the workers do some work for each item; it must be picklable.
+
+        Args:
+            what: is done, for the line of progress.
+            items: in order.
+            work: from an item to its result.
+
+        Returns:
+            The results in the order of the items.
+
+        Raises:
+            ValueError: that of the first item whose work raises one.
+            KeyboardInterrupt: `stop` ended the work.
+        """
+        self.reporter.start(0.0)
+        began, place, done = time.perf_counter(), 0, 0
+        ready: dict[int, list[FoundT | ValueError]] = {}
+        numbered = list(enumerate(items))
+        chunks = hand_out(
+            numbered,
+            partial(_work_on, work),
+            self.workers_of("rigid", len(numbered)),
+            at_a_time=CASES_AT_A_TIME["rigid"],
+            stop=self.stop,
+        )
+        found: list[FoundT] = []
+        for chunk, some in chunks:
+            ready[chunk[0][0]] = some
+            while place in ready:  # in order, so that the first error does not depend on the workers
+                for one in ready.pop(place):
+                    if isinstance(one, ValueError):
+                        raise one
+                    found.append(one)
+                place = len(found)
+            done += len(chunk)
+            self.reporter.tell(partial(_progress, what, done, len(numbered), 0, time.perf_counter() - began))
+        self.reporter.finish()
+        if len(found) < len(numbered):
+            raise KeyboardInterrupt
+        return found
+
+
+def _work_on(
+    work: Callable[[ItemT], FoundT], items: Sequence[tuple[int, ItemT]]
+) -> list[FoundT | ValueError]:
+    found: list[FoundT | ValueError] = []
+    for _, item in items:
+        try:
+            found.append(work(item))
+        except ValueError as error:
+            return [*found, error]
+    return found
 
 
 def run_cases(

@@ -2,10 +2,11 @@
 
 import importlib
 import json
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
 
-from fem.cli.console import EXIT_CODES, Folder, Force, Jobs, Quiet, Resume, flag
+from fem.cli.console import EXIT_CODES, Folder, Force, Jobs, Quiet, Resume, Scheduler, connected, flag
 from fem.results.files import to_json
 from fem.runtime.progress import ScreenReporter
 
@@ -16,6 +17,7 @@ def ensemble(
     *,
     out: Folder = None,
     jobs: Jobs = None,
+    scheduler: Scheduler = None,
     resume: Resume = False,
     force: Force = False,
     as_json: Annotated[bool, flag("Print ensemble.json.", "--json")] = False,
@@ -32,9 +34,17 @@ def ensemble(
     folder = out if out is not None else Path("outputs") / asked.name
     # Loaded only now, so that bad input is answered before anything is compiled.
     study = importlib.import_module("fem.ensemble.run")
-    result = study.run_ensemble(
-        asked, folder=folder, jobs=jobs, force=force, resume=resume, reporter=ScreenReporter(quiet=quiet)
-    )
+    with ExitStack() as stack:
+        workers_of = None if scheduler is None else stack.enter_context(connected(scheduler))
+        result = study.run_ensemble(
+            asked,
+            folder=folder,
+            jobs=jobs,
+            workers_of=workers_of,
+            force=force,
+            resume=resume,
+            reporter=ScreenReporter(quiet=quiet),
+        )
     result = json.loads(to_json(result))
     print(json.dumps(result, indent=2) if as_json else study.page_of(result, folder))
     return EXIT_CODES[result["status"]]

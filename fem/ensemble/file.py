@@ -56,6 +56,9 @@ class EnsembleHeading(CaseTable):
         default="drawn",
         description='inputs that this file does not vary: "drawn" over [uncertainty] of the case | "held"',
     )
+    copy_motions: bool | None = Field(
+        default=None, description="copy the motion files into the results; default: sets of up to 100"
+    )
 
 
 def load_ensemble(name_or_path: str | Path) -> Ensemble:
@@ -100,6 +103,7 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
         confidence=heading.confidence,
         probability=heading.probability,
         unknown_inputs=heading.unknown_inputs,
+        copy_motions=heading.copy_motions,
     )
     _check_draws(ensemble)
     _try_cases(ensemble)

@@ -2,9 +2,9 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, Self
 
 import numpy as np
 
@@ -26,6 +26,7 @@ class Draw(NamedTuple):
     number: int  #: at this point, replicate after replicate
     values: tuple[Any, ...]  #: of the random quantities, relative ones as factors
     unknown: Mapping[str, Value] = {}  #: of the unknown inputs, by key
+    following: Mapping[str, str | None] = {}  #: keys that its motion sets, of a set
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -46,6 +47,7 @@ class Ensemble:
     confidence: float
     probability: float  #: of overturning, to which the points are compared
     unknown_inputs: Unknown = "drawn"
+    copy_motions: bool | None = None  #: into the results; None: those of small sets
 
     @property
     def count(self) -> int:
@@ -79,10 +81,16 @@ class Ensemble:
             one.key: np.asarray(one.values(shares[:, k]), dtype=object).tolist()
             for k, one in enumerate(spread)
         }
+        each, following = self.draws // self.replicates, [dict[str, str | None]()] * self.replicates
         if self.motions is not None:
-            columns[MOTION_FILE] = np.repeat(self.motions.values, self.draws // self.replicates).tolist()
+            columns[MOTION_FILE] = np.repeat(self.motions.values, each).tolist()
+            names, keys = self.motions.following, zip(*self.motions.following.values(), strict=True)
+            following = [dict(zip(names, some, strict=True)) for some in keys] or following
         rows = zip(*(columns[one.key] for one in self.random), strict=True)
-        return [Draw(cell, number, drawn) for number, drawn in enumerate(rows)]
+        return [
+            Draw(cell, number, drawn, following=following[number // each])
+            for number, drawn in enumerate(rows)
+        ]
 
     def case(self, draw: Draw) -> Case:
         """The case of a draw.
@@ -90,7 +98,19 @@ class Ensemble:
         Raises:
             CaseError: it cannot be used.
         """
-        return self.case_of(self.point(draw.cell), draw.values, draw.unknown)
+        following = {key: value for key, value in draw.following.items() if value is not None}
+        return self.case_of(self.point(draw.cell) | following, draw.values, draw.unknown)
+
+    @property
+    def of_draws(self) -> Self:
+        """What makes the cases of draws, without the list of motions: small enough to go with every task."""
+        random = tuple(
+            replace(one, axis=replace(one.axis, values=(), following={}))
+            if isinstance(one, RandomChoice) and one.key == MOTION_FILE
+            else one
+            for one in self.random
+        )
+        return replace(self, random=random, text="")
 
     def case_of(
         self, point: Mapping[str, Any], drawn: Sequence[Any], unknown: Mapping[str, Value] | None = None

@@ -7,13 +7,15 @@ that nor on the number of cores.
 import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fem.batch.answers import table_lines
-from fem.batch.axes import MOTION_FILE, Axis, with_following
+from fem.batch.axes import MOTION_FILE, Axis
 from fem.batch.log import LoggedRuns, fields_of, table_of_lines, table_text
 from fem.batch.motion_set import (
     FloorMotionPair,
@@ -23,7 +25,7 @@ from fem.batch.motion_set import (
     write_motions,
 )
 from fem.batch.runner import Row, Runner
-from fem.batch.workers import LocalWorkers
+from fem.batch.workers import LocalWorkers, WorkersOf
 from fem.case.case import case_hash, to_toml
 from fem.case.rules import ends_at_rest, longest_time
 from fem.ensemble.answers import ensemble_answer
@@ -51,6 +53,8 @@ from fem.runtime.threads import cores
 DRAWS = "draws.csv"
 #: room on the disk [bytes]: a row of draws.csv without its numbers, a number, a row of points.csv, all else
 BYTES_OF_A_DRAW, BYTES_OF_A_NUMBER, BYTES_OF_A_POINT, BYTES_BESIDE = 45, 20, 1000, 500_000
+BYTES_OF_A_MOTION = 4000  #: its spectrum and measures
+MOST_COPIED = 100  #: motions of a set that is copied into the results unless the file says otherwise
 WORDS = {STOOD: "stood", OVERTURNED: "overturned", FAILED: "failed"}
 CODES = {word: code for code, word in WORDS.items()}
 
@@ -75,9 +79,7 @@ class DrawRows:
         known = ratio is not None and np.isfinite(ratio)
         found = WORDS[code_of(row)], ratio if known else None
         unknown = (draw.unknown.get(key) for key in self._unknown.keys)
-        drawn = dict(zip((one.key for one in self._ensemble.random), draw.values, strict=True))
-        motion = with_following(sets_of(self._ensemble), drawn)
-        following = (motion.get(key) for key in self._following)
+        following = (draw.following.get(key) for key in self._following)
         return draw.cell, draw.number, replicate, *draw.values, *following, *unknown, *found
 
     def note(self, line: str) -> None:
@@ -110,11 +112,16 @@ def run_ensemble(
     *,
     folder: Path,
     jobs: int | None = None,
+    workers_of: WorkersOf | None = None,
     force: bool = False,
     resume: bool = False,
     reporter: Reporter | None = None,
 ) -> dict[str, Any]:
     """Compute an ensemble into a folder; a finished one of the same request is not computed again.
+
+    Args:
+        jobs: cores to use; all by default.
+        workers_of: who computes so many draws of a model, in place of this machine's cores.
 
     Returns:
         The content of `ensemble.json`.
@@ -125,44 +132,59 @@ def run_ensemble(
         OutputError: the disk is full, the folder was removed; what was written is kept.
     """
     reporter = reporter or SilentReporter()
-    asked = ensemble_hash(ensemble)
-    motions = read_motion_set(ensemble.base, sets_of(ensemble))
-    with (
-        open_result_folder(folder, ENSEMBLE, asked, force=force, resume=resume) as place,
-        interruptible(reporter) as stop,
-    ):
+    with ExitStack() as stack:
+        workers_of = workers_of or stack.enter_context(LocalWorkers(jobs or cores()))
+        reader = Runner(workers_of=workers_of, reporter=reporter)
+        motions = read_motion_set(ensemble.base, sets_of(ensemble), reader)
+        asked = ensemble_hash(ensemble, [one.case_hash for one in motions])
+        place = stack.enter_context(open_result_folder(folder, ENSEMBLE, asked, force=force, resume=resume))
+        runner = replace(reader, stop=stack.enter_context(interruptible(reporter)))
         if place.finished and place.found:
             reporter.message(f"{folder} holds this ensemble already; --force computes it again")
             return place.found
         if place.resuming:
             place.require_same_program()
-        unknown = UnknownInputs(ensemble)
-        place.require_room(required_disk(ensemble, unknown), "the ensemble", "take fewer draws")
-        texts = {"ensemble.toml": ensemble.text, "base.toml": to_toml(ensemble.base)}
-        place.begin({"status": "running", "asked": asked} | program_of_results(), texts)
-        copy_data_files(ensemble.base, folder)
-        for motion in motions:
-            copy_data_files(motion.case, folder, read=True)
-        draws = DrawRows(ensemble, unknown)
-        with LocalWorkers(jobs or cores()) as workers_of:
-            LoggedRuns(
-                what="draws",
-                path=folder / DRAWS,
-                columns=draws.columns,
-                make=ensemble.case,
-                model_of=lambda draw: ensemble.base.solver.model,
-                values=draws.values,
-                note=draws.note,
-            ).run(Runner(workers_of=workers_of, reporter=reporter, stop=stop), iter(draws.missing, []))
-        return _finish(ensemble, unknown, motions, place, draws)
+        return _run(ensemble, motions, asked, place, runner)
+
+
+def _run(
+    ensemble: Ensemble,
+    motions: Sequence[FloorMotionPair],
+    asked: str,
+    place: ResultFolder,
+    runner: Runner,
+) -> dict[str, Any]:
+    """Compute the draws that are missing."""
+    unknown = UnknownInputs(ensemble)
+    copied = motions if _is_copied(ensemble) else ()
+    room = required_disk(ensemble, unknown, copied)
+    place.require_room(room, "the ensemble", "take fewer draws")
+    texts = {"ensemble.toml": ensemble.text, "base.toml": to_toml(ensemble.base)}
+    place.begin({"status": "running", "asked": asked} | program_of_results(), texts)
+    copy_data_files(ensemble.base, place.path)
+    for motion in copied:
+        copy_data_files(motion.case, place.path, read=True)
+    draws = DrawRows(ensemble, unknown)
+    LoggedRuns(
+        what="draws",
+        path=place.path / DRAWS,
+        columns=draws.columns,
+        make=ensemble.of_draws.case,
+        model_of=lambda draw: ensemble.base.solver.model,
+        values=draws.values,
+        note=draws.note,
+    ).run(runner, iter(draws.missing, []))
+    return _finish(ensemble, unknown, motions, asked, place, draws, runner)
 
 
 def _finish(
     ensemble: Ensemble,
     unknown: UnknownInputs,
     motions: Sequence[FloorMotionPair],
+    asked: str,
     place: ResultFolder,
     draws: DrawRows,
+    runner: Runner,
 ) -> dict[str, Any]:
     """Count what there is, and write it."""
     complete = (draws.codes != MISSING).all(axis=1)
@@ -177,32 +199,48 @@ def _finish(
     if complete.all():
         for name, svg in ensemble_figures(ensemble, unknown, points, fragility).items():
             place.write_text(f"figures/{name}.svg", svg)
-    result = result_of(ensemble, unknown, motions, points, fragility, status)
+    result = result_of(ensemble, unknown, motions, asked, points, fragility, status)
     if motions and complete.all():
         measures = [one.numbers() | found for one, found in zip(motions, draws.by_replicate(), strict=True)]
-        result |= {"motions": measures, "motion_figures": write_motions(place, motions, measures)}
+        figures = write_motions(place, motions, measures, runner)
+        result |= {"motions": measures, "motion_figures": figures}
     answer = ensemble_answer(result)
     result["answer"] = answer.sentence if answer else None
     place.write_result(result)
     return result
 
 
-def required_disk(ensemble: Ensemble, unknown: UnknownInputs) -> float:
-    """Size of the folder of an ensemble [bytes]: the rows of the draws twice, a row a point, figures."""
+def _is_copied(ensemble: Ensemble) -> bool:
+    """Whether the motions of the set are copied into the results."""
+    return ensemble.replicates <= MOST_COPIED if ensemble.copy_motions is None else ensemble.copy_motions
+
+
+def required_disk(
+    ensemble: Ensemble, unknown: UnknownInputs, copied: Sequence[FloorMotionPair] = ()
+) -> float:
+    """Size of the folder of an ensemble [bytes]: the rows of the draws twice, a row a point, motions, figures."""
     row = BYTES_OF_A_DRAW + BYTES_OF_A_NUMBER * (len(ensemble.random) + len(unknown.keys))
-    return ensemble.count * (2 * ensemble.draws * row + BYTES_OF_A_POINT) + BYTES_BESIDE
+    motions = BYTES_OF_A_MOTION * ensemble.replicates if ensemble.motions else 0
+    motions += sum(path.stat().st_size for one in copied for path in one.case.data_files.values())
+    return ensemble.count * (2 * ensemble.draws * row + BYTES_OF_A_POINT) + motions + BYTES_BESIDE
 
 
-def ensemble_hash(ensemble: Ensemble) -> str:
-    """Equal for ensembles that give the same result."""
+def ensemble_hash(ensemble: Ensemble, motions: Sequence[str] | None = None) -> str:
+    """Equal for ensembles that give the same result.
+
+    Args:
+        motions: hashes of the cases of a set of motions, where they are known.
+    """
     given = {
         "base": case_hash(ensemble.base),
         "axes": [[axis.key, list(axis.values)] for axis in ensemble.axes],
         "random": [[one.key, _hashed(one)] for one in ensemble.random],
         "derived": [[one.key, one.expression.text] for one in ensemble.derived],
     }
-    if cases := motion_cases(ensemble.base, sets_of(ensemble)):
-        given["motions"] = [case_hash(case) for case in cases]
+    if motions is None:
+        motions = [case_hash(case) for case in motion_cases(ensemble.base, sets_of(ensemble))]
+    if motions:
+        given["motions"] = list(motions)
     return hashlib.sha256(json.dumps(given | asked_of(ensemble), sort_keys=True).encode()).hexdigest()
 
 
@@ -225,6 +263,7 @@ def result_of(
     ensemble: Ensemble,
     unknown: UnknownInputs,
     motions: Sequence[FloorMotionPair],
+    asked: str,
     points: Sequence[PointResult],
     fragility: dict[str, Any] | None,
     status: str,
@@ -233,7 +272,7 @@ def result_of(
     regions = [point.region for point in points]
     return {
         "status": status,
-        "asked": ensemble_hash(ensemble),
+        "asked": asked,
         "ensemble": ensemble.name,
         "title": ensemble.title,
         "case": ensemble.base.name,

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fem.figures.style import (
@@ -28,6 +29,7 @@ COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, SKY, PURPLE, GREY)
 LINES = ("-", "--", ":", "-.")
 MOST_NAMED = 8  #: motions that the legend names
 NAMES_A_LINE = 3
+MOST_DRAWN = 100  #: motions that have a line each; fractiles of more
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -44,7 +46,7 @@ class ShareCurve:
 def draw_spectra(
     periods: FloatArray, spectra: Mapping[str, FloatArray], *, vertical: Sequence[str] = ()
 ) -> Figure:
-    """Pseudo-acceleration spectra for 5 % of damping, and their mean.
+    """Pseudo-acceleration spectra for 5 % of damping, and their mean; of many motions their fractiles.
 
     Args:
         periods: (k,) [s].
@@ -60,7 +62,9 @@ def draw_spectra(
         figure, axes = panels([2.6] * len(groups), gaps=gaps, header=2 + lines)
         head(figure, "Response spectra of the motions", "pseudo-acceleration, 5 % damping")
         for panel, (direction, names) in zip(axes, groups, strict=True):
-            for k, name in enumerate(names):
+            if len(names) > MOST_DRAWN:
+                _draw_fractiles(panel, periods, np.array([spectra[name] for name in names]))
+            for k, name in enumerate(names if len(names) <= MOST_DRAWN else ()):
                 label = name if len(names) <= MOST_NAMED else None
                 colour, line = COLOURS[k % len(COLOURS)], LINES[k // len(COLOURS) % len(LINES)]
                 panel.plot(periods, spectra[name], color=colour, linestyle=line, linewidth=0.8, label=label)
@@ -75,9 +79,20 @@ def draw_spectra(
         return figure
 
 
+def _draw_fractiles(panel: Axes, periods: FloatArray, spectra: FloatArray) -> None:
+    """Bands of spectra (n, k) that hold all motions, and those from 16 to 84 %; the median."""
+    low, middle, high = np.quantile(spectra, (0.16, 0.5, 0.84), axis=0)
+    panel.fill_between(
+        periods, spectra.min(axis=0), spectra.max(axis=0), color=BLUE, alpha=0.15, linewidth=0.0, label="all"
+    )
+    panel.fill_between(periods, low, high, color=BLUE, alpha=0.35, linewidth=0.0, label="16 to 84 %")
+    panel.plot(periods, middle, color=BLUE, linewidth=1.2, label="median")
+
+
 def _legend_lines(motions: int) -> int:
-    """Lines of the legend: each motion, where it names them, and their mean."""
-    names = (motions if motions <= MOST_NAMED else 0) + (motions > 1)
+    """Lines of the legend: each motion, where it names them, or their fractiles, and their mean."""
+    fractiles = 3 if motions > MOST_DRAWN else 0
+    names = (motions if motions <= MOST_NAMED else fractiles) + (motions > 1)
     return -(-names // NAMES_A_LINE)
 
 

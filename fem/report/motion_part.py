@@ -45,6 +45,7 @@ def motions_of_ensemble(folder: Path, info: Mapping[str, Any]) -> MotionPart | N
             {"motion": False} | dict.fromkeys(counts, True),
             rows,
             caption="Draws under each motion, at all points",
+            file="motions.csv",
         ),
         note=f"Every draw is under one of {len(motions)} motions, each equally often. The intervals are those of "
         f"a sample of {len(motions)} motions: draws under one motion say little of others.",
@@ -62,7 +63,9 @@ def motions_of_sweep(folder: Path, table: SweepTable) -> MotionPart | None:
     if len(points) <= MOST_POINTS:
         heads = {"motion": False} | dict.fromkeys((place or "outcome" for place in places), False)
         lines = ([some[0].motion, *map(_outcome, some)] for some in zip(*(p for _, p in points), strict=True))
-        outcomes = page_table("outcome of each motion", heads, lines, caption="Outcome, with the worse sign")
+        outcomes = page_table(
+            "outcome of each motion", heads, lines, caption="Outcome, with the worse sign", file="table.csv"
+        )
     return MotionPart(
         numbers=_numbers(table.info["motions"]),
         drawn=_drawn(folder, table.info, "sweep"),
@@ -97,7 +100,9 @@ def _numbers(motions: Sequence[Mapping[str, Any]]) -> PageTable:
         for part, word in ((one, ""), (one["vertical"], " (vertical)"))
         if part
     ]
-    return page_table("motions", columns, rows, caption="The motions, as the base case takes them")
+    return page_table(
+        "motions", columns, rows, caption="The motions, as the base case takes them", file="motions.csv"
+    )
 
 
 def _together(places: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> PageTable:
