@@ -196,7 +196,7 @@ def move_corners(work: Workspace) -> None:
 def condense_points(faces: Faces, corners: Workspace, work: Workspace) -> None:
     """Free positions, free velocities and compliance of the contact points, from those of the corners.
 
-    Linearised about the positions `corners.point`, with `faces.gradient` of the same.
+    Linearised about the positions `corners.point`, with `faces.gradient` of the same. Points of no weight get none.
 
     Args:
         faces: the contact points.
@@ -217,6 +217,11 @@ def condense_points(faces: Faces, corners: Workspace, work: Workspace) -> None:
             work.free[i, a] += moved
             work.free_velocity[i, a] = speed
     for i in range(n):
+        if i > 1 and faces.weight[i] == 0.0:  # it never carries a force
+            for b in range(2 * n):
+                for a in range(2):
+                    work.compliance[2 * i + a, b], work.compliance[b, 2 * i + a] = 0.0, 0.0
+            continue
         upper = (i + 2) // 4
         for a in range(2):
             for b in range(2 * CORNERS):
@@ -231,8 +236,12 @@ def condense_points(faces: Faces, corners: Workspace, work: Workspace) -> None:
                         for b in range(2 * CORNERS):
                             faces.moved[2 * i + a, which, b] += by * corners.compliance[first + b, column]
     for i in range(n):
+        if i > 1 and faces.weight[i] == 0.0:
+            continue
         joint = (i + 2) // 4
         for j in range(i, min(n, 4 * joint + 6)):
+            if j > 1 and faces.weight[j] == 0.0:
+                continue
             apart = (j + 2) // 4 - joint  # 0: the same joint, 1: the next
             for a in range(2):
                 for b in range(2):

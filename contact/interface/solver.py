@@ -24,6 +24,7 @@ from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled
 
 FULL_STEPS = 1  #: full Newton steps before the line search begins; problems with friction tend to cycle
+FEW_POINTS = 2  #: up to so many, the rows of the compliance are taken one by one
 NEWTON_LIMIT = 40
 WORTH_KEEPING = 5  #: active points from which an old factorisation is reused before a new one is computed
 FORCE_TOLERANCE = 1e-11  #: residual force over the largest force at which the contact problem is solved
@@ -113,6 +114,20 @@ def add_turned(compliance: FloatArray, cosine: float, sine: float, share: float,
 def move_points(velocity_slope: float, force: FloatArray, work: Workspace) -> None:
     """Points and velocities that follow from contact forces, by the condensed compliance."""
     n = force.shape[0]
+    if n > FEW_POINTS:  # by columns, several rows at once; the compliance is symmetric
+        for a in range(2 * n):
+            work.solution[a] = 0.0
+        for j in range(n):
+            along, up = force[j, 0], force[j, 1]
+            if up != 0.0 or along != 0.0:
+                for a in range(2 * n):
+                    work.solution[a] += work.compliance[2 * j, a] * along + work.compliance[2 * j + 1, a] * up
+        for i in range(n):
+            for k in range(2):
+                moved = work.solution[2 * i + k]
+                work.point[i, k] = work.free[i, k] + moved
+                work.velocity[i, k] = work.free_velocity[i, k] + velocity_slope * moved
+        return
     for i in range(n):
         for k in range(2):
             moved = 0.0
@@ -321,7 +336,11 @@ def solve_contact(
     before = np.inf
     for iteration in range(NEWTON_LIMIT):
         move_points(velocity_slope, work.force, work)
-        placed = iteration == 0 and return_held_points(contact, velocity_slope, mu, start, work)
+        placed = (
+            iteration == 0
+            and step > contact.held_step
+            and return_held_points(contact, velocity_slope, mu, start, work)
+        )
         evaluate_laws(contact, step, velocity_slope, mu, start, stick, work)
         if placed:
             extrapolate_laws(work)
@@ -351,7 +370,7 @@ def solve_contact(
             for i in range(n):
                 for k in range(2):
                     work.force[i, k] = work.trial[i, k] + share * work.change[2 * i + k]
-            if iteration < FULL_STEPS or turned or share < 1e-3:
+            if iteration < FULL_STEPS or (turned and iteration < contact.turned_steps) or share < 1e-3:
                 break
             move_points(velocity_slope, work.force, work)
             evaluate_laws(contact, step, velocity_slope, mu, start, stick, work)

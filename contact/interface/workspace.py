@@ -22,6 +22,10 @@ class Contact(NamedTuple):
     regularisation_velocity: float  #: [m/s]
     force_scale: float  #: weight of the container [N], the scale of negligible forces
     resolution: float  #: rounding of a point's position; times the slope, the least force resolved [m]
+    #: step above which held points are first linearised at their old positions [s]
+    held_step: float = 0.0
+    #: Newton steps in which points that have turned from one limit to the other are spared the line search
+    turned_steps: int = 40
 
 
 class Workspace(NamedTuple):

@@ -17,6 +17,10 @@ from contact.stepping.state import Control, RunState
 
 STEPS_PER_OCTAVE = 3  #: sizes per factor of two
 OCTAVE = tuple(2.0 ** (-level / STEPS_PER_OCTAVE) for level in range(STEPS_PER_OCTAVE))  #: the first of them
+GROWTH, GROWTH_OF_STACK = (
+    3,
+    6,
+)  #: levels by which a step may grow at once; of a loose stack, whose corners rattle
 AT_LIMIT = 1e-6  #: share of static friction that is left, below which the support has reached its limit
 NEIGHBOUR = 0.25  #: base points nearer than this, over the width, close together
 #: the whole ledger aims at these shares of the final limits of gain and loss; above `AIM_SHARE` of the aim, one step ..
@@ -158,11 +162,11 @@ def ledger_allowance(run: RunState, step: float) -> float:
 
 
 @compiled
-def change_level(level: int, used: float, not_held: bool) -> int:
+def change_level(level: int, used: float, not_held: bool, most: int = GROWTH) -> int:
     """Level of the next step, given the used share of the allowed imbalance.
 
     The imbalance of a step is of third order: half the step has an eighth of it. Shortly after a rejection
-    (`not_held` false) the step grows only if almost nothing was used.
+    (`not_held` false) the step grows only if almost nothing was used; by `most` levels if next to nothing was.
     """
     if used > 8.0:
         return level + 2 * STEPS_PER_OCTAVE
@@ -170,8 +174,10 @@ def change_level(level: int, used: float, not_held: bool) -> int:
         return level + STEPS_PER_OCTAVE
     if used > 0.7:
         return level + 1
+    if used < 0.002:
+        return max(level - most, 0)
     if used < 0.02:
-        return max(level - 3, 0)
+        return max(level - GROWTH, 0)
     if used < 0.05 and not_held:
         return max(level - 2, 0)
     if used < 0.15 and not_held:

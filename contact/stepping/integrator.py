@@ -20,6 +20,8 @@ from contact.stepping.body import complete, prepared, shift_velocity, sizes_matc
 from contact.stepping.boxes import follow_boxes, has_fallen
 from contact.stepping.contents import follow_contents, shift_contents
 from contact.stepping.control import (
+    GROWTH,
+    GROWTH_OF_STACK,
     STEPS_PER_OCTAVE,
     allowed_imbalance,
     change_level,
@@ -43,7 +45,8 @@ from contact.stepping.step import account, attempt, copy_state, indent
 
 WEAKENING_LIMIT = 8  #: repetitions of a step for friction that weakens with its slip
 HELD_STEPS = 6  #: after a rejection
-FADING = 0.8  #: of the remembered imbalance, per step
+#: of the remembered imbalance, per step; of a loose stack, most of whose steps follow an impact in short time
+FADING, FADING_OF_STACK = 0.8, 0.5
 
 #: what `advance` returns
 REACHED, OVERTURNED, FAILED, UNPREPARED = 0, 1, 2, 3
@@ -176,8 +179,10 @@ def advance(body: Any, run: RunState, until: float) -> int:
         clock.frames = sample(run, run.frames, clock.frames, clock.frames_drained, step)
         close_step(run, step, iterations)
         # The imbalance of one step may vanish by chance while it changes sign: remember the last steps.
-        recent = max(min(used, 1.0), FADING * clock.allowance_used)
-        level = change_level(clock.level, recent, clock.growth_hold == 0)
+        stacked = run.joints.shape[0] > 1
+        recent = max(min(used, 1.0), (FADING_OF_STACK if stacked else FADING) * clock.allowance_used)
+        most = GROWTH_OF_STACK if stacked else GROWTH
+        level = change_level(clock.level, recent, clock.growth_hold == 0, most)
         if level < clock.level or step > control.smallest_step:
             clock.level = level
         clock.allowance_used = recent

@@ -25,6 +25,10 @@ from fem.solid.nodal_body import FullBody
 from fem.solid.nodal_stack import FullStack
 
 POINTS = 4  #: of a joint between boxes
+#: step above which the solver begins at the old positions of held points, over 1/(angular bounce frequency): in the
+#: short steps of a rattle the old forces are the better guess
+HELD_SHARE = 0.15
+TURNED_STEPS = 4  #: without line search, where points turn: corners that rattle turn in cycles
 
 
 def with_joints(case: Case, floor: Contact, penalty: float) -> Contact:
@@ -36,6 +40,7 @@ def with_joints(case: Case, floor: Contact, penalty: float) -> Contact:
         penalty: normal stiffness of a face over width times depth [Pa/m].
     """
     stack, friction, chosen = case.stack, case.joint_friction, case.contact
+    mass = floor.force_scale / case.gravity_m_s2
     faces = [shared_face(*pair) for pair in pairwise(stack)]
     springs = np.repeat(
         [0.5 * penalty * (right - left) * case.container.depth_m for left, right in faces], POINTS
@@ -51,6 +56,8 @@ def with_joints(case: Case, floor: Contact, penalty: float) -> Contact:
         mu_static=extended(floor.mu_static, friction["mu_static"]),
         mu_kinetic=extended(floor.mu_kinetic, friction["mu_kinetic"]),
         weakening=extended(floor.weakening, friction["weakening_m"]),
+        held_step=HELD_SHARE * math.sqrt(mass / float(floor.normal_stiffness.sum())),
+        turned_steps=TURNED_STEPS,
     )
 
 
