@@ -19,6 +19,13 @@ def floor_rows(floor: FloorNumbers | None) -> list[tuple[str, str]]:
     return [(name, value) for name, value in rows if value]
 
 
+def drawn_level(slope_percent: float) -> str:
+    """What is said beside a drawing in the frame of the floor, which slopes; empty of a level floor."""
+    if not slope_percent:
+        return ""
+    return f"the floor falls {abs(slope_percent):g} % to the {'right' if slope_percent > 0.0 else 'left'}, drawn level"
+
+
 def _material(floor: FloorNumbers) -> str:
     modulus, strength = floor.youngs_modulus_Pa, floor.bearing_strength_Pa
     if modulus is None or strength is None:

@@ -25,7 +25,6 @@ from fem.model.model import Model
 from fem.results.history import ANALYTIC_COLUMN, History
 from fem.results.run_result import PeakPair, RigidCheckResult, RunAndBlock, Verdict
 from fem.runtime.arrays import FloatArray
-from fem.solid.modes import elastic_modes
 
 STIFF_CONTAINER = 7.0  #: first elastic over contact frequency, from which an impact is a rigid block's
 SOFT_FLOOR = 1e-3  #: static penetration over width times slenderness angle: the gap that counts as an impact
@@ -258,7 +257,7 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
 def _first_elastic_frequency(model: Model) -> float:
     """Of the container [Hz]; infinite for the rigid model."""
     if model.case.solver.model == "full":
-        return float(elastic_modes(model.container.elements, 1).frequencies_Hz[0])
+        return float(model.container.lowest_modes(1).frequencies_Hz[0])
     return math.inf if model.case.solver.model == "rigid" else float(model.spectra[0][0])
 
 

@@ -20,6 +20,7 @@ from contact.stepping.ledger import (
     MATERIAL_DAMPING,
 )
 from contact.stepping.observables import FALLEN, FORCE_WINDOW, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK, SLIDING
+from fem.case.case import Case
 from fem.model.floor import YIELD_STRENGTH, is_steel_shell, plastic_work, steel_capacity
 from fem.model.model import Model
 from fem.results.history import History
@@ -39,12 +40,18 @@ def outcome_of(model: Model) -> str:
     if math.isfinite(track.overturned_at):
         return "overturned"
     angle = ROCKING * model.static.slenderness_angle
-    slides = model.run.joints[0].max_slip > SLIDING * model.container.mesh.width
     rocks = track.max_rocking > angle
     for joint in model.run.joints[1:]:  # of a loose stack, what its other boxes do counts as well
-        slides = slides or joint.max_slip > SLIDING * joint.width
         rocks = rocks or min(joint.max_rotation, joint.max_opening / joint.width) > angle
-    return MODE_NAMES[(ROCK if rocks else REST) + (SLIDE if slides else REST)]
+    return MODE_NAMES[(ROCK if rocks else REST) + (SLIDE if _slides(model) else REST)]
+
+
+def _slides(model: Model) -> bool:
+    """Whether it slid so far that it counts; of a loose stack any of its boxes."""
+    lowest, *further = model.run.joints
+    if lowest.max_slip > SLIDING * model.container.mesh.width:
+        return True
+    return any(joint.max_slip > SLIDING * joint.width for joint in further)
 
 
 def rotation_ratio(rotation: RotationT, slenderness_angle: float) -> RotationT:
@@ -79,7 +86,7 @@ def verdict_from(
     rocked = outcome in ("rock", "slide-rock")
     return Verdict(
         outcome=outcome,
-        modes=_modes_seen(model, track.modes, joint.max_slip, outcome),
+        modes=_modes_seen(track.modes, outcome, slides=_slides(model)),
         max_rotation_rad=rotation,
         rotation_ratio=rotation_ratio(rotation, angle),
         max_slip_m=joint.max_slip,
@@ -165,12 +172,17 @@ def energy_of(model: Model) -> Energy:
     )
 
 
+def softer_contact(case: Case) -> str:
+    """What to try where the contact is too stiff to be stepped."""
+    return "a softer floor" if case.floor.is_slab else "a softer contact.normal_penalty_Pa_m"
+
+
 def audit(model: Model) -> str | None:
     """Why the energy balance fails this run, or None; of an overturned run, up to its fall."""
     clock, reference = model.run.clock[0], model.run.control.reference_energy
     gained, lost = -float(clock.least_imbalance), float(clock.most_imbalance)
-    softer = "floor" if model.case.floor.is_slab else "contact.normal_penalty_Pa_m"
-    remedy = f"set solver.step_s below the {model.run.control.largest_step:.2g} s used, or a softer {softer}"
+    largest = model.run.control.largest_step
+    remedy = f"set solver.step_s below the {largest:.2g} s used, or {softer_contact(model.case)}"
     if not np.all(np.isfinite(model.run.ledger)):
         return (
             f"t = {float(clock.time):.6g} s: the energy balance is not finite, as the motion grew; {remedy}"
@@ -227,13 +239,13 @@ def _restitution(track: SimpleNamespace) -> float | None:
     return track.restitution if 0.0 < track.restitution < MOST_RESTITUTION else None
 
 
-def _modes_seen(model: Model, modes: int, max_slip: float, outcome: str) -> tuple[str, ...]:
+def _modes_seen(modes: int, outcome: str, *, slides: bool) -> tuple[str, ...]:
     """States that the history passed through, and the outcome, which may follow from creep alone.
 
     Sliding that is too small to count in the outcome does not count here.
     """
     seen = {name for mode, name in MODE_NAMES.items() if modes & 1 << mode}
-    if max_slip <= SLIDING * model.container.mesh.width:
+    if not slides:
         seen = {{"slide": "rest", "slide-rock": "rock"}.get(name, name) for name in seen}
     return tuple(name for name in MODE_NAMES.values() if name in seen or name == outcome)
 

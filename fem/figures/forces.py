@@ -63,7 +63,7 @@ def forces_figure(run: OpenedRun) -> Figure:
     axes[0].set_ylim(bottom=0.0)
     friction = {"static": (contact.mu_static, "--"), "kinetic": (contact.mu_kinetic, ":")}
     for name, (mu, style) in friction.items():
-        label = f"{name} friction of the weight, ±{number(mu * weight)} kN{times}"
+        label = f"{name} friction{' of the weight' if not times else ''}, ±{number(mu * weight)} kN{times}"
         draw_limits(axes[1], mu * weight, label, of_weight=changing, color=BLACK, linestyle=style)
         if contact.mu_static == contact.mu_kinetic:
             break

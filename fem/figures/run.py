@@ -207,10 +207,15 @@ def uplift_figure(run: OpenedRun) -> Figure:
     return figure
 
 
-def phase_portrait_figure(run: OpenedRun) -> Figure:
-    """Angular velocity over rotation, with the curve within which a free rigid block returns."""
+def phase_portrait_figure(run: OpenedRun) -> Figure | None:
+    """Angular velocity over rotation, with the curve within which a free rigid block returns.
+
+    Of a loose stack that of its lowest box; none where this does not rock.
+    """
     static = run.typed_result.static or StaticResult()
     angle, parameter = run.slenderness_angle, static.frequency_parameter_1_s
+    if run.verdict.boxes and run.verdict.boxes[0].max_rotation_rad < ROCKING * angle:
+        return None
     rotation, rate = run.history["rotation_rad"], run.history["angular_velocity_rad_s"]
     figure, (axes,) = panels((4.0,), width=0.8 * WIDTH, header=2)
     axes.set_label(PLANE)  # for `cursor_axes`

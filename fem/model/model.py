@@ -27,6 +27,7 @@ from fem.case.case import Case, CaseError
 from fem.model.calibration import found_contact
 from fem.model.container import Container, discretise, modes_of_a_body
 from fem.model.equilibrium import Equilibrium, find_equilibrium
+from fem.model.floor import slab_of
 from fem.model.loose_stack import joints_of_stack, make_stack_state, own_stiffness, settle
 from fem.model.motion import build_motions, longest_run, peaks_in_run, rest_sought_from
 from fem.model.static_checks import StaticChecks, static_checks_of
@@ -77,6 +78,17 @@ class Model:
     def base_stiffness(self) -> float:
         """Of all base points together [N/m]."""
         return float(self.run.contact.normal_stiffness[: self.container.support.index.size].sum())
+
+    @property
+    def contact_areas(self) -> FloatArray:
+        """What contact points bear on, shape (n_c,) [m2]: on a slab shares of a patch, else of the face."""
+        stiffness, base = self.equilibrium.contact.normal_stiffness, self.container.support.index.size
+        if not self.case.floor.is_slab:
+            return stiffness / self.penalty
+        slab = slab_of(self.case, self.container.mesh.mass)
+        areas = slab.area / slab.normal_stiffness * stiffness
+        areas[base:] = slab.area  # of loose boxes on one another
+        return areas
 
     @property
     def spectra(self) -> list[FloatArray]:

@@ -161,10 +161,11 @@ def scheme_of(case: Case, container: Container, penalty: float, control: Control
     stiff = penalty * solver.element_size_m / case.container.youngs_modulus_Pa
     rate = math.sqrt(float(np.max(contact.normal_stiffness / container.elements.nodal_mass[container.nodes])))
     if stiff > STIFF_CONTACT and control.largest_step * rate > LARGE_CONTACT_STEP:
+        softer = "take a softer floor" if case.floor.is_slab else "lower the penalty"
         raise CaseError(
             "[solver] scheme = 'newmark' gains energy at impacts here: normal_penalty_Pa_m x element_size_m / "
             f"youngs_modulus_Pa = {stiff:.3g} > {STIFF_CONTACT:g} together with step x contact frequency = "
-            f"{control.largest_step * rate:.3g} > {LARGE_CONTACT_STEP:g}; lower the penalty, set solver.step_s "
+            f"{control.largest_step * rate:.3g} > {LARGE_CONTACT_STEP:g}; {softer}, set solver.step_s "
             f"<= {LARGE_CONTACT_STEP / rate:.2g} s, or choose scheme = 'generalised-alpha'"
         )
     return newmark(solver.newmark_beta, solver.newmark_gamma)

@@ -11,6 +11,7 @@ import matplotlib
 import numpy as np
 import pyvista
 
+from fem.assessment.floor_words import drawn_level
 from fem.assessment.summary import ratio_in_words
 from fem.assessment.verdict import rotation_ratio
 from fem.figures.style import number
@@ -42,7 +43,7 @@ def rotations_at(run: OpenedRun, times: FloatArray) -> FloatArray:
 
 
 def caption(run: OpenedRun, frame: Frame) -> tuple[str, str]:
-    """Title of a picture, and the lines below it: time and state, rotation and rotation ratio.
+    """Title of a picture, and the lines below it: time and state, rotation and rotation ratio, a floor that slopes.
 
     Of a loose stack the box that has turned most is named.
     """
@@ -56,9 +57,12 @@ def caption(run: OpenedRun, frame: Frame) -> tuple[str, str]:
     degrees = f"{round(math.degrees(rotation), 2) + 0.0:.2f}".replace("-", "−")  # no minus zero
     ratio = ratio_in_words(rotation_ratio(rotation, run.slenderness_angle))
     box = f" (box {most + 1})" if len(rotations) > 1 and not ratio.startswith("<") and ratio != "0" else ""
-    return title + status, (
-        f"t = {frame.time:.3f} s    {run.history.modes[sample]}\nrotation {degrees}°{box}, rotation ratio {ratio}"
+    lines = (
+        f"t = {frame.time:.3f} s    {run.history.modes[sample]}",
+        f"rotation {degrees}°{box}, rotation ratio {ratio}",
+        drawn_level(run.case.floor.slope_percent),
     )
+    return title + status, "\n".join(filter(None, lines))
 
 
 def symbols(frame: Frame) -> str:

@@ -314,7 +314,7 @@ def _frame(
     nodes = model.container.elements.nodes
     if len(frame.displacement) != len(nodes):
         raise ValueError(f"a frame of {len(frame.displacement)} nodes on a mesh of {len(nodes)}")
-    area = model.run.contact.normal_stiffness[: contact.size] / model.penalty
+    area = model.contact_areas[: contact.size]
     elastic = np.zeros(nodes.shape)
     centre, rotation = np.zeros((len(bodies), 2)), np.zeros(len(bodies))
     for k, body in enumerate(bodies):

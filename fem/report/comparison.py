@@ -10,6 +10,7 @@ from fem.case.boxes import Box
 from fem.case.case import Case
 from fem.case.motion_tables import FloorMotionTable
 from fem.html.units import degrees, number, quantity, short, typeset
+from fem.model.container import modes_of_a_body
 from fem.model.static_checks import StaticChecks
 from fem.results.run_result import Numerics, RunResult, Verdict
 
@@ -71,10 +72,11 @@ def asked_rows(case: Case) -> list[tuple[str, str]]:
         "feet": f"two feet, {short(case.support.foot_m, 1e3)} mm long",
         "flat": "flat base",
     }
+    a_box = " a box" if box.is_loose else ""
     models = {
         "full": "full: every node of the mesh, finite rotation",
-        "reduced": f"reduced: turning frame and {case.solver.elastic_modes} elastic modes",
-        "rigid": "rigid: three coordinates",
+        "reduced": f"reduced: turning frame and {modes_of_a_body(case)} elastic modes{a_box}",
+        "rigid": f"rigid: three coordinates{a_box}",
     }
     mu = Markup("μ<sub>s</sub> = {}, μ<sub>k</sub> = {}")
     return [
@@ -110,7 +112,7 @@ def _box_rows(case: Case) -> list[tuple[str, str]]:
     rows = [("container", f"{count or 'one box'}, from the floor up:")]
     for k, box in enumerate(boxes, 1):
         offset = (
-            f"; {short(abs(box.axis), 1e3)} mm to the {'right' if box.axis > 0.0 else 'left'}"
+            f"; its axis {short(abs(box.axis), 1e3)} mm {'right' if box.axis > 0.0 else 'left'} of that of box 1"
             if box.axis
             else ""
         )
@@ -121,7 +123,8 @@ def _box_rows(case: Case) -> list[tuple[str, str]]:
 def _joint_friction(case: Case, mu: Markup) -> Markup:
     friction = case.joint_friction
     weakening = f", falling over {short(friction['weakening_m'], 1e3)} mm" if friction["weakening_m"] else ""
-    return mu.format(short(friction["mu_static"]), short(friction["mu_kinetic"])) + weakening
+    whose = ", as on the floor" if case.joints.mu_static is None else ""
+    return mu.format(short(friction["mu_static"]), short(friction["mu_kinetic"])) + weakening + whose
 
 
 def _duration(case: Case) -> str:

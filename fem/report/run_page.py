@@ -7,6 +7,7 @@ from importlib import metadata
 
 from contact.reference.event_driven import EventError
 from fem.assessment.code_note import code_note
+from fem.assessment.floor_words import drawn_level
 from fem.assessment.joint_tables import joints_note
 from fem.assessment.loose_boxes import BOXES_NOTE, box_rows, largest_joint_slip
 from fem.assessment.ranges import (
@@ -171,6 +172,7 @@ def _page(
             "band": BAND_NOTE,
             "joints": joints_note(verdict),
             "boxes": BOXES_NOTE,
+            "level": drawn_level(case.floor.slope_percent),
             "impact": impact_note(verdict),
         },
         rotation_ratio=ratio_alone,

@@ -1,6 +1,7 @@
 """The sketch of the case: the container in elevation with its dimensions, its support and the floor's motion.
 
-Drawn to scale; lengths in m, x to the right, z up.
+Drawn to scale; lengths in m, x to the right, z up. A floor that slopes is drawn level, as the frame of the results
+lies on it: the weight is then oblique, and the floor says how it falls.
 """
 
 import math
@@ -51,11 +52,11 @@ def sketch(
         _draw_floor(axes, case, unit)
         _draw_container(axes, case, unit)
         middle = centre_above(boxes, 0)
-        _draw_mass_centre(axes, 0.5 * width, middle, centroid, unit)
+        _draw_mass_centre(axes, 0.5 * width, middle, centroid, unit, slope=case.floor.slope)
         _dimension(axes, (-0.5 * width, -7 * unit), (0.5 * width, -7 * unit), f"a = {short(width)} m")
         left, right = low - 8 * unit, high + 22 * unit
         _dimension(axes, (left, 0.0), (left, height), _height(boxes))
-        _dimension(axes, (right, 0.0), (right, centroid), f"$z_c$ = {short(centroid)} m")
+        _dimension(axes, (right, 0.0), (right, centroid), f"$z_c$ = {short(centroid)} m", beyond=True)
         axes.plot((middle, right + unit), (centroid, centroid), color=GREY, linewidth=0.5)
         if case.motion.kind != "none":
             axes.annotate(
@@ -87,6 +88,11 @@ def _draw_floor(axes: Axes, case: Case, unit: float) -> None:
         Rectangle((-reach, -2 * unit), 2 * reach, 2 * unit, hatch="////", fill=False, ec=GREY, lw=0)
     )
     axes.plot((-reach, reach), (0.0, 0.0), color=BLACK, linewidth=1.5)
+    if slope := case.floor.slope_percent:
+        side = math.copysign(1.0, slope)
+        words = f"falls {short(abs(slope))} % →" if slope > 0.0 else f"← falls {short(abs(slope))} %"
+        place = side * reach, -2.5 * unit
+        axes.text(*place, words, color=BLUE, ha="right" if slope > 0.0 else "left", va="top")
     support = case.support
     foot = {"corners": unit, "feet": support.foot_m or 0.0}.get(support.kind, 0.5 * width)
     for side in (-1.0, 1.0):
@@ -149,7 +155,8 @@ def _draw_loose_joints(axes: Axes, case: Case, unit: float) -> None:
     static, kinetic = (case.joint_friction[name] for name in ("mu_static", "mu_kinetic"))
     words = f"loose, μ {short(static)}" + (f" / {short(kinetic)}" if kinetic != static else "")
     top = case.stack[-1]
-    axes.text(max(box.sides[1] for box in case.stack[-2:]) + unit, top.bottom, words, color=BLUE, va="center")
+    place = max(box.sides[1] for box in case.stack[-2:]) + unit, top.bottom + 0.5 * unit
+    axes.text(*place, words, color=BLUE, va="bottom")
 
 
 def _number_boxes(axes: Axes, boxes: Sequence[Box], unit: float) -> None:
@@ -167,8 +174,10 @@ def _outlines(case: Case) -> list[tuple[float, float, float, float]]:
     return [(box.sides[0], box.bottom, box.sides[1], box.top) for box in boxes]
 
 
-def _draw_mass_centre(axes: Axes, half_width: float, middle: float, centroid: float, unit: float) -> None:
-    """Mass centre and weight, and the slenderness angle at the nearer corner."""
+def _draw_mass_centre(
+    axes: Axes, half_width: float, middle: float, centroid: float, unit: float, *, slope: float
+) -> None:
+    """Mass centre and weight, and the slenderness angle at the nearer corner; the drawing stands on the slope."""
     side = math.copysign(1.0, middle)
     corner, arm = side * half_width, half_width - abs(middle)
     angle = math.atan2(arm, centroid)
@@ -180,19 +189,23 @@ def _draw_mass_centre(axes: Axes, half_width: float, middle: float, centroid: fl
     axes.add_patch(Arc((corner, 0.0), 2 * reach, 2 * reach, theta1=from_x, theta2=to_x, ec=BLUE))
     name = f"α = {degrees(angle)}"
     axes.text(corner + side * unit, reach, name, color=BLUE, ha="left" if side > 0.0 else "right")
-    axes.annotate("", (middle, centroid - 12 * unit), (middle, centroid), arrowprops=_arrow("-|>", BLACK))
+    downward = middle + 12 * unit * math.sin(slope), centroid - 12 * unit * math.cos(slope)
+    axes.annotate("", downward, (middle, centroid), arrowprops=_arrow("-|>", BLACK))
     axes.plot(middle, centroid, "o", color=BLACK, markerfacecoloralt="white", fillstyle="left", markersize=8)
     axes.text(middle - 1.5 * unit, centroid - 9 * unit, "G", ha="right")
 
 
-def _dimension(axes: Axes, start: tuple[float, float], end: tuple[float, float], words: str) -> None:
-    """A dimension line with its words above it, or left of it where it is upright."""
+def _dimension(
+    axes: Axes, start: tuple[float, float], end: tuple[float, float], words: str, *, beyond: bool = False
+) -> None:
+    """A dimension line with its words above it, or left of it (`beyond`: right) where it is upright."""
     upright = start[0] == end[0]
     axes.annotate("", start, end, arrowprops=_arrow("|-|, widthA=0.25, widthB=0.25", GREY))
     middle = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
     axes.annotate(
-        words, middle, (-3, 0) if upright else (0, 3), textcoords="offset points",
-        ha="right" if upright else "center", va="center" if upright else "bottom", rotation=90 if upright else 0,
+        words, middle, (3 if beyond else -3, 0) if upright else (0, 3), textcoords="offset points",
+        ha=("left" if beyond else "right") if upright else "center", va="center" if upright else "bottom",
+        rotation=90 if upright else 0,
     )  # fmt: skip
 
 

@@ -205,15 +205,18 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
     }
 
 
+def _short_key(key: str) -> str:
+    """A key without its table, unless the friction of loose joints, which has the names of the floor's."""
+    return key if key.startswith("joints.") else key.rpartition(".")[2]
+
+
 def _sureness(table: SweepTable) -> list[dict[str, Any]]:
     """How sure each cell is and what decides, as numbers of words; in a folder of before, whether it is unsure."""
     if "sure" not in table.columns:
         names = ["sure", "unsure"]
         return [_words("unsure", "unsure", np.where(table["unsure"] == 1.0, *reversed(names)), names)]
     sure = np.where(table["sure"] == "", "not tried", table["sure"])
-    deciding = [
-        " ".join(name.rpartition(".")[2] for name in str(one).split()) or "-" for one in table["decided_by"]
-    ]
+    deciding = [" ".join(map(_short_key, str(one).split())) or "-" for one in table["decided_by"]]
     return [
         _words("sure", "how sure", sure, [SURE, REGIME_UNSURE, UNSURE, "not tried"]),
         _words("decided_by", "decided by", np.array(deciding), sorted(set(deciding))),

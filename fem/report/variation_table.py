@@ -39,6 +39,7 @@ class VariationRow(JsonBlock):
     max_slip_m: float | None = None
     residual_slip_m: float | None = None
     max_uplift_m: float | None = None
+    max_joint_slip_m: float | None = None  #: largest between loose boxes
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,12 +184,14 @@ def _known_rows(case: Case, variations: Sequence[Variation], result: RunResult) 
     verdict = result.verdict
     if case.solver.model == "full" or verdict is None:
         return rows
-    rows[0] = VariationRow.from_json(verdict.to_json() | {"status": result.status})
+    slip = {"max_joint_slip_m": verdict.max_joint_slip_m}
+    rows[0] = VariationRow.from_json(verdict.to_json() | {"status": result.status} | slip)
     members = verdict.band.members if verdict.band is not None else ()
     for index, one in enumerate(variations[1:], start=1):
         for member in members:
             if member.kind == "one" and _same_values(member.values or {}, one.values):
-                rows[index] = VariationRow.from_json(member.to_json() | {"reason": member.error})
+                slip = {"max_joint_slip_m": member.max_joint_slip_m}
+                rows[index] = VariationRow.from_json(member.to_json() | {"reason": member.error} | slip)
     return rows
 
 

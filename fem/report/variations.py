@@ -11,6 +11,7 @@ from typing import Any
 
 from fem.case.case import Case
 from fem.case.strength import scaled_motion
+from fem.case.uncertainty import apart_from_floor
 from fem.html.units import degrees, quantity, short
 
 FRICTION_FACTORS = (0.5, 0.75, 1.25, 1.5)
@@ -45,7 +46,15 @@ def variations_of(case: Case) -> Iterator[Variation]:
         yield Variation(
             subject="friction",
             change=f"μₛ {short(static)}, μₖ {short(kinetic)} (× {factor:g})",
-            values={"contact.mu_static": static, "contact.mu_kinetic": kinetic},
+            values=apart_from_floor(case, {"contact.mu_static": static, "contact.mu_kinetic": kinetic}),
+        )
+    for factor in FRICTION_FACTORS if case.container.is_loose else ():
+        between = case.joint_friction
+        static, kinetic = (round(factor * between[name], 6) for name in ("mu_static", "mu_kinetic"))
+        yield Variation(
+            subject="friction between boxes",
+            change=f"μₛ {short(static)}, μₖ {short(kinetic)} (× {factor:g})",
+            values={"joints.mu_static": static, "joints.mu_kinetic": kinetic},
         )
     if (restitution := contact.restitution_over_housner) is not None:
         for factor in RESTITUTION_FACTORS:

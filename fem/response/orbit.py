@@ -13,7 +13,7 @@ from contact.motion.kernel import floor_motion
 from contact.stepping.body import ANGULAR_VELOCITY, ROTATION, VELOCITY_X
 from contact.stepping.integrator import FAILED, OVERTURNED, REACHED, advance_compiled
 from contact.stepping.state import ROW_ANGULAR_VELOCITY, ROW_ROTATION, ROW_SLIP
-from fem.assessment.verdict import audit
+from fem.assessment.verdict import audit, softer_contact
 from fem.response.model import DrivenModel, section_times, with_sections
 from fem.runtime.arrays import FloatArray
 
@@ -110,7 +110,7 @@ def follow_periods(
     if code == FAILED:
         reason = (
             f"after {clock.time / driven.period:.6g} periods: the contact forces do not converge at the smallest "
-            f"step ({run.control.smallest_step:.1g} s); try a softer contact.normal_penalty_Pa_m, "
+            f"step ({run.control.smallest_step:.1g} s); try {softer_contact(driven.model.case)}, "
             "contact.weakening_m > 0, or a smaller solver.step_s"
         )
     else:

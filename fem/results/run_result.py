@@ -176,6 +176,11 @@ class BandMember(JsonBlock):
 
     written_where_given = frozenset({"boxes", "fell_box"})
 
+    @property
+    def max_joint_slip_m(self) -> float | None:
+        """Largest slip of a box on another, of a loose stack."""
+        return max((box.max_slip_m for box in (self.boxes or ())[1:]), default=None)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Band(JsonBlock):

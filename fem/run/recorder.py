@@ -71,8 +71,7 @@ class Recorder:
         self._frame_sink = frame_sink
         self._rows: list[FloatArray] = []
         self._modes: list[str] = []
-        #: tributary area of each contact node (n_c,) [m2]
-        self._area = model.equilibrium.contact.normal_stiffness / model.penalty
+        self._area = model.contact_areas
         self.largest_von_mises: float | None = None  #: over frames and samples, if any [Pa]
         #: of the joints at the last sample (J, 8), see `fem.model.joints`; the next forces follow from its change
         self.joint_motion = np.zeros((0, 0))

@@ -23,8 +23,7 @@ from contact.stepping.control import most_attempts
 from contact.stepping.integrator import AFTERMATH_SLICE, FAILED, OVERTURNED, REACHED
 from contact.stepping.outcome import DRIVEN, FREE, UNDECIDED, is_over, on_resting_floor
 from contact.stepping.state import RunState
-from fem.assessment.verdict import MODE_NAMES, audit, rotation_ratio
-from fem.case.case import Case
+from fem.assessment.verdict import MODE_NAMES, audit, rotation_ratio, softer_contact
 from fem.model.model import Model
 from fem.run.recorder import Recorder
 from fem.runtime.progress import Reporter, SilentReporter
@@ -221,11 +220,6 @@ def crushing_failure(model: Model) -> str | None:
         f"inverted (det F = {ratio:.2g}); take a larger container.youngs_modulus_Pa, thicker walls, "
         f'{softer_contact(model.case)}, or solver.model = "rigid"'
     )
-
-
-def softer_contact(case: Case) -> str:
-    """What to try where the contact is too stiff to be stepped."""
-    return "a softer floor" if case.floor.is_slab else "a softer contact.normal_penalty_Pa_m"
 
 
 def stepping_failure(model: Model, residual: float) -> str:

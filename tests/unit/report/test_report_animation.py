@@ -43,8 +43,7 @@ def model_of(elements, *, loose: bool):
         case=SimpleNamespace(
             container=SimpleNamespace(is_loose=loose), solver=SimpleNamespace(model="reduced")
         ),
-        run=SimpleNamespace(contact=SimpleNamespace(normal_stiffness=np.ones(2))),
-        penalty=1.0,
+        contact_areas=np.ones(2),
     )
 
 

@@ -5,6 +5,7 @@ import re
 import pytest
 from cases import named_case
 
+from fem.assessment.floor_words import drawn_level
 from fem.report.comparison import asked_rows, assumptions, exclusions
 from fem.report.sketch import sketch
 
@@ -32,6 +33,13 @@ def test_boxes_that_differ_are_numbered_and_their_heights_added_up():
     assert "3 bolted boxes, 1.3 m wide and 2.8 m high" in name
 
 
+@pytest.mark.parametrize(("percent", "words"), [(2.0, "falls 2 % →"), (-1.5, "← falls 1.5 %")])
+def test_a_floor_that_slopes_is_drawn_level_and_says_how_it_falls(percent, words):
+    assert words in words_of("seed_stack", {"floor.slope_percent": percent})[0]
+    assert drawn_level(percent).startswith(f"the floor falls {abs(percent):g} % to the ")
+    assert not any("falls" in text for text in words_of("seed_stack")[0]) and drawn_level(0.0) == ""
+
+
 def test_loose_joints_are_marked_with_their_friction():
     texts, name = words_of("seed_stack_plateau", LOOSE)
     assert "loose, μ 0.3 / 0.25" in texts and {"1", "2", "3", "4"} <= set(texts)
@@ -41,7 +49,9 @@ def test_loose_joints_are_marked_with_their_friction():
 def test_the_case_lists_boxes_that_differ_one_by_one():
     rows = dict(asked_rows(named_case("uneven")))
     assert rows["container"] == "3 boxes, bolted, from the floor up:"
-    assert rows["box 2"].endswith("7.848 kN with fill, mass centre at 0.4 m; 100 mm to the right")
+    assert rows["box 2"].endswith(
+        "7.848 kN with fill, mass centre at 0.4 m; its axis 100 mm right of that of box 1"
+    )
     assert "box 1" not in dict(asked_rows(named_case("seed_stack")))
 
 

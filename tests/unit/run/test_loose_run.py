@@ -1,11 +1,14 @@
 """Runs of loose stacks: what they write, run again from what they resolved, in a batch, with a band."""
 
 import json
+import warnings
 
+import numpy as np
 import pytest
 from cases import named_case
 
 import fem
+from fem.assessment.summary import plain_summary
 from fem.case.case import CaseError, read_case, to_toml
 from fem.case.uncertainty import ranges_of
 from fem.response.request import ResponseRequest
@@ -49,7 +52,7 @@ def test_a_run_says_what_each_box_did(case, run, tmp_path):
     assert verdict["max_slip_m"] == verdict["boxes"][0]["max_slip_m"]
     assert verdict["residual_slip_m"] == verdict["boxes"][0]["residual_slip_m"]
     assert verdict["boxes"][1]["max_slip_m"] > 0.02  # 5 m/s2 against 0.2 g
-    assert verdict["outcome"] == "slide"
+    assert verdict["outcome"] == "slide" and "slide" in verdict["modes"]
     assert result["joints"] is None
     assert stored.typed_result.verdict.boxes == run.verdict.boxes
     history = read_history(tmp_path / "run" / "history.csv")
@@ -81,6 +84,53 @@ def test_a_box_that_slides_off_its_footing_has_fallen(case):
     assert run.verdict.fell_box in (2, 3)
     assert run.verdict.boxes[run.verdict.fell_box - 1].fell
     assert run.history["time_s"][-1] <= run.verdict.overturned_at_s + 0.01
+
+
+#: a pull that takes the lower box with it, from under the upper one; the `full` model of six elements
+PULLED = {
+    "container": {
+        **{"width_m": 1.1, "height_m": 1.0, "section": "solid", "mass_kg": 2500.0, "joints": "loose"},
+        "box": [{}, {"height_m": 0.5, "mass_kg": 800.0, "offset_m": 0.5}],
+    },
+    "contact": {"mu_static": 2.0},
+    "joints": {"mu_static": 0.02},
+    "motion": {"kind": "pulse", "shape": "rectangular", "peak_acceleration_m_s2": -12.0, "pulse_s": 0.4},
+    "solver": {"model": "full", "element_size_m": 0.5, "order": 1, "duration_s": 1.2},
+    "output": {"fields_s": 0.1, "figures": False},
+}
+
+
+def test_a_box_of_nodes_falls_and_its_files_say_so(tmp_path):
+    case, folder = fem.case_from(PULLED), tmp_path / "run"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # of the rigid check, whose container is of two pieces
+        run_case(
+            case, case_text=to_toml(case), folder=folder, options=RunOptions(band=False, check_rigid=True)
+        )
+    run = open_run(folder)
+    verdict, history = run.verdict, run.history
+    assert (verdict.outcome, verdict.fell_box, verdict.boxes[1].fell) == ("overturned", 2, True)
+    assert verdict.first_line == f"Result: box 2 fell at t = {verdict.overturned_at_s:.3f} s."
+    # it loses its footing beyond the edge, half a width from the axis of the lower box
+    assert 0.05 < verdict.boxes[1].max_slip_m < 0.6 and {"slide", "slide-rock"} <= set(verdict.modes)
+    # the lower box is pulled with 12 m/s2, more than tips it alone, and lifts a corner by its turn
+    turn = verdict.boxes[0].max_rotation_rad
+    assert verdict.boxes[0].max_opening_m == pytest.approx(1.1 * np.sin(turn), rel=0.02)
+    last = run.fields.frame(len(run.fields) - 1)
+    upper = np.unique(last.cells[last.box == 2])
+    middle = (last.points + last.displacement)[upper].mean(axis=0)
+    instant = round(last.time / case.output.history_s)
+    place = [history[f"box_2_{axis}_m"][instant] for axis in "xz"]
+    assert middle - [last.floor_displacement, 0.0] == pytest.approx(place, abs=5e-3)
+    assert "box 2 fell" in plain_summary(run.typed_result, folder=folder)
+
+
+def test_friction_regularised_in_velocity_slides_boxes_on_one_another_as_the_elastic_stick_does(case, run):
+    creeping = fem.compute(case.replace({"contact.friction": "regularised"}), band=False)
+    found, stuck = creeping.verdict.boxes, run.verdict.boxes
+    assert found[1].max_slip_m == pytest.approx(stuck[1].max_slip_m, rel=0.02)
+    # it never sticks: the uppermost box, which rests on the next, creeps by less than the velocity times the time
+    assert 0.0 < found[2].max_slip_m < stuck[2].max_slip_m + 2.0 * case.contact.regularisation_velocity_m_s
 
 
 def test_friction_between_loose_boxes_is_an_unknown_input(case):

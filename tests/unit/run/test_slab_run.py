@@ -85,3 +85,23 @@ def test_forces_on_a_slab_are_drawn_whole_with_the_force_at_which_a_corner_crush
     panel = forces_figure(fem.open_run(folder)).axes[0]
     assert "a corner crushes at 440 kN" in [line.get_label() for line in panel.lines]
     assert panel.get_ylim()[1] > 1e-3 * fem.open_run(folder).history["normal_force_N"].max()
+
+
+@pytest.mark.parametrize("boxes", [(), ("container.boxes=2", "container.joints=loose")], ids=["one", "loose"])
+def test_pressure_in_a_frame_is_the_force_of_a_corner_on_its_patch(boxes):
+    run = fem.compute(
+        load_case("rocking", (*KEYS, *boxes, "solver.duration_s=1", "output.fields_s=0.1")), band=False
+    )
+    patch = 0.008 * 1.1
+    for frame in run.fields:
+        instant = round(frame.time / run.case.output.history_s)
+        base = frame.points[:, 1] == 0.0
+        force = patch * frame.contact_pressure[base].sum()
+        assert force == pytest.approx(run.history["normal_force_N"][instant], rel=1e-5, abs=1e-3)
+        assert frame.contact_pressure.max() <= run.case.floor.bearing_strength_Pa * (1.0 + 1e-6)
+    if (
+        boxes
+    ):  # at rest what the lower corners of the upper box press is its weight, on patches of the same size
+        upper = (run.fields.frame(0).points[:, 1] == 1.0) & (run.fields.frame(0).contact_pressure > 0.0)
+        pressed = patch * run.fields.frame(0).contact_pressure[upper].sum()
+        assert pressed == pytest.approx(run.case.weight / 2.0, rel=1e-5)
