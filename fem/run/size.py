@@ -1,8 +1,8 @@
 """How much a run writes.
 
-Measured on shells and blocks of 600 to 9000 nodes: a frame takes 20 (at rest) to 38 bytes a node, since zlib depends
-on how smooth the fields are; a number of the history takes 18 to 19.4 bytes of text. Added are a checkpoint and the one
-that replaces it, figures, and a page of results.
+Measured on shells and blocks of 600 to 9000 nodes: a frame takes 23 (at rest) to 36 bytes a node, since fields that
+are the same at most nodes are compressed; a number of the history takes 18 to 19.4 bytes of text. Added are a
+checkpoint and the one that replaces it, figures, and a page of results.
 """
 
 import math
