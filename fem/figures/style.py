@@ -47,6 +47,7 @@ STYLE: dict[Any, Any] = {
     "font.size": 9.0,
     "axes.titlesize": 10.0,
     "axes.titlelocation": "left",
+    "axes.titley": 1.0,  # not searched for
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.edgecolor": GREY,
