@@ -22,7 +22,7 @@ from fem.runtime.signals import INTERRUPTED, raise_on_signal
 from fem.runtime.threads import use_one_blas_thread
 
 BAD_INPUT, FAILED = 2, 3
-COLLECT_EVERY = 50_000  #: objects
+COLLECT_EVERY = 500_000  #: new objects; a run with its figures makes 400,000
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 WORDS = defaultdict(lambda: "another value", float="a number", int="a whole number", bool="yes or no")
 OWN_PACKAGES = {"fem", "mesh", "contact"}
@@ -168,7 +168,7 @@ def program() -> NoReturn:
     an import that makes a named tuple, however it was caught.
     """
     raise_on_signal()
-    # A pass of the cyclic collector for every 700 objects would be a seventh of a short run, most of it over the
+    # A pass of the cyclic collector for every 700 objects would be a fifth of a short run, most of it over the
     # modules that are being loaded.
     gc.set_threshold(COLLECT_EVERY)
     code = main()

@@ -59,7 +59,7 @@ def node_count(mesh: ContainerMesh, order: int) -> int:
         return len(mesh.points)
     first, last = mesh.quads, np.roll(mesh.quads, -1, axis=1)
     edges = np.sort(np.minimum(first, last) * len(mesh.points) + np.maximum(first, last), axis=None)
-    different = 1 + np.count_nonzero(np.diff(edges))  # np.unique would import masked arrays
+    different = 1 + int(np.count_nonzero(np.diff(edges)))  # np.unique would import masked arrays
     return len(mesh.points) + different + len(mesh.quads)
 
 
