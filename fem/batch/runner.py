@@ -15,7 +15,7 @@ from typing import Any
 from fem.assessment.motion_words import covered_in_words, is_cut, missing_peak
 from fem.assessment.verdict import verdict_of
 from fem.batch.container_cache import ContainerCache, container_key
-from fem.batch.workers import FoundT, ItemT, LocalWorkers, WorkersOf, hand_out, never
+from fem.batch.workers import FoundT, ItemT, LocalWorkers, Pool, WorkersOf, hand_out, never
 from fem.case.case import Case, CaseError
 from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
@@ -62,6 +62,9 @@ BOXES = {
 
 #: cases handed to a core at a time
 CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}
+#: workers from which they are more, since a scheduler hands out some hundred chunks a second; but never so many that a
+#: worker has fewer chunks than that
+MANY_WORKERS, LEAST_CHUNKS = 64, 4
 
 _CONTAINERS = ContainerCache()
 
@@ -108,11 +111,12 @@ class Runner:
             return _progress(what, done, total, failed, time.perf_counter() - began)
 
         for model, some in sorted(by_model.items(), key=lambda pair: list(CASES_AT_A_TIME).index(pair[0])):
+            pools = self.workers_of(model, len(some))
             chunks = hand_out(
                 some,
                 partial(run_chunk, make),
-                self.workers_of(model, len(some)),
-                at_a_time=at_a_time or CASES_AT_A_TIME[model],
+                pools,
+                at_a_time=at_a_time or _chunk_size(model, len(some), pools),
                 stop=self.stop,
                 finish=model != "full",  # one of these may take an hour
             )
@@ -142,11 +146,12 @@ class Runner:
         began, place, done = time.perf_counter(), 0, 0
         ready: dict[int, list[FoundT | ValueError]] = {}
         numbered = list(enumerate(items))
+        pools = self.workers_of("rigid", len(numbered))
         chunks = hand_out(
             numbered,
             partial(_work_on, work),
-            self.workers_of("rigid", len(numbered)),
-            at_a_time=CASES_AT_A_TIME["rigid"],
+            pools,
+            at_a_time=_chunk_size("rigid", len(numbered), pools),
             stop=self.stop,
         )
         found: list[FoundT] = []
@@ -164,6 +169,14 @@ class Runner:
         if len(found) < len(numbered):
             raise KeyboardInterrupt
         return found
+
+
+def _chunk_size(model: str, count: int, pools: Sequence[Pool]) -> int:
+    """Cases handed to a worker at a time."""
+    usual, workers = CASES_AT_A_TIME[model], sum(pool.count for pool in pools)
+    if model == "full":
+        return usual
+    return max(usual, min(usual * workers // MANY_WORKERS, count // (LEAST_CHUNKS * workers)))
 
 
 def _work_on(
