@@ -1,6 +1,7 @@
 """Stills of the motion, for paper and for browsers that run no scripts: the container at a few instants, as SVG.
 
-Same colours, same exaggeration of the elastic part as the animation first shows; x to the right, z up.
+Same colours, same exaggeration of the elastic part as the animation first shows, less in an impact; x to the right, z
+up.
 """
 
 import math
@@ -12,12 +13,13 @@ from markupsafe import Markup
 from fem.assessment.ranges import LEAST_LENGTH
 from fem.assessment.summary import ratio_in_words
 from fem.assessment.verdict import rotation_ratio
-from fem.report.animation import Animation, AnimationFrame, colour_scale, exaggeration
+from fem.report.animation import Animation, AnimationFrame, colour_scale, exaggeration, round_down
 from fem.results.history import History
 from fem.results.run_result import Verdict
 from fem.runtime.arrays import FloatArray
 
 MOST = 6
+MOST_ELASTIC = 0.05  #: enlarged elastic part over the height of the container
 BINS = 14  #: colours of a still
 STEEL, INK, QUIET = "#dfe7ee", "#1c2330", "#55606f"
 
@@ -43,16 +45,25 @@ def stills(
     chosen = _instants(shown, history, verdict)
     factor = exaggeration(shown, height)
     frames = {k: shown.frames[k] for k in chosen}
-    placed = {k: _placed(shown, frame, factor) for k, frame in frames.items()}
+    factors = {k: _bearable(frame, factor, height) for k, frame in frames.items()}
+    placed = {k: _placed(shown, frame, factors[k]) for k, frame in frames.items()}
     span = 1.05 * max([0.7 * width, *(float(np.abs(points[:, 0]).max()) for points in placed.values())])
     top = 103.0 / span * max((float(points[:, 1].max()) for points in placed.values()), default=0.0)
     return [
         Still(
-            f"t = {frame.time:.3f} s, {chosen[k]}; {_rotation_in_words(frame.rotation, angle)}",
+            f"t = {frame.time:.3f} s, {chosen[k]}; {_rotation_in_words(frame.rotation, angle)}"
+            + (f"; elastic part × {factors[k]:g}" if factors[k] != factor else ""),
             _drawing(shown, frame, placed[k] * [100.0 / span, -100.0 / span], top),
         )
         for k, frame in frames.items()
     ]
+
+
+def _bearable(frame: AnimationFrame, factor: float, height: float) -> float:
+    """The exaggeration, or a smaller one where an impact would tear the drawing."""
+    largest = float(np.hypot(*frame.elastic.T).max(initial=0.0))
+    most = MOST_ELASTIC * height
+    return factor if factor * largest <= most else max(1.0, round_down(most / largest))
 
 
 def _instants(shown: Animation, history: History, verdict: Verdict) -> dict[int, str]:

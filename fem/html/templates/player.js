@@ -249,8 +249,8 @@
     return `box ${most + 1}: ${words(all[most])}`;
   };
   const readOut = () => {
-    const words = { clock: `${now.toFixed(3)} s`, rotation: `${ofBodies("rotation", (v) => minus((v * 180 / Math.PI).toFixed(bodies.length > 1 ? 2 : 3)))}°`,
-      ratio: ofBodies("rotation", (v) => minus((v / run.angle).toFixed(3))), slip: `${ofBodies("slip", millimetres)} mm`,
+    const words = { clock: `${now.toFixed(3)} s`, rotation: `${ofBodies("rotation", (v) => minus((v * 180 / Math.PI).toFixed(bodies.length > 2 ? 1 : 3)))}°`,
+      ratio: ofBodies("rotation", (v) => minus((v / run.angle).toFixed(bodies.length > 2 ? 2 : 3))), slip: `${ofBodies("slip", millimetres)} mm`,
       uplift: `${millimetres(value("uplift", now))} mm`,
       floor: `${millimetres(value("base", now))} mm` + (columns.lift ? `, ${millimetres(value("lift", now))} mm up` : ""),
       state: modeAt(now) };

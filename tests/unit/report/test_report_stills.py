@@ -11,11 +11,12 @@ from fem.results.run_result import Verdict
 COUNT, ANGLE = 21, 0.268
 TIMES = 0.1 * np.arange(COUNT)
 ROTATION = 0.1 * np.sin(np.pi * TIMES)  # right at 0.5 s, left at 1.5 s
+STIFF = np.zeros(COUNT)
 SLIP = 0.02 * TIMES * (1.8 - TIMES)  # largest at 0.9 s, 16 mm
 CORNERS = np.array([[-0.55, -2.0], [0.55, -2.0], [0.55, 2.0], [-0.55, 2.0]])
 
 
-def animation():
+def animation(elastic=STIFF):
     return Animation(
         centroid=np.array([[0.0, 2.0]]),
         body=np.zeros(4, dtype=int),
@@ -31,11 +32,11 @@ def animation():
                 centre=np.array([[0.0, 2.0]]),
                 rotation=np.array([rotation]),
                 floor=(0.0, 0.0),
-                elastic=np.zeros((4, 2)),
+                elastic=np.full((4, 2), size),
                 von_mises=None,
                 normal_force=np.ones(2),
             )
-            for time, rotation in zip(TIMES, ROTATION, strict=True)
+            for time, rotation, size in zip(TIMES, ROTATION, elastic, strict=True)
         ],
     )
 
@@ -76,3 +77,11 @@ def test_a_still_tells_its_instant():
     shown = stills(animation(), history(), Verdict(outcome="rock"), angle=ANGLE, width=1.1, height=4.0)
     assert shown[1].caption == f"t = 0.500 s, farthest to the right; rotation ratio {0.1 / ANGLE:.3f}"
     assert shown[2].caption == f"t = 1.500 s, farthest to the left; rotation ratio −{0.1 / ANGLE:.3f}"
+
+
+def test_a_still_of_an_impact_enlarges_the_deformation_less():
+    elastic = np.full(COUNT, 1e-3)
+    elastic[5] = 0.05
+    shown = stills(animation(elastic), history(), Verdict(outcome="rock"), angle=ANGLE, width=1.1, height=4.0)
+    assert shown[1].caption.endswith("; elastic part × 2")  # 0.14 m of 4 m
+    assert "elastic" not in shown[2].caption
