@@ -1,7 +1,11 @@
-"""Which is to be believed where the static rule says that the container holds or stands, and the run moves it."""
+"""Which is to be believed where the static rule says that the container holds or stands, and the run moves it.
+
+The rule is that of one body on its floor: of the joints of a loose stack it says nothing.
+"""
 
 from collections.abc import Sequence
 
+from fem.assessment.loose_boxes import largest_joint_slip, limits
 from fem.assessment.sureness import ROCKING, below_uplift, rests_on_stiff_floor
 from fem.case.uncertainty import MU_KINETIC, STRIBECK, WEAKENING
 from fem.results.run_result import BandMember, RunResult, StaticResult, Verdict
@@ -18,20 +22,34 @@ def believed(result: RunResult) -> tuple[str, ...]:
     members = verdict.band.members if verdict.band is not None else ()
     said = []
     use = own.utilisation_sliding
-    if use and use <= 1.0 and verdict.outcome in SLIDING:
-        said.append(f"Sliding: the static rule holds at {use:.3f} and the run slid{_on_sliding(members)}")
+    least, _ = limits(result.static or StaticResult())
+    if use and use <= 1.0 and _slides(verdict, least):
+        said.append(
+            f"Sliding: the static rule holds at {use:.3f} and the run slid{_on_sliding(members, least)}"
+        )
+    elif use and use <= 1.0 and verdict.outcome in SLIDING:
+        slip, joint = largest_joint_slip(verdict)
+        said.append(
+            f"Sliding: the static rule holds at {use:.3f}, and the stack does not slide on the floor. The rule says "
+            f"nothing of the joints between its boxes, where the run slid {slip} ({joint})."
+        )
     use = own.utilisation_overturning
     if use and use <= 1.0 and verdict.outcome in (*ROCKING, "overturned"):
         said.append(f"Rocking: the static rule stands at {use:.3f} and the run rocked{_on_rocking(members)}")
     return tuple(said)
 
 
-def _on_sliding(members: Sequence[BandMember]) -> str:
+def _slides(one: Verdict | BandMember, least: float) -> bool:
+    """Whether it slides on the floor; of a loose stack its lowest box by at least so much [m]."""
+    return one.outcome in SLIDING and (not one.boxes or one.boxes[0].max_slip_m > least)
+
+
+def _on_sliding(members: Sequence[BandMember], least: float) -> str:
     """Friction that falls at once lets an instant of vibration decide, of which a static rule knows nothing."""
     if not members:
         return WITHOUT_BAND
     laws = [one for one in members if one.values and one.outcome and set(one.values) <= FRICTION]
-    held = [one.change for one in laws if one.outcome not in SLIDING]
+    held = [one.change for one in laws if not _slides(one, least)]
     if held:
         return (
             f". Believe the rule: with {held[0]} the container does not slide. The run slid because friction fell to "

@@ -9,6 +9,9 @@ from matplotlib.figure import Figure
 from fem.assessment.summary import ratio_in_words
 from fem.case.uncertainty import (
     DASHPOT,
+    JOINTS_MU_KINETIC,
+    JOINTS_MU_STATIC,
+    JOINTS_WEAKENING,
     MATERIAL,
     MODULUS,
     MU_KINETIC,
@@ -41,6 +44,9 @@ GROUPS = {
     MU_KINETIC: "mu_k",
     WEAKENING: "weakening",
     STRIBECK: "velocity",
+    JOINTS_MU_STATIC: "joint mu_s",
+    JOINTS_MU_KINETIC: "joint mu_k",
+    JOINTS_WEAKENING: "joint fall",
     START: "start",
     RAMP: "ramp",
     PENALTY: "stiffness",
@@ -107,7 +113,7 @@ def band_figure(run: OpenedRun) -> Figure | None:
         spread = np.linspace(-0.3, 0.3, len(members)) if len(members) > 1 else np.zeros(1)
         for offset, member in zip(spread, members, strict=True):
             own = member is band.members[0]
-            for axes, height in ((above, _height(member)), (below, 1e3 * (member.max_slip_m or 0.0))):
+            for axes, height in ((above, _height(member)), (below, 1e3 * _slip(member))):
                 axes.plot(
                     place + offset,
                     height,
@@ -125,7 +131,7 @@ def band_figure(run: OpenedRun) -> Figure | None:
     above.set_ylim(0.0, 1.3)
     above.set_ylabel("rotation ratio [-]")
     below.set_ylim(bottom=0.0)
-    below.set_ylabel("largest slip [mm]")
+    below.set_ylabel("largest slip of a box [mm]" if run.verdict.boxes else "largest slip [mm]")
     above.set_xticks(range(len(groups)), [])
     below.set_xticks(range(len(groups)), list(groups), fontsize=6.5)
     below.set_xlabel("changed input, or several at once [-]")
@@ -146,6 +152,11 @@ def _group_of(member: BandMember) -> str:
         return f"{member.kind}s"
     keys = list(member.values or {})
     return GROUPS.get(keys[0], keys[0]) if keys else "as given"
+
+
+def _slip(member: BandMember) -> float:
+    """The largest slip, of a loose stack that of any box over what is below it [m]."""
+    return max((box.max_slip_m for box in member.boxes or ()), default=member.max_slip_m or 0.0)
 
 
 def _ratios(check: RigidCheckResult) -> str:

@@ -7,8 +7,18 @@ from pathlib import Path
 import pytest
 
 from fem.assessment.loose_boxes import box_rows, largest_joint_slip
+from fem.assessment.rule_or_run import believed
 from fem.assessment.summary import outcome_sentence, plain_summary
-from fem.results.run_result import Band, BandMember, BoxReach, BoxResult, RunResult, StaticResult, Verdict
+from fem.results.run_result import (
+    ActionResult,
+    Band,
+    BandMember,
+    BoxReach,
+    BoxResult,
+    RunResult,
+    StaticResult,
+    Verdict,
+)
 
 STILL = BoxResult(max_rotation_rad=0.0, max_slip_m=0.0, residual_slip_m=0.0, max_opening_m=0.0, fell=False)
 #: four boxes of 1.1 m x 1 m: slip counts from 0.11 mm, an opening from 3 mm
@@ -91,3 +101,20 @@ def test_of_many_boxes_the_table_has_those_that_decide():
     boxes[7], boxes[11] = replace(STILL, max_slip_m=0.1), replace(STILL, fell=True)
     text = " ".join(plain_summary(result(boxes=tuple(boxes)), folder=Path("outputs")).split())
     assert "8 0 100 0 0" in text and "12 0 0 0 0 fell" in text and "17 more boxes are in run.json" in text
+
+
+@pytest.mark.parametrize(
+    ("on_floor", "words"),
+    [
+        (
+            0.0,
+            "The rule says nothing of the joints between its boxes, where the run slid 36.5 mm (box 2 on box 1).",
+        ),
+        (0.01, "and the run slid; which of the two is to be believed, only the band can say"),
+    ],
+)
+def test_the_static_rule_is_that_of_the_stack_on_its_floor(on_floor, words):
+    run = result((1, {"max_slip_m": on_floor}), (2, {"max_slip_m": 0.0365}), outcome="slide")
+    rule = ActionResult(utilisation_sliding=0.765, utilisation_overturning=0.9)
+    (said,) = believed(replace(run, static=replace(STATIC, own_motion=rule)))
+    assert said.startswith("Sliding: the static rule holds at 0.765") and words in said
