@@ -18,6 +18,7 @@ from typing import Literal, NoReturn
 
 from cyclopts import App, CycloptsError, Group, MissingArgumentError, UnusedCliTokensError
 
+from fem.runtime.late_modules import load_late
 from fem.runtime.signals import INTERRUPTED, raise_on_signal
 from fem.runtime.threads import use_one_blas_thread
 
@@ -168,6 +169,7 @@ def program() -> NoReturn:
     an import that makes a named tuple, however it was caught.
     """
     raise_on_signal()
+    load_late()
     # A pass of the cyclic collector for every 700 objects would be a fifth of a short run, most of it over the
     # modules that are being loaded.
     gc.set_threshold(COLLECT_EVERY)
