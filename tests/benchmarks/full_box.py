@@ -25,7 +25,7 @@ from fem.case.case import load_case
 
 REPEATS = 3
 DURATION = 1.0  # s: the first impact at 0.26 s, then the small ones that follow at a restitution of 0.18
-ADAPTIVE, FINE = 2.0, 5.0  # CPU seconds per simulated second
+ADAPTIVE, FINE = 0.6, 5.0  # CPU seconds per simulated second
 FINE_STEP = 1e-3
 BLOCK = RigidBlock.homogeneous(width=1.1, height=1.0)
 AMPLITUDE, ANGULAR_FREQUENCY, FRICTION, JERK_DURATION = 0.05, 6.93, 0.4, 3.0

@@ -19,7 +19,7 @@ from fem.model.container import Container, discretise
 
 REPEATS = 5
 DURATION = 20.0  # s
-CORNERS, FLAT = 0.1, 3.0  # CPU seconds of stepping for it
+CORNERS, FLAT = 0.06, 0.5  # CPU seconds of stepping for it
 MEMORY = 300.0  # MB
 EXPONENT = 0.25  # by which the cost may grow faster than the duration or the modes
 CASES = ("seed_stack", "rocking")
