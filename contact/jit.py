@@ -15,6 +15,10 @@ from typing import Any
 
 import numba
 from numba.core import config
+from numba.core.registry import CPUDispatcher
+from numba.extending import register_jitable
+
+from contact.pieces import PieceCompiler
 
 
 @cache
@@ -45,36 +49,53 @@ def cache_folder(sources: tuple[Path, ...] = ()) -> Path:
     return folder
 
 
+#: of all kernels: they own no memory, so numba's runtime, which would count references at every call, is left out, and
+#: no kernel may allocate an array; they run without the interpreter's lock; division by zero follows IEEE (as in
+#: numpy); there is no fast-math, so that repeated runs give identical bytes
+OPTIONS: Any = {"error_model": "numpy", "nogil": True, "_nrt": False}
+
+
+def options_of_piece(inline: bool) -> Any:
+    """numba's options for a function as kernels call it, see `contact.pieces`."""
+    unused = {"nopython": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    return OPTIONS | unused | {"forceinline": inline, "pipeline_class": PieceCompiler}
+
+
+class Kernel(CPUDispatcher):
+    """A function that is a piece of the kernels that call it, and a kernel of its own where Python calls it."""
+
+    entry: Callable[..., Any]  #: for Python
+
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
+        """Call the entry."""
+        return self.entry(*arguments, **named)
+
+
 def compiled(
     function: Callable[..., Any] | None = None, *, inline: bool = False, sources: tuple[Path, ...] = ()
 ) -> Any:
     """Decorator: compile a function of numbers, arrays and named tuples on first call, and cache the machine code.
 
-    The plain function stays available as `.py_func`. `inline` asks LLVM to put the function into its caller whatever
+    The plain function stays available as `.py_func`. `inline` asks LLVM to put the function into its callers whatever
     its size, because passing the tuples of arrays that the kernels use is expensive. `sources` are files outside this
     package whose functions it calls.
-
-    The kernels own no memory: numba's runtime, which would count references at every call, is left out, so no kernel
-    may allocate an array. They run without the interpreter's lock. Division by zero follows IEEE (as in numpy). There
-    is no fast-math, so that repeated runs give identical bytes.
     """
     if function is None:
         return partial(compiled, inline=inline, sources=sources)
-    options: dict[str, Any] = {"cache": True, "error_model": "numpy", "nogil": True, "_nrt": False}
+    options = options_of_piece(inline)
+    compiler = options.pop("pipeline_class")
+    kernel = Kernel(function, targetoptions=options, pipeline_class=compiler)
     before = getattr(config, "CACHE_DIR")  # noqa: B009 - numba sets its options at run time
     setattr(config, "CACHE_DIR", str(cache_folder(sources)))  # noqa: B010
     try:
-        kernel = numba.njit(forceinline=inline, **options)(function)
+        entry: Any = numba.njit(**OPTIONS | {"cache": True, "no_cfunc_wrapper": True})(function)
     finally:
         setattr(config, "CACHE_DIR", before)  # noqa: B010
     # numba would first load all that its compiler knows (0.1 s, 27 MB); a compilation does so itself.
-    kernel._cache.load_overload = kernel._cache._load_overload
+    entry._cache.load_overload = entry._cache._load_overload
+    kernel.entry = entry
     return kernel
 
 
-def is_compiled(name: str, sources: tuple[Path, ...] = ()) -> bool:
-    """True if the cache has machine code of the function of that name, so that it need not be compiled."""
-    return any(
-        f".{name}-" in entry.name or entry.name.startswith(f"{name}-")
-        for entry in cache_folder(sources).rglob("*.nbc")
-    )
+#: decorator: a function that is put into the kernels that call it, and is plain Python elsewhere
+inlined = register_jitable(**options_of_piece(True))

@@ -140,8 +140,8 @@ MUTATIONS = (
     Mutation(
         name="a turn without a stop that restores static friction",
         file="contact/stepping/joints.py",
-        old="            every = slides_on(run, j, step, turned)\n",
-        new="            every = slides_on(run, j, step, turned)\n"
+        old="            every = slides_on(run, j, step, turned, loose)\n",
+        new="            every = slides_on(run, j, step, turned, loose)\n"
         "            joint.slip_since_break *= not turned\n",
         tests=(*SLIDING, "turn and without"),
     ),

@@ -17,6 +17,7 @@ from numba.extending import overload
 
 from contact.arrays import FloatArray
 from contact.interface.workspace import Contact, Workspace
+from contact.jit import options_of_piece
 from contact.stepping.scheme import Scheme
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
@@ -82,7 +83,7 @@ def implements(
         def choose(body: Any, *arguments: Any) -> Kernel | None:
             return implementation if getattr(body, "instance_class", None) in bodies else None
 
-        overload(operation, strict=False, jit_options={"forceinline": inline})(choose)
+        overload(operation, strict=False, jit_options=options_of_piece(inline))(choose)
         return implementation
 
     return register
@@ -141,6 +142,16 @@ def shift_velocity(body: Any, state: State, velocity: float, lift_velocity: floa
 def prepared(body: Any, step: float) -> bool:
     """Whether the body can take a step of this size [s]; if not, the caller prepares it and continues."""
     return bool(body.prepared(step))
+
+
+def stands_loose(body: Any) -> bool | None:
+    """True for a loose stack; None for a body that moves as one: what is not for None is not compiled for it."""
+    return True if hasattr(body, "faces") else None
+
+
+@overload(stands_loose, strict=False, jit_options=options_of_piece(True))
+def _stands_loose(body: Any) -> Callable[[Any], bool | None]:
+    return (lambda body: True) if "faces" in getattr(body, "fields", ()) else (lambda body: None)
 
 
 def sizes_match(body: Any, run: Any) -> bool:

@@ -2,9 +2,7 @@
 
 import math
 
-from numba.extending import register_jitable
-
-from contact.jit import compiled
+from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION
 from contact.stepping.joints import points_of
 from contact.stepping.observables import FALLEN, NEVER, OPENING, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK
@@ -16,10 +14,10 @@ OVERTURNING_ROTATION = 0.5 * math.pi
 LYING_MARGIN = 2e-3
 
 
-@register_jitable(forceinline=True)
-def follow_boxes(run: RunState, step: float) -> None:
+@inlined
+def follow_boxes(run: RunState, step: float, loose: bool | None) -> None:
     """Update openings, rotations, falls and the mode of a loose stack from the step about to be accepted."""
-    if run.joints.shape[0] > 1:
+    if loose is not None:
         follow_stack(run, step)
 
 
@@ -58,7 +56,7 @@ def follow_stack(run: RunState, step: float) -> None:
     track.modes |= 1 << track.mode
 
 
-@register_jitable(forceinline=True)
+@inlined
 def has_fallen(run: RunState) -> bool:
     """Whether the container has overturned, or a box of a loose stack has fallen."""
     if run.joints.shape[0] == 1:
@@ -70,7 +68,7 @@ def has_fallen(run: RunState) -> bool:
     return fallen
 
 
-@register_jitable
+@inlined
 def has_footing(run: RunState, j: int) -> bool:
     """Whether the mass centre of a box of a loose stack is between the ends of the face below."""
     if j == 0:
@@ -82,7 +80,7 @@ def has_footing(run: RunState, j: int) -> bool:
     return bool(0.0 <= x * along + z * up <= along * along + up * up)
 
 
-@register_jitable
+@inlined
 def is_unsettled(run: RunState) -> bool:
     """Whether a box of a loose stack has lost its footing, or is beyond the slenderness angle of the stack."""
     unsettled = False
@@ -92,7 +90,7 @@ def is_unsettled(run: RunState) -> bool:
     return unsettled
 
 
-@register_jitable
+@inlined
 def lose_footing(run: RunState) -> None:
     """Count the boxes without footing as fallen now."""
     for j in range(run.joints.shape[0]):

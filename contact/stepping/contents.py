@@ -14,10 +14,8 @@ faster than the interval is averaged, not aliased; the filter's answer to it is 
 import math
 from typing import Any
 
-from numba.extending import register_jitable
-
 from contact.arrays import FloatArray
-from contact.jit import compiled
+from contact.jit import compiled, inlined
 from contact.stepping.body import observe
 from contact.stepping.state import RunState
 
@@ -30,7 +28,7 @@ POSITION, VELOCITY, FILTERED, ACCELERATION = 0, 1, 2, 3
 SLOPE, BEND, APART, BEGINNING = 4, 5, 6, 7
 
 
-@register_jitable(forceinline=True)
+@inlined
 def follow_contents(body: Any, run: RunState, step: float) -> None:
     """Follow the monitored points through the step about to be accepted; not where the run keeps no history."""
     clock, control = run.clock[0], run.control

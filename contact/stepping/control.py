@@ -8,9 +8,8 @@ import math
 from typing import Any
 
 import numpy as np
-from numba.extending import register_jitable
 
-from contact.jit import compiled
+from contact.jit import compiled, inlined
 from contact.stepping.body import KINETIC, VELOCITY_X, State
 from contact.stepping.ledger import GAIN_LIMIT, IMBALANCE, LOSS_LIMIT, LOSS_SHARE_LIMIT, dissipation
 from contact.stepping.state import Control, RunState
@@ -31,7 +30,7 @@ REMAINDER_SHARE, LEAST_ALLOWANCE = 0.1, 1e-4
 ATTEMPTS_OF_ROCKING, ATTEMPTS_OF_STEP, ATTEMPTS_SPARE = 1e6, 100.0, 1e6
 
 
-@register_jitable(forceinline=True)
+@inlined
 def _rests_beside(state: State, other: int, point: int, width: float) -> bool:
     """Whether the other base point exists, is closed and near."""
     if other < 0 or other >= state.point.shape[0]:

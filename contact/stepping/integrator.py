@@ -11,12 +11,10 @@ the same compiled laws, contact solver and ledger.
 
 from typing import Any
 
-from numba.extending import register_jitable
-
-from contact.jit import compiled
+from contact.jit import compiled, inlined
 from contact.motion.kernel import UNIFORM
 from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
-from contact.stepping.body import complete, prepared, shift_velocity, sizes_match, weigh
+from contact.stepping.body import complete, prepared, shift_velocity, sizes_match, stands_loose, weigh
 from contact.stepping.boxes import follow_boxes, has_fallen
 from contact.stepping.contents import follow_contents, shift_contents
 from contact.stepping.control import (
@@ -81,7 +79,7 @@ def close_step(run: RunState, step: float, iterations: int) -> None:
             run.lift[0, k] = run.lift[1, k]
 
 
-@register_jitable(forceinline=True)
+@inlined
 def _is_full(run: RunState) -> bool:
     """Whether the sample arrays cannot hold another largest step."""
     ahead = run.control.largest_step
@@ -91,7 +89,7 @@ def _is_full(run: RunState) -> bool:
     return (room - 1) * run.history.interval < ahead or (room_of_frames - 1) * run.frames.interval < ahead
 
 
-@register_jitable(forceinline=True)
+@inlined
 def enter_floor_frame(body: Any, run: RunState, floor_velocity: float, lift_velocity: float) -> None:
     """Change to the frame of the floor at the end of its motion, where its velocity is this, along x and upward [m/s].
 
@@ -117,7 +115,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
         no convergence at the smallest step, `run.old` is the last good state; or UNPREPARED: prepare the body for
         steps of `clock.unprepared_step` and call again.
     """
-    control, clock, track = run.control, run.clock[0], run.track[0]
+    control, clock, track, loose = run.control, run.clock[0], run.track[0], stands_loose(body)
     if not sizes_match(body, run):
         return FAILED
     while clock.time < until and clock.steps + clock.rejected < clock.attempt_limit and not _is_full(run):
@@ -142,7 +140,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
                 return FAILED
             clock.level += STEPS_PER_OCTAVE
             continue
-        switches = settle_friction(run, step)
+        switches = settle_friction(run, step, loose)
         dissipated = account(run, step)
         allowed = allowed_imbalance(run, step, dissipated)
         allowed = min(allowed, ledger_allowance(run, step))
@@ -173,10 +171,10 @@ def advance(body: Any, run: RunState, until: float) -> int:
             run.lift,
             run.change[FRICTION],
         )
-        follow_boxes(run, step)
+        follow_boxes(run, step, loose)
         follow_contents(body, run, step)
-        clock.samples = sample(run, run.history, clock.samples, clock.samples_drained, step)
-        clock.frames = sample(run, run.frames, clock.frames, clock.frames_drained, step)
+        clock.samples = sample(run, run.history, clock.samples, clock.samples_drained, step, loose)
+        clock.frames = sample(run, run.frames, clock.frames, clock.frames_drained, step, loose)
         close_step(run, step, iterations)
         # The imbalance of one step may vanish by chance while it changes sign: remember the last steps.
         stacked = run.joints.shape[0] > 1

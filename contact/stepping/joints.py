@@ -6,10 +6,8 @@ Static and kinetic friction are states of a joint, not of a point: see "Static a
 
 import math
 
-from numba.extending import register_jitable
-
 from contact.interface.laws import ELASTIC_STICK, relaxed_stick, weakened_mu
-from contact.jit import compiled
+from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION, VELOCITY_X, VELOCITY_Z
 from contact.stepping.observables import SLIDING
 from contact.stepping.state import RunState
@@ -18,10 +16,11 @@ NO_POINT, SOME, ALL, AIRBORNE = 0, 1, 2, 3  #: sliding of the loaded points of a
 WEAKENING_TOLERANCE = (
     1e-9  #: change of a coefficient that weakens with the slip of a step at which it is known
 )
+SLIDES_ON = math.inf  #: no force that holds a joint, see `slide`
 IMPACT_LOAD = 2.0  #: normal force over the weight from which there is an impact
 
 
-@register_jitable(forceinline=True)
+@inlined
 def points_of(run: RunState, j: int) -> tuple[int, int]:
     """First contact point of a joint, and the one behind its last."""
     if run.joints.shape[0] == 1:
@@ -29,7 +28,7 @@ def points_of(run: RunState, j: int) -> tuple[int, int]:
     return (0, 2) if j == 0 else (4 * j - 2, 4 * j + 2)
 
 
-@register_jitable(forceinline=True)
+@inlined
 def _kinetic_friction(run: RunState, j: int, slid: float) -> float:
     """Coefficient of friction, at no velocity, of a sliding joint after a path of `slid` [m]."""
     contact, first = run.contact, points_of(run, j)[0]
@@ -66,11 +65,11 @@ def weaken_friction(run: RunState) -> bool:
 def slide_joints(run: RunState, step: float) -> None:
     """Sliding of all joints after a converged step of this size [s], none of which stops."""
     for j in range(run.joints.shape[0]):
-        slide(run, j, step, False, 0.0)
+        slide(run, j, step, SLIDES_ON)
 
 
 @compiled(inline=True)
-def settle_friction(run: RunState, step: float) -> bool:
+def settle_friction(run: RunState, step: float, loose: bool | None) -> bool:
     """Decide which joints slide after the attempted step [s]; whether one starts to, stops or turns round in it."""
     switches = False
     for j in range(run.joints.shape[0]):
@@ -79,9 +78,9 @@ def settle_friction(run: RunState, step: float) -> bool:
         turned = False
         if run.contact.friction == ELASTIC_STICK and joint.sliding == 1 and joint.motion != AIRBORNE:
             turned = joint.velocity * joint.slip_velocity < 0.0
-            every = slides_on(run, j, step, turned)
+            every = slides_on(run, j, step, turned, loose)
         elif run.contact.friction == ELASTIC_STICK and every and joint.sliding == 0:
-            every = breaks_loose(run, j)
+            every = breaks_loose(run, j, loose)
         overshoots = joint.sliding == 0 and (joint.motion == ALL) != (joint.slip_since_break > 0.0)
         changes = turned or overshoots or (joint.sliding == 1) != every
         switches = switches or (changes and run.contact.mu_static[points_of(run, j)[0]] > 0.0)
@@ -90,21 +89,21 @@ def settle_friction(run: RunState, step: float) -> bool:
 
 
 @compiled(inline=True)
-def breaks_loose(run: RunState, j: int) -> bool:
+def breaks_loose(run: RunState, j: int, loose: bool | None) -> bool:
     """Whether a joint whose points all slide at the limit of static friction breaks loose as a whole.
 
     A rigid body would slide, or the points have slid as far as counts as sliding. Less is the overshoot of an elastic
     swing, which lasts milliseconds and slides micrometres: too little for friction to fall.
     """
     joint = run.joints[j]
-    holding, normal = holding_force(run, j)
+    holding, normal = holding_force(run, j, loose)
     slid = joint.slip_since_break + abs(joint.slip_step)
     mu_static = run.contact.mu_static[points_of(run, j)[0]]
     return abs(holding) > mu_static * normal or slid > SLIDING * joint.width
 
 
 @compiled(inline=True)
-def slides_on(run: RunState, j: int, step: float, turned: bool) -> bool:
+def slides_on(run: RunState, j: int, step: float, turned: bool, loose: bool | None) -> bool:
     """Whether a sliding joint slides on after the attempted step; where it stops, its slip of the step may change.
 
     It stops where its slip has `turned` round, or none of its points slides, and static friction can hold it. A slip
@@ -112,20 +111,20 @@ def slides_on(run: RunState, j: int, step: float, turned: bool) -> bool:
     """
     joint = run.joints[j]
     if turned or joint.motion == NO_POINT:
-        holding, normal = holding_force(run, j)
+        holding, normal = holding_force(run, j, loose)
         if abs(holding) <= run.contact.mu_static[points_of(run, j)[0]] * normal:
             # a stop within an impact does not last
             weight = 0.0
             for k in range(j, run.joints.shape[0]):
                 weight += run.joints[k].mass * (run.control.gravity + run.lift[1, 2])
             if turned and normal < IMPACT_LOAD * weight:
-                slide(run, j, step, True, holding)
+                slide(run, j, step, holding)
             return False
     return True
 
 
 @compiled(inline=True)
-def holding_force(run: RunState, j: int) -> tuple[float, float]:
+def holding_force(run: RunState, j: int, loose: bool | None) -> tuple[float, float]:
     """Tangential force that holds a joint at the end of the attempted step, and the normal force for it [N].
 
     The forces of a rigid body that stands on both sides of its base, or rocks about the resultant of its normal forces,
@@ -133,7 +132,7 @@ def holding_force(run: RunState, j: int) -> tuple[float, float]:
     around them. In an impact the normal force is larger. On a floor that accelerates upward by a_v gravity is g + a_v;
     a slope acts as an acceleration of the floor uphill.
     """
-    if run.joints.shape[0] > 1:
+    if loose is not None:
         return holding_in_stack(run, j)
     new, track, joint = run.new, run.track[0], run.joints[j]
     acceleration = run.floor[1, 2] - run.control.downhill
@@ -162,7 +161,7 @@ def holding_force(run: RunState, j: int) -> tuple[float, float]:
     return joint.mass * push, max(normal, joint.mass * load)
 
 
-@register_jitable(forceinline=True)
+@inlined
 def touching_corner(i: int) -> int:
     """The corner that touches a face at a contact point of a loose stack, see `contact.interface.faces`."""
     joint, k = (i + 2) // 4, (i + 2) % 4
@@ -246,7 +245,7 @@ def holding_in_stack(run: RunState, j: int) -> tuple[float, float]:
     return joint.mass * push, max(normal, joint.mass * load)
 
 
-@register_jitable
+@inlined
 def carrier_of(run: RunState, j: int) -> int:
     """The box that moves what is below a joint, -1: the floor.
 
@@ -282,7 +281,7 @@ def acceleration_of(run: RunState, box: int, x: float, z: float) -> tuple[float,
 
 
 @compiled(inline=True)
-def slide(run: RunState, j: int, step: float, stops: bool, holding: float) -> None:
+def slide(run: RunState, j: int, step: float, holding: float) -> None:
     """Sliding of the points of a joint and elongation of their springs after a converged step.
 
     Writes `run.slip` and `new.stick` of the points. Of the joint it writes `motion` - ALL loaded points slide in one
@@ -293,10 +292,11 @@ def slide(run: RunState, j: int, step: float, stops: bool, holding: float) -> No
         run: with a converged step in `new`.
         j: the joint.
         step: [s].
-        stops: the joint stops sliding in this step.
-        holding: tangential force with which its springs start then [N]. With the forces of the slide, the motion would
-            have to wind them up first, and the dashpots make that overshoot.
+        holding: of a joint that stops sliding in this step, the tangential force with which its springs start [N], else
+            SLIDES_ON. With the forces of the slide, the motion would have to wind them up first, and the dashpots make
+            that overshoot.
     """
+    stops = holding < SLIDES_ON
     contact, old, new, work, joint = run.contact, run.old, run.new, run.work, run.joints[j]
     every, any_slides, direction, weighted, total, velocity = True, False, 0.0, 0.0, 0.0, 0.0
     begin, end = points_of(run, j)

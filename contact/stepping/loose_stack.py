@@ -6,8 +6,6 @@ between boxes; in `complete` it writes `State.boxes`. This layer gives the stepp
 
 from typing import Any, NamedTuple
 
-from numba.extending import register_jitable
-
 from contact.arrays import FloatArray
 from contact.interface.faces import (
     Faces,
@@ -20,6 +18,7 @@ from contact.interface.faces import (
     weigh_points,
 )
 from contact.interface.workspace import Contact, Workspace
+from contact.jit import inlined
 from contact.stepping import body as interface
 from contact.stepping.body import (
     ANGULAR_VELOCITY,
@@ -44,7 +43,7 @@ class LooseStack(NamedTuple):
     corners: Workspace  #: scratch, of the corners
 
 
-@register_jitable(forceinline=True)
+@inlined
 def over_corners(stack: LooseStack, state: State) -> State:
     """The state with the corners, and the forces on them, in place of the contact points."""
     return State(

@@ -4,13 +4,12 @@ import math
 from typing import Any
 
 import numpy as np
-from numba.extending import register_jitable
 
 from contact.arrays import FloatArray
 from contact.interface.equilibrium import Stance
 from contact.interface.solver import add_turned
 from contact.interface.workspace import Contact, Workspace
-from contact.jit import compiled
+from contact.jit import compiled, inlined
 from contact.stepping import body as interface
 from contact.stepping.body import (
     ANGULAR_VELOCITY,
@@ -297,7 +296,7 @@ def prepared(body: ModalBody, step: float) -> bool:
     return True
 
 
-@register_jitable(forceinline=True)
+@inlined
 def _state_of_block_on_corners(state: State) -> bool:
     if state.position.size != 3 or state.velocity.size != 3 or state.acceleration.size != 3:
         return False

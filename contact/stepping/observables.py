@@ -10,10 +10,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numba.extending import register_jitable
 
 from contact.arrays import FloatArray
-from contact.jit import compiled
+from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, POTENTIAL, ROTATION, State
 from contact.stepping.ledger import work_of_lift
 from contact.stepping.scheme import hermite
@@ -122,7 +121,7 @@ def record_start(track: Any, control: Any, state: State) -> None:
         track[name] = value
 
 
-@register_jitable(forceinline=True)
+@inlined
 def update_observables(
     track: Any,
     control: Any,
@@ -198,7 +197,7 @@ def update_observables(
     follow_restitution(track, control, old, new, step, floor, lift, heat)
 
 
-@register_jitable(forceinline=True)
+@inlined
 def has_impact(track: Any, control: Any, old: State, new: State) -> bool:
     """Whether an impact that counts falls in this step."""
     last = control.base_points - 1
@@ -231,7 +230,7 @@ def lifting_energy(control: Any, state: State, floor: float, sunk: float) -> flo
     return state.energy[POTENTIAL] - control.resting_energy + control.mass * control.gravity * sunk + downhill
 
 
-@register_jitable(forceinline=True)
+@inlined
 def follow_restitution(
     track: Any,
     control: Any,

@@ -1,9 +1,7 @@
 """Samples of a run on an exact grid of times, interpolated within the accepted step."""
 
-from numba.extending import register_jitable
-
 from contact.arrays import FloatArray
-from contact.jit import compiled
+from contact.jit import compiled, inlined
 from contact.motion.kernel import floor_motion
 from contact.stepping.body import (
     ANGULAR_VELOCITY,
@@ -43,12 +41,18 @@ SAME_INSTANT = 1e-12  #: difference of two times, over their size, that is round
 
 @compiled(inline=True)
 def write_columns(
-    run: RunState, row: FloatArray, force: FloatArray, time: float, s: float, step: float
+    run: RunState,
+    row: FloatArray,
+    force: FloatArray,
+    time: float,
+    s: float,
+    step: float,
+    loose: bool | None,
 ) -> None:
     """One row of a history at the share `s` of the step; `force` (n, 2) is the contact force at this instant."""
     old, new = run.old, run.new
     a, b = old.pose, new.pose
-    if run.joints.shape[0] > 1:
+    if loose is not None:
         a, b = old.boxes[0], new.boxes[0]
     floor, _, _ = floor_motion(run.motion, time)
     lift, _, _ = floor_motion(run.vertical, time)
@@ -64,7 +68,7 @@ def write_columns(
             row[ROW_UPLIFT] = max(row[ROW_UPLIFT], (1.0 - s) * old.point[i, 1] + s * new.point[i, 1])
         row[ROW_SHEAR] += force[i, 0]
         row[ROW_NORMAL] += force[i, 1]
-    if run.joints.shape[0] > 1:
+    if loose is not None:
         write_boxes(run, row, s, step, floor, lift)
     for k in range(3):
         row[ROW_KINETIC + k] = (1.0 - s) * old.energy[k] + s * new.energy[k]
@@ -100,8 +104,10 @@ def write_coordinates(samples: Samples, at: int, old: State, new: State, s: floa
         samples.velocity[at, j] = (1.0 - s) * old.velocity[j] + s * new.velocity[j]
 
 
-@register_jitable(forceinline=True)
-def sample(run: RunState, samples: Samples, written: int, origin: int, step: float) -> int:
+@inlined
+def sample(
+    run: RunState, samples: Samples, written: int, origin: int, step: float, loose: bool | None
+) -> int:
     """Write the samples from the old time up to and including the new time; returns the number of samples so far.
 
     `written` samples exist before, and the first `origin` of them are no longer in the arrays. Positions are
@@ -121,6 +127,6 @@ def sample(run: RunState, samples: Samples, written: int, origin: int, step: flo
         write_coordinates(samples, at, old, new, s, step)
         samples.mode[at] = run.track[0].mode
         if samples.columns.shape[1] > 0:
-            write_columns(run, samples.columns[at], samples.force[at], time, s, step)
+            write_columns(run, samples.columns[at], samples.force[at], time, s, step, loose)
         written += 1
     return written

@@ -7,14 +7,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import register_jitable
 
 from contact.arrays import FloatArray, IntArray
 from contact.interface.faces import CORNERS, linearise_points, make_faces, weigh_points
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.stacking import stacked
 from contact.interface.workspace import Contact, Workspace, make_workspace
-from contact.jit import compiled
+from contact.jit import compiled, inlined
 from contact.stepping import body as interface
 from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
 from contact.stepping.body import State, implements
@@ -129,7 +128,7 @@ def stack_with_own_scratch(stack: LooseStack) -> LooseStack:
     )
 
 
-@register_jitable(forceinline=True)
+@inlined
 def box_of(stack: StackBody, b: int) -> ModalBody:
     """One of the boxes."""
     begin, end = stack.monitors[b, 0], stack.monitors[b, 1]
@@ -155,7 +154,7 @@ def box_of(stack: StackBody, b: int) -> ModalBody:
     )
 
 
-@register_jitable(forceinline=True)
+@inlined
 def state_of(stack: StackBody, state: State, b: int) -> State:
     """What a state holds of one of the boxes; its points are the corners."""
     size = 3 + stack.stiffness.shape[1]
@@ -185,7 +184,7 @@ def state_of(stack: StackBody, state: State, b: int) -> State:
     )
 
 
-@register_jitable(forceinline=True)
+@inlined
 def work_of(work: Workspace, b: int) -> Workspace:
     """What the workspace of all corners holds of one of the boxes."""
     k, m = CORNERS * b, CORNERS * (b + 1)

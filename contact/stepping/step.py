@@ -7,13 +7,11 @@ where the forces were computed. Then the sliding of the base and the terms of th
 
 from typing import Any
 
-from numba.extending import register_jitable
-
 from contact.arrays import FloatArray
 from contact.interface.laws import relaxed_stick, stribeck_mu
 from contact.interface.solver import solve_contact
 from contact.interface.workspace import Contact, Workspace
-from contact.jit import compiled
+from contact.jit import compiled, inlined
 from contact.motion.kernel import UNIFORM, floor_motion, move_floor
 from contact.stepping.body import (
     KINETIC,
@@ -107,7 +105,7 @@ def crush(contact: Contact, step: float, old: State, new: State, work: Workspace
         new.point[i, 1] += indented
 
 
-@register_jitable(forceinline=True)
+@inlined
 def attempt(body: Any, run: RunState, step: float) -> int:
     """Try one step and write the result to `run.new`; returns the number of iterations, or -1."""
     old, new, work, scheme = run.old, run.new, run.work, run.scheme

@@ -1,0 +1,74 @@
+"""Compilation of kernels that only other kernels call, as pieces of these.
+
+numba optimises each function with all that it calls and makes machine code of it, and does so again for each function
+that calls it in turn. For a function that only kernels call, both are for nothing: here its code is passed on as numba
+writes it, and is optimised where it is used. It has no entry from Python.
+"""
+
+from typing import Any
+
+from numba import _dynfunc  # type: ignore[attr-defined]
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler_machinery import LoweringPass, register_pass
+from numba.core.typed_passes import AnnotateTypes, NativeLowering
+
+
+class PieceLibrary(JITCodeLibrary):
+    """Code for the libraries that link it."""
+
+    def _optimize_final_module(self) -> None:
+        """Left to these."""
+
+    def _finalize_final_module(self) -> None:
+        """Without machine code."""
+        self._finalized = True
+
+
+@register_pass(mutates_CFG=False, analysis_only=False)
+class BeginPiece(LoweringPass):
+    """Lower the function into a `PieceLibrary`."""
+
+    _name = "begin_piece"
+
+    def __init__(self) -> None:
+        LoweringPass.__init__(self)
+
+    def run_pass(self, state: Any) -> bool:
+        """Change the state of the compilation; returns that it has changed."""
+        state.library = PieceLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.flags.no_compile = True
+        return True
+
+
+@register_pass(mutates_CFG=False, analysis_only=False)
+class EndPiece(LoweringPass):
+    """Make the lowered function known to its callers, by an object that no machine code belongs to."""
+
+    _name = "end_piece"
+
+    def __init__(self) -> None:
+        LoweringPass.__init__(self)
+
+    def run_pass(self, state: Any) -> bool:
+        """Change the state of the compilation; returns that it has changed."""
+        lowered = state["cr"]
+        name, nothing = lowered.fndesc.qualname, 0
+        key = _dynfunc.make_function(
+            lowered.fndesc.lookup_module(), name, "", nothing, lowered.env, (state.library,)
+        )
+        state.targetctx.insert_user_function(key, lowered.fndesc, [state.library])
+        state["cr"] = lowered._replace(cfunc=key)
+        return True
+
+
+class PieceCompiler(CompilerBase):
+    """numba's compiler, but for pieces."""
+
+    def define_pipelines(self) -> list[Any]:
+        """The passes of numba's compiler with those of this module."""
+        passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        passes.add_pass_after(BeginPiece, AnnotateTypes)
+        passes.add_pass_after(EndPiece, NativeLowering)
+        passes.finalize()
+        return [passes]

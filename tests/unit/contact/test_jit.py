@@ -1,0 +1,49 @@
+"""Compilation of kernels: what only kernels call is a piece of these."""
+
+import pytest
+from numba.core import types
+from numba.core.errors import TypingError
+
+from contact.jit import compiled, inlined
+
+
+@compiled(inline=True)
+def doubled(x):
+    return 2.0 * x
+
+
+@compiled
+def halved(x):
+    return 0.5 * x
+
+
+@inlined
+def raised(x):
+    return x + 1.0
+
+
+@compiled
+def outermost(x, further):
+    if further is not None:
+        return untypable(x)
+    return raised(doubled(x)) + halved(x)
+
+
+def untypable(x):
+    return x.no_such_attribute
+
+
+def test_a_function_that_kernels_call_is_compiled_as_a_piece_of_these_alone():
+    outermost.compile((types.float64, types.none))  # the cache has that of Python alone
+    assert len(doubled.overloads) == len(halved.overloads) == 1
+    assert not doubled.entry.overloads and not halved.entry.overloads  # no machine code of their own
+    assert outermost(2.0, None) == 6.0
+    assert doubled(2.0) == 4.0 and halved(2.0) == 1.0
+    assert len(doubled.entry.overloads) == len(halved.entry.overloads) == 1
+
+
+def test_what_is_not_for_none_is_not_compiled():
+    """So a body that moves as one is stepped without the kernels of loose stacks."""
+    assert outermost(4.0, None) == 11.0
+    with pytest.raises(TypingError):
+        outermost(4.0, True)
