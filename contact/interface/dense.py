@@ -3,21 +3,59 @@
 from contact.arrays import FloatArray, IntArray
 from contact.jit import compiled
 
+SMALL = 8  #: size up to which columns are eliminated one by one
+
+
+@compiled(inline=True)
+def take_pivot(size: int, matrix: FloatArray, pivot: IntArray, k: int) -> bool:
+    """Bring the row with the largest entry of column k to row k; False if there is none."""
+    chosen, largest = k, abs(matrix[k, k])
+    for i in range(k + 1, size):
+        if abs(matrix[i, k]) > largest:
+            chosen, largest = i, abs(matrix[i, k])
+    pivot[k] = chosen
+    if not largest > 0.0:
+        return False
+    if chosen != k:
+        for j in range(size):
+            matrix[k, j], matrix[chosen, j] = matrix[chosen, j], matrix[k, j]
+    return True
+
+
+@compiled
+def eliminate_pair(size: int, matrix: FloatArray, pivot: IntArray, k: int) -> bool:
+    """Eliminate columns k and k + 1 in one pass over the rest, whose sums keep their order: the same bits."""
+    if not take_pivot(size, matrix, pivot, k):
+        return False
+    for i in range(k + 1, size):
+        matrix[i, k] /= matrix[k, k]
+        matrix[i, k + 1] -= matrix[i, k] * matrix[k, k + 1]
+    if not take_pivot(size, matrix, pivot, k + 1):
+        return False
+    # Slices begin at zero, so that the compiler takes several columns at once.
+    first, second = matrix[k, k + 2 : size], matrix[k + 1, k + 2 : size]
+    factor = matrix[k + 1, k]
+    for j in range(second.size):
+        second[j] -= factor * first[j]
+    for i in range(k + 2, size):
+        matrix[i, k + 1] /= matrix[k + 1, k + 1]
+        factor, other, row = matrix[i, k], matrix[i, k + 1], matrix[i, k + 2 : size]
+        for j in range(row.size):
+            row[j] = row[j] - factor * first[j] - other * second[j]
+    return True
+
 
 @compiled(inline=True)
 def factor_dense(size: int, matrix: FloatArray, pivot: IntArray) -> bool:
     """LU decomposition with row pivoting of the leading size x size block, in place; False if singular."""
-    for k in range(size):
-        chosen, largest = k, abs(matrix[k, k])
-        for i in range(k + 1, size):
-            if abs(matrix[i, k]) > largest:
-                chosen, largest = i, abs(matrix[i, k])
-        pivot[k] = chosen
-        if not largest > 0.0:
+    done = 0
+    while size - done > SMALL:
+        if not eliminate_pair(size, matrix, pivot, done):
             return False
-        if chosen != k:
-            for j in range(size):
-                matrix[k, j], matrix[chosen, j] = matrix[chosen, j], matrix[k, j]
+        done += 2
+    for k in range(done, size):
+        if not take_pivot(size, matrix, pivot, k):
+            return False
         for i in range(k + 1, size):
             factor = matrix[i, k] / matrix[k, k]
             matrix[i, k] = factor

@@ -110,18 +110,24 @@ def add_turned(compliance: FloatArray, cosine: float, sine: float, share: float,
             out[2 * i + 1, 2 * j + 1] += share * (-bx * sine + bz * cosine)
 
 
+@compiled
+def add_columns(force: FloatArray, compliance: FloatArray, out: FloatArray) -> None:
+    """Displacements (2 n,) under forces (n, 2), by columns of a symmetric compliance: several rows at once."""
+    for a in range(out.size):
+        out[a] = 0.0
+    for j in range(force.shape[0]):
+        along, up = force[j, 0], force[j, 1]
+        if up != 0.0 or along != 0.0:
+            for a in range(out.size):
+                out[a] += compliance[2 * j, a] * along + compliance[2 * j + 1, a] * up
+
+
 @compiled(inline=True)
 def move_points(velocity_slope: float, force: FloatArray, work: Workspace) -> None:
     """Points and velocities that follow from contact forces, by the condensed compliance."""
     n = force.shape[0]
-    if n > FEW_POINTS:  # by columns, several rows at once; the compliance is symmetric
-        for a in range(2 * n):
-            work.solution[a] = 0.0
-        for j in range(n):
-            along, up = force[j, 0], force[j, 1]
-            if up != 0.0 or along != 0.0:
-                for a in range(2 * n):
-                    work.solution[a] += work.compliance[2 * j, a] * along + work.compliance[2 * j + 1, a] * up
+    if n > FEW_POINTS:
+        add_columns(force, work.compliance, work.solution)
         for i in range(n):
             for k in range(2):
                 moved = work.solution[2 * i + k]
