@@ -15,9 +15,9 @@ from contact.motion.base_motion import NoMotion
 from contact.motion.kernel import FloorMotion, floor_motion
 from contact.stepping.body import make_state
 from contact.stepping.control import most_attempts
-from contact.stepping.integrator import advance_compiled
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import make_modal_body
+from contact.stepping.outcome import advance_compiled
 from contact.stepping.scheme import generalised_alpha
 from contact.stepping.stack_body import make_stack, settle_stack
 from contact.stepping.state import ROW_COLUMNS, RunState, make_joints, make_run, make_samples
@@ -44,7 +44,7 @@ class StackRig:
     def advance(self, until: float) -> int:
         """Step to `until` [s] or just beyond, or to a fall; returns the status."""
         self.run.clock[0].attempt_limit = most_attempts(self.run.control, until)
-        return int(advance_compiled(self.stack, self.run, until))
+        return advance_compiled(self.stack, self.run, until)
 
     @property
     def joints(self) -> Any:

@@ -4,9 +4,9 @@ A step is tried (`contact.stepping.step`) and repeated with a smaller size if an
 to slide in a large step, or if its energy error exceeds the tolerance. `contact.stepping.control` chooses the next
 size.
 
-`advance` is written once: `advance_compiled` steps a `ModalBody`, `fem.solid.nodal_kernels.advance_nodal` a
-finite-element body, and `advance` itself, in Python, any object with the methods of `contact.stepping.body`. All use
-the same compiled laws, contact solver and ledger.
+`advance` is written once: `outcome.advance_compiled` steps bodies in floating frames,
+`fem.solid.nodal_kernels.advance_nodal` a finite-element body, and `advance` itself, in Python, any object with the
+methods of `contact.stepping.body`. All use the same compiled laws, contact solver and ledger.
 """
 
 from typing import Any
@@ -194,5 +194,5 @@ def advance(body: Any, run: RunState, until: float) -> int:
     return REACHED
 
 
-advance_compiled = compiled(advance)
+advance_kernel = compiled(advance)
 enter_floor_frame_compiled = compiled(enter_floor_frame)

@@ -29,7 +29,7 @@ from contact.stepping.integrator import (
     FAILED,
     OVERTURNED,
     REACHED,
-    advance_compiled,
+    advance_kernel,
     enter_floor_frame_compiled,
 )
 from contact.stepping.loose_stack import LooseStack
@@ -52,6 +52,10 @@ class KeptSamples(NamedTuple):
     slip: FloatArray  #: (n_k,) sample i up to `slip_until` is in column i modulo n_k [m]
     strain: FloatArray  #: (n_s,) strain energy of the most strained samples; -1 where there is none [J]
     position: FloatArray  #: (n_s, n_d or 0) their coordinates
+
+
+#: nothing, as where the caller drains the samples
+NOTHING_KEPT = KeptSamples(0.0, np.zeros(0), np.zeros(0), np.zeros((0, 0)))
 
 
 class Outcome(NamedTuple):
@@ -117,6 +121,14 @@ def run_to_end(
     return Outcome(status, kept)
 
 
+def advance_compiled(body: ModalBody | LooseStack, run: RunState, until: float) -> int:
+    """`integrator.advance` of a container or a loose stack in floating frames.
+
+    It is in the kernel of runs without history, so that a run and its band compile the stepping once.
+    """
+    return int(advance_in_slices(body, run, NOTHING_KEPT, math.inf, until, DRIVEN))
+
+
 def on_resting_floor(run: RunState, since: float, place: Sequence[float]) -> RunState:
     """The run on a floor that stands still from `since` on [s], at this place along x and upward [m]."""
     still, level = (as_floor_motion(UNIFORM, (since, one, 0.0)) for one in place)
@@ -164,11 +176,16 @@ def is_over(run: RunState, part: int) -> bool:
 def advance_in_slices(
     body: ModalBody | LooseStack, run: RunState, kept: KeptSamples, ahead: float, until: float, part: int
 ) -> int:
-    """Step to `until` or until this part of the run is over, looking at the samples every `ahead` [s] or sooner."""
+    """Step to `until` or until this part of the run is over, looking at the samples every `ahead` [s] or sooner.
+
+    Where nothing is kept of the samples, it returns as `integrator.advance` does.
+    """
     clock = run.clock[0]
     while clock.time < until and not is_over(run, part):
         target = clock.next_look if part == FREE else clock.time + ahead
-        status = advance_compiled(body, run, min(target, until))
+        status = advance_kernel(body, run, min(target, until))
+        if kept.slip.size == 0:
+            return status
         if run.history.columns.shape[1] > 0:
             keep_slip(run, kept)
             keep_most_strained(run, kept)

@@ -6,8 +6,9 @@ The floor is stopped at a turning point, where that is no impulse.
 from dataclasses import dataclass
 
 from contact.stepping.body import ROTATION
-from contact.stepping.integrator import OVERTURNED, REACHED, advance_compiled
+from contact.stepping.integrator import OVERTURNED, REACHED
 from contact.stepping.observables import ROCKING
+from contact.stepping.outcome import advance_compiled
 from fem.assessment.verdict import audit
 from fem.case.case import Case
 from fem.model.container import Container

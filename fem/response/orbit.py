@@ -11,7 +11,8 @@ import numpy as np
 
 from contact.motion.kernel import floor_motion
 from contact.stepping.body import ANGULAR_VELOCITY, ROTATION, VELOCITY_X
-from contact.stepping.integrator import FAILED, OVERTURNED, REACHED, advance_compiled
+from contact.stepping.integrator import FAILED, OVERTURNED, REACHED
+from contact.stepping.outcome import advance_compiled
 from contact.stepping.state import ROW_ANGULAR_VELOCITY, ROW_ROTATION, ROW_SLIP
 from fem.assessment.verdict import audit, softer_contact
 from fem.response.model import DrivenModel, section_times, with_sections

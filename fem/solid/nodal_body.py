@@ -17,9 +17,10 @@ from scipy.sparse import csr_array
 from contact.interface.equilibrium import Stance
 from contact.interface.workspace import Contact, Workspace
 from contact.stepping.body import State
-from contact.stepping.integrator import UNPREPARED, advance, advance_compiled, enter_floor_frame_compiled
+from contact.stepping.integrator import UNPREPARED, advance, enter_floor_frame_compiled
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody
+from contact.stepping.outcome import advance_compiled
 from contact.stepping.scheme import Scheme
 from contact.stepping.state import RunState
 from fem.runtime.arrays import FloatArray, IntArray
@@ -239,7 +240,7 @@ def advance_body(body: Body, run: RunState, until: float) -> int:
     are missing.
     """
     if isinstance(body, ModalBody | LooseStack):
-        return int(advance_compiled(body, run, until))
+        return advance_compiled(body, run, until)
     while True:
         code = body.advance(run, until)
         if code != UNPREPARED:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from contact.stepping.integrator import advance_compiled
+from contact.stepping.outcome import advance_compiled
 from fem.case.case import load_case
 from fem.model.model import Model, build_model
 

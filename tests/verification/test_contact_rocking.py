@@ -13,7 +13,8 @@ from block_on_floor import GRAVITY, Block, Rig, rig
 
 from contact.interface.equilibrium import tilted
 from contact.motion.base_motion import HarmonicMotion
-from contact.stepping.integrator import OVERTURNED, advance_compiled
+from contact.stepping.integrator import OVERTURNED
+from contact.stepping.outcome import advance_compiled
 
 STACK = Block()
 AMPLE = replace(STACK, mu_static=1.0, mu_kinetic=1.0)

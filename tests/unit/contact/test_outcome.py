@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from contact.stepping.integrator import OVERTURNED, REACHED, advance_compiled
-from contact.stepping.outcome import run_to_end
+from contact.stepping.integrator import OVERTURNED, REACHED
+from contact.stepping.outcome import advance_compiled, run_to_end
 from fem.case.case import load_case
 from fem.model.container import discretise
 from fem.model.model import build_model
