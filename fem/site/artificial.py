@@ -128,12 +128,13 @@ class Shaper:
         motion *= peak / np.abs(motion).max()
         motion = self._finished(motion, peak)
         best, least = motion, math.inf
-        for _ in range(PASSES):
+        for more in reversed(range(PASSES)):
             ratios = wanted / pseudo_accelerations(STEP_S, motion, self.periods)
             error = float(np.mean((ratios - 1.0) ** 2))
             if error < least:
                 best, least = motion, error
-            motion = self._amplified(motion, ratios, peak)
+            if more:
+                motion = self._amplified(motion, ratios, peak)
         return best
 
     def _amplified(self, motion: FloatArray, ratios: FloatArray, peak: float) -> FloatArray:
@@ -160,9 +161,10 @@ class Shaper:
 def rounded_off(motion: FloatArray, peak: float) -> FloatArray:
     """The motion with its values beyond KNEE times the peak bent towards CEILING times the peak."""
     beyond = np.abs(motion) / peak - KNEE
-    room = CEILING - KNEE
-    bent = np.sign(motion) * peak * (KNEE + room * np.tanh(beyond / room))
-    return np.where(beyond > 0.0, bent, motion)
+    room, high = CEILING - KNEE, beyond > 0.0
+    bent = motion.copy()
+    bent[high] = np.sign(motion[high]) * peak * (KNEE + room * np.tanh(beyond[high] / room))
+    return bent
 
 
 def raised(times: FloatArray, motion: FloatArray, peak: float) -> FloatArray:

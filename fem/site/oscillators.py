@@ -19,6 +19,7 @@ from fem.site.action import DAMPING_RATIO
 
 #: of a period, at least: a peak midway between samples is 1 - cos(pi/16) = 1.9 % too low
 LEAST_SAMPLES = 16
+AT_ONCE = 4  #: steps for which the state of an oscillator is read and written once
 
 
 class _Group(NamedTuple):
@@ -54,8 +55,9 @@ def pseudo_accelerations(step: float, acceleration: FloatArray, periods: FloatAr
     """
     found = np.empty(periods.size)
     for members, parts, coefficients in _groups(step, tuple(periods.tolist())):
+        forces = np.zeros(2 + math.ceil(parts * acceleration.size / AT_ONCE) * AT_ONCE)
         work = np.zeros((3, coefficients.shape[1]))
-        _largest(acceleration, parts, coefficients, work[0], work[1], work[2])
+        _largest(acceleration, parts, coefficients, forces, work[0], work[1], work[2])
         found[members] = work[2]
     return found
 
@@ -64,36 +66,39 @@ def _largest_of(
     acceleration: FloatArray,
     parts: int,
     coefficients: FloatArray,
+    forces: FloatArray,
     last: FloatArray,
     last_but_one: FloatArray,
     largest: FloatArray,
 ) -> None:
     """Step all oscillators through a motion, which rises from zero in the step before its first sample.
 
-    `last`, `last_but_one` and `largest` (m,) begin as zeros; `largest` ends as the largest responses.
+    `last`, `last_but_one` and `largest` (m,) begin as zeros; `largest` ends as the largest responses. `forces` begins
+    as zeros, too: the forcing at all steps, after two zeros and as many as make the steps a multiple of `AT_ONCE`.
     """
     # Unpacked at once, the rows would not be known to be contiguous, and the loop would take three times as long.
     now, one_before, two_before = coefficients[0], coefficients[1], coefficients[2]
     decay_one, decay_two = coefficients[3], coefficients[4]
-    forced, forced_before = 0.0, 0.0
-    for sample in range(acceleration.size):
-        begin = acceleration[sample - 1] if sample > 0 else 0.0
-        for part in range(parts):
-            force = begin + (part + 1) / parts * (acceleration[sample] - begin)
-            for k in range(last.size):
-                response = (
-                    now[k] * force
-                    + one_before[k] * forced
-                    + two_before[k] * forced_before
-                    - decay_one[k] * last[k]
-                    - decay_two[k] * last_but_one[k]
-                )
-                last_but_one[k] = last[k]
-                last[k] = response
+    first = forces.size - parts * acceleration.size
+    for part in range(parts):
+        share, begin = (part + 1) / parts, 0.0
+        for sample in range(acceleration.size):
+            forces[first + part + parts * sample] = begin + share * (acceleration[sample] - begin)
+            begin = acceleration[sample]
+    for i in range(2, forces.size, AT_ONCE):
+        f0, f1, f2, f3 = forces[i - 2], forces[i - 1], forces[i], forces[i + 1]
+        f4, f5 = forces[i + 2], forces[i + 3]
+        for k in range(last.size):
+            a, b, c, d, e = now[k], one_before[k], two_before[k], decay_one[k], decay_two[k]
+            r0, r1, most = last_but_one[k], last[k], largest[k]
+            r2 = a * f2 + b * f1 + c * f0 - d * r1 - e * r0
+            r3 = a * f3 + b * f2 + c * f1 - d * r2 - e * r1
+            r4 = a * f4 + b * f3 + c * f2 - d * r3 - e * r2
+            r5 = a * f5 + b * f4 + c * f3 - d * r4 - e * r3
+            for response in (r2, r3, r4, r5):
                 size = abs(response)
-                largest[k] = size if size > largest[k] else largest[k]
-            forced_before = forced
-            forced = force
+                most = size if size > most else most
+            last_but_one[k], last[k], largest[k] = r4, r5, most
 
 
 _largest = compiled(_largest_of, sources=(Path(__file__),))
