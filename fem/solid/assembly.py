@@ -12,6 +12,7 @@ gradient of the strain energy, so equilibrium reads internal force = load.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
@@ -32,8 +33,10 @@ from skfem.helpers import ddot, sym_grad, trace
 
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.elasticity import (
+    CellBlocks,
     LamePair,
     cauchy_stress,
+    cell_blocks,
     element_forces,
     first_stress_tangent,
     plane_stress_lame,
@@ -112,6 +115,11 @@ class FiniteElements:
         """Number of displacement components."""
         return 2 * len(self.nodes)
 
+    @cached_property
+    def blocks(self) -> CellBlocks:
+        """The cells in blocks, for the internal forces."""
+        return cell_blocks(self.cells, self.gradient, self.weights)
+
     @property
     def nodal_mass(self) -> FloatArray:
         """Row sums of the mass, shape (n,) [kg]."""
@@ -134,13 +142,10 @@ class FiniteElements:
         """Gradient of the strain energy, shape (n, 2) [N], and the energy itself [J]."""
         force = np.empty_like(self.nodes)
         energy = element_forces(
-            self.cells,
-            self.gradient,
-            self.weights,
+            self.blocks,
             self.lame.first,
             self.lame.shear,
             np.ascontiguousarray(displacement, dtype=float),
-            np.empty((2, self.cells.shape[1], 2)),
             force,
         )
         return force, energy

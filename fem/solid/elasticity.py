@@ -17,6 +17,7 @@ from contact.jit import compiled
 from fem.runtime.arrays import FloatArray, IntArray
 
 SOURCES = (Path(__file__),)  #: on which the machine code of this module depends
+LANES = 64  #: cells of a block
 Real = TypeVar("Real", float, FloatArray)
 
 
@@ -100,56 +101,94 @@ def second_stress(strain: FloatArray, lame: LamePair) -> FloatArray:
     return np.stack(stress_components(xx, zz, xz, lame.first, lame.shear))
 
 
+class CellBlocks(NamedTuple):
+    """The cells in blocks of `LANES`, for instructions on several at once; cells without volume fill the last."""
+
+    number: int  #: m, of cells
+    cells: IntArray  #: (m / LANES, k, LANES) their nodes
+    gradient: (
+        FloatArray  #: (m / LANES, q, k, 2, LANES) derivatives of the shape functions along x and z [1/m]
+    )
+    weights: FloatArray  #: (m / LANES, q, LANES) volumes [m3]
+    nodal: FloatArray  #: (4 k, LANES) scratch: displacements and forces of the nodes
+    local: FloatArray  #: (5 LANES,) scratch: gradient, then stress and energy at a point
+
+
+def cell_blocks(cells: IntArray, gradient: FloatArray, weights: FloatArray) -> CellBlocks:
+    """Cells (m, k), derivatives of their shape functions (2, m, q, k) and volumes (m, q) in blocks."""
+    (m, k), q = cells.shape, weights.shape[1]
+    blocks = -(-m // LANES)
+    row = np.minimum(np.arange(blocks * LANES), m - 1)
+    volumes = np.where((np.arange(row.size) < m)[:, None], weights[row], 0.0)
+    return CellBlocks(
+        number=m,
+        cells=np.ascontiguousarray(cells[row].reshape(blocks, LANES, k).transpose(0, 2, 1)),
+        gradient=np.ascontiguousarray(
+            gradient[:, row].reshape(2, blocks, LANES, q, k).transpose(1, 3, 4, 0, 2)
+        ),
+        weights=np.ascontiguousarray(volumes.reshape(blocks, LANES, q).transpose(0, 2, 1)),
+        nodal=np.zeros((4 * k, LANES)),
+        local=np.zeros(5 * LANES),
+    )
+
+
 @compiled(sources=SOURCES)
 def element_forces(
-    cells: IntArray,
-    gradient: FloatArray,
-    weights: FloatArray,
-    first: float,
-    shear: float,
-    displacement: FloatArray,
-    local: FloatArray,
-    out: FloatArray,
+    blocks: CellBlocks, first: float, shear: float, displacement: FloatArray, out: FloatArray
 ) -> float:
-    """Gradient of the strain energy by the displacements, and the energy [J], cell by cell.
+    """Gradient of the strain energy by the displacements, and the energy [J].
 
     Args:
-        cells: (m, k) nodes of each cell.
-        gradient: (2, m, q, k) derivatives of the shape functions along x and z at the points [1/m].
-        weights: (m, q) volumes [m3].
+        blocks: the cells.
         first, shear: the Lamé pair [Pa].
         displacement: (n, 2) [m].
-        local: (2, k, 2) scratch.
         out: (n, 2) forces [N], written.
     """
+    _, k, _ = blocks.cells.shape
+    points, nodal, local = blocks.weights.shape[1], blocks.nodal, blocks.local
     energy = 0.0
     for i in range(out.shape[0]):
         out[i, 0], out[i, 1] = 0.0, 0.0
-    for c in range(cells.shape[0]):
-        for b in range(cells.shape[1]):
-            node = cells[c, b]
-            local[0, b, 0], local[0, b, 1] = displacement[node, 0], displacement[node, 1]
-            local[1, b, 0], local[1, b, 1] = 0.0, 0.0
-        for q in range(weights.shape[1]):
-            xx, xz, zx, zz = 0.0, 0.0, 0.0, 0.0
-            for b in range(cells.shape[1]):
-                by_x, by_z = gradient[0, c, q, b], gradient[1, c, q, b]
-                u, w = local[0, b, 0], local[0, b, 1]
-                xx += by_x * u
-                xz += by_z * u
-                zx += by_x * w
-                zz += by_z * w
-            pxx, pxz, pzx, pzz, density = stress_and_energy(xx, xz, zx, zz, first, shear)
-            weight = weights[c, q]
-            energy += weight * density
-            for b in range(cells.shape[1]):
-                by_x, by_z = weight * gradient[0, c, q, b], weight * gradient[1, c, q, b]
-                local[1, b, 0] += by_x * pxx + by_z * pxz
-                local[1, b, 1] += by_x * pzx + by_z * pzz
-        for b in range(cells.shape[1]):
-            node = cells[c, b]
-            out[node, 0] += local[1, b, 0]
-            out[node, 1] += local[1, b, 1]
+    for c in range(blocks.cells.shape[0]):
+        for b in range(k):
+            cells, u, w = blocks.cells[c, b], nodal[4 * b], nodal[4 * b + 1]
+            along, up = nodal[4 * b + 2], nodal[4 * b + 3]
+            for lane in range(LANES):
+                u[lane], w[lane] = displacement[cells[lane], 0], displacement[cells[lane], 1]
+                along[lane], up[lane] = 0.0, 0.0
+        for q in range(points):
+            for lane in range(4 * LANES):
+                local[lane] = 0.0
+            for b in range(k):
+                by_x, by_z = blocks.gradient[c, q, b, 0], blocks.gradient[c, q, b, 1]
+                u, w = nodal[4 * b], nodal[4 * b + 1]
+                for lane in range(LANES):
+                    local[lane] += by_x[lane] * u[lane]
+                    local[LANES + lane] += by_z[lane] * u[lane]
+                    local[2 * LANES + lane] += by_x[lane] * w[lane]
+                    local[3 * LANES + lane] += by_z[lane] * w[lane]
+            weights = blocks.weights[c, q]
+            for lane in range(LANES):
+                xx, xz = local[lane], local[LANES + lane]
+                zx, zz = local[2 * LANES + lane], local[3 * LANES + lane]
+                xx, xz, zx, zz, density = stress_and_energy(xx, xz, zx, zz, first, shear)
+                weight = weights[lane]
+                local[lane], local[LANES + lane] = weight * xx, weight * xz
+                local[2 * LANES + lane], local[3 * LANES + lane] = weight * zx, weight * zz
+                local[4 * LANES + lane] = weight * density
+            for lane in range(LANES):
+                energy += local[4 * LANES + lane]
+            for b in range(k):
+                by_x, by_z = blocks.gradient[c, q, b, 0], blocks.gradient[c, q, b, 1]
+                along, up = nodal[4 * b + 2], nodal[4 * b + 3]
+                for lane in range(LANES):
+                    along[lane] += by_x[lane] * local[lane] + by_z[lane] * local[LANES + lane]
+                    up[lane] += by_x[lane] * local[2 * LANES + lane] + by_z[lane] * local[3 * LANES + lane]
+        for b in range(k):
+            cells, along, up = blocks.cells[c, b], nodal[4 * b + 2], nodal[4 * b + 3]
+            for lane in range(min(LANES, blocks.number - c * LANES)):
+                out[cells[lane], 0] += along[lane]
+                out[cells[lane], 1] += up[lane]
     return energy
 
 

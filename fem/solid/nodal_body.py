@@ -10,9 +10,8 @@ from collections.abc import Mapping
 from typing import Protocol
 
 import numpy as np
-import scipy.sparse
 import scipy.sparse.linalg
-from scipy.sparse import csr_array
+from scipy.sparse import bsr_array, csr_array
 
 from contact.interface.equilibrium import Stance
 from contact.interface.workspace import Contact, Workspace
@@ -25,7 +24,8 @@ from contact.stepping.scheme import Scheme
 from contact.stepping.state import RunState
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid import nodal_kernels
-from fem.solid.assembly import FiniteElements, factorised
+from fem.solid.assembly import FiniteElements
+from fem.solid.block_factor import block_pattern, factor_blocks
 from fem.solid.nodal_kernels import NodalBody, advance_nodal, enter_floor_frame_nodal
 from fem.solid.reduction import StaticResponse
 
@@ -73,14 +73,16 @@ class FullBody:
         self.monitor = np.asarray(monitor)
         self.gravity, self.downhill = gravity, downhill
         self.damping = damping
-        self._vector_mass = elements.vector_mass
+        pattern = elements.stiffness.tobsr((2, 2))
+        pattern.sort_indices()
+        self._block_mass = _on_blocks(elements.mass, pattern)
         nodal_mass = elements.nodal_mass
         self.mass = float(nodal_mass.sum())
         self.centroid = nodal_mass @ elements.nodes / self.mass
         self._arm = elements.nodes - self.centroid
         mass_arm = elements.mass @ self._arm
         self.inertia = float(np.sum(mass_arm * self._arm))
-        self.nodal = _without_factors(self, nodal_mass, mass_arm)
+        self.nodal = _without_factors(self, pattern, nodal_mass, mass_arm)
 
     @property
     def coordinates(self) -> int:
@@ -117,24 +119,25 @@ class FullBody:
         now = 1.0 - scheme.alpha_f
         inertial = (1.0 - scheme.alpha_m) / (scheme.newmark_beta * step * step)
         elastic = now * (1.0 + self.damping * scheme.newmark_gamma / (scheme.newmark_beta * step))
-        solver = factorised(inertial * self._vector_mass + elastic * self.elements.stiffness)
         if nodal.lower.shape[1] == 0:
-            nodal = self.nodal = _with_room(nodal, solver)
+            nodal = self.nodal = _with_room(nodal)
         slots = nodal.cached_step.size - 1
         slot = int(nodal.cached_step[slots])
         nodal.cached_step[slots] = (slot + 1) % slots
-        lower = scipy.sparse.tril(solver.L, -1, format="csc")
-        nodal.order[:] = solver.perm_r  # the same as of the columns: pivots stay on the diagonal
-        nodal.lower_starts[slot] = lower.indptr
-        nodal.lower_rows[slot, : lower.nnz] = lower.indices
-        nodal.lower[slot, : lower.nnz] = lower.data
-        nodal.inverse_pivot[slot] = 1.0 / solver.U.diagonal()
+        matrix = elastic * nodal.stiffness_values
+        matrix[:, 0] += inertial * self._block_mass
+        matrix[:, 3] += inertial * self._block_mass
+        factor_blocks(
+            nodal.pattern, matrix[nodal.pattern.matrix_blocks], nodal.lower[slot], nodal.inverse_pivot[slot]
+        )
         dofs = (2 * self.base[:, None] + np.arange(2)).ravel()
-        loads = np.zeros((self.coordinates, dofs.size))
-        loads[dofs, np.arange(dofs.size)] = 1.0
-        answers = solver.solve(loads)
-        nodal.to_base[slot] = answers.T
-        nodal.base_compliance[slot] = 0.5 * (answers[dofs] + answers[dofs].T)
+        answers = nodal.to_base[slot]
+        for answer, dof in zip(answers, dofs, strict=True):
+            nodal.permuted[:] = 0.0
+            nodal.permuted[nodal.order[dof]] = 1.0
+            nodal_kernels.substitute(nodal, slot)
+            answer[:] = nodal.permuted[nodal.order]
+        nodal.base_compliance[slot] = 0.5 * (answers[:, dofs] + answers[:, dofs].T)
         nodal.cached_step[slot] = step
 
     def advance(self, run: RunState, until: float) -> int:
@@ -266,10 +269,24 @@ def _rounding(elements: FiniteElements) -> float:
     return UNIT_ROUNDOFF * stiffest * float(np.abs(elements.nodes).max())
 
 
-def _without_factors(body: FullBody, nodal_mass: FloatArray, mass_arm: FloatArray) -> NodalBody:
+def _on_blocks(mass: csr_array, pattern: bsr_array) -> FloatArray:
+    """Entries of the mass (n, n) at the blocks of the stiffness, which links the same nodes."""
+    n = mass.shape[0]
+    ones = csr_array((np.ones(len(pattern.indices)), pattern.indices, pattern.indptr), shape=(n, n))
+    given, row = mass.tocoo(), np.repeat(np.arange(n), np.diff(ones.indptr))
+    values = np.zeros(ones.nnz)
+    values[np.searchsorted(row * n + ones.indices, given.row.astype(np.int64) * n + given.col)] = given.data
+    return values
+
+
+def _without_factors(
+    body: FullBody, stiffness: bsr_array, nodal_mass: FloatArray, mass_arm: FloatArray
+) -> NodalBody:
     elements = body.elements
-    n, k = len(elements.nodes), elements.cells.shape[1]
-    mass, stiffness = csr_array(elements.mass), elements.stiffness.tocsr()
+    n = len(elements.nodes)
+    mass = csr_array(elements.mass)
+    links = csr_array((np.ones(len(stiffness.indices)), stiffness.indices, stiffness.indptr), shape=(n, n))
+    pattern = block_pattern(links)
     return NodalBody(
         mass=body.mass,
         inertia=body.inertia,
@@ -287,19 +304,16 @@ def _without_factors(body: FullBody, nodal_mass: FloatArray, mass_arm: FloatArra
         mass_values=mass.data,
         stiffness_starts=stiffness.indptr.astype(np.int32),
         stiffness_columns=stiffness.indices.astype(np.int32),
-        stiffness_values=stiffness.data,
-        cells=elements.cells,
-        gradient=elements.gradient,
-        weights=elements.weights,
+        stiffness_values=stiffness.data.reshape(-1, 4),
+        cells=elements.blocks,
         base=body.base.astype(np.int64),
         watched=body.monitor.astype(np.int64),
         source=np.zeros((n, 2)),
         cached_step=np.array([-1.0, 0.0]),
-        order=np.zeros(2 * n, dtype=np.int32),
-        lower_starts=np.zeros((1, 2 * n + 1), dtype=np.int32),
-        lower_rows=np.zeros((1, 0), dtype=np.int32),
-        lower=np.zeros((1, 0)),
-        inverse_pivot=np.zeros((1, 0)),
+        order=np.add.outer(2 * pattern.place, np.arange(2)).ravel().astype(np.int32),
+        pattern=pattern,
+        lower=np.zeros((1, 0, 4)),
+        inverse_pivot=np.zeros((1, 0, 4)),
         to_base=np.zeros((1, 0, 0)),
         base_compliance=np.zeros((1, 0, 0)),
         displacement=np.zeros((n, 2)),
@@ -309,25 +323,21 @@ def _without_factors(body: FullBody, nodal_mass: FloatArray, mass_arm: FloatArra
         residual=np.zeros(2 * n),
         permuted=np.zeros(2 * n),
         free_change=np.zeros(2 * n),
-        local=np.zeros((2, k, 2)),
         turn=np.array([1.0, 0.0]),
         strain_energy=np.zeros(1),
         known=np.zeros(2, dtype=np.int64),
     )
 
 
-def _with_room(body: NodalBody, solver: scipy.sparse.linalg.SuperLU) -> NodalBody:
-    """Arrays for as many factors as `FACTOR_MEMORY` holds; all have the sparsity of the first one."""
-    unknowns, forces = body.residual.size, 2 * body.base.size
-    entries = solver.nnz // 2  # of L and U together, with zeros that the blocks of SuperLU hold
-    size = 12 * entries + 8 * (forces + 2) * unknowns
+def _with_room(body: NodalBody) -> NodalBody:
+    """Arrays for as many factors as `FACTOR_MEMORY` holds."""
+    unknowns, forces, blocks = body.residual.size, 2 * body.base.size, body.pattern.rows.size
+    size = 32 * blocks + 8 * (forces + 2) * unknowns
     slots = min(max(FEWEST_FACTORS, FACTOR_MEMORY // size), MOST_FACTORS)
     return body._replace(
         cached_step=np.append(np.full(slots, -1.0), 0.0),
-        lower_starts=np.zeros((slots, unknowns + 1), dtype=np.int32),
-        lower_rows=np.zeros((slots, entries), dtype=np.int32),
-        lower=np.zeros((slots, entries)),
-        inverse_pivot=np.zeros((slots, unknowns)),
+        lower=np.zeros((slots, blocks, 4)),
+        inverse_pivot=np.zeros((slots, unknowns // 2, 4)),
         to_base=np.zeros((slots, forces, unknowns)),
         base_compliance=np.zeros((slots, forces, forces)),
     )

@@ -10,6 +10,7 @@ import math
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import fem.solid.block_factor
 import fem.solid.elasticity
 from contact.interface.solver import add_turned
 from contact.interface.workspace import Contact, Workspace
@@ -31,10 +32,11 @@ from contact.stepping.body import (
 from contact.stepping.integrator import advance, enter_floor_frame
 from contact.stepping.scheme import Scheme
 from fem.runtime.arrays import FloatArray, IntArray
-from fem.solid.elasticity import element_forces
+from fem.solid.block_factor import BlockPattern, substitute_blocks
+from fem.solid.elasticity import CellBlocks, element_forces
 
 #: what the machine code depends on besides the sources of `contact`
-SOURCES = (Path(__file__), Path(fem.solid.elasticity.__file__))
+SOURCES = (Path(__file__), Path(fem.solid.block_factor.__file__), Path(fem.solid.elasticity.__file__))
 
 
 class NodalBody(NamedTuple):
@@ -54,22 +56,19 @@ class NodalBody(NamedTuple):
     mass_starts: IntArray  #: mass (n, n) by rows [kg]
     mass_columns: IntArray
     mass_values: FloatArray
-    stiffness_starts: IntArray  #: linear stiffness (2 n, 2 n) by rows [N/m]
+    stiffness_starts: IntArray  #: linear stiffness (n, n) by rows, in blocks (2, 2) [N/m]
     stiffness_columns: IntArray
-    stiffness_values: FloatArray
-    cells: IntArray  #: (m, k)
-    gradient: FloatArray  #: (2, m, q, k) derivatives of the shape functions [1/m]
-    weights: FloatArray  #: (m, q) volumes [m3]
+    stiffness_values: FloatArray  #: (blocks, 4): xx, xz, zx, zz
+    cells: CellBlocks
     base: IntArray  #: (n_c,) supporting nodes, by rising x
     watched: IntArray  #: (n_m,) nodes whose motion is followed
     source: FloatArray  #: (n, 2) further forces on the nodes, set by the caller [N]
     #: factors L D L^T of the turned Newmark matrix, one slot for each step size
     cached_step: FloatArray  #: (slots + 1,) the step [s]; last, the slot to use next
     order: IntArray  #: (2 n,) where an unknown stands in the factors
-    lower_starts: IntArray  #: (slots, 2 n + 1) L by columns, its unit diagonal left out
-    lower_rows: IntArray  #: (slots, entries)
-    lower: FloatArray  #: (slots, entries)
-    inverse_pivot: FloatArray  #: (slots, 2 n) 1/D [m/N]
+    pattern: BlockPattern
+    lower: FloatArray  #: (slots, blocks, 4) L below its diagonal
+    inverse_pivot: FloatArray  #: (slots, n, 4) inverse of D [m/N]
     to_base: FloatArray  #: (slots, 2 n_c, 2 n) displacement under unit forces at the base points, turned frame [m/N]
     base_compliance: FloatArray  #: (slots, 2 n_c, 2 n_c) of the base points, turned frame [m/N]
     #: scratch
@@ -81,7 +80,6 @@ class NodalBody(NamedTuple):
     residual: FloatArray
     permuted: FloatArray  #: (2 n,) right-hand side and solution in the order of the factors
     free_change: FloatArray  #: (2 n,) change of the coordinates without contact force [m]
-    local: FloatArray  #: (2, k, 2) displacements and forces of a cell's nodes
     turn: FloatArray  #: (2,) cosine and sine of the frame's rotation
     strain_energy: FloatArray  #: (1,) at the last residual [J]
     known: IntArray  #: (2,) the residual belongs to the iterate; residuals so far
@@ -110,12 +108,9 @@ def forces(body: NodalBody, position: FloatArray, velocity: FloatArray) -> None:
         body.displacement[i, 1] = position[2 * i + 1] - body.node[i, 1]
     body.strain_energy[0] = element_forces(
         body.cells,
-        body.gradient,
-        body.weights,
         body.first,
         body.shear,
         body.displacement,
-        body.local,
         body.internal,
     )
     for i in range(n):
@@ -125,11 +120,15 @@ def forces(body: NodalBody, position: FloatArray, velocity: FloatArray) -> None:
         body.turned[2 * i], body.turned[2 * i + 1] = cosine * x - sine * z, sine * x + cosine * z
     if body.damping != 0.0:
         for i in range(n):
-            x, z = 0.0, 0.0
-            for at in range(body.stiffness_starts[2 * i], body.stiffness_starts[2 * i + 1]):
-                x += body.stiffness_values[at] * body.turned[body.stiffness_columns[at]]
-            for at in range(body.stiffness_starts[2 * i + 1], body.stiffness_starts[2 * i + 2]):
-                z += body.stiffness_values[at] * body.turned[body.stiffness_columns[at]]
+            xx, xz, zx, zz = 0.0, 0.0, 0.0, 0.0  # four sums, so that none waits for the last term of another
+            for at in range(body.stiffness_starts[i], body.stiffness_starts[i + 1]):
+                j = 2 * body.stiffness_columns[at]
+                along, across = body.turned[j], body.turned[j + 1]
+                xx += body.stiffness_values[at, 0] * along
+                xz += body.stiffness_values[at, 1] * across
+                zx += body.stiffness_values[at, 2] * along
+                zz += body.stiffness_values[at, 3] * across
+            x, z = xx + xz, zx + zz
             body.damping_force[i, 0] = body.damping * (cosine * x + sine * z)
             body.damping_force[i, 1] = body.damping * (cosine * z - sine * x)
     body.known[1] += 1
@@ -141,12 +140,15 @@ def unbalanced(body: NodalBody, scheme: Scheme, old: State, new: State) -> None:
     now, before = 1.0 - scheme.alpha_f, scheme.alpha_f
     forces(body, new.position, new.velocity)
     share, rest = 1.0 - scheme.alpha_m, scheme.alpha_m
+    mean = body.turned
+    for j in range(mean.size):
+        mean[j] = share * new.acceleration[j] + rest * old.acceleration[j]
     for i in range(body.nodal_mass.size):
         x, z = 0.0, 0.0
         for at in range(body.mass_starts[i], body.mass_starts[i + 1]):
             j = 2 * body.mass_columns[at]
-            x += body.mass_values[at] * (share * new.acceleration[j] + rest * old.acceleration[j])
-            z += body.mass_values[at] * (share * new.acceleration[j + 1] + rest * old.acceleration[j + 1])
+            x += body.mass_values[at] * mean[j]
+            z += body.mass_values[at] * mean[j + 1]
         weight, pull = body.nodal_mass[i] * body.gravity, body.nodal_mass[i] * body.downhill
         x += now * (body.internal[i, 0] + body.damping_force[i, 0] - pull)
         z += now * (body.internal[i, 1] + body.damping_force[i, 1] + weight)
@@ -167,17 +169,7 @@ def slot_of(body: NodalBody, step: float) -> int:
 @compiled(sources=SOURCES)
 def substitute(body: NodalBody, slot: int) -> None:
     """Solve with the factors in the slot, in place of `body.permuted`."""
-    vector, starts, rows = body.permuted, body.lower_starts[slot], body.lower_rows[slot]
-    values, pivots = body.lower[slot], body.inverse_pivot[slot]
-    for j in range(vector.size):
-        here = vector[j]
-        for at in range(starts[j], starts[j + 1]):
-            vector[rows[at]] -= values[at] * here
-    for j in range(vector.size - 1, -1, -1):
-        total = vector[j] * pivots[j]
-        for at in range(starts[j], starts[j + 1]):
-            total -= values[at] * vector[rows[at]]
-        vector[j] = total
+    substitute_blocks(body.pattern, body.lower[slot], body.inverse_pivot[slot], body.permuted)
 
 
 @compiled(sources=SOURCES)

@@ -32,8 +32,7 @@ from fem.solid.reduction import StaticResponse
 FACTORS = (
     "cached_step",
     "order",
-    "lower_starts",
-    "lower_rows",
+    "pattern",
     "lower",
     "inverse_pivot",
     "to_base",
