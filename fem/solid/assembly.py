@@ -41,6 +41,7 @@ from fem.solid.elasticity import (
     first_stress_tangent,
     plane_stress_lame,
     von_mises,
+    with_own_scratch,
 )
 
 #: A field over the elevation: (x, z) of any shape (...) -> the two components, shape (2, ...).
@@ -142,7 +143,7 @@ class FiniteElements:
         """Gradient of the strain energy, shape (n, 2) [N], and the energy itself [J]."""
         force = np.empty_like(self.nodes)
         energy = element_forces(
-            self.blocks,
+            with_own_scratch(self.blocks),
             self.lame.first,
             self.lame.shear,
             np.ascontiguousarray(displacement, dtype=float),

@@ -132,6 +132,11 @@ def cell_blocks(cells: IntArray, gradient: FloatArray, weights: FloatArray) -> C
     )
 
 
+def with_own_scratch(blocks: CellBlocks) -> CellBlocks:
+    """The same cells for another thread."""
+    return blocks._replace(nodal=np.zeros_like(blocks.nodal), local=np.zeros_like(blocks.local))
+
+
 @compiled(sources=SOURCES)
 def element_forces(
     blocks: CellBlocks, first: float, shear: float, displacement: FloatArray, out: FloatArray

@@ -26,6 +26,7 @@ from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid import nodal_kernels
 from fem.solid.assembly import FiniteElements
 from fem.solid.block_factor import block_pattern, factor_blocks
+from fem.solid.elasticity import with_own_scratch
 from fem.solid.nodal_kernels import NodalBody, advance_nodal, enter_floor_frame_nodal
 from fem.solid.reduction import StaticResponse
 
@@ -33,7 +34,7 @@ from fem.solid.reduction import StaticResponse
 RESIDUAL_TOLERANCE = 5e-6
 UNIT_ROUNDOFF = 2.0**-53
 FACTOR_MEMORY = 600_000_000  #: for factors of different step sizes [bytes]
-FEWEST_FACTORS, MOST_FACTORS = 8, 64
+FEWEST_FACTORS, MOST_FACTORS = 8, 128  #: a run with hard impacts takes 90 step sizes
 BYTES_OF_A_NODE = 35e3  #: while the matrix is factored, measured on stacks of 2000 to 10,000 cells
 #: arrays of the last residual, which `complete` uses
 REMEMBERED = ("turn", "internal", "damping_force", "strain_energy")
@@ -305,7 +306,7 @@ def _without_factors(
         stiffness_starts=stiffness.indptr.astype(np.int32),
         stiffness_columns=stiffness.indices.astype(np.int32),
         stiffness_values=stiffness.data.reshape(-1, 4),
-        cells=elements.blocks,
+        cells=with_own_scratch(elements.blocks),
         base=body.base.astype(np.int64),
         watched=body.monitor.astype(np.int64),
         source=np.zeros((n, 2)),

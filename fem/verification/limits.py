@@ -257,8 +257,13 @@ def start_at_rest() -> Iterator[Row]:
 
 @check("limits", "full model through an impact", quick=False)
 def full_model_through_an_impact() -> Iterator[Row]:
-    """Every node of the shell free to move, through its first impact: the same motion as with 20 modes."""
+    """Every node of the shell free to move, through its first impact: the same motion as with 20 modes.
+
+    With small steps: with those of `solver.energy_tolerance` = 1 the slip, where mu_k is 0.2, scatters by 1 mm if the
+    motion is changed by 1e-9.
+    """
     motion = harmonic(4.0 / 6.928**2, 6.928) | SHELL | {"contact.mu_static": 0.4, "solver.duration_s": 1.0}
+    motion |= {"solver.energy_tolerance": 0.2}
     for kinetic in (0.4, 0.2):
         full, reduced = (
             run(STACK, motion | {"contact.mu_kinetic": kinetic, "solver.model": model})
