@@ -31,7 +31,11 @@ from fem.site.artificial import artificial_motions
 
 REPEATS = 5
 COMPILE_S, PAGE_S, RUN_S, CHECK_S = 15.0, 70.0, 2.5, 0.4
-STEP_MS, SIMULATED_S = 4.0, 0.05  # of the shell stack with all nodes
+STEP_MS = 4.0  # of the shell stack with all nodes
+FREE_SHELL = (
+    *("solver.model=full", "floor.kind=rigid", "motion.kind=none"),
+    *("initial.rotation_rad=0.05", "solver.duration_s=1.5"),
+)
 MOTION_S, TEN_THOUSAND_S, MEMORY_MB = 0.02, 300.0, 1000.0
 MOTIONS = 100, 300  #: of the ensembles from whose difference ten thousand motions follow
 ENSEMBLE = """
@@ -115,8 +119,9 @@ def commands(folder: Path) -> Iterator[Figure]:
 
 def full(_: Path) -> Iterator[Figure]:
     yield full_box.rocking("full, box of 966 unknowns", "auto", full_box.ADAPTIVE)[0]
-    stack = stepped(load_case("free_rocking", ["solver.model=full", f"solver.duration_s={SIMULATED_S}"]))
-    yield at_most("full, shell stack of 5238 unknowns: ms a step", 1e3 * stack.cpu_s / stack.steps, STEP_MS)
+    stack = stepped(load_case("rocking", FREE_SHELL))
+    cost, details = 1e3 * stack.cpu_s / stack.steps, f" ({stack.cpu_s:.1f} CPU s for 1.5 s of free rocking)"
+    yield at_most("full, shell stack of 5238 unknowns: ms a step", cost, STEP_MS, details=details)
 
 
 def reduced(_: Path) -> Iterator[Figure]:
