@@ -16,10 +16,8 @@ from contact.stepping.state import Control, RunState
 
 STEPS_PER_OCTAVE = 3  #: sizes per factor of two
 OCTAVE = tuple(2.0 ** (-level / STEPS_PER_OCTAVE) for level in range(STEPS_PER_OCTAVE))  #: the first of them
-GROWTH, GROWTH_OF_STACK = (
-    3,
-    6,
-)  #: levels by which a step may grow at once; of a loose stack, whose corners rattle
+#: levels by which a step may grow at once; of a loose stack, whose corners rattle
+GROWTH, GROWTH_OF_STACK = 3, 6
 AT_LIMIT = 1e-6  #: share of static friction that is left, below which the support has reached its limit
 NEIGHBOUR = 0.25  #: base points nearer than this, over the width, close together
 #: the whole ledger aims at these shares of the final limits of gain and loss; above `AIM_SHARE` of the aim, one step ..
