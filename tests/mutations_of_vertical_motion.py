@@ -45,7 +45,7 @@ VERTICAL_MOTION = (
         file="contact/stepping/joints.py",
         old="gravity = run.control.gravity + run.lift[1, 2]",
         new="gravity = run.control.gravity - run.lift[1, 2]",
-        tests=(VERTICAL, "-k", "slider"),
+        tests=("validation/test_verification_checks.py", "-k", "vertical and slider"),
     ),
     Mutation(
         name="work of the vertical motion with the other sign",

@@ -7,23 +7,13 @@ import math
 
 import numpy as np
 import pytest
-from block_on_floor import GRAVITY, piecewise_motion, rig
+from block_on_floor import GRAVITY, piecewise_motion
 from stack_on_floor import Box, StackRig, stack_rig
 
 from contact.motion.base_motion import HarmonicMotion
-from contact.reference.floor_acceleration import sine_floor
-from contact.reference.sliding import RigidSlider, simulate_sliding
 from contact.stepping.integrator import OVERTURNED
 from contact.stepping.observables import NEVER
 from contact.stepping.outcome import run_to_end
-from contact.stepping.state import (
-    BOX_CENTRE_X,
-    BOX_OPENING,
-    BOX_ROTATION,
-    BOX_SLIP,
-    ROW_CENTRE_X,
-    ROW_ROTATION,
-)
 
 OMEGA = 6.928  #: of the default motion [rad/s]
 
@@ -41,59 +31,6 @@ def shaken(
 def ratio(stack: StackRig) -> float:
     """Largest rotation of a box over the slenderness angle of the stack [-]."""
     return float(stack.joints.max_rotation.max()) / stack.whole.slenderness_angle
-
-
-def test_a_box_on_a_frictionless_joint_stays_while_the_lower_one_moves_away_under_it():
-    pull = piecewise_motion([0.0], [1.5])
-    stack = stack_rig([Box(), Box()], motion=pull, mu=2.0, joint_mu=0.0)
-    stack.advance(
-        0.85
-    )  # the floor has moved by 0.54 m; the mass centre is above the end of the face at 0.55 m
-    times = stack.run.history.interval * np.arange(len(stack.columns))
-    floor = 0.5 * 1.5 * times**2
-    assert floor[-1] > 0.53
-    assert np.abs(stack.box(1, BOX_CENTRE_X) + floor).max() < 1e-4 * floor[-1]
-    assert stack.box(1, BOX_SLIP) == pytest.approx(-floor, abs=1e-4)
-    assert np.abs(stack.columns[:, ROW_CENTRE_X]).max() < 1e-4
-    assert stack.joints[1].fell_at == NEVER
-    fallen = run_to_end(stack.stack, stack.run, 2.0)  # then it tips over the edge
-    assert fallen.status == OVERTURNED
-    assert stack.joints[1].fell_at == stack.run.track[0].overturned_at < 2.0
-    assert stack.joints[0].fell_at == NEVER
-
-
-@pytest.mark.parametrize(("static", "kinetic"), [(0.2, 0.2), (0.25, 0.15)])
-def test_a_low_box_on_a_box_that_is_held_moves_as_the_analytic_slider(static, kinetic):
-    boxes = [Box(width=4.0, height=0.5, mass=50_000.0), Box(width=1.1, height=0.1, mass=500.0)]
-    motion = HarmonicMotion(amplitude=0.05, angular_frequency=10.0, duration=60.0)
-    stack = stack_rig(
-        boxes, motion=motion, mu=3.0, joint_mu=static, mu_kinetic=kinetic, bounce_frequency=300.0
-    )
-    stack.advance(4.0)
-    times = stack.run.history.interval * np.arange(len(stack.columns))
-    exact = simulate_sliding(
-        RigidSlider(mu_static=static, mu_kinetic=kinetic, gravity=GRAVITY),
-        sine_floor(amplitude=0.05, angular_frequency=10.0),
-        duration=4.5,
-    ).at(times)[0]
-    assert np.ptp(exact) > 0.02
-    assert np.abs(stack.box(1, BOX_SLIP) - exact).max() < 0.01 * np.ptp(exact)
-    assert stack.joints[0].max_slip < 1e-4
-
-
-def test_a_stack_whose_joints_hold_moves_as_one_block():
-    """Joints of friction 2 under a motion that opens none of them: the bolted stack."""
-    motion = HarmonicMotion(amplitude=3.2 / OMEGA**2, angular_frequency=OMEGA, duration=60.0)
-    stack = stack_rig([Box()] * 4, motion=motion, joint_mu=2.0, bounce_frequency=300.0)
-    stack.advance(10.0)
-    block = rig(stack.whole, motion=motion).advance(10.0)
-    count = min(len(stack.columns), int(block.clock.samples))
-    limit = 1e-3 * stack.whole.slenderness_angle
-    assert np.abs(block.rotation).max() > 0.2 * stack.whole.slenderness_angle
-    assert np.abs(stack.columns[:count, ROW_ROTATION] - block.rotation[:count]).max() < limit
-    for k in range(1, 4):
-        assert np.abs(stack.box(k, BOX_ROTATION)[:count] - block.rotation[:count]).max() < limit
-        assert stack.joints[k].max_opening < 1e-3 and stack.joints[k].max_slip < 1e-3
 
 
 def test_the_default_stack_rocks_as_one_and_slips_at_its_top():
@@ -115,16 +52,6 @@ def test_low_friction_between_boxes_replaces_rocking_by_sliding(peak, slip):
     assert ratio(stack) < 0.06
     assert stack.joints[1].max_slip == pytest.approx(slip, rel=0.015)
     assert stack.joints[0].max_slip < 2e-3
-
-
-def test_the_mirrored_motion_gives_the_mirrored_answer():
-    one, other = (shaken(5.0, phase=phase, until=3.0) for phase in (0.0, math.pi))
-    count = min(len(one.columns), len(other.columns))
-    assert np.ptp(one.columns[:, ROW_ROTATION]) > 0.02
-    for k in (1, 2, 3):
-        for column in (BOX_ROTATION, BOX_SLIP, BOX_CENTRE_X):
-            assert one.box(k, column)[:count] == pytest.approx(-other.box(k, column)[:count], abs=1e-4)
-        assert one.box(k, BOX_OPENING)[:count] == pytest.approx(other.box(k, BOX_OPENING)[:count], abs=1e-4)
 
 
 def test_a_stack_of_ten_settles_and_stays():

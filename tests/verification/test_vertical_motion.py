@@ -13,8 +13,6 @@ from cases import LEAST
 from container_runs import difference, first_impact, stack, times
 
 from contact.motion.base_motion import HarmonicMotion
-from contact.reference.floor_acceleration import sine_floor
-from contact.reference.sliding import RigidSlider, simulate_sliding
 from fem.case.case import Case, CaseError, read_case
 from fem.model.model import build_model
 from fem.run.outcome import run_without_history
@@ -61,30 +59,6 @@ def test_a_shaken_block_converges_to_the_exact_oscillation_in_second_order():
     errors = [error_of_a_shaken_block(step) for step in steps]
     assert errors[0] < 1e-5  # it moves by 14 mm
     assert np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(2.0, abs=0.05)
-
-
-@pytest.mark.parametrize(
-    ("mu_static", "mu_kinetic", "omega", "phase"),
-    [(0.2, 0.2, 12.0, 0.3), (0.2, 0.2, 12.0, 0.3 + math.pi), (0.4, 0.2, 31.0, 0.3)],
-    ids=["one coefficient", "the other sign", "two coefficients, fast"],
-)
-def test_a_slider_under_both_components_moves_as_the_analytic_one(mu_static, mu_kinetic, omega, phase):
-    # 6 m/s2 upward and down: the slip differs by up to 0.14 m from that without; elastic stick makes the difference.
-    block = Block(height=1.0, mass=2500.0, bounce_frequency=500.0, mu_static=mu_static, mu_kinetic=mu_kinetic)
-    along = {"amplitude": 0.05, "angular_frequency": 10.0}
-    upward = {"amplitude": 6.0 / omega**2, "angular_frequency": omega, "phase": phase}
-    shaken = rig(
-        block, motion=HarmonicMotion(**along, duration=9.0), vertical=HarmonicMotion(**upward, duration=9.0)
-    ).advance(5.0)
-    exact = simulate_sliding(
-        RigidSlider(mu_static=mu_static, mu_kinetic=mu_kinetic, gravity=GRAVITY),
-        sine_floor(**along).with_vertical(sine_floor(**upward)),
-        duration=5.0,
-    )
-    inside = shaken.times <= 5.0
-    slip = exact.at(shaken.times[inside])[0]
-    assert np.abs(slip).max() > 0.1
-    assert np.abs(shaken.slip[inside] - slip).max() < 0.003 * np.ptp(slip)
 
 
 @pytest.mark.parametrize("acceleration", [3.0, -4.0])
