@@ -15,7 +15,6 @@ from container_runs import stack
 from fem.model.container import Container
 from fem.model.model import Model, build_model
 from fem.model.recovery import NodalFields, recovery_of
-from fem.verification.elasticity import turn
 from fem.verification.runs import run
 
 SECTIONS = ["solid", "shell"]
@@ -94,20 +93,3 @@ def test_frequencies_of_the_modes_kept_are_those_of_all_nodes(section: str) -> N
     assert np.abs(squares[:3]).max() < 1e-6 * squares[3]
     kept = container.basis.angular_frequencies[:20]
     assert kept == pytest.approx(np.sqrt(squares[3:23]), rel=1e-3)
-
-
-@pytest.mark.parametrize("section", SECTIONS)
-def test_full_model_turned_on_its_side_vibrates_at_the_frequencies_kept(section: str) -> None:
-    # The full model's own internal force, not its stiffness matrix: phi^T f(R(X + s phi) - X)/s = omega^2 at any turn.
-    container = container_of(section)
-    elements, basis = container.elements, container.basis
-    rotation = turn(0.7)
-    size = 1e-7 * np.ptp(elements.nodes, axis=0).max()
-    for omega, shape in zip(basis.angular_frequencies[:20], basis.shapes[:20], strict=True):
-        small = size / np.abs(shape).max()
-        forces = [
-            elements.internal_force((elements.nodes + sign * small * shape) @ rotation.T - elements.nodes)
-            for sign in (1.0, -1.0)
-        ]
-        generalised = np.sum((shape @ rotation.T) * (forces[0] - forces[1])) / (2.0 * small)
-        assert generalised == pytest.approx(omega**2, rel=1e-3)

@@ -15,7 +15,6 @@ from contact.reference.two_blocks import StackedBlock, TwoBlockStack
 
 WHOLE = RigidBlock.homogeneous(width=1.1, height=4.0)
 ONE = Boxes.homogeneous([1.1], [4.0], [10e3])
-FOUR = Boxes.homogeneous([1.1] * 4, [1.0] * 4, [2500.0] * 4)
 OMEGA = 6.928  # of the default motion [rad/s]
 STEP = 5e-4
 
@@ -88,18 +87,6 @@ def test_two_boxes_pass_from_pattern_to_pattern_as_the_event_driven_ones(box):
         assert found.max_slip.max() < 1e-5  # nothing slides
         errors.append(np.abs(found.place[:, :, 2] - exact.at(found.times)[:, [0, 2]]).max())
     assert errors[1] < 0.5 * errors[0] < 5e-3
-
-
-@pytest.mark.parametrize(
-    ("peak", "ratio", "slip"), [(4.0, 0.390, 0.1104), (5.0, 0.4745, 0.2190), (6.0, 0.402, 0.3677)]
-)
-def test_four_boxes_do_what_another_program_of_this_kind_found(peak, ratio, slip):
-    # 0.39, 0.47, 0.40 of the slenderness angle with 0.4 between boxes; 110, 219, 368 mm at the lowest joint with 0.2.
-    rough = move_boxes(FOUR, shaken(peak, 6.0), step=STEP, mu_static=0.4)
-    assert rough.max_rotation.max() / WHOLE.slenderness_angle == pytest.approx(ratio, abs=5e-3)
-    smooth = move_boxes(FOUR, shaken(peak, 6.0), step=STEP, mu_static=np.array([0.4, 0.2, 0.2, 0.2]))
-    assert smooth.max_slip[1] == pytest.approx(slip, abs=1.5e-3)
-    assert rough.fell_box == smooth.fell_box == -1
 
 
 def test_a_box_is_pulled_from_under_another_one_and_that_falls():

@@ -55,43 +55,6 @@ def test_free_rocking_slides_at_the_impact_when_friction_is_below_the_need():
     assert levels[-1] < 0.5 * levels[0]
 
 
-def test_sliding_on_a_corner_turns_energy_into_friction_heat():
-    # A tilted block pushed sideways on a still floor: loss = mu_k x normal x path, by quadrature.
-    block = PlanarBlock(body=STACK, mu_static=0.3, mu_kinetic=0.3)
-    motion = simulate_planar_block(block, still_floor(), duration=0.05, rotation=0.15, slip_velocity=0.8)
-    state = motion.states[0]
-    assert state.mode is PlanarMode.SLIDE_ROCK
-    assert len(motion.states) == 1
-    times = np.linspace(0.0, 0.05, 2001)
-    values = np.concatenate(
-        [p.interpolant(times[(times >= p.start) & (times < p.end)]).T for p in motion.pieces]
-    )
-    normal = np.array([block.contact(state, y, Acceleration(0.0)).normal for y in values])
-    power = 0.3 * normal * np.abs(values[:, 1])
-    heat = np.trapezoid(power, dx=times[1])
-    loss = energy(STACK, state.side, values[0]) - energy(STACK, state.side, values[-1])
-    assert loss == pytest.approx(heat, rel=1e-6)
-
-
-def test_mirror_image_in_mirror_image_out():
-    times = np.linspace(0.0, 4.0, 101)
-    block = PlanarBlock(body=STACK, mu_static=0.3, mu_kinetic=0.25)
-    left, right = (
-        simulate_planar_block(
-            block,
-            sine_floor(amplitude=sign * 0.1, angular_frequency=8.0),
-            duration=4.0,
-            rotation=sign * 0.01,
-            slip_velocity=sign * 0.1,
-        ).at(times)
-        for sign in (1.0, -1.0)
-    )
-    assert np.array_equal(left.rotation, -right.rotation)
-    assert np.array_equal(left.slip, -right.slip)
-    assert left.modes == right.modes
-    assert np.abs(left.slip).max() > 0.01
-
-
 def test_endless_impacts_end_in_rest_or_in_sliding():
     still = simulate_planar_block(
         PlanarBlock(body=STACK, mu_static=0.4, mu_kinetic=0.4), still_floor(), duration=20.0, rotation=0.1

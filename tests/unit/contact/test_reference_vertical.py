@@ -102,19 +102,3 @@ def test_a_floor_that_falls_faster_than_the_block_leaves_it(push, slip_velocity)
     rocking = simulate_rocking(block.body, floor, duration=1.0)
     assert rocking.outcome is RockingOutcome.OUTSIDE
     assert rocking.end == motion.end
-
-
-def test_energy_of_rocking_grows_by_the_work_of_the_vertical_floor():
-    # In the frame of the floor the force -m a_v acts at the centroid: its work is that on the centroid's height.
-    floor = still_floor().with_vertical(sine_floor(amplitude=0.1, angular_frequency=6.0))
-    block = stack()
-    motion = simulate_rocking(block, floor, duration=0.5, rotation=0.8 * block.slenderness_angle)
-    assert not motion.impacts
-    times = np.linspace(0.0, 0.5, 20001)
-    rotation, rate = motion.at(times)
-    lean = block.slenderness_angle - rotation
-    height, rise = block.radius * np.cos(lean), block.radius * np.sin(lean) * rate
-    vertical = -0.1 * 36.0 * np.sin(6.0 * times)
-    energy = 0.5 * block.inertia_ratio * block.radius**2 * rate**2 + GRAVITY * height
-    assert energy[-1] - energy[0] == pytest.approx(np.trapezoid(-vertical * rise, times), rel=1e-7)
-    assert abs(energy[-1] - energy[0]) > 1e-3

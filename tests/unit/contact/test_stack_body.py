@@ -44,16 +44,6 @@ def _along_floor(settled, points):
     return settled.run.old.corner[settled.stack.faces.corner[points, 0], 0]
 
 
-def test_a_settled_elastic_stack_stays_as_it_is():
-    settled = stack_rig([Box(), Box(offset=0.2), Box(offset=-0.1)], elastic=ELASTIC)
-    before = settled.run.old.position.copy()
-    assert settled.advance(2.0) == 0
-    sunk = GRAVITY * 3 * 2500.0 / settled.whole.base_stiffness
-    assert np.abs(settled.run.old.position - before).max() < 1e-6 * sunk * 50.0
-    assert settled.run.track[0].modes == 1  # at rest, and nothing else
-    assert settled.joints.max_slip == pytest.approx(0.0, abs=1e-12)
-
-
 def test_a_box_beyond_the_edge_of_the_one_below_does_not_settle():
     with pytest.raises(SettlingError, match="outside the face below"):
         stack_rig([Box(), Box(offset=0.56)])
@@ -112,32 +102,6 @@ def test_a_stack_of_one_box_moves_as_a_block_on_its_floor():
     assert np.abs(block.rotation).max() > 0.05
 
 
-def test_a_run_in_pieces_has_the_bits_of_a_run_at_once():
-    at_once, in_pieces = (stack_rig([Box()] * 3, motion=SHAKE, joint_mu=0.3) for _ in range(2))
-    at_once.advance(5.0)
-    for until in (0.7, 1.9, 3.2, 5.0):
-        in_pieces.advance(until)
-    assert at_once.run.old.numbers.tobytes() == in_pieces.run.old.numbers.tobytes()
-    assert at_once.columns.tobytes() == in_pieces.columns.tobytes()
-    assert at_once.joints.tobytes() == in_pieces.joints.tobytes()
-
-
-def test_a_run_goes_on_from_its_state_alone():
-    """All that changes is copied to a fresh stack, as from a checkpoint; scratch arrays and weights are not."""
-    done, resumed = (stack_rig([Box()] * 3, motion=SHAKE, joint_mu=0.3) for _ in range(2))
-    done.advance(1.7)
-    for name, part in done.run._asdict().items():
-        if name in ("old", "new", "work"):
-            for target, source in zip(getattr(resumed.run, name), part, strict=True):
-                target[:] = source
-        elif name in ("floor", "lift", "slip", "change", "ledger", "clock", "joints", "track", "contents"):
-            getattr(resumed.run, name)[:] = part
-    done.advance(4.0)
-    resumed.advance(4.0)
-    assert done.run.old.numbers.tobytes() == resumed.run.old.numbers.tobytes()
-    assert done.joints.tobytes() == resumed.joints.tobytes()
-
-
 def test_stacks_with_scratch_of_their_own_do_not_disturb_one_another():
     one, other = (stack_rig([Box()] * 3, motion=SHAKE, joint_mu=0.3) for _ in range(2))
     run_to_end(one.stack, one.run, 3.0)
@@ -146,10 +110,3 @@ def test_stacks_with_scratch_of_their_own_do_not_disturb_one_another():
     assert not np.shares_memory(shared.faces.weight, one.stack.faces.weight)
     run_to_end(one.stack, other.run, 3.0)  # with the stack of the first
     assert one.run.old.numbers.tobytes() == other.run.old.numbers.tobytes()
-
-
-def test_a_history_without_rows_ends_as_one_with_rows():
-    with_rows, without = (stack_rig([Box()] * 3, motion=SHAKE, joint_mu=0.3) for _ in range(2))
-    with_rows.advance(4.0)
-    run_to_end(without.stack, without.run, 4.0)
-    assert with_rows.run.old.numbers.tobytes() == without.run.old.numbers.tobytes()

@@ -64,18 +64,6 @@ def test_auto_penalty_of_corners_sinks_in_by_the_promised_share_of_height_and_sw
     assert case.weight / stiffness == pytest.approx(min(1e-5 * 4.0, 6e-5 * swing), rel=1e-6)
 
 
-def test_auto_penalty_of_feet_grows_as_the_square_of_a_shorter_foot():
-    # The tilt near uplift is that of a triangle of pressure on the foot, 2 G/(penalty depth foot^2).
-    short, long = (
-        normal_penalty(case, build_container(case))
-        for case in (
-            load_case("seed_stack", ["floor.kind=rigid", "support.kind=feet", f"support.foot_m={foot}"])
-            for foot in (0.1, 0.15)
-        )
-    )
-    assert short / long == pytest.approx((0.15 / 0.10) ** 2, rel=1e-9)
-
-
 def test_motion_of_a_case_is_its_formula():
     times = np.linspace(0.0, 2.0, 7)
     harmonic = build_motion(load_case("seed_stack", ["motion.phase_rad=0.3"]))
