@@ -21,10 +21,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from mutation import Mutation
+from mutation import ROOT, SOURCES, Mutation
 from mutations import MUTATIONS
 
-ROOT = Path(__file__).parents[1]
 COPIED = ("fem", "mesh", "contact", "tests")
 TESTS_PASSED, TESTS_FAILED = 0, 1  #: exit codes of pytest; all others are no verdict
 LONGEST = 900.0  #: [s] for the tests of one fault
@@ -80,12 +79,11 @@ def judge(mutation: Mutation, folder: Path, cache: Path) -> Finding:
     """Put one fault into a fresh copy and run its tests."""
     began = time.perf_counter()
     with copied_tree(folder) as tree:
-        path = tree / mutation.file
-        text = path.read_text(encoding="utf-8")
-        if text.count(mutation.old) != 1:
-            verdict, by = "no verdict", f"its text stands {text.count(mutation.old)} times in {mutation.file}"
+        if not mutation.file:
+            verdict, by = "no verdict", "its text does not stand once in the sources"
         else:
-            path.write_text(text.replace(mutation.old, mutation.new), encoding="utf-8")
+            broken = SOURCES[mutation.file].replace(mutation.old, mutation.new)
+            (tree / mutation.file).write_text(broken, encoding="utf-8")
             own_cache = tree / "cache"
             shutil.copytree(cache, own_cache)  # kernels are kept by the digest of their sources
             code, by = run_tests(tree, own_cache, mutation.tests)
