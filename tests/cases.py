@@ -16,6 +16,24 @@ kind = "none"
 HARMONIC = LEAST.replace('"none"', '"harmonic"\namplitude_m = 0.05\nangular_frequency_rad_s = 6.928')
 PULSE = LEAST.replace('"none"', '"pulse"\nshape = "sine"\npeak_acceleration_m_s2 = -3.0\npulse_s = 0.5')
 TABLE = LEAST.replace('"none"', '"table"\nfile = "floor.csv"\nquantity = "acceleration"\nunit = "g"')
+#: the stack as one rigid block on a floor at rest, for a moment
+BLOCK = """
+[container]
+width_m = 1.1
+height_m = 4.0
+density_kg_m3 = 2000.0
+[contact]
+mu_static = 0.4
+[motion]
+kind = "none"
+[solver]
+model = "rigid"
+duration_s = 0.05
+element_size_m = 2.0
+[output]
+fields_s = 0.0
+figures = false
+"""
 #: three boxes that differ in size and mass; the mass centre is beside the middle of the base
 UNEVEN = HARMONIC.replace(
     "[contact]",

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import record_files as files
+from cases import BLOCK
 from record_files import STEP, G, synthetic_motion
 
 from fem.__main__ import main
@@ -10,23 +11,13 @@ from fem.case.case import CaseError, load_case
 from fem.case.recorded import recorded_motion
 
 FIRST, SECOND, THIRD = synthetic_motion(801)
-CASE = """
-[container]
-width_m = 1.1
-height_m = 4.0
-density_kg_m3 = 2000.0
-[contact]
-mu_static = 0.4
-[motion]
-kind = "none"
-"""
 
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
     """The files of one station, beside a case."""
     for name, text in {
-        "case.toml": CASE,
+        "case.toml": BLOCK,
         "h.at2": files.peer(FIRST / G),
         "v.at2": files.peer(THIRD / G, "UP"),
         "short.at2": files.peer(THIRD[:700] / G, "UP"),
@@ -129,7 +120,7 @@ def test_check_tells_length_interval_peaks_and_what_is_left(capsys):
 def test_a_path_outside_is_the_users_to_allow(folder, tmp_path, capsys):
     inner = tmp_path / "inner"
     inner.mkdir()
-    (inner / "case.toml").write_text(CASE.replace('"none"', '"table"\nfile = "../h.at2"'))
+    (inner / "case.toml").write_text(BLOCK.replace('"none"', '"table"\nfile = "../h.at2"'))
     assert main(["check", "inner/case.toml"]) == 2
     assert "--allow-outside" in capsys.readouterr().err
     assert main(["check", "inner/case.toml", "--allow-outside"]) == 0

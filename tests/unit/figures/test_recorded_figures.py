@@ -4,6 +4,7 @@ import json
 
 import pytest
 import record_files as files
+from cases import BLOCK
 from record_files import G, synthetic_motion
 
 from fem.__main__ import main
@@ -12,23 +13,6 @@ from fem.figures.recorded import spectrum_figure
 from fem.results.reader import open_run
 
 FIRST, SECOND, THIRD = synthetic_motion(401)
-CASE = """
-[container]
-width_m = 1.1
-height_m = 4.0
-density_kg_m3 = 2000.0
-[contact]
-mu_static = 0.4
-[motion]
-kind = "none"
-[solver]
-model = "rigid"
-duration_s = 0.05
-element_size_m = 2.0
-[output]
-fields_s = 0.0
-figures = false
-"""
 
 
 @pytest.fixture(autouse=True)
@@ -75,7 +59,7 @@ def test_what_cannot_be_drawn_is_refused(arguments, words, capsys):
 def test_a_run_on_a_record_from_elsewhere_holds_its_copy_and_its_spectrum(folder):
     inner = folder / "inner"
     inner.mkdir()
-    (inner / "case.toml").write_text(CASE)
+    (inner / "case.toml").write_text(BLOCK)
     command = ["run", "inner/case.toml", "--motion", "station.v2#1", "--out", "out", "-q", "--no-band"]
     assert main([*command, "--set", "vertical.kind=table"]) == 0
     out = folder / "out"
@@ -94,7 +78,7 @@ def test_a_run_on_a_record_from_elsewhere_holds_its_copy_and_its_spectrum(folder
 
 
 def test_what_is_no_motion_is_neither_copied_nor_shown(folder, capsys):
-    (folder / "case.toml").write_text(CASE)
+    (folder / "case.toml").write_text(BLOCK)
     assert main(["run", "case.toml", "--motion", "secret.txt", "--out", "out", "-q", "--no-band"]) == 2
     assert "root" not in capsys.readouterr().err
     assert not list(folder.glob("out/**/secret.txt"))

@@ -4,41 +4,22 @@ import json
 
 import numpy as np
 import pytest
+from cases import BLOCK
 
 from fem.__main__ import main
 from fem.case.case import CaseError, read_case
 from fem.case.recorded import recorded_motion
 from fem.model.motion import build_motion, motion_notes
 
-CASE = """
-[container]
-width_m = 1.1
-height_m = 4.0
-density_kg_m3 = 2000.0
-[contact]
-mu_static = 0.4
-[motion]
-kind = "table"
-file = "floor.csv"
-quantity = "{quantity}"
-unit = "{unit}"
-baseline = "{baseline}"
-[solver]
-model = "rigid"
-duration_s = 1.0
-element_size_m = 2.0
-[output]
-fields_s = 0.0
-"""
+KEYS = '"table"\nfile = "floor.csv"\nquantity = "{}"\nunit = "{}"\nbaseline = "{}"\n{}'
 TIMES = np.arange(0.0, 2.0, 0.01)
 
 
 def case_of(folder, values, *, times=TIMES, quantity="acceleration", unit="m/s2", baseline="none", extra=""):
     rows = "".join(f"{t!r},{v!r}\n" for t, v in zip(times.tolist(), values.tolist(), strict=True))
     (folder / "floor.csv").write_text(rows)
-    text = CASE.format(quantity=quantity, unit=unit, baseline=baseline).replace(
-        "[solver]", f"{extra}\n[solver]"
-    )
+    keys = KEYS.format(quantity, unit, baseline, extra)
+    text = BLOCK.replace('"none"\n', keys + "\n").replace("duration_s = 0.05", "duration_s = 1.0")
     (folder / "case.toml").write_text(text)
     return read_case(text, folder=folder)
 

@@ -7,6 +7,7 @@ import shlex
 
 import numpy as np
 import pytest
+from cases import HARMONIC
 
 from fem.__main__ import main
 from fem.report import sweep_page
@@ -15,21 +16,7 @@ from fem.results.errors import FolderError
 from fem.sweep.table import BAND, FOUND, WIDTH, open_sweep
 
 SPEED, MU = "motion.peak_acceleration_m_s2", "contact.mu_static"
-BASE = """
-schema = 1
-[container]
-width_m = 1.1
-height_m = 1.0
-weight_N = 24525.0
-[contact]
-mu_static = 0.4
-[motion]
-kind = "harmonic"
-peak_acceleration_m_s2 = 4.0
-angular_frequency_rad_s = 6.928
-[solver]
-model = "rigid"
-"""
+BASE = HARMONIC.replace("amplitude_m = 0.05", "peak_acceleration_m_s2 = 4.0") + '[solver]\nmodel = "rigid"\n'
 
 
 @pytest.fixture

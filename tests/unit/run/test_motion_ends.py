@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from cases import named_case
+from cases import TABLE, named_case
 
 from contact.motion.base_motion import NoMotion, PulseMotion
 from fem.__main__ import main
@@ -34,18 +34,7 @@ PULSE = {
 }
 #: a record of 4 s at 100 Hz whose peak of 1.75 g comes after 3 s
 RECORD = np.column_stack([np.arange(401) / 100.0, np.where(np.arange(401) == 300, 1.75, 0.0)])
-TABLE_CASE = """
-[container]
-width_m = 1.1
-height_m = 1.0
-weight_N = 24525.0
-[contact]
-mu_static = 0.4
-[motion]
-kind = "table"
-file = "floor.csv"
-quantity = "acceleration"
-unit = "g"
+TABLE_CASE = f"""{TABLE}
 [solver]
 model = "rigid"
 element_size_m = 0.5
