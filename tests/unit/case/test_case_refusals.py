@@ -32,6 +32,9 @@ least    | container.width_m=20 & container.depth_m=1 & container.weight_N=4e5
 least    | container.width_m=1 & container.height_m=50 & container.weight_N=1e6 & container.centroid_m=25
 harmonic | motion.amplitude_m=2.5e-3 & motion.angular_frequency_rad_s=628.3
 harmonic | motion.amplitude_m=0.1 & motion.angular_frequency_rad_s=0.06284
+least    | container.boxes=50
+least    | container.wall_m=5e-5
+least    | container.wall_m=0.499
 least    | solver.elastic_modes=0
 least    | solver.spectral_radius=0.0
 least    | solver.spectral_radius=1.0
