@@ -41,6 +41,7 @@ KINDS = KINDS_OF_FILES | {
 LONG, HANGING = 10.0, 120.0  #: a run is asked to stop after the one, and given up after the other [s]
 ALLOWED = {0, 2, 3, 4}
 SHORT_OF_WORDS = {2, 3}  #: of exit codes, those that owe an explanation
+FOREIGN = ("Traceback", "pydantic", "Input should")  #: words of libraries, not of this program
 MEMORY = Path("/dev/shm")  #: files that need not last, where there is such a place
 
 
@@ -56,7 +57,8 @@ class End:
     def broken(self) -> bool:
         """A promise was not kept."""
         owed = self.code in SHORT_OF_WORDS and not self.words.strip()
-        return self.code not in ALLOWED or "Traceback" in self.words or owed
+        foreign = any(phrase in self.words for phrase in FOREIGN)
+        return self.code not in ALLOWED or foreign or owed
 
 
 def end_of(given_input: Input) -> End:

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from fem.results.history import (
     HISTORY_COLUMNS,
+    JOINT_COLUMNS,
     NUMBERS,
     VERTICAL_COLUMNS,
     HistoryWriter,
@@ -51,38 +52,24 @@ def test_columns_are_the_documented_ones_in_their_order_and_come_back_to_the_las
 
 
 @pytest.mark.parametrize("joints", [0, 1, 2])
-@pytest.mark.parametrize("analytic", [False, True])
-def test_columns_of_a_vertical_motion_stand_before_those_of_the_joints(tmp_path, joints, analytic):
-    path, rows = tmp_path / "history.csv", np.hstack([ROWS, ROWS[:, : 3 + 3 * joints]])
-    with HistoryWriter(path, joints=joints, vertical=True) as writer:
-        writer.append(rows, MODES)
-    if analytic:
-        add_analytic_rotation(path, ROWS[:, 7])
-    history = read_history(path)
-    assert (history.joints, history.vertical) == (joints, True)
-    assert history["base_vertical_displacement_m"].tolist() == ROWS[:, 0].tolist()
-    assert history["base_vertical_acceleration_m_s2"].tolist() == ROWS[:, 2].tolist()
-    assert history.numbers[20:23] == VERTICAL_COLUMNS
-    if joints:
-        assert history["joint_1_normal_N"].tolist() == ROWS[:, 3].tolist()
-    assert (history.numbers[-1] == "analytic_rotation_rad") is analytic
-
-
-@pytest.mark.parametrize("joints", [0, 1, 2])
 @pytest.mark.parametrize("vertical", [False, True])
+@pytest.mark.parametrize("crushing", [False, True])
 @pytest.mark.parametrize("analytic", [False, True])
-def test_the_work_of_crushing_stands_behind_the_other_energies(tmp_path, joints, vertical, analytic):
-    path, rows = tmp_path / "history.csv", np.hstack([ROWS, ROWS[:, : 1 + 3 * vertical + 3 * joints]])
-    with HistoryWriter(path, joints=joints, crushing=True, vertical=vertical) as writer:
+def test_crushing_vertical_motion_joints_and_rigid_block_follow_in_this_order(
+    tmp_path, joints, vertical, crushing, analytic
+):
+    names = ["crushing_J"] * crushing + [*VERTICAL_COLUMNS] * vertical
+    names += [name.format(joint) for joint in range(1, joints + 1) for name in JOINT_COLUMNS]
+    path, rows = tmp_path / "history.csv", np.hstack([ROWS, ROWS[:, : len(names)]])
+    with HistoryWriter(path, joints=joints, crushing=crushing, vertical=vertical) as writer:
         writer.append(rows, MODES)
     if analytic:
         add_analytic_rotation(path, ROWS[:, 7])
     history = read_history(path)
-    assert (history.joints, history.crushing, history.vertical) == (joints, True, vertical)
-    assert history.numbers[20] == "crushing_J"
-    assert history["crushing_J"].tolist() == ROWS[:, 0].tolist()
-    if joints:
-        assert history["joint_1_normal_N"].tolist() == ROWS[:, 1 + 3 * vertical].tolist()
+    assert (history.joints, history.crushing, history.vertical) == (joints, crushing, vertical)
+    assert history.numbers[20:] == (*names, *["analytic_rotation_rad"] * analytic)
+    for column, name in enumerate(names):
+        assert history[name].tolist() == ROWS[:, column].tolist()
 
 
 @pytest.mark.parametrize("boxes", [2, 4])

@@ -1,7 +1,6 @@
 """Full disks, removed folders, damaged checkpoints: a reason is given and nothing is lost."""
 
 import errno
-import json
 import os
 import resource
 import shutil
@@ -242,19 +241,6 @@ def test_a_checkpoint_that_cannot_be_trusted_is_refused_and_nothing_changed(
     assert "checkpoint.npz" in message and reason in message and "--force" in message
     assert files_of(folder) == before
     assert command(folder, "--resume", "--force") == 0
-
-
-def test_what_was_written_behind_the_checkpoint_is_cut_off(tmp_path, monkeypatch, whole):
-    folder = tmp_path / "r"
-    interrupted(folder, monkeypatch)
-    with open(folder / "history.csv", "a") as file:
-        file.write("1.5,half a li")
-    shutil.copy(folder / "fields" / "frame_00001.vtu", folder / "fields" / "frame_00099.vtu")
-    (folder / ".checkpoint.npz.part").write_text("half")
-    (folder / "run.json").write_text(
-        json.dumps(json.loads((folder / "run.json").read_text()) | {"status": "running"})
-    )
-    require_resumed(folder, whole, "--resume")
 
 
 def test_a_motion_file_may_not_lie_where_results_are_written(tmp_path, capsys, monkeypatch):

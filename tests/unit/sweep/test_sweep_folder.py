@@ -1,10 +1,8 @@
 """A sweep from its file to its table: the same whatever the jobs, cut off or not."""
 
-import errno
 import json
 import os
 import random
-import shutil
 import subprocess
 import sys
 import time
@@ -15,10 +13,8 @@ import pytest
 from small_sweep import SMALL, rows_without_wall
 
 from fem.__main__ import main
-from fem.batch.log import RowLog
 from fem.case.validation import CaseError
-from fem.results.errors import FolderError, OutputError
-from fem.runtime.progress import SilentReporter
+from fem.results.errors import FolderError
 from fem.sweep.file import load_sweep
 from fem.sweep.run import check_size, run_sweep
 from fem.sweep.table import open_sweep
@@ -195,39 +191,3 @@ def test_a_kill_while_the_band_is_changed_leaves_no_copies_of_the_other(small, t
         mine, alone = ((one / name).read_text().splitlines() for one in (folder, tmp_path / "alone"))
         assert [line.split(",")[1:3] for line in mine] == [line.split(",")[1:3] for line in alone]
     assert rows_without_wall(folder) == rows_without_wall(tmp_path / "alone")
-
-
-def test_a_disk_that_fills_up_is_named_with_the_way_out(small, tmp_path, monkeypatch):
-    folder = tmp_path / "out"
-    append, written = RowLog.append, []
-
-    def filling(self, lines):
-        if written:
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        written.extend(lines)
-        append(self, lines)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(RowLog, "append", filling)
-        with pytest.raises(
-            OutputError, match=r"out: cannot be written \(No space left.*--resume continues"
-        ) as error:
-            run_sweep(small, folder, jobs=1)
-    assert error.value.exit_code == 3
-    assert run_sweep(small, folder, resume=True)["status"] == "completed"
-    run_sweep(small, tmp_path / "alone")
-    assert rows_without_wall(folder) == rows_without_wall(tmp_path / "alone")
-
-
-def test_a_folder_that_another_took_is_left_alone(small, tmp_path):
-    folder = tmp_path / "out"
-
-    class Taking(SilentReporter):
-        def tell(self, line):
-            shutil.rmtree(folder)
-            folder.mkdir()
-            (folder / "sweep.json").write_text("another's")
-
-    with pytest.raises(OutputError, match="emptied or taken by another"):
-        run_sweep(small, folder, reporter=Taking())
-    assert (folder / "sweep.json").read_text() == "another's"
