@@ -57,7 +57,7 @@ class End:
     def broken(self) -> bool:
         """A promise was not kept."""
         owed = self.code in SHORT_OF_WORDS and not self.words.strip()
-        foreign = any(phrase in self.words for phrase in FOREIGN)
+        foreign = self.code != 0 and any(phrase in self.words for phrase in FOREIGN)
         return self.code not in ALLOWED or foreign or owed
 
 
