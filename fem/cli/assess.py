@@ -1,7 +1,6 @@
 """`assess`: verify a container at a site, by time histories for the action of EN 1998-1."""
 
 import importlib
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
 
@@ -57,12 +56,12 @@ def assess(
     folder = out if out is not None else Path("outputs") / request.name
     # Loaded only now, so that bad input is answered before anything is compiled.
     study = importlib.import_module("fem.site_check.run")
-    with ExitStack() as stack:
+    with connected(scheduler) as workers_of:
         result = study.run_site(
             request,
             folder,
             jobs=jobs,
-            workers_of=stack.enter_context(connected(scheduler)) if scheduler is not None else None,
+            workers_of=workers_of,
             resume=resume,
             force=force,
             allow_outside=allow_outside or bool(motion),

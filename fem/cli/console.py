@@ -2,7 +2,7 @@
 
 import importlib
 from collections.abc import Sequence
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -74,14 +74,16 @@ Scheduler = Annotated[
 Quiet = Annotated[bool, flag("Print no progress.", "--quiet", "-q")]
 
 
-def connected(scheduler: str) -> AbstractContextManager[Any]:
-    """The workers of a cluster, for as long as the context lasts.
+def connected(scheduler: str | None) -> AbstractContextManager[Any]:
+    """The workers of a cluster, for as long as the context lasts; None without a scheduler.
 
     dask is loaded only here: it is an optional dependency, and takes a second.
 
     Raises:
         CaseError: it is not installed.
     """
+    if scheduler is None:
+        return nullcontext()
     try:
         module = importlib.import_module("fem.batch.cluster")
     except ModuleNotFoundError as error:

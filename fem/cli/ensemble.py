@@ -2,7 +2,6 @@
 
 import importlib
 import json
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
 
@@ -34,8 +33,7 @@ def ensemble(
     folder = out if out is not None else Path("outputs") / asked.name
     # Loaded only now, so that bad input is answered before anything is compiled.
     study = importlib.import_module("fem.ensemble.run")
-    with ExitStack() as stack:
-        workers_of = None if scheduler is None else stack.enter_context(connected(scheduler))
+    with connected(scheduler) as workers_of:
         result = study.run_ensemble(
             asked,
             folder=folder,

@@ -2,7 +2,6 @@
 
 import importlib
 import json
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
 
@@ -60,13 +59,13 @@ def size(
     folder = out if out is not None else Path("outputs") / f"{request.name}_size"
     # Loaded only now, so that bad input is answered before anything is compiled.
     study = importlib.import_module("fem.site_check.size_run")
-    with ExitStack() as stack:
+    with connected(scheduler) as workers_of:
         result = study.run_size(
             request,
             axis,
             folder,
             jobs=jobs,
-            workers_of=stack.enter_context(connected(scheduler)) if scheduler is not None else None,
+            workers_of=workers_of,
             resume=resume,
             force=force,
             allow_outside=allow_outside,

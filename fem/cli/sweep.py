@@ -3,7 +3,6 @@
 import importlib
 import json
 from collections.abc import Iterator
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -37,10 +36,7 @@ def sweep(
     folder = out if out is not None else Path("outputs") / asked.name
     # Loaded only now, so that bad input is answered before anything is compiled.
     solver = importlib.import_module("fem.sweep.run")
-    with ExitStack() as stack:
-        workers_of = None
-        if scheduler is not None:
-            workers_of = stack.enter_context(connected(scheduler))
+    with connected(scheduler) as workers_of:
         info = solver.run_sweep(
             asked,
             folder,

@@ -1,4 +1,4 @@
-"""Seismic action at a site: elastic and design spectra, ground displacement, factors.
+"""Seismic action at a site: elastic spectra, ground displacement, factors.
 
 EN 1998-1:2004, 3.2.2.2 to 3.2.2.5 and Annex A, recommended values of tables 3.2 to 3.4; the zones and subsoils of
 DIN EN 1998-1/NA:2011; or parameters of another annex. Accelerations are magnitudes in m/s2, periods in s, damping
@@ -18,10 +18,6 @@ DAMPING_RATIO = 0.05
 PLATEAU, VERTICAL_PLATEAU = 2.5, 3.0
 #: (3.6)
 LEAST_DAMPING_CORRECTION = 0.55
-#: beta, the least value of the design spectrum over a_g (3.15), recommended
-LEAST_DESIGN_SHARE = 0.2
-#: q of the vertical design spectrum, at most (3.2.2.5(6))
-MOST_VERTICAL_BEHAVIOUR_FACTOR = 1.5
 #: range of the formulas (3.2) to (3.5); Annex A continues from there
 LAST_PERIOD_S, LAST_PERIOD_ANNEX_A_S = 4.0, 10.0
 #: gamma_I and gamma_a that are accepted
@@ -214,31 +210,6 @@ class SiteAction:
         corners, eta = self.shape.vertical_corner_periods, damping_correction(damping_ratio)
         return _elastic(periods, self.vertical_acceleration, VERTICAL_PLATEAU, corners, eta)
 
-    def design(self, periods: FloatArray, behaviour_factor: float) -> FloatArray:
-        """Horizontal design spectrum S_d (3.13) to (3.16) at the periods (n,) [s], shape (n,) [m/s2].
-
-        Raises:
-            ValueError: a behaviour factor below 1.
-        """
-        least = LEAST_DESIGN_SHARE * self.ground_acceleration  # without the soil factor
-        return _design(periods, self.surface_acceleration, self.shape.corner_periods, behaviour_factor, least)
-
-    def vertical_design(self, periods: FloatArray, behaviour_factor: float) -> FloatArray:
-        """Vertical design spectrum at the periods (n,) [s], shape (n,) [m/s2]: with a_vg, S = 1 (3.2.2.5(5)).
-
-        Raises:
-            ValueError: a behaviour factor below 1 or above 1.5 (3.2.2.5(6)).
-        """
-        if behaviour_factor > MOST_VERTICAL_BEHAVIOUR_FACTOR:
-            raise ValueError(
-                f"the vertical behaviour factor must be at most {MOST_VERTICAL_BEHAVIOUR_FACTOR:g} "
-                f"(EN 1998-1, 3.2.2.5(6)), got {behaviour_factor:g}"
-            )
-        least = LEAST_DESIGN_SHARE * self.vertical_acceleration
-        return _design(
-            periods, self.vertical_acceleration, self.shape.vertical_corner_periods, behaviour_factor, least
-        )
-
     def _annex_a(self, periods: FloatArray, begin: float, eta: float) -> FloatArray:
         """Elastic displacement spectrum from T_E on, Annex A (A.1), (A.2), shape (n,) [m]."""
         share = np.clip((periods - begin) / (LAST_PERIOD_ANNEX_A_S - begin), 0.0, 1.0)
@@ -265,19 +236,4 @@ def _elastic(
     rising = peak * (1.0 + periods / first * (plateau * eta - 1.0))
     with np.errstate(divide="ignore"):
         falling = flat * np.where(periods <= third, second / periods, second * third / periods**2)
-    return np.where(periods < first, rising, np.where(periods <= second, flat, falling))
-
-
-def _design(
-    periods: FloatArray, peak: float, corners: tuple[float, float, float], behaviour: float, least: float
-) -> FloatArray:
-    """(3.13) to (3.16) at the periods (n,); `peak` is a_g S or a_vg [m/s2]."""
-    if not behaviour >= 1.0:
-        raise ValueError(f"the behaviour factor must be at least 1, got {behaviour:g}")
-    first, second, third = corners
-    flat = PLATEAU * peak / behaviour
-    rising = peak * (2.0 / 3.0 + periods / first * (PLATEAU / behaviour - 2.0 / 3.0))
-    with np.errstate(divide="ignore"):
-        falling = flat * np.where(periods <= third, second / periods, second * third / periods**2)
-    falling = np.maximum(falling, least)
     return np.where(periods < first, rising, np.where(periods <= second, flat, falling))

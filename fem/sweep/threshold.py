@@ -3,7 +3,7 @@
 An island narrower than the step of the scan may be missed.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Annotated
@@ -44,34 +44,6 @@ class Change:
         return 0.5 * (self.low + self.high)
 
 
-def refine_changes(
-    values: Sequence[float],
-    outcomes: Sequence[str],
-    judge: Callable[[Sequence[float]], Sequence[str]],
-    *,
-    resolution: float = 0.01,
-    inner: int = 3,
-) -> list[Change]:
-    """Locate every change of outcome along an axis.
-
-    Args:
-        values: of the scan, rising.
-        outcomes: at these values.
-        judge: the outcomes at further values; called with those of all brackets at once.
-        resolution: largest width of a bracket, relative to its larger end (in magnitude); around zero, relative to
-            the scan's smallest step or value.
-        inner: values tried within a bracket at a time.
-
-    Returns:
-        The brackets by rising value; several where the outcome changes more than once.
-    """
-    known = dict(zip(values, outcomes, strict=True))
-    least = least_width(values, resolution)
-    while tried := values_to_try(known, resolution=resolution, inner=inner, least=least):
-        known |= dict(zip(tried, judge(tried), strict=True))
-    return changes_of(known)
-
-
 def least_width(values: Sequence[float], resolution: float) -> float:
     """Largest width of a bracket around zero, where no share of its value is meaningful."""
     steps = [high - low for low, high in pairwise(values)]
@@ -85,7 +57,8 @@ def values_to_try(
 
     Args:
         known: outcome by value.
-        resolution, inner: as `refine_changes`.
+        resolution: largest width of a bracket, relative to its larger end (in magnitude).
+        inner: values tried within a bracket at a time.
         least: width at which any bracket is narrow enough, from `least_width`.
     """
     return [

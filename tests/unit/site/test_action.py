@@ -21,11 +21,6 @@ VERTICAL = {
     1: ".9 2.7 2.7 2.7 2.025 1.35 .81 .5062 .405 .18 .1013 .045 .0253",
     2: ".45 1.35 1.35 1.35 1.0125 .675 .405 .2531 .2025 .09 .0506 .0225 .0127",
 }
-#: S_d/a_g of type 1, ground D
-DESIGN = {
-    1.5: ".9 1.2375 1.575 1.9125 2.25 2.25 2.25 2.25 1.8 1.2 .9 .4 .225",
-    2.0: ".9 1.0969 1.2937 1.4906 1.6875 1.6875 1.6875 1.6875 1.35 .9 .675 .3 .2",
-}
 #: a_g S, plateau, S_e(1 s) in zone 3 with gamma_I = 1.6 [m/s2]
 GERMAN = {
     "A-R": (1.28, 3.2, 0.64),
@@ -66,19 +61,6 @@ def test_vertical_spectra_follow_the_table_on_every_ground(kind, ground):
 def test_grounds_of_type_2_that_public_programs_confuse(kind, ground, expected):
     shape = eurocode_shape(kind, ground)
     assert (shape.soil_factor, *shape.corner_periods) == expected
-
-
-@pytest.mark.parametrize("behaviour_factor", DESIGN)
-def test_design_spectra_follow_the_table(behaviour_factor):
-    found = unit_action(1, "D").design(PERIODS, behaviour_factor)
-    np.testing.assert_allclose(found, numbers(DESIGN[behaviour_factor]), atol=5.1e-5)
-
-
-def test_the_vertical_design_spectrum_has_no_soil_factor_and_a_limit_on_q():
-    found = unit_action(1, "D").vertical_design(np.array([0.0, 0.1, 1.0]), 1.5)
-    np.testing.assert_allclose(found, [0.6, 1.5, 0.225])  # 2/3, 2.5/1.5 and 2.5/1.5 0.15 of 0.9
-    with pytest.raises(ValueError, match=r"at most 1\.5"):
-        unit_action(1, "D").vertical_design(PERIODS, 2.0)
 
 
 @pytest.mark.parametrize(
@@ -166,7 +148,6 @@ def test_without_annex_a_the_displacement_stays_constant():
             "between 0.5 and 2",
         ),
         (lambda: damping_correction(1.0), "between 0 and 1"),
-        (lambda: unit_action(1, "A").design(PERIODS, 0.9), "at least 1"),
         (
             lambda: SpectrumShape(
                 soil_factor=1.0,

@@ -3,9 +3,17 @@
 import numpy as np
 import pytest
 
-from fem.sweep.threshold import refine_changes
+from fem.sweep.threshold import changes_of, least_width, values_to_try
 
 SCAN = [1.0, 2.0, 3.0, 4.0, 5.0]
+
+
+def refine_changes(values, outcomes, judge, *, resolution=0.01, inner=3):
+    """Every change of outcome, as a sweep locates those of a line of cells."""
+    known, least = dict(zip(values, outcomes, strict=True)), least_width(values, resolution)
+    while tried := values_to_try(known, resolution=resolution, inner=inner, least=least):
+        known |= dict(zip(tried, judge(tried), strict=True))
+    return changes_of(known)
 
 
 def islands(values):
