@@ -7,14 +7,30 @@ import numpy as np
 
 from fem.case.case import Case
 from fem.model.container import Container, discretise
+from fem.verification.runs import STACK
 from mesh.container import ContainerMesh
 from mesh.errors import MeshError
 from mesh.region import Region
 
+ROUGH = 2.0  #: friction with which no specimen slides
 LAYERS = 3  #: of one density each; as many as there are conditions
 
 TestT = TypeVar("TestT")
 FitT = TypeVar("FitT")
+
+
+def rigid_case(
+    *, width: float, height: float, element_size: float, **changes: float | str | list[float]
+) -> Case:
+    """A rigid block as deep as it is wide, on two corners, which does not slide; `__` in place of the dot of a key."""
+    keys = {
+        "container.width_m": width,
+        "container.depth_m": width,
+        "container.height_m": height,
+        "contact.mu_static": ROUGH,
+        "solver.element_size_m": element_size,
+    }
+    return STACK.with_values(keys | {key.replace("__", "."): value for key, value in changes.items()})
 
 
 def specimen(case: Case, *, centroid: float, inertia_ratio: float) -> Container:

@@ -15,11 +15,11 @@ from itertools import groupby
 import numpy as np
 
 from contact.interface.equilibrium import Stance
-from fem.case.case import Case, read_case
+from fem.case.case import Case
 from fem.model.container import Container
 from fem.model.model import build_model
 from fem.runtime.arrays import FloatArray
-from fem.validation.bodies import cross_validated, specimen
+from fem.validation.bodies import cross_validated, rigid_case, specimen
 from fem.validation.findings import Experiment, Prediction
 from fem.validation.tables import measured_table
 from fem.verification.runs import finish, placed
@@ -194,27 +194,14 @@ def landed(landing: Landing, damping_ratio: float, friction: float = FRICTION) -
 
 @cache
 def _cube() -> tuple[Case, Container]:
-    case = read_case(
-        f"""
-        schema = 1
-        [container]
-        width_m = {SIDE}
-        height_m = {SIDE}
-        mass_kg = {MASS}
-        [contact]
-        mu_static = {FRICTION}
-        [motion]
-        kind = "none"
-        [solver]
-        model = "rigid"
-        order = 1
-        element_size_m = 0.05
-        duration_s = 0.4
-        [output]
-        history_s = 0.0005
-        fields_s = 0.0
-        """,
-        name="cube",
+    case = rigid_case(
+        width=SIDE,
+        height=SIDE,
+        element_size=0.05,
+        container__mass_kg=MASS,
+        contact__mu_static=FRICTION,
+        solver__duration_s=0.4,
+        output__history_s=0.0005,
     )
     return case, specimen(case, centroid=0.5 * SIDE, inertia_ratio=INERTIA)
 

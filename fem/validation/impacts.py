@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy as np
 
-from fem.case.case import read_case
+from fem.validation.bodies import rigid_case
 from fem.validation.findings import Experiment, Prediction, Predictor
 from fem.validation.tables import measured_table
 from fem.verification.runs import run
@@ -39,33 +39,17 @@ def restitution_ratio(
     """
     angle = math.atan(1.0 / slenderness)
     rate = math.sqrt(1.5 * 9.81 / (width * math.hypot(1.0, slenderness)))
-    case = read_case(
-        f"""
-        schema = 1
-        [container]
-        width_m = {width!r}
-        height_m = {slenderness * width!r}
-        density_kg_m3 = {DENSITY}
-        [contact]
-        mu_static = 2.0
-        [floor]
-        kind = "slab"
-        preset = "{PRESETS[base]}"
-        corner_patch_m = [{strip * width!r}, {width!r}]
-        {"" if modulus is None else f"youngs_modulus_Pa = {modulus!r}"}
-        [motion]
-        kind = "none"
-        [initial]
-        rotation_rad = {0.5 * angle!r}
-        [solver]
-        model = "rigid"
-        order = 1
-        element_size_m = {width!r}
-        duration_s = {8.0 / rate!r}
-        [output]
-        fields_s = 0.0
-        """,
-        name="block",
+    patch = [strip * width, width]
+    case = rigid_case(
+        width=width,
+        height=slenderness * width,
+        element_size=width,
+        container__density_kg_m3=DENSITY,
+        floor__preset=PRESETS[base],
+        floor__corner_patch_m=patch,
+        initial__rotation_rad=0.5 * angle,
+        solver__duration_s=8.0 / rate,
+        **({} if modulus is None else {"floor__youngs_modulus_Pa": modulus}),
     )
     ratio = float(run(case).track.restitution) / (1.0 - 1.5 * math.sin(angle) ** 2)
     return ratio if math.isfinite(ratio) else 0.0  # sunk in so far that it does not swing to the other side

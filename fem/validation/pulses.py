@@ -12,11 +12,11 @@ from functools import cache
 import numpy as np
 
 from contact.motion.kernel import PIECEWISE, as_floor_motion
-from fem.case.case import Case, read_case
+from fem.case.case import Case
 from fem.model.container import Container, discretise
 from fem.model.model import Model, build_model
 from fem.run.outcome import run_without_history
-from fem.validation.bodies import cross_validated
+from fem.validation.bodies import cross_validated, rigid_case
 from fem.validation.findings import Experiment, Prediction, Predictor
 from fem.validation.tables import measured_table
 from fem.verification.runs import with_motion
@@ -126,26 +126,12 @@ def _radius(angle: float, speed: float) -> float:
 @cache
 def _block(size: BlockSize) -> tuple[Case, Container]:
     width, height = 2.0 * size.radius * math.sin(size.angle), 2.0 * size.radius * math.cos(size.angle)
-    case = read_case(
-        f"""
-        schema = 1
-        [container]
-        width_m = {width!r}
-        height_m = {height!r}
-        density_kg_m3 = 2700.0
-        [contact]
-        mu_static = 2.0
-        [motion]
-        kind = "none"
-        [solver]
-        model = "rigid"
-        order = 1
-        element_size_m = {size.radius!r}
-        duration_s = {FOLLOWED_S}
-        [output]
-        fields_s = 0.0
-        """,
-        name="block",
+    case = rigid_case(
+        width=width,
+        height=height,
+        element_size=size.radius,
+        container__density_kg_m3=2700.0,
+        solver__duration_s=FOLLOWED_S,
     )
     return case, discretise(case)
 

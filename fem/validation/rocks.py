@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fem.case.case import Case, read_case
+from fem.case.case import Case
 from fem.model.container import Container
 from fem.model.model import build_model
 from fem.run.checks import WantedChecks
@@ -24,7 +24,7 @@ from fem.run.compute import compute_on
 from fem.run.outcome import run_without_history
 from fem.runtime.arrays import FloatArray
 from fem.runtime.threads import cores
-from fem.validation.bodies import cross_validated, specimen
+from fem.validation.bodies import cross_validated, rigid_case, specimen
 from fem.validation.findings import Experiment, Prediction, Predictor
 from fem.validation.tables import measured_table
 
@@ -158,27 +158,14 @@ def _is_unsure(test: ShakeTest, angle: float) -> bool:
 @cache
 def _rock(angle: float) -> tuple[Case, Container]:
     """A block on two corners with the mass centre and inertia of the rock, which does not slide."""
-    case = read_case(
-        f"""
-        schema = 1
-        [container]
-        width_m = {2.0 * CENTROID * math.tan(angle)!r}
-        height_m = {HEIGHT}
-        depth_m = 0.7
-        mass_kg = {MASS}
-        centroid_m = {CENTROID}
-        [contact]
-        mu_static = 2.0
-        [motion]
-        kind = "none"
-        [solver]
-        model = "rigid"
-        order = 1
-        element_size_m = 0.3
-        [output]
-        fields_s = 0.0
-        """,
-        name="rock",
+    case = rigid_case(
+        width=2.0 * CENTROID * math.tan(angle),
+        height=HEIGHT,
+        element_size=0.3,
+        container__depth_m=0.7,
+        container__mass_kg=MASS,
+        container__centroid_m=CENTROID,
+        solver__duration_s="auto",
     )
     return case, specimen(case, centroid=CENTROID, inertia_ratio=INERTIA)
 
