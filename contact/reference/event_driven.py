@@ -25,6 +25,10 @@ Margin = Callable[[FloatArray, Acceleration], float]  #: state, floor accelerati
 Interpolant = Callable[[float | FloatArray], FloatArray]  #: time -> state, times in the last axis
 
 RELATIVE_TOLERANCE = 1e-12
+MAX_EVENTS = 100_000  #: of a motion
+#: share of the overturning energy: an impact that leaves less in a rotation ends it, where it can; it would otherwise
+#: end only after infinitely many impacts
+REST_ENERGY = 1e-10
 SAMPLES_PER_STEP = 8  #: sub-intervals of a step at which margins are evaluated
 
 

@@ -47,7 +47,6 @@ class PlanarImpact:
     velocity_before: float  #: angular velocity, positive toward +x [rad/s]
     velocity_after: float  #: [rad/s]
     slip_velocity_before: float  #: [m/s]
-    slip_velocity_after: float  #: [m/s]
     slides: bool  #: the friction impulse stood at its limit
 
 

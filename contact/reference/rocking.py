@@ -19,11 +19,19 @@ from enum import Enum
 import numpy as np
 
 from contact.arrays import FloatArray
-from contact.reference.event_driven import EventError, Guard, Piece, Rate, flow, sample, turning_point
+from contact.reference.event_driven import (
+    MAX_EVENTS,
+    REST_ENERGY,
+    EventError,
+    Guard,
+    Piece,
+    Rate,
+    flow,
+    sample,
+    turning_point,
+)
 from contact.reference.floor_acceleration import Acceleration, FloorAcceleration
 from contact.reference.rigid_block import RigidBlock
-
-MAX_EVENTS = 100_000
 
 
 class RockingOutcome(Enum):
@@ -83,7 +91,7 @@ def simulate_rocking(
     rotation: float = 0.0,
     angular_velocity: float = 0.0,
     restitution: float | None = None,
-    rest_energy: float = 1e-10,
+    rest_energy: float = REST_ENERGY,
     stop_at_impact: bool = False,
 ) -> RockingMotion:
     """Follow the block until it has overturned (90 degrees) or the duration is over.

@@ -13,10 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.arrays import FloatArray
-from contact.reference.event_driven import EventError, Guard, Piece, Rate, flow, sample
+from contact.reference.event_driven import MAX_EVENTS, EventError, Guard, Piece, Rate, flow, sample
 from contact.reference.floor_acceleration import Acceleration, FloorAcceleration
-
-MAX_EVENTS = 100_000
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,7 +16,16 @@ from functools import partial
 import numpy as np
 
 from contact.arrays import FloatArray
-from contact.reference.event_driven import EventError, Guard, Passage, Piece, flow, sample
+from contact.reference.event_driven import (
+    MAX_EVENTS,
+    REST_ENERGY,
+    EventError,
+    Guard,
+    Passage,
+    Piece,
+    flow,
+    sample,
+)
 from contact.reference.floor_acceleration import Acceleration, FloorAcceleration
 from contact.reference.two_blocks import (
     Footing,
@@ -33,7 +42,6 @@ from contact.reference.two_blocks import (
     velocities,
 )
 
-MAX_EVENTS = 100_000
 ROUNDING = 1e-9  #: share of a force, impulse or rate that counts as none
 
 
@@ -91,15 +99,12 @@ def simulate_two_blocks(
     *,
     duration: float,
     state: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0),
-    rest_energy: float = 1e-10,
 ) -> TwoBlockMotion:
     """Follow the stack until a block has turned by 90 degrees, it leaves the model, or the duration is over.
 
     Args:
         state: at the start; an interface is open where its angle, or its rate, is not zero.
         duration: [s].
-        rest_energy: after an impact an interface that would open with less than the rate of this share of the
-            overturning energy stays closed, where it can (its impacts would otherwise accumulate).
 
     Raises:
         ValueError: a start beyond 90 degrees, or a duration that is not positive.
@@ -110,7 +115,7 @@ def simulate_two_blocks(
     values = np.array(state, dtype=float)
     if not np.abs(values[[0, 2]]).max() < 0.5 * math.pi:
         raise ValueError(f"two blocks: the start must lie below 90 degrees, got {values[0]}, {values[2]} rad")
-    least = least_rate(stack, rest_energy)
+    least = least_rate(stack)
     pieces: list[Piece] = []
     footings: list[Footing] = []
     transitions: list[TwoBlockTransition] = []
@@ -146,7 +151,7 @@ def simulate_two_blocks(
         )
         footing = select(stack, values, acceleration)
     else:
-        raise EventError(f"t = {time:.6g} s: {MAX_EVENTS} events of two blocks; try a larger rest_energy")
+        raise EventError(f"t = {time:.6g} s: {MAX_EVENTS} events of two blocks")
     return TwoBlockMotion(
         stack=stack,
         transitions=tuple(transitions),
@@ -158,13 +163,13 @@ def simulate_two_blocks(
     )
 
 
-def least_rate(stack: TwoBlockStack, rest_energy: float) -> float:
+def least_rate(stack: TwoBlockStack) -> float:
     """Rate of the upper block about an end of the joint with a share of the energy that tips it over [rad/s]."""
     upper = stack.upper
     arm = min(abs(stack.joint_end(side) - stack.offset) for side in (1, -1))
     radius = math.hypot(arm, upper.centroid_height)
     tipping = upper.mass * stack.gravity * (radius - upper.centroid_height)
-    return math.sqrt(2.0 * rest_energy * tipping / (upper.inertia + upper.mass * radius**2))
+    return math.sqrt(2.0 * REST_ENERGY * tipping / (upper.inertia + upper.mass * radius**2))
 
 
 def select(stack: TwoBlockStack, state: FloatArray, floor: Acceleration) -> Footing | None:

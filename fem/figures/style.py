@@ -100,7 +100,6 @@ def panels(
     gaps: Sequence[float] = (),
     header: int = 2,
     width: float = WIDTH,
-    right: float = RIGHT,
     above: float = 0.0,
 ) -> tuple[Figure, list[Axes]]:
     """A figure of panels of equal width, one below the other, at fixed positions.
@@ -110,7 +109,6 @@ def panels(
         gaps: between them [inch].
         header: lines of text above the first panel, title included.
         width: of the figure [inch].
-        right: margin beside the panels [inch].
         above: space between header and first panel, for other panels [inch].
     """
     gaps = gaps or [GAP] * (len(heights) - 1)
@@ -118,9 +116,9 @@ def panels(
     figure = Figure(figsize=(width, tall))
     axes, top = [], tall - 0.08 - header * LINE - above
     for height, gap in zip(heights, [*gaps, 0.0], strict=True):
-        box = (LEFT / width, (top - height) / tall, (width - LEFT - right) / width, height / tall)
+        box = (LEFT / width, (top - height) / tall, (width - LEFT - RIGHT) / width, height / tall)
         axes.append(figure.add_axes(box))
-        axes[-1].yaxis.set_label_coords(-0.62 / (width - LEFT - right), 0.5)
+        axes[-1].yaxis.set_label_coords(-0.62 / (width - LEFT - RIGHT), 0.5)
         top -= height + gap
     return figure, axes
 

@@ -11,21 +11,12 @@ SYMBOL = re.compile(
 )
 
 
-def formula_markup(text: str) -> Markup:
-    """A formula, escaped."""
-    return _set(text, indexed_only=False)
-
-
-def symbols_markup(text: str) -> Markup:
-    """Prose, escaped, with the symbols that bear an index set: a letter alone may be a word."""
-    return _set(text, indexed_only=True)
-
-
-def _set(text: str, *, indexed_only: bool) -> Markup:
+def formula_markup(text: str, *, prose: bool = False) -> Markup:
+    """A formula, escaped; of prose only the symbols that bear an index are set: a letter alone may be a word."""
     parts, end = [], 0
     for found in SYMBOL.finditer(text):
         letter, index, power = found.groups()
-        if indexed_only and letter and index is None:
+        if prose and letter and index is None:
             continue
         parts.append(escape(text[end : found.start()]))
         parts += [Markup("<sup>{}</sup>").format(power)] if power else [Markup("<i>{}</i>").format(letter)]

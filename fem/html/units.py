@@ -38,11 +38,11 @@ def quantity(value: float | None, unit: str, factor: float = 1.0, figures: int =
     return text if text == ABSENT else f"{text}\u00a0{unit}"
 
 
-def millimetres(value: float | None, figures: int = 3) -> str:
+def millimetres(value: float | None) -> str:
     """A length given in metres, without its unit; below 0.01 mm only that limit."""
     if value is not None and 0.0 < abs(value) < LEAST_LENGTH:
         return f"< {short(LEAST_LENGTH, 1000.0)}"
-    return number(value, 1000.0, figures)
+    return number(value, 1000.0, 3)
 
 
 def degrees(value: float | None, figures: int = 4) -> str:

@@ -108,12 +108,7 @@ def discretise(case: Case, mesh: ContainerMesh | None = None, cache: ArrayCache 
     mesh = mesh or build_container(case)
     support = build_support(case, mesh)
     require_memory(case, node_count(mesh, case.solver.order), support.index.size)
-    elements = assemble(
-        mesh,
-        youngs_modulus=case.container.youngs_modulus_Pa,
-        poisson_ratio=case.container.poisson_ratio,
-        order=case.solver.order,
-    )
+    elements = _assembled(case, mesh)
     if case.container.is_loose:
         return _loose(case, mesh, elements, support, cache)
     nodes = elements.base_nodes[support.index]
@@ -132,6 +127,12 @@ def discretise(case: Case, mesh: ContainerMesh | None = None, cache: ArrayCache 
         free_modes=case.solver.elastic_modes if case.solver.model == "reduced" else 0,
         first=first,
     )
+
+
+def _assembled(case: Case, mesh: ContainerMesh) -> FiniteElements:
+    box = case.container
+    order = case.solver.order
+    return assemble(mesh, youngs_modulus=box.youngs_modulus_Pa, poisson_ratio=box.poisson_ratio, order=order)
 
 
 def _elastic(
@@ -197,12 +198,7 @@ def _loose(
 
 
 def _box(case: Case, mesh: ContainerMesh, cache: ArrayCache) -> BoxModel:
-    elements = assemble(
-        mesh,
-        youngs_modulus=case.container.youngs_modulus_Pa,
-        poisson_ratio=case.container.poisson_ratio,
-        order=case.solver.order,
-    )
+    elements = _assembled(case, mesh)
     corners = np.concatenate([elements.base_nodes[[0, -1]], _upper_corners(elements)])
     response = _no_response(elements)
     if case.solver.model != "rigid":

@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 from fem.case.case import Case
 from fem.case.tables import StaticTable
 from fem.results.run_result import ActionResult, CodeValues, StaticResult
+from fem.site.method import utilisation
 from mesh.container import ContainerMesh
 
 LIMIT_PERIOD = 2.0  # s, EN 1998-1:2004, 4.3.3.2.1 (2) a), Eq. (4.4)
@@ -39,10 +40,8 @@ class CheckResult:
 
     @property
     def utilisation(self) -> float:
-        """Demand over capacity [-]; infinite where a demand meets no capacity, 0 without demand."""
-        if self.demand == 0.0:
-            return 0.0
-        return self.demand / self.capacity if self.capacity > 0.0 else math.inf
+        """See `fem.site.method.utilisation`."""
+        return utilisation(self.demand, self.capacity)
 
     @property
     def passed(self) -> bool:

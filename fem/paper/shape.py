@@ -17,17 +17,15 @@ from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 
 
-def inertia_ratio(
-    *, cylinder: bool, hollow: bool = False, width: float = WIDTH, height: float = HEIGHT
-) -> float:
+def inertia_ratio(*, cylinder: bool, hollow: bool = False, height: float = HEIGHT) -> float:
     """I_O/(M R^2) in the plane of motion about the edge of the base, homogeneous or all mass in the side wall [-].
 
     About the mass centre: prism M (a^2 + c^2)/12; cylinder of diameter a, M (3 a^2/4 + c^2)/12; its thin wall
     M (3 a^2/2 + c^2)/12.
     """
     share = (1.5 if hollow else 0.75) if cylinder else 1.0
-    own = (share * width**2 + height**2) / 12.0
-    return 1.0 + own / (0.25 * (width**2 + height**2))
+    own = (share * WIDTH**2 + height**2) / 12.0
+    return 1.0 + own / (0.25 * (WIDTH**2 + height**2))
 
 
 @claim(

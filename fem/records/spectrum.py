@@ -48,11 +48,9 @@ class OscillatorHistory:
     acceleration_m_s2: FloatArray  #: absolute
 
 
-def log_spaced_periods(
-    step_s: float, shortest_s: float = 0.02, longest_s: float = 4.0, count: int = 100
-) -> FloatArray:
-    """Periods for a curve, shape (count,) [s]: evenly spaced logarithms, from what the step resolves."""
-    return np.geomspace(max(shortest_s, LEAST_STEPS * step_s), longest_s, count)
+def log_spaced_periods(step_s: float, longest_s: float = 4.0) -> FloatArray:
+    """Periods for a curve, shape (100,) [s]: evenly spaced logarithms, from 0.02 s or what the step resolves."""
+    return np.geomspace(max(0.02, LEAST_STEPS * step_s), longest_s, 100)
 
 
 def evenly_sampled(times_s: FloatArray, acceleration: FloatArray) -> tuple[float, FloatArray]:

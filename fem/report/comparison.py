@@ -88,7 +88,7 @@ def asked_rows(case: Case) -> list[tuple[str, str]]:
         ("support", supports[case.support.kind]),
         ("friction", mu.format(short(contact.mu_static), short(contact.mu_kinetic))),
         *([("friction between boxes", _joint_friction(case, mu))] if box.is_loose else []),
-        ("floor", floor_in_words(case)),
+        ("floor", motion_in_words(case.motion)),
         *([("floor, vertical", motion_in_words(case.vertical))] if case.has_vertical else []),
         ("start", _start(case)),
         ("model", models[case.solver.model]),
@@ -216,11 +216,6 @@ def exclusions(case: Case) -> tuple[str, ...]:
     if case.container.boxes > 1 and not case.container.is_loose:
         others.insert(1, "boxes without bolts, which open and slide on one another")
     return (first if case.has_vertical else f"vertical floor motion, {first}", *others)
-
-
-def floor_in_words(case: Case) -> str:
-    """How the floor moves along x."""
-    return motion_in_words(case.motion)
 
 
 def motion_in_words(motion: FloorMotionTable) -> str:

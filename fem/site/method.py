@@ -48,6 +48,13 @@ def length_in_words(length: float) -> str:
     return f"{1000.0 * length:.3g} mm" if length < 1.0 else f"{length:.3g} m"
 
 
+def utilisation(demand: float, capacity: float) -> float:
+    """Demand over capacity [-]; infinite where a demand meets no capacity, 0 without demand."""
+    if demand == 0.0:
+        return 0.0
+    return demand / capacity if capacity > 0.0 else math.inf
+
+
 @dataclass(frozen=True, kw_only=True)
 class MethodRow:
     """One simplified method, applied."""
@@ -65,10 +72,8 @@ class MethodRow:
 
     @property
     def utilisation(self) -> float:
-        """Demand over capacity [-]; infinite where a demand meets no capacity, 0 without demand."""
-        if self.demand == 0.0:
-            return 0.0
-        return self.demand / self.capacity if self.capacity > 0.0 else math.inf
+        """See `utilisation`."""
+        return utilisation(self.demand, self.capacity)
 
     @property
     def fulfilled(self) -> bool:

@@ -5,6 +5,7 @@ import datetime as dt
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, replace
+from functools import partial
 from importlib import metadata
 from pathlib import Path
 from typing import NamedTuple
@@ -12,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from markupsafe import Markup
 
-from fem.html.formula import formula_markup, symbols_markup
+from fem.html.formula import formula_markup
 from fem.html.page import Signature, render_page, svg_element
 from fem.html.units import ABSENT, millimetres, number, quantity, rotation_ratio, short, typeset
 from fem.results.errors import FolderError
@@ -112,7 +113,7 @@ def site_report(folder: Path, *, signature: Signature | None = None) -> str:
         ],
         copies=[(name, _text(folder / name)) for name in COPIES if (folder / name).is_file()],
         formula=formula_markup,
-        symbols=symbols_markup,
+        symbols=partial(formula_markup, prose=True),
         friction=friction,
         millimetres=millimetres,
         number=number,

@@ -101,15 +101,10 @@ def run_size(
 
     Args:
         axis: the key and the values of the scan.
-        jobs, workers_of, resume, force, allow_outside: as of `run_site`.
+        jobs, workers_of, resume, force, allow_outside: as of `run_site`, whose errors are raised.
 
     Returns:
         What was found; None where it was interrupted.
-
-    Raises:
-        CaseError, FolderError: bad input.
-        WorkersLostError: a worker died; what was computed is kept.
-        OutputError: the disk is full, the folder was removed; what was written is kept.
     """
     reporter, began = reporter or SilentReporter(), time.perf_counter()
     ground = _ground(request, allow_outside)

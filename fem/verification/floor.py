@@ -77,12 +77,8 @@ def landing() -> Iterator[Row]:
         work = float(flight.run.ledger[CRUSHING])
         yield analytic(case, "work of crushing [J]", work, cap * exact, source=source, relative=1e-3)
     errors = {}
-    for step in (
-        4e-4,
-        2e-4,
-        1e-4,
-        5e-5,
-    ):  # the error of one run depends on where in a step the crushing begins
+    for step in (4e-4, 2e-4, 1e-4, 5e-5):
+        # the error of one run depends on where in a step the crushing begins
         found = [landed(share, step) for share in np.linspace(0.3, 0.7, 21)]
         errors[step] = np.mean([abs(one.state.crushed[0] / exact - 1.0) for one, _, exact in found])
     yield analytic(

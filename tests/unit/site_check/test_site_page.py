@@ -9,7 +9,7 @@ from browser import CHROMIUM, FAINT, Browser
 from markupsafe import Markup
 from site_example import example, write_example
 
-from fem.html.formula import formula_markup, symbols_markup
+from fem.html.formula import formula_markup
 from fem.results.errors import FolderError
 from fem.results.files import to_json
 from fem.site_check.page import confirmation, site_report
@@ -166,7 +166,7 @@ def test_formulas_are_set(text, expected):
 
 
 def test_prose_keeps_its_letters():
-    assert symbols_markup("a peak of a_g <b>") == "a peak of <i>a</i><sub>g</sub> &lt;b&gt;"
+    assert formula_markup("a peak of a_g <b>", prose=True) == "a peak of <i>a</i><sub>g</sub> &lt;b&gt;"
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="no Chromium: apt-get install chromium")
