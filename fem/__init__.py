@@ -28,9 +28,8 @@ PLACES = {
     "open_run": "fem.results.reader",
 }
 
-if sys.argv[:1] == [
-    "-m"
-]:  # so it is while Python looks for the module of `python -m fem`, and never in a library
+# so it is while Python looks for the module of `python -m fem`, and never in a library
+if sys.argv[:1] == ["-m"]:
     exit_on_signal()
 
 

@@ -233,9 +233,8 @@ def reasons_against(model: Model, history: History, verdict: Verdict, reference:
         reasons.append(
             f"it deforms: first elastic over contact frequency is {stiffness:.2g}, below {STIFF_CONTAINER:g}"
         )
-    if (
-        model.damping_ratio < BOUNCING_CONTACT and not model.case.floor.is_slab
-    ):  # whose crushing takes the energy
+    # the crushing of a slab takes the energy
+    if model.damping_ratio < BOUNCING_CONTACT and not model.case.floor.is_slab:
         reasons.append(
             f"the contact bounces: its damping ratio is {model.damping_ratio:g}, below {BOUNCING_CONTACT:g}"
         )

@@ -151,10 +151,8 @@ def _unsupported(case: Any) -> str:
     if case.container.box is None:
         return ""
     boxes = boxes_of(case.container, case.gravity_m_s2)
-    for number in (
-        *range(1, len(boxes)),
-        0,
-    ):  # of a joint first: what hangs over there may tilt the whole, too
+    # of a joint first: what hangs over there may tilt the whole, too
+    for number in (*range(1, len(boxes)), 0):
         upper = boxes[number]
         low, high = shared_face(boxes[number - 1], upper) if number else upper.sides
         centre = centre_above(boxes, number)

@@ -89,9 +89,8 @@ def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ..
         keep_visible(axes, 1.12 * angle)
         draw_limits(axes, angle, f"α, ±{number(angle, 4)}°", color=BLACK, linestyle="-.")
         low, high = axes.get_ylim()
-        axes.set_ylim(
-            max(low, -FARTHEST * angle), min(high, FARTHEST * angle)
-        )  # a box that falls leaves the scale
+        # a box that falls leaves the scale
+        axes.set_ylim(max(low, -FARTHEST * angle), min(high, FARTHEST * angle))
     if verdict.fell_box is not None and verdict.overturned_at_s is not None:
         name = f"fell, {verdict.overturned_at_s:.3f} s"
         axes.axvline(verdict.overturned_at_s, color=GREY, linestyle=(0, (1, 2)), linewidth=1.0, label=name)

@@ -42,9 +42,8 @@ class Comparison:
     inside: bool = True  #: whether it is made inside the stated bounds of the claim
 
     def __post_init__(self) -> None:
-        object.__setattr__(
-            self, "measured", float(self.measured)
-        )  # of a count, a truth value or a numpy number
+        # of a count, a truth value or a numpy number
+        object.__setattr__(self, "measured", float(self.measured))
 
     @property
     def holds(self) -> bool:

@@ -219,9 +219,8 @@ class Fields:
                 points=mesh.points[:, :2],
                 cells=block.data,
                 region=mesh.cell_data["region"][0],
-                box=mesh.cell_data.get("box", [np.ones(len(block.data), dtype=np.int32)])[
-                    0
-                ],  # former versions
+                # former versions wrote no numbers of boxes
+                box=mesh.cell_data.get("box", [np.ones(len(block.data), dtype=np.int32)])[0],
                 displacement=data["displacement_m"][:, :2],
                 velocity=data["velocity_m_s"][:, :2],
                 von_mises=data.get("von_mises_Pa"),

@@ -148,9 +148,8 @@ def _changing(model: Model) -> Arrays:
         else:
             found[name] = part
     stack = model.body.stack if isinstance(model.body, FullStack) else model.body
-    if isinstance(
-        stack, LooseStack
-    ):  # a step begins with the weights and the linearisation of the one before
+    # a step begins with the weights and the linearisation of the one before
+    if isinstance(stack, LooseStack):
         found["faces.weight"], found["faces.gradient"] = stack.faces.weight, stack.faces.gradient
         found["contact.normal_stiffness"] = model.run.contact.normal_stiffness
         found["contact.tangential_stiffness"] = model.run.contact.tangential_stiffness

@@ -49,10 +49,8 @@ def next_turning_point(
     def rate(_: float, state: FloatArray) -> FloatArray:
         z, angle, (vx, vz, spin) = state[1], state[2], state[3:]
         cos, sin = math.cos(angle), math.sin(angle)
-        arm_x, arm_z = (
-            -places * sin - below * cos,
-            -places * cos + below * sin,
-        )  # velocity of a point per spin
+        # velocity of a point per spin
+        arm_x, arm_z = (-places * sin - below * cos, -places * cos + below * sin)
         depth = places * sin + below * cos - z
         pressing = spring * (depth - relaxation_time * (vz + spin * arm_z))
         normal = np.where(depth > 0.0, np.maximum(pressing, 0.0), 0.0)

@@ -96,9 +96,8 @@ def test_a_container_on_a_falling_floor_is_weightless(model):
     assert (force[times(fall) >= 0.12] == 0.0).all()
     ledger = fall.model.run.ledger
     assert abs(ledger[-1]) < 1e-4 * fall.model.run.control.reference_energy
-    assert (
-        np.ptp(fall.history["centre_z_m"]) < 0.005
-    )  # it keeps its place over the floor, which has fallen by 0.8 m
+    # it keeps its place over the floor, which has fallen by 0.8 m
+    assert np.ptp(fall.history["centre_z_m"]) < 0.005
 
 
 def test_nothing_changes_on_a_floor_that_rises_steadily(tmp_path):

@@ -289,10 +289,11 @@ def test_creep_of_regularised_friction_is_estimated():
     ("result", "override"),
     [
         (changed(numerics__contact_frequency_Hz=900.0), "solver.model=rigid"),  # no elastic frequency
+        # no steel that yields
         (
             changed(verdict__max_von_mises_Pa=2.4e8, verdict__yield_strength_Pa=None),
             "container.section=solid",
-        ),  # no steel that yields
+        ),
     ],
 )
 def test_no_warning_of_what_the_model_does_not_have(result, override):

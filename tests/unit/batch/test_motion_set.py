@@ -140,9 +140,8 @@ def test_a_motion_of_uneven_steps_has_the_spectrum_of_its_straight_lines(base, t
 
 
 def test_motions_that_are_one_are_refused(base, tmp_path):
-    write_motion(
-        tmp_path, "copy.csv", frequency=2.0, peak=-1.5
-    )  # of a_h.csv: half as strong, of the other sign
+    # of a_h.csv: half as strong, of the other sign
+    write_motion(tmp_path, "copy.csv", frequency=2.0, peak=-1.5)
     with pytest.raises(CaseError, match=r"'copy.csv' and 'a_h.csv' hold the same motion"):
         read_motion_set(base, [read_axis("motion.file", ["a_h.csv", "b_h.csv", "copy.csv"])])
     with pytest.raises(CaseError, match=r"a_h.csv: the file has one motion"):

@@ -48,9 +48,8 @@ def test_the_equation_of_motion_holds_at_the_samples():
     spring = rate**2 * found.displacement_m + 2.0 * 0.05 * rate * found.velocity_m_s
     assert found.acceleration_m_s2 == pytest.approx(-spring, abs=1e-12)
     relative = found.acceleration_m_s2 - noise()
-    trapezia = (
-        0.5 * (relative[1:] + relative[:-1]) * 0.01
-    )  # within h^2 w^2/12 of their size: 0.1 %, more where it bends
+    # within h^2 w^2/12 of their size: 0.1 %, more where it bends
+    trapezia = 0.5 * (relative[1:] + relative[:-1]) * 0.01
     assert np.diff(found.velocity_m_s) == pytest.approx(trapezia, abs=2e-3 * np.abs(trapezia).max())
 
 

@@ -150,10 +150,8 @@ class TestAftermath:
 
     def test_a_run_that_is_not_to_stop_continues_with_the_container_on_its_side(self, tmp_path):
         folder = tmp_path / "r"
-        lying = (
-            "floor.kind=rigid",
-            "output.stop_when_overturned=false",
-        )  # a slab crushes under the upper edge
+        # a slab crushes under the upper edge
+        lying = ("floor.kind=rigid", "output.stop_when_overturned=false")
         found = run(folder, "overturning", *lying, "solver.duration_s=4")
         assert found.status == "overturned"
         history = history_of(folder)

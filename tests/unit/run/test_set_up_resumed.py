@@ -98,10 +98,8 @@ def test_a_short_set_up_keeps_nothing_and_a_refused_one_leaves_nothing(tmp_path,
     assert main(command(tmp_path / "short", *FLAT)) == 0
     monkeypatch.undo()
     monkeypatch.setattr(setup_cache, "CHECKPOINT_S", 0.0)
-    soft = (
-        *FLAT,
-        "container.youngs_modulus_Pa=1e6",
-    )  # crushed by its own weight, which only the answers tell
+    # crushed by its own weight, which only the answers tell
+    soft = (*FLAT, "container.youngs_modulus_Pa=1e6")
     assert main(command(tmp_path / "new" / "refused", *soft)) == 2
     assert not (tmp_path / "new").exists()
 

@@ -99,9 +99,8 @@ def test_pressure_in_a_frame_is_the_force_of_a_corner_on_its_patch(boxes):
         force = patch * frame.contact_pressure[base].sum()
         assert force == pytest.approx(run.history["normal_force_N"][instant], rel=1e-5, abs=1e-3)
         assert frame.contact_pressure.max() <= run.case.floor.bearing_strength_Pa * (1.0 + 1e-6)
-    if (
-        boxes
-    ):  # at rest what the lower corners of the upper box press is its weight, on patches of the same size
+    # at rest what the lower corners of the upper box press is its weight, on patches of the same size
+    if boxes:
         upper = (run.fields.frame(0).points[:, 1] == 1.0) & (run.fields.frame(0).contact_pressure > 0.0)
         pressed = patch * run.fields.frame(0).contact_pressure[upper].sum()
         assert pressed == pytest.approx(run.case.weight / 2.0, rel=1e-5)

@@ -145,10 +145,8 @@ def test_the_peak_is_an_axis_of_records_too_and_ends_with_the_answer(sweep_of, t
     assert info["answer"].startswith("peak acceleration: stood in every motion tried up to ")
     with (tmp_path / "out" / "answers.csv").open() as file:
         rows = list(csv.DictReader(file))
-    assert [row["motion.file"] for row in rows] == [
-        "a_h.csv",
-        "b_h.csv",
-    ]  # the signs of a motion count as one
+    # the signs of a motion count as one
+    assert [row["motion.file"] for row in rows] == ["a_h.csv", "b_h.csv"]
     for row in rows:
         fell = [float(row["overturned_from"])] if row["overturned_from"] else []
         assert 2.0 <= float(row["stood_to"]) < min([*fell, 31.0])
