@@ -27,18 +27,17 @@ LARGEST_ROTATION = 1.2  #: of a box that stands [rad]
 
 @dataclass(frozen=True, kw_only=True)
 class Boxes:
-    """Boxes from the floor up, each over the axis of the lowest but for an offset; arrays of shape (n,)."""
+    """Boxes on one axis, from the floor up; arrays of shape (n,)."""
 
     half_width: FloatArray  #: [m]
     height: FloatArray  #: [m]
     mass: FloatArray  #: [kg]
     centroid_height: FloatArray  #: above the bottom of each [m]
     inertia: FloatArray  #: about the mass centre [kg m2]
-    offset: FloatArray  #: of the axis from that of the lowest box [m]
 
     @classmethod
     def homogeneous(cls, widths: FloatArray, heights: FloatArray, masses: FloatArray) -> "Boxes":
-        """Homogeneous rectangles on one axis."""
+        """Homogeneous rectangles."""
         width, height, mass = (np.array(one, dtype=float) for one in (widths, heights, masses))
         return cls(
             half_width=0.5 * width,
@@ -46,14 +45,13 @@ class Boxes:
             mass=mass,
             centroid_height=0.5 * height,
             inertia=mass * (width**2 + height**2) / 12.0,
-            offset=np.zeros_like(width),
         )
 
     @property
     def upright(self) -> FloatArray:
         """Places of the mass centres and rotations at rest, shape (n, 3)."""
         bottom = np.concatenate([[0.0], np.cumsum(self.height)[:-1]])
-        return np.stack([self.offset, bottom + self.centroid_height, np.zeros_like(bottom)], axis=1)
+        return np.stack([0.0 * bottom, bottom + self.centroid_height, 0.0 * bottom], axis=1)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,25 +75,21 @@ def move_boxes(
     mu_static: float | FloatArray,
     mu_kinetic: float | FloatArray | None = None,
     gravity: float = 9.81,
-    place: FloatArray | None = None,
-    velocity: FloatArray | None = None,
     every: int = 10,
 ) -> BoxMotion:
-    """Follow boxes that stand on a floor.
+    """Follow boxes that stand at rest on a floor.
 
     Args:
         along: acceleration of the floor at the middle of each step, shape (steps,) [m/s2].
         step: [s].
         mu_static, mu_kinetic: below each box, shape (n,), or everywhere; static until all contacts of an interface
             slide one way, kinetic from the next step until they do not. No mu_kinetic: mu_static.
-        place, velocity: at the start, shape (n, 3), relative to the floor; else at rest, upright.
         every: steps between samples.
     """
     n = boxes.mass.size
     static = np.full(n, mu_static, dtype=float)
     kinetic = static if mu_kinetic is None else np.full(n, mu_kinetic, dtype=float)
-    q = (boxes.upright if place is None else np.array(place, dtype=float)).copy()
-    v = np.zeros((n, 3)) if velocity is None else np.array(velocity, dtype=float)
+    q, v = boxes.upright, np.zeros((n, 3))
     samples = along.size // every + 1
     places, slips = np.full((samples, n, 3), np.nan), np.full((samples, n), np.nan)
     most = np.zeros((n, 2))

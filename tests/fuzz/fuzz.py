@@ -21,9 +21,10 @@ import traceback
 from dataclasses import dataclass
 from pathlib import Path
 
+import data_inputs
+import inputs
 from folders import damaged_folders
 from hypothesis import HealthCheck, Phase, given, seed, settings
-from inputs import KINDS as KINDS_OF_FILES
 from inputs import Input
 from options import options
 
@@ -33,11 +34,15 @@ from fem.model.model import build_model
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 
-KINDS = KINDS_OF_FILES | {
-    "folder": (damaged_folders(), 0.03),
-    "option": (options(reading=False), 0.1),
-    "reading": (options(reading=True), 0.02),
-}
+KINDS = (
+    inputs.KINDS
+    | data_inputs.KINDS
+    | {
+        "folder": (damaged_folders(), 0.03),
+        "option": (options(reading=False), 0.1),
+        "reading": (options(reading=True), 0.02),
+    }
+)
 LONG, HANGING = 10.0, 120.0  #: a run is asked to stop after the one, and given up after the other [s]
 ALLOWED = {0, 2, 3, 4}
 SHORT_OF_WORDS = {2, 3}  #: of exit codes, those that owe an explanation

@@ -1,23 +1,19 @@
-"""What the fuzz feeds the program with, as strategies of hypothesis: case tables, TOML bytes, meshes, motion tables.
+"""What the fuzz feeds the program with, as strategies of hypothesis: case tables and TOML bytes.
 
 Tables of a case are drawn from the models of `fem.case.tables` themselves: a new key, choice or range is tried without
 a change here. Only what makes a run long is bounded, in `CHEAP`.
 """
 
-import tempfile
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cache
-from pathlib import Path
 from types import NoneType
 from typing import Any, Literal, get_args, get_origin
 
 import numpy as np
 from hypothesis import strategies as st
-from mesh_writer import write_container_mesh
+from mesh_writer import mesh_of
 from pydantic.fields import FieldInfo
-from record_files import WRITTEN, synthetic_motion
 
 from fem.case.files import CASES
 from fem.case.overrides import with_overrides
@@ -27,10 +23,6 @@ from fem.case.table import CaseTable
 from fem.case.tables import TABLES, CaseHeading
 from fem.case.toml import toml_value
 from fem.case.validation import known_keys, quantity_of
-from mesh.container import build_container_mesh
-from mesh.fill import MassFill
-from mesh.geometry import ContainerGeometry, Section
-from mesh.untrusted import FORMATS
 
 Tables = dict[str, Any]
 Draw = Any
@@ -307,137 +299,5 @@ def texts(draw: Draw) -> Input:
     return Input(arguments=("check", "case.toml"), files={"case.toml": content})
 
 
-@cache
-def mesh_of(suffix: str, *, shell: bool) -> bytes:
-    """A mesh file of a stack of two boxes."""
-    geometry = ContainerGeometry(
-        width=1.1, height=1.0, depth=1.1, boxes=2, section=Section.SHELL if shell else Section.SOLID,
-        wall=0.02 if shell else None,
-    )  # fmt: skip
-    mesh = build_container_mesh(geometry, MassFill(mass=2500.0, centroid_height=0.5), element_size=0.5)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"mesh{suffix}"
-        write_container_mesh(path, mesh)
-        return path.read_bytes()
-
-
-@st.composite
-def meshes(draw: Draw) -> Input:
-    """A mesh file with bytes changed, of a block or a shell of two boxes; checked."""
-    suffix, shell = draw(st.sampled_from(sorted(FORMATS))), draw(st.booleans())
-    whole = mesh_of(suffix, shell=shell)
-    wall = "wall_m = 0.02" if shell else 'section = "solid"'
-    case = (
-        f"[container]\nwidth_m = 1.1\nheight_m = 1.0\nboxes = 2\nweight_N = 24525.0\n{wall}\n"
-        f'mesh_file = "mesh{suffix}"\n[contact]\nmu_static = 0.4\n[motion]\nkind = "none"\n'
-    )
-    content = draw(st.just(whole) | damaged(whole) | damaged(whole) | damaged(whole))
-    return Input(
-        arguments=("check", "case.toml"), files={"case.toml": case.encode(), f"mesh{suffix}": content}
-    )
-
-
-@st.composite
-def motion_tables(draw: Draw) -> Input:
-    """A motion table with bytes changed, or columns of any numbers; run."""
-    words = {"quantity": "acceleration", "unit": draw(st.sampled_from(("m/s2", "g")))}
-    if draw(st.integers(0, 3)) == 0:
-        words = {"quantity": "displacement", "unit": "m"}
-    if draw(st.integers(0, 3)) == 0:
-        names = ("quantity", "unit", "baseline", "scale", "start", "sample_interval_s", "start_s", "end_s")
-        names += ("scale_to_m_s2",) if draw(st.booleans()) else ()
-        words |= {name: draw(values_of(f"motion.{name}", None)) for name in names}
-    heading = draw(
-        st.sampled_from(("", "", "time_s,value\n", "time_s,acc_m_s2\n", "t [s],disp [m]\n", "t,a_g\n"))
-    )
-    rows = draw(st.just(SINE) | any_rows())
-    content = (heading + rows).encode()
-    if draw(st.booleans()):
-        content = draw(damaged(content))
-    lines = "".join(f"{key} = {toml_value(value)}\n" for key, value in words.items())
-    case = (
-        "[container]\nwidth_m = 1.1\nheight_m = 4.0\ndensity_kg_m3 = 2000.0\n[contact]\nmu_static = 0.4\n"
-        f'[motion]\nkind = "table"\nfile = "floor.csv"\n{lines}'
-        '[solver]\nmodel = "rigid"\nduration_s = 0.4\nelement_size_m = 2.0\n[output]\nfields_s = 0.0\nfigures = false\n'
-    )
-    return Input(
-        arguments=("run", "case.toml", "--out", "out", "-q", "--no-band"),
-        files={"case.toml": case.encode(), "floor.csv": content},
-    )
-
-
-def record_of(name: str) -> bytes:
-    """A file of a format, short enough to be damaged in its header as often as in its numbers."""
-    values = tuple(component[:200] for component in synthetic_motion())
-    return WRITTEN[name].text(*values).encode()
-
-
-@st.composite
-def records(draw: Draw) -> Input:
-    """A file of any format with bytes changed, as the motion of a case or drawn, in any way of naming it."""
-    name = draw(st.sampled_from(sorted(WRITTEN)))
-    form, content = WRITTEN[name], draw(damaged(record_of(name)))
-    if draw(st.integers(0, 5)) == 0:
-        content = content.decode("utf-8", "replace").encode(
-            draw(st.sampled_from(("utf-16", "utf-8-sig", "cp500"))), "replace"
-        )
-    said = {"unit": form.unit, "sample_interval": form.sample_interval}
-    if draw(st.integers(0, 3)) == 0:
-        said["unit"] = draw(st.sampled_from(("g", "gal", "m/s2", "m")))
-    channel = draw(st.sampled_from(("", "", "", "#1", "#2", "#Up", "#9", "#")))
-    if draw(st.integers(0, 3)) == 0:
-        options = [f"--{key.replace('_', '-')}={value}" for key, value in said.items() if value is not None]
-        return Input(arguments=("picture", f"motion{channel}", *options), files={"motion": content})
-    keys = {"unit": said["unit"], "sample_interval_s": said["sample_interval"]}
-    for key in draw(
-        st.sets(st.sampled_from(("start_s", "end_s", "scale_to_m_s2", "baseline", "quantity")), max_size=3)
-    ):
-        keys[key] = draw(values_of(f"motion.{key}", None))
-    keys |= {"vertical.kind": "table"} if draw(st.booleans()) else {}
-    changes = [
-        f"{key if '.' in key else f'motion.{key}'}={value}"
-        for key, value in keys.items()
-        if value is not None
-    ]
-    case = (
-        "[container]\nwidth_m = 1.1\nheight_m = 4.0\ndensity_kg_m3 = 2000.0\n[contact]\nmu_static = 0.4\n"
-        '[motion]\nkind = "none"\n[solver]\nmodel = "rigid"\nduration_s = 0.2\nelement_size_m = 2.0\n'
-        "[output]\nfields_s = 0.0\nfigures = false\n"
-    )
-    command = (
-        ("run", "case.toml", "--out", "out", "-q", "--no-band")
-        if draw(st.booleans())
-        else ("check", "case.toml")
-    )
-    return Input(
-        arguments=(
-            *command,
-            "--motion",
-            f"motion{channel}",
-            *(word for one in changes for word in ("--set", one)),
-        ),
-        files={"case.toml": case.encode(), "motion": content},
-    )
-
-
-@st.composite
-def any_rows(draw: Draw) -> str:
-    """Rows of a table: rising times and moderate values, some of them replaced by any number."""
-    steps = draw(st.lists(st.floats(1e-6, 1.0), max_size=30))
-    times = [float(instant) for instant in np.cumsum(steps)]
-    values = draw(st.lists(st.floats(-3.0, 3.0), min_size=len(times), max_size=len(times)))
-    for column in (times, values):
-        for _ in range(draw(st.integers(0, 2)) if column and draw(st.booleans()) else 0):
-            column[draw(st.integers(0, len(column) - 1))] = draw(st.floats() | st.sampled_from(column))
-    mark = draw(st.sampled_from((",", ",", ";", " ", "\t")))
-    return "".join(f"{t!r}{mark}{v!r}\n" for t, v in zip(times, values, strict=True))
-
-
 #: by name: inputs, and the share of them in the whole
-KINDS: dict[str, tuple[st.SearchStrategy[Input], float]] = {
-    "case": (runs(), 0.4),
-    "text": (texts(), 0.25),
-    "mesh": (meshes(), 0.15),
-    "table": (motion_tables(), 0.15),
-    "record": (records(), 0.05),
-}
+KINDS: dict[str, tuple[st.SearchStrategy[Input], float]] = {"case": (runs(), 0.4), "text": (texts(), 0.25)}

@@ -1,11 +1,15 @@
 """Mesh files for the tests of `mesh.files`."""
 
+import tempfile
+from functools import cache
 from pathlib import Path
 
 import meshio
 import numpy as np
 
-from mesh.container import ContainerMesh
+from mesh.container import ContainerMesh, build_container_mesh
+from mesh.fill import MassFill
+from mesh.geometry import ContainerGeometry, Section
 from mesh.region import Region
 
 
@@ -40,3 +44,17 @@ def write_container_mesh(path: Path, mesh: ContainerMesh) -> None:
                 meshio.vtk.write(path, written)
         case _:
             raise ValueError(path.suffix)
+
+
+@cache
+def mesh_of(suffix: str, *, shell: bool) -> bytes:
+    """A mesh file of a stack of two boxes."""
+    geometry = ContainerGeometry(
+        width=1.1, height=1.0, depth=1.1, boxes=2, section=Section.SHELL if shell else Section.SOLID,
+        wall=0.02 if shell else None,
+    )  # fmt: skip
+    mesh = build_container_mesh(geometry, MassFill(mass=2500.0, centroid_height=0.5), element_size=0.5)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"mesh{suffix}"
+        write_container_mesh(path, mesh)
+        return path.read_bytes()
