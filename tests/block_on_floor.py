@@ -276,4 +276,5 @@ def limits_of(block: Block, largest_step: float, fixed_step: bool, energy_scale:
         contents_cutoff=200.0,
         top_monitors=0,
         base_points=2,
+        eager=False,
     )

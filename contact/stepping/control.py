@@ -18,6 +18,8 @@ STEPS_PER_OCTAVE = 3  #: sizes per factor of two
 OCTAVE = tuple(2.0 ** (-level / STEPS_PER_OCTAVE) for level in range(STEPS_PER_OCTAVE))  #: the first of them
 #: levels by which a step may grow at once; of a loose stack, whose corners rattle
 GROWTH, GROWTH_OF_STACK = 3, 6
+#: .. where steps are eager, and the share of the allowed imbalance up to which they then grow
+EAGER_GROWTH, EAGER_SHARE = 6, 0.5
 AT_LIMIT = 1e-6  #: share of static friction that is left, below which the support has reached its limit
 NEIGHBOUR = 0.25  #: base points nearer than this, over the width, close together
 #: the whole ledger aims at these shares of the final limits of gain and loss; above `AIM_SHARE` of the aim, one step ..
@@ -180,6 +182,20 @@ def change_level(level: int, used: float, not_held: bool, most: int = GROWTH) ->
     if used < 0.15 and not_held:
         return max(level - 1, 0)
     return level
+
+
+@compiled(inline=True)
+def grown_level(level: int, used: float, not_held: bool) -> int:
+    """`change_level` after an accepted step, where steps are eager.
+
+    The imbalance is of third order: it doubles from level to level. The step grows until it would be about half the
+    allowed one; soon after a rejection, by one level.
+    """
+    if used > 0.7:
+        return level + 1
+    most = EAGER_GROWTH if not_held else 1
+    room = most if used <= 0.0 else math.frexp(EAGER_SHARE / used)[1] - 1
+    return max(level - max(min(room, most), 0), 0)
 
 
 @compiled

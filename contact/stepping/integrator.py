@@ -23,6 +23,7 @@ from contact.stepping.control import (
     STEPS_PER_OCTAVE,
     allowed_imbalance,
     change_level,
+    grown_level,
     ledger_allowance,
     next_step,
     step_level,
@@ -43,8 +44,9 @@ from contact.stepping.step import account, attempt, copy_state, indent
 
 WEAKENING_LIMIT = 8  #: repetitions of a step for friction that weakens with its slip
 HELD_STEPS = 6  #: after a rejection
-#: of the remembered imbalance, per step; of a loose stack, most of whose steps follow an impact in short time
-FADING, FADING_OF_STACK = 0.8, 0.5
+#: of the remembered imbalance, per step; where steps are eager, and of a loose stack, most of whose steps follow an
+#: impact in short time
+FADING, SHORT_FADING = 0.8, 0.5
 
 #: what `advance` returns
 REACHED, OVERTURNED, FAILED, UNPREPARED = 0, 1, 2, 3
@@ -178,9 +180,12 @@ def advance(body: Any, run: RunState, until: float) -> int:
         close_step(run, step, iterations)
         # The imbalance of one step may vanish by chance while it changes sign: remember the last steps.
         stacked = run.joints.shape[0] > 1
-        recent = max(min(used, 1.0), (FADING_OF_STACK if stacked else FADING) * clock.allowance_used)
-        most = GROWTH_OF_STACK if stacked else GROWTH
-        level = change_level(clock.level, recent, clock.growth_hold == 0, most)
+        fading = SHORT_FADING if stacked or control.eager else FADING
+        recent, not_held = max(min(used, 1.0), fading * clock.allowance_used), clock.growth_hold == 0
+        if control.eager:
+            level = grown_level(clock.level, recent, not_held)
+        else:
+            level = change_level(clock.level, recent, not_held, GROWTH_OF_STACK if stacked else GROWTH)
         if level < clock.level or step > control.smallest_step:
             clock.level = level
         clock.allowance_used = recent

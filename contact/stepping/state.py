@@ -70,6 +70,7 @@ class Control(NamedTuple):
     contents_cutoff: float  #: of the filter of the acceleration of the contents [rad/s]
     top_monitors: int  #: number of monitored points at the top; they come first
     base_points: int  #: number of contact points of the base; they come first
+    eager: bool  #: steps grow as soon and as far as their imbalance allows: of a rigid container, for maps
 
 
 #: .. and behind them for each further box of a loose stack

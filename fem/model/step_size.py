@@ -33,9 +33,13 @@ ENERGY_RATE, ENERGY_FLOOR, ENERGY_SHARE = 1e-5, 2e-7, 4e-3
 #: .. at a first contact, over the energy that a rigid block would lose there
 CLOSING_SHARE, LEAST_LOSS = 2e-3, 0.02
 TRAIL_SHARE, TRAIL_TIME = 2e-2, 0.1
-#: .. with the loosest tolerance: the audit judges the loss over the dissipated energy at the end. A rigid container
-#: does not ring: it loses energy once, at the impact itself
-MOST_SHARE, MOST_RIGID_SHARE, MOST_TRAIL = 8e-3, 4e-2, 3e-2
+#: .. with the loosest tolerance: the audit judges the loss over the dissipated energy at the end
+MOST_SHARE, MOST_TRAIL = 8e-3, 3e-2
+#: .. of a rigid container: it does not ring, and loses energy once, at the impact itself
+MOST_RIGID_SHARE, MOST_RIGID_TRAIL = 1e-1, 4e-1
+EAGER_TOLERANCE = 2.0  #: above which its steps are eager: for maps
+#: .. and of a loose stack of rigid boxes, which rattle
+MOST_RATTLING_SHARE = 4e-2
 #: energy of a contact, over the energy to overturn, below which the energy balance alone controls the step
 SOFT_CLOSING = 1e-6
 #: beyond both limits a Newmark run without averaging gains energy
@@ -114,7 +118,12 @@ def control_of(
     # Energy to overturn the container quasi-statically.
     reference = static.weight * static.radius * (1.0 - math.cos(static.slenderness_angle))
     rate = static.frequency_parameter
-    loose, rigid = case.solver.energy_tolerance, case.solver.model == "rigid"
+    loose = case.solver.energy_tolerance
+    share, trail, eager = MOST_SHARE, MOST_TRAIL, False
+    if case.solver.model == "rigid":
+        share = MOST_RATTLING_SHARE
+        if not container.boxes:
+            share, trail, eager = MOST_RIGID_SHARE, MOST_RIGID_TRAIL, loose > EAGER_TOLERANCE
     spring = float(contact.normal_stiffness[0])
     struck = _struck_mass(case, container)
     # Time constants of a mass on the dashpot and on the spring of a corner.
@@ -130,8 +139,8 @@ def control_of(
         reference_energy=reference,
         energy_rate=loose * ENERGY_RATE * rate,
         energy_floor=loose * ENERGY_FLOOR,
-        energy_share=min(loose * ENERGY_SHARE, MOST_RIGID_SHARE if rigid else MOST_SHARE),
-        recent_share=min(loose * TRAIL_SHARE, MOST_TRAIL),
+        energy_share=min(loose * ENERGY_SHARE, share),
+        recent_share=min(loose * TRAIL_SHARE, trail),
         recent_time=TRAIL_TIME / rate,
         closing_share=loose * CLOSING_SHARE * max(1.0 - static.housner_restitution**2, LEAST_LOSS),
         mass=mesh.mass,
@@ -146,6 +155,7 @@ def control_of(
         contents_cutoff=2.0 * math.pi * case.output.contents_filter_Hz,
         top_monitors=2,
         base_points=base,
+        eager=eager,
     )
 
 

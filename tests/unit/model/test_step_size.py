@@ -88,6 +88,19 @@ def test_no_step_is_made_for_a_motion_that_changes_twice_within_the_smallest():
     assert model.run.old.position == pytest.approx(at_once.run.old.position, rel=1e-9)
 
 
+def test_a_loose_tolerance_saves_steps_of_a_rigid_container_and_keeps_its_motion():
+    model, ending = finished(rigid())
+    for tolerance in (10.0, 30.0):
+        coarse, coarse_ending = finished(rigid(solver__energy_tolerance=tolerance))
+        assert ending.status == coarse_ending.status == "completed"
+        assert coarse.run.clock[0].steps < 0.75 * model.run.clock[0].steps
+        rotation = model.run.track[0].max_rotation
+        assert coarse.run.track[0].max_rotation == pytest.approx(rotation, rel=0.01)
+        assert not build_model(
+            rigid(solver__energy_tolerance=tolerance, solver__model="reduced")
+        ).run.control.eager
+
+
 def test_no_step_is_longer_than_the_samples_in_memory_reach():
     case = rigid(output__history_s=1e-6, output__fields_s=0.0)
     model = build_model(case)
