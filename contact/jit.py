@@ -18,7 +18,7 @@ from numba.core import config
 from numba.core.registry import CPUDispatcher
 from numba.extending import register_jitable
 
-from contact.pieces import PieceCompiler
+from contact.pieces import KernelCompiler, PieceCompiler
 
 
 @cache
@@ -88,7 +88,9 @@ def compiled(
     before = getattr(config, "CACHE_DIR")  # noqa: B009 - numba sets its options at run time
     setattr(config, "CACHE_DIR", str(cache_folder(sources)))  # noqa: B010
     try:
-        entry: Any = numba.njit(**OPTIONS | {"cache": True, "no_cfunc_wrapper": True})(function)
+        entry: Any = numba.njit(
+            **OPTIONS | {"cache": True, "no_cfunc_wrapper": True, "pipeline_class": KernelCompiler}
+        )(function)
     finally:
         setattr(config, "CACHE_DIR", before)  # noqa: B010
     # numba would first load all that its compiler knows (0.1 s, 27 MB); a compilation does so itself.

@@ -13,8 +13,21 @@ from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import LoweringPass, register_pass
 from numba.core.typed_passes import AnnotateTypes, NativeLowering
 
+SIMPLIFIED = 1  #: level of LLVM's optimisation
 
-class PieceLibrary(JITCodeLibrary):
+
+class KernelLibrary(JITCodeLibrary):
+    """Code of a kernel."""
+
+    def _optimize_functions(self, ll_module: Any) -> None:
+        """Simplify only: to unroll a loop around calls would multiply what these contain."""
+        ll_module.data_layout = self._codegen._data_layout
+        for function in ll_module.functions:
+            passes, builder = self._codegen._function_pass_manager(opt=SIMPLIFIED)
+            passes.run(function, builder)
+
+
+class PieceLibrary(KernelLibrary):
     """Code for the libraries that link it."""
 
     def _optimize_final_module(self) -> None:
@@ -23,6 +36,22 @@ class PieceLibrary(JITCodeLibrary):
     def _finalize_final_module(self) -> None:
         """Without machine code."""
         self._finalized = True
+
+
+@register_pass(mutates_CFG=False, analysis_only=False)
+class BeginKernel(LoweringPass):
+    """Lower the function into a `KernelLibrary`."""
+
+    _name = "begin_kernel"
+
+    def __init__(self) -> None:
+        LoweringPass.__init__(self)
+
+    def run_pass(self, state: Any) -> bool:
+        """Change the state of the compilation; returns that it has changed."""
+        state.library = KernelLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.enable_object_caching()
+        return True
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
@@ -60,6 +89,17 @@ class EndPiece(LoweringPass):
         state.targetctx.insert_user_function(key, lowered.fndesc, [state.library])
         state["cr"] = lowered._replace(cfunc=key)
         return True
+
+
+class KernelCompiler(CompilerBase):
+    """numba's compiler, but for kernels."""
+
+    def define_pipelines(self) -> list[Any]:
+        """The passes of numba's compiler with one of this module."""
+        passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        passes.add_pass_after(BeginKernel, AnnotateTypes)
+        passes.finalize()
+        return [passes]
 
 
 class PieceCompiler(CompilerBase):

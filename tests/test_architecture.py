@@ -14,7 +14,7 @@ SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob
 
 #: from the foundation up: a package imports its own modules and those of lower layers, none beside or above it
 LAYERS = (
-    ("mesh", "contact.arrays", "contact.pieces"),
+    ("mesh", "contact.arrays", "contact.pieces", "contact.structs"),
     ("contact.jit", "contact.reference"),
     ("contact.motion",),
     ("contact.interface",),
@@ -42,9 +42,15 @@ LAYERS = (
 #: package -> the only packages of a lower layer that it may import, where these are not all
 NARROW = {
     "contact.reference": {"contact.arrays"},
-    "contact.motion": {"contact.arrays", "contact.jit"},
-    "contact.interface": {"contact.arrays", "contact.jit", "contact.motion"},
-    "contact.stepping": {"contact.arrays", "contact.jit", "contact.motion", "contact.interface"},
+    "contact.motion": {"contact.arrays", "contact.jit", "contact.structs"},
+    "contact.interface": {"contact.arrays", "contact.jit", "contact.structs", "contact.motion"},
+    "contact.stepping": {
+        "contact.arrays",
+        "contact.jit",
+        "contact.structs",
+        "contact.motion",
+        "contact.interface",
+    },
     "fem.records": {"contact.arrays", "contact.jit", "contact.motion", "fem.runtime"},
     # what the package offers by name
     "fem": {"fem.runtime", "fem.case", "fem.results", "fem.run", "fem.batch"},

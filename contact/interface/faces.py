@@ -22,6 +22,7 @@ import numpy as np
 from contact.arrays import FloatArray, IntArray
 from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled
+from contact.structs import struct
 
 EDGE = 1e-3  #: half of the length over which a corner leaves a face, over the shorter of the two faces of the joint
 CORNERS = 4  #: of a box
@@ -30,6 +31,7 @@ BOTTOM_LEFT, BOTTOM_RIGHT, TOP_LEFT, TOP_RIGHT = range(CORNERS)
 TOUCHING, LEFT, RIGHT = 0, 1, 2
 
 
+@struct
 class Faces(NamedTuple):
     """The contact points of N boxes, n = 4 N - 2, and scratch."""
 

@@ -5,8 +5,10 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.arrays import FloatArray, IntArray
+from contact.structs import struct
 
 
+@struct
 class Contact(NamedTuple):
     """Properties of the contact with the floor: constants of one run, n contact points."""
 
@@ -28,6 +30,7 @@ class Contact(NamedTuple):
     turned_steps: int = 40
 
 
+@struct
 class Workspace(NamedTuple):
     """Arrays of one contact problem, shapes in terms of the n base points."""
 

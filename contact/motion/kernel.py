@@ -13,11 +13,13 @@ import numpy as np
 
 from contact.arrays import FloatArray
 from contact.jit import compiled
+from contact.structs import struct
 
 # Meaning of `FloorMotion.kind`.
 UNIFORM, HARMONIC, RECTANGULAR, HALF_SINE, SINE, PIECEWISE = 0, 1, 2, 3, 4, 5
 
 
+@struct
 class FloorMotion(NamedTuple):
     """A base motion as numbers and arrays for compiled code.
 

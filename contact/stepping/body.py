@@ -19,6 +19,7 @@ from contact.arrays import FloatArray
 from contact.interface.workspace import Contact, Workspace
 from contact.jit import options_of_piece
 from contact.stepping.scheme import Scheme
+from contact.structs import struct
 
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
@@ -28,6 +29,7 @@ ROTATION, ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, VELOCITY_X, VELOCITY_Z = 0, 1, 2
 KINETIC, STRAIN, POTENTIAL = 0, 1, 2
 
 
+@struct
 class State(NamedTuple):
     """Everything that moves, at one instant; n_d coordinates, n base points."""
 

@@ -18,7 +18,6 @@ from contact.interface.faces import (
     weigh_points,
 )
 from contact.interface.workspace import Contact, Workspace
-from contact.jit import inlined
 from contact.stepping import body as interface
 from contact.stepping.body import (
     ANGULAR_VELOCITY,
@@ -31,8 +30,10 @@ from contact.stepping.body import (
     implements,
 )
 from contact.stepping.scheme import Scheme
+from contact.structs import struct
 
 
+@struct
 class LooseStack(NamedTuple):
     """N boxes on one another."""
 
@@ -41,32 +42,6 @@ class LooseStack(NamedTuple):
     mass: FloatArray  #: (N,) of the boxes [kg]
     tolerance: float  #: error of a contact point at which an iteration stops [m]
     corners: Workspace  #: scratch, of the corners
-
-
-@inlined
-def over_corners(stack: LooseStack, state: State) -> State:
-    """The state with the corners, and the forces on them, in place of the contact points."""
-    return State(
-        state.position,
-        state.velocity,
-        state.acceleration,
-        state.jerk,
-        state.internal,
-        state.damping,
-        state.external,
-        state.corner,
-        stack.corners.force,
-        state.descent,
-        state.drift,
-        state.stick,
-        state.crushed,
-        state.pose,
-        state.energy,
-        state.boxes,
-        state.corner,
-        state.monitor,
-        state.numbers,
-    )
 
 
 @implements(interface.weigh, LooseStack, inline=True)
@@ -131,7 +106,29 @@ def respond(stack: LooseStack, scheme: Scheme, step: float, old: State, new: Sta
 def complete(stack: LooseStack, new: State, floor: float, lift: float, lift_velocity: float) -> None:
     """Internal forces, contact points, poses and energy at the converged coordinates."""
     share_forces(stack.faces, new.force, stack.corners.force)
-    interface.complete(stack.body, over_corners(stack, new), floor, lift, lift_velocity)
+    # the body beneath has the corners, and the forces on them, in place of the contact points
+    over_corners = State(
+        new.position,
+        new.velocity,
+        new.acceleration,
+        new.jerk,
+        new.internal,
+        new.damping,
+        new.external,
+        new.corner,
+        stack.corners.force,
+        new.descent,
+        new.drift,
+        new.stick,
+        new.crushed,
+        new.pose,
+        new.energy,
+        new.boxes,
+        new.corner,
+        new.monitor,
+        new.numbers,
+    )
+    interface.complete(stack.body, over_corners, floor, lift, lift_velocity)
     place_points(stack.faces, new.corner, new.point)
     open_unweighted(stack.faces, new.point)
     total = 0.0

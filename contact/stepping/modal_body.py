@@ -15,10 +15,12 @@ from typing import NamedTuple
 import numpy as np
 
 from contact.arrays import FloatArray, IntArray
+from contact.structs import struct
 
 STEP_SLOTS = 16  #: number of step sizes whose effective compliance is cached
 
 
+@struct
 class ModalBody(NamedTuple):
     """Constants of the body; n base points, m elastic modes, k monitored points."""
 
@@ -99,6 +101,7 @@ def make_modal_body(
     )
 
 
+@struct
 class BlockOnCorners(ModalBody):
     """A rigid body on two contact points: the same fields, but a separate type.
 

@@ -37,6 +37,7 @@ from contact.stepping.modal_body import ModalBody, with_own_scratch
 from contact.stepping.observables import NEVER, lifting_energy
 from contact.stepping.stack_body import stack_with_own_scratch
 from contact.stepping.state import ROW_SLIP, ROW_STRAIN, RunState
+from contact.structs import struct
 
 #: energy of a container at rest, over that which it takes to overturn; and how long it must stay below [1/p]
 RESTING_ENERGY, RESTING_TIME = 1e-5, 1.0
@@ -45,6 +46,7 @@ DRIVEN, FREE, UNDECIDED = 0, 1, 2
 SLICE, MOST_STRAINED = 0.25, 4  #: so many of the most strained samples are kept of each slice [s]
 
 
+@struct
 class KeptSamples(NamedTuple):
     """What is kept of the samples of a run with n_d coordinates."""
 

@@ -10,8 +10,10 @@ with f the sum of internal minus external forces. Newmark (1959); Chung and Hulb
 from typing import NamedTuple
 
 from contact.jit import compiled
+from contact.structs import struct
 
 
+@struct
 class Scheme(NamedTuple):
     """Coefficients of one member of the family [-]."""
 

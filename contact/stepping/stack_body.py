@@ -20,8 +20,10 @@ from contact.stepping.body import State, implements
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import STEP_SLOTS, ModalBody
 from contact.stepping.scheme import Scheme
+from contact.structs import struct
 
 
+@struct
 class StackBody(NamedTuple):
     """Constants of N boxes with m modes each, k monitored points; the fields of `ModalBody` with an axis of boxes."""
 

@@ -16,6 +16,7 @@ from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.ledger import spring_energy
 from contact.stepping.observables import NEVER, make_observables
 from contact.stepping.scheme import Scheme
+from contact.structs import struct
 
 UNLIMITED = 2**62
 AT_REST = as_floor_motion(UNIFORM, (0.0, 0.0, 0.0))  #: a floor that does not move
@@ -43,6 +44,7 @@ AT_REST = as_floor_motion(UNIFORM, (0.0, 0.0, 0.0))  #: a floor that does not mo
 ROW_COLUMNS = 17
 
 
+@struct
 class Control(NamedTuple):
     """Constants of the step control and the container."""
 
@@ -161,6 +163,7 @@ def make_joints(mass: npt.ArrayLike, inertia: npt.ArrayLike, width: npt.ArrayLik
     return joints
 
 
+@struct
 class Samples(NamedTuple):
     """Samples on an exact grid of times, at most as many as the arrays hold: n_s."""
 
@@ -193,6 +196,7 @@ def make_samples(
     )
 
 
+@struct
 class RunState(NamedTuple):
     """All data of a run besides the body; variable data change in place."""
 

@@ -13,12 +13,14 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array, diags_array, tril
 
 from contact.jit import compiled
+from contact.structs import struct
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.assembly import factorised
 
 SOURCES = (Path(__file__),)  #: on which the machine code of this module depends
 
 
+@struct
 class BlockPattern(NamedTuple):
     """Which blocks exist; n nodes, in the order of their elimination."""
 

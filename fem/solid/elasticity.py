@@ -14,6 +14,7 @@ import numpy as np
 from numba.extending import register_jitable
 
 from contact.jit import compiled
+from contact.structs import struct
 from fem.runtime.arrays import FloatArray, IntArray
 
 SOURCES = (Path(__file__),)  #: on which the machine code of this module depends
@@ -21,6 +22,7 @@ LANES = 64  #: cells of a block
 Real = TypeVar("Real", float, FloatArray)
 
 
+@struct
 class LamePair(NamedTuple):
     """The two Lamé constants of plane stress [Pa]."""
 
@@ -101,6 +103,7 @@ def second_stress(strain: FloatArray, lame: LamePair) -> FloatArray:
     return np.stack(stress_components(xx, zz, xz, lame.first, lame.shear))
 
 
+@struct
 class CellBlocks(NamedTuple):
     """The cells in blocks of `LANES`, for instructions on several at once; cells without volume fill the last."""
 

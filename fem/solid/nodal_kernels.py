@@ -31,6 +31,7 @@ from contact.stepping.body import (
 )
 from contact.stepping.integrator import advance, enter_floor_frame
 from contact.stepping.scheme import Scheme
+from contact.structs import struct
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid.block_factor import BlockPattern, substitute_blocks
 from fem.solid.elasticity import CellBlocks, element_forces
@@ -39,6 +40,7 @@ from fem.solid.elasticity import CellBlocks, element_forces
 SOURCES = (Path(__file__), Path(fem.solid.block_factor.__file__), Path(fem.solid.elasticity.__file__))
 
 
+@struct
 class NodalBody(NamedTuple):
     """Constants of the container, the factors at hand, and scratch; n nodes, m cells of k nodes, n_c base points."""
 

@@ -22,6 +22,7 @@ from contact.stepping.loose_stack import LooseStack
 from contact.stepping.scheme import Scheme
 from contact.stepping.stack_body import work_of
 from contact.stepping.state import RunState
+from contact.structs import struct
 from fem.runtime.arrays import FloatArray, IntArray
 from fem.solid import nodal_kernels
 from fem.solid.nodal_body import FullBody, rotation_matrix
@@ -40,6 +41,7 @@ FACTORS = (
 )
 
 
+@struct
 class NodalStack(NamedTuple):
     """The nodes of N boxes."""
 
