@@ -124,14 +124,7 @@ def answer_of(trials: Sequence[Trial], *, rising: bool) -> Answer:
 
 
 def sentence_of(answer: Answer, axis: Axis, *, rising: bool, where: str = "") -> str:
-    """An answer in words: "stood in every motion tried up to 0.42 g; first overturned at 0.44 g (slip there 64 mm)".
-
-    Args:
-        answer: of one line or of several.
-        axis: along which it is.
-        rising: as it was made.
-        where: the line that overturned first, in words.
-    """
+    """An answer in words: "stood in every motion tried up to 0.42 g; first overturned at 0.44 g (slip there 64 mm)"."""
     every = f"stood in every {'motion' if axis.key.startswith('motion.') else 'case'} tried"
     stood, fell = ends_in_words(answer, axis)
     slip = _slip_in_words(answer.slip) if fell and answer.slip is not None else ""

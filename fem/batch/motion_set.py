@@ -154,14 +154,7 @@ def write_motions(
     measures: Sequence[Mapping[str, Any]],
     runner: Runner | None = None,
 ) -> list[str]:
-    """Write `motions.csv`, `spectra.csv` and the figure of the spectra; returns the names of figures.
-
-    Args:
-        place: the folder of a study.
-        motions: of the set.
-        measures: of each motion, with its outcomes.
-        runner: as for `read_motion_set`.
-    """
+    """Write `motions.csv`, `spectra.csv` and the figure of the spectra; returns the names of figures."""
     place.write_text("motions.csv", _motions_table(measures))
     periods, spectra = spectra_of(motions, runner)
     rows = np.column_stack([periods, *spectra.values()]).tolist()

@@ -130,11 +130,6 @@ class Runner:
     def each(self, what: str, items: Sequence[ItemT], work: Callable[[ItemT], FoundT]) -> list[FoundT]:
         """Let the workers do some work for each item; it must be picklable.
 
-        Args:
-            what: is done, for the line of progress.
-            items: in order.
-            work: from an item to its result.
-
         Returns:
             The results in the order of the items.
 

@@ -152,11 +152,6 @@ def read_axes(
 def require_verticals(axes: Iterable[Axis], varied: Iterable[str], base: Case) -> None:
     """Refuse a motion alone in a set where a key of its vertical motion varies.
 
-    Args:
-        axes: of which one may hold a set of motions.
-        varied: keys that vary.
-        base: the case that is varied.
-
     Raises:
         CaseError: with the key and the motion.
     """

@@ -64,9 +64,6 @@ def draws_in_words(result: Row) -> str:
 def ensemble_answer(result: Mapping[str, Any]) -> EnsembleAnswer | None:
     """The answer along a strength, else along the axis with the most values.
 
-    Args:
-        result: the content of `ensemble.json`.
-
     Returns:
         None of an unfinished ensemble, and where no axis has several numbers.
     """

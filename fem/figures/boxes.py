@@ -65,13 +65,7 @@ OPENING = BoxQuantity(
 
 
 def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ...]) -> Figure:
-    """A curve over time for each box of a loose stack, with the states of motion below.
-
-    Args:
-        run: opened.
-        quantity: what is drawn.
-        boxes: of its verdict, from the floor up.
-    """
+    """A curve over time for each box of a loose stack, with the states of motion below."""
     history, verdict = run.history, run.verdict
     names = [quantity.lowest, *(quantity.further.format(k) for k in range(2, len(boxes) + 1))]
     largest = max(float(np.abs(history[name]).max()) for name in names)

@@ -97,13 +97,7 @@ def _legend_lines(motions: int) -> int:
 
 
 def draw_shares(curves: Sequence[ShareCurve], *, title: str, label: str) -> Figure:
-    """Share of the motions that overturns over their strength, with intervals.
-
-    Args:
-        curves: one for each point of the other axes.
-        title: of the figure.
-        label: of the strength, with its unit.
-    """
+    """Share of the motions that overturns over their strength, with intervals."""
     with house_style():
         figure, (axes,) = panels((3.0,), header=2 + -(-len(curves) // NAMES_A_LINE))
         head(figure, title, "share of the motions that overturn, worse sign of each, with 95 % intervals")

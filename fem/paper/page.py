@@ -24,10 +24,6 @@ MARKS = {
 def paper_report(folder: Path, *, signature: Signature | None = None) -> str:
     """One self-contained HTML page, as text.
 
-    Args:
-        folder: of the checked claims, finished or not.
-        signature: author, checker, revision.
-
     Raises:
         FolderError: `study.json` is missing, damaged, or something else.
     """

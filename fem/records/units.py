@@ -57,11 +57,6 @@ def unit_spelled(text: str) -> str | None:
 def settled_unit(stated: str | None, wanted: str | None, place: str) -> tuple[str, bool]:
     """The unit of some values, and whether their file states it.
 
-    Args:
-        stated: by the file.
-        wanted: by its user.
-        place: the file, for messages.
-
     Raises:
         RecordError: neither states one, both do and they differ, or the file's is not read.
     """

@@ -41,9 +41,6 @@ SMOOTH = 8  #: samples a pixel, against stairs in slanted lines
 class Scene:
     """The picture of a run, ready to be set to a frame and rendered.
 
-    Args:
-        run: with fields.
-
     Raises:
         FolderError, FieldError: no fields, or a frame that is damaged.
     """

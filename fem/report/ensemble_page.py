@@ -22,10 +22,6 @@ FIGURES = ("figures/fragility.svg", "figures/boundary.svg")
 def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
     """The page, as the text of an HTML file.
 
-    Args:
-        folder: of the ensemble, finished or interrupted.
-        signature: author, checker, revision.
-
     Raises:
         FolderError: it is no folder of an ensemble, it is damaged, or nothing was counted yet.
         CaseError: the base case in it cannot be read.

@@ -34,10 +34,6 @@ OPTIONS = {
 def response_report(folder: Path, *, signature: Signature | None = None) -> str:
     """The page, as the text of an HTML file.
 
-    Args:
-        folder: of the response curve, finished or interrupted.
-        signature: author, checker, revision.
-
     Raises:
         FolderError: it is no folder of a response curve, it is damaged, or it has no points yet.
         CaseError: the case in it cannot be read.

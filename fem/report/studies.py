@@ -160,14 +160,7 @@ def text_of(path: Path) -> str:
 
 
 def again_from_files(folder: Path, *, study: str, name: str, case: Case) -> Again:
-    """How to compute a study again from the files in its folder: its own, and its base case.
-
-    Args:
-        folder: of the study.
-        study: sweep | ensemble, the command.
-        name: of its file, without the ending.
-        case: that it starts from.
-    """
+    """How to compute a study again from the files in its folder: its own, and its base case."""
     records = " and the files of its motions" if case.motion.kind == "table" else ""
     return Again(
         words=f'Save the two files below in one folder{records}, with case = "base.toml" in {name}.toml:',

@@ -65,10 +65,6 @@ NUMBER = re.compile(r"[-+]?\d+(\.\d*)?(e[-+]?\d+)?")
 def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
     """The page, as the text of an HTML file.
 
-    Args:
-        folder: of the sweep, finished or not.
-        signature: author, checker, revision.
-
     Raises:
         FolderError: it is no folder of a sweep, it is damaged, or it holds more than one page can carry.
         CaseError: the base case in it cannot be read.

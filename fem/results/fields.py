@@ -237,11 +237,7 @@ class Fields:
 
 
 class FrameKeeper:
-    """Keeps the frames of a run in memory, in single precision as files do.
-
-    Args:
-        points, cells, region, box: as for `FieldWriter`.
-    """
+    """Keeps the frames of a run in memory, in single precision as files do."""
 
     def __init__(self, *, points: FloatArray, cells: IntArray, region: IntArray, box: IntArray) -> None:
         self._points, self._cells, self._region, self._box = _single(points), cells, region, box

@@ -25,13 +25,7 @@ from fem.runtime.progress import Reporter
 
 
 class BandCheckpoint:
-    """The checkpoint of a band; its methods may be called by several threads.
-
-    Args:
-        folder: of the run.
-        case_hash: of the run.
-        reporter: for checkpoints that are refused.
-    """
+    """The checkpoint of a band; its methods may be called by several threads."""
 
     def __init__(self, folder: ResultFolder, *, case_hash: str, reporter: Reporter) -> None:
         self._folder, self._files = folder, RunFiles(folder.path)

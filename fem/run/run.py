@@ -131,14 +131,6 @@ def compute_into(
 ) -> RunResult:
     """Step a model from t = 0, or from its checkpoint, to a verdict; its files grow on the way.
 
-    Args:
-        place: the folder of the run.
-        model: at t = 0.
-        request: hash of the case.
-        texts: files that describe the case.
-        watch: counts from the checkpoint on.
-        stop: called in pauses; true ends the stepping.
-
     Raises:
         CheckpointError: the checkpoint to resume from does not fit; nothing has been changed then.
     """

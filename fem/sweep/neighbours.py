@@ -64,11 +64,6 @@ def band_width(axes: Sequence[Axis], unsure: BoolArray, place: int) -> FloatArra
     """Length along one axis of the stretch of unsure cells around a cell, in the unit of the axis; 0 for a sure cell.
 
     A cell extends half way to its neighbours (by ratio on a log scale), the outermost cells to their own value.
-
-    Args:
-        axes: of the sweep.
-        unsure: in the shape of the axes.
-        place: which axis.
     """
     axis = axes[place]
     values = np.array(axis.values, dtype=float)

@@ -77,11 +77,7 @@ class PerturbedRows:
             yield from (copy.line for _, copy in sorted(copies.items()))
 
     def unsure(self, *, drawn: bool = True) -> BoolArray:
-        """Which cells are unsure, (n_cells,): those that failed, or have a copy that ends otherwise or fails.
-
-        Args:
-            drawn: whether draws of all inputs count.
-        """
+        """Which cells are unsure, (n_cells,): those that failed, or have a copy that ends otherwise or fails."""
         found = ~self._cells.decided
         for cell, copies in self.rows.items():
             found[cell] |= any(
