@@ -42,6 +42,17 @@ INPUTS = SiteInputs(
     wind_pressure_source="given",
     model="rigid",
 )
+RUN = SiteRun(
+    motion=1,
+    vertical_sign=1,
+    mu_static=0.4,
+    mu_kinetic=0.2,
+    mass="full",
+    model="rigid",
+    outcome="rock",
+    rotation_ratio=0.1,
+    max_slip_m=0.01,
+)
 
 
 def noise(number: int, peak: float) -> np.ndarray:

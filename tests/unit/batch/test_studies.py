@@ -81,10 +81,7 @@ STUDIES = pytest.mark.parametrize(
 )
 
 
-@pytest.fixture(autouse=True)
-def undrawn(monkeypatch):
-    """Maps take four fifths of the time of so small a sweep, and are tested by themselves."""
-    monkeypatch.setattr("fem.sweep.run.draw_maps", lambda table, folder, choice: [])
+pytestmark = pytest.mark.usefixtures("undrawn")
 
 
 def files_of(folder):

@@ -49,43 +49,24 @@ def test_the_earliest_of_several_guards_wins():
     assert crossing[1] == "early"
 
 
-def throw(duration):
-    return flow(
+def test_a_thrown_body_turns_and_lands_when_the_parabola_says():
+    passage = flow(
         rate=lambda state, a: np.array([state[1], -10.0]),
         guards=[Guard(name="lands", margin=lambda state, a: float(state[0]))],
         state=np.array([0.0, 5.0]),
         start=0.0,
-        end=duration,
+        end=5.0,
         floor=still_floor(),
         scale=np.ones(2),
         regime=3,
     )
-
-
-def test_a_thrown_body_lands_when_the_parabola_says():
-    passage = throw(5.0)
-    assert passage.event == "lands"
-    assert passage.time == pytest.approx(1.0, abs=1e-13)
+    assert (passage.event, passage.time) == ("lands", pytest.approx(1.0, abs=1e-13))
     assert passage.state == pytest.approx([0.0, -5.0], abs=1e-12)
-
-
-def test_the_end_asked_for_is_no_event():
-    passage = throw(0.5)
-    assert passage.event is None
-    assert passage.time == 0.5
-    assert passage.state == pytest.approx([1.25, 0.0], abs=1e-13)
-
-
-def test_samples_outside_the_motion_are_not_made_up():
-    states, regimes = sample(throw(5.0).pieces, np.array([-0.1, 0.0, 0.25, 1.1]), 2)
-    assert np.isnan(states[[0, 3]]).all()
+    turns = [turning_point(piece, component=1) for piece in passage.pieces]
+    (turn,) = [turn for turn in turns if turn is not None]
+    assert (turn[0], turn[1][0]) == (pytest.approx(0.5, abs=1e-13), pytest.approx(1.25, abs=1e-13))
+    states, regimes = sample(passage.pieces, np.array([-0.1, 0.0, 0.25, 1.1]), 2)
+    assert np.isnan(states[[0, 3]]).all()  # no sample is made up outside the motion
     assert states[1] == pytest.approx([0.0, 5.0])
     assert states[2] == pytest.approx([0.9375, 2.5], abs=1e-13)
     assert regimes.tolist() == [-1, 3, 3, -1]
-
-
-def test_the_turning_point_of_the_parabola():
-    turns = [turning_point(piece, component=1) for piece in throw(5.0).pieces]
-    (turn,) = [turn for turn in turns if turn is not None]
-    assert turn[0] == pytest.approx(0.5, abs=1e-13)
-    assert turn[1][0] == pytest.approx(1.25, abs=1e-13)

@@ -5,24 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from running_example import ACTION, LIMITS, SITE, k1
-from site_example import INPUTS, PERIODS, site_body, site_motion
+from site_example import INPUTS, PERIODS, RUN, site_body, site_motion
 
 from fem.site.asce_43 import sliding_row
 from fem.site.static_rules import peak_rows
 from fem.site_check.methods import floor_action, found_by_runs, loose_body, site_methods
-from fem.site_check.result import FloorResult, SiteRun
+from fem.site_check.result import FloorResult
 
-STOOD = SiteRun(
-    motion=1,
-    vertical_sign=1,
-    mu_static=0.2,
-    mu_kinetic=0.1,
-    mass="full",
-    model="rigid",
-    outcome="rock",
-    rotation_ratio=0.2,
-    max_slip_m=0.004,
-)
+STOOD = replace(RUN, mu_static=0.2, mu_kinetic=0.1, rotation_ratio=0.2, max_slip_m=0.004)
 FELL = replace(STOOD, motion=2, outcome="overturned", rotation_ratio=3.0)
 BEYOND = replace(STOOD, rotation_ratio=0.6)  # the limit is 0.5
 OVERTURNING, SLIDING = peak_rows(k1(mu_static=0.2), ACTION, horizontal=1.0, vertical=0.0)

@@ -3,21 +3,10 @@
 from dataclasses import replace
 
 import pytest
+from site_example import RUN
 
 from fem.site_check.result import SiteRun
 from fem.site_check.rule import both_directions, groups_of, rule_in_words
-
-RUN = SiteRun(
-    motion=1,
-    vertical_sign=1,
-    mu_static=0.4,
-    mu_kinetic=0.2,
-    mass="full",
-    model="rigid",
-    outcome="rock",
-    rotation_ratio=0.1,
-    max_slip_m=0.01,
-)
 
 
 def runs(count: int) -> list[SiteRun]:

@@ -15,7 +15,7 @@ from fem.site.motion_set import check_set
 from fem.site_check.answer import answer_of
 from fem.site_check.file import load_site
 from fem.site_check.motions import ground_motions
-from fem.site_check.result import SiteResult, SiteRun
+from fem.site_check.result import SiteResult
 from fem.site_check.run import RUNS, run_site
 from fem.site_check.runs import SCANNED, RunRows
 
@@ -275,10 +275,3 @@ def test_an_empty_box_lighter_than_its_walls_is_refused(tmp_path, capsys):
     )
     assert main(["assess", str(tmp_path / "site.toml"), "--out", str(tmp_path / "out"), "-q"]) == 2
     assert "empty_mass_kg: the walls of one box weigh" in capsys.readouterr().err
-
-
-def test_a_run_is_known_by_what_it_is_made_of():
-    one = SiteRun(
-        motion=1, vertical_sign=1, mu_static=0.4, mu_kinetic=0.2, mass="full", model="rigid", outcome="rest"
-    )
-    assert one.factor == 1.0 and one.building_period_s is None

@@ -16,11 +16,7 @@ from fem.sweep.plan import CopyItem
 from fem.sweep.run import run_sweep
 from fem.sweep.table import open_sweep
 
-
-@pytest.fixture(autouse=True)
-def undrawn(monkeypatch):
-    """Maps are tested by themselves."""
-    monkeypatch.setattr("fem.sweep.run.draw_maps", lambda table, folder, choice: [])
+pytestmark = pytest.mark.usefixtures("undrawn")
 
 
 @pytest.fixture

@@ -22,10 +22,7 @@ from fem.sweep.table import open_sweep
 ROOT = Path(__file__).parents[3]
 
 
-@pytest.fixture(autouse=True)
-def undrawn(monkeypatch):
-    """Maps take four fifths of the time of so small a sweep, and are tested by themselves."""
-    monkeypatch.setattr("fem.sweep.run.draw_maps", lambda table, folder, choice: [])
+pytestmark = pytest.mark.usefixtures("undrawn")
 
 
 @pytest.fixture
