@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from contact.arrays import FloatArray
+from contact.interface.compliance import add_turned
 from contact.interface.equilibrium import Stance
-from contact.interface.solver import add_turned
 from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled, inlined
 from contact.stepping import body as interface

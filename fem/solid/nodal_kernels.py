@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import fem.solid.block_factor
 import fem.solid.elasticity
-from contact.interface.solver import add_turned
+from contact.interface.compliance import add_turned
 from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled
 from contact.stepping import body as interface

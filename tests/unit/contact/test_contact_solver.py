@@ -280,6 +280,35 @@ def test_slopes_are_minus_the_derivatives_of_the_laws(friction):
     assert compared >= 60  # of 240
 
 
+@pytest.mark.parametrize("draw", [random_problem, random_slab])
+def test_points_that_stay_in_their_states_take_one_iteration(draw):
+    """From the forces of the same states, the first Newton step solves: its tangent is that of the states."""
+    stayed = 0
+    for seed in range(100):
+        problem = draw(seed, 6)
+        closed = replace(problem, start=problem.start - np.array([0.0, 2.0 * np.abs(problem.start).max()]))
+        count, work = closed.attempt()
+        if count < 0 or not (work.force[:, 1] > 0.0).any():
+            continue
+        moved = replace(closed, free=closed.free * (1.0 + 1e-7))  # no point near a limit changes its state
+        fresh_count, fresh = moved.attempt()
+        again = moved.workspace()
+        again.force[:] = work.force
+        found = solve_contact(
+            moved.contact, moved.step, moved.slope, moved.each_mu, moved.start, moved.stick, again
+        )
+        touching = (
+            work.velocity[:, 1] * closed.step < work.point[:, 1]
+        )  # faster than within the step: not elastic
+        if fresh_count < 0 or touching.any():
+            continue
+        scale = max(moved.contact.force_scale, np.abs(fresh.force).max())
+        assert again.force == pytest.approx(fresh.force, abs=1e-7 * scale)
+        assert found == 1
+        stayed += 1
+    assert stayed >= 10
+
+
 def test_factors_of_an_earlier_step_give_the_same_forces():
     """A wide base keeps its factors while nothing switches; the compliance has turned a little since."""
     kept_factors = 0
