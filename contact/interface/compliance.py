@@ -1,4 +1,4 @@
-"""Compliance of contact points: displacements under forces, and the tangent of the contact.
+"""Compliance of contact points: of modes and of a turned body; displacements under forces; the tangent of the contact.
 
 Arrays as in `contact.interface.solver`.
 """
@@ -10,6 +10,60 @@ from contact.jit import compiled
 
 FEW_POINTS = 2  #: up to so many, the rows of the compliance are taken one by one
 WORTH_KEEPING = 5  #: active points from which an old factorisation is reused before a new one is computed
+
+
+@compiled
+def add_modes(across: FloatArray, amplitude: FloatArray, out: FloatArray) -> None:
+    """Add displacements (2 n,) of modes (m, 2 n) with these amplitudes (m,), four modes at a time.
+
+    Sums keep the order of the modes.
+    """
+    blocks = amplitude.size // 4
+    for block in range(blocks):
+        k = 4 * block
+        first, second, third, fourth = across[k], across[k + 1], across[k + 2], across[k + 3]
+        w, x, y, z = amplitude[k], amplitude[k + 1], amplitude[k + 2], amplitude[k + 3]
+        for a in range(out.size):
+            out[a] = out[a] + first[a] * w + second[a] * x + third[a] * y + fourth[a] * z
+    for k in range(4 * blocks, amplitude.size):
+        first, w = across[k], amplitude[k]
+        for a in range(out.size):
+            out[a] += first[a] * w
+
+
+@compiled
+def condense_modes(across: FloatArray, inverse: FloatArray, out: FloatArray) -> None:
+    """Compliance (2 n, 2 n) of modes (m, 2 n) with these inverse effective masses (m,), four modes at a time."""
+    blocks = inverse.size // 4
+    for a in range(out.shape[0]):
+        row = out[a, a:]  # slices begin at zero, so that the compiler takes several columns at once
+        for b in range(row.size):
+            row[b] = 0.0
+        for block in range(blocks):
+            k = 4 * block
+            first, second, third, fourth = (
+                across[k, a:],
+                across[k + 1, a:],
+                across[k + 2, a:],
+                across[k + 3, a:],
+            )
+            w, x, y, z = first[0], second[0], third[0], fourth[0]
+            by_w, by_x, by_y, by_z = inverse[k], inverse[k + 1], inverse[k + 2], inverse[k + 3]
+            for b in range(row.size):
+                row[b] = (
+                    row[b]
+                    + w * first[b] * by_w
+                    + x * second[b] * by_x
+                    + y * third[b] * by_y
+                    + z * fourth[b] * by_z
+                )
+        for k in range(4 * blocks, inverse.size):
+            first, by_w = across[k, a:], inverse[k]
+            w = first[0]
+            for b in range(row.size):
+                row[b] += w * first[b] * by_w
+        for b in range(row.size):
+            out[a + b, a] = row[b]
 
 
 @compiled(inline=True)
@@ -25,6 +79,42 @@ def add_turned(compliance: FloatArray, cosine: float, sine: float, share: float,
             out[2 * i, 2 * j + 1] += share * (-ax * sine + az * cosine)
             out[2 * i + 1, 2 * j] += share * (bx * cosine + bz * sine)
             out[2 * i + 1, 2 * j + 1] += share * (-bx * sine + bz * cosine)
+
+
+@compiled
+def turned_compliance(
+    elastic: FloatArray,
+    arm: FloatArray,
+    cosine: float,
+    sine: float,
+    share: float,
+    drift: float,
+    turn: float,
+    out: FloatArray,
+) -> None:
+    """Compliance (2 n, 2 n) of many points: that of the rigid body and a share of that of the modes, turned.
+
+    As `add_turned`, but blocks below the diagonal follow from those above it.
+
+    Args:
+        elastic: (2 n, 2 n) in the body's frame [m/N].
+        arm: (n, 2) points relative to the mass centre [m].
+        drift: compliance of the body against a force [m/N]; turn: against a moment [1/(N m)].
+    """
+    for i in range(arm.shape[0]):
+        along, up = elastic[2 * i], elastic[2 * i + 1]
+        x, z = out[2 * i], out[2 * i + 1]
+        by_x, by_z = turn * arm[i, 0], turn * arm[i, 1]
+        for j in range(i, arm.shape[0]):
+            a, b = 2 * j, 2 * j + 1
+            ax, az = cosine * along[a] + sine * up[a], cosine * along[b] + sine * up[b]
+            bx, bz = cosine * up[a] - sine * along[a], cosine * up[b] - sine * along[b]
+            xx = drift + by_z * arm[j, 1] + share * (ax * cosine + az * sine)
+            xz = -by_z * arm[j, 0] + share * (az * cosine - ax * sine)
+            zx = -by_x * arm[j, 1] + share * (bx * cosine + bz * sine)
+            zz = drift + by_x * arm[j, 0] + share * (bz * cosine - bx * sine)
+            x[a], x[b], z[a], z[b] = xx, xz, zx, zz
+            out[a, 2 * i], out[b, 2 * i], out[a, 2 * i + 1], out[b, 2 * i + 1] = xx, xz, zx, zz
 
 
 @compiled

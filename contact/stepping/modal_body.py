@@ -18,6 +18,8 @@ from contact.arrays import FloatArray, IntArray
 from contact.structs import struct
 
 STEP_SLOTS = 16  #: number of step sizes whose effective compliance is cached
+SLOTS_OF_MANY = 64  #: .. where it is large: about as many as a run has step sizes
+FEW_ROWS = 16  #: size up to which it is not
 
 
 @struct
@@ -30,6 +32,7 @@ class ModalBody(NamedTuple):
     downhill: float  #: along a floor that falls toward +x [m/s2]
     point: FloatArray  #: (n, 2) base points relative to the mass centre, sorted by x [m]
     shape: FloatArray  #: (n, 2, m) mode shapes there [1/sqrt(kg)]
+    across: FloatArray  #: (m, 2 n) the same, mode by mode
     rest: FloatArray  #: (2,) mass centre of the undeformed container on the floor at x = 0 [m]
     monitor: FloatArray  #: (k, 2) monitored points relative to the mass centre [m]
     monitor_shape: FloatArray  #: (k, 2, m)
@@ -42,7 +45,15 @@ class ModalBody(NamedTuple):
     inverse: FloatArray  #: (slots, 3 + m) inverse effective masses
     elastic_compliance: FloatArray  #: (slots, 2 n, 2 n) effective compliance of the modes, body's frame [m/N]
     arm: FloatArray  #: (n, 2) base points relative to the mass centre, turned
+    #: (3, 2 n) base points and their elastic velocity in the body's frame, and a displacement
+    moved: FloatArray
     free_change: FloatArray  #: (3 + m,)
+
+
+def by_modes(shape: FloatArray) -> FloatArray:
+    """Mode shapes (.., n, 2, m) as rows (.., m, 2 n)."""
+    points, modes = shape.shape[-3], shape.shape[-1]
+    return np.ascontiguousarray(np.moveaxis(shape, -1, -3).reshape(*shape.shape[:-3], modes, 2 * points))
 
 
 def make_modal_body(
@@ -76,7 +87,8 @@ def make_modal_body(
     omega = np.zeros(0) if frequencies is None else np.asarray(frequencies, dtype=float)
     zeta = np.zeros(omega.size) if damping_ratios is None else np.asarray(damping_ratios, dtype=float)
     watched = np.zeros((0, 2)) if monitor is None else monitor
-    m = omega.size
+    m, slots = omega.size, STEP_SLOTS if 2 * n <= FEW_ROWS else SLOTS_OF_MANY
+    shape = np.zeros((n, 2, 0)) if shape is None else np.array(shape, dtype=float, order="C")
     return ModalBody(
         mass=float(mass),
         inertia=float(inertia),
@@ -84,7 +96,8 @@ def make_modal_body(
         downhill=float(downhill),
         point=np.array(point, dtype=float, order="C"),
         rest=np.array(rest, dtype=float),
-        shape=np.zeros((n, 2, 0)) if shape is None else np.array(shape, dtype=float, order="C"),
+        shape=shape,
+        across=by_modes(shape),
         monitor=np.array(watched, dtype=float, order="C"),
         monitor_shape=np.zeros((len(watched), 2, m))
         if monitor_shape is None
@@ -92,11 +105,12 @@ def make_modal_body(
         stiffness=omega**2,
         damping=2.0 * zeta * omega,
         tolerance=float(tolerance),
-        cached_step=np.append(np.full(STEP_SLOTS, -1.0), 0.0),
+        cached_step=np.append(np.full(slots, -1.0), 0.0),
         recent=np.zeros(1, dtype=np.int64),
-        inverse=np.zeros((STEP_SLOTS, 3 + m)),
-        elastic_compliance=np.zeros((STEP_SLOTS, 2 * n, 2 * n)),
+        inverse=np.zeros((slots, 3 + m)),
+        elastic_compliance=np.zeros((slots, 2 * n, 2 * n)),
         arm=np.zeros((n, 2)),
+        moved=np.zeros((3, 2 * n)),
         free_change=np.zeros(3 + m),
     )
 
@@ -116,11 +130,12 @@ MODAL = (ModalBody, BlockOnCorners)
 def with_own_scratch(body: ModalBody) -> ModalBody:
     """The same body with scratch arrays of its own; a rigid body on two points becomes a `BlockOnCorners`."""
     own = body._replace(
-        cached_step=np.append(np.full(STEP_SLOTS, -1.0), 0.0),
+        cached_step=np.append(np.full(len(body.inverse), -1.0), 0.0),
         recent=np.zeros(1, dtype=np.int64),
         inverse=np.empty_like(body.inverse),
         elastic_compliance=np.empty_like(body.elastic_compliance),
         arm=np.empty_like(body.arm),
+        moved=np.empty_like(body.moved),
         free_change=np.empty_like(body.free_change),
     )
     small = body.stiffness.size == 0 and body.point.shape[0] == 2

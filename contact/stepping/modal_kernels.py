@@ -6,7 +6,13 @@ from typing import Any
 import numpy as np
 
 from contact.arrays import FloatArray
-from contact.interface.compliance import add_turned
+from contact.interface.compliance import (
+    FEW_POINTS,
+    add_modes,
+    add_turned,
+    condense_modes,
+    turned_compliance,
+)
 from contact.interface.equilibrium import Stance
 from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled, inlined
@@ -69,17 +75,23 @@ def effective_slot(body: ModalBody, scheme: Scheme, step: float) -> int:
     body.inverse[slot, 2] = 1.0 / (inertial * body.inertia)
     for k in range(m):
         body.inverse[slot, 3 + k] = 1.0 / (inertial + viscous * body.damping[k] + now * body.stiffness[k])
-    n = body.point.shape[0]
-    for a in range(2 * n):
-        for b in range(a, 2 * n):
-            total = 0.0
-            for k in range(m):
-                total += (
-                    body.shape[a // 2, a % 2, k] * body.shape[b // 2, b % 2, k] * body.inverse[slot, 3 + k]
-                )
-            body.elastic_compliance[slot, a, b] = total
-            body.elastic_compliance[slot, b, a] = total
+    condense_modes(body.across, body.inverse[slot, 3:], body.elastic_compliance[slot])
     return slot
+
+
+@compiled(inline=True)
+def has_many_points(body: ModalBody) -> bool:
+    """Whether the modes move so many points that these are moved mode by mode, several points at a time."""
+    return body.point.shape[0] > FEW_POINTS and body.stiffness.size > 0
+
+
+@compiled(inline=True)
+def strain_points(body: ModalBody, position: FloatArray) -> None:
+    """Base points in the body's frame, strained by the modes, into `body.moved`."""
+    strained = body.moved[0]
+    for i in range(body.point.shape[0]):
+        strained[2 * i], strained[2 * i + 1] = body.point[i, 0], body.point[i, 1]
+    add_modes(body.across, position[3:], strained)
 
 
 @compiled(inline=True)
@@ -97,10 +109,18 @@ def place_points(
     """Base points and their velocities at the iterate, relative to the floor; arms into `body.arm`."""
     m = body.stiffness.size
     rate = state.velocity[2]
+    many = has_many_points(body)
+    strained, swung = body.moved[0], body.moved[1]
+    if many:
+        strain_points(body, state.position)
+        for a in range(swung.size):
+            swung[a] = 0.0
+        add_modes(body.across, state.velocity[3:], swung)
     for i in range(body.point.shape[0]):
-        x, z = body.point[i, 0], body.point[i, 1]
-        u, w = 0.0, 0.0
-        for k in range(m):
+        x, z, u, w = body.point[i, 0], body.point[i, 1], 0.0, 0.0
+        if many:
+            x, z, u, w = strained[2 * i], strained[2 * i + 1], swung[2 * i], swung[2 * i + 1]
+        for k in range(0 if many else m):
             x += body.shape[i, 0, k] * state.position[3 + k]
             z += body.shape[i, 1, k] * state.position[3 + k]
             u += body.shape[i, 0, k] * state.velocity[3 + k]
@@ -153,10 +173,16 @@ def release(
         force -= mass * ((1.0 - scheme.alpha_m) * new.acceleration[j] + scheme.alpha_m * old.acceleration[j])
         body.free_change[j] = inverse[j] * force
     slope = scheme.newmark_gamma / (scheme.newmark_beta * step)
-    change = body.free_change
+    change, swung, many = body.free_change, body.moved[2], has_many_points(body)
+    if many:
+        for a in range(swung.size):
+            swung[a] = 0.0
+        add_modes(body.across, change[3:], swung)
     for i in range(n):
         u, w = 0.0, 0.0
-        for k in range(m):
+        if many:
+            u, w = swung[2 * i], swung[2 * i + 1]
+        for k in range(0 if many else m):
             u += body.shape[i, 0, k] * change[3 + k]
             w += body.shape[i, 1, k] * change[3 + k]
         moved_x = change[0] + body.arm[i, 1] * change[2] + cosine * u + sine * w
@@ -166,6 +192,11 @@ def release(
         work.free_velocity[i, 0] += slope * moved_x
         work.free_velocity[i, 1] += slope * moved_z
     drift, turn = now * inverse[0], now * inverse[2]
+    if many:
+        turned_compliance(
+            body.elastic_compliance[slot], body.arm, cosine, sine, now, drift, turn, work.compliance
+        )
+        return
     for i in range(n):
         for j in range(n):
             work.compliance[2 * i, 2 * j] = drift + turn * body.arm[i, 1] * body.arm[j, 1]
@@ -227,9 +258,14 @@ def complete(body: ModalBody, new: State, floor: float, lift: float, lift_veloci
     m = body.stiffness.size
     position, velocity = new.position, new.velocity
     cosine, sine = math.cos(position[2]), math.sin(position[2])
+    many = has_many_points(body)
+    if many:
+        strain_points(body, position)
     for i in range(body.point.shape[0]):
         x, z = body.point[i, 0], body.point[i, 1]
-        for k in range(m):
+        if many:
+            x, z = body.moved[0, 2 * i], body.moved[0, 2 * i + 1]
+        for k in range(0 if many else m):
             x += body.shape[i, 0, k] * position[3 + k]
             z += body.shape[i, 1, k] * position[3 + k]
         body.arm[i, 0], body.arm[i, 1] = cosine * x + sine * z, -sine * x + cosine * z

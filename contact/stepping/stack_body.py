@@ -18,7 +18,7 @@ from contact.stepping import body as interface
 from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
 from contact.stepping.body import State, implements
 from contact.stepping.loose_stack import LooseStack
-from contact.stepping.modal_body import STEP_SLOTS, ModalBody
+from contact.stepping.modal_body import STEP_SLOTS, ModalBody, by_modes
 from contact.stepping.scheme import Scheme
 from contact.structs import struct
 
@@ -33,6 +33,7 @@ class StackBody(NamedTuple):
     downhill: float
     point: FloatArray  #: (N, 4, 2) corners relative to the mass centre of their box
     shape: FloatArray  #: (N, 4, 2, m)
+    across: FloatArray  #: (N, m, 8)
     rest: FloatArray  #: (N, 2) mass centres of the boxes in the undeformed stack on the floor
     monitor: FloatArray  #: (k, 2) monitored points relative to the mass centre of their box
     monitor_shape: FloatArray  #: (k, 2, m)
@@ -46,6 +47,7 @@ class StackBody(NamedTuple):
     inverse: FloatArray  #: (N, slots, 3 + m)
     elastic_compliance: FloatArray  #: (N, slots, 8, 8)
     arm: FloatArray  #: (N, 4, 2)
+    moved: FloatArray  #: (N, 3, 8)
     free_change: FloatArray  #: (N, 3 + m)
     energy: FloatArray  #: (N, 3)
 
@@ -70,15 +72,17 @@ def make_stack(
     wider = [(0, most - box.stiffness.size) for box in boxes]
     downwards = list(zip(boxes, wider, strict=True))[::-1]
     ends = np.cumsum([0, *(len(box.monitor) for box, _ in downwards)])
+    shape = np.array(
+        [np.pad(box.shape, [(0, 0), (0, 0), pad]) for box, pad in zip(boxes, wider, strict=True)]
+    )
     body = StackBody(
         mass=np.array([box.mass for box in boxes]),
         inertia=np.array([box.inertia for box in boxes]),
         gravity=boxes[0].gravity,
         downhill=boxes[0].downhill,
         point=np.array([box.point for box in boxes]),
-        shape=np.array(
-            [np.pad(box.shape, [(0, 0), (0, 0), pad]) for box, pad in zip(boxes, wider, strict=True)]
-        ),
+        shape=shape,
+        across=by_modes(shape),
         rest=np.array([box.rest for box in boxes]),
         monitor=np.concatenate([box.monitor for box, _ in downwards]),
         monitor_shape=np.concatenate(
@@ -95,6 +99,7 @@ def make_stack(
         inverse=np.zeros((n, STEP_SLOTS, 3 + most)),
         elastic_compliance=np.zeros((n, STEP_SLOTS, 2 * CORNERS, 2 * CORNERS)),
         arm=np.zeros((n, CORNERS, 2)),
+        moved=np.zeros((n, 3, 2 * CORNERS)),
         free_change=np.zeros((n, 3 + most)),
         energy=np.zeros((n, 3)),
     )
@@ -116,7 +121,7 @@ def stack_with_own_scratch(stack: LooseStack) -> LooseStack:
         recent=np.zeros_like(body.recent),
         **{
             name: np.empty_like(getattr(body, name))
-            for name in ("inverse", "elastic_compliance", "arm", "free_change", "energy")
+            for name in ("inverse", "elastic_compliance", "arm", "moved", "free_change", "energy")
         },
     )
     return stack._replace(
@@ -141,6 +146,7 @@ def box_of(stack: StackBody, b: int) -> ModalBody:
         stack.downhill,
         stack.point[b],
         stack.shape[b],
+        stack.across[b],
         stack.rest[b],
         stack.monitor[begin:end],
         stack.monitor_shape[begin:end],
@@ -152,6 +158,7 @@ def box_of(stack: StackBody, b: int) -> ModalBody:
         stack.inverse[b],
         stack.elastic_compliance[b],
         stack.arm[b],
+        stack.moved[b],
         stack.free_change[b],
     )
 
