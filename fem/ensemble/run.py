@@ -127,7 +127,7 @@ def run_ensemble(
         The content of `ensemble.json`.
 
     Raises:
-        CaseError, FolderError: bad input.
+        CaseError, FolderError: bad input, or an unfinished ensemble (without `resume` or `force`).
         WorkersLostError: a worker died; what was computed is kept.
         OutputError: the disk is full, the folder was removed; what was written is kept.
     """
@@ -142,6 +142,7 @@ def run_ensemble(
         if place.finished and place.found:
             reporter.message(f"{folder} holds this ensemble already; --force computes it again")
             return place.found
+        place.refuse_unfinished("its draws so far")
         if place.resuming:
             place.require_same_program()
         return _run(ensemble, motions, asked, place, runner)

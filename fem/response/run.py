@@ -57,7 +57,7 @@ def run_response(
         The content of `response.json`.
 
     Raises:
-        CaseError, MeshError, FolderError: bad input.
+        CaseError, MeshError, FolderError: bad input, or an unfinished curve (without `resume` or `force`).
         OutputError: the disk is full, the folder was removed; what was written is kept.
     """
     reporter = reporter or SilentReporter()
@@ -68,6 +68,7 @@ def run_response(
         if place.finished and place.found:
             reporter.message(f"{folder} holds this response curve already; --force computes it again")
             return place.found
+        place.refuse_unfinished("its frequencies so far")
         if place.resuming:
             place.require_same_program()
         place.require_room(required_disk(request), "the response curve", "take fewer frequencies")

@@ -105,6 +105,9 @@ def test_an_interrupted_study_continues_to_the_same_files(tmp_path, study, mark,
             if log.endswith("csv"):
                 with (folder / log).open("ab") as stream:  # half a row, as a kill leaves it
                     stream.write(b"2,7,0,0.")
+            if reports == 20 or mark != "sweep.json":  # a sweep needs rows
+                with pytest.raises(FolderError, match=r"unfinished, with .* --resume continues it"):
+                    run(folder)
     run(folder, resume=True)
     assert files_of(folder) == files_of(tmp_path / "whole")
 
