@@ -174,8 +174,74 @@ def factor_is_current(step: float, work: Workspace) -> bool:
 
 
 @compiled(inline=True)
+def enter_tangent(work: Workspace, a: int, i: int, b: int, j: int) -> None:
+    """Write the block of 1 + D G of points i and j, as the active points a and b."""
+    tangential_x, tangential_z, normal_z = work.slope[i, 0], work.slope[i, 1], work.slope[i, 2]
+    for k in range(2):
+        by_x = work.compliance[2 * i, 2 * j + k]
+        by_z = work.compliance[2 * i + 1, 2 * j + k]
+        work.matrix[2 * a, 2 * b + k] = tangential_x * by_x + tangential_z * by_z
+        work.matrix[2 * a + 1, 2 * b + k] = normal_z * by_z
+    if a == b:
+        work.matrix[2 * a, 2 * a] += 1.0
+        work.matrix[2 * a + 1, 2 * a + 1] += 1.0
+
+
+# Of two points the active ones are not listed: constant indices let the compiler keep all arrays in registers.
+@compiled(inline=True)
+def factor_few(work: Workspace) -> bool:
+    """`factor_tangent` of two points."""
+    first, second = has_tangent(work, 0), has_tangent(work, 1)
+    work.factored_count[0] = int(first) + int(second)
+    if first and second:
+        for i in range(2):
+            for j in range(2):
+                enter_tangent(work, i, i, j, j)
+        return factor_dense(4, work.matrix, work.pivot)
+    if first:
+        enter_tangent(work, 0, 0, 0, 0)
+    elif second:
+        enter_tangent(work, 0, 1, 0, 1)
+    return not (first or second) or factor_dense(2, work.matrix, work.pivot)
+
+
+@compiled(inline=True)
+def change_few(work: Workspace) -> None:
+    """`newton_change` of two points."""
+    for i in range(2):
+        for k in range(2):
+            work.change[2 * i + k] = work.law[i, k] - work.force[i, k]
+    first, second = has_tangent(work, 0), has_tangent(work, 1)
+    if first and second:
+        substitute_dense(4, work.matrix, work.pivot, work.change)
+    elif first:
+        change_one(work, 0, 1)
+    elif second:
+        change_one(work, 1, 0)
+
+
+@compiled(inline=True)
+def change_one(work: Workspace, i: int, j: int) -> None:
+    """Change of the force of point i, the only active one, after that of point j."""
+    tangential_x, tangential_z, normal_z = work.slope[i, 0], work.slope[i, 1], work.slope[i, 2]
+    right_x, right_z = work.change[2 * i], work.change[2 * i + 1]
+    for k in range(2):
+        given = work.change[2 * j + k]
+        if given != 0.0:
+            by_x = work.compliance[2 * i, 2 * j + k]
+            by_z = work.compliance[2 * i + 1, 2 * j + k]
+            right_x -= (tangential_x * by_x + tangential_z * by_z) * given
+            right_z -= normal_z * by_z * given
+    work.solution[0], work.solution[1] = right_x, right_z
+    substitute_dense(2, work.matrix, work.pivot, work.solution)
+    work.change[2 * i], work.change[2 * i + 1] = work.solution[0], work.solution[1]
+
+
+@compiled(inline=True)
 def factor_tangent(step: float, work: Workspace) -> bool:
     """Factor 1 + D G over the points whose law has a tangent, and store for which tangents and step."""
+    if work.force.shape[0] == FEW_POINTS:
+        return factor_few(work)
     count = 0
     for i in range(work.force.shape[0]):
         if has_tangent(work, i):
@@ -185,17 +251,8 @@ def factor_tangent(step: float, work: Workspace) -> bool:
             work.factored_slope[i, k] = work.slope[i, k]
     work.factored_count[0] = count
     for a in range(count):
-        i = work.active[a]
-        tangential_x, tangential_z, normal_z = work.slope[i, 0], work.slope[i, 1], work.slope[i, 2]
         for b in range(count):
-            j = work.active[b]
-            for k in range(2):
-                by_x = work.compliance[2 * i, 2 * j + k]
-                by_z = work.compliance[2 * i + 1, 2 * j + k]
-                work.matrix[2 * a, 2 * b + k] = tangential_x * by_x + tangential_z * by_z
-                work.matrix[2 * a + 1, 2 * b + k] = normal_z * by_z
-        work.matrix[2 * a, 2 * a] += 1.0
-        work.matrix[2 * a + 1, 2 * a + 1] += 1.0
+            enter_tangent(work, a, work.active[a], b, work.active[b])
     work.factored_step[0] = step
     if not factor_dense(2 * count, work.matrix, work.pivot):
         work.factored_step[0] = -1.0
@@ -210,6 +267,9 @@ def newton_change(work: Workspace) -> None:
     A point without tangent takes the force of its law; the change acts on the other points.
     """
     n = work.force.shape[0]
+    if n == FEW_POINTS:
+        change_few(work)
+        return
     count = work.factored_count[0]
     for i in range(2 * n):
         work.change[i] = 0.0

@@ -4,6 +4,7 @@ from contact.arrays import FloatArray, IntArray
 from contact.jit import compiled
 
 SMALL = 8  #: size up to which columns are eliminated one by one
+TINY = 4  #: .. up to which rows are exchanged by constant indices, see `contact.local_arrays`
 
 
 @compiled(inline=True)
@@ -16,7 +17,12 @@ def take_pivot(size: int, matrix: FloatArray, pivot: IntArray, k: int) -> bool:
     pivot[k] = chosen
     if not largest > 0.0:
         return False
-    if chosen != k:
+    if size <= TINY:
+        for i in range(k + 1, size):
+            if chosen == i:
+                for j in range(size):
+                    matrix[k, j], matrix[i, j] = matrix[i, j], matrix[k, j]
+    elif chosen != k:
         for j in range(size):
             matrix[k, j], matrix[chosen, j] = matrix[chosen, j], matrix[k, j]
     return True
@@ -69,7 +75,11 @@ def factor_dense(size: int, matrix: FloatArray, pivot: IntArray) -> bool:
 def substitute_dense(size: int, factors: FloatArray, pivot: IntArray, vector: FloatArray) -> None:
     """Solve with the factors of `factor_dense`, in place."""
     for k in range(size):
-        if pivot[k] != k:
+        if size <= TINY:
+            for i in range(k + 1, size):
+                if pivot[k] == i:
+                    vector[k], vector[i] = vector[i], vector[k]
+        elif pivot[k] != k:
             vector[k], vector[pivot[k]] = vector[pivot[k]], vector[k]
     for k in range(1, size):
         total = vector[k]

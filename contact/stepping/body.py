@@ -2,7 +2,7 @@
 
 A body has coordinates, whose number and meaning only the body knows, and base points that may touch the floor. The
 stepping calls the functions of this module: `weigh`, `predict`, `release`, `respond`, `complete`, `observe`,
-`shift_velocity`, `prepared` and `sizes_match`. In compiled code they are those of `contact.stepping.modal_kernels` (a
+`shift_velocity` and `prepared`. In compiled code they are those of `contact.stepping.modal_kernels` (a
 floating frame with elastic modes), of `fem.solid.nodal_kernels` (the nodes of a mesh) or of
 `contact.stepping.loose_stack` (boxes that stand on one another), see `implements`. In Python they call the method of
 the body with the same name.
@@ -154,8 +154,3 @@ def stands_loose(body: Any) -> bool | None:
 @overload(stands_loose, strict=False, jit_options=options_of_piece(True))
 def _stands_loose(body: Any) -> Callable[[Any], bool | None]:
     return (lambda body: True) if "faces" in getattr(body, "fields", ()) else (lambda body: None)
-
-
-def sizes_match(body: Any, run: Any) -> bool:
-    """Whether the arrays of the run have the sizes for which the body was compiled."""
-    return True

@@ -14,7 +14,7 @@ from typing import Any
 from contact.jit import compiled, inlined
 from contact.motion.kernel import UNIFORM
 from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
-from contact.stepping.body import complete, prepared, shift_velocity, sizes_match, stands_loose, weigh
+from contact.stepping.body import complete, prepared, shift_velocity, stands_loose, weigh
 from contact.stepping.boxes import follow_boxes, has_fallen
 from contact.stepping.contents import follow_contents, shift_contents
 from contact.stepping.control import (
@@ -118,8 +118,6 @@ def advance(body: Any, run: RunState, until: float) -> int:
         steps of `clock.unprepared_step` and call again.
     """
     control, clock, track, loose = run.control, run.clock[0], run.track[0], stands_loose(body)
-    if not sizes_match(body, run):
-        return FAILED
     while clock.time < until and clock.steps + clock.rejected < clock.attempt_limit and not _is_full(run):
         step = next_step(run)
         if not prepared(body, step):

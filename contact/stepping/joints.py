@@ -145,8 +145,10 @@ def holding_force(run: RunState, j: int, loose: bool | None) -> tuple[float, flo
         z += new.force[i, 1] * new.point[i, 1]
     stands = normal <= 0.0 or track.left_open == track.right_open
     if stands:
-        corner = 0 if acceleration > 0.0 else run.control.base_points - 1
-        x, z = new.point[corner, 0], new.point[corner, 1]
+        x, z = new.point[0, 0], new.point[0, 1]
+        if acceleration <= 0.0:
+            last = run.control.base_points - 1
+            x, z = new.point[last, 0], new.point[last, 1]
     else:
         x, z = x / normal, z / normal
     arm_x = new.pose[CENTRE_X] - run.floor[1, 0] - x

@@ -159,9 +159,3 @@ def shift_velocity(stack: LooseStack, state: State, velocity: float, lift_veloci
 def prepared(stack: LooseStack, step: float) -> bool:
     """Whether the body beneath is prepared."""
     return bool(interface.prepared(stack.body, step))
-
-
-@implements(interface.sizes_match, LooseStack, inline=True)
-def any_sizes(stack: LooseStack, run: Any) -> bool:
-    """Compiled for arrays of any size."""
-    return True

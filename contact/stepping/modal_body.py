@@ -119,12 +119,15 @@ def make_modal_body(
 class BlockOnCorners(ModalBody):
     """A rigid body on two contact points: the same fields, but a separate type.
 
-    For this type the stepping is compiled with known array sizes (`sizes_match`). Loops over two points and three
-    coordinates are unrolled, which halves the time of a step with identical results.
+    For this type the stepping is compiled with arrays of constant shape, see `contact.stepping.block_on_corners`.
     """
 
 
-MODAL = (ModalBody, BlockOnCorners)
+class LocalBlock(BlockOnCorners):
+    """.. whose arrays are in registers, see `contact.stepping.block_on_corners`."""
+
+
+MODAL = (ModalBody, BlockOnCorners, LocalBlock)
 
 
 def with_own_scratch(body: ModalBody) -> ModalBody:

@@ -1,7 +1,6 @@
 """The operations of a `ModalBody` in the stepping, compiled; `contact.stepping.body` defines them."""
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from contact.interface.compliance import (
 )
 from contact.interface.equilibrium import Stance
 from contact.interface.workspace import Contact, Workspace
-from contact.jit import compiled, inlined
+from contact.jit import compiled
 from contact.stepping import body as interface
 from contact.stepping.body import (
     ANGULAR_VELOCITY,
@@ -30,7 +29,7 @@ from contact.stepping.body import (
     State,
     implements,
 )
-from contact.stepping.modal_body import MODAL, BlockOnCorners, ModalBody
+from contact.stepping.modal_body import MODAL, ModalBody
 from contact.stepping.scheme import Scheme
 
 
@@ -53,7 +52,7 @@ def predict(body: ModalBody, scheme: Scheme, step: float, old: State, new: State
     new.acceleration[2] += change
 
 
-@compiled
+@compiled(inline=True)
 def effective_slot(body: ModalBody, scheme: Scheme, step: float) -> int:
     """Slot of the inverse effective masses and the elastic compliance for this step size; computed if missing."""
     if body.cached_step[body.recent[0]] == step:
@@ -75,7 +74,8 @@ def effective_slot(body: ModalBody, scheme: Scheme, step: float) -> int:
     body.inverse[slot, 2] = 1.0 / (inertial * body.inertia)
     for k in range(m):
         body.inverse[slot, 3 + k] = 1.0 / (inertial + viscous * body.damping[k] + now * body.stiffness[k])
-    condense_modes(body.across, body.inverse[slot, 3:], body.elastic_compliance[slot])
+    if m > 0:
+        condense_modes(body.across, body.inverse[slot, 3:], body.elastic_compliance[slot])
     return slot
 
 
@@ -235,7 +235,7 @@ def respond(body: ModalBody, scheme: Scheme, step: float, old: State, new: State
     m = body.stiffness.size
     now = 1.0 - scheme.alpha_f
     gather_force(body, work.force, new.position[2], body.arm, new.external)
-    inverse = body.inverse[effective_slot(body, scheme, step)]
+    inverse = body.inverse[body.recent[0]]  # that of `release`
     by_velocity = scheme.newmark_gamma / (scheme.newmark_beta * step)
     by_acceleration = 1.0 / (scheme.newmark_beta * step * step)
     turned = 0.0
@@ -320,52 +320,10 @@ def shift_velocity(body: ModalBody, state: State, velocity: float, lift_velocity
     state.velocity[1] -= lift_velocity
 
 
-@implements(interface.sizes_match, ModalBody, inline=True)
-def any_sizes(body: ModalBody, run: Any) -> bool:
-    """Compiled for arrays of any size."""
-    return True
-
-
 @implements(interface.prepared, *MODAL, inline=True)
 def prepared(body: ModalBody, step: float) -> bool:
     """A modal body can take a step of any size."""
     return True
-
-
-@inlined
-def _state_of_block_on_corners(state: State) -> bool:
-    if state.position.size != 3 or state.velocity.size != 3 or state.acceleration.size != 3:
-        return False
-    if state.jerk.size != 3 or state.internal.size != 3 or state.damping.size != 3:
-        return False
-    if state.external.size != 3 or state.pose.size != 6 or state.energy.size != 3 or state.stick.size != 2:
-        return False
-    if state.crushed.size != 2:
-        return False
-    if state.point.shape[0] != 2 or state.force.shape[0] != 2 or state.descent.shape[0] != 2:
-        return False
-    if state.drift.shape[0] != 2 or state.drift.shape[1] != 2 or state.numbers.size != 50:
-        return False
-    return bool(state.point.shape[1] == 2 and state.force.shape[1] == 2 and state.descent.shape[1] == 2)
-
-
-@implements(interface.sizes_match, BlockOnCorners, inline=True)
-def sizes_of_block_on_corners(body: ModalBody, run: Any) -> bool:
-    """From each comparison with a constant the compiler infers a size, and unrolls the loops."""
-    work = run.work
-    if body.point.shape[0] != 2 or body.stiffness.size != 0 or run.control.base_points != 2:
-        return False
-    if run.joints.shape[0] != 1:
-        return False
-    if body.elastic_compliance.shape[1] != 4 or body.elastic_compliance.shape[2] != 4:
-        return False
-    if work.point.shape[0] != 2 or work.slope.shape[0] != 2:
-        return False
-    if work.force.shape[0] != 2 or work.force.shape[1] != 2:
-        return False
-    if not _state_of_block_on_corners(run.old):
-        return False
-    return bool(_state_of_block_on_corners(run.new))
 
 
 def place(body: ModalBody, state: State, stance: Stance) -> None:

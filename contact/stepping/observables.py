@@ -263,10 +263,12 @@ def follow_restitution(
     aside = abs(new.pose[ROTATION]) > ROCKING * control.slenderness_angle
     if not (before * after < 0.0 or before == 0.0) or not aside or track.left_open + track.right_open != 1:
         return
-    pivot = control.base_points - 1 if track.left_open == 1 else 0
+    sunk, sinks = old.crushed[0], new.crushed[0]
+    if track.left_open == 1:
+        last = control.base_points - 1
+        sunk, sinks = old.crushed[last], new.crushed[last]
     energy = max(
-        lifting_energy(control, old, floor[0, 0], old.crushed[pivot]),
-        lifting_energy(control, new, floor[1, 0], new.crushed[pivot]),
+        lifting_energy(control, old, floor[0, 0], sunk), lifting_energy(control, new, floor[1, 0], sinks)
     )
     if track.impacts == 0:
         track.turning_energy = energy

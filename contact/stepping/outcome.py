@@ -21,6 +21,7 @@ import numpy as np
 from contact.arrays import FloatArray
 from contact.jit import compiled
 from contact.motion.kernel import UNIFORM, as_floor_motion, floor_motion
+from contact.stepping.block_on_corners import advance_on
 from contact.stepping.body import KINETIC, ROTATION, VELOCITY_X
 from contact.stepping.boxes import is_unsettled, lose_footing
 from contact.stepping.control import most_attempts
@@ -29,7 +30,6 @@ from contact.stepping.integrator import (
     FAILED,
     OVERTURNED,
     REACHED,
-    advance_kernel,
     enter_floor_frame_compiled,
 )
 from contact.stepping.loose_stack import LooseStack
@@ -185,7 +185,7 @@ def advance_in_slices(
     clock = run.clock[0]
     while clock.time < until and not is_over(run, part):
         target = clock.next_look if part == FREE else clock.time + ahead
-        status = advance_kernel(body, run, min(target, until))
+        status = advance_on(body, run, min(target, until))
         if kept.slip.size == 0:
             return status
         if run.history.columns.shape[1] > 0:

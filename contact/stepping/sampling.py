@@ -96,12 +96,13 @@ def write_boxes(run: RunState, row: FloatArray, s: float, step: float, floor: fl
 @compiled(inline=True)
 def write_coordinates(samples: Samples, at: int, old: State, new: State, s: float, step: float) -> None:
     """Coordinates and their rates at the share `s` of the step, where the samples keep them."""
-    for j in range(samples.position.shape[1]):
-        samples.position[at, j] = hermite(
-            s, step, old.position[j], old.velocity[j], new.position[j], new.velocity[j]
-        )
-    for j in range(samples.velocity.shape[1]):
-        samples.velocity[at, j] = (1.0 - s) * old.velocity[j] + s * new.velocity[j]
+    for j in range(old.position.size):
+        if j < samples.position.shape[1]:
+            samples.position[at, j] = hermite(
+                s, step, old.position[j], old.velocity[j], new.position[j], new.velocity[j]
+            )
+        if j < samples.velocity.shape[1]:
+            samples.velocity[at, j] = (1.0 - s) * old.velocity[j] + s * new.velocity[j]
 
 
 @inlined

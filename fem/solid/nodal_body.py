@@ -153,10 +153,6 @@ class FullBody:
         """See `contact.stepping.body.prepared`."""
         return bool(nodal_kernels.prepared(self.nodal, step))
 
-    def sizes_match(self, run: RunState) -> bool:
-        """See `contact.stepping.body.sizes_match`."""
-        return True
-
     def weigh(self, contact: Contact, old: State) -> None:
         """See `contact.stepping.body.weigh`."""
 

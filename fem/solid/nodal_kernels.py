@@ -8,7 +8,7 @@ are absolute.
 
 import math
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import fem.solid.block_factor
 import fem.solid.elasticity
@@ -338,12 +338,6 @@ def shift_velocity(body: NodalBody, state: State, velocity: float, lift_velocity
     for i in range(body.nodal_mass.size):
         state.velocity[2 * i] -= velocity
         state.velocity[2 * i + 1] -= lift_velocity
-
-
-@implements(interface.sizes_match, NodalBody)
-def any_sizes(body: NodalBody, run: Any) -> bool:
-    """Compiled for arrays of any size."""
-    return True
 
 
 advance_nodal = compiled(advance, sources=SOURCES)
