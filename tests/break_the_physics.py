@@ -20,12 +20,14 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from queue import SimpleQueue
 
 from mutation import ROOT, SOURCES, Mutation
 from mutations import MUTATIONS
 
 COPIED = ("fem", "mesh", "contact", "tests")
 TESTS_PASSED, TESTS_FAILED = 0, 1  #: exit codes of pytest; all others are no verdict
+Trees = SimpleQueue[Path]  #: free places for a copy of the project
 LONGEST = 900.0  #: [s] for the tests of one fault
 
 
@@ -50,13 +52,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     chosen = [m for m in MUTATIONS if options.only in f"{m.file}: {m.name}"]
     with tempfile.TemporaryDirectory(prefix="broken-physics-") as folder:
         cache = Path(folder) / "cache"
-        sound = soundness(Path(folder), cache, chosen)
+        trees: Trees = SimpleQueue()
+        for k in range(options.jobs):
+            trees.put(Path(folder) / f"tree-{k}")  # numba keeps kernels by the places of their sources
+        sound = soundness(trees, cache, chosen)
         if sound:
             print(f"the tests do not pass on the physics as it is: {sound}", file=sys.stderr)
             return 2
         with ThreadPoolExecutor(options.jobs) as pool:
             findings = []
-            for finding in pool.map(lambda mutation: judge(mutation, Path(folder), cache), chosen):
+            for finding in pool.map(lambda mutation: judge(mutation, trees, cache), chosen):
                 print(line_of(finding), flush=True)
                 findings.append(finding)
     survivors = sum(finding.verdict == "SURVIVES" for finding in findings)
@@ -65,36 +70,34 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 2 if unjudged else int(survivors > 0)
 
 
-def soundness(folder: Path, cache: Path, mutations: Sequence[Mutation]) -> str:
+def soundness(trees: Trees, cache: Path, mutations: Sequence[Mutation]) -> str:
     """The first test that fails without any fault, or nothing; fills the kernel cache besides."""
     for tests in dict.fromkeys(mutation.tests for mutation in mutations):
-        with copied_tree(folder) as tree:
+        with copied_tree(trees) as tree:
             code, by = run_tests(tree, cache, tests)
         if code != TESTS_PASSED:
             return by
     return ""
 
 
-def judge(mutation: Mutation, folder: Path, cache: Path) -> Finding:
+def judge(mutation: Mutation, trees: Trees, cache: Path) -> Finding:
     """Put one fault into a fresh copy and run its tests."""
     began = time.perf_counter()
-    with copied_tree(folder) as tree:
+    with copied_tree(trees) as tree:
         if not mutation.file:
             verdict, by = "no verdict", "its text does not stand once in the sources"
         else:
             broken = SOURCES[mutation.file].replace(mutation.old, mutation.new)
             (tree / mutation.file).write_text(broken, encoding="utf-8")
-            own_cache = tree / "cache"
-            shutil.copytree(cache, own_cache)  # kernels are kept by the digest of their sources
-            code, by = run_tests(tree, own_cache, mutation.tests)
+            code, by = run_tests(tree, cache, mutation.tests)
             verdict = {TESTS_PASSED: "SURVIVES", TESTS_FAILED: "noticed"}.get(code, "no verdict")
     return Finding(mutation=mutation, verdict=verdict, by=by, seconds=time.perf_counter() - began)
 
 
 @contextmanager
-def copied_tree(folder: Path) -> Iterator[Path]:
-    """A copy of the project without what is made from it, for a while."""
-    tree = Path(tempfile.mkdtemp(dir=folder))
+def copied_tree(trees: Trees) -> Iterator[Path]:
+    """A copy of the project without what is made from it, for a while, in one of these places."""
+    tree = trees.get()
     try:
         for name in COPIED:
             shutil.copytree(ROOT / name, tree / name, ignore=shutil.ignore_patterns("__pycache__"))
@@ -103,6 +106,7 @@ def copied_tree(folder: Path) -> Iterator[Path]:
         yield tree
     finally:
         shutil.rmtree(tree)
+        trees.put(tree)
 
 
 def run_tests(tree: Path, cache: Path, tests: Sequence[str]) -> tuple[int, str]:
@@ -120,7 +124,7 @@ def run_tests(tree: Path, cache: Path, tests: Sequence[str]) -> tuple[int, str]:
         )
     except subprocess.TimeoutExpired:
         return TESTS_FAILED, f"no end within {LONGEST:.0f} s"
-    failed = re.search(r"^(?:FAILED|ERROR) \S*?([^/\s]+::.*?)(?: - .*)?$", result.stdout, re.MULTILINE)
+    failed = re.search(r"^_+ (?:ERROR at \w+ of )?(\S.*?) _+$", result.stdout, re.MULTILINE)
     last = (result.stdout.strip() or result.stderr.strip() or "nothing said").splitlines()[-1]
     return result.returncode, failed.group(1) if failed else last
 
