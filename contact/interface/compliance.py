@@ -4,7 +4,7 @@ Arrays as in `contact.interface.solver`.
 """
 
 from contact.arrays import FloatArray
-from contact.interface.dense import factor_dense, substitute_dense
+from contact.interface.dense import factor_dense, factor_four, substitute_dense, substitute_four
 from contact.interface.workspace import Workspace
 from contact.jit import compiled
 
@@ -197,7 +197,7 @@ def factor_few(work: Workspace) -> bool:
         for i in range(2):
             for j in range(2):
                 enter_tangent(work, i, i, j, j)
-        return factor_dense(4, work.matrix, work.pivot)
+        return factor_four(work.matrix, work.pivot)
     if first:
         enter_tangent(work, 0, 0, 0, 0)
     elif second:
@@ -213,7 +213,7 @@ def change_few(work: Workspace) -> None:
             work.change[2 * i + k] = work.law[i, k] - work.force[i, k]
     first, second = has_tangent(work, 0), has_tangent(work, 1)
     if first and second:
-        substitute_dense(4, work.matrix, work.pivot, work.change)
+        substitute_four(work.matrix, work.pivot, work.change)
     elif first:
         change_one(work, 0, 1)
     elif second:

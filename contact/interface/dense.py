@@ -52,6 +52,20 @@ def eliminate_pair(size: int, matrix: FloatArray, pivot: IntArray, k: int) -> bo
 
 
 @compiled(inline=True)
+def eliminate_column(size: int, matrix: FloatArray, pivot: IntArray, k: int) -> bool:
+    """Eliminate column k; False if there is no pivot."""
+    if not take_pivot(size, matrix, pivot, k):
+        return False
+    for i in range(k + 1, size):
+        factor = matrix[i, k] / matrix[k, k]
+        matrix[i, k] = factor
+        if factor != 0.0:
+            for j in range(k + 1, size):
+                matrix[i, j] -= factor * matrix[k, j]
+    return True
+
+
+@compiled(inline=True)
 def factor_dense(size: int, matrix: FloatArray, pivot: IntArray) -> bool:
     """LU decomposition with row pivoting of the leading size x size block, in place; False if singular."""
     done = 0
@@ -59,35 +73,62 @@ def factor_dense(size: int, matrix: FloatArray, pivot: IntArray) -> bool:
         if not eliminate_pair(size, matrix, pivot, done):
             return False
         done += 2
+    regular = True
     for k in range(done, size):
-        if not take_pivot(size, matrix, pivot, k):
-            return False
+        regular = regular and eliminate_column(size, matrix, pivot, k)
+    return regular
+
+
+@compiled(inline=True)
+def exchange_entry(size: int, pivot: IntArray, vector: FloatArray, k: int) -> None:
+    """Exchange entry k as the rows of the matrix."""
+    if size <= TINY:
         for i in range(k + 1, size):
-            factor = matrix[i, k] / matrix[k, k]
-            matrix[i, k] = factor
-            if factor != 0.0:
-                for j in range(k + 1, size):
-                    matrix[i, j] -= factor * matrix[k, j]
-    return True
+            if pivot[k] == i:
+                vector[k], vector[i] = vector[i], vector[k]
+    elif pivot[k] != k:
+        vector[k], vector[pivot[k]] = vector[pivot[k]], vector[k]
+
+
+@compiled(inline=True)
+def substitute_entry(
+    begin: int, end: int, factors: FloatArray, vector: FloatArray, k: int, diagonal: float
+) -> None:
+    """Take the known entries from `begin` to `end` from entry k, and divide by the diagonal."""
+    total = vector[k]
+    for j in range(begin, end):
+        total -= factors[k, j] * vector[j]
+    vector[k] = total / diagonal
 
 
 @compiled(inline=True)
 def substitute_dense(size: int, factors: FloatArray, pivot: IntArray, vector: FloatArray) -> None:
     """Solve with the factors of `factor_dense`, in place."""
     for k in range(size):
-        if size <= TINY:
-            for i in range(k + 1, size):
-                if pivot[k] == i:
-                    vector[k], vector[i] = vector[i], vector[k]
-        elif pivot[k] != k:
-            vector[k], vector[pivot[k]] = vector[pivot[k]], vector[k]
+        exchange_entry(size, pivot, vector, k)
     for k in range(1, size):
-        total = vector[k]
-        for j in range(k):
-            total -= factors[k, j] * vector[j]
-        vector[k] = total
+        substitute_entry(0, k, factors, vector, k, 1.0)
     for k in range(size - 1, -1, -1):
-        total = vector[k]
-        for j in range(k + 1, size):
-            total -= factors[k, j] * vector[j]
-        vector[k] = total / factors[k, k]
+        substitute_entry(k + 1, size, factors, vector, k, factors[k, k])
+
+
+@compiled(inline=True)
+def factor_four(matrix: FloatArray, pivot: IntArray) -> bool:
+    """`factor_dense` of four rows, without a loop over the columns: all indices are constants."""
+    first = eliminate_column(4, matrix, pivot, 0) and eliminate_column(4, matrix, pivot, 1)
+    return first and eliminate_column(4, matrix, pivot, 2) and eliminate_column(4, matrix, pivot, 3)
+
+
+@compiled(inline=True)
+def substitute_four(factors: FloatArray, pivot: IntArray, vector: FloatArray) -> None:
+    """Solve with the factors of `factor_four`, in place."""
+    exchange_entry(4, pivot, vector, 0)
+    exchange_entry(4, pivot, vector, 1)
+    exchange_entry(4, pivot, vector, 2)
+    substitute_entry(0, 1, factors, vector, 1, 1.0)
+    substitute_entry(0, 2, factors, vector, 2, 1.0)
+    substitute_entry(0, 3, factors, vector, 3, 1.0)
+    substitute_entry(4, 4, factors, vector, 3, factors[3, 3])
+    substitute_entry(3, 4, factors, vector, 2, factors[2, 2])
+    substitute_entry(2, 4, factors, vector, 1, factors[1, 1])
+    substitute_entry(1, 4, factors, vector, 0, factors[0, 0])

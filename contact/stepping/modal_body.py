@@ -132,7 +132,9 @@ MODAL = (ModalBody, BlockOnCorners, LocalBlock)
 
 def with_own_scratch(body: ModalBody) -> ModalBody:
     """The same body with scratch arrays of its own; a rigid body on two points becomes a `BlockOnCorners`."""
-    own = body._replace(
+    if body.stiffness.size == 0 and body.point.shape[0] == 2:  # the rest of its scratch is in registers
+        return BlockOnCorners(*body._replace(arm=np.empty_like(body.arm)))
+    return body._replace(
         cached_step=np.append(np.full(len(body.inverse), -1.0), 0.0),
         recent=np.zeros(1, dtype=np.int64),
         inverse=np.empty_like(body.inverse),
@@ -141,5 +143,3 @@ def with_own_scratch(body: ModalBody) -> ModalBody:
         moved=np.empty_like(body.moved),
         free_change=np.empty_like(body.free_change),
     )
-    small = body.stiffness.size == 0 and body.point.shape[0] == 2
-    return BlockOnCorners(*own) if small else own

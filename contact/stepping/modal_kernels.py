@@ -62,7 +62,7 @@ def effective_slot(body: ModalBody, scheme: Scheme, step: float) -> int:
         if body.cached_step[slot] == step:
             body.recent[0] = slot
             return slot
-    slot = int(body.cached_step[slots])  # replaces the oldest
+    slot = int(body.cached_step[slots]) if slots > 1 else 0  # replaces the oldest
     body.cached_step[slots] = (slot + 1) % slots
     body.cached_step[slot], body.recent[0] = step, slot
     m = body.stiffness.size

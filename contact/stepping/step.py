@@ -12,7 +12,7 @@ from contact.interface.laws import relaxed_stick, stribeck_mu
 from contact.interface.solver import solve_contact
 from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled, inlined
-from contact.motion.kernel import UNIFORM, floor_motion, move_floor
+from contact.motion.kernel import UNIFORM, floor_motion, rare_motion
 from contact.stepping.body import (
     KINETIC,
     POTENTIAL,
@@ -115,7 +115,7 @@ def attempt(body: Any, run: RunState, step: float) -> int:
     if (
         run.vertical.kind != UNIFORM
     ):  # else it stays where it is, and the call would cost as much as a tenth of a step
-        move_floor(run.vertical, clock.time + step, run.lift[1])
+        run.lift[1, 0], run.lift[1, 1], run.lift[1, 2] = rare_motion(run.vertical, clock.time + step)
     lift, lift_velocity = run.lift[1, 0], run.lift[1, 1]
     slope = scheme.newmark_gamma / (scheme.newmark_beta * step)
     rebase_acceleration(scheme, old, clock.lag_step - step)
