@@ -12,12 +12,22 @@ FEW_POINTS = 2  #: up to so many, the rows of the compliance are taken one by on
 WORTH_KEEPING = 5  #: active points from which an old factorisation is reused before a new one is computed
 
 
-@compiled
+@compiled(inline=True)
 def add_modes(across: FloatArray, amplitude: FloatArray, out: FloatArray) -> None:
     """Add displacements (2 n,) of modes (m, 2 n) with these amplitudes (m,), four modes at a time.
 
     Sums keep the order of the modes.
     """
+    if out.size == 4:  # two points, a loop of fixed length
+        w, x, y, z = out[0], out[1], out[2], out[3]
+        for k in range(amplitude.size):
+            by = amplitude[k]
+            w += across[k, 0] * by
+            x += across[k, 1] * by
+            y += across[k, 2] * by
+            z += across[k, 3] * by
+        out[0], out[1], out[2], out[3] = w, x, y, z
+        return
     blocks = amplitude.size // 4
     for block in range(blocks):
         k = 4 * block

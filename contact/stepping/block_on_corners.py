@@ -1,7 +1,8 @@
-"""The stepping of a `BlockOnCorners`: that of all bodies, on arrays of constant shape, which are kept in registers.
+"""The stepping of a body on two corners: that of all bodies, compiled for two points.
 
-State, scratch and attempted step are copied to such arrays, the run is advanced, and what others read is copied back.
-A run for its outcome is advanced once or some hundred times, in thousands of steps.
+A `BlockOnCorners` is stepped on arrays of constant shape, which are kept in registers. State, scratch and attempted
+step are copied to such arrays, the run is advanced, and what others read is copied back. A run for its outcome is
+advanced once or some hundred times, in thousands of steps.
 """
 
 from contact.arrays import FloatArray
@@ -11,7 +12,7 @@ from contact.local_arrays import local_counts, local_row, local_rows, part_row, 
 from contact.stepping.body import State, implements
 from contact.stepping.integrator import FAILED, advance, advance_kernel
 from contact.stepping.loose_stack import LooseStack
-from contact.stepping.modal_body import BlockOnCorners, LocalBlock, ModalBody
+from contact.stepping.modal_body import BlockOnCorners, BodyOnCorners, LocalBlock, ModalBody
 from contact.stepping.state import RunState
 
 NUMBERS = 50  #: of its state
@@ -40,6 +41,37 @@ def advance_on(body: ModalBody | LooseStack, run: RunState, until: float) -> int
 def advance_in_memory(body: ModalBody | LooseStack, run: RunState, until: float) -> int:
     """.. on the arrays of the run."""
     return int(advance_kernel(body, run, until))
+
+
+@inlined
+def has_two_points(state: State) -> bool:
+    """Whether a state is of two points."""
+    if state.stick.size != 2 or state.crushed.size != 2:
+        return False
+    if state.point.shape[0] != 2 or state.force.shape[0] != 2 or state.descent.shape[0] != 2:
+        return False
+    if state.drift.shape[0] != 2 or state.drift.shape[1] != 2:
+        return False
+    return bool(state.point.shape[1] == 2 and state.force.shape[1] == 2 and state.descent.shape[1] == 2)
+
+
+@implements(advance_on, BodyOnCorners)
+def advance_on_corners(body: BodyOnCorners, run: RunState, until: float) -> int:
+    """.. of two points: from each comparison with a constant the compiler infers a size, and unrolls loops."""
+    work = run.work
+    if body.point.shape[0] != 2 or run.control.base_points != 2 or run.joints.shape[0] != 1:
+        return FAILED
+    if body.moved.shape[1] != 4 or body.across.shape[1] != 4:
+        return FAILED
+    if body.elastic_compliance.shape[1] != 4 or body.elastic_compliance.shape[2] != 4:
+        return FAILED
+    if work.point.shape[0] != 2 or work.slope.shape[0] != 2:
+        return FAILED
+    if work.force.shape[0] != 2 or work.force.shape[1] != 2:
+        return FAILED
+    if not has_two_points(run.old) or not has_two_points(run.new):
+        return FAILED
+    return advance(body, run, until)
 
 
 @inlined

@@ -17,9 +17,8 @@ import numpy as np
 from contact.arrays import FloatArray, IntArray
 from contact.structs import struct
 
-STEP_SLOTS = 16  #: number of step sizes whose effective compliance is cached
-SLOTS_OF_MANY = 64  #: .. where it is large: about as many as a run has step sizes
-FEW_ROWS = 16  #: size up to which it is not
+STEP_SLOTS = 16  #: number of step sizes whose effective masses are cached
+SLOTS_OF_MODES = 64  #: .. and the compliance of the modes: about as many as a run has step sizes
 
 
 @struct
@@ -87,9 +86,10 @@ def make_modal_body(
     omega = np.zeros(0) if frequencies is None else np.asarray(frequencies, dtype=float)
     zeta = np.zeros(omega.size) if damping_ratios is None else np.asarray(damping_ratios, dtype=float)
     watched = np.zeros((0, 2)) if monitor is None else monitor
-    m, slots = omega.size, STEP_SLOTS if 2 * n <= FEW_ROWS else SLOTS_OF_MANY
+    m = omega.size
+    slots = SLOTS_OF_MODES if m > 0 else STEP_SLOTS
     shape = np.zeros((n, 2, 0)) if shape is None else np.array(shape, dtype=float, order="C")
-    return ModalBody(
+    return (BodyOnCorners if n == 2 else ModalBody)(
         mass=float(mass),
         inertia=float(inertia),
         gravity=float(gravity),
@@ -116,8 +116,16 @@ def make_modal_body(
 
 
 @struct
+class BodyOnCorners(ModalBody):
+    """A body on two contact points: the same fields, but a separate type.
+
+    For this type the stepping is compiled with the known number of points, see `contact.stepping.block_on_corners`.
+    """
+
+
+@struct
 class BlockOnCorners(ModalBody):
-    """A rigid body on two contact points: the same fields, but a separate type.
+    """A rigid body on two contact points.
 
     For this type the stepping is compiled with arrays of constant shape, see `contact.stepping.block_on_corners`.
     """
@@ -127,7 +135,7 @@ class LocalBlock(BlockOnCorners):
     """.. whose arrays are in registers, see `contact.stepping.block_on_corners`."""
 
 
-MODAL = (ModalBody, BlockOnCorners, LocalBlock)
+MODAL = (ModalBody, BodyOnCorners, BlockOnCorners, LocalBlock)
 
 
 def with_own_scratch(body: ModalBody) -> ModalBody:

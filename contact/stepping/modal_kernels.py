@@ -80,12 +80,6 @@ def effective_slot(body: ModalBody, scheme: Scheme, step: float) -> int:
 
 
 @compiled(inline=True)
-def has_many_points(body: ModalBody) -> bool:
-    """Whether the modes move so many points that these are moved mode by mode, several points at a time."""
-    return body.point.shape[0] > FEW_POINTS and body.stiffness.size > 0
-
-
-@compiled(inline=True)
 def strain_points(body: ModalBody, position: FloatArray) -> None:
     """Base points in the body's frame, strained by the modes, into `body.moved`."""
     strained = body.moved[0]
@@ -109,22 +103,16 @@ def place_points(
     """Base points and their velocities at the iterate, relative to the floor; arms into `body.arm`."""
     m = body.stiffness.size
     rate = state.velocity[2]
-    many = has_many_points(body)
     strained, swung = body.moved[0], body.moved[1]
-    if many:
+    if m > 0:
         strain_points(body, state.position)
         for a in range(swung.size):
             swung[a] = 0.0
         add_modes(body.across, state.velocity[3:], swung)
     for i in range(body.point.shape[0]):
         x, z, u, w = body.point[i, 0], body.point[i, 1], 0.0, 0.0
-        if many:
+        if m > 0:
             x, z, u, w = strained[2 * i], strained[2 * i + 1], swung[2 * i], swung[2 * i + 1]
-        for k in range(0 if many else m):
-            x += body.shape[i, 0, k] * state.position[3 + k]
-            z += body.shape[i, 1, k] * state.position[3 + k]
-            u += body.shape[i, 0, k] * state.velocity[3 + k]
-            w += body.shape[i, 1, k] * state.velocity[3 + k]
         body.arm[i, 0] = cosine * x + sine * z
         body.arm[i, 1] = -sine * x + cosine * z
         work.free[i, 0] = state.position[0] + body.arm[i, 0] - floor
@@ -173,18 +161,15 @@ def release(
         force -= mass * ((1.0 - scheme.alpha_m) * new.acceleration[j] + scheme.alpha_m * old.acceleration[j])
         body.free_change[j] = inverse[j] * force
     slope = scheme.newmark_gamma / (scheme.newmark_beta * step)
-    change, swung, many = body.free_change, body.moved[2], has_many_points(body)
-    if many:
+    change, swung = body.free_change, body.moved[2]
+    if m > 0:
         for a in range(swung.size):
             swung[a] = 0.0
         add_modes(body.across, change[3:], swung)
     for i in range(n):
         u, w = 0.0, 0.0
-        if many:
+        if m > 0:
             u, w = swung[2 * i], swung[2 * i + 1]
-        for k in range(0 if many else m):
-            u += body.shape[i, 0, k] * change[3 + k]
-            w += body.shape[i, 1, k] * change[3 + k]
         moved_x = change[0] + body.arm[i, 1] * change[2] + cosine * u + sine * w
         moved_z = change[1] - body.arm[i, 0] * change[2] - sine * u + cosine * w
         work.free[i, 0] += moved_x
@@ -192,7 +177,7 @@ def release(
         work.free_velocity[i, 0] += slope * moved_x
         work.free_velocity[i, 1] += slope * moved_z
     drift, turn = now * inverse[0], now * inverse[2]
-    if many:
+    if n > FEW_POINTS and m > 0:
         turned_compliance(
             body.elastic_compliance[slot], body.arm, cosine, sine, now, drift, turn, work.compliance
         )
@@ -258,16 +243,12 @@ def complete(body: ModalBody, new: State, floor: float, lift: float, lift_veloci
     m = body.stiffness.size
     position, velocity = new.position, new.velocity
     cosine, sine = math.cos(position[2]), math.sin(position[2])
-    many = has_many_points(body)
-    if many:
+    if m > 0:
         strain_points(body, position)
     for i in range(body.point.shape[0]):
         x, z = body.point[i, 0], body.point[i, 1]
-        if many:
+        if m > 0:
             x, z = body.moved[0, 2 * i], body.moved[0, 2 * i + 1]
-        for k in range(0 if many else m):
-            x += body.shape[i, 0, k] * position[3 + k]
-            z += body.shape[i, 1, k] * position[3 + k]
         body.arm[i, 0], body.arm[i, 1] = cosine * x + sine * z, -sine * x + cosine * z
         new.point[i, 0] = position[0] + body.arm[i, 0] - floor
         new.point[i, 1] = position[1] + body.arm[i, 1] - lift
