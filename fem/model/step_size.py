@@ -134,7 +134,7 @@ def control_of(
         largest_step=largest,
         smallest_step=SMALLEST_SHARE * largest,
         event_step=EVENT_SHARE * largest,
-        closing_step=min(closing, largest),
+        closing_step=float(min(closing, largest)),  # a number of numpy would make each call of a kernel slow
         closing_speed=math.sqrt(SOFT_CLOSING * reference / mesh.mass),
         reference_energy=reference,
         energy_rate=loose * ENERGY_RATE * rate,

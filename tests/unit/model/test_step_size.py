@@ -135,3 +135,18 @@ def test_a_run_for_its_outcome_that_is_no_longer_finite_says_so():
     residual = float(np.abs(model.run.work.law - model.run.work.force).max())
     assert not np.isfinite(residual)
     assert "trial solution is not finite" in stepping_failure(model, residual)
+
+
+@pytest.mark.parametrize("name", ["seed_box", "seed_stack_plateau"])
+def test_numbers_that_kernels_receive_are_plain(name):
+    """Those of numpy make numba look up the types of a run in Python at each call."""
+
+    def numbers(data):
+        for value in data:
+            if isinstance(value, tuple):
+                yield from numbers(value)
+            elif not isinstance(value, np.ndarray):
+                yield value
+
+    model = build_model(load_case(name, ["solver.model=rigid"]))
+    assert {type(value) for value in numbers((model.body, model.run))} <= {float, int, bool}
