@@ -16,6 +16,7 @@ from typing import Any
 import numba
 from numba.core import config
 from numba.core.registry import CPUDispatcher
+from numba.core.types import unliteral
 from numba.extending import register_jitable
 
 from contact.pieces import KernelCompiler, PieceCompiler
@@ -69,6 +70,11 @@ class Kernel(CPUDispatcher):
     def __call__(self, *arguments: Any, **named: Any) -> Any:
         """Call the entry."""
         return self.entry(*arguments, **named)
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Signature for arguments of these types; numba would compile a function again for each constant given."""
+        named = {name: unliteral(kind) for name, kind in kws.items()}
+        return super().get_call_template([unliteral(kind) for kind in args], named)
 
 
 def compiled(

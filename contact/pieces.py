@@ -5,6 +5,7 @@ that calls it in turn. For a function that only kernels call, both are for nothi
 writes it, and is optimised where it is used. It has no entry from Python.
 """
 
+import gc
 from typing import Any
 
 from numba import _dynfunc  # type: ignore[attr-defined]
@@ -14,6 +15,7 @@ from numba.core.compiler_machinery import LoweringPass, register_pass
 from numba.core.typed_passes import AnnotateTypes, NativeLowering
 
 SIMPLIFIED = 1  #: level of LLVM's optimisation
+NEW_OBJECTS = 50_000  #: between two searches of Python for cycles, which else take a tenth of a compilation
 
 
 class KernelLibrary(JITCodeLibrary):
@@ -93,6 +95,15 @@ class EndPiece(LoweringPass):
 
 class KernelCompiler(CompilerBase):
     """numba's compiler, but for kernels."""
+
+    def compile_extra(self, func: Any) -> Any:
+        """Compile a function, and first what it calls; most of the objects made on the way stay till the end."""
+        youngest, *older = gc.get_threshold()
+        gc.set_threshold(max(youngest, NEW_OBJECTS), *older)
+        try:
+            return super().compile_extra(func)
+        finally:
+            gc.set_threshold(youngest, *older)
 
     def define_pipelines(self) -> list[Any]:
         """The passes of numba's compiler with one of this module."""

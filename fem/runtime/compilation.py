@@ -51,7 +51,9 @@ class Announcer(event.Listener):
         """A compilation begins."""
         if not self._announced and kernel_name(event) in LONG:
             self._announced = True
-            self._message("compiling the stepping kernels, once after installation: half a minute or more")
+            self._message(
+                "compiling the stepping kernels, once after installation: a quarter of a minute or more"
+            )
 
     def on_end(self, event: event.Event) -> None:
         """Nothing to announce."""

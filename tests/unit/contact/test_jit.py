@@ -47,3 +47,19 @@ def test_what_is_not_for_none_is_not_compiled():
     assert outermost(4.0, None) == 11.0
     with pytest.raises(TypingError):
         outermost(4.0, True)
+
+
+@compiled
+def scaled(x, factor):
+    return factor * x
+
+
+@compiled
+def of_constants(x):
+    return scaled(x, 2) + scaled(x, 3)
+
+
+def test_constants_do_not_multiply_the_compilations_of_a_piece():
+    of_constants.compile((types.float64,))
+    assert len(scaled.overloads) == 1
+    assert of_constants(1.0) == 5.0

@@ -57,4 +57,4 @@ def test_the_stepping_is_told_once_before_it_is_compiled_and_small_kernels_are_n
         assert said == []
         kernel("advance_in_slices", calls=kernel("advance"))(1.0)
     kernel("advance")(1.0)
-    assert said == ["compiling the stepping kernels, once after installation: half a minute or more"]
+    assert said == ["compiling the stepping kernels, once after installation: a quarter of a minute or more"]
