@@ -6,7 +6,7 @@ and no array is passed to a function that is not inlined, no memory is left of t
 
 from typing import Any
 
-from llvmlite import ir  # type: ignore[import-untyped]
+from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 

@@ -1,4 +1,4 @@
-"""Compilation of kernels that only other kernels call, as pieces of these.
+"""numba's compiler for kernels, and for those that only other kernels call, as pieces of these.
 
 numba optimises each function with all that it calls and makes machine code of it, and does so again for each function
 that calls it in turn. For a function that only kernels call, both are for nothing: here its code is passed on as numba

@@ -1,14 +1,14 @@
 """Named tuples that kernels receive as a pointer to their fields.
 
 numba passes a tuple by value, as the scalars of all its arrays: 750 at each call for the data of a run, two thirds of
-the code that it generated. A struct within a struct lies in its memory. No field can be assigned to; arrays change in
+the code that it generated. The fields of a nested struct are stored inline. Fields cannot be assigned; arrays change in
 place.
 """
 
 import hashlib
 from typing import Any, TypeVar
 
-from llvmlite import ir  # type: ignore[import-untyped]
+from llvmlite import ir
 from numba.core import cgutils, types
 from numba.core.imputils import impl_ret_borrowed
 from numba.core.registry import cpu_target

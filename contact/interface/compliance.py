@@ -231,10 +231,9 @@ def change_few(work: Workspace) -> None:
 
 
 @compiled(inline=True)
-def change_one(work: Workspace, i: int, j: int) -> None:
-    """Change of the force of point i, the only active one, after that of point j."""
+def less_given(work: Workspace, i: int, j: int, right_x: float, right_z: float) -> tuple[float, float]:
+    """Right-hand side of point i, less what the known change of the force of point j contributes."""
     tangential_x, tangential_z, normal_z = work.slope[i, 0], work.slope[i, 1], work.slope[i, 2]
-    right_x, right_z = work.change[2 * i], work.change[2 * i + 1]
     for k in range(2):
         given = work.change[2 * j + k]
         if given != 0.0:
@@ -242,7 +241,13 @@ def change_one(work: Workspace, i: int, j: int) -> None:
             by_z = work.compliance[2 * i + 1, 2 * j + k]
             right_x -= (tangential_x * by_x + tangential_z * by_z) * given
             right_z -= normal_z * by_z * given
-    work.solution[0], work.solution[1] = right_x, right_z
+    return right_x, right_z
+
+
+@compiled(inline=True)
+def change_one(work: Workspace, i: int, j: int) -> None:
+    """Change of the force of point i, the only active one, after that of point j."""
+    work.solution[0], work.solution[1] = less_given(work, i, j, work.change[2 * i], work.change[2 * i + 1])
     substitute_dense(2, work.matrix, work.pivot, work.solution)
     work.change[2 * i], work.change[2 * i + 1] = work.solution[0], work.solution[1]
 
@@ -289,18 +294,11 @@ def newton_change(work: Workspace) -> None:
             work.change[2 * i + 1] = work.law[i, 1] - work.force[i, 1]
     for a in range(count):
         i = work.active[a]
-        tangential_x, tangential_z, normal_z = work.slope[i, 0], work.slope[i, 1], work.slope[i, 2]
         right_x = work.law[i, 0] - work.force[i, 0]
         right_z = work.law[i, 1] - work.force[i, 1]
         for j in range(n):
             if not has_tangent(work, j):
-                for k in range(2):
-                    given = work.change[2 * j + k]
-                    if given != 0.0:
-                        by_x = work.compliance[2 * i, 2 * j + k]
-                        by_z = work.compliance[2 * i + 1, 2 * j + k]
-                        right_x -= (tangential_x * by_x + tangential_z * by_z) * given
-                        right_z -= normal_z * by_z * given
+                right_x, right_z = less_given(work, i, j, right_x, right_z)
         work.solution[2 * a], work.solution[2 * a + 1] = right_x, right_z
     substitute_dense(2 * count, work.matrix, work.pivot, work.solution)
     for a in range(count):

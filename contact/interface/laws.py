@@ -51,6 +51,12 @@ def normal_force(
 
 
 @compiled(inline=True)
+def stick_trial(stiffness: float, relaxation_time: float, elongation: float, slip_velocity: float) -> float:
+    """Force on a point that sticks, by spring and dashpot [N]; the elongation of the spring is in m."""
+    return -stiffness * relaxation_time * slip_velocity - stiffness * elongation
+
+
+@compiled(inline=True)
 def stick_friction(trial: float, limit: float) -> tuple[float, float, float]:
     """Return mapping: tangential force [N], and its derivatives by trial force and by limit [-].
 

@@ -25,6 +25,7 @@ from contact.interface.laws import (
     normal_force,
     regularised_friction,
     stick_friction,
+    stick_trial,
 )
 from contact.interface.workspace import Contact, Workspace
 from contact.jit import compiled
@@ -75,11 +76,11 @@ def evaluate_laws(
             work.excess[i, 0] = 0.0
         elif contact.friction == ELASTIC_STICK:
             stiffness = contact.tangential_stiffness[i]
-            trial = -stiffness * contact.relaxation_time * work.velocity[i, 0]
-            trial_slope = stiffness * contact.relaxation_time * velocity_slope
+            elongation, trial_slope = 0.0, stiffness * contact.relaxation_time * velocity_slope
             if start[i, 1] < 0.0:  # closed at the beginning: the spring acts over the whole step
-                trial -= stiffness * (stick[i] + work.point[i, 0] - start[i, 0])
+                elongation = stick[i] + work.point[i, 0] - start[i, 0]
                 trial_slope += stiffness
+            trial = stick_trial(stiffness, contact.relaxation_time, elongation, work.velocity[i, 0])
             force, by_trial, by_limit = stick_friction(trial, mu[i] * normal)
             work.excess[i, 0], work.excess[i, 1] = trial - force, trial_slope
             work.law[i, 0] = force
@@ -165,11 +166,10 @@ def linearise_in_old_states(
         else:
             work.law[i, 1], work.slope[i, 2] = contact.cap[i], 0.0
         if abs(tangential) < SLIDING * mu[i] * normal:
-            stiffness = contact.tangential_stiffness[i]
-            damping = stiffness * contact.relaxation_time
-            work.law[i, 0] = -damping * work.velocity[i, 0]
-            work.law[i, 0] -= stiffness * (stick[i] + work.point[i, 0] - start[i, 0])
-            work.slope[i, 0], work.slope[i, 1] = stiffness + damping * velocity_slope, 0.0
+            stiffness, elongation = contact.tangential_stiffness[i], stick[i] + work.point[i, 0] - start[i, 0]
+            work.law[i, 0] = stick_trial(stiffness, contact.relaxation_time, elongation, work.velocity[i, 0])
+            work.slope[i, 0] = stiffness * contact.relaxation_time * velocity_slope + stiffness
+            work.slope[i, 1] = 0.0
             work.excess[i, 0] = 0.0
         else:
             limit = mu[i] if tangential > 0.0 else -mu[i]
