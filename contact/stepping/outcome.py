@@ -13,7 +13,7 @@ stresses can be computed.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -58,6 +58,7 @@ class KeptSamples(NamedTuple):
 
 #: nothing, as where the caller drains the samples
 NOTHING_KEPT = KeptSamples(0.0, np.zeros(0), np.zeros(0), np.zeros((0, 0)))
+UNSETTLED = 4  #: as `integrator.REACHED`, but what becomes of the container is not decided yet
 
 
 class Outcome(NamedTuple):
@@ -91,35 +92,33 @@ def run_to_end(
         strained: keep the most strained samples of every slice.
     """
     own = stack_with_own_scratch(body) if isinstance(body, LooseStack) else with_own_scratch(body)
-    clock, samples = run.clock[0], run.history
-    clock["attempt_limit"] = most_attempts(run.control, duration + aftermath)
+    samples = run.history
+    run.clock["attempt_limit"] = most_attempts(run.control, duration + aftermath)
     room = MOST_STRAINED * (math.ceil(duration / SLICE) + 2) if strained else 0
     coordinates = samples.position.shape[1] if strained else 0
     kept = KeptSamples(
         slip_until=float(slip_until),
         slip=np.zeros(math.ceil(cycle / samples.interval) + 2),
-        strain=np.full(room, -1.0),
-        position=np.zeros((room, coordinates)),
+        strain=np.full(room, -1.0) if strained else NOTHING_KEPT.strain,
+        position=np.zeros((room, coordinates)) if strained else NOTHING_KEPT.position,
     )
-    run = run._replace(
-        history=samples._replace(
+    if samples.position.shape[1] > coordinates or samples.velocity.shape[1] > 0:
+        samples = samples._replace(
             position=samples.position[:, :coordinates], velocity=samples.velocity[:, :0]
-        ),
-        frames=run.frames._replace(interval=math.inf),
-    )
+        )
+    run = run._replace(history=samples, frames=run.frames._replace(interval=math.inf))
     ahead = SLICE if strained else math.inf  # without slices the stepping returns where the samples are full
-    status = advance_in_slices(own, run, kept, ahead, min(duration, rest_from), DRIVEN)
-    if status == REACHED and rest_from < duration:
-        status = advance_in_slices(own, run, kept, AFTERMATH_SLICE, duration, FREE)
-    if status == REACHED and not is_over.py_func(run, UNDECIDED):
-        since = float(clock["time"])
+    step_on: Callable[..., int] = advance_in_slices.call_by_class
+    status = step_on(own, run, kept, ahead, float(rest_from), float(duration), DRIVEN)
+    if status == UNSETTLED:
+        since = float(run.clock[0].time)
         x, velocity_x, _ = floor_motion(run.motion, since)
         z, velocity_z, _ = floor_motion(run.vertical, since)
         enter_floor_frame_compiled(own, run, velocity_x, velocity_z)
-        run = on_resting_floor(run, since, (x, z))
-        status = advance_in_slices(own, run, kept, AFTERMATH_SLICE, duration + aftermath, UNDECIDED)
-    if status == REACHED and run.track["overturned_at"][0] < np.inf:
-        status = OVERTURNED
+        run, end = on_resting_floor(run, since, (x, z)), float(duration + aftermath)
+        status = step_on(own, run, kept, AFTERMATH_SLICE, math.inf, end, UNDECIDED)
+        if status == REACHED and run.track[0].overturned_at < np.inf:
+            status = OVERTURNED
     return Outcome(status, kept)
 
 
@@ -128,7 +127,7 @@ def advance_compiled(body: ModalBody | LooseStack, run: RunState, until: float) 
 
     It is in the kernel of runs without history, so that a run and its band compile the stepping once.
     """
-    return int(advance_in_slices(body, run, NOTHING_KEPT, math.inf, until, DRIVEN))
+    return int(advance_in_slices(body, run, NOTHING_KEPT, math.inf, math.inf, until, DRIVEN))
 
 
 def on_resting_floor(run: RunState, since: float, place: Sequence[float]) -> RunState:
@@ -176,15 +175,25 @@ def is_over(run: RunState, part: int) -> bool:
 
 @compiled
 def advance_in_slices(
-    body: ModalBody | LooseStack, run: RunState, kept: KeptSamples, ahead: float, until: float, part: int
+    body: ModalBody | LooseStack,
+    run: RunState,
+    kept: KeptSamples,
+    ahead: float,
+    rest_from: float,
+    until: float,
+    part: int,
 ) -> int:
-    """Step to `until` or until this part of the run is over, looking at the samples every `ahead` [s] or sooner.
+    """Step to `until` or until the run is over, looking at the samples every `ahead` [s] or sooner.
 
-    Where nothing is kept of the samples, it returns as `integrator.advance` does.
+    A driven run is free from `rest_from` on. Where nothing is kept of the samples, it returns as `integrator.advance`
+    does; else a driven run may end UNSETTLED, too.
     """
     clock = run.clock[0]
-    while clock.time < until and not is_over(run, part):
-        target = clock.next_look if part == FREE else clock.time + ahead
+    while clock.time < until:
+        now = FREE if part == DRIVEN and clock.time >= rest_from else part
+        if is_over(run, now):
+            break
+        target = clock.next_look if now == FREE else min(clock.time + ahead, rest_from)
         status = advance_on(body, run, min(target, until))
         if kept.slip.size == 0:
             return status
@@ -196,6 +205,11 @@ def advance_in_slices(
             return status
         if clock.time < until and clock.steps + clock.rejected >= clock.attempt_limit:
             return FAILED
+    if part == DRIVEN and kept.slip.size > 0:
+        if not is_over(run, UNDECIDED):
+            return UNSETTLED
+        if run.track[0].overturned_at < NEVER:
+            return OVERTURNED
     return REACHED
 
 

@@ -1,10 +1,14 @@
 """Compilation of kernels: what only kernels call is a piece of these."""
 
+from typing import Any, NamedTuple
+
+import numpy as np
 import pytest
 from numba.core import types
 from numba.core.errors import TypingError
 
 from contact.jit import compiled, inlined
+from contact.structs import struct
 
 
 @compiled(inline=True)
@@ -63,3 +67,25 @@ def test_constants_do_not_multiply_the_compilations_of_a_piece():
     of_constants.compile((types.float64,))
     assert len(scaled.overloads) == 1
     assert of_constants(1.0) == 5.0
+
+
+@struct
+class Weights(NamedTuple):
+    values: Any
+
+
+class Others(Weights):
+    """The same fields, but another class."""
+
+
+@compiled
+def sum_of(weights, factor):
+    return factor * weights.values.sum()
+
+
+def test_a_call_by_class_takes_the_types_of_the_first_of_its_classes():
+    assert sum_of.call_by_class(Weights(np.ones(2)), 2.0) == 4.0
+    assert sum_of.call_by_class(Weights(np.ones(3)), 2.0) == 6.0
+    assert sum_of.call_by_class(Others(np.ones((2, 2), np.int64)), 2.0) == 8.0
+    assert sum_of.call_by_class(Weights(np.ones(4)), 2.0) == 8.0
+    assert len(sum_of.entry.overloads) == 2

@@ -1,5 +1,8 @@
 """A run for its outcome alone: the same bytes as slice by slice with samples."""
 
+import math
+
+import numba
 import numpy as np
 import pytest
 
@@ -9,6 +12,8 @@ from fem.case.case import load_case
 from fem.model.container import discretise
 from fem.model.model import build_model
 
+LOOSE = ("container.joints=loose", "container.boxes=3")
+VERTICAL = ("vertical.kind=harmonic", "vertical.amplitude_m=0.01", "vertical.angular_frequency_rad_s=12")
 DURATION = 2.5
 MOTIONS = (
     ({"motion.peak_acceleration_m_s2": 4.0, "motion.angular_frequency_rad_s": 6.928}, REACHED),
@@ -58,3 +63,25 @@ def test_an_outcome_is_that_of_the_run(model_of, values, status):
         assert np.array_equal(found.run.track[name], expected.run.track[name], equal_nan=True), name
     for name in ("steps", "rejected", "time"):
         assert found.run.clock[name][0] == expected.run.clock[name][0]
+
+
+@pytest.mark.parametrize("model", ["rigid", "reduced"])
+def test_instances_of_a_class_have_fields_of_one_type(model):
+    """So a run for its outcome is called by class."""
+    cases = [
+        load_case(name, [f"solver.model={model}", *more])
+        for name, more in (
+            ("seed_stack_plateau", ()),
+            ("seed_box", ("contact.friction=regularised", "output.fields_s=0")),
+            ("rocking", ("support.kind=flat", *VERTICAL)),
+            ("overturning", ("floor.kind=rigid", "floor.slope_percent=1")),
+            ("seed_stack", LOOSE),
+        )
+    ]
+    types = {}
+    for case in cases:
+        built = build_model(case)
+        for one in (built.run, built.body):
+            fields = numba.typeof(one).fields
+            assert types.setdefault(type(one), fields) == fields
+        assert run_to_end(built.body, built.run, 0.01, rest_from=math.inf).status == REACHED
