@@ -38,7 +38,7 @@ OVER_MOREAU, MOREAU_STEP = 1.5, 1e-3  # ratio of rates; s
 ACCURACY, COUNT = 0.02, 6
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
 #: settings of maps; the penalty is that of the stack and of the box
-SETTING = ("solver.energy_tolerance=30", "solver.step_s=0.024", "contact.normal_penalty_Pa_m=1.2e9")
+SETTING = ("solver.energy_tolerance=30", "solver.step_s=0.026", "contact.normal_penalty_Pa_m=1.2e9")
 JERK = ("solver.model=rigid", "container.section=solid", "contact.mu_static=0.4", "contact.mu_kinetic=0.4")
 FLOOR = ("motion.amplitude_m=0.05", "motion.angular_frequency_rad_s=6.93", "motion.start=rest")
 
