@@ -317,9 +317,11 @@ def place(body: ModalBody, state: State, stance: Stance) -> None:
     state.position[3:] = np.einsum("ij,ijk->k", stance.force @ turn, body.shape) / body.stiffness
 
 
-def start(body: ModalBody, state: State, floor: float, lift: float = 0.0, lift_velocity: float = 0.0) -> None:
+@compiled
+def start(body: ModalBody, state: State, floor: float, lift: float, lift_velocity: float) -> None:
     """Complete the initial state from its coordinates and contact forces, with the acceleration."""
     complete(body, state, floor, lift, lift_velocity)
     gather_force(body, state.force, state.position[2], body.arm, state.external)
-    masses = np.concatenate([[body.mass, body.mass, body.inertia], np.ones(body.stiffness.size)])
-    state.acceleration[:] = (state.external - state.internal) / masses
+    for j in range(state.acceleration.size):
+        mass = body.mass if j < 2 else body.inertia if j == 2 else 1.0
+        state.acceleration[j] = (state.external[j] - state.internal[j]) / mass

@@ -117,7 +117,7 @@ def free_run(
     else:
         modal_kernels.place(body, old, stance)
         old.position[3:] = modal_position
-        modal_kernels.start(body, old, 0.0)
+        modal_kernels.start(body, old, 0.0, 0.0, 0.0)
     samples = coordinates if isinstance(body, ModalBody) else 0
     run = make_run(
         scheme=scheme,

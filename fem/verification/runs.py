@@ -168,7 +168,7 @@ def with_motion(model: Model, motion: FloorMotion, breaks: tuple[float, ...] = (
     state.position[0] += floor - before
     state.velocity[0] += speed - speed_before
     model.run.floor[:] = floor, speed, acceleration
-    modal_kernels.start(_modal(model), state, floor)
+    modal_kernels.start(_modal(model), state, floor, 0.0, 0.0)
     ends = np.array([*breaks, model.duration, np.inf])
     return replace(model, run=model.run._replace(motion=motion, breaks=ends))
 
@@ -192,7 +192,7 @@ def placed(model: Model, stance: Stance) -> Model:
     state.force[:] = 0.0
     state.stick[:] = 0.0
     modal_kernels.place(_modal(model), state, stance)
-    modal_kernels.start(_modal(model), state, float(model.run.floor[0, 0]))
+    modal_kernels.start(_modal(model), state, float(model.run.floor[0, 0]), 0.0, 0.0)
     return model
 
 

@@ -99,7 +99,7 @@ def started(stance: Stance):
     state = make_state(3, 2, 0)
     state.force[:] = stance.force
     place(body, state, stance)
-    start(body, state, 0.0)
+    start(body, state, 0.0, 0.0, 0.0)
     return state
 
 
