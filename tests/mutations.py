@@ -129,8 +129,8 @@ MUTATIONS = (
     ),
     Mutation(
         name="elastic stick that forgets its elongation",
-        old="trial -= stiffness * (stick[i] + work.point[i, 0] - start[i, 0])",
-        new="trial -= stiffness * (work.point[i, 0] - start[i, 0])",
+        old="                elongation = stick[i] + work.point[i, 0] - start[i, 0]",
+        new="                elongation = work.point[i, 0] - start[i, 0]",
         tests=LAWS,
     ),
     Mutation(

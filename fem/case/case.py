@@ -13,7 +13,7 @@ from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import Field, PrivateAttr
+from pydantic import ConfigDict, Field, PrivateAttr
 
 from fem.case.boxes import Box, boxes_of, joint_friction
 from fem.case.data_files import (
@@ -62,6 +62,10 @@ class Case(CaseHeading):
     Raises pydantic's ValidationError when built from contradicting tables; files, overrides and
     mappings go through `load_case`, `read_case` and `with_values`, which raise `CaseError`.
     """
+
+    model_config = ConfigDict(
+        json_schema_extra={"description": "A whole case: its tables, and keys before the first of them."}
+    )
 
     container: ContainerTable
     support: SupportTable = Field(default_factory=SupportTable)
