@@ -272,6 +272,12 @@ MUTATIONS = (
         tests=("unit/run/test_motion_ends.py", "-k", "before_its_cap"),
     ),
     Mutation(
+        name="a run for its outcome that ends with the container beyond its slenderness angle",
+        old="            return UNSETTLED",
+        new="            return REACHED",
+        tests=("verification/test_vertical_motion.py",),
+    ),
+    Mutation(
         name="a motion cut short that is called whole",
         old="covered = max(0.0, min(end, duration) - max(begin, 0.0))",
         new="covered = max(0.0, end - max(begin, 0.0))",
