@@ -59,13 +59,10 @@ LABELS = ("title", "document")
 class Case(CaseHeading):
     """A whole case; the attributes are the tables of the case file.
 
-    Raises pydantic's ValidationError when built from contradicting tables; files, overrides and
-    mappings go through `load_case`, `read_case` and `with_values`, which raise `CaseError`.
+    Contradicting tables raise pydantic's ValidationError; `load_case`, `read_case`, `with_values` a `CaseError`.
     """
 
-    model_config = ConfigDict(
-        json_schema_extra={"description": "A whole case: its tables, and keys before the first of them."}
-    )
+    model_config = ConfigDict(json_schema_extra={"description": "Tables of a case, and keys before them."})
 
     container: ContainerTable
     support: SupportTable = Field(default_factory=SupportTable)
