@@ -202,20 +202,22 @@ def _material(case: Case) -> str:
     )
 
 
-EXCLUSIONS = (
-    "torsion, motion out of the plane, wind",
-    "sloshing, plasticity, buckling and bending of the sheets out of their plane",
-    "compliance of floor and soil, neighbouring containers, ropes or stops",
-    "partial factors, and further ground motions: EN 1998-1:2004, 3.2.3.1.2 (4) asks for three or more",
-)
-
-
-def exclusions(case: Case) -> tuple[str, ...]:
+def exclusions(case: Case) -> list[str]:
     """What a result leaves out."""
-    first, *others = EXCLUSIONS
-    if case.container.boxes > 1 and not case.container.is_loose:
-        others.insert(1, "boxes without bolts, which open and slide on one another")
-    return (first if case.has_vertical else f"vertical floor motion, {first}", *others)
+    vertical = "" if case.has_vertical else "vertical floor motion, "
+    bolted = case.container.boxes > 1 and not case.container.is_loose
+    ground = (
+        "bending of the floor, compliance of the soil"
+        if case.floor.is_slab
+        else "compliance of floor and soil"
+    )
+    return [
+        f"{vertical}torsion, motion out of the plane, wind",
+        "sloshing, plasticity, buckling and bending of the sheets out of their plane",
+        *(["boxes without bolts, which open and slide on one another"] if bolted else []),
+        f"{ground}, neighbouring containers, ropes or stops",
+        "partial factors, and further ground motions: EN 1998-1:2004, 3.2.3.1.2 (4) asks for three or more",
+    ]
 
 
 def motion_in_words(motion: FloorMotionTable) -> str:

@@ -61,3 +61,11 @@ def test_the_page_says_whether_boxes_may_separate(values, loose):
     assert ("friction between boxes" in dict(asked_rows(case))) is loose
     assert any("without bolts" in line for line in assumptions(case)) is loose
     assert any("boxes without bolts" in line for line in exclusions(case)) is not loose
+
+
+@pytest.mark.parametrize(
+    ("kind", "left_out"), [("slab", "compliance of the soil"), ("rigid", "of floor and soil")]
+)
+def test_the_compliance_of_a_slab_is_not_left_out(kind, left_out):
+    (ground,) = (line for line in exclusions(named_case("rocking", {"floor.kind": kind})) if "soil" in line)
+    assert left_out in ground
