@@ -14,7 +14,7 @@ from contact.interface.compliance import (
 )
 from contact.interface.equilibrium import Stance
 from contact.interface.workspace import Contact, Workspace
-from contact.jit import compiled
+from contact.jit import compiled, inlined
 from contact.stepping import body as interface
 from contact.stepping.body import (
     ANGULAR_VELOCITY,
@@ -50,6 +50,14 @@ def predict(body: ModalBody, scheme: Scheme, step: float, old: State, new: State
     new.position[2] += scheme.newmark_beta * step * step * change
     new.velocity[2] += scheme.newmark_gamma * step * change
     new.acceleration[2] += change
+
+
+@inlined
+def mass_of(body: ModalBody, j: int) -> float:
+    """Mass that belongs to a coordinate; the modes are mass-normalised."""
+    if j < 2:
+        return body.mass
+    return body.inertia if j == 2 else 1.0
 
 
 @compiled(inline=True)
@@ -147,18 +155,16 @@ def release(
     cosine, sine = math.cos(new.position[2]), math.sin(new.position[2])
     place_points(body, new, work, floor, floor_velocity, lift, lift_velocity, cosine, sine)
     for j in range(3 + m):
-        mass, force = 1.0, before * (old.external[j] - old.internal[j])
-        if j < 2:
-            mass = body.mass
-        elif j == 2:
-            mass = body.inertia
-        else:
-            force -= now * (body.damping[j - 3] * new.velocity[j] + body.stiffness[j - 3] * new.position[j])
+        force = before * (old.external[j] - old.internal[j])
         if j == 0:
             force += now * body.mass * body.downhill
         elif j == 1:
             force -= now * body.mass * body.gravity
-        force -= mass * ((1.0 - scheme.alpha_m) * new.acceleration[j] + scheme.alpha_m * old.acceleration[j])
+        elif j > 2:
+            force -= now * (body.damping[j - 3] * new.velocity[j] + body.stiffness[j - 3] * new.position[j])
+        force -= mass_of(body, j) * (
+            (1.0 - scheme.alpha_m) * new.acceleration[j] + scheme.alpha_m * old.acceleration[j]
+        )
         body.free_change[j] = inverse[j] * force
     slope = scheme.newmark_gamma / (scheme.newmark_beta * step)
     change, swung = body.free_change, body.moved[2]
@@ -323,5 +329,4 @@ def start(body: ModalBody, state: State, floor: float, lift: float, lift_velocit
     complete(body, state, floor, lift, lift_velocity)
     gather_force(body, state.force, state.position[2], body.arm, state.external)
     for j in range(state.acceleration.size):
-        mass = body.mass if j < 2 else body.inertia if j == 2 else 1.0
-        state.acceleration[j] = (state.external[j] - state.internal[j]) / mass
+        state.acceleration[j] = (state.external[j] - state.internal[j]) / mass_of(body, j)

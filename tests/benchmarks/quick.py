@@ -2,7 +2,7 @@
 
     python tests/benchmarks/quick.py [commands rigid full reduced motions memory ..]
 
-Without a name all parts are measured (half an hour). Commands are measured as whole processes with their workers: CPU
+Without a name all parts are measured (some minutes). Commands are measured as whole processes with their workers: CPU
 time by the operating system, memory as the largest sum over the processes, sampled twenty times a second. Needs psutil,
 which comes with the extra `cluster`.
 """

@@ -1,7 +1,5 @@
 """A run for its outcome alone: the same bytes as slice by slice with samples."""
 
-import math
-
 import numba
 import numpy as np
 import pytest
@@ -84,4 +82,4 @@ def test_instances_of_a_class_have_fields_of_one_type(model):
         for one in (built.run, built.body):
             fields = numba.typeof(one).fields
             assert types.setdefault(type(one), fields) == fields
-        assert run_to_end(built.body, built.run, 0.01, rest_from=math.inf).status == REACHED
+        assert run_to_end(built.body, built.run, 0.01).status == REACHED
