@@ -64,7 +64,7 @@ VERBS = {"rest": "rested", "slide": "slid", "rock": "rocked", "slide-rock": "sli
 
 
 def plain_summary(result: RunResult, *, folder: Path) -> str:
-    """The summary as text, in lines of at most 80 characters where no path is longer.
+    """The summary as text, in lines of at most 80 characters; a path stands on a line of its own, unbroken.
 
     Args:
         result: of the run; blocks that it did not reach may be missing.
@@ -73,7 +73,8 @@ def plain_summary(result: RunResult, *, folder: Path) -> str:
     console = Console(file=io.StringIO(), width=TEXT_WIDTH, color_system=None, highlight=False)
     with console.capture() as capture:
         console.print(*_parts(result, folder), sep="\n")
-    return "\n".join(line.rstrip() for line in capture.get().splitlines()) + "\n"
+    lines = [line.rstrip() for line in capture.get().splitlines()]
+    return "\n".join([*lines, *_files(folder)]) + "\n"
 
 
 def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
@@ -97,7 +98,6 @@ def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
     if result.warnings:
         yield Text("".join(f"Warning: {warning}\n" for warning in result.warnings))
     yield from _table_of_pairs("Numerics", numerics_rows(result))
-    yield Text(_files(folder))
 
 
 def outcome_sentence(result: RunResult) -> str:
@@ -336,14 +336,15 @@ def _times(result: RunResult, numerics: Numerics) -> str:
     return f"{result.wall_s:.3g} s" + (f", of which {', '.join(parts)}" if parts else "")
 
 
-def _files(folder: Path) -> str:
+def _files(folder: Path) -> list[str]:
+    """What to open; never wrapped, since people copy paths."""
     fields = folder / "fields" / "run.pvd"
     paraview = (
-        f"open {fields}, Apply, Warp By Vector displacement_m"
+        ["ParaView: open this file, Apply, Warp By Vector displacement_m", f"  {fields}"]
         if fields.exists()
-        else "no fields were written; output.fields_s > 0 writes them"
+        else ["ParaView: no fields were written; output.fields_s > 0 writes them"]
     )
-    return f"ParaView: {paraview}\nTables: {folder / 'history.csv'}; all results: {folder / 'run.json'}"
+    return [*paraview, f"History: {folder / 'history.csv'}", f"All results: {folder / 'run.json'}"]
 
 
 def _lengths(*values: float | None) -> str:

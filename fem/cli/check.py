@@ -120,7 +120,9 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
             )
     lines += ["", *numerics_lines(numerics)]
     for note in document["notes"]:
-        lines.append(fill(note, WIDTH, initial_indent="  note: ", subsequent_indent="    "))
+        lines.append(
+            fill(note, WIDTH, initial_indent="  note: ", subsequent_indent="    ", break_long_words=False)
+        )
     return "\n".join(lines)
 
 

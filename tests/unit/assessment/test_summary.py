@@ -207,12 +207,16 @@ def test_compilation_is_shown_apart_from_stepping():
     assert "62.4 s, of which compilation 57.1 s (once after installation), stepping" in first
 
 
-def test_summary_says_what_to_open(tmp_path):
-    assert "no fields were written" in text_of(RESULT, tmp_path)
-    (tmp_path / "fields").mkdir()
-    (tmp_path / "fields" / "run.pvd").write_text("")
-    unwrapped = text_of(RESULT, tmp_path).replace("\n", " ")
-    assert "Warp By Vector displacement_m" in unwrapped and "run.pvd" in unwrapped
+@pytest.mark.parametrize("name", ["short", "a folder with words", "long-" * 40])
+def test_summary_says_what_to_open_with_unbroken_paths(tmp_path, name):
+    folder = tmp_path / name
+    assert "no fields were written" in text_of(RESULT, folder)
+    (folder / "fields").mkdir(parents=True)
+    (folder / "fields" / "run.pvd").write_text("")
+    text = text_of(RESULT, folder)
+    assert "Warp By Vector displacement_m" in text
+    for file in ("fields/run.pvd", "history.csv", "run.json"):
+        assert str(folder / file) in text
 
 
 def test_titles_and_warnings_are_never_read_as_markup():
