@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fem.case.case import Case
-from fem.verification.runs import STACK, Finished
+from fem.evidence.verification.runs import STACK, Finished
 
 FloatArray = npt.NDArray[np.float64]
 

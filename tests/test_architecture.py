@@ -35,10 +35,14 @@ LAYERS = (
     ("fem.ensemble",),
     ("fem.report",),
     ("fem.site_check",),
-    ("fem.verification",),
-    ("fem.paper", "fem.validation"),
+    ("fem.evidence",),
+    ("fem.evidence.verification",),
+    ("fem.evidence.paper", "fem.evidence.validation"),
     ("fem.cli",),
 )
+NESTED = {
+    package for layer in LAYERS for package in layer if package.count(".") == 2
+}  #: a package in a package
 #: package -> the only packages of a lower layer that it may import, where these are not all
 NARROW = {
     "contact.reference": {"contact.arrays"},
@@ -102,7 +106,9 @@ MODULES = {module_of(path): path for path in SOURCES}
 
 def package_of(module: str) -> str:
     """The part of the house that a module belongs to, as `LAYERS` names it."""
-    return "mesh" if module.split(".")[0] == "mesh" else ".".join(module.split(".")[:2])
+    words = module.split(".")
+    longest = 1 if words[0] == "mesh" else 3 if ".".join(words[:3]) in NESTED else 2
+    return ".".join(words[:longest])
 
 
 def imported(path: Path) -> Iterator[str]:

@@ -60,7 +60,7 @@ def report(
             folder, signature=signature
         )
     elif (folder / "study.json").is_file():
-        page = importlib.import_module("fem.paper.page").paper_report(folder, signature=signature)
+        page = importlib.import_module("fem.evidence.paper.page").paper_report(folder, signature=signature)
     elif (folder / "assess.json").is_file():
         page = importlib.import_module("fem.site_check.page").site_report(folder, signature=signature)
     else:

@@ -41,7 +41,7 @@ def study(
     """
     if name not in STUDIES:
         raise CaseError(f"no study {name!r}{_near(name, STUDIES)} (known: {', '.join(STUDIES)})")
-    every = importlib.import_module("fem.paper.index").all_claims()
+    every = importlib.import_module("fem.evidence.paper.index").all_claims()
     known = [claim.name for claim in every]
     for wanted in only:
         if wanted not in known:
@@ -54,7 +54,7 @@ def study(
     if as_json:
         print(to_json(document).rstrip())
     else:
-        page = importlib.import_module("fem.paper.page")
+        page = importlib.import_module("fem.evidence.paper.page")
         print("\n".join(page.table_lines(document)))
         print(f"{folder / 'study.html'} shows the runs, figures and numbers behind them")
     return EXIT_CODES[document["status"]]
@@ -64,8 +64,8 @@ def _checked(
     folder: Path, claims: Sequence[Any], *, jobs: int | None, force: bool, quiet: bool
 ) -> dict[str, Any]:
     """Check the claims, and report each with its runs."""
-    experiments = importlib.import_module("fem.paper.experiments")
-    paper = importlib.import_module("fem.paper.run")
+    experiments = importlib.import_module("fem.evidence.paper.experiments")
+    paper = importlib.import_module("fem.evidence.paper.run")
     signals = importlib.import_module("fem.runtime.signals")
     compilation = importlib.import_module("fem.runtime.compilation")
     reporter = ScreenReporter(quiet=quiet)

@@ -24,8 +24,8 @@ def validate(
     quiet: Quiet = False,
 ) -> int:
     """Predict experiments; writes validate.json and validate.html; exits with 3 if one is missed."""
-    suite = importlib.import_module("fem.validation.suite")
-    pages = importlib.import_module("fem.validation.page")
+    suite = importlib.import_module("fem.evidence.validation.suite")
+    pages = importlib.import_module("fem.evidence.validation.page")
 
     def report(name: str) -> None:
         if not quiet:

@@ -25,8 +25,8 @@ from contact.stepping.outcome import run_to_end
 from contact.stepping.state import make_samples
 from fem.assessment.rigid_check import block_of
 from fem.case.case import Case, load_case
+from fem.evidence.verification.rocking import turning_points
 from fem.model.model import Model, build_model
-from fem.verification.rocking import turning_points
 
 sys.path.append(str(Path(__file__).parents[1]))
 from moreau import slide_and_rock_batch

@@ -28,7 +28,7 @@ from contact.reference.planar_equations import rock
 from contact.reference.planar_motion import PlanarMode
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import RockingOutcome, first_swing_threshold, simulate_rocking
-from fem.verification.overturning import initiation_grid
+from fem.evidence.verification.overturning import initiation_grid
 
 STACK = RigidBlock.homogeneous(width=1.1, height=4.0)
 BOX = RigidBlock.homogeneous(width=1.1, height=1.0)

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fem.validation import cube, impacts, pulses, rocks
-from fem.validation.suite import run_validation
+from fem.evidence.validation import cube, impacts, pulses, rocks
+from fem.evidence.validation.suite import run_validation
 
 DATA = Path(__file__).parents[3] / "shared" / "experiments"
 

@@ -6,8 +6,8 @@ The numbers themselves are rows of the verification checks, topic `statics`.
 import pytest
 
 from fem.case.case import load_case
+from fem.evidence.verification.statics import paper_checks
 from fem.model.model import build_model
-from fem.verification.statics import paper_checks
 
 
 @pytest.mark.parametrize(

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from fem.paper import example, quasi_static, rocking, shape, stacking
-from fem.paper.claims import Conclusion
-from fem.paper.experiments import Experiments
+from fem.evidence.paper import example, quasi_static, rocking, shape, stacking
+from fem.evidence.paper.claims import Conclusion
+from fem.evidence.paper.experiments import Experiments
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fem.verification.suite import CHECKS
+from fem.evidence.verification.suite import CHECKS
 
 QUICK = [check for check in CHECKS if check.quick]
 

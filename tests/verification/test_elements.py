@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from fem.verification.manufactured import gradient_of, static_source, textbook_stress, turned_and_strained
+from fem.evidence.verification.manufactured import (
+    gradient_of,
+    static_source,
+    textbook_stress,
+    turned_and_strained,
+)
 
 POINTS = np.array([0.3, 0.9]), np.array([0.2, 0.7])
 

@@ -4,8 +4,8 @@ import pytest
 
 from fem.assessment.verdict import verdict_of
 from fem.case.case import load_case
+from fem.evidence.verification.runs import run
 from fem.results.run_result import Verdict
-from fem.verification.runs import run
 
 HOUSNER = 0.8945
 SHELL = ("container.section=shell", "container.wall_m=0.008", "container.youngs_modulus_Pa=2.1e11")

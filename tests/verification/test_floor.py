@@ -10,12 +10,12 @@ from contact.stepping.control import most_attempts
 from contact.stepping.integrator import REACHED, enter_floor_frame_compiled
 from contact.stepping.ledger import BASE_WORK, CONTACT_DAMPING, CRUSHING, FRICTION, IMBALANCE
 from contact.stepping.outcome import FREE, is_over
+from fem.evidence.verification.runs import BOX, GRAVITY, STACK, harmonic, pulse
 from fem.model.model import Model, build_model
 from fem.run.checkpoint import CheckpointWriter, read_state
 from fem.run.recorder import Recorder
 from fem.run.simulation import BEGINNING
 from fem.solid.nodal_body import advance_body
-from fem.verification.runs import BOX, GRAVITY, STACK, harmonic, pulse
 
 MODELS = {
     "rigid": {},

@@ -7,12 +7,12 @@ import pytest
 from container_runs import SLENDERNESS_ANGLE, first_impact, stack, times
 
 import fem.model.model
+from fem.evidence.verification.runs import Finished
 from fem.model.joints import joints_of
 from fem.model.model import Model, build_model
 from fem.results.history import JOINT_COLUMNS, History
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
-from fem.verification.runs import Finished
 
 WIDTH, HEIGHT, BOXES = 1.1, 4.0, 4
 WEIGHT = BOXES * 24525.0

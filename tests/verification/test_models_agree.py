@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from container_runs import SECTIONS, difference, first_impact, stack, times, velocity_ratio
 
-from fem.verification.runs import Finished, run
+from fem.evidence.verification.runs import Finished, run
 
 CASES = [(section, kind) for section in SECTIONS for kind in ("corners", "feet", "flat")]
 

@@ -12,10 +12,10 @@ import scipy.sparse
 import scipy.sparse.linalg
 from container_runs import stack
 
+from fem.evidence.verification.runs import run
 from fem.model.container import Container
 from fem.model.model import Model, build_model
 from fem.model.recovery import NodalFields, recovery_of
-from fem.verification.runs import run
 
 SECTIONS = ["solid", "shell"]
 STANDING: dict[str, Any] = {"initial__rotation_rad": 0.0, "solver__duration_s": 0.05}

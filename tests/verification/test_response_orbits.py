@@ -10,6 +10,7 @@ from contact.reference.closed_forms_sliding import steady_stroke
 from contact.reference.floor_acceleration import sine_floor, still_floor
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
+from fem.evidence.verification.runs import STACK
 from fem.model.container import discretise
 from fem.response.branches import branches_of
 from fem.response.curve import follow_point, sweep_points
@@ -17,7 +18,6 @@ from fem.response.model import begin_drive, carry_drive
 from fem.response.orbit import follow_periods, step_until
 from fem.response.records import record_of
 from fem.response.request import ResponseRequest
-from fem.verification.runs import STACK
 
 GRAVITY = 9.81
 #: Housner's restitution is 0.9 at sin^2 al = 1/15: the orbit of Spanos and Koh that benchmarks quote

@@ -14,9 +14,9 @@ from container_runs import difference, first_impact, stack, times
 
 from contact.motion.base_motion import HarmonicMotion
 from fem.case.case import Case, CaseError, read_case
+from fem.evidence.verification.runs import Finished, run
 from fem.model.model import build_model
 from fem.run.outcome import run_without_history
-from fem.verification.runs import Finished, run
 
 #: pulls for longer than any run here lasts
 PULL = {"vertical.kind": "pulse", "vertical.shape": "rectangular", "vertical.pulse_s": 50.0}

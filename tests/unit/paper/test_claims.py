@@ -8,9 +8,9 @@ import pytest
 
 from fem.__main__ import main
 from fem.case.case import load_case
-from fem.paper import maps
-from fem.paper.cases import STACK, PaperCase
-from fem.paper.claims import (
+from fem.evidence.paper import maps
+from fem.evidence.paper.cases import STACK, PaperCase
+from fem.evidence.paper.claims import (
     Claim,
     ClaimFigure,
     Conclusion,
@@ -20,10 +20,10 @@ from fem.paper.claims import (
     conclude,
     equal,
 )
-from fem.paper.criteria import MapMotion, contingency, paper_rule, predicted_mode, static_rule
-from fem.paper.experiments import Experiments, InterruptedStudyError, VariantBand, VariantResult
-from fem.paper.index import all_claims
-from fem.paper.run import check_claims
+from fem.evidence.paper.criteria import MapMotion, contingency, paper_rule, predicted_mode, static_rule
+from fem.evidence.paper.experiments import Experiments, InterruptedStudyError, VariantBand, VariantResult
+from fem.evidence.paper.index import all_claims
+from fem.evidence.paper.run import check_claims
 from fem.results.errors import FolderError
 
 

@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fem.evidence.verification.meshes import PlainMesh
 from fem.report.animation import animation_of, bodies_of, hull
 from fem.results.fields import Fields, FrameKeeper
 from fem.solid.assembly import assemble
-from fem.verification.meshes import PlainMesh
 
 STEEL = {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3, "order": 1}
 #: a wide box, and a smaller one 0.1 m to the right on it, of two cells each

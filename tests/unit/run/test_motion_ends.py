@@ -15,12 +15,12 @@ from fem.assessment.warnings import warnings_for
 from fem.batch.runner import run_model
 from fem.case.case import CaseError, load_case, read_case
 from fem.cli.check import preview_of
+from fem.evidence.verification.runs import finish
 from fem.model.model import build_model
 from fem.model.motion import build_motion, build_motions, motion_result
 from fem.results.reader import open_run
 from fem.results.run_result import RunResult, Verdict
 from fem.run.run import run_case
-from fem.verification.runs import finish
 
 PULSE = {
     "solver.model": "rigid",

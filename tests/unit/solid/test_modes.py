@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 import pyvista
 
+from fem.evidence.verification.meshes import grid_mesh
 from fem.solid.assembly import assemble
 from fem.solid.modes import elastic_modes, rigid_modes, write_modes
-from fem.verification.meshes import grid_mesh
 
 
 def block(columns, rows, order, *, width=1.1, height=4.0, densities=(7850.0,)):

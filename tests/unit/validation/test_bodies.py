@@ -3,7 +3,7 @@
 import pytest
 
 from fem.case.case import read_case
-from fem.validation.bodies import cross_validated, specimen
+from fem.evidence.validation.bodies import cross_validated, specimen
 from mesh.errors import MeshError
 
 BLOCK = read_case(

@@ -2,8 +2,8 @@
 
 import pytest
 
-from fem.validation.findings import Experiment, Prediction, ValidationResult
-from fem.validation.page import page, table_lines
+from fem.evidence.validation.findings import Experiment, Prediction, ValidationResult
+from fem.evidence.validation.page import page, table_lines
 
 
 def finding(passed: bool | None) -> Prediction:

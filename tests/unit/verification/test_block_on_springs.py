@@ -7,7 +7,7 @@ import pytest
 
 from contact.reference.closed_forms_rocking import peak_after_impacts
 from contact.reference.rigid_block import RigidBlock
-from fem.verification.block_on_springs import evenly_spaced, next_turning_point
+from fem.evidence.verification.block_on_springs import evenly_spaced, next_turning_point
 
 BLOCK = RigidBlock.homogeneous(width=1.1, height=4.0)
 CORNERS = np.array([-0.55, 0.55])

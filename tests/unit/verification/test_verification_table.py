@@ -9,10 +9,10 @@ import pytest
 
 import fem.results.files
 from fem.__main__ import main
-from fem.verification import suite
-from fem.verification.page import convergence_plot, page, table_lines
-from fem.verification.rows import analytic, check, convergence
-from fem.verification.suite import run_suite
+from fem.evidence.verification import suite
+from fem.evidence.verification.page import convergence_plot, page, table_lines
+from fem.evidence.verification.rows import analytic, check, convergence
+from fem.evidence.verification.suite import run_suite
 
 
 def row(value, *, tolerance=0.01, reference=2.0, **optional):

@@ -1,0 +1,226 @@
+"""The physical floor: corners that crush it, and a floor that slopes.
+
+Crushing: a landing without dashpot in closed form, the work against force and indentation, and Housner's restitution
+whatever stiffness, cap and dashpot. A slope: in the frame of the floor gravity is g cos toward it, and its part along
+it acts as an acceleration -g sin of the floor; slider and block of `contact.reference` take it as that. Stack and box
+are those of `fem.evidence.verification.runs`.
+"""
+
+import math
+from collections.abc import Iterator
+from itertools import product
+
+import numpy as np
+
+from contact.reference.floor_acceleration import sine_floor
+from contact.reference.sliding import RigidSlider, simulate_sliding
+from contact.stepping.ledger import CRUSHING, IMBALANCE
+from contact.stepping.modal_body import make_modal_body
+from contact.stepping.scheme import generalised_alpha
+from fem.evidence.verification.bodies import Flight, free_run
+from fem.evidence.verification.restitution import peaks
+from fem.evidence.verification.rocking import BLOCK, RELEASED, difference_of_rotation
+from fem.evidence.verification.rows import Row, analytic, check, computed, convergence
+from fem.evidence.verification.runs import (
+    BOX,
+    GRAVITY,
+    SOLID,
+    STACK,
+    Finished,
+    Keys,
+    bisected,
+    finish,
+    harmonic,
+    run,
+)
+from fem.model.model import Model, build_model
+from fem.solid.nodal_body import advance_body
+
+#: of the landing: mass [kg], springs of both corners [N/m], speed [m/s]
+MASS, SPRINGS, SPEED = 2500.0, 2.5e8, 0.5
+#: what bears under a corner of the stack, along x and out of plane [m]; its stiffness [N/m], cap [N], damping ratio
+PATCH = [0.008, 1.1]
+STIFFNESSES, CAPS = (2.8e9, 8.1e9), (0.3e6, 0.6e6, 1.2e6)
+#: damping ratios of the contact, with the tolerance of Housner's restitution
+RATIOS = {(0.0, 0.05): 2e-2, (0.3, 1.0): 8e-3}
+OMEGA = 6.928
+
+
+def landed(share: float, step: float) -> tuple[Flight, float, float]:
+    """A rigid block that lands flat, without gravity and dashpot, its cap this share of the elastic peak force.
+
+    Returns:
+        The flight after it, the cap of both corners together [N], the exact indentation [m].
+    """
+    body = make_modal_body(
+        mass=MASS,
+        inertia=MASS,
+        gravity=0.0,
+        point=np.array([[-0.5, -0.5], [0.5, -0.5]]),
+        rest=(0.0, 0.5),
+        tolerance=1e-9,
+    )
+    cap = share * SPEED * math.sqrt(SPRINGS * MASS)
+    flight = free_run(
+        body,
+        step=step,
+        scheme=generalised_alpha(0.5),
+        springs=np.full(2, 0.5 * SPRINGS),
+        caps=np.full(2, 0.5 * cap),
+        speed=-SPEED,
+    )
+    exact = (0.5 * MASS * SPEED**2 - 0.5 * cap**2 / SPRINGS) / cap
+    return flight.advance(0.05), cap, exact
+
+
+@check("floor", "a landing that crushes the floor")
+def landing() -> Iterator[Row]:
+    """What the springs hold at the cap comes back, the rest indents the floor; second order in the step."""
+    source = "m v^2/2 - F^2/(2 k) = F w, rebound F/sqrt(k m)"
+    for share in (0.3, 0.6, 0.9):
+        flight, cap, exact = landed(share, 5e-5)
+        case = f"rigid block, cap {share:g} of the elastic force"
+        indentation, rebound = flight.state.crushed.max(), flight.state.velocity[1]
+        yield analytic(case, "indentation [m]", indentation, exact, source=source, relative=3e-4)
+        yield analytic(
+            case, "speed of the rebound [m/s]", rebound, share * SPEED, source=source, relative=3e-4
+        )
+        work = float(flight.run.ledger[CRUSHING])
+        yield analytic(case, "work of crushing [J]", work, cap * exact, source=source, relative=5e-4)
+    errors = {}
+    for step in (4e-4, 2e-4, 1e-4, 5e-5):
+        # the error of one run depends on where in a step the crushing begins
+        found = [landed(share, step) for share in np.linspace(0.3, 0.7, 21)]
+        errors[step] = np.mean([abs(one.state.crushed[0] / exact - 1.0) for one, _, exact in found])
+    yield analytic(
+        "mean of 21 caps from 0.3 to 0.7",
+        "indentation, error over the exact one",
+        source=source,
+        convergence=convergence("step [s]", errors, order=2.0, within=0.25),
+    )
+
+
+def slab(stiffness: float, cap: float, ratio: float | None = None) -> Keys:
+    """Keys of a slab with this stiffness [N/m] and cap [N] of a corner, and damping ratio of the contact."""
+    keys: Keys = {
+        "floor.kind": "slab",
+        "floor.corner_patch_m": PATCH,
+        "floor.youngs_modulus_Pa": 31e9,
+        "floor.poisson_ratio": 0.2,
+        "floor.bearing_strength_Pa": cap / (PATCH[0] * PATCH[1]),
+    }
+    found = float(build_model(STACK.with_values(keys)).run.contact.normal_stiffness[0])
+    keys["floor.youngs_modulus_Pa"] *= stiffness / found
+    return keys if ratio is None else keys | {"contact.damping_ratio": ratio}
+
+
+@check("floor", "the work of crushing")
+def work_of_crushing() -> Iterator[Row]:
+    """The ledger's work against the area under force and indentation, added up from the outside; energy closes."""
+    driven = harmonic(4.0 / OMEGA**2, OMEGA) | {"solver.duration_s": 3.0}
+    for name, keys in {"rigid stack": {}, "solid stack, 20 modes": SOLID}.items():
+        model = build_model(STACK.with_values(driven | keys | slab(8.1e9, 0.44e6)))
+        area = area_under_the_curves(model)
+        ledger, reference = model.run.ledger, model.run.control.reference_energy
+        case = f"{name}, 4 m/s2 at {OMEGA} rad/s, 3 s, cap 0.44 MN"
+        source = "sum of force times indentation over all steps"
+        yield computed(case, "work of crushing [J]", ledger[CRUSHING], area, source=source, relative=1e-12)
+        at_cap = float((model.run.contact.cap * model.run.old.crushed).sum())
+        yield analytic(
+            case, "work of crushing [J]", ledger[CRUSHING], at_cap, source="cap x indentation", relative=2e-2
+        )
+        balance = abs(float(ledger[IMBALANCE])) / reference
+        yield analytic(
+            case, "imbalance over the energy to overturn", balance, source="energy closes", absolute=2e-3
+        )
+
+
+def area_under_the_curves(model: Model) -> float:
+    """Area under force and permanent indentation of all points [J], the model stepped to its end step by step."""
+    run, area = model.run, 0.0
+    while float(run.clock[0].time) < model.duration:
+        force, crushed = run.old.force[:, 1].copy(), run.old.crushed.copy()
+        run.clock[0].attempt_limit = int(run.clock[0].steps + run.clock[0].rejected) + 1
+        advance_body(model.body, run, model.duration)
+        run.clock[0].samples_drained = run.clock[0].samples
+        area += float((0.5 * (force + run.old.force[:, 1]) * (run.old.crushed - crushed)).sum())
+    return area
+
+
+@check("floor", "restitution of a corner that crushes")
+def restitution() -> Iterator[Row]:
+    """Housner's whatever the cap, the stiffness and the dashpot, to what the springs hold at the cap and give back."""
+    free: Keys = RELEASED | {"contact.mu_static": 0.8, "solver.duration_s": 2.5}
+    for stiffness, cap, (ratios, tolerance) in product(STIFFNESSES, CAPS, RATIOS.items()):
+        found = {ratio: run(STACK, free | slab(stiffness, cap, ratio)) for ratio in ratios}
+        exact = BLOCK.housner_restitution
+        worst, value = max(
+            ((ratio, peaks(done)) for ratio, done in found.items()), key=lambda one: abs(one[1] - exact)
+        )
+        yield analytic(
+            f"rigid stack, {stiffness:g} N/m, cap {1e-6 * cap:g} MN, damping ratio {worst:g}, the worse of two",
+            "velocity ratio at the first impact",
+            value,
+            exact,
+            source="1 - 1.5 sin^2 al, Housner 1963",
+            absolute=tolerance,
+        )
+
+
+@check("floor", "limit of an incline")
+def incline_limit() -> Iterator[Row]:
+    """A box begins to slide where the slope is mu_static, to either side."""
+    for sign, (name, keys) in product((1.0, -1.0), {"rigid box": {}, "solid box, 20 modes": SOLID}.items()):
+        held = keys | {"contact.mu_static": 0.1, "solver.duration_s": 1.0}
+
+        def slides(per_cent: float, held: Keys = held, sign: float = sign) -> bool:
+            done = run(BOX, held | {"floor.slope_percent": sign * per_cent})
+            return abs(float(done.joint.slip)) > 1e-5
+
+        found = bisected(slides, 9.0, 11.0, resolution=1e-3)
+        case = f"{name}, mu 0.1, floor falls toward {'+x' if sign > 0.0 else '-x'}"
+        yield analytic(case, "limit of the slope [%]", found, 10.0, source="tan = mu", relative=5e-3)
+
+
+@check("floor", "a slider on a slope")
+def slider_on_slope() -> Iterator[Row]:
+    """Slip that a slope makes one-sided, over 5 s."""
+    for per_cent in (2.0, -10.0):
+        angle, friction = math.atan(0.01 * per_cent), {"contact.mu_static": 0.3, "contact.mu_kinetic": 0.2}
+        keys = harmonic(0.05, 10.0) | friction | {"floor.slope_percent": per_cent, "solver.duration_s": 5.0}
+        done = run(BOX, keys)
+        slider = RigidSlider(mu_static=0.3, mu_kinetic=0.2, gravity=GRAVITY * math.cos(angle))
+        floor = sine_floor(amplitude=0.05, angular_frequency=10.0).on_slope(GRAVITY * math.sin(angle))
+        exact = simulate_sliding(slider, floor, duration=5.0)
+        found, reference = done.history["slip_m"], exact.at(done.history["time_s"])[0]
+        yield computed(
+            f"rigid box, mu 0.3/0.2, 5 m/s2 at 10 rad/s, slope {per_cent:g} %",
+            "slip in 5 s, largest difference over the largest slip",
+            np.abs(found - reference).max() / np.abs(reference).max(),
+            source="event-driven slider",
+            absolute=1e-2,
+        )
+
+
+@check("floor", "a block on a slope")
+def block_on_slope() -> Iterator[Row]:
+    """Rotation of the stack up to the first impact, driven on a slope."""
+    for per_cent, (name, keys) in product(
+        (3.0, -3.0), {"rigid stack": {}, "solid stack, 20 modes": SOLID}.items()
+    ):
+        done = rocked_on_slope(per_cent, keys)
+        floor = sine_floor(amplitude=4.5 / OMEGA**2, angular_frequency=OMEGA)
+        yield computed(
+            f"{name}, mu 1, 4.5 m/s2 at {OMEGA} rad/s, slope {per_cent:g} %",
+            "rotation up to the first impact, largest difference over al",
+            difference_of_rotation(done, floor.on_slope(done.model.run.control.downhill)),
+            source="event-driven block",
+            absolute=2e-3 if keys else 1e-3,
+        )
+
+
+def rocked_on_slope(per_cent: float, keys: Keys) -> Finished:
+    """The stack on a stiff floor with a slope [%], driven to rock."""
+    stiff: Keys = {"contact.normal_penalty_Pa_m": 5e10, "output.history_s": 0.002, "solver.duration_s": 2.0}
+    values = harmonic(4.5 / OMEGA**2, OMEGA) | stiff | keys | {"floor.slope_percent": per_cent}
+    return finish(build_model(STACK.with_values(values)))

@@ -1,0 +1,157 @@
+"""The verification suite: all checks by topic, from the elements to the limits of whole models.
+
+A check that cannot be computed gives a row that fails, with the reason; the others are still computed.
+"""
+
+import difflib
+import math
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from fem.evidence.verification import (
+    contact_laws,
+    elasticity,
+    floor,
+    limits,
+    overturning,
+    restitution,
+    rocking,
+    sliding,
+    stacks,
+    statics,
+    time_stepping,
+    vertical,
+)
+from fem.evidence.verification.rows import Check, Row, analytic
+from fem.evidence.verification.runs import STACK, run
+from fem.runtime.identity import versions
+
+MODULES = (
+    statics,
+    elasticity,
+    time_stepping,
+    contact_laws,
+    sliding,
+    rocking,
+    restitution,
+    overturning,
+    vertical,
+    floor,
+    stacks,
+    limits,
+)
+CHECKS = tuple(check for module in MODULES for check in vars(module).values() if isinstance(check, Check))
+
+
+class UnknownTopicError(ValueError):
+    """There is no such topic."""
+
+    def __init__(self, name: str, known: Sequence[str]) -> None:
+        near = difflib.get_close_matches(name, known, n=1)
+        hint = f"; did you mean {near[0]!r}?" if near else ""
+        super().__init__(f"unknown topic {name!r}{hint} (known: {', '.join(known)})")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ComputedCheck:
+    """A check with its rows."""
+
+    topic: str
+    title: str
+    rows: tuple[Row, ...]
+    seconds: float
+
+    @property
+    def names(self) -> dict[str, str]:
+        """Its place in the suite, for JSON; `room` is the former name of `topic`."""
+        return {"room": self.topic, "topic": self.topic, "check": self.title}
+
+
+@dataclass(frozen=True, kw_only=True)
+class SuiteResult:
+    """The computed checks."""
+
+    quick: bool
+    checks: tuple[ComputedCheck, ...]
+    seconds: float
+
+    @property
+    def rows(self) -> Iterator[tuple[ComputedCheck, Row]]:
+        """Every row with its check, in order."""
+        return ((check, row) for check in self.checks for row in check.rows)
+
+    @property
+    def failures(self) -> int:
+        """Number of rows that fail."""
+        return sum(not row.passed for _, row in self.rows)
+
+    @property
+    def count(self) -> int:
+        """Number of rows."""
+        return sum(len(check.rows) for check in self.checks)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as plain data, for JSON."""
+        return {
+            "quick": self.quick,
+            "passed": self.failures == 0,
+            "rows": [{**check.names, **row.to_dict()} for check, row in self.rows],
+            "checks": [
+                {**check.names, "rows": len(check.rows), "seconds": check.seconds} for check in self.checks
+            ],
+            "count": self.count,
+            "failures": self.failures,
+            "seconds": self.seconds,
+            "versions": versions(),
+        }
+
+
+def chosen_checks(*, quick: bool, topics: Sequence[str] = ()) -> list[Check]:
+    """Checks of some topics, or of all, in order; the quick ones or all.
+
+    Raises:
+        UnknownTopicError: a topic is not one of the suite's.
+    """
+    known = list(dict.fromkeys(check.topic for check in CHECKS))
+    for name in topics:
+        if name not in known:
+            raise UnknownTopicError(name, known)
+    wanted = topics or known
+    return [check for check in CHECKS if check.topic in wanted and (check.quick or not quick)]
+
+
+def run_suite(
+    *,
+    quick: bool,
+    topics: Sequence[str] = (),
+    before: Callable[[int, int, Check], None] = lambda number, count, check: None,
+) -> SuiteResult:
+    """Compute the chosen checks one after the other; `before` each, call with its number and their count.
+
+    The stepping kernels are compiled first, outside the measured time.
+
+    Raises:
+        UnknownTopicError: as for `chosen_checks`.
+    """
+    checks = chosen_checks(quick=quick, topics=topics)
+    run(STACK, {"solver.duration_s": 0.01})
+    if any(check.topic == "stacks" for check in checks):
+        run(STACK, {"container.boxes": 2, "container.joints": "loose", "solver.duration_s": 0.01})
+    began = time.perf_counter()
+    results = []
+    for number, check in enumerate(checks, start=1):
+        before(number, len(checks), check)
+        results.append(_compute(check))
+    return SuiteResult(quick=quick, checks=tuple(results), seconds=time.perf_counter() - began)
+
+
+def _compute(check: Check) -> ComputedCheck:
+    began = time.perf_counter()
+    try:
+        rows = tuple(check.rows())
+    except (ArithmeticError, ValueError, RuntimeError, LookupError) as error:
+        reason = f"{type(error).__name__}: {error}"
+        rows = (analytic(check.title, "computed at all", math.nan, source="", absolute=0.0, note=reason),)
+    return ComputedCheck(topic=check.topic, title=check.title, rows=rows, seconds=time.perf_counter() - began)
