@@ -28,7 +28,7 @@ from fem.case.case import Case, load_case
 from fem.evidence.verification.rocking import turning_points
 from fem.model.model import Model, build_model
 
-sys.path.append(str(Path(__file__).parents[1]))
+sys.path.append(str(Path(__file__).parents[1] / "rigs"))
 from moreau import slide_and_rock_batch
 
 REPEATS, ROWS = 5, 200

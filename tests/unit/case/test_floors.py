@@ -1,10 +1,10 @@
 """The table [floor]: presets, what a case of a slab holds, and cases without one."""
 
 import pytest
+from cases import LEAST
 
 from fem.case.case import case_hash, load_case, read_case, to_toml
 from fem.case.floors import PRESETS
-from tests.cases import LEAST
 
 
 @pytest.mark.parametrize("name", PRESETS)

@@ -3,7 +3,7 @@
 from mutation import Mutation
 
 FACES = ("unit/contact/test_faces.py",)
-STACKS = ("validation/test_verification_checks.py", "-k", "stacks")
+STACKS = ("verification/test_verification_checks.py", "-k", "stacks")
 
 LOOSE_STACKS = (
     Mutation(

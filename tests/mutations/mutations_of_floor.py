@@ -2,8 +2,8 @@
 
 from mutation import Mutation
 
-LANDING = ("validation/test_verification_checks.py", "-k", "landing")
-FLOOR = "verification/test_floor.py"
+LANDING = ("verification/test_verification_checks.py", "-k", "landing")
+FLOOR = "verification/closed_forms/test_floor.py"
 SOLVER = "unit/contact/test_contact_solver.py"
 
 FLOOR_FAULTS = (
@@ -107,7 +107,7 @@ FLOOR_FAULTS = (
         name="the force that holds on a slope taken downhill",
         old="run.floor[1, 2] - run.control.downhill",
         new="run.floor[1, 2] + run.control.downhill",
-        tests=("validation/test_verification_checks.py", "-k", "floor and slider"),
+        tests=("verification/test_verification_checks.py", "-k", "floor and slider"),
     ),
     Mutation(
         name="settled as on a level floor",

@@ -1,6 +1,6 @@
 """A test of the tests: break the physics in one place after the other, and see that some test notices.
 
-    python tests/break_the_physics.py [-j JOBS] [--only WORDS]
+    python tests/mutations/break_the_physics.py [-j JOBS] [--only WORDS]
 
 Each fault of `mutations` is put into a copy of the project, and the fast tests named beside it are run there, with a
 kernel cache of their own. A fault that no test notices survives; then the script ends with 1. It ends with 2 where a

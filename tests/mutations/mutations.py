@@ -11,11 +11,11 @@ from mutations_of_vertical_motion import VERTICAL_MOTION
 ELASTICITY = (
     "unit/solid/test_elasticity.py",
     "unit/solid/test_assembly.py",
-    "verification/test_elements.py",
+    "verification/convergence/test_elements.py",
 )
 MODAL = ("unit/contact/test_modal_body.py",)
 LAWS = ("unit/contact/test_contact_laws.py", "unit/contact/test_contact_solver.py")
-SLIDING = ("validation/test_verification_checks.py", "-k")
+SLIDING = ("verification/test_verification_checks.py", "-k")
 
 MUTATIONS = (
     Mutation(
@@ -82,7 +82,7 @@ MUTATIONS = (
         name="mu_s for mu_k while sliding",
         old="    if slid >= weakening:\n        return mu_kinetic\n",
         new="    if slid >= weakening:\n        return mu_static\n",
-        tests=(*LAWS, "verification/test_contact_sliding.py"),
+        tests=(*LAWS, "verification/closed_forms/test_contact_sliding.py"),
     ),
     Mutation(
         name="tangent of regularised friction without the fall of mu",
@@ -161,19 +161,19 @@ MUTATIONS = (
         name="acceleration not shifted when the step changes",
         old="shift = (scheme.alpha_f - scheme.alpha_m) * shortened",
         new="shift = 0.0 * shortened",
-        tests=("verification/test_time_newmark_family.py",),
+        tests=("verification/convergence/test_time_newmark_family.py",),
     ),
     Mutation(
         name="an imbalance defined away: friction heat takes what is missing",
         old="change[IMBALANCE] = change[BASE_WORK] - friction - damping - material - change[CRUSHING] - stored",
         new="change[IMBALANCE] = 0.0 * stored",
-        tests=("verification/test_time_energy.py",),
+        tests=("verification/convergence/test_time_energy.py",),
     ),
     Mutation(
         name="work of the floor with the wrong sign",
         old="shear += 0.5 * (old.force",
         new="shear -= 0.5 * (old.force",
-        tests=("verification/test_time_energy.py",),
+        tests=("verification/convergence/test_time_energy.py",),
     ),
     Mutation(
         name="friction heat by the force of one end of the step",
@@ -209,25 +209,25 @@ MUTATIONS = (
         name="restitution by the ratio of energies, not of velocities",
         old="math.sqrt(max(after, 0.0) / before)",
         new="max(after, 0.0) / before",
-        tests=("verification/test_first_impact.py", "-k", "peaks"),
+        tests=("verification/against_block/test_first_impact.py", "-k", "peaks"),
     ),
     Mutation(
         name="restitution of an impact at which the container slides",
         old="track.heat <= SLIDING_HEAT * before",
         new="track.heat <= 1e9 * before",
-        tests=("verification/test_first_impact.py", "-k", "slides"),
+        tests=("verification/against_block/test_first_impact.py", "-k", "slides"),
     ),
     Mutation(
         name="restitution without the work of the floor's motion",
         old="work = -control.mass * (floor[1, 1] - floor[0, 1]) / step * moved",
         new="work = 0.0 * moved",
-        tests=("verification/test_first_impact.py", "-k", "ringing"),
+        tests=("verification/against_block/test_first_impact.py", "-k", "ringing"),
     ),
     Mutation(
         name="impacts counted in a run that rests",
         old="return struck and track.modes & (1 << ROCK | 1 << SLIDE_ROCK) != 0",
         new="return struck",
-        tests=("verification/test_first_impact.py", "-k", "rests or flutter"),
+        tests=("verification/against_block/test_first_impact.py", "-k", "rests or flutter"),
     ),
     Mutation(
         name="acceleration of the contents without its filter",
@@ -263,7 +263,7 @@ MUTATIONS = (
         name="material damping of the full model in the fixed frame",
         old="body.turned[2 * i + 1] = cosine * x - sine * z, sine * x + cosine * z",
         new="body.turned[2 * i + 1] = x, z",
-        tests=("validation/test_verification_checks.py", "-k", "large"),
+        tests=("verification/test_verification_checks.py", "-k", "large"),
     ),
     Mutation(
         name="rest in the frame of the earth, where the floor goes on",
@@ -275,7 +275,7 @@ MUTATIONS = (
         name="a run for its outcome that ends with the container beyond its slenderness angle",
         old="            return UNSETTLED",
         new="            return REACHED",
-        tests=("verification/test_vertical_motion.py",),
+        tests=("verification/closed_forms/test_vertical_motion.py",),
     ),
     Mutation(
         name="a motion cut short that is called whole",
@@ -293,13 +293,13 @@ MUTATIONS = (
         name="an audit that lets the scheme win energy",
         old="if gained > GAIN_LIMIT * reference:",
         new="if gained > 1e9 * GAIN_LIMIT * reference:",
-        tests=("validation/test_verification_checks.py", "-k", "audit"),
+        tests=("verification/test_verification_checks.py", "-k", "audit"),
     ),
     Mutation(
         name="a band that does not try mu_kinetic up to mu_static",
         old="friction = (contact.mu_kinetic, contact.mu_static)",
         new="friction = (contact.mu_kinetic, contact.mu_kinetic)",
-        tests=("verification/test_sure_verdicts.py", "unit/case/test_case_uncertainty.py"),
+        tests=("verification/sureness/test_sure_verdicts.py", "unit/case/test_case_uncertainty.py"),
     ),
     Mutation(
         name="a material damping of a member that stays the run's",
@@ -317,7 +317,7 @@ MUTATIONS = (
         name="a flat base below uplift without its stiff floor",
         old="soft = case.support.kind != ",
         new="soft = case.support.foot is not None and case.support.kind != ",
-        tests=("verification/test_sure_verdicts.py", "-k", "flat"),
+        tests=("verification/sureness/test_sure_verdicts.py", "-k", "flat"),
     ),
     *VERTICAL_MOTION,
     *FLOOR_FAULTS,

@@ -2,7 +2,7 @@
 
 from mutation import Mutation
 
-VERTICAL = "verification/test_vertical_motion.py"
+VERTICAL = "verification/closed_forms/test_vertical_motion.py"
 
 VERTICAL_MOTION = (
     Mutation(
@@ -39,7 +39,7 @@ VERTICAL_MOTION = (
         name="gravity less the vertical acceleration where the support holds",
         old="gravity = run.control.gravity + run.lift[1, 2]",
         new="gravity = run.control.gravity - run.lift[1, 2]",
-        tests=("validation/test_verification_checks.py", "-k", "vertical and slider"),
+        tests=("verification/test_verification_checks.py", "-k", "vertical and slider"),
     ),
     Mutation(
         name="work of the vertical motion with the other sign",

@@ -1,9 +1,12 @@
 """The verification checks pass: every quick one, each row with its own tolerance."""
 
+from pathlib import Path
+
 import pytest
 
 from fem.evidence.verification.suite import CHECKS
 
+README = Path(__file__).parents[1] / "README.md"
 QUICK = [check for check in CHECKS if check.quick]
 
 
@@ -23,3 +26,12 @@ def test_no_check_is_lost_or_called_as_another():
     assert len({check.title for check in CHECKS}) == len(CHECKS) == 89
     slow = ["manufactured solution, dynamic", "impact of a bar", "full model", "full model through an impact"]
     assert [check.title for check in CHECKS if not check.quick] == slow
+
+
+def test_the_readme_of_the_tests_names_every_topic():
+    verification = (
+        README.read_text(encoding="utf-8").partition("## Where verification is")[2].partition("\n## ")[0]
+    )
+    assert not {check.topic for check in CHECKS} - set(
+        verification.replace(",", " ").replace(".", " ").split()
+    )
