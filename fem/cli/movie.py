@@ -1,6 +1,7 @@
 """`movie`: a run as GIF or MP4."""
 
 import importlib
+import math
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -20,6 +21,14 @@ def movie(
     to: Annotated[
         Path | None, Parameter(help="The file, .gif or .mp4; default: figures/movie.gif of the run.")
     ] = None,
+    begin: Annotated[float, Parameter(name="--from", help="Begin at this time of the run [s].")] = 0.0,
+    until: Annotated[
+        float, Parameter(help="End at this time [s]; default: the end of the run.", show_default=False)
+    ] = math.inf,
+    fps: Annotated[float, Parameter(help="Most frames a second.")] = 25.0,
+    width: Annotated[
+        int | None, Parameter(help="Width of the movie in pixels; default: as rendered.")
+    ] = None,
     quiet: Quiet = False,
 ) -> None:
     """Animate the frames of a run in real time; MP4 needs imageio-ffmpeg."""
@@ -29,7 +38,8 @@ def movie(
     # Loads pyvista.
     film = importlib.import_module("fem.render.movie")
     with writing_into(to.parent if to else run, ELSEWHERE_TO):
-        print(film.write_movie(opened, path=to, progress=_ignore if quiet else _show))
+        cut = film.Cut(begin=begin, until=until, rate=fps, width=width)
+        print(film.write_movie(opened, path=to, cut=cut, progress=_ignore if quiet else _show))
 
 
 def _show(done: int, count: int) -> None:

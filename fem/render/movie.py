@@ -1,9 +1,11 @@
 """A run as a movie in real time: GIF through pillow, MP4 where imageio-ffmpeg is installed.
 
-Of frames closer in time than a browser can show, only every second, third, .. one is taken.
+Of frames closer in time than is asked for, or than a browser can show, every second, third, .. one is taken.
 """
 
+import math
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from itertools import chain, islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -22,34 +24,85 @@ except ImportError:  # optional: 173 MB, not needed for a GIF
     imageio_ffmpeg = None
 
 SHORTEST = 0.04  #: time between frames [s]; browsers slow down anything faster than 0.02 s
+TINY = 1e-9  #: [s]
+LEAST_WIDTH, MOST_WIDTH = 100, 4000  #: pixels
 SUFFIXES = (".gif", ".mp4")
 MEND_VIDEO = "python -m pip install imageio-ffmpeg"
 PALETTE_FRAMES = 5  #: first frames, from which the colours of a GIF are taken
 
 
+@dataclass(frozen=True, kw_only=True)
+class Cut:
+    """What of a run is shown, and how.
+
+    Raises:
+        FolderError: a rate or a width outside its range.
+    """
+
+    begin: float = 0.0  #: [s]
+    until: float = math.inf  #: [s]
+    rate: float = 1.0 / SHORTEST  #: most frames a second of the movie
+    width: int | None = None  #: of the movie in pixels; None: as rendered
+
+    def __post_init__(self) -> None:
+        if not 0.1 <= self.rate <= 60.0:  # also refuses nan
+            raise FolderError(f"--fps must lie within 0.1 and 60, got {self.rate:g}")
+        if self.width is not None and not LEAST_WIDTH <= self.width <= MOST_WIDTH:
+            raise FolderError(f"--width must lie within {LEAST_WIDTH} and {MOST_WIDTH}, got {self.width}")
+
+    def frames(self, times: np.ndarray) -> tuple[range, float]:
+        """Indices of the frames shown, and the time between them [s], which is that of the motion.
+
+        Raises:
+            FolderError: no frame within the times asked for.
+        """
+        first, last = np.searchsorted(times, (self.begin - TINY, self.until + TINY))
+        if first >= last:
+            end = f"to {self.until:g} s" if math.isfinite(self.until) else "s on"
+            span = f"{times[0]:g} to {times[-1]:g} s"
+            raise FolderError(f"no frame from {self.begin:g} {end}; frames lie from {span}")
+        if last - first < 2:
+            return range(first, last), 1.0
+        interval = float(times[first + 1] - times[first])
+        stride = max(1, round(1.0 / (self.rate * interval)))
+        return range(first, last, stride), stride * interval
+
+    def sized(self, image: Image.Image) -> Image.Image:
+        """The image at the width asked for; even numbers of pixels, as H.264 needs."""
+        if self.width is None:
+            return image
+        height = self.width * image.height / image.width
+        return image.resize((2 * round(self.width / 2), 2 * round(height / 2)), Image.Resampling.LANCZOS)
+
+
 def write_movie(
-    run: OpenedRun, *, path: Path | None = None, progress: Callable[[int, int], None] = lambda done, all: None
+    run: OpenedRun,
+    *,
+    path: Path | None = None,
+    cut: Cut | None = None,
+    progress: Callable[[int, int], None] = lambda done, all: None,
 ) -> Path:
     """Render the frames of a run into a movie.
 
     Args:
         run: with fields.
         path: the file, `.gif` or `.mp4`; None takes `figures/movie.gif` of the run.
+        cut: part, rate and width; None takes the whole run.
         progress: called with the number of frames done and of all.
 
     Raises:
-        FolderError, FieldError: no fields, a damaged frame, a file name with another ending.
+        FolderError, FieldError: no fields, none in this part, a damaged frame, a file name with another ending.
         OSError: the file cannot be written.
     """
-    target = path or run.place.figures / "movie.gif"
+    target, cut = path or run.place.figures / "movie.gif", cut or Cut()
     require_movie_file(target)
-    chosen, interval = select_frames(run.fields.times)
+    chosen, interval = cut.frames(run.fields.times)
     scene = Scene(run)
     write = _write_gif if target.suffix.lower() == ".gif" else _write_mp4
     try:
         with TemporaryDirectory() as folder:
             movie = Path(folder) / target.name
-            write(movie, _rendered(run, scene, chosen, progress), interval)
+            write(movie, map(cut.sized, _rendered(run, scene, chosen, progress)), interval)
             target.parent.mkdir(parents=True, exist_ok=True)
             write_atomically(target, movie.read_bytes())
     finally:
@@ -64,15 +117,6 @@ def require_movie_file(path: Path) -> None:
         raise FolderError(f"--to must end with {' or '.join(SUFFIXES)}, got {path.name!r}")
     if suffix == ".mp4" and imageio_ffmpeg is None:
         raise FolderError(f"MP4 needs imageio-ffmpeg, which is not installed: {MEND_VIDEO}; or give a .gif")
-
-
-def select_frames(times: np.ndarray) -> tuple[range, float]:
-    """Indices of the frames shown, and the time between them [s]: real time, at most 25 a second."""
-    if len(times) < 2:
-        return range(len(times)), 1.0
-    interval = float(times[1] - times[0])
-    stride = max(1, round(SHORTEST / interval)) if interval < SHORTEST else 1
-    return range(0, len(times), stride), stride * interval
 
 
 def _rendered(

@@ -14,7 +14,7 @@ from fem import __main__ as command_line
 from fem.case.case import load_case
 from fem.render import opengl as rendering
 from fem.render.caption import caption
-from fem.render.movie import select_frames, write_movie
+from fem.render.movie import Cut, write_movie
 from fem.render.picture import Scene, time_of_largest_rotation, write_picture
 from fem.render.scene import BOTTOM, View, summarise_frames
 from fem.results.errors import FolderError
@@ -190,9 +190,32 @@ def test_the_caption_gives_time_rotation_and_ratio(run):
     ("interval", "count", "stride"), [(0.05, 41, 1), (0.01, 41, 4), (0.04, 41, 1), (0.2, 5, 1), (0.03, 10, 1)]
 )
 def test_a_film_runs_in_real_time_with_at_most_some_thirty_frames_a_second(interval, count, stride):
-    chosen, step = select_frames(interval * np.arange(count))
+    chosen, step = Cut().frames(interval * np.arange(count))
     assert chosen == range(0, count, stride)
     assert step == pytest.approx(stride * interval)
+
+
+def test_a_film_of_a_part_at_another_rate_and_width(run, renders, tmp_path):
+    times = run.fields.times
+    cut = Cut(begin=float(times[2]), until=float(times[8]), rate=5.0, width=301)
+    path = write_movie(run, path=tmp_path / "film.gif", cut=cut)
+    with Image.open(path) as film:
+        assert (film.n_frames, film.info["duration"], film.width) == (4, 200, 300)
+    chosen, step = Cut(rate=1.0).frames(0.05 * np.arange(41))
+    assert (list(chosen), step) == ([0, 20, 40], pytest.approx(1.0))
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--from", "50"], "no frame from 50 s on; frames lie from 0 to"),
+        (["--fps", "0"], "--fps must lie within 0.1 and 60"),
+        (["--width", "20"], "--width must lie within"),
+    ],
+)
+def test_a_film_of_no_part_or_size_is_refused(run, renders, capsys, options, words):
+    assert command_line.main(["movie", str(run.folder), *options]) == 2
+    assert words in capsys.readouterr().err
 
 
 def test_a_gif_holds_every_frame_in_real_time(run, renders, tmp_path):
