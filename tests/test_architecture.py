@@ -21,7 +21,7 @@ LAYERS = (
     ("contact.stepping",),
     ("fem.runtime",),
     ("fem.records",),
-    ("fem.site",),
+    ("fem.seismic",),
     ("fem.case",),
     ("fem.results",),
     ("fem.solid",),

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from fem.case.case import Case
 from fem.case.tables import StaticTable
 from fem.results.run_result import ActionResult, CodeValues, StaticResult
-from fem.site.method import utilisation
+from fem.seismic.method import utilisation
 from mesh.container import ContainerMesh
 
 LIMIT_PERIOD = 2.0  # s, EN 1998-1:2004, 4.3.3.2.1 (2) a), Eq. (4.4)
@@ -40,7 +40,7 @@ class CheckResult:
 
     @property
     def utilisation(self) -> float:
-        """See `fem.site.method.utilisation`."""
+        """See `fem.seismic.method.utilisation`."""
         return utilisation(self.demand, self.capacity)
 
     @property

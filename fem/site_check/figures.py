@@ -27,7 +27,7 @@ from fem.figures.style import (
     zero_line,
 )
 from fem.runtime.arrays import FloatArray
-from fem.site.static_rules import floor_factor
+from fem.seismic.static_rules import floor_factor
 from fem.site_check.bracket import SizePoint, SizeResult
 from fem.site_check.result import (
     FloorResult,

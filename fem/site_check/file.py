@@ -18,8 +18,8 @@ from fem.case.table import CaseTable, case_key
 from fem.case.tables import DocumentTable
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError
-from fem.site.action import GERMAN_ZONES, SiteAction, SpectrumShape, eurocode_shape, german_shape
-from fem.site.wind import german_pressure, terrain_pressure
+from fem.seismic.action import GERMAN_ZONES, SiteAction, SpectrumShape, eurocode_shape, german_shape
+from fem.seismic.wind import german_pressure, terrain_pressure
 from fem.site_check.tables import (
     BuildingTable,
     FrictionTable,

@@ -9,11 +9,11 @@ import numpy as np
 from contact.reference.rigid_block import RigidBlock
 from contact.stepping.observables import ROCKING, SLIDING
 from fem.runtime.arrays import FloatArray
-from fem.site.action import DAMPING_RATIO, SiteAction, damping_correction
-from fem.site.body import FloorAction, Limits, LooseBody
-from fem.site.method import MethodQuantity, MethodRow, length_in_words
-from fem.site.methods import method_capacities, method_rows, methods_of
-from fem.site.wind import wind_rows
+from fem.seismic.action import DAMPING_RATIO, SiteAction, damping_correction
+from fem.seismic.body import FloorAction, Limits, LooseBody
+from fem.seismic.method import MethodQuantity, MethodRow, length_in_words
+from fem.seismic.methods import method_capacities, method_rows, methods_of
+from fem.seismic.wind import wind_rows
 from fem.site_check.result import FloorResult, SiteBody, SiteInputs, SiteMethod, SiteMotion, SiteRun
 
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from fem.records.spectrum import response_spectrum
 from fem.runtime.arrays import FloatArray
-from fem.site.action import SiteAction
-from fem.site.ground_motion import GroundMotion
-from fem.site.motion_files import write_at2, write_csv
-from fem.site.motion_set import LEAST_MOTIONS, LEAST_SHARE, MOST_CORRELATION, MotionSetCheck
+from fem.seismic.action import SiteAction
+from fem.seismic.ground_motion import GroundMotion
+from fem.seismic.motion_files import write_at2, write_csv
+from fem.seismic.motion_set import LEAST_MOTIONS, LEAST_SHARE, MOST_CORRELATION, MotionSetCheck
 from fem.site_check.file import SiteRequest
 from fem.site_check.result import MOTIONS, FloorResult, MotionSet, SetCheck, SiteActionResult, SiteMotion
 

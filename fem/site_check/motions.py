@@ -12,11 +12,11 @@ from fem.case.validation import CaseError
 from fem.records.files import read_record
 from fem.records.record import Component, Record, RecordError, require_together
 from fem.runtime.arrays import FloatArray
-from fem.site.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S
-from fem.site.artificial import artificial_set
-from fem.site.floor import PERIOD_FACTORS, floor_motion
-from fem.site.ground_motion import GroundMotion
-from fem.site.matched import matched_records, scaled_records
+from fem.seismic.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S
+from fem.seismic.artificial import artificial_set
+from fem.seismic.floor import PERIOD_FACTORS, floor_motion
+from fem.seismic.ground_motion import GroundMotion
+from fem.seismic.matched import matched_records, scaled_records
 from fem.site_check.file import SiteRequest
 
 #: largest difference of two intervals of a record that is sampled evenly, over the interval

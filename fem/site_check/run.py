@@ -24,10 +24,10 @@ from fem.runtime.identity import versions
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
-from fem.site.artificial import artificial_motions
-from fem.site.floor import floor_motion
-from fem.site.ground_motion import GroundMotion
-from fem.site.motion_set import check_set
+from fem.seismic.artificial import artificial_motions
+from fem.seismic.floor import floor_motion
+from fem.seismic.ground_motion import GroundMotion
+from fem.seismic.motion_set import check_set
 from fem.site_check.answer import answer_of, governing_run
 from fem.site_check.bodies import body_of
 from fem.site_check.confirm import confirmed, deciding

@@ -23,8 +23,8 @@ from fem.results.kinds import SIZE
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.runtime.signals import interruptible
 from fem.runtime.threads import cores
-from fem.site.ground_motion import GroundMotion
-from fem.site.motion_set import check_set
+from fem.seismic.ground_motion import GroundMotion
+from fem.seismic.motion_set import check_set
 from fem.site_check.answer import answer_of
 from fem.site_check.bodies import body_of
 from fem.site_check.bracket import SizeAxis, SizeResult, next_values, size_result

@@ -9,8 +9,8 @@ from fem.case import quantities as q
 from fem.case.problem import Rule
 from fem.case.quantities import Quantity
 from fem.case.table import CaseTable, case_key
-from fem.site.artificial import LEAST_STATIONARY_S, MOST_STATIONARY_S
-from fem.site.motion_set import LEAST_MOTIONS
+from fem.seismic.artificial import LEAST_STATIONARY_S, MOST_STATIONARY_S
+from fem.seismic.motion_set import LEAST_MOTIONS
 
 IMPORTANCE = Quantity(
     unit="",

@@ -26,8 +26,8 @@ from measuring import Figure, at_least, at_most, cpu_seconds, median_of, report,
 from motion_set import motion
 
 from fem.case.case import load_case
-from fem.site.action import SiteAction, eurocode_shape
-from fem.site.artificial import artificial_motions
+from fem.seismic.action import SiteAction, eurocode_shape
+from fem.seismic.artificial import artificial_motions
 
 REPEATS, SAMPLING_S = 5, 0.05
 COMPILE_S, PAGE_S, RUN_S, CHECK_S = 15.0, 70.0, 2.5, 0.4

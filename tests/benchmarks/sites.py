@@ -12,8 +12,8 @@ import numpy as np
 from measuring import at_most, cpu_seconds, median_of, report
 
 from fem.records.spectrum import log_spaced_periods, response_spectrum
-from fem.site.action import SiteAction, eurocode_shape
-from fem.site.artificial import artificial_set
+from fem.seismic.action import SiteAction, eurocode_shape
+from fem.seismic.artificial import artificial_set
 
 REPEATS = 3
 SPECTRUM_S, MOTIONS_S, EXAMPLE_S = 0.1, 2.0, 30.0

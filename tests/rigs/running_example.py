@@ -4,8 +4,8 @@ K1: 1.1 m wide and deep, 4 m high, homogeneous, 10 t, mu 0.4 static, 0.2 kinetic
 """
 
 from contact.reference.rigid_block import RigidBlock
-from fem.site.action import SiteAction, eurocode_shape
-from fem.site.body import FloorAction, Limits, LooseBody
+from fem.seismic.action import SiteAction, eurocode_shape
+from fem.seismic.body import FloorAction, Limits, LooseBody
 
 SITE = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=2.4 / 1.35)
 #: 0.06 (S_alpha S_beta)^0.55 with the plateau and the value at 1 s

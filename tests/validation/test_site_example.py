@@ -14,7 +14,7 @@ from contact.reference.rocking import RockingOutcome, simulate_rocking
 from fem.assessment.rigid_check import floor_of
 from fem.batch.runner import run_cases
 from fem.case.case import case_from
-from fem.site.artificial import artificial_motions, artificial_set
+from fem.seismic.artificial import artificial_motions, artificial_set
 
 CASE = case_from(
     {

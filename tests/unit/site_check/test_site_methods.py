@@ -7,8 +7,8 @@ import pytest
 from running_example import ACTION, LIMITS, SITE, k1
 from site_example import INPUTS, PERIODS, RUN, site_body, site_motion
 
-from fem.site.asce_43 import sliding_row
-from fem.site.static_rules import peak_rows
+from fem.seismic.asce_43 import sliding_row
+from fem.seismic.static_rules import peak_rows
 from fem.site_check.methods import floor_action, found_by_runs, loose_body, site_methods
 from fem.site_check.result import FloorResult
 

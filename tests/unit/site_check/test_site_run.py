@@ -9,9 +9,9 @@ import pytest
 
 from fem.__main__ import main
 from fem.records.files import read_record
-from fem.site.artificial import artificial_motions
-from fem.site.motion_files import write_at2, write_csv
-from fem.site.motion_set import check_set
+from fem.seismic.artificial import artificial_motions
+from fem.seismic.motion_files import write_at2, write_csv
+from fem.seismic.motion_set import check_set
 from fem.site_check.answer import answer_of
 from fem.site_check.file import load_site
 from fem.site_check.motions import ground_motions

@@ -19,10 +19,10 @@ from scipy.fft import irfft, next_fast_len, rfft
 
 from fem.records.zero_end import ZeroEnd
 from fem.runtime.arrays import FloatArray
-from fem.site.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S, SiteAction
-from fem.site.ground_motion import GroundMotion
-from fem.site.motion_set import LEAST_SHARE, MOST_CORRELATION, check_set, largest_correlation
-from fem.site.oscillators import pseudo_accelerations
+from fem.seismic.action import LAST_PERIOD_ANNEX_A_S, LAST_PERIOD_S, SiteAction
+from fem.seismic.ground_motion import GroundMotion
+from fem.seismic.motion_set import LEAST_SHARE, MOST_CORRELATION, check_set, largest_correlation
+from fem.seismic.oscillators import pseudo_accelerations
 
 STEP_S = 0.005
 #: parts of the envelope beside the stationary one [s]; what the last one ends at, before the taper

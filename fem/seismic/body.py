@@ -13,7 +13,7 @@ import numpy as np
 
 from contact.reference.rigid_block import RigidBlock
 from fem.runtime.arrays import FloatArray
-from fem.site.action import DAMPING_RATIO, LAST_PERIOD_S, SiteAction
+from fem.seismic.action import DAMPING_RATIO, LAST_PERIOD_S, SiteAction
 
 #: periods (n,) [s] and damping ratio [-] -> elastic pseudo-accelerations (n,) [m/s2]
 Spectrum = Callable[[FloatArray, float], FloatArray]

@@ -8,8 +8,8 @@ import math
 
 from scipy.special import ndtr
 
-from fem.site.body import FloorAction, LooseBody
-from fem.site.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
+from fem.seismic.body import FloorAction, LooseBody
+from fem.seismic.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
 
 SPREAD = 0.5  #: logarithmic standard deviation of Kaneko and Hayashi's curve
 ULTIMATE_SHARE = (

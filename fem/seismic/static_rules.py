@@ -7,8 +7,8 @@ a/(mu (g - a_v)) with static friction. EN 1998-1:2004, 4.4.2.4 (1)P asks for the
 import math
 from dataclasses import replace
 
-from fem.site.body import FloorAction, LooseBody
-from fem.site.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
+from fem.seismic.body import FloorAction, LooseBody
+from fem.seismic.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
 
 #: shares of the horizontal and vertical peak, after EN 1998-1:2004, 4.3.3.5.2
 COMBINATIONS = ((1.0, 0.0), (1.0, 0.3), (1.0, 1.0), (0.3, 1.0))

@@ -13,8 +13,8 @@ import numpy as np
 
 from contact.reference.rigid_block import RigidBlock
 from fem.runtime.arrays import FloatArray
-from fem.site.body import PERIODS, FloorAction, Limits, LooseBody, Spectrum
-from fem.site.method import MethodQuantity, MethodRow, MethodSource, SourceStanding, length_in_words
+from fem.seismic.body import PERIODS, FloorAction, Limits, LooseBody, Spectrum
+from fem.seismic.method import MethodQuantity, MethodRow, MethodSource, SourceStanding, length_in_words
 
 SLIDING_DAMPING = 0.10
 VERTICAL_SHARE = 0.4  #: of the vertical peak that reduces friction, and of a second horizontal component

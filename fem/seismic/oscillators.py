@@ -15,7 +15,7 @@ import numpy as np
 from contact.jit import compiled
 from fem.records.spectrum import exact_recursion
 from fem.runtime.arrays import BoolArray, FloatArray
-from fem.site.action import DAMPING_RATIO
+from fem.seismic.action import DAMPING_RATIO
 
 #: of a period, at least: a peak midway between samples is 1 - cos(pi/16) = 1.9 % too low
 LEAST_SAMPLES = 16

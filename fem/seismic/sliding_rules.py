@@ -9,8 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from fem.records.units import STANDARD_GRAVITY
-from fem.site.body import FloorAction, Limits, LooseBody
-from fem.site.method import MethodQuantity, MethodRow, MethodSource, SourceStanding, length_in_words
+from fem.seismic.body import FloorAction, Limits, LooseBody
+from fem.seismic.method import MethodQuantity, MethodRow, MethodSource, SourceStanding, length_in_words
 
 #: ratio a_y/a_max, peak acceleration [m/s2], peak velocity [m/s] -> slip [m]
 Regression = Callable[[float, float, float], float]

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem.site.action import SiteAction, eurocode_shape
-from fem.site.artificial import artificial_motions
-from fem.site.ground_motion import sampled_at
-from fem.site.matched import matched_records, scaled_records
-from fem.site.motion_set import check_set
+from fem.seismic.action import SiteAction, eurocode_shape
+from fem.seismic.artificial import artificial_motions
+from fem.seismic.ground_motion import sampled_at
+from fem.seismic.matched import matched_records, scaled_records
+from fem.seismic.motion_set import check_set
 
 ACTION = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=2.4 / 1.35)
 

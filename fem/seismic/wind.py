@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem.site.body import LooseBody
-from fem.site.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
+from fem.seismic.body import LooseBody
+from fem.seismic.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
 
 AIR_DENSITY = 1.25  #: [kg/m3]
 STABILISING, DESTABILISING = 0.9, 1.5  #: of permanent weight and of wind, EN 1990, table A1.2(A), EQU

@@ -13,8 +13,8 @@ import numpy as np
 
 from fem.records.spectrum import response_spectrum
 from fem.runtime.arrays import FloatArray
-from fem.site.action import LAST_PERIOD_S, SiteAction
-from fem.site.ground_motion import GroundMotion, sampled_at
+from fem.seismic.action import LAST_PERIOD_S, SiteAction
+from fem.seismic.ground_motion import GroundMotion, sampled_at
 
 #: (4)a, and the number from which the mean of the responses counts (4.3.3.4.3(3))
 LEAST_MOTIONS, MOTIONS_FOR_MEAN = 3, 7

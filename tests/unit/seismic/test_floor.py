@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from contact.motion.samples import sampled_motion
-from fem.site.action import SiteAction, eurocode_shape
-from fem.site.artificial import artificial_motions
-from fem.site.floor import floor_motion
-from fem.site.ground_motion import GroundMotion
+from fem.seismic.action import SiteAction, eurocode_shape
+from fem.seismic.artificial import artificial_motions
+from fem.seismic.floor import floor_motion
+from fem.seismic.ground_motion import GroundMotion
 
 ACTION = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=2.4 / 1.35)
 

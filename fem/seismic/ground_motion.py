@@ -11,7 +11,7 @@ import numpy as np
 from contact.motion.samples import sampled_motion
 from fem.records.intensity import Intensity, intensity
 from fem.runtime.arrays import FloatArray
-from fem.site.motion_files import in_whole_g
+from fem.seismic.motion_files import in_whole_g
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)  # arrays have no single truth value

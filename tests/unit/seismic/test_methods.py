@@ -8,13 +8,13 @@ import pytest
 from running_example import ACTION, LIMITS, PEAK_VELOCITY, SITE, k1
 
 from contact.reference.rigid_block import RigidBlock
-from fem.site.asce_43 import RockingOscillator, rocking_row, slide, sliding_row
-from fem.site.body import FloorAction, Limits, LooseBody
-from fem.site.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
-from fem.site.methods import method_capacities, method_rows, methods_of
-from fem.site.sliding_rules import RULES, sliding_rows
-from fem.site.static_rules import both_directions_rows, element_rows, floor_factor, peak_rows, plateau_rows
-from fem.site.velocity_rules import (
+from fem.seismic.asce_43 import RockingOscillator, rocking_row, slide, sliding_row
+from fem.seismic.body import FloorAction, Limits, LooseBody
+from fem.seismic.method import MethodQuantity, MethodRow, MethodSource, SourceStanding
+from fem.seismic.methods import method_capacities, method_rows, methods_of
+from fem.seismic.sliding_rules import RULES, sliding_rows
+from fem.seismic.static_rules import both_directions_rows, element_rows, floor_factor, peak_rows, plateau_rows
+from fem.seismic.velocity_rules import (
     displacement_row,
     housner_row,
     ishiyama_row,
@@ -22,7 +22,7 @@ from fem.site.velocity_rules import (
     velocity_step,
     velocity_step_row,
 )
-from fem.site.wind import german_pressure, terrain_pressure, wind_force, wind_rows
+from fem.seismic.wind import german_pressure, terrain_pressure, wind_force, wind_rows
 
 K1 = k1()
 LEVEL = replace(ACTION, vertical_peak=0.0)  # no vertical component

@@ -4,12 +4,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from fem.site.asce_43 import rocking_row, sliding_row
-from fem.site.body import FloorAction, Limits, LooseBody
-from fem.site.method import MethodQuantity, MethodRow
-from fem.site.sliding_rules import sliding_rows
-from fem.site.static_rules import COMBINATIONS, both_directions_rows, element_rows, peak_rows, plateau_rows
-from fem.site.velocity_rules import velocity_rows
+from fem.seismic.asce_43 import rocking_row, sliding_row
+from fem.seismic.body import FloorAction, Limits, LooseBody
+from fem.seismic.method import MethodQuantity, MethodRow
+from fem.seismic.sliding_rules import sliding_rows
+from fem.seismic.static_rules import COMBINATIONS, both_directions_rows, element_rows, peak_rows, plateau_rows
+from fem.seismic.velocity_rules import velocity_rows
 
 #: factors on the action between which a capacity is looked for
 SMALLEST_FACTOR, LARGEST_FACTOR = 0.01, 100.0

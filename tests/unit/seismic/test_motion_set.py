@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem.site.action import SiteAction, eurocode_shape
-from fem.site.artificial import artificial_set
-from fem.site.ground_motion import GroundMotion
-from fem.site.motion_set import check_set, copy_correlation, largest_correlation
+from fem.seismic.action import SiteAction, eurocode_shape
+from fem.seismic.artificial import artificial_set
+from fem.seismic.ground_motion import GroundMotion
+from fem.seismic.motion_set import check_set, copy_correlation, largest_correlation
 
 ACTION = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=2.4 / 1.35)
 

@@ -14,7 +14,7 @@ import numpy as np
 from fem.records.spectrum import oscillator_response
 from fem.records.zero_end import ZeroEnd
 from fem.runtime.arrays import FloatArray
-from fem.site.ground_motion import GroundMotion, sampled_at
+from fem.seismic.ground_motion import GroundMotion, sampled_at
 
 #: factors on the period, which is not known more precisely
 PERIOD_FACTORS = (0.85, 1.0, 1.15)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fem.site.action import SiteAction, SpectrumShape, damping_correction, eurocode_shape, german_shape
+from fem.seismic.action import SiteAction, SpectrumShape, damping_correction, eurocode_shape, german_shape
 
 PERIODS = np.array([0.0, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5, 0.8, 1.0, 1.5, 2.0, 3.0, 4.0])
 #: S_e/a_g at 5 % damping, evaluated by hand from (3.2) to (3.5) with tables 3.2 and 3.3, and d_g/a_g (3.12)

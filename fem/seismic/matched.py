@@ -19,11 +19,11 @@ from scipy.signal import lfilter
 from fem.records.spectrum import exact_recursion, response_spectrum
 from fem.records.zero_end import ZeroEnd
 from fem.runtime.arrays import FloatArray
-from fem.site.action import DAMPING_RATIO, LAST_PERIOD_S, SiteAction
-from fem.site.artificial import Target
-from fem.site.ground_motion import GroundMotion, sampled_at
-from fem.site.motion_set import FIRST_PERIOD_S, LEAST_SHARE, check_set, periods_of_check
-from fem.site.oscillators import pseudo_accelerations
+from fem.seismic.action import DAMPING_RATIO, LAST_PERIOD_S, SiteAction
+from fem.seismic.artificial import Target
+from fem.seismic.ground_motion import GroundMotion, sampled_at
+from fem.seismic.motion_set import FIRST_PERIOD_S, LEAST_SHARE, check_set, periods_of_check
+from fem.seismic.oscillators import pseudo_accelerations
 
 #: records are sampled at least this densely while they are matched [s]
 LARGEST_STEP_S = 0.005

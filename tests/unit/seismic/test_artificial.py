@@ -6,10 +6,10 @@ import pytest
 
 from contact.motion.samples import sampled_motion
 from fem.records.spectrum import response_spectrum
-from fem.site.action import SiteAction, eurocode_shape
-from fem.site.artificial import STEP_S, Shaper, artificial_motions, artificial_set, raised, rounded_off
-from fem.site.motion_set import check_set, largest_correlation
-from fem.site.oscillators import pseudo_accelerations
+from fem.seismic.action import SiteAction, eurocode_shape
+from fem.seismic.artificial import STEP_S, Shaper, artificial_motions, artificial_set, raised, rounded_off
+from fem.seismic.motion_set import check_set, largest_correlation
+from fem.seismic.oscillators import pseudo_accelerations
 
 #: ground D, type 1, a_g S = 2.4 m/s2
 ACTION = SiteAction(shape=eurocode_shape(1, "D"), reference_acceleration=2.4 / 1.35)
