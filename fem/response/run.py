@@ -31,9 +31,9 @@ from fem.response.records import (
     record_of,
 )
 from fem.response.request import ResponseRequest
-from fem.results.errors import FolderError
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
 from fem.results.kinds import RESPONSE
+from fem.run.checkpoint import changing, require_same
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.runtime.signals import interruptible
 
@@ -177,27 +177,20 @@ def state_of(records: Sequence[PointRecord], driven: DrivenModel | None) -> dict
     arrays = {"rows": np.array(json.dumps([asdict(record.row) for record in records]))}
     for k, record in enumerate(records):
         arrays |= {f"{name}_{k}": getattr(record, name) for name in ARRAYS}
-    if driven is not None:
-        run = driven.run
-        arrays |= {f"state_{name}": array for name, array in run.old._asdict().items()}
-        arrays |= {"clock": np.asarray(run.clock), "track": np.asarray(run.track), "floor": run.floor}
-    return arrays
+    return arrays if driven is None else arrays | changing(driven.model)
 
 
-def driven_from(case: Case, container: Container, arrays: Mapping[str, np.ndarray]) -> DrivenModel:
-    """The motion that `state_of` kept.
+def driven_from(case: Case, container: Container, arrays: dict[str, np.ndarray], path: Path) -> DrivenModel:
+    """The motion that `state_of` kept in a file.
 
     Raises:
-        FolderError: it does not fit the model.
+        CheckpointError: it does not fit the model.
     """
     driven = driven_model(case, container)
-    run = driven.run
-    places = {f"state_{name}": array for name, array in run.old._asdict().items()}
-    places |= {"clock": run.clock, "track": run.track, "floor": run.floor}
-    for name, array in places.items():
-        if name not in arrays or (arrays[name].shape, arrays[name].dtype) != (array.shape, array.dtype):
-            raise FolderError(f"{STATE} was written by another version; --force starts over")
-        array[...] = arrays[name]
+    parts = changing(driven.model)
+    require_same(path, arrays, parts)
+    for name, part in parts.items():
+        part[...] = arrays[name]
     return driven
 
 
@@ -205,7 +198,7 @@ def _sweep(
     request: ResponseRequest,
     place: ResultFolder,
     records: list[PointRecord],
-    saved: Mapping[str, np.ndarray],
+    saved: dict[str, np.ndarray],
     *,
     reporter: Reporter,
     stop: Callable[[], bool],
@@ -217,7 +210,8 @@ def _sweep(
     done, angle = sum(spans[: len(records)]), 1.0
     container, before = discretise(request.case), None
     if "clock" in saved:
-        before = driven_from(case_at(request, plan[len(records) - 1][1]), container, saved)
+        last = case_at(request, plan[len(records) - 1][1])
+        before = driven_from(last, container, saved, place.path / STATE)
     reporter.start(sum(spans))
 
     def progress(time: float, rotation: float, mode: int) -> None:

@@ -50,7 +50,7 @@ class SavedState:
         """Give run, body and recorder this state; they stay as they are at t = 0."""
         if not self.arrays:
             return
-        for name, array in _changing(model).items():
+        for name, array in changing(model).items():
             np.copyto(array, self.arrays[name])
         for name, array in _waiting(model.run, model.run.clock).items():  # the clock is restored by now
             np.copyto(array, self.arrays[name])
@@ -108,8 +108,8 @@ def read_state(path: Path, model: Model, case_hash: str) -> SavedState:
         CheckpointError: damaged, of another case or another version, or not of this model's run.
     """
     found = read_checkpoint(path, case_hash=case_hash, program=program_identity())
-    _require_same(path, found.arrays, _changing(model))
-    _require_same(path, found.arrays, _waiting(model.run, found.arrays["clock"]))
+    require_same(path, found.arrays, changing(model))
+    require_same(path, found.arrays, _waiting(model.run, found.arrays["clock"]))
     try:
         about = found.about["progress"]
         undriven, under_way = about["undriven"], about["slice"]
@@ -132,13 +132,14 @@ def misfit(path: Path, reason: str) -> CheckpointError:
 
 def state_of(model: Model, recorder: Recorder) -> Arrays:
     """Everything that changes in a run, by name; the arrays themselves, not copies."""
-    found = _changing(model) | _waiting(model.run, model.run.clock)
+    found = changing(model) | _waiting(model.run, model.run.clock)
     if not isinstance(model.body, ModalBody | LooseStack):
         found |= {BODY + name: array for name, array in model.body.memory().items()}
     return found | {RECORDED + name: array for name, array in recorder.memory().items()}
 
 
-def _changing(model: Model) -> Arrays:
+def changing(model: Model) -> Arrays:
+    """All of a model that changes from step to step, but for its samples, by name; the arrays themselves."""
     found: Arrays = {}
     for name, part in model.run._asdict().items():
         if name in CONSTANT | SAMPLES:
@@ -173,8 +174,12 @@ def _named(arrays: Arrays, prefix: str) -> Arrays:
     return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}
 
 
-def _require_same(path: Path, found: Arrays, wanted: Arrays) -> None:
-    """Refuse arrays that are not those of this model's run."""
+def require_same(path: Path, found: Arrays, wanted: Arrays) -> None:
+    """Refuse arrays that are not those of this model's run.
+
+    Raises:
+        CheckpointError: names the first that does not fit.
+    """
     for name, mine in wanted.items():
         theirs = found.get(name)
         if theirs is None or theirs.shape != mine.shape or theirs.dtype.descr != mine.dtype.descr:
