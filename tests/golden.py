@@ -223,9 +223,9 @@ def table_without_clock(text: str) -> str:
 
 
 def page_text(page: str) -> str:
-    """The text of a page, a line an element."""
+    """The text of a page, a line an element, wherever its source breaks the line."""
     body = re.sub(r"<(style|script)\b.*?</\1>", "", page, flags=re.S)
-    text = html.unescape(re.sub(r"<[^>]*>", "\n", body))
+    text = html.unescape(re.sub(r"<[^>]*>", "\n", re.sub(r"\s+", " ", body)))
     return "\n".join(line for raw in text.split("\n") if (line := " ".join(raw.split())))
 
 
