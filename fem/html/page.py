@@ -1,24 +1,26 @@
 """Pages: one self-contained HTML file each, without network and without other files.
 
-The templates are in `fem/html/templates`; every page extends `page.html.j2`. Text from users is escaped everywhere:
-in the page, in JSON inside a script element, in a style sheet. The content security policy of the page forbids the
+A page is a list of sections, set by `page.html.j2` and `sections.html.j2`. Text from users is escaped everywhere: in
+the page, in JSON inside a script element, in a style sheet. The content security policy of the page forbids the
 browser to load anything and to run any script but those of the page.
 """
 
 import base64
+import datetime as dt
 import hashlib
 import json
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
-from importlib import resources
+from importlib import metadata, resources
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from fem.html.drawing import require_drawing
+from fem.html.sections import Block
 
 TEMPLATES = "templates"
 
@@ -46,6 +48,36 @@ class Signature:
         )
 
 
+@dataclass(frozen=True, kw_only=True)
+class Page:
+    """What one file shows."""
+
+    kind: str  #: above the title
+    title: str
+    name: str  #: of what it shows; a copy of the page is named after it
+    sections: Sequence[Block]
+    introduction: Sequence[Block] = ()  #: under the title
+    signature: Signature | None = None  #: None of a page that nobody signs
+    hash: str = ""  #: of what it shows, at the foot of every printed sheet
+    scripts: Sequence[str] = ()  #: file names of the scripts that run in it, in order
+    data: Mapping[str, Any] = field(default_factory=dict)  #: what they read, by the id of its element
+
+
+def html_of(page: Page) -> str:
+    """The text of the file."""
+    signed = ("signature.js",) if page.signature else ()
+    return render_page(
+        "page.html.j2",
+        scripts=(*page.scripts, *signed),
+        data=page.data,
+        page=page,
+        signature=page.signature,
+        foot=f"unanchored {metadata.version('unanchored')}   {page.hash[:12]}",
+        version=metadata.version("unanchored"),
+        today=dt.date.today().isoformat(),
+    )
+
+
 def render_page(
     template: str, *, scripts: Sequence[str] = (), data: Mapping[str, Any] | None = None, **content: Any
 ) -> str:
@@ -64,7 +96,7 @@ def render_page(
         script_policy=_policy(texts),
         data={name: _json_in_page(value) for name, value in (data or {}).items()},
         template_text=template_text,
-        **content,
+        **({"foot": "unanchored", "signature": None} | content),
     )
 
 
@@ -102,7 +134,15 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     environment.filters["css_string"] = _css_string
+    environment.globals["draw"] = _draw
     return environment
+
+
+def _draw(block: Block) -> Markup:
+    """A block as HTML, by the macro that is named after its class."""
+    name = "str" if isinstance(block, str) else type(block).__name__.lower()
+    macros = _environment().get_template("sections.html.j2").module
+    return Markup(getattr(macros, name)(block))
 
 
 def _json_in_page(value: Any) -> Markup:

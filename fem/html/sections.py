@@ -1,0 +1,275 @@
+"""What a page is made of: sections and the blocks in them, each set by the macro of its name in `sections.html.j2`.
+
+A text is escaped unless it is `Markup`; a text among blocks is a paragraph. A look is a class of `page.css`.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass
+from operator import itemgetter
+from typing import Any, Generic, NamedTuple, TypeVar
+
+from markupsafe import Markup
+
+from fem.html.units import typeset
+
+MOST_ROWS = 1000  #: of a table on a page
+NUMBER = "number"  #: look of a column that is aligned to the right
+
+Item = TypeVar("Item")
+
+
+def code(text: object) -> Markup:
+    """A name or command within a text."""
+    return Markup("<code>{}</code>").format(text)
+
+
+def bold(text: object) -> Markup:
+    """A word within a text that stands out."""
+    return Markup("<b>{}</b>").format(text)
+
+
+def link(text: str, name: str) -> Markup:
+    """A link to a section of the same page."""
+    return Markup('<a href="#{}">{}</a>').format(name, text)
+
+
+def joined(*parts: object) -> Markup:
+    """One text of several, of which some may be `Markup`."""
+    return Markup("").join(map(Markup.escape, parts))
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """A paragraph."""
+
+    text: str
+    look: str = ""
+
+
+@dataclass(frozen=True)
+class Note:
+    """A paragraph in small print."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Heading:
+    """A heading within a section."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Bullets:
+    """A list."""
+
+    lines: Sequence[str]
+    look: str = "tight"
+
+
+@dataclass(frozen=True)
+class Listing:
+    """A file or command, as it is."""
+
+    text: str
+    look: str = "case"
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Names and their values."""
+
+    rows: Sequence[tuple[str, str]]
+    _: KW_ONLY
+    caption: str = ""
+    look: str = ""
+
+
+class Headline(NamedTuple):
+    """A value that is to be seen first."""
+
+    name: str
+    value: str
+    below: str = ""  #: in small print
+
+
+@dataclass(frozen=True)
+class Headlines:
+    """The values to be seen first, side by side."""
+
+    values: Sequence[Headline]
+
+
+class Cell(NamedTuple):
+    """A cell of a table."""
+
+    text: str
+    look: str = ""
+    span: int = 1  #: columns
+
+
+@dataclass(frozen=True)
+class TableRow:
+    """A row of a table; the first cell names it."""
+
+    cells: Sequence[Cell]
+    look: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table, which scrolls sideways where it is too wide."""
+
+    label: str  #: for those who cannot see it
+    head: Sequence[Cell]
+    rows: Sequence[TableRow]
+    _: KW_ONLY
+    caption: str = ""
+    look: str = ""
+    left_out: str = ""  #: what the table does not show
+
+
+@dataclass(frozen=True)
+class Column(Generic[Item]):
+    """A column of a table that is made from items."""
+
+    head: str
+    cell: Callable[[Item], str | Cell]  #: what an item shows in it
+    look: str = ""
+    optional: bool = False  #: left out where it is empty in every row
+
+
+def in_order(*heads: str, look: str = "") -> list[Column[Sequence[str]]]:
+    """Columns of items that are the texts of a row."""
+    return [Column(head, itemgetter(k), look if k else "") for k, head in enumerate(heads)]
+
+
+def table_of(
+    label: str,
+    columns: Sequence[Column[Item]],
+    items: Iterable[Item],
+    *,
+    row_look: Callable[[Item], str] = lambda item: "",
+    file: str = "",
+    **options: Any,
+) -> Table:
+    """A table with a row for each item, cut to the rows that a page can carry.
+
+    Args:
+        label: for those who cannot see it.
+        columns: of the table; the first names its rows.
+        items: what the rows are about.
+        row_look: the look of a row.
+        file: holds all rows.
+        options: of the table.
+    """
+    listed = list(items)
+    rows = [
+        ([_cell(column.cell(item), column.look) for column in columns], row_look(item)) for item in listed
+    ]
+    kept = [
+        k
+        for k, column in enumerate(columns)
+        if not column.optional or any(cells[k].text for cells, _ in rows)
+    ]
+    more = len(listed) - MOST_ROWS
+    return Table(
+        label,
+        [Cell(columns[k].head, columns[k].look) for k in kept],
+        [TableRow([cells[k] for k in kept], look) for cells, look in rows[:MOST_ROWS]],
+        left_out=f"{more} more rows are in {file}." if more > 0 else "",
+        **options,
+    )
+
+
+def _cell(content: str | Cell, look: str) -> Cell:
+    cell = content if isinstance(content, Cell) else Cell(content, look)
+    return cell if isinstance(cell.text, Markup) else cell._replace(text=typeset(cell.text))
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A drawing."""
+
+    svg: Markup
+    label: str  #: for those who cannot see it
+    _: KW_ONLY
+    axes: Mapping[str, Any] | None = None  #: where a cursor moves over it
+    caption: str = ""
+
+
+@dataclass(frozen=True)
+class Group:
+    """Blocks that stand together: side by side with the look `columns`."""
+
+    look: str
+    blocks: Sequence["Block"]
+
+
+@dataclass(frozen=True)
+class PageSection:
+    """A part of a page with a heading that can be linked to; without blocks it is left out."""
+
+    title: str
+    name: str  #: of the heading
+    blocks: Sequence["Block"]
+    look: str = ""
+
+
+@dataclass(frozen=True)
+class Legend:
+    """Colours from nothing to the most."""
+
+    start: str
+    end: str
+    colours: Sequence[str]
+
+
+class Choice(NamedTuple):
+    """One of a menu."""
+
+    value: Any
+    text: str
+    chosen: bool = False
+
+
+@dataclass(frozen=True)
+class Player:
+    """The animation of a run, which `player.js` draws."""
+
+    note: str
+    _: KW_ONLY
+    loose: bool  #: of boxes that move on one another
+    exaggerations: Sequence[Choice]
+    meshed: bool  #: with deformation or forces, of which the mesh can be shown
+    legend: Legend | None = None  #: of stresses
+
+
+@dataclass(frozen=True)
+class CellMap:
+    """The map of a sweep, which `map.js` draws."""
+
+    quantities: Sequence[Choice]
+    across: Sequence[Choice]
+    up: Sequence[Choice] = ()
+
+
+#: a macro of `sections.html.j2` for each
+Block = (
+    str
+    | Paragraph
+    | Note
+    | Heading
+    | Bullets
+    | Listing
+    | Pairs
+    | Headlines
+    | Table
+    | Figure
+    | Group
+    | PageSection
+    | Legend
+    | Player
+    | CellMap
+)
