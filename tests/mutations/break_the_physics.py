@@ -2,9 +2,11 @@
 
     python tests/mutations/break_the_physics.py [-j JOBS] [--only WORDS]
 
-Each fault of `mutations` is put into a copy of the project, and the fast tests named beside it are run there, with a
-kernel cache of their own. A fault that no test notices survives; then the script ends with 1. It ends with 2 where a
-fault cannot be judged: its text is no longer there, or the tests do not pass without it.
+Each fault of `mutations` is put into a copy of the project, and the fast tests named beside it are run there. Every
+fault has a copy and an empty kernel cache of its own, and random tests draw the same examples in every run, so that a
+verdict does not depend on the faults before it, nor on chance. A fault that no test notices survives; then the script
+ends with 1. It ends with 2 where a fault cannot be judged: its text is no longer there, or the tests do not pass
+without it.
 """
 
 import argparse
@@ -19,15 +21,14 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from queue import SimpleQueue
 
 from mutation import ROOT, SOURCES, Mutation
 from mutations import MUTATIONS
 
 COPIED = ("fem", "mesh", "contact", "tests")
 TESTS_PASSED, TESTS_FAILED = 0, 1  #: exit codes of pytest; all others are no verdict
-Trees = SimpleQueue[Path]  #: free places for a copy of the project
 LONGEST = 900.0  #: [s] for the tests of one fault
 
 
@@ -50,18 +51,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--only", default="", help="faults whose name or file contains these words")
     options = parser.parse_args(arguments)
     chosen = [m for m in MUTATIONS if options.only in f"{m.file}: {m.name}"]
-    with tempfile.TemporaryDirectory(prefix="broken-physics-") as folder:
-        cache = Path(folder) / "cache"
-        trees: Trees = SimpleQueue()
-        for k in range(options.jobs):
-            trees.put(Path(folder) / f"tree-{k}")  # numba keeps kernels by the places of their sources
-        sound = soundness(trees, cache, chosen)
+    with tempfile.TemporaryDirectory(prefix="broken-physics-") as name:
+        folder = Path(name)
+        sound = soundness(folder, chosen)
         if sound:
             print(f"the tests do not pass on the physics as it is: {sound}", file=sys.stderr)
             return 2
         with ThreadPoolExecutor(options.jobs) as pool:
             findings = []
-            for finding in pool.map(lambda mutation: judge(mutation, trees, cache), chosen):
+            for finding in pool.map(partial(judge, folder=folder), chosen):
                 print(line_of(finding), flush=True)
                 findings.append(finding)
     survivors = sum(finding.verdict == "SURVIVES" for finding in findings)
@@ -70,52 +68,51 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 2 if unjudged else int(survivors > 0)
 
 
-def soundness(trees: Trees, cache: Path, mutations: Sequence[Mutation]) -> str:
-    """The first test that fails without any fault, or nothing; fills the kernel cache besides."""
-    for tests in dict.fromkeys(mutation.tests for mutation in mutations):
-        with copied_tree(trees) as tree:
-            code, by = run_tests(tree, cache, tests)
-        if code != TESTS_PASSED:
-            return by
+def soundness(folder: Path, mutations: Sequence[Mutation]) -> str:
+    """The first test that fails without any fault, or nothing."""
+    with copied_tree(folder) as tree:
+        for tests in dict.fromkeys(mutation.tests for mutation in mutations):
+            code, by = run_tests(tree, tests)
+            if code != TESTS_PASSED:
+                return by
     return ""
 
 
-def judge(mutation: Mutation, trees: Trees, cache: Path) -> Finding:
-    """Put one fault into a fresh copy and run its tests."""
+def judge(mutation: Mutation, folder: Path) -> Finding:
+    """Put one fault into a copy of its own and run its tests."""
     began = time.perf_counter()
-    with copied_tree(trees) as tree:
-        if not mutation.file:
-            verdict, by = "no verdict", "its text does not stand once in the sources"
-        else:
+    if not mutation.file:
+        verdict, by = "no verdict", "its text does not stand once in the sources"
+    else:
+        with copied_tree(folder) as tree:
             broken = SOURCES[mutation.file].replace(mutation.old, mutation.new)
             (tree / mutation.file).write_text(broken, encoding="utf-8")
-            code, by = run_tests(tree, cache, mutation.tests)
-            verdict = {TESTS_PASSED: "SURVIVES", TESTS_FAILED: "noticed"}.get(code, "no verdict")
+            code, by = run_tests(tree, mutation.tests)
+        verdict = {TESTS_PASSED: "SURVIVES", TESTS_FAILED: "noticed"}.get(code, "no verdict")
     return Finding(mutation=mutation, verdict=verdict, by=by, seconds=time.perf_counter() - began)
 
 
 @contextmanager
-def copied_tree(trees: Trees) -> Iterator[Path]:
-    """A copy of the project without what is made from it, for a while, in one of these places."""
-    tree = trees.get()
-    try:
-        for name in COPIED:
-            shutil.copytree(ROOT / name, tree / name, ignore=shutil.ignore_patterns("__pycache__"))
-        for name in ("pyproject.toml", "README.md"):
-            shutil.copy2(ROOT / name, tree / name)
+def copied_tree(folder: Path) -> Iterator[Path]:
+    """A copy of the project without what is made from it, for a while."""
+    with tempfile.TemporaryDirectory(dir=folder) as name:
+        tree = Path(name)
+        for package in COPIED:
+            shutil.copytree(ROOT / package, tree / package, ignore=shutil.ignore_patterns("__pycache__"))
+        for file in ("pyproject.toml", "README.md"):
+            shutil.copy2(ROOT / file, tree / file)
         yield tree
-    finally:
-        shutil.rmtree(tree)
-        trees.put(tree)
 
 
-def run_tests(tree: Path, cache: Path, tests: Sequence[str]) -> tuple[int, str]:
+def run_tests(tree: Path, tests: Sequence[str]) -> tuple[int, str]:
     """Exit code of pytest up to the first failure, and that test."""
-    cache.mkdir(parents=True, exist_ok=True)
+    cache = tree / "cache"
+    cache.mkdir(exist_ok=True)
     environment = {
         name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "NUMBA"))
     }
     environment |= {"XDG_CACHE_HOME": str(cache), "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1"}
+    environment |= {"CI": "1"}  # random tests draw the same examples every time, see `conftest`
     named = [f"tests/{test}" if test.endswith(".py") else test for test in tests]
     command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:xdist", "-p", "no:cacheprovider", *named]
     try:

@@ -53,11 +53,20 @@ def test_the_floor_never_pulls(penetration, rate, step):
         assert (force, by_penetration, by_rate) == (0.0, 0.0, 0.0)
 
 
-@given(st.floats(-1e-2, 1e-2), st.floats(-10.0, 10.0), st.floats(1e3, 1e8))
-def test_a_floor_that_crushes_bears_the_cap_and_no_more(penetration, rate, cap):
+@pytest.mark.parametrize("share", [0.01, 0.5, 0.99, 1.01, 2.0, 100.0])
+@given(st.floats(-1e-2, 1e-2), st.floats(-10.0, 10.0))
+def test_a_floor_that_crushes_bears_the_cap_and_no_more(share, penetration, rate):
     elastic = normal(penetration, rate)
+    cap = share * elastic[0] if elastic[0] > 0.0 else share
     capped = normal_force(penetration, rate, STIFFNESS, DAMPING, cap, STEP)
     assert capped == (elastic if elastic[0] < cap else (cap, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("rate", [-2.0, 2.0, 20.0])  # leaving, entering, and within its first step
+def test_the_cap_bounds_the_spring_and_the_dashpot_together(rate):
+    spring, whole = STIFFNESS * 1e-2, normal(1e-2, rate)[0]
+    cap = (spring + whole) / 2.0
+    assert normal_force(1e-2, rate, STIFFNESS, DAMPING, cap, STEP)[0] == min(whole, cap) != min(spring, cap)
 
 
 @given(st.floats(1e-9, 1e-2), st.floats(-10.0, 10.0))
