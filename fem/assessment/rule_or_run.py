@@ -6,12 +6,12 @@ The rule is that of one body on its floor: of the joints of a loose stack it say
 from collections.abc import Sequence
 
 from fem.assessment.loose_boxes import largest_joint_slip, limits
-from fem.assessment.sureness import ROCKING, below_uplift, rests_on_stiff_floor
+from fem.assessment.sureness import below_uplift, rests_on_stiff_floor
 from fem.case.uncertainty import MU_KINETIC, STRIBECK, WEAKENING
+from fem.results.outcome import ROCKING, SLIDING, Outcome
 from fem.results.run_result import BandMember, RunResult, StaticResult, Verdict
 
 FRICTION = {MU_KINETIC, WEAKENING, STRIBECK}
-SLIDING = ("slide", "slide-rock")
 WITHOUT_BAND = "; which of the two is to be believed, only the band can say (--band)."
 
 
@@ -34,7 +34,7 @@ def believed(result: RunResult) -> tuple[str, ...]:
             f"nothing of the joints between its boxes, where the run slid {slip} ({joint})."
         )
     use = own.utilisation_overturning
-    if use and use <= 1.0 and verdict.outcome in (*ROCKING, "overturned"):
+    if use and use <= 1.0 and verdict.outcome in (*ROCKING, Outcome.OVERTURNED):
         said.append(f"Rocking: the static rule stands at {use:.3f} and the run rocked{_on_rocking(members)}")
     return tuple(said)
 
@@ -74,7 +74,11 @@ def _on_rocking(members: Sequence[BandMember]) -> str:
             ". Neither is to be believed: it is below uplift of a rigid block, and rocks on a floor thirty times as "
             "stiff, too, because the container itself opens from the edge of its base."
         )
-    held = [one.change for one in members[1:] if one.kind == "one" and one.outcome in ("rest", *SLIDING[:1])]
+    held = [
+        one.change
+        for one in members[1:]
+        if one.kind == "one" and one.outcome in (Outcome.REST, Outcome.SLIDE)
+    ]
     if held:
         return f". Neither is to be believed without {held[0].partition(' = ')[0]}: with {held[0]} it does not rock."
     return ". Believe the run: it rocks with every single change tried."

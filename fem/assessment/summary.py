@@ -35,6 +35,7 @@ from fem.assessment.ranges import (
 )
 from fem.assessment.rule_or_run import believed
 from fem.assessment.sureness import sureness_in_words
+from fem.results.outcome import ROCKING, SLIDING, Outcome
 from fem.results.run_result import (
     ActionResult,
     Band,
@@ -60,7 +61,6 @@ MARGIN_NOTE = (
     "The rotation ratio is not a margin. The margin is the factor on the motion at which the container overturns; a "
     "sweep over motions finds it."
 )
-VERBS = {"rest": "rested", "slide": "slid", "rock": "rocked", "slide-rock": "slid, rocked"}
 
 
 def plain_summary(result: RunResult, *, folder: Path) -> str:
@@ -91,7 +91,7 @@ def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
     yield from box_table(result)
     if result.joints:
         yield from joint_tables(result.joints, verdict)
-    if verdict.outcome in ("rock", "slide-rock"):
+    if verdict.outcome in ROCKING:
         yield Text(f"{MARGIN_NOTE}\n")
     if verdict.band is not None:
         yield Text(f"{BAND_NOTE}\n")
@@ -114,12 +114,12 @@ def _found(result: RunResult) -> str:
     verdict, motion = result.verdict or Verdict(), result.motion or MotionResult()
     if verdict.outcome is None:
         return "no result yet"
-    if verdict.outcome == "overturned":
+    if verdict.outcome == Outcome.OVERTURNED:
         at = verdict.overturned_at_s
         return fall_in_words(verdict) or "overturned" + (f" at t = {at:.3f} s" if at is not None else "")
     restored = ", returned upright" if verdict.restored else ""
     under = f"{covered_in_words(motion)}{missing_peak(motion)}"
-    found = f"{VERBS.get(verdict.outcome, verdict.outcome)}{restored} and did not overturn under {under}"
+    found = f"{Outcome(verdict.outcome).verb}{restored} and did not overturn under {under}"
     joints = joints_in_words(verdict, result.static)
     return f"{found}; {joints}" if joints else found
 
@@ -178,7 +178,7 @@ def run_slid(verdict: Verdict) -> str:
     """Whether the run slid, and how far; of a loose stack, on the floor and between the boxes."""
     if verdict.max_slip_m is None:
         return "-"
-    sliding = bool({"slide", "slide-rock"} & {verdict.outcome, *verdict.modes})
+    sliding = not {verdict.outcome, *verdict.modes}.isdisjoint(SLIDING)
     if not verdict.boxes:
         return f"{'slid' if sliding else 'held'}, slip {largest_slip(verdict)}"
     between, _ = largest_joint_slip(verdict)
@@ -187,7 +187,7 @@ def run_slid(verdict: Verdict) -> str:
 
 def run_tilted(verdict: Verdict) -> str:
     """Whether the run overturned, and how far it turned."""
-    if verdict.outcome == "overturned":
+    if verdict.outcome == Outcome.OVERTURNED:
         return "overturned"
     ratio = verdict.rotation_ratio
     return "-" if ratio is None else f"stood, ratio {rotation_ratio(verdict)}"

@@ -13,8 +13,8 @@ from typing import Protocol
 
 import numpy as np
 
-from fem.assessment.verdict import MODE_NAMES
 from fem.case.uncertainty import INPUTS, InputChange
+from fem.results.outcome import ROCKING, Outcome
 from fem.results.run_result import Band, BandMember, BoxReach, RunResult, StaticResult, Verdict
 
 SURE, REGIME_UNSURE, UNSURE = "sure", "regime unsure", "unsure"
@@ -40,7 +40,6 @@ LARGE_SLIP, LARGE_ROTATION = 0.01, 0.1
 SAME, OTHER_REGIME, OTHER_END = 0, 1, 2
 ORDER = {key: k for k, key in enumerate(INPUTS)}
 MOST_DRAWN = 3  #: inputs named where only draws differ
-ROCKING = ("rock", "slide-rock")
 
 
 class BoxStanding(Protocol):
@@ -106,10 +105,10 @@ def judged(
     alike = [one for one in members if _stands(one) == _stands(own) and one.outcome is not None]
     draws = [one for one in others if one.kind == "draw"]
     band = Band(
-        outcomes=tuple(name for name in MODE_NAMES.values() if name in found),
+        outcomes=tuple(outcome for outcome in Outcome if outcome in found),
         unsure=sure == UNSURE,
         draws=len(draws),
-        draws_overturned=sum(one.outcome == "overturned" for one in draws),
+        draws_overturned=sum(one.outcome == Outcome.OVERTURNED for one in draws),
         left_out=tuple(one.label for one in missing),
         draws_left_out=len(left_out) - len(missing),
         members=tuple(members),
@@ -128,7 +127,7 @@ def below_uplift(members: Sequence[BandMember]) -> bool:
 
 def rests_on_stiff_floor(members: Sequence[BandMember]) -> bool:
     """Whether a floor so stiff that it is rigid lets the container rest or slide without rocking."""
-    still = ("rest", "slide")
+    still = (Outcome.REST, Outcome.SLIDE)
     return any(one.kind == "floor" and one.outcome in still for one in members)
 
 
@@ -169,14 +168,14 @@ def sureness_in_words(result: RunResult) -> str:
 
 def _drawn(band: Band) -> str:
     if not band.draws:
-        overturned = sum(one.outcome == "overturned" for one in band.members)
+        overturned = sum(one.outcome == Outcome.OVERTURNED for one in band.members)
         return f"overturned in {overturned} of {len(band.members)} runs"
     left_out = f" ({band.draws_left_out} more left out for time)" if band.draws_left_out else ""
     return f"overturned in {band.draws_overturned} of {band.draws} draws{left_out}"
 
 
 def _stands(member: Standing) -> bool:
-    return member.outcome != "overturned"
+    return member.outcome != Outcome.OVERTURNED
 
 
 def difference(own: Standing, other: Standing, width: float) -> int:

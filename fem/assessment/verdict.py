@@ -19,31 +19,31 @@ from contact.stepping.ledger import (
     LOSS_SHARE_LIMIT,
     MATERIAL_DAMPING,
 )
-from contact.stepping.observables import FALLEN, FORCE_WINDOW, REST, ROCK, ROCKING, SLIDE, SLIDE_ROCK, SLIDING
+from contact.stepping.observables import FORCE_WINDOW, ROCKING, SLIDING
 from fem.case.case import Case
 from fem.model.floor import YIELD_STRENGTH, is_steel_shell, plastic_work, steel_capacity
 from fem.model.model import Model
 from fem.results.history import History
+from fem.results.outcome import Outcome
 from fem.results.run_result import BoxResult, Energy, Numerics, Verdict
 from fem.runtime.arrays import FloatArray
 
-MODE_NAMES = {REST: "rest", SLIDE: "slide", ROCK: "rock", SLIDE_ROCK: "slide-rock", FALLEN: "overturned"}
 RotationT = TypeVar("RotationT", float, FloatArray)
 
 CONTENTS_FILTER = "Butterworth low-pass of two poles, causal"  #: `contact.stepping.contents`
 MOST_RESTITUTION = 1.05
 
 
-def outcome_of(model: Model) -> str:
+def outcome_of(model: Model) -> Outcome:
     """One word for the whole run."""
     track = model.run.track[0]
     if math.isfinite(track.overturned_at):
-        return "overturned"
+        return Outcome.OVERTURNED
     angle = ROCKING * model.static.slenderness_angle
     rocks = track.max_rocking > angle
     for joint in model.run.joints[1:]:  # of a loose stack, what its other boxes do counts as well
         rocks = rocks or min(joint.max_rotation, joint.max_opening / joint.width) > angle
-    return MODE_NAMES[(ROCK if rocks else REST) + (SLIDE if _slides(model) else REST)]
+    return Outcome.of(slides=_slides(model), rocks=rocks)
 
 
 def _slides(model: Model) -> bool:
@@ -83,7 +83,7 @@ def verdict_from(
     boxes = box_results(model)
     rotation = max((box.max_rotation_rad for box in boxes), default=track.max_rotation)
     sampled = end is not None and end > 0.0
-    rocked = outcome in ("rock", "slide-rock")
+    rocked = outcome in (Outcome.ROCK, Outcome.SLIDE_ROCK)
     return Verdict(
         outcome=outcome,
         modes=_modes_seen(track.modes, outcome, slides=_slides(model)),
@@ -239,15 +239,16 @@ def _restitution(track: SimpleNamespace) -> float | None:
     return track.restitution if 0.0 < track.restitution < MOST_RESTITUTION else None
 
 
-def _modes_seen(modes: int, outcome: str, *, slides: bool) -> tuple[str, ...]:
+def _modes_seen(modes: int, outcome: Outcome, *, slides: bool) -> tuple[str, ...]:
     """States that the history passed through, and the outcome, which may follow from creep alone.
 
     Sliding that is too small to count in the outcome does not count here.
     """
-    seen = {name for mode, name in MODE_NAMES.items() if modes & 1 << mode}
+    seen = {mode for mode in Outcome if modes & 1 << mode.code}
     if not slides:
-        seen = {{"slide": "rest", "slide-rock": "rock"}.get(name, name) for name in seen}
-    return tuple(name for name in MODE_NAMES.values() if name in seen or name == outcome)
+        still = {Outcome.SLIDE: Outcome.REST, Outcome.SLIDE_ROCK: Outcome.ROCK}
+        seen = {still.get(mode, mode) for mode in seen}
+    return tuple(mode for mode in Outcome if mode in seen or mode == outcome)
 
 
 def end_of_drive(model: Model) -> float:

@@ -13,6 +13,7 @@ from fem.assessment.sureness import SURE, sureness_in_words
 from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from fem.case.case import Case
 from fem.case.rules import MOST_FREE_MOTION, ends_at_rest, longest_time
+from fem.results.outcome import Outcome
 from fem.results.run_result import (
     ActionResult,
     Energy,
@@ -150,7 +151,7 @@ def motion_is_doubtful(result: RunResult, case: Case) -> str | None:
 def rest_proves_nothing(result: RunResult, case: Case) -> str | None:
     """Where the static rule also says that it stands, a run at rest is no argument against the rule."""
     own = _own_motion(result)
-    if _verdict(result).outcome != "rest" or own == ActionResult():
+    if _verdict(result).outcome != Outcome.REST or own == ActionResult():
         return None
     uses = (own.utilisation_sliding, own.utilisation_overturning)
     if any(use is None or use > 1.0 for use in uses):

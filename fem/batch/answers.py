@@ -13,8 +13,8 @@ from typing import NamedTuple
 from fem.assessment.ranges import LEAST_LENGTH
 from fem.batch.axes import Axis
 from fem.batch.labels import in_words, plain_number
+from fem.results.outcome import Ending
 
-STANDING, OVERTURNED, FAILED = "standing", "overturned", "failed"
 #: axes of the floor's strength, that first along which an answer is given where a study does not say
 STRENGTHS = (
     "motion.peak_acceleration_m_s2",
@@ -36,7 +36,7 @@ class Trial(NamedTuple):
 
     value: float  #: on the axis of the answer
     line: int  #: runs of one line differ in that value alone
-    kind: str  #: standing | overturned | failed
+    kind: Ending
     slip: float | None = None  #: largest |slip| [m]
     unsure: bool | None = (
         None  #: whether unknown inputs or small changes turn the outcome; None where not tried
@@ -76,10 +76,10 @@ def is_rising(axis: Axis, trials: Iterable[Trial]) -> bool:
         return False
     if axis.key in STRENGTHS:
         return True
-    kinds: dict[float, set[str]] = defaultdict(set)
+    kinds: dict[float, set[Ending]] = defaultdict(set)
     for one in trials:
         kinds[one.value].add(one.kind)
-    return not (OVERTURNED in kinds[axis.values[0]] and kinds[axis.values[-1]] == {STANDING})
+    return not (Ending.OVERTURNED in kinds[axis.values[0]] and kinds[axis.values[-1]] == {Ending.STANDING})
 
 
 def answer_of(trials: Sequence[Trial], *, rising: bool) -> Answer:
@@ -95,11 +95,11 @@ def answer_of(trials: Sequence[Trial], *, rising: bool) -> Answer:
         at[one.value].append(one)
     values = sorted(at, reverse=not rising)
     kinds = {value: {one.kind for one in at[value]} for value in values}
-    stands = [kinds[value] == {STANDING} for value in values]
-    fallen = [value for value in values if OVERTURNED in kinds[value]]
+    stands = [kinds[value] == {Ending.STANDING} for value in values]
+    fallen = [value for value in values if Ending.OVERTURNED in kinds[value]]
     first = values.index(fallen[0]) if fallen else len(values)
     upright = stands.index(False) if False in stands else len(values)
-    fell = [one for one in at[fallen[0]] if one.kind == OVERTURNED] if fallen else []
+    fell = [one for one in at[fallen[0]] if one.kind == Ending.OVERTURNED] if fallen else []
     worst = max(fell, key=lambda one: (one.slip or 0.0, -one.line), default=None)
     # A value tried in some lines only is unknown for the others; where it did not stand, it ends a range.
     beyond = [
@@ -118,7 +118,7 @@ def answer_of(trials: Sequence[Trial], *, rising: bool) -> Answer:
         slip=worst.slip if worst else None,
         line=worst.line if worst else None,
         stood_again=tuple(_ranges(beyond)),
-        failed=tuple(_ranges((value, FAILED in kinds[value]) for value in values)),
+        failed=tuple(_ranges((value, Ending.FAILED in kinds[value]) for value in values)),
         unsure=tuple(_ranges((value, any(marks)) for value, marks in sureness)),
     )
 

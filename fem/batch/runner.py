@@ -21,6 +21,7 @@ from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
 from fem.model.motion import build_motions, motion_result
 from fem.model.recovery import recovery_of
+from fem.results.outcome import Outcome
 from fem.results.run_result import Verdict
 from fem.run.outcome import run_without_history
 from fem.run.recorder import Recorder
@@ -273,7 +274,7 @@ def run_model(model: Model) -> Row:
     """Step a rigid or reduced model to its end, in place; its row."""
     recovery = _CONTAINERS.recovery_of(model) if model.case.solver.model == "reduced" else None
     verdict, error = run_without_history(model, recovery)
-    ended = "overturned" if verdict.outcome == "overturned" else "completed"
+    ended = "overturned" if verdict.outcome == Outcome.OVERTURNED else "completed"
     return _row("failed" if error else ended, error, verdict)
 
 

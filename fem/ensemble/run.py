@@ -33,11 +33,7 @@ from fem.ensemble.distributions import RandomChoice, RandomQuantity
 from fem.ensemble.figures import ensemble_figures
 from fem.ensemble.plan import Draw, Ensemble
 from fem.ensemble.statistics import (
-    FAILED,
-    MISSING,
-    OVERTURNED,
     POINT_COLUMNS,
-    STOOD,
     PointResult,
     count_point,
     fragility_of,
@@ -45,6 +41,7 @@ from fem.ensemble.statistics import (
 from fem.ensemble.unknown import UnknownInputs
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
 from fem.results.kinds import ENSEMBLE
+from fem.results.outcome import COUNTED, Ending, ending_of
 from fem.results.run_files import copy_data_files
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.runtime.signals import interruptible
@@ -55,8 +52,7 @@ DRAWS = "draws.csv"
 BYTES_OF_A_DRAW, BYTES_OF_A_NUMBER, BYTES_OF_A_POINT, BYTES_BESIDE = 45, 20, 1000, 500_000
 BYTES_OF_A_MOTION = 4000  #: its spectrum and measures
 MOST_COPIED = 100  #: motions of a set that is copied into the results unless the file says otherwise
-WORDS = {STOOD: "stood", OVERTURNED: "overturned", FAILED: "failed"}
-CODES = {word: code for code, word in WORDS.items()}
+WORDS = {ending: word for word, ending in COUNTED.items()}
 
 
 class DrawRows:
@@ -69,7 +65,7 @@ class DrawRows:
         keys = [f"{one.key}{' factor' if one.relative else ''}" for one in ensemble.random]
         keys += self._following
         self.columns = ("point", "draw", "replicate", *keys, *unknown.keys, "outcome", "rotation_ratio")
-        self.codes = np.full((ensemble.count, ensemble.draws), MISSING, dtype=np.int8)
+        self.codes = np.full((ensemble.count, ensemble.draws), Ending.UNKNOWN, dtype=np.int8)
         self._lines: dict[tuple[int, int], str] = {}
 
     def values(self, draw: Draw, row: Row) -> tuple[Any, ...]:
@@ -77,7 +73,7 @@ class DrawRows:
         replicate = draw.number // (self._ensemble.draws // self._ensemble.replicates)
         ratio = row["rotation_ratio"]
         known = ratio is not None and np.isfinite(ratio)
-        found = WORDS[code_of(row)], ratio if known else None
+        found = WORDS[ending_of(row["status"], row["outcome"])], ratio if known else None
         unknown = (draw.unknown.get(key) for key in self._unknown.keys)
         following = (draw.following.get(key) for key in self._following)
         return draw.cell, draw.number, replicate, *draw.values, *following, *unknown, *found
@@ -85,7 +81,7 @@ class DrawRows:
     def note(self, line: str) -> None:
         """Add a line of the log."""
         cell, number, *_, outcome, _ = fields_of(line)
-        self.codes[int(cell), int(number)] = CODES[outcome]
+        self.codes[int(cell), int(number)] = COUNTED[outcome]
         self._lines[int(cell), int(number)] = line
 
     def table(self) -> str:
@@ -96,15 +92,15 @@ class DrawRows:
         """How many draws of each replicate stood, overturned and failed, over all points."""
         blocks = self.codes.reshape(len(self.codes), self._ensemble.replicates, -1)
         return [
-            {word: int((block == code).sum()) for code, word in WORDS.items()}
+            {word: int((block == code).sum()) for word, code in COUNTED.items()}
             for block in np.moveaxis(blocks, 1, 0)
         ]
 
     def missing(self) -> list[Draw]:
         """The draws that have no row."""
-        cells = np.flatnonzero((self.codes == MISSING).any(axis=1)).tolist()
+        cells = np.flatnonzero((self.codes == Ending.UNKNOWN).any(axis=1)).tolist()
         draws = (draw for cell in cells for draw in self._unknown.draws_at(cell))
-        return [draw for draw in draws if self.codes[draw.cell, draw.number] == MISSING]
+        return [draw for draw in draws if self.codes[draw.cell, draw.number] == Ending.UNKNOWN]
 
 
 def run_ensemble(
@@ -188,7 +184,7 @@ def _finish(
     runner: Runner,
 ) -> dict[str, Any]:
     """Count what there is, and write it."""
-    complete = (draws.codes != MISSING).all(axis=1)
+    complete = (draws.codes != Ending.UNKNOWN).all(axis=1)
     points = [count_point(ensemble, int(k), draws.codes[k]) for k in np.flatnonzero(complete)]
     status, fragility = "interrupted", None
     if complete.all():
@@ -342,13 +338,6 @@ def csv_of_points(ensemble: Ensemble, points: Sequence[PointResult]) -> str:
     names = [*(axis.key for axis in ensemble.axes), *POINT_COLUMNS]
     rows = [point.row() for point in points]
     return table_text(names, ([row[name] for name in names] for row in rows))
-
-
-def code_of(row: Row) -> int:
-    """Code of one run; what failed is never one that stood."""
-    if row["outcome"] is None:
-        return FAILED
-    return OVERTURNED if row["outcome"] == "overturned" else STOOD
 
 
 def region_words(result: Mapping[str, Any]) -> dict[str, str]:

@@ -16,12 +16,11 @@ from fem.ensemble.fragility import (
     misses_by_chance,
 )
 from fem.ensemble.plan import Ensemble
+from fem.results.outcome import COUNTED, Ending
 from fem.runtime.arrays import FloatArray
 
-#: codes of a draw's outcome
-MISSING, STOOD, OVERTURNED, FAILED = -1, 0, 1, 2
 #: columns of `points.csv` behind those of the axes
-POINT_COLUMNS = ("draws", "stood", "overturned", "failed", "probability", "low", "high", "region")
+POINT_COLUMNS = ("draws", *COUNTED, "probability", "low", "high", "region")
 FEWEST_FITTED = 4  #: levels from which a curve is fitted
 FEWEST_RESAMPLED = 0.9  #: share of the resamples that must have a curve, else there is no band
 
@@ -52,8 +51,8 @@ class PointResult:
 
 
 def count_point(ensemble: Ensemble, cell: int, codes: np.ndarray) -> PointResult:
-    """The result of a point from the codes (draws,) of its draws."""
-    overturned, failed = codes == OVERTURNED, codes == FAILED
+    """The result of a point from the endings (draws,) of its draws."""
+    overturned, failed = codes == Ending.OVERTURNED, codes == Ending.FAILED
     found = estimate(
         overturned,
         failed,
@@ -68,7 +67,7 @@ def count_point(ensemble: Ensemble, cell: int, codes: np.ndarray) -> PointResult
         region = "above"
     return PointResult(
         values=ensemble.point(cell),
-        stood=int((codes == STOOD).sum()),
+        stood=int((codes == Ending.STANDING).sum()),
         overturned=int(overturned.sum()),
         failed=int(failed.sum()),
         estimate=found,
@@ -145,4 +144,5 @@ def _lognormal(
 def _by_replicate(ensemble: Ensemble, codes: np.ndarray) -> tuple[FloatArray, FloatArray]:
     """Overturned, and draws with an outcome, in each replicate, shapes (points, replicates)."""
     blocks = codes.reshape(len(codes), ensemble.replicates, -1)
-    return (blocks == OVERTURNED).sum(axis=2).astype(float), (blocks != FAILED).sum(axis=2).astype(float)
+    fallen, known = blocks == Ending.OVERTURNED, blocks != Ending.FAILED
+    return fallen.sum(axis=2).astype(float), known.sum(axis=2).astype(float)

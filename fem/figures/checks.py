@@ -34,6 +34,7 @@ from fem.figures.style import (
     panels,
     time_panels,
 )
+from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
 from fem.results.run_result import BandMember, RigidCheckResult, RunAndBlock, Verdict
 
@@ -169,4 +170,6 @@ def _ratios(check: RigidCheckResult) -> str:
 def _height(member: BandMember) -> float:
     if member.outcome is None:
         return 0.0
-    return FALLEN_ROW if member.outcome == "overturned" else min(member.rotation_ratio or 0.0, FALLEN_ROW)
+    return (
+        FALLEN_ROW if member.outcome == Outcome.OVERTURNED else min(member.rotation_ratio or 0.0, FALLEN_ROW)
+    )

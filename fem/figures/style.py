@@ -22,18 +22,19 @@ from numpy.typing import NDArray
 
 from fem.html.units import times_ten_to
 from fem.results.history import History
+from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
 
 BLACK, GREY = "#222222", "#6E6E6E"
 BLUE, VERMILLION, GREEN = "#0072B2", "#D55E00", "#009E73"
 ORANGE, SKY, PURPLE = "#E69F00", "#56B4E9", "#CC79A7"
 #: of the states of motion; sky and orange, green and purple also differ in brightness
-STATE_COLOURS = {
-    "rest": "#BBBBBB",
-    "slide": SKY,
-    "rock": ORANGE,
-    "slide-rock": PURPLE,
-    "overturned": BLACK,
+STATE_COLOURS: dict[str, str] = {
+    Outcome.REST: "#BBBBBB",
+    Outcome.SLIDE: SKY,
+    Outcome.ROCK: ORANGE,
+    Outcome.SLIDE_ROCK: PURPLE,
+    Outcome.OVERTURNED: BLACK,
 }
 WIDTH = 7.0  #: of a figure [inch], the text width of an A4 page
 LEFT, RIGHT, FOOTER = 0.8, 0.15, 0.45  #: margins [inch]
@@ -143,7 +144,7 @@ def time_panels(
     Returns:
         The figure and its panels, without that of the states.
     """
-    states = [] if history is None else [state for state in STATE_COLOURS if state in set(history.modes)]
+    states = [] if history is None else [state for state in Outcome if state in set(history.modes)]
     rows = [*heights, *([0.06 + 0.14 * len(states)] if states else [])]
     spaces = [*(gaps or [GAP] * (len(heights) - 1)), *([GAP] if states else [])]
     figure, axes = panels(rows, gaps=spaces, header=header, above=above)

@@ -15,6 +15,7 @@ from fem.report.motion_part import motions_of_ensemble
 from fem.report.studies import PageTable, again_from_files, axis_row, drawings, page_table, study_page
 from fem.results.errors import FolderError
 from fem.results.kinds import ENSEMBLE, read_result
+from fem.results.outcome import COUNTED
 
 FIGURES = ("figures/fragility.svg", "figures/boundary.svg")
 
@@ -96,7 +97,7 @@ def random_table(info: Mapping[str, Any]) -> PageTable:
 def points_table(info: Mapping[str, Any]) -> PageTable:
     """A row a point: the counts, the share that overturned, its interval, the region."""
     axes, words = axes_of(info), region_labels(info)
-    counted = ("draws", "stood", "overturned", "failed")
+    counted = ("draws", *COUNTED)
     numbers = (*counted, "share", f"{100.0 * info['confidence']:g} % interval")
     columns = dict.fromkeys((axis_label(axis) for axis in axes), True)
     columns |= dict.fromkeys(numbers, True) | {"region": False}

@@ -11,9 +11,9 @@ from markupsafe import Markup
 from fem.html.units import ABSENT, millimetres, number, rotation_ratio, short
 from fem.records.units import STANDARD_GRAVITY
 from fem.report.studies import PageTable, drawings, page_table
+from fem.results.outcome import COUNTED, ROCKING, SLIDING, Ending, ending_of
 from fem.sweep.cells import Shown
 from fem.sweep.motion_outcomes import MotionOutcome, motions_at
-from fem.sweep.neighbours import FAILED, kind_of
 from fem.sweep.table import SweepTable
 
 MOST_POINTS = 12  #: beside one another in the table of outcomes
@@ -35,14 +35,13 @@ def motions_of_ensemble(folder: Path, info: Mapping[str, Any]) -> MotionPart | N
     motions = info.get("motions")
     if not motions:
         return None
-    counts = ("stood", "overturned", "failed")
-    rows = ([one["file"], *(str(one[name]) for name in counts)] for one in motions)
+    rows = ([one["file"], *(str(one[name]) for name in COUNTED)] for one in motions)
     return MotionPart(
         numbers=_numbers(motions),
         drawn=_drawn(folder, info, "ensemble"),
         outcomes=page_table(
             "outcome of each motion",
-            {"motion": False} | dict.fromkeys(counts, True),
+            {"motion": False} | dict.fromkeys(COUNTED, True),
             rows,
             caption="Draws under each motion, at all points",
             file="motions.csv",
@@ -147,10 +146,10 @@ def _shown(table: SweepTable) -> dict[int, Shown]:
     for cell in range(len(table["cell"])):
         outcome = str(table["outcome"][cell])
         ratio, slip = float(table["rotation_ratio"][cell]), float(table["max_slip_m"][cell])
-        kind = kind_of(str(table["status"][cell]), outcome)
+        kind = ending_of(str(table["status"][cell]), outcome)
         found[cell] = Shown(
             kind=kind,
-            outcome=None if kind == FAILED else outcome,
+            outcome=None if kind is Ending.FAILED else outcome,
             rotation_ratio=ratio if np.isfinite(ratio) else None,
             max_slip_m=slip if np.isfinite(slip) else None,
         )
@@ -160,11 +159,11 @@ def _shown(table: SweepTable) -> dict[int, Shown]:
 def _outcome(one: MotionOutcome) -> str:
     """An outcome with the figures that belong to it."""
     words = _words(one.outcome, one.rotation_ratio)
-    return f"{words}, {millimetres(one.max_slip_m)} mm" if one.outcome in ("slide", "slide-rock") else words
+    return f"{words}, {millimetres(one.max_slip_m)} mm" if one.outcome in SLIDING else words
 
 
 def _words(outcome: str | None, ratio: float | None) -> str:
     """An outcome, and the rotation ratio of what rocked."""
     if outcome is None:
         return "failed"
-    return f"{outcome}, {rotation_ratio(ratio)}" if outcome in ("rock", "slide-rock") else outcome
+    return f"{outcome}, {rotation_ratio(ratio)}" if outcome in ROCKING else outcome

@@ -49,6 +49,7 @@ from fem.results.errors import FolderError
 from fem.results.fields import Fields
 from fem.results.history import History
 from fem.results.kinds import RUN
+from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
 from fem.results.run_result import RigidCheckResult, Verdict
 from fem.solid.modes import FEW, elastic_mode_table
@@ -238,6 +239,6 @@ def _standing(status: str, verdict: Verdict) -> str:
     """How the verdict is coloured: what the run found, never whether that is safe."""
     if status not in RUN.finished:
         return "open"
-    if verdict.outcome == "overturned":
+    if verdict.outcome == Outcome.OVERTURNED:
         return "fell"
     return "unsure" if verdict.band is not None and verdict.band.unsure else "stood"

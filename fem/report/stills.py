@@ -15,6 +15,7 @@ from fem.assessment.summary import ratio_in_words
 from fem.assessment.verdict import rotation_ratio
 from fem.report.animation import Animation, AnimationFrame, colour_scale, exaggeration, round_down
 from fem.results.history import History
+from fem.results.outcome import ROCKING, SLIDING, Outcome
 from fem.results.run_result import Verdict
 from fem.runtime.arrays import FloatArray
 
@@ -78,10 +79,10 @@ def _instants(shown: Animation, history: History, verdict: Verdict) -> dict[int,
     if verdict.first_uplift_s is not None:
         wanted.append((int(np.searchsorted(times, verdict.first_uplift_s)), "after the first uplift"))
     seen = {verdict.outcome, *verdict.modes}
-    if seen & {"rock", "slide-rock", "overturned"}:
+    if not seen.isdisjoint((*ROCKING, Outcome.OVERTURNED)):
         wanted.append((int(np.argmax(rotation)), "farthest to the right"))
         wanted.append((int(np.argmin(rotation)), "farthest to the left"))
-    if seen & {"slide", "slide-rock"} or (verdict.max_joint_slip_m or 0.0) > LEAST_LENGTH:
+    if not seen.isdisjoint(SLIDING) or (verdict.max_joint_slip_m or 0.0) > LEAST_LENGTH:
         wanted.append((int(np.argmax(slip)), "largest slip"))
     chosen: dict[int, str] = {}
     for k, name in [*wanted, (len(times) - 1, "last frame")]:

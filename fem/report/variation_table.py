@@ -21,6 +21,7 @@ from fem.case.case import Case
 from fem.report.variations import Variation, by_importance, variations_of
 from fem.results.files import to_json, write_atomically
 from fem.results.json_block import JsonBlock
+from fem.results.outcome import Outcome
 from fem.results.run_result import RunResult
 from fem.runtime.identity import versions
 
@@ -69,15 +70,15 @@ class VariationTable:
     def sentence(self) -> str:
         """The table in a few words."""
         count, outcomes = len(self.lines) - 1, [line.row.outcome for line in self.lines]
-        overturned = outcomes[1:].count("overturned")
+        overturned = outcomes[1:].count(Outcome.OVERTURNED)
         words = [
             f"The outcome is the same in all {count}."
             if self.changed == 0
             else f"In {self.changed} of {count} the outcome differs."
         ]
-        if overturned and outcomes[0] != "overturned":
+        if overturned and outcomes[0] != Outcome.OVERTURNED:
             words.append(f"It overturns in {overturned}.")
-        rows = [line.row for line in self.lines if line.row.outcome != "overturned"]
+        rows = [line.row for line in self.lines if line.row.outcome != Outcome.OVERTURNED]
         ratios = [row.rotation_ratio for row in rows if row.rotation_ratio is not None]
         if ratios:
             low, high = ratio_in_words(min(ratios)), ratio_in_words(max(ratios))

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact.stepping.observables import ROCK, ROCKING, SLIDE
-from fem.assessment.verdict import MODE_NAMES, SLIDING, rotation_ratio
+from contact.stepping.observables import ROCKING
+from fem.assessment.verdict import SLIDING, rotation_ratio
 from fem.case.case import Case
 from fem.model.container import Container
 from fem.response.decay import Decay, follow_decay
@@ -18,6 +18,7 @@ from fem.response.model import DrivenModel, begin_drive, carry_drive, driven_cas
 from fem.response.orbit import Orbit, Progress, follow_periods, no_progress, step_until
 from fem.response.request import ResponseRequest
 from fem.response.stability import LongTime, amplitude_growth, amplitudes_diverge, classify
+from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
 
 PORTRAYED = 16  #: last periods whose phase portrait is kept; of a periodic motion, one of its periods
@@ -170,7 +171,7 @@ def judge(request: ResponseRequest, case: Case, driven: DrivenModel, orbit: Orbi
     scales = [angle, angle * control.frequency_parameter, amplitude * case.angular_frequency, amplitude]
     return classify(
         orbit.sections / scales,
-        resting=motion_of(driven, orbit) == "rest",
+        resting=motion_of(driven, orbit) == Outcome.REST,
         tolerance=request.tolerance,
         largest_period=request.largest_period,
     )
@@ -179,7 +180,7 @@ def judge(request: ResponseRequest, case: Case, driven: DrivenModel, orbit: Orbi
 def motion_of(driven: DrivenModel, orbit: Orbit) -> str:
     """One word for a window of periods, with the limits of a verdict."""
     if orbit.status == "overturned":
-        return "overturned"
+        return Outcome.OVERTURNED
     rocks = orbit.extremes[:, 3].max() > ROCKING * driven.run.control.slenderness_angle
     slides = orbit.extremes[:, 4].max() > SLIDING * driven.run.control.width
-    return MODE_NAMES[(ROCK if rocks else 0) + (SLIDE if slides else 0)]
+    return Outcome.of(slides=slides, rocks=rocks)

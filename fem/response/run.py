@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from fem.assessment.verdict import MODE_NAMES
 from fem.case.case import Case, to_toml
 from fem.model.container import Container, discretise
 from fem.response.answer import found_at, response_answer
@@ -33,6 +32,7 @@ from fem.response.records import (
 from fem.response.request import ResponseRequest
 from fem.results.folder import ResultFolder, open_result_folder, program_of_results
 from fem.results.kinds import RESPONSE
+from fem.results.outcome import MODES
 from fem.run.checkpoint import changing, require_same
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.runtime.signals import interruptible
@@ -215,7 +215,7 @@ def _sweep(
     reporter.start(sum(spans))
 
     def progress(time: float, rotation: float, mode: int) -> None:
-        reporter.update(done + time, abs(rotation) / angle, MODE_NAMES[mode])
+        reporter.update(done + time, abs(rotation) / angle, MODES[mode])
 
     points = sweep_points(request, container, skip=len(records), before=before, progress=progress)
     if stop():

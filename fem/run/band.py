@@ -35,6 +35,7 @@ from fem.model.joints import Joints, joints_of
 from fem.model.model import Model, build_model
 from fem.model.recovery import Recovery, recovery_of
 from fem.model.validity import runs_in_memory
+from fem.results.outcome import Outcome
 from fem.results.run_result import (
     BandMember,
     JointDemand,
@@ -126,7 +127,7 @@ def wants_band(asked: bool | None, case: Case, result: RunResult) -> bool:
 def rests_far_below_limits(result: RunResult) -> bool:
     """Whether a run rests and the static rule leaves so much that nothing which is not known moves it."""
     used = static_use(result)
-    return (result.verdict or Verdict()).outcome == "rest" and used is not None and used < NEAR_LIMIT
+    return (result.verdict or Verdict()).outcome == Outcome.REST and used is not None and used < NEAR_LIMIT
 
 
 def plan_of(model: Model, result: RunResult) -> Plan:
@@ -236,7 +237,7 @@ def _run_member(
         model = build_model(case, run.container)
         if plan.short and (change.kind != "one" or case.container.bolted_joints == 0):
             verdict, error = run_without_history(model, shared.recovery)
-            status = "overturned" if verdict.outcome == "overturned" else "completed"
+            status = "overturned" if verdict.outcome == Outcome.OVERTURNED else "completed"
             if error is not None:
                 return _without_outcome(change, "failed", error)
             return _member(change, case, model, status, verdict, None)

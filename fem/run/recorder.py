@@ -12,11 +12,11 @@ from contact.motion.kernel import floor_history, floor_motion
 from contact.stepping import state as stepper
 from contact.stepping.body import ROTATION, State
 from contact.stepping.state import RunState, Samples
-from fem.assessment.verdict import MODE_NAMES
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model
 from fem.model.recovery import Recovery
 from fem.results.history import BOX_COLUMNS, JOINT_COLUMNS, NUMBERS, VERTICAL_COLUMNS, History
+from fem.results.outcome import MODES
 from fem.runtime.arrays import FloatArray
 
 #: the stepper's columns in the order of a history's, behind time and base motion
@@ -163,7 +163,7 @@ class Recorder:
         rows[:, own - self._joint_forces.size : own] = self._forces_in_joints(samples, first, count)
         rows[:, own:] = samples.columns[:count, stepper.ROW_COLUMNS :]
         rows += 0.0  # no minus zero
-        modes = [MODE_NAMES[int(mode)] for mode in samples.mode[:count]]
+        modes = [MODES[int(mode)] for mode in samples.mode[:count]]
         if self._recovery is not None and samples.position.shape[1] > 0 and not self._recovery.full:
             self._note_stress(self._recovery.largest_von_mises(samples.position[:count]))
         self._rows.append(rows)

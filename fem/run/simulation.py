@@ -23,8 +23,9 @@ from contact.stepping.control import most_attempts
 from contact.stepping.integrator import AFTERMATH_SLICE, FAILED, OVERTURNED, REACHED
 from contact.stepping.outcome import DRIVEN, FREE, UNDECIDED, is_over, on_resting_floor
 from contact.stepping.state import RunState
-from fem.assessment.verdict import MODE_NAMES, audit, rotation_ratio, softer_contact
+from fem.assessment.verdict import audit, rotation_ratio, softer_contact
 from fem.model.model import Model
+from fem.results.outcome import MODES
 from fem.run.recorder import Recorder
 from fem.runtime.progress import Reporter, SilentReporter
 from fem.solid.elasticity import least_volume_ratio
@@ -132,7 +133,7 @@ def simulate(
         if progress.slice is None:
             recorder.drain(run)
         ratio = rotation_ratio(float(run.old.pose[ROTATION]), control.slenderness_angle)
-        reporter.update(float(clock.time), ratio, MODE_NAMES[int(track.mode)])
+        reporter.update(float(clock.time), ratio, MODES[int(track.mode)])
         if progress.slice is not None:
             continue
         stuck = _attempts(run) >= most_attempts(control, float(clock.time))

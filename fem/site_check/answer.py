@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from fem.assessment.ranges import LEAST_LENGTH, in_figures
 from fem.assessment.summary import ratio_in_words
 from fem.batch.intervals import binomial_interval
+from fem.results.outcome import Outcome
 from fem.site_check.file import SiteRequest
 from fem.site_check.result import (
     ConfirmedRun,
@@ -14,7 +15,7 @@ from fem.site_check.result import (
     SiteAnswer,
     SiteRun,
 )
-from fem.site_check.rule import OVERTURNED, RunGroup, groups_of, rule_in_words
+from fem.site_check.rule import RunGroup, groups_of, rule_in_words
 from fem.site_check.runs import FURTHER, REFINED, SCAN, SET, RunKey
 
 CONFIDENCE = 0.95
@@ -43,7 +44,7 @@ def answer_of(
         return SiteAnswer(
             rule=rule,
             sentence=f"No answer yet: {len(own)} of {expected} runs are computed.",
-            overturned=sum(run.outcome == OVERTURNED for run in own),
+            overturned=sum(run.outcome == Outcome.OVERTURNED for run in own),
             runs=len(own),
         )
     groups, limits = groups_of(own), request.limits
@@ -72,7 +73,7 @@ def answer_of(
 
 def governing_run(request: SiteRequest, runs: Sequence[SiteRun]) -> SiteRun | None:
     """The run that decides: one that overturned, else the largest of the group that uses most of a limit."""
-    fell = [run for run in runs if run.outcome == OVERTURNED]
+    fell = [run for run in runs if run.outcome == Outcome.OVERTURNED]
     if fell:
         counts = {id(run): sum(_same_group(run, other) for other in fell) for run in fell}
         return max(fell, key=lambda run: counts[id(run)])
@@ -106,7 +107,7 @@ def _first_overturning(found: Mapping[RunKey, SiteRun]) -> float | None:
     factors = [
         key.factor
         for key, run in found.items()
-        if key.stage in (SET, SCAN, REFINED) and run.outcome == OVERTURNED
+        if key.stage in (SET, SCAN, REFINED) and run.outcome == Outcome.OVERTURNED
     ]
     return min(factors, default=None)
 
@@ -139,7 +140,7 @@ def _further(request: SiteRequest, found: Mapping[RunKey, SiteRun]) -> FurtherMo
             by_motion.setdefault(key.motion, []).append(run)
     if not by_motion:
         return None
-    fell = sum(any(run.outcome == OVERTURNED for run in runs) for runs in by_motion.values())
+    fell = sum(any(run.outcome == Outcome.OVERTURNED for run in runs) for runs in by_motion.values())
     beyond = sum(any(_beyond(request, run) for run in runs) for runs in by_motion.values())
     return FurtherMotions(
         motions=len(by_motion),
@@ -151,7 +152,7 @@ def _further(request: SiteRequest, found: Mapping[RunKey, SiteRun]) -> FurtherMo
 
 def _beyond(request: SiteRequest, run: SiteRun) -> bool:
     return (
-        run.outcome == OVERTURNED
+        run.outcome == Outcome.OVERTURNED
         or (run.rotation_ratio or 0.0) > request.limits.rotation_ratio
         or (run.max_slip_m or 0.0) > request.limits.slip_m
     )

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 
 from fem.batch.compute_many import compute_many
+from fem.results.outcome import Outcome
 from fem.site_check.result import ConfirmedRun, SiteRun
-from fem.site_check.rule import OVERTURNED
 from fem.site_check.runs import SET, RunCases, RunKey
 
 MODEL = "reduced"
@@ -16,7 +16,7 @@ def deciding(found: Mapping[RunKey, SiteRun], governing: SiteRun | None) -> list
     if governing is None or not own:
         return []
     keys = [next(key for key, run in own.items() if run is governing)]
-    stood = {key: run for key, run in own.items() if run.outcome != OVERTURNED}
+    stood = {key: run for key, run in own.items() if run.outcome != Outcome.OVERTURNED}
     if stood:
         keys.append(max(stood, key=lambda key: stood[key].rotation_ratio or 0.0))
         keys.append(max(stood, key=lambda key: stood[key].max_slip_m or 0.0))

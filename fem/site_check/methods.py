@@ -8,6 +8,7 @@ import numpy as np
 
 from contact.reference.rigid_block import RigidBlock
 from contact.stepping.observables import ROCKING, SLIDING
+from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
 from fem.seismic.action import DAMPING_RATIO, SiteAction, damping_correction
 from fem.seismic.body import FloorAction, Limits, LooseBody
@@ -154,8 +155,8 @@ def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limi
 
 
 def _overturning(row: MethodRow, done: Sequence[SiteRun], limits: Limits) -> Found:
-    fell = sum(run.outcome == "overturned" for run in done)
-    stood = [run.rotation_ratio or 0.0 for run in done if run.outcome != "overturned"]
+    fell = sum(run.outcome == Outcome.OVERTURNED for run in done)
+    stood = [run.rotation_ratio or 0.0 for run in done if run.outcome != Outcome.OVERTURNED]
     if not done:
         return Found(words="no runs")
     words = f"{fell or 'none'} of {len(done)} overturned"

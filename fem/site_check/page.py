@@ -17,6 +17,7 @@ from fem.html.formula import formula_markup
 from fem.html.page import Signature, render_page, svg_element
 from fem.html.units import ABSENT, millimetres, number, quantity, rotation_ratio, short, typeset
 from fem.results.errors import FolderError
+from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
 from fem.site_check.figures import draw_floor, draw_methods, draw_motion, draw_scan, draw_spectra
 from fem.site_check.result import (
@@ -30,7 +31,7 @@ from fem.site_check.result import (
     SiteResult,
     SiteRun,
 )
-from fem.site_check.rule import OVERTURNED, RunGroup, both_directions, groups_of
+from fem.site_check.rule import RunGroup, both_directions, groups_of
 
 COPIES = ("site.toml", "container.toml")  #: in the folder, printed on the page
 CODE = (
@@ -206,7 +207,7 @@ def confirmation(result: SiteResult) -> tuple[str, bool]:
     models = ", ".join(dict.fromkeys(one.model for one in again))
     words = f"The deciding runs, repeated with the {models} model over their unknown inputs"
     failed = sum(one.outcome is None for one in again)
-    fell = sum(OVERTURNED in (one.outcome, *one.outcomes) for one in again)
+    fell = sum(Outcome.OVERTURNED in (one.outcome, *one.outcomes) for one in again)
     ratios = [one.rotation_ratio for one in again if one.rotation_ratio is not None]
     slips = [one.max_slip_m for one in again if one.max_slip_m is not None]
     if failed:

@@ -10,10 +10,10 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
+from fem.results.outcome import Outcome
 from fem.site_check.result import SiteRun
 
 MEAN_FROM = 7  #: motions from which the mean counts
-OVERTURNED = "overturned"
 SHARE = 0.3  #: of the other horizontal component
 Key = tuple[str, str, float | None, float, float]
 
@@ -37,7 +37,7 @@ class RunGroup:
     @property
     def overturned(self) -> int:
         """Runs that overturned."""
-        return sum(run.outcome == OVERTURNED for run in self.runs)
+        return sum(run.outcome == Outcome.OVERTURNED for run in self.runs)
 
     @property
     def failed(self) -> int:

@@ -13,9 +13,9 @@ from fem.batch.runner import Row
 from fem.case.case import Case, read_case
 from fem.case.data_files import FILE_KEYS
 from fem.case.toml import toml_document
+from fem.results.outcome import Outcome
 from fem.site_check.file import FULL, SiteRequest
 from fem.site_check.result import MOTIONS, SiteRun
-from fem.site_check.rule import OVERTURNED
 
 SET, SCAN, REFINED, FURTHER = "set", "scan", "refined", "further"
 WIDTH = "width"  #: the elevation that a case file shows
@@ -113,7 +113,11 @@ class RunPlan:
     def refined(self, found: Mapping[RunKey, SiteRun]) -> list[RunKey]:
         """Those that overturned at the least factor, at factors between it and the one below."""
         tried = sorted({1.0, *SCANNED})
-        fell = [key for key, run in found.items() if run.outcome == OVERTURNED and key.stage in (SET, SCAN)]
+        fell = [
+            key
+            for key, run in found.items()
+            if run.outcome == Outcome.OVERTURNED and key.stage in (SET, SCAN)
+        ]
         if not fell:
             return []
         first = min(key.factor for key in fell)

@@ -22,8 +22,8 @@ from fem.batch.answers import (
 from fem.batch.axes import Axis, point_of, set_axis
 from fem.batch.labels import axis_name, place_in_words
 from fem.batch.log import fields_of, number_in, table_text
+from fem.results.outcome import ending_of
 from fem.sweep.motion_outcomes import sign_axes
-from fem.sweep.neighbours import KIND_NAMES, kind_of
 from fem.sweep.table import SweepTable
 
 TRIED = "tried.csv"
@@ -134,13 +134,13 @@ def _lines_of(table: SweepTable, axis: Axis, tried: Path) -> dict[int, list[Tria
                 Trial(
                     value=float(value),
                     line=line[0],
-                    kind=KIND_NAMES[kind_of(table["status"][cell], table["outcome"][cell])],
+                    kind=ending_of(table["status"][cell], table["outcome"][cell]),
                     slip=None if slip is None or np.isnan(slip[cell]) else float(slip[cell]),
                     unsure=None if unsure is None or np.isnan(unsure[cell]) else bool(unsure[cell]),
                 )
             )
     for first, value, status, outcome, slip_between in _between(tried):
-        kind = KIND_NAMES[kind_of(status, outcome)]
+        kind = ending_of(status, outcome)
         lines[first].append(Trial(value=value, line=first, kind=kind, slip=slip_between))
     return lines
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from fem.batch.log import fields_of, number_in, numbers_in
 from fem.batch.runner import BOXES
+from fem.results.outcome import Ending, ending_of
 from fem.runtime.arrays import BoolArray, FloatArray, IntArray
-from fem.sweep.neighbours import OVERTURNED, STANDING, UNKNOWN, kind_of
 from fem.sweep.plan import Sweep
 from fem.sweep.table import row_columns
 
@@ -29,7 +29,7 @@ class BoxShown(NamedTuple):
 class Shown:
     """What a cell, or a copy of it, shows."""
 
-    kind: int  #: see `neighbours`
+    kind: Ending
     outcome: str | None  #: None where it failed
     rotation_ratio: float | None
     max_slip_m: float | None
@@ -41,10 +41,10 @@ def shown_in(
     status: str, outcome: str, ratio: str, slip: str, fell_box: str, rotations: str, slips: str, openings: str
 ) -> Shown:
     """What the fields of a row show, those of `SHOWN`."""
-    kind = kind_of(status, outcome)
+    kind = ending_of(status, outcome)
     return Shown(
         kind=kind,
-        outcome=outcome if kind in (STANDING, OVERTURNED) else None,
+        outcome=None if kind is Ending.FAILED else outcome,
         rotation_ratio=number_in(ratio),
         max_slip_m=number_in(slip),
         fell_box=int(fell_box) if fell_box else None,
@@ -59,7 +59,7 @@ class CellRows:
         self.columns = row_columns(sweep.axes, (one.key for one in sweep.derived))
         self.lines: dict[int, str] = {}  #: row of each cell, as in the log
         self.shown: dict[int, Shown] = {}
-        self.kind: IntArray = np.full(sweep.count, UNKNOWN)  #: (n_cells,) see `neighbours`
+        self.kind: IntArray = np.full(sweep.count, Ending.UNKNOWN)  #: endings, (n_cells,)
         self.rotation_ratio: FloatArray = np.full(sweep.count, np.nan)  #: (n_cells,)
         self.outcomes = Counter[str]()  #: how often there is each; "failed" too
         self._places = [self.columns.index(name) for name in SHOWN]
@@ -79,4 +79,4 @@ class CellRows:
     @property
     def decided(self) -> BoolArray:
         """Whether a cell stands or overturns, shape (n_cells,); what failed does neither."""
-        return (self.kind == STANDING) | (self.kind == OVERTURNED)
+        return (self.kind == Ending.STANDING) | (self.kind == Ending.OVERTURNED)

@@ -22,6 +22,7 @@ from fem.batch.labels import axis_label, axis_name
 from fem.figures.heat_map import MapAxis, Panel, draw_heat_map, value_label
 from fem.figures.style import BLACK, GREY, STATE_COLOURS, VERMILLION, WIDTH, house_style, number, svg_of
 from fem.results.files import write_atomically
+from fem.results.outcome import Outcome
 from fem.sweep.plan import MapChoice
 from fem.sweep.table import SweepTable
 
@@ -60,7 +61,7 @@ def sweep_map(table: SweepTable, kind: str, choice: MapChoice) -> Figure:
     if kind == "outcome":
         codes = np.array([list(OUTCOME_COLOURS).index(word) for word in table.outcome])
         return _map(table, choice, codes, title="Outcome", colours=OUTCOME_COLOURS)
-    fallen = table.outcome == "overturned"
+    fallen = table.outcome == Outcome.OVERTURNED
     if kind == "rotation":
         return _map(
             table,
@@ -90,7 +91,7 @@ def rotation_curve(table: SweepTable) -> Figure:
     axis = max(table.axes, key=lambda one: len(one.values))
     numeric = all(not isinstance(value, bool | str) for value in axis.values)
     places = np.array(axis.values, dtype=float) if numeric else np.arange(len(axis.values), dtype=float)
-    ratio = np.where(table.outcome == "overturned", 1.0, table["rotation_ratio"])
+    ratio = np.where(table.outcome == Outcome.OVERTURNED, 1.0, table["rotation_ratio"])
     unsure = table.columns.get("unsure")
     low, high = table.columns.get("band_rotation_ratio_low"), table.columns.get("band_rotation_ratio_high")
     with house_style():
@@ -151,7 +152,7 @@ def _map(
         Panel(
             values=plane(values, pick),
             title=name,
-            overturned=plane(table.outcome == "overturned", pick),
+            overturned=plane(table.outcome == Outcome.OVERTURNED, pick),
             unsure=None if unsure is None else plane(unsure == 1.0, pick),
             regime_unsure=None if sure is None else plane(sure == REGIME_UNSURE, pick),
         )

@@ -16,17 +16,16 @@ from fem.assessment.ranges import LEAST_LENGTH, in_figures
 from fem.assessment.summary import ratio_in_words
 from fem.batch.axes import MOTION_FILE, Axis, point_of, shape_of
 from fem.batch.intervals import estimate
+from fem.results.outcome import COUNTED, Ending
 from fem.runtime.arrays import IntArray
 from fem.sweep.cells import Shown
-from fem.sweep.neighbours import FAILED, OVERTURNED, STANDING
 
 CONFIDENCE = 0.95
-COUNTED = {"stood": STANDING, "overturned": OVERTURNED, "failed": FAILED}
 #: keys whose values of one magnitude are the signs of a motion
 SIGNS = ("motion.scale", "vertical.scale")
 #: columns of `motion_set.csv` behind those of the other axes
 SET_COLUMNS = (
-    *("motions", "stood", "overturned", "failed", "overturned_share", "low", "high"),
+    *("motions", *COUNTED, "overturned_share", "low", "high"),
     *("worst_motion", "worst_outcome", "worst_rotation_ratio", "worst_slip_motion", "worst_slip_m"),
     *("mean_rotation_ratio", "mean_slip_m"),
 )
@@ -37,7 +36,7 @@ class MotionOutcome:
     """The outcome of one motion, with the worse of its signs."""
 
     motion: str
-    kind: int  #: see `neighbours`
+    kind: Ending
     outcome: str | None  #: None where it failed
     rotation_ratio: float | None
     max_slip_m: float | None
@@ -45,7 +44,9 @@ class MotionOutcome:
     @property
     def severity(self) -> tuple[int, float]:
         """Larger for a worse outcome."""
-        return (STANDING, FAILED, OVERTURNED).index(self.kind), self.rotation_ratio or 0.0
+        return (Ending.STANDING, Ending.FAILED, Ending.OVERTURNED).index(
+            self.kind
+        ), self.rotation_ratio or 0.0
 
 
 def sign_axes(axes: Sequence[Axis]) -> list[Axis]:
@@ -79,16 +80,16 @@ def motions_at(
 def set_row(found: Sequence[MotionOutcome]) -> dict[str, Any]:
     """The outcome of a set of motions at a point, by `SET_COLUMNS`."""
     kinds = np.array([one.kind for one in found])
-    share = estimate(kinds == OVERTURNED, kinds == FAILED, replicates=1, confidence=CONFIDENCE)
-    computed = [one for one in found if one.kind != FAILED]
-    standing = [one for one in computed if one.kind == STANDING]
+    share = estimate(kinds == Ending.OVERTURNED, kinds == Ending.FAILED, replicates=1, confidence=CONFIDENCE)
+    computed = [one for one in found if one.kind != Ending.FAILED]
+    standing = [one for one in computed if one.kind == Ending.STANDING]
     worst = max(computed, key=lambda one: one.severity, default=None)
     slipped = max(computed, key=lambda one: one.max_slip_m or 0.0, default=None)
     return {
         "motions": len(found),
         "stood": len(standing),
-        "overturned": int((kinds == OVERTURNED).sum()),
-        "failed": int((kinds == FAILED).sum()),
+        "overturned": int((kinds == Ending.OVERTURNED).sum()),
+        "failed": int((kinds == Ending.FAILED).sum()),
         "overturned_share": share.value,
         "low": share.low,
         "high": share.high,
@@ -130,7 +131,7 @@ def by_motion(points: Sequence[Sequence[MotionOutcome]]) -> dict[str, dict[str, 
     """Counts and largest figures of each motion over all points, by its name; the figures where it stood."""
     found: dict[str, dict[str, Any]] = {}
     for outcomes in zip(*points, strict=True):
-        standing = [one for one in outcomes if one.kind == STANDING]
+        standing = [one for one in outcomes if one.kind == Ending.STANDING]
         counts = {word: sum(one.kind == kind for one in outcomes) for word, kind in COUNTED.items()}
         found[outcomes[0].motion] = counts | {
             "max_rotation_ratio": max((one.rotation_ratio or 0.0 for one in standing), default=None),

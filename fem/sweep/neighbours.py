@@ -6,20 +6,11 @@ import numpy as np
 from scipy import ndimage
 
 from fem.batch.axes import Axis, shape_of
+from fem.results.outcome import Ending
 from fem.runtime.arrays import BoolArray, FloatArray, IntArray
 
-#: kinds of cells
-UNKNOWN, STANDING, OVERTURNED, FAILED = 0, 1, 2, 3
 #: one in so many values of a numeric axis belongs to the coarse grid
 COARSE = 4
-KIND_NAMES = {UNKNOWN: "unknown", STANDING: "standing", OVERTURNED: "overturned", FAILED: "failed"}
-
-
-def kind_of(status: str, outcome: str | None) -> int:
-    """Standing, overturned or failed; a failed cell never stands."""
-    if status not in ("completed", "overturned") or not outcome:
-        return FAILED
-    return OVERTURNED if outcome == "overturned" else STANDING
 
 
 def _size(axes: Sequence[Axis], reach: int = 1) -> tuple[int, ...]:
@@ -32,7 +23,7 @@ def near_cells(axes: Sequence[Axis], kind: IntArray, rotation_ratio: FloatArray,
 
     Args:
         axes: of the sweep.
-        kind: in the shape of the axes.
+        kind: endings, in the shape of the axes.
         rotation_ratio: in the shape of the axes; nan where there is none.
         close: rotation ratio that counts as close.
     """
@@ -40,7 +31,7 @@ def near_cells(axes: Sequence[Axis], kind: IntArray, rotation_ratio: FloatArray,
     highest = ndimage.maximum_filter(kind, size=size, mode="nearest")
     lowest = ndimage.minimum_filter(kind, size=size, mode="nearest")
     with np.errstate(invalid="ignore"):
-        return (highest != lowest) | ((kind == STANDING) & (rotation_ratio >= close))
+        return (highest != lowest) | ((kind == Ending.STANDING) & (rotation_ratio >= close))
 
 
 def around(axes: Sequence[Axis], cells: BoolArray, reach: int = 1) -> BoolArray:

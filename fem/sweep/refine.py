@@ -8,8 +8,8 @@ import numpy as np
 
 from fem.batch.log import LoggedRuns, fields_of, table_text
 from fem.batch.runner import Runner
+from fem.results.outcome import Ending, ending_of
 from fem.sweep.cells import CellRows
-from fem.sweep.neighbours import KIND_NAMES, kind_of
 from fem.sweep.plan import Sweep
 from fem.sweep.threshold import Change, changes_of, least_width, values_to_try
 
@@ -33,7 +33,7 @@ def refine(runner: Runner, sweep: Sweep, cells: CellRows, log: Path) -> list[tup
 
     def note(line: str) -> None:
         first, value, status, outcome, *_ = fields_of(line)
-        lines[int(first)][float(value)] = KIND_NAMES[kind_of(status, outcome)]
+        lines[int(first)][float(value)] = ending_of(status, outcome).word
 
     def between_cells() -> list[tuple[int, float]]:
         return [
@@ -76,7 +76,7 @@ def _lines_of(sweep: Sweep, cells: CellRows) -> Lines:
     numbers = np.moveaxis(np.arange(sweep.count).reshape(sweep.shape), place, -1)
     return {
         int(line[0]): {
-            float(value): KIND_NAMES[int(cells.kind[cell])] for value, cell in zip(values, line, strict=True)
+            float(value): Ending(cells.kind[cell]).word for value, cell in zip(values, line, strict=True)
         }
         for line in numbers.reshape(-1, len(values))
     }

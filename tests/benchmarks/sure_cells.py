@@ -23,8 +23,8 @@ from fem.batch.runner import run_cases
 from fem.case.case import Case
 from fem.model.geometry import build_container
 from fem.model.support import normal_penalty
+from fem.results.outcome import ending_of
 from fem.sweep.file import load_sweep
-from fem.sweep.neighbours import kind_of
 from fem.sweep.plan import Sweep
 from fem.sweep.run import run_sweep
 from fem.sweep.table import SweepTable, open_sweep
@@ -59,8 +59,8 @@ def flips(sweep: Sweep, table: SweepTable, cells: list[int]) -> list[list[tuple[
     rows = run_cases([sweep.case_at(sweep.point(cell), values) for cell, _, values in asked])
     found: dict[int, list[tuple[str, str]]] = {cell: [] for cell in cells}
     for (cell, name, values), row in zip(asked, rows, strict=True):
-        own = kind_of(str(table["status"][cell]), str(table["outcome"][cell]))
-        if kind_of(row["status"], row["outcome"]) != own:
+        own = ending_of(str(table["status"][cell]), str(table["outcome"][cell]))
+        if ending_of(row["status"], row["outcome"]) != own:
             found[cell].append((name, next(iter(values))))
     return [found[cell] for cell in cells]
 

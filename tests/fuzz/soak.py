@@ -12,14 +12,14 @@ from collections.abc import Callable
 
 from random_cases import random_case
 
-from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT, MODE_NAMES, energy_of, outcome_of
+from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT, energy_of, outcome_of
 from fem.case.case import Case, load_case
 from fem.model.model import build_model
+from fem.results.outcome import Outcome
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 
 STUCK, STUCK_EXTREME = 60.0, 120.0  #: CPU time [s]
-OUTCOMES = set(MODE_NAMES.values())
 SHORT = ("solver.duration_s=2", "output.fields_s=0", "solver.element_size_m=0.5")
 BLOCK = ("container.section=solid",)
 
@@ -65,7 +65,7 @@ def end_of(make: Callable[[], Case], stuck: float = STUCK) -> str:
     if ending.status == "failed":
         return f"failed: {ending.error}"
     outcome, energy = outcome_of(built), energy_of(built)
-    if outcome not in OUTCOMES or (outcome == "overturned") != (ending.status == "overturned"):
+    if outcome not in tuple(Outcome) or (outcome == "overturned") != (ending.status == "overturned"):
         return f"BROKEN outcome {outcome} of a run that {ending.status}"
     dissipated = (
         energy.friction_J + energy.contact_damping_J + energy.material_damping_J + (energy.crushing_J or 0.0)

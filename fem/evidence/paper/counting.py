@@ -49,6 +49,7 @@ from fem.evidence.paper.maps import (
     stack_map,
 )
 from fem.figures.heat_map import MapCurve
+from fem.results.outcome import Outcome
 
 UNSAFE = "sure cells it calls standing and that overturn"
 
@@ -282,8 +283,8 @@ def _criteria_table(maps: Sequence[OutcomeMap]) -> ClaimTable:
     )
 
 
-def _mode_table(modes: Counter[tuple[str, str]]) -> ClaimTable:
-    names = ("rest", "slide", "rock", "slide-rock", "overturned")
+def _mode_table(modes: Counter[tuple[Outcome, str]]) -> ClaimTable:
+    names = tuple(Outcome)
     predicted = {one for one, _ in modes}
     return table(
         "Mode by Eqs. 8 to 13 and A (rows) and by the run (columns), rigid stack, mu 0.4/0.2",

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from fem.evidence.paper.cases import KEYS, PaperCase
 from fem.evidence.paper.dimensions import GRAVITY, HALF_WIDTH, HEIGHT, WIDTH
+from fem.results.outcome import Outcome
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,12 +125,12 @@ def contingency(says_overturns: Sequence[bool], overturned: Sequence[bool]) -> C
     )
 
 
-def predicted_mode(motion: MapMotion) -> str:
+def predicted_mode(motion: MapMotion) -> Outcome:
     """The mode of section 5 that Eqs. (8) to (13) predict."""
     if paper_rule(motion):
-        return "overturned"
+        return Outcome.OVERTURNED
     if motion.tilts and not motion.slides_first:
-        return "rock"
+        return Outcome.ROCK
     if motion.slides:
-        return "slide-rock" if motion.tilts and motion.tilts_while_sliding else "slide"
-    return "rest"
+        return Outcome.SLIDE_ROCK if motion.tilts and motion.tilts_while_sliding else Outcome.SLIDE
+    return Outcome.REST

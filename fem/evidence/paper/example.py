@@ -20,6 +20,7 @@ from fem.evidence.paper.dimensions import (
 from fem.evidence.paper.experiments import Experiments, capped_ratio, stands
 from fem.evidence.paper.figures import curve, draw_curves
 from fem.evidence.verification.statics import BOX_HEIGHT, BOX_MASS, WIDTH, paper_checks
+from fem.results.outcome import Outcome
 
 SLIDING = 1e-4 * 1.1  # m, what counts as sliding
 TILTING = 0.01  # rotation ratio, what counts as tilting
@@ -63,7 +64,7 @@ def box_just_sticks(experiments: Experiments) -> Evidence:
         cases[0].but(duration=10.0),
         "slip under the stated motion",
         "rest",
-        lambda row: row["outcome"] == "rest",
+        lambda row: row["outcome"] == Outcome.REST,
         value=lambda row: row["max_slip_m"],
         unit="m",
     )
@@ -98,7 +99,7 @@ def stack_tilts_at_plateau(experiments: Experiments) -> Evidence:
         PLATEAU.but(duration=10.0),
         "rotation ratio",
         "it tilts (0.01 and more) and does not slide",
-        lambda row: row["outcome"] == "rock",
+        lambda row: row["outcome"] == Outcome.ROCK,
     )
 
 
@@ -127,7 +128,7 @@ def stack_tilts_as_stated(experiments: Experiments) -> Evidence:
     yield from (*moving, *jerked)
     yield outcomes("What the stack does", experiments, [*moving, *jerked])
     yield experiments.band(
-        STACK.but(duration=10.0), "rotation ratio", "rest", lambda row: row["outcome"] == "rest"
+        STACK.but(duration=10.0), "rotation ratio", "rest", lambda row: row["outcome"] == Outcome.REST
     )
 
 

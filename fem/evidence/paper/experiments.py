@@ -20,6 +20,7 @@ from fem.evidence.paper.cases import RIGID, SHELL, PaperCase
 from fem.model.model import Model, build_model
 from fem.model.support import normal_penalty
 from fem.results.history import History
+from fem.results.outcome import ROCKING, Outcome
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 
@@ -87,7 +88,7 @@ class VariantBand:
     @property
     def chance(self) -> bool:
         """Whether friction drops and only some variants slide while they rock; see the claim rigid-assumption."""
-        return self.drop and {"rock", "slide-rock"} <= {member.outcome for member in self.members}
+        return self.drop and set(ROCKING) <= {member.outcome for member in self.members}
 
     @property
     def summary(self) -> str:
@@ -123,7 +124,7 @@ def capped_ratio(row: Row) -> float:
 
 def stands(row: Row) -> bool:
     """Whether the container did not overturn, of a run that did not fail."""
-    return row["outcome"] != "overturned"
+    return row["outcome"] != Outcome.OVERTURNED
 
 
 class Experiments:

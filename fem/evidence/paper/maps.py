@@ -29,8 +29,9 @@ from fem.evidence.paper.dimensions import (
 )
 from fem.evidence.paper.experiments import Experiments, stands
 from fem.figures.heat_map import MapAxis
+from fem.results.outcome import Ending, ending_of
 from fem.runtime.arrays import BoolArray
-from fem.sweep.neighbours import OVERTURNED, STANDING, kind_of, near_cells
+from fem.sweep.neighbours import near_cells
 from fem.sweep.perturbation import Perturbation
 
 FREQUENCIES = tuple(float(f"{w:.4g}") for w in np.linspace(1.5, 12.0, 20))  #: [rad/s]
@@ -190,7 +191,7 @@ def pairs(one: OutcomeMap, other: OutcomeMap) -> list[tuple[MapCell, MapCell]]:
 def near_change(rows: Sequence[Row], x: Sequence[float], y: Sequence[float]) -> BoolArray:
     """Which cells of a map over x and y are to be perturbed, (n_cells,)."""
     shape = (len(y), len(x))
-    kind = np.array([kind_of(row["status"], row["outcome"]) for row in rows]).reshape(shape)
+    kind = np.array([ending_of(row["status"], row["outcome"]) for row in rows]).reshape(shape)
     ratio = np.array([row["rotation_ratio"] or 0.0 for row in rows]).reshape(shape)
     axes = [Axis(key="", values=tuple(values)) for values in (y, x)]
     return near_cells(axes, kind, ratio, PERTURBATION.close).ravel()
@@ -225,8 +226,8 @@ def _computed(
         experiments.rows([one for group in copies.values() for one in group], also_failed=True)  # one batch
         for k, group in copies.items():
             found = experiments.rows([cases[k], *group], also_failed=True)
-            kinds = {kind_of(row["status"], row["outcome"]) for row in found}
-            sure[k] = kinds in ({STANDING}, {OVERTURNED})
+            kinds = {ending_of(row["status"], row["outcome"]) for row in found}
+            sure[k] = kinds in ({Ending.STANDING}, {Ending.OVERTURNED})
     cells = [
         MapCell(motion=motion_of(case), case=case, row=row, sure=certain)
         for case, row, certain in zip(cases, rows, sure, strict=True)

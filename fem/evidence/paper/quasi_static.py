@@ -11,6 +11,7 @@ from fem.evidence.paper.claims import Comparison, Evidence, at_least, at_most, c
 from fem.evidence.paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HALF_WIDTH, UPLIFT, WIDTH
 from fem.evidence.paper.experiments import Experiments
 from fem.evidence.paper.figures import curve, draw_curves
+from fem.results.outcome import SLIDING, Outcome
 
 #: a scan around a limit: peaks over the limit, and how near the onset must be
 AROUND = tuple(round(0.95 + 0.005 * n, 4) for n in range(21))
@@ -28,7 +29,7 @@ def stiction_limit(experiments: Experiments) -> Evidence:
         box = BOX.but(FOR_MAPS, friction(mu, 0.5 * mu), frequency=ANGULAR_FREQUENCY)
         peaks = [share * mu * GRAVITY for share in AROUND]
         scan = box.scan("peak", peaks, f"box, mu_s = {mu:g}, peak {{:.4g}} m/s²")
-        slides = [row["outcome"] in ("slide", "slide-rock") for row in experiments.rows(scan)]
+        slides = [row["outcome"] in SLIDING for row in experiments.rows(scan)]
         comparisons.append(_onset(f"onset of sliding over mu_s g, mu_s = {mu:g}", slides))
         yield _first(scan, slides)
     yield from comparisons
@@ -40,7 +41,7 @@ def stiction_limit(experiments: Experiments) -> Evidence:
         BOX.but(peak=0.98 * 0.4 * GRAVITY, frequency=ANGULAR_FREQUENCY, duration=5.0),
         "slip at 0.98 mu_s g",
         "it sticks",
-        lambda row: row["outcome"] == "rest",
+        lambda row: row["outcome"] == Outcome.REST,
         value=lambda row: row["max_slip_m"],
         unit="m",
     )
@@ -56,7 +57,7 @@ def kinetic_limit(experiments: Experiments) -> Evidence:
     )
     run = experiments.run(case)
     history, weight = run.history, run.model.static.weight
-    sliding = np.array([mode == "slide" for mode in history.modes])
+    sliding = np.array([mode == Outcome.SLIDE for mode in history.modes])
     time, shear = history["time_s"], history["shear_force_N"] / weight
     while_sliding = float(np.quantile(np.abs(history["shear_force_N"][sliding]) / weight, 0.99))
     acceleration = history["base_acceleration_m_s2"]

@@ -13,6 +13,7 @@ from fem.evidence.paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HALF_WIDTH
 from fem.evidence.paper.experiments import Experiments
 from fem.evidence.paper.figures import curve, draw_curves
 from fem.model.recovery import recovery_of
+from fem.results.outcome import Outcome
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 
@@ -123,7 +124,9 @@ def rigid_assumption(experiments: Experiments) -> Evidence:
     slips = [1e3 * rows[k]["max_slip_m"] for k in (2, 6, 7)]
     reproduced = max(slips) <= 1.1 * min(slips)
     for k, name in ((1, "shell"), (2, "solid steel")):
-        yield at_most(f"stands or falls otherwise than the rigid block, {name}", ends[k] == "overturned", 0.0)
+        yield at_most(
+            f"stands or falls otherwise than the rigid block, {name}", ends[k] == Outcome.OVERTURNED, 0.0
+        )
     for k in (1, 4):
         mu = cases[k].what.rpartition(", ")[2]
         other = ends[k] != ends[k - 1]

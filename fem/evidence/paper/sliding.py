@@ -14,6 +14,7 @@ from fem.evidence.paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HEIGHT, HO
 from fem.evidence.paper.experiments import Experiments, capped_ratio, stands
 from fem.evidence.paper.figures import curve, draw_curves
 from fem.evidence.paper.maps import MapCell, pairs, stack_map
+from fem.results.outcome import Outcome
 
 #: c/a of the stack is 3.636: below a/c = 0.275 it slides before it tilts
 WIDTH_OVER_HEIGHT = WIDTH / HEIGHT
@@ -311,5 +312,5 @@ def friction_ratio(experiments: Experiments) -> Evidence:
         PLATEAU.but(mu_kinetic=0.4, duration=10.0),
         "rotation ratio at the plateau value with mu_k = mu_s",
         "the outcome of the rigid block with mu_k = 0.5 mu_s: it rocks",
-        lambda row: row["outcome"] == "rock",
+        lambda row: row["outcome"] == Outcome.ROCK,
     )

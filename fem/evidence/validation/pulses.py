@@ -19,6 +19,7 @@ from fem.evidence.validation.tables import measured_table
 from fem.evidence.verification.runs import with_motion
 from fem.model.container import Container, discretise
 from fem.model.model import Model, build_model
+from fem.results.outcome import Outcome
 from fem.run.outcome import run_without_history
 
 ANGLES = (0.16, 0.18, 0.20, 0.22, 0.25, 0.28, 0.32, 0.36, 0.40)  #: tried [rad]
@@ -105,7 +106,7 @@ def predicted(size: BlockSize, kick: Kick) -> bool:
     verdict, error = run_without_history(model, None)
     if error is not None:
         raise ArithmeticError(f"{kick}: {error}")
-    return verdict.outcome == "overturned"
+    return verdict.outcome == Outcome.OVERTURNED
 
 
 def _sizes() -> Iterator[BlockSize]:

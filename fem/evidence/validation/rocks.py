@@ -22,6 +22,7 @@ from fem.evidence.validation.findings import Experiment, Prediction, Predictor
 from fem.evidence.validation.tables import measured_table
 from fem.model.container import Container
 from fem.model.model import build_model
+from fem.results.outcome import Outcome
 from fem.run.checks import WantedChecks
 from fem.run.compute import compute_on
 from fem.run.outcome import run_without_history
@@ -145,7 +146,7 @@ def overturns(test: ShakeTest, angle: float) -> bool:
     )
     if error is not None:
         raise ArithmeticError(f"test {test.number}, {angle:g} rad: {error}")
-    return verdict.outcome == "overturned"
+    return verdict.outcome == Outcome.OVERTURNED
 
 
 def _is_unsure(test: ShakeTest, angle: float) -> bool:

@@ -18,6 +18,7 @@ from contact.reference.rocking import simulate_rocking
 from fem.evidence.verification.rows import Row, analytic, check, computed, convergence
 from fem.evidence.verification.runs import FRICTION, SOLID, STACK, Keys, harmonic, run
 from fem.model.model import build_model
+from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
 
 SLENDERNESS = math.atan2(1.1, 4.0)
@@ -114,7 +115,7 @@ def plateau() -> Iterator[Row]:
         yield computed(case, compared, found, 0.399, source=source, absolute=0.01)
         compared, stands = "rocks without slip and stands (1)", done.status == "completed"
         note = f"slip {1e6 * float(done.joint.max_slip):.3g} um"
-        found = done.outcome == "rock" and stands
+        found = done.outcome == Outcome.ROCK and stands
         yield computed(case, compared, found, 1.0, source=PLANAR_BLOCK, absolute=0.0, note=note)
 
 
@@ -244,7 +245,7 @@ def start_at_rest() -> Iterator[Row]:
         done = run(STACK, harmonic(amplitude, omega) | friction | {"solver.duration_s": 20.0})
         floor = sine_floor(amplitude=amplitude, angular_frequency=omega)
         exact = simulate_planar_block(block, floor, duration=20.0, slip_velocity=-amplitude * omega)
-        different += (done.outcome == "overturned") != (exact.outcome is PlanarMode.OVERTURNED)
+        different += (done.outcome == Outcome.OVERTURNED) != (exact.outcome is PlanarMode.OVERTURNED)
     yield computed(
         "rigid stack, 1.7 to 7 rad/s, 4.4 to 9.7 m/s2, mu 0.4/0.2, at rest at t = 0",
         "runs of 25 in which it stands and the reference overturns, or the reverse",

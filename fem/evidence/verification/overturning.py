@@ -40,6 +40,7 @@ from fem.evidence.verification.runs import (
 )
 from fem.model.container import Container, discretise
 from fem.model.model import build_model
+from fem.results.outcome import Outcome
 
 BLOCK = RigidBlock.homogeneous(width=1.1, height=4.0)
 RATE, UPLIFT = BLOCK.frequency_parameter, BLOCK.uplift_acceleration
@@ -201,12 +202,7 @@ def first_motion(
     done = finish(with_motion(build_model(case, containers[lam]), motion, (0.05, 0.05 + growth)))
     slides = float(done.joint.max_slip) > 1e-4
     rocks = float(done.track.max_rocking) > 1e-3 * done.model.static.slenderness_angle
-    return {
-        (False, False): "rest",
-        (True, False): "slide",
-        (False, True): "rock",
-        (True, True): "slide-rock",
-    }[slides, rocks]
+    return Outcome.of(slides=slides, rocks=rocks)
 
 
 def growing_then_steady(acceleration: float, growth: float) -> FloorMotion:

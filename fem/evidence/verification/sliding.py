@@ -36,6 +36,7 @@ from fem.evidence.verification.runs import (
     pulse,
     run,
 )
+from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
 
 AMPLITUDE, OMEGA = 0.1, 10.0
@@ -67,7 +68,7 @@ def stick_limit() -> Iterator[Row]:
 
     def slides(peak: float) -> bool:
         values = harmonic(peak / OMEGA**2, OMEGA) | FRICTION | {"solver.duration_s": 2.0 * PERIOD}
-        return run(BOX, values).outcome == "slide"
+        return run(BOX, values).outcome == Outcome.SLIDE
 
     yield analytic(
         "rigid box, mu 0.4/0.2, Omega = 10 rad/s",
@@ -386,7 +387,7 @@ def longest_stop(done: Finished, since: float) -> float:
     """Longest interval without sliding after an instant [s]."""
     late = done.history["time_s"] > since
     modes = [mode for mode, chosen in zip(done.history.modes, late, strict=True) if chosen]
-    stops = [len(list(same)) for mode, same in groupby(modes) if mode == "rest"]
+    stops = [len(list(same)) for mode, same in groupby(modes) if mode == Outcome.REST]
     return max(stops, default=0) * done.model.case.output.history_s
 
 

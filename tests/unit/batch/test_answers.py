@@ -5,12 +5,13 @@ import pytest
 from fem.batch.answers import Answer, Trial, answer_axis, answer_of, is_rising, sentence_of
 from fem.batch.axes import Axis
 from fem.batch.labels import in_words
+from fem.results.outcome import Ending
 
 G = 9.80665
 PEAK = Axis(key="motion.peak_acceleration_m_s2", values=(0.2 * G, 0.4 * G, 0.6 * G), unit="m/s2")
 WIDTH = Axis(key="container.width_m", values=(0.8, 1.0, 1.1, 1.2), unit="m")
 MU = Axis(key="contact.mu_static", values=(0.2, 0.3, 0.4))
-KINDS = {"s": "standing", "o": "overturned", "f": "failed"}
+KINDS = {"s": Ending.STANDING, "o": Ending.OVERTURNED, "f": Ending.FAILED}
 
 
 def line(values, kinds, *, number=0, slip=None, unsure=""):

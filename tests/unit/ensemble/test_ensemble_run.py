@@ -12,9 +12,10 @@ from fem.case.validation import CaseError
 from fem.ensemble.distributions import draw_shares, read_random
 from fem.ensemble.file import load_ensemble
 from fem.ensemble.plan import Ensemble
-from fem.ensemble.run import code_of, run_ensemble
-from fem.ensemble.statistics import FAILED, OVERTURNED, STOOD, count_point
+from fem.ensemble.run import run_ensemble
+from fem.ensemble.statistics import count_point
 from fem.ensemble.unknown import UnknownInputs
+from fem.results.outcome import Ending
 
 FILE = """
 case = "seed_stack_plateau"
@@ -164,19 +165,13 @@ def test_a_normal_quantity_has_its_deviation():
     assert values.std() == pytest.approx(0.09866, rel=1e-3)
 
 
-def test_a_failed_draw_is_never_one_that_stood():
-    assert code_of({"status": "failed", "outcome": None}) == FAILED
-    assert code_of({"status": "completed", "outcome": "rock"}) == STOOD
-    assert code_of({"status": "overturned", "outcome": "overturned"}) == OVERTURNED
-
-
 def test_a_point_with_failed_draws_is_judged_with_them_against_it(tmp_path):
     ensemble = load_ensemble(changed(tmp_path))
-    codes = np.array([STOOD] * 5 + [FAILED] * 3)
+    codes = np.array([Ending.STANDING] * 5 + [Ending.FAILED] * 3)
     point = count_point(ensemble, 0, codes)
     assert point.estimate.value == 0.0 and point.failed == 3
     assert point.estimate.high > 0.5 and point.region == "undecided"
-    assert count_point(ensemble, 0, np.array([STOOD] * 8)).region == "below"
+    assert count_point(ensemble, 0, np.array([Ending.STANDING] * 8)).region == "below"
 
 
 @pytest.mark.parametrize("name", ENSEMBLES.names)

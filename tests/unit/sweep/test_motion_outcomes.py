@@ -4,13 +4,13 @@ import pytest
 
 from fem.batch.axes import read_axis
 from fem.batch.intervals import binomial_interval
+from fem.results.outcome import Ending
 from fem.sweep.cells import Shown
 from fem.sweep.motion_outcomes import MotionOutcome, by_motion, motions_at, set_in_words, set_row, sign_axes
-from fem.sweep.neighbours import FAILED, OVERTURNED, STANDING
 
 
-def did(motion, ratio, slip=0.01, kind=STANDING):
-    words = {STANDING: "rock", OVERTURNED: "overturned", FAILED: None}
+def did(motion, ratio, slip=0.01, kind=Ending.STANDING):
+    words = {Ending.STANDING: "rock", Ending.OVERTURNED: "overturned", Ending.FAILED: None}
     return MotionOutcome(motion=motion, kind=kind, outcome=words[kind], rotation_ratio=ratio, max_slip_m=slip)
 
 
@@ -32,7 +32,7 @@ def test_a_slip_of_metres_is_told_without_powers_of_ten():
 
 
 def test_no_mean_includes_a_fall():
-    row = set_row([did("a", 0.2, 0.02), did("b", 5.8, 0.3, OVERTURNED), did("c", 0.4, 0.04)])
+    row = set_row([did("a", 0.2, 0.02), did("b", 5.8, 0.3, Ending.OVERTURNED), did("c", 0.4, 0.04)])
     assert (row["stood"], row["overturned"], row["worst_motion"]) == (2, 1, "b")
     assert row["mean_rotation_ratio"] == pytest.approx(0.3)
     assert row["low"] == binomial_interval(1, 3, 0.95)[0]
@@ -41,11 +41,11 @@ def test_no_mean_includes_a_fall():
 
 
 def test_a_failed_motion_is_neither_standing_nor_fallen():
-    row = set_row([did("a", 0.2), did("b", None, None, FAILED)])
+    row = set_row([did("a", 0.2), did("b", None, None, Ending.FAILED)])
     assert (row["stood"], row["failed"], row["overturned_share"]) == (1, 1, 0.0)
     assert row["high"] == binomial_interval(1, 2, 0.95)[1]  # it may have overturned
     assert "1 failed" in set_in_words(row)
-    nothing = set_row([did("b", None, None, FAILED)])
+    nothing = set_row([did("b", None, None, Ending.FAILED)])
     assert (nothing["worst_motion"], nothing["mean_rotation_ratio"], nothing["overturned_share"]) == (
         None,
     ) * 3
@@ -58,19 +58,24 @@ def test_a_motion_counts_once_with_the_worse_of_its_signs():
         read_axis("motion.file", ["a", "b"]),
     ]
 
-    def shown(ratio, slip=0.0, kind=STANDING):
+    def shown(ratio, slip=0.0, kind=Ending.STANDING):
         return Shown(kind=kind, outcome="rock", rotation_ratio=ratio, max_slip_m=slip)
 
     cells = [
-        *(shown(0.1, 0.05), shown(0.2), shown(0.3, 0.02), shown(None, None, FAILED)),  # 0.3: +a, +b, -a, -b
-        *(shown(7.0, 0.01, OVERTURNED), shown(0.2), shown(0.4), shown(0.1)),
+        *(
+            shown(0.1, 0.05),
+            shown(0.2),
+            shown(0.3, 0.02),
+            shown(None, None, Ending.FAILED),
+        ),  # 0.3: +a, +b, -a, -b
+        *(shown(7.0, 0.01, Ending.OVERTURNED), shown(0.2), shown(0.4), shown(0.1)),
     ]
     first, second = motions_at(axes, dict(enumerate(cells)))
     assert first[0] == {"contact.mu_static": 0.3}
     a, b = first[1]
     assert (a.motion, a.rotation_ratio, a.max_slip_m) == ("a", 0.3, 0.05)
-    assert b.kind == FAILED  # the sign that has no outcome may have overturned
-    assert [one.kind for one in second[1]] == [OVERTURNED, STANDING]
+    assert b.kind == Ending.FAILED  # the sign that has no outcome may have overturned
+    assert [one.kind for one in second[1]] == [Ending.OVERTURNED, Ending.STANDING]
     counts = by_motion([first[1], second[1]])
     assert counts["a"] == {
         "stood": 1,

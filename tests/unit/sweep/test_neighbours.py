@@ -7,7 +7,8 @@ import pytest
 
 from fem.batch.axes import Axis
 from fem.case.case import load_case
-from fem.sweep.neighbours import FAILED, OVERTURNED, STANDING, around, band_width, kind_of, near_cells
+from fem.results.outcome import Ending
+from fem.sweep.neighbours import around, band_width, near_cells
 from fem.sweep.perturbation import Perturbation
 
 X = Axis(key="contact.mu_static", values=(0.1, 0.2, 0.3, 0.4, 0.5), scale="linear")
@@ -15,15 +16,9 @@ Y = Axis(key="motion.peak_acceleration_m_s2", values=(1.0, 2.0, 4.0, 8.0), scale
 WORDS = Axis(key="solver.model", values=("rigid", "reduced"))
 
 
-def test_what_failed_never_stands():
-    assert kind_of("failed", None) == kind_of("failed", "rest") == kind_of("interrupted", None) == FAILED
-    assert kind_of("completed", "slide-rock") == STANDING
-    assert kind_of("overturned", "overturned") == OVERTURNED
-
-
 def test_cells_beside_another_kind_are_near_diagonals_too():
-    kind = np.full((5, 4), STANDING)
-    kind[0, 0] = OVERTURNED
+    kind = np.full((5, 4), Ending.STANDING)
+    kind[0, 0] = Ending.OVERTURNED
     near = near_cells((X, Y), kind, np.zeros((5, 4)), 0.5)
     assert sorted(map(tuple, np.argwhere(near))) == [(0, 0), (0, 1), (1, 0), (1, 1)]
 
@@ -31,13 +26,13 @@ def test_cells_beside_another_kind_are_near_diagonals_too():
 def test_a_close_call_is_near_by_itself():
     ratio = np.zeros((5, 4))
     ratio[3, 2] = 0.6
-    near = near_cells((X, Y), np.full((5, 4), STANDING), ratio, 0.5)
+    near = near_cells((X, Y), np.full((5, 4), Ending.STANDING), ratio, 0.5)
     assert np.argwhere(near).tolist() == [[3, 2]]
 
 
 def test_words_have_no_neighbours():
-    kind = np.full((2, 5), STANDING)
-    kind[0, 0] = OVERTURNED
+    kind = np.full((2, 5), Ending.STANDING)
+    kind[0, 0] = Ending.OVERTURNED
     near = near_cells((WORDS, X), kind, np.zeros((2, 5)), 0.5)
     assert np.argwhere(near).tolist() == [[0, 0], [0, 1]]
     assert not around((WORDS, X), near)[1].any()

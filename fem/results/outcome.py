@@ -1,0 +1,61 @@
+"""What a container did, and what a run of it counts as: the words and codes of runs, tables, figures and pages."""
+
+from enum import IntEnum, StrEnum
+from typing import Self
+
+from contact.stepping import observables
+
+UPRIGHT_OR_FALLEN = ("completed", "overturned")  #: statuses of a run that has an outcome
+
+
+class Outcome(StrEnum):
+    """What happened in a run, and the states of motion in its history; from the weakest to the worst."""
+
+    REST = "rest", observables.REST, "rested"
+    SLIDE = "slide", observables.SLIDE, "slid"
+    ROCK = "rock", observables.ROCK, "rocked"
+    SLIDE_ROCK = "slide-rock", observables.SLIDE_ROCK, "slid, rocked"
+    OVERTURNED = "overturned", observables.FALLEN, "overturned"
+
+    code: int  #: of the kernel
+    verb: str
+    __repr__ = str.__repr__  # in printed rows and lists, the word
+
+    def __new__(cls, word: str, code: int = 0, verb: str = "") -> Self:
+        """A word with its code and verb; `Outcome("rock")` finds one by its word alone."""
+        member = str.__new__(cls, word)
+        member._value_, member.code, member.verb = word, code, verb
+        return member
+
+    @classmethod
+    def of(cls, *, slides: bool, rocks: bool) -> Self:
+        """The outcome of what did not overturn."""
+        return (cls.SLIDE_ROCK if slides else cls.ROCK) if rocks else cls.SLIDE if slides else cls.REST
+
+
+#: by the code of the kernel
+MODES = {outcome.code: outcome for outcome in Outcome}
+SLIDING = (Outcome.SLIDE, Outcome.SLIDE_ROCK)
+ROCKING = (Outcome.ROCK, Outcome.SLIDE_ROCK)
+
+
+class Ending(IntEnum):
+    """What a run counts as in a study."""
+
+    UNKNOWN, STANDING, OVERTURNED, FAILED = 0, 1, 2, 3
+
+    @property
+    def word(self) -> str:
+        """As in tables."""
+        return self.name.lower()
+
+
+#: the endings that a study counts, by column
+COUNTED = {"stood": Ending.STANDING, "overturned": Ending.OVERTURNED, "failed": Ending.FAILED}
+
+
+def ending_of(status: str, outcome: str | None) -> Ending:
+    """The ending of a run by its status and outcome; a failed run never stands."""
+    if status not in UPRIGHT_OR_FALLEN or not outcome:
+        return Ending.FAILED
+    return Ending.OVERTURNED if outcome == Outcome.OVERTURNED else Ending.STANDING

@@ -1,0 +1,37 @@
+"""The outcomes of runs and studies."""
+
+import json
+import pickle
+
+import pytest
+
+from contact.stepping import observables
+from fem.results.outcome import MODES, Ending, Outcome, ending_of
+
+
+def test_an_outcome_is_its_word():
+    for outcome in Outcome:
+        assert json.loads(json.dumps(outcome)) == outcome == f"{outcome}"
+        assert pickle.loads(pickle.dumps(outcome)) is Outcome(str(outcome)) is outcome
+        assert {outcome: 1}[str(outcome)] == 1
+
+
+def test_every_mode_of_the_kernel_is_an_outcome():
+    assert MODES[observables.REST] == "rest" and MODES[observables.FALLEN] == "overturned"
+    assert MODES[observables.ROCK + observables.SLIDE] == "slide-rock"
+    assert len(MODES) == len(Outcome) == observables.FALLEN + 1
+
+
+@pytest.mark.parametrize(
+    ("slides", "rocks", "word"),
+    [(False, False, "rest"), (True, False, "slide"), (False, True, "rock"), (True, True, "slide-rock")],
+)
+def test_what_did_not_overturn_slid_or_rocked(slides, rocks, word):
+    assert Outcome.of(slides=slides, rocks=rocks) == word
+
+
+def test_what_failed_never_stands():
+    assert ending_of("failed", None) == ending_of("failed", "rest") == ending_of("interrupted", None)
+    assert ending_of("failed", None) == Ending.FAILED
+    assert ending_of("completed", "slide-rock") == Ending.STANDING
+    assert ending_of("overturned", "overturned") == Ending.OVERTURNED
