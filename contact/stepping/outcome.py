@@ -61,7 +61,7 @@ NOTHING_KEPT = KeptSamples(0.0, np.zeros(0), np.zeros(0), np.zeros((0, 0)))
 UNSETTLED = 4  #: as `integrator.REACHED`, but what becomes of the container is not decided yet
 
 
-class Outcome(NamedTuple):
+class SteppingEnd(NamedTuple):
     """Result of a run, besides its final state and records."""
 
     status: int  #: REACHED, OVERTURNED or FAILED (also at the limit of attempts)
@@ -78,7 +78,7 @@ def run_to_end(
     slip_until: float = 0.0,
     cycle: float = 0.0,
     strained: bool = False,
-) -> Outcome:
+) -> SteppingEnd:
     """Step a run from t = 0 to its end, in place; the result does not depend on other runs or threads.
 
     Args:
@@ -119,7 +119,7 @@ def run_to_end(
         status = step_on(own, run, kept, AFTERMATH_SLICE, math.inf, end, UNDECIDED)
         if status == REACHED and run.track[0].overturned_at < np.inf:
             status = OVERTURNED
-    return Outcome(status, kept)
+    return SteppingEnd(status, kept)
 
 
 def advance_compiled(body: ModalBody | LooseStack, run: RunState, until: float) -> int:

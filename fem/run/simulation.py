@@ -72,7 +72,7 @@ class Pace:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ending:
+class SimulationEnd:
     """How the stepping ended."""
 
     status: str  #: completed | overturned | failed | interrupted
@@ -88,7 +88,7 @@ def simulate(
     stop: Callable[[], bool] = lambda: False,
     save: Callable[[Progress, bool], None] | None = None,
     progress: Progress = BEGINNING,
-) -> Ending:
+) -> SimulationEnd:
     """Step a model to its end; the recorder takes the samples.
 
     Args:
@@ -105,9 +105,9 @@ def simulate(
     duration, control, run = model.duration, model.run.control, model.run
     clock, track = run.clock[0], run.track[0]
 
-    def ended(status: str, error: str | None = None) -> Ending:
+    def ended(status: str, error: str | None = None) -> SimulationEnd:
         reporter.finish()
-        return Ending(status=status, stepping_cpu_s=progress.stepping_cpu_s, error=error)
+        return SimulationEnd(status=status, stepping_cpu_s=progress.stepping_cpu_s, error=error)
 
     if progress.undriven is not None:
         run = on_resting_floor(run, progress.undriven[0], progress.undriven[1:])

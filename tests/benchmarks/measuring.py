@@ -16,7 +16,7 @@ from fem.model.container import Container
 from fem.model.model import Model, build_model
 from fem.results.history import History
 from fem.run.recorder import Recorder
-from fem.run.simulation import Ending, simulate
+from fem.run.simulation import SimulationEnd, simulate
 from fem.solid.nodal_body import advance_body
 
 #: the homogeneous box of 2500 kg used to measure general finite-element codes: 22 x 20 bilinear quads
@@ -65,7 +65,7 @@ class Stepped:
 
     model: Model
     history: History
-    ending: Ending
+    ending: SimulationEnd
 
     @property
     def cpu_s(self) -> float:
