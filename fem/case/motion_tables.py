@@ -96,6 +96,12 @@ class PulseAndTableKeys(CaseTable):
     sample_interval_s: Annotated[float, q.SAMPLE_INTERVAL] | None = case_key(
         "table: of a file of one column, without times", None, example=0.005, only=("kind", "table")
     )
+    gaps: Literal["bridge"] | None = case_key(
+        'table: "bridge" takes a file in which samples are missing, or far apart in places',
+        None,
+        example="bridge",
+        only=("kind", "table"),
+    )
     start_s: Annotated[float, q.RECORD_TIME] | None = case_key(
         "table: start of the part taken, which becomes t = 0", None, example=5.0, only=("kind", "table")
     )

@@ -19,6 +19,7 @@ MotionKey = Literal["motion", "vertical"]  #: the table of a motion: along x, or
 MOST_PEAK = 30.0
 #: peaks of a motion that moves a container, and is not beyond almost all records [m/s2]
 USUAL_PEAKS = (0.5, 20.0)
+WAYS_OUT = ', or set gaps = "bridge" where the motion is meant to go straight on between these samples'
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -58,6 +59,8 @@ def _recorded(case: Case, table: MotionKey) -> RecordedMotion:
     component = record.component(
         "vertical" if table == "vertical" else "horizontal", quantity=keys.quantity, channel=channel
     )
+    if beside.gaps is None:
+        component.require_no_gap(record.name, WAYS_OUT)
     scale = keys.scale
     if keys is not shared and keys.scale_to_m_s2 is None:
         scale *= _factor_to_peak(case)

@@ -80,6 +80,20 @@ class Component:
         """Median interval of the samples [s]."""
         return float(np.median(np.diff(self.times)))
 
+    def require_no_gap(self, name: str, ways_out: str = "") -> None:
+        """Refuse samples of which some are missing: an interval is twice the usual one or longer.
+
+        Raises:
+            RecordError: with the file of that name and the times.
+        """
+        long = np.flatnonzero(np.diff(self.times) > (2.0 - SAME_TIME) * self.step)
+        if long.size:
+            before, behind = self.times[long[0] : long[0] + 2]
+            raise RecordError(
+                f"{name}: no samples between {before:.7g} and {behind:.7g} s, where they are usually {self.step:.4g} s "
+                f"apart; complete the file{ways_out}"
+            )
+
     @property
     def described(self) -> str:
         """Name, direction and quantity for a message."""

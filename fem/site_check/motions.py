@@ -95,6 +95,8 @@ def _record(request: SiteRequest, number: int, names: Sequence[str], allow_outsi
                     channel=channel,
                 )
             )
+        for record, component in zip(records, components, strict=True):
+            component.require_no_gap(record.name)
         require_together(components, [record.name for record in records])
     except RecordError as error:
         raise CaseError(f"[motions] files: {error}") from None

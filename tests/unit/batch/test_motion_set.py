@@ -133,7 +133,8 @@ def test_a_motion_of_uneven_steps_has_the_spectrum_of_its_straight_lines(base, t
     kept = np.delete(even, [7, 20, 33], axis=0)
     np.savetxt(tmp_path / "uneven.csv", kept, delimiter=",")
     lines = np.interp(even[:, 0], kept[:, 0], kept[:, 1])
-    motions = read_motion_set(base, [read_axis("motion.file", ["uneven.csv", "b_h.csv"])])
+    bridged = base.with_values({"motion.gaps": "bridge"})
+    motions = read_motion_set(bridged, [read_axis("motion.file", ["uneven.csv", "b_h.csv"])])
     periods, spectra = spectra_of(motions)
     wanted = response_spectrum(0.02, lines, periods).pseudo_acceleration_m_s2
     assert spectra["uneven.csv"] == pytest.approx(wanted, rel=1e-3)

@@ -98,6 +98,19 @@ def test_what_cannot_move_the_floor_is_refused_with_exit_code_2(motion, changes,
     assert f"[{table}]" in said and "root:" not in said
 
 
+@pytest.mark.parametrize("missing", [1, 100])
+def test_a_gap_is_refused_with_its_times_and_bridged_where_that_is_asked(folder, missing):
+    lines = files.columns([FIRST, THIRD]).splitlines(keepends=True)
+    (folder / "gap.csv").write_text("".join(lines[:200] + lines[200 + missing :]))
+    for table in ("motion", "vertical"):
+        with pytest.raises(
+            CaseError, match=rf"\[{table}\] gap.csv: no samples between 0.995 and {1 + STEP * missing:g} s"
+        ):
+            moved("gap.csv", "motion.unit=m/s2", table=table)
+        found = moved("gap.csv", "motion.unit=m/s2", "motion.gaps=bridge", table=table)
+        assert found.times.size == FIRST.size - missing
+
+
 def test_a_file_that_is_set_moves_the_floor_of_a_harmonic_case():
     assert load_case("rocking", ["motion.file=h.at2"]).motion.kind == "table"
     pair = load_case("rocking").replace({"motion.file": "h.at2", "vertical.file": "v.at2"})
