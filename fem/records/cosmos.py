@@ -7,7 +7,7 @@ Motion Data Format (2001), tables 1 to 8.
 
 import re
 
-from fem.records.directions import direction_of
+from fem.records.directions import direction_of, stream_direction
 from fem.records.fixed_width import fortran_format, read_block, regular_times, whole_number
 from fem.records.record import Component, Direction, Record
 from fem.records.source import MotionText
@@ -32,6 +32,7 @@ DIRECTION_CODES: dict[int, tuple[Direction, float]] = {
 UNKNOWN = -999.0
 #: places in the reals: interval in ms, length in s
 INTERVAL, LENGTH = 61, 62
+STREAM = re.compile(r"(?:<SCNL>|RcrdId:)\s*\S*?\.([A-Z][NLGH][A-Z0-9])\b")  #: such as <SCNL>BMR.BNZ.AK.--
 #: places in the whole numbers: unit, azimuth
 UNIT, AZIMUTH = 2, 53
 
@@ -75,7 +76,7 @@ def _channel(source: MotionText, line: int, unit: str | None) -> tuple[Component
     comments = BLOCK.match(source.line(line))
     if comments is None or "comment" not in comments[2].lower():
         raise source.refused("the number of lines of comments is needed here", line)
-    line += 1 + (int(comments[1]) if len(comments[1]) < 6 else 0)
+    first, line = line, line + 1 + (int(comments[1]) if len(comments[1]) < 6 else 0)
     opening = BLOCK.match(source.line(line))
     layout = fortran_format(source.line(line))
     if opening is None or layout is None:
@@ -84,10 +85,11 @@ def _channel(source: MotionText, line: int, unit: str | None) -> tuple[Component
     stated = _unit(source, whole, opening[2], line)
     settled, by_file = settled_unit(stated, unit, source.name)
     step = _interval(source, real, count, line)
+    stream = next((m[1] for m in map(STREAM.search, source.lines[first : line - 1]) if m), "")
     readings, line = read_block(source, line + 1, count, per_line=layout[0], width=layout[1])
-    direction, sense = _direction(whole, name)
+    direction, sense = _direction(whole, name, stream)
     return Component(
-        times=regular_times(count, step),
+        times=regular_times(readings, step),
         readings=readings,
         factor=sense * UNITS[settled].factor,
         quantity=UNITS[settled].quantity,
@@ -137,8 +139,10 @@ def _interval(source: MotionText, real: FloatArray, count: int, line: int) -> fl
     return step
 
 
-def _direction(whole: FloatArray, name: str) -> tuple[Direction | None, float]:
-    code = int(whole[AZIMUTH])
-    if code in DIRECTION_CODES:
-        return DIRECTION_CODES[code]
-    return ("horizontal", 1.0) if 0 <= code <= 360 else direction_of(name)
+def _direction(whole: FloatArray, name: str, stream: str) -> tuple[Direction | None, float]:
+    """Direction by its code, else by the stream that the comments name; None where these contradict each other."""
+    code, named = int(whole[AZIMUTH]), stream_direction(stream)
+    if code in DIRECTION_CODES or 0 < code <= 360:
+        found = DIRECTION_CODES.get(code, ("horizontal", 1.0))
+        return found if named in (found[0], None) else (None, 1.0)
+    return (named, 1.0) if named else direction_of(name.partition("(")[0])

@@ -119,6 +119,7 @@ def cosmos(
     code: int = 4,
     unit: str = "cm/sec2(04)",
     volume: str = "Corrected",
+    comment: str = "two",
 ) -> str:
     """Channels of values in the unit and codes of direction."""
     text: list[str] = []
@@ -134,7 +135,7 @@ def cosmos(
             "Raw record length =", "Processed:", "Record filtered", "Values used when unknown:   -999, -999.0",
             " 100 Integer-header values follow on  10 lines, Format= (10I8)", *rows([f"{n:8d}" for n in whole], 10),
             " 100 Real-header values follow on  20 lines, Format= (5F15.6)", *rows([f"{r:15.6f}" for r in real], 5),
-            '   2 Comment line(s) follow, each starting with a "|":', "| one", "| two",
+            '   2 Comment line(s) follow, each starting with a "|":', "| one", f"| {comment}",
             f"{len(values):8d} acceleration pts, approx {len(values) * STEP:.0f} secs, units={unit},Format=(8f10.5)",
             *rows([f"{v:10.5f}" for v in values], 8),
             f"End-of-data for Chan  {number} acceleration",
