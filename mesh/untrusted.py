@@ -53,6 +53,8 @@ def require_harmless(path: Path) -> None:
     if not path.is_file():
         raise MeshError(f"mesh file {path}: no such file")
     size = path.stat().st_size
+    if size == 0:  # as files of the kernel state, which may never end
+        raise MeshError(f"mesh file {path}: it is empty")
     if size > MOST_BYTES:
         raise MeshError(
             f"mesh file {path}: {size} bytes, at most {MOST_BYTES} are read; take larger elements"

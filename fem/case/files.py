@@ -174,7 +174,8 @@ def _slip_in(text: str, error: ValueError) -> str:
 def _read_text(path: Path) -> str:
     try:
         with path.open("rb") as stream:
-            content = stream.read(LARGEST_FILE + 1)
+            # A file of the kernel may never end, and states no size.
+            content = stream.read(min(path.stat().st_size, LARGEST_FILE + 1))
     except OSError as error:
         raise CaseError(f"{path}: cannot be read: {error.strerror}") from error
     if len(content) > LARGEST_FILE:

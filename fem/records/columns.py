@@ -17,8 +17,12 @@ from fem.runtime.arrays import FloatArray
 NAME = "columns"
 GIVEN = "motion.csv"  #: file name of a motion that was given by arrays
 MOST_COLUMNS = 3
+MOST_HEADER = 1000  #: lines
 NOT_NUMBERS = ("nan", "inf", "+inf", "-inf")
 DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(\s+[-+]?\d+,\d+)+\s*", re.ASCII)
+BRACKETED = re.compile(
+    r"[\[(]([^\])]{0,40})[\])]"
+)  #: bounded: a line of brackets would be scanned for each of them
 DIRECTIONS: dict[int, tuple[Direction | None, ...]] = {
     1: (None,),
     2: (None,),
@@ -33,8 +37,8 @@ def read_columns(source: MotionText, *, unit: str | None, sample_interval: float
         RecordError: with the line: no numbers, another number of columns, contradicting units, no unit.
     """
     numbered = list(_contents(source))
-    begin = next((k for k, (_, line) in enumerate(numbered) if _is_data(line)), len(numbered))
-    if begin == len(numbered):
+    begin = next((k for k, (_, line) in enumerate(numbered[:MOST_HEADER]) if _is_data(line)), None)
+    if begin is None:
         raise source.refused("no numbers were found; a motion file is needed")
     header, data = numbered[:begin], numbered[begin:]
     separator, decimal_comma = _separators(data[0][1])
@@ -108,18 +112,19 @@ def _table(
         if mixed is not None:
             raise source.refused("decimal commas and decimal points in one file; use one of them", mixed)
         data = [(number, line.replace(",", ".")) for number, line in data]
-    rows = [line.split(separator) for _, line in data]
-    count = len(rows[0])
+    rows: list[list[str]] = []
+    count = len(data[0][1].split(separator))
     if count > MOST_COLUMNS:
         raise source.refused(
             f"{count} columns; a motion has one (with sample_interval_s), two (time, value) or three (time, "
             "horizontal, vertical)",
             data[0][0],
         )
-    for (number, _), row in zip(data, rows, strict=True):
-        if len(row) != count:
+    for number, line in data:
+        rows.append(line.split(separator))
+        if len(rows[-1]) != count:
             raise source.refused(
-                f"{count} columns are needed as in line {data[0][0]}, found {len(row)}", number
+                f"{count} columns are needed as in line {data[0][0]}, found {len(rows[-1])}", number
             )
     numbers = as_numbers([field for row in rows for field in row])
     if numbers is None:
@@ -155,7 +160,7 @@ def _units_in(line: str, count: int) -> list[str | None]:
     if len(fields) == count:
         return [_unit_of(field) for field in fields]
     # "time (s) acc (g)" splits at its blanks; only what stands in brackets matters.
-    spelled = (unit_spelled(text) for text in re.findall(r"[\[(]([^\])]*)[\])]", line))
+    spelled = (unit_spelled(text) for text in BRACKETED.findall(line))
     units = [unit for unit in spelled if unit is not None]
     if len(units) == 1 and units != ["s"]:  # one unit, of all values
         return [None] * (count > 1) + units * max(1, count - 1)
@@ -164,10 +169,9 @@ def _units_in(line: str, count: int) -> list[str | None]:
 
 def _unit_of(field: str) -> str | None:
     """The unit in the name of a column: in brackets, behind an underscore, or the whole name."""
-    bracketed = re.search(r"[\[(]([^\])]*)[\])]", field)
-    if bracketed:
+    if bracketed := BRACKETED.search(field):
         return unit_spelled(bracketed.group(1))
-    parts = field.split("_")
+    parts = field.split("_")[-2:]  # no unit has more, such as m_s2
     spelled = (unit_spelled("_".join(parts[k:])) for k in range(len(parts)))
     return next((unit for unit in spelled if unit is not None), None)
 

@@ -73,7 +73,7 @@ def read(source: MotionText, unit: str | None) -> Record:
             direction, sense = direction_of(name)
             components.append(
                 Component(
-                    times=regular_times(opening.count, opening.step),
+                    times=regular_times(readings, opening.step),
                     readings=readings,
                     factor=sense * UNITS[settled].factor,
                     unit=settled,

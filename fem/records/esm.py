@@ -40,9 +40,10 @@ def read(source: MotionText, unit: str | None) -> Record:
         raise source.refused("its DATA_TYPE is no acceleration and no displacement")
     stated = unit_in_header(source, spelled, quantity) if spelled else None
     unit, by_file = settled_unit(stated, unit, source.name)
+    readings = read_separated(source, first, count)[0]
     component = Component(
-        times=regular_times(count, step),
-        readings=read_separated(source, first, count)[0],
+        times=regular_times(readings, step),
+        readings=readings,
         factor=UNITS[unit].factor,
         quantity=UNITS[unit].quantity,
         unit=unit,

@@ -4,10 +4,12 @@ import re
 
 import numpy as np
 
-from fem.records.source import LARGEST_NUMBER, MotionText, as_numbers
+from fem.records.record import RecordError
+from fem.records.source import LARGEST_NUMBER, MOST_SAMPLES, MotionText, as_numbers
 from fem.runtime.arrays import FloatArray
 
 #: such as (8f10.6), (5E15.7), (10I8), (1P8E10.3)
+INTERVALS = (1e-6, 10.0)  #: shortest and longest that a header may give [s]
 FORMAT = re.compile(r"\(\s*(?:1P\s*,?\s*)?(\d+)\s*[FEGDI]\s*(\d+)(?:\.\d+)?(?:E\d+)?\s*\)", re.IGNORECASE)
 
 
@@ -66,10 +68,11 @@ def read_separated(source: MotionText, first: int, count: int) -> tuple[FloatArr
 
     Returns and raises as `read_block`.
     """
-    rows = [line.split() for line in source.lines[first - 1 :]]
-    found = sum(map(len, rows))
+    lines = source.lines[first - 1 :]
+    found = sum(len(line.split()) for line in lines)
     if found != count:
         raise source.refused(f"the header says {count} values, found {found}")
+    rows = [line.split() for line in lines]
     return _checked(source, rows, first, LARGEST_NUMBER), len(source.lines) + 1
 
 
@@ -94,11 +97,13 @@ def whole_number(source: MotionText, text: str, what: str, number: int | None = 
     """A count of a header.
 
     Raises:
-        RecordError: it is no whole number above zero, or more than a file of the largest size can hold.
+        RecordError: it is no whole number above zero, or more than a file may have.
     """
     stripped = text.strip()
     if not stripped.isascii() or not stripped.isdigit() or len(stripped) > 9 or int(stripped) < 1:
         raise source.refused(f"the header gives no {what}", number)
+    if int(stripped) > MOST_SAMPLES:
+        raise source.refused(f"{stripped} as {what}; at most {MOST_SAMPLES} are read", number)
     return int(stripped)
 
 
@@ -114,6 +119,14 @@ def positive_number(source: MotionText, text: str, what: str, number: int | None
     return float(found[0])
 
 
-def regular_times(count: int, step: float) -> FloatArray:
-    """Times of evenly spaced samples from zero, shape (count,) [s]."""
-    return np.arange(count, dtype=np.float64) * step
+def regular_times(readings: FloatArray, step: float) -> FloatArray:
+    """Times of evenly spaced samples from zero, shape (n,) as the readings [s].
+
+    Raises:
+        RecordError: no sensor has such an interval.
+    """
+    if not INTERVALS[0] <= step <= INTERVALS[1]:
+        raise RecordError(
+            f"the header gives an interval of {step:g} s; it must be between {INTERVALS[0]:g} and {INTERVALS[1]:g} s"
+        )
+    return np.arange(readings.size, dtype=np.float64) * step

@@ -47,7 +47,7 @@ def read(source: MotionText, unit: str | None) -> Record:
     sensor = _value(source, 13)
     direction, _ = direction_of(SENSORS.get(sensor, sensor))
     component = Component(
-        times=regular_times(count, 1.0 / rate),
+        times=regular_times(counts, 1.0 / rate),
         readings=(counts - counts.mean()) * factor,
         factor=UNITS[stated].factor,
         unit=stated,

@@ -56,9 +56,10 @@ def read(source: MotionText, unit: str | None) -> Record:
     described = source.line(2) if last == 4 else ""
     name = described.rpartition(",")[2].strip() if "," in described else ""
     direction, sense = direction_of(name)
+    readings = _numbers(source, last + 1, count)
     component = Component(
-        times=regular_times(count, step),
-        readings=_numbers(source, last + 1, count),
+        times=regular_times(readings, step),
+        readings=readings,
         factor=sense * UNITS[unit].factor,
         quantity=UNITS[unit].quantity,
         unit=unit,

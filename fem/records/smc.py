@@ -65,7 +65,7 @@ def read(source: MotionText, unit: str | None) -> Record:
     name = source.line(6).partition("component=")[2].strip() or source.line(6).partition("comp=")[2].strip()
     direction, sense = _direction(name, whole[12], whole[13], whole[0])
     component = Component(
-        times=regular_times(count, 1.0 / rate),
+        times=regular_times(readings, 1.0 / rate),
         readings=readings,
         factor=sense * UNITS[stated].factor,
         quantity=UNITS[stated].quantity,

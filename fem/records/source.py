@@ -12,7 +12,9 @@ import numpy as np
 from fem.records.record import RecordError
 from fem.runtime.arrays import FloatArray
 
-LARGEST_FILE = 64 * 2**20  #: [bytes]: three million samples and more
+LARGEST_FILE = 64 * 2**20  #: [bytes]
+LONGEST_LINE = 1000  #: [bytes]
+MOST_SAMPLES = 1_000_000  #: of a component, and lines of a file: more than an hour at 200 samples in a second
 LARGEST_NUMBER = 1e12  #: of seconds or of any unit: above it the integrals of the motion are meaningless
 CONTROL = re.compile(r"[\x00-\x08\x0e-\x19\x1b-\x1f\x7f]")
 NUMERIC = re.compile(r"[-+.0-9eE \t]*", re.ASCII)
@@ -39,7 +41,7 @@ def read_source(path: Path) -> MotionText:
     """Read the text of a file.
 
     Raises:
-        RecordError: no such file, empty, too large, or no text.
+        RecordError: no such file, empty, too large, or no text in lines.
     """
     if not path.is_file():
         raise RecordError(f"motion file {path} does not exist or is not a file")
@@ -49,15 +51,29 @@ def read_source(path: Path) -> MotionText:
             raise RecordError(
                 f"{path.name}: {size} bytes; a motion file may have at most {LARGEST_FILE >> 20} MB"
             )
-        content = path.read_bytes()
+        with path.open("rb") as stream:
+            content = stream.read(size)  # no more: a file of the kernel may never end, and states no size
     except OSError as error:
         raise RecordError(f"{path.name}: cannot be read ({error.strerror})") from None
-    if not content.strip():
+    if not content or content.isspace():
         raise RecordError(f"{path.name}: the file is empty")
+    if max(content.count(b"\n"), content.count(b"\r")) > MOST_SAMPLES or _has_long_line(content):
+        raise RecordError(
+            f"{path.name}: a motion file may have at most {MOST_SAMPLES} lines of {LONGEST_LINE} characters each"
+        )
     text = _decoded(content)
     if text is None or CONTROL.search(text):
         raise RecordError(f"{path.name}: not a text file; a motion file holds numbers as text")
     return MotionText(path.name, text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a \n").split("\n"))
+
+
+def _has_long_line(content: bytes) -> bool:
+    at = 0
+    while at + LONGEST_LINE < len(content):
+        at = 1 + max(content.rfind(end, at, at + LONGEST_LINE + 1) for end in (b"\n", b"\r"))
+        if at == 0:
+            return True
+    return False
 
 
 def _decoded(content: bytes) -> str | None:

@@ -1,5 +1,6 @@
 """Files of data that the fuzz feeds the program with: meshes, motion tables, records."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -111,6 +112,54 @@ def records(draw: Draw) -> Input:
     )
 
 
+#: content of a size [bytes], up to which it must be refused as soon as a small one
+HOSTILE: dict[str, Callable[[int], str]] = {
+    "count of PEER": lambda size: record_text("PEER").replace("NPTS=  200", "NPTS= 999999999"),
+    "count of ESM": lambda size: record_text("ESM").replace("NDATA: 200", "NDATA: 999999999"),
+    "interval": lambda size: record_text("PEER").replace(".0050", "1e-300"),
+    "narrow numbers": lambda size: (
+        record_text("CSMIP V1").replace("(8f9.6)", "(99f1.0)").partition("\n 200")[0]
+        + f"\n {size} Accelerogram points at 200 pts/sec in units of g. Format: (99f1.0)\n"
+        + f"{'1' * 99}\n" * (size // 100)
+    ),
+    "brackets": lambda size: "(" * size + "\n0,1\n1,2\n",
+    "lines of brackets": lambda size: ("(" * 990 + "\n") * (size // 991) + "0,1\n1,2\n",
+    "underscores": lambda size: "a_" * (size // 2) + "\n0,1\n1,2\n",
+    "blanks in a header": lambda size: "a\nb\nc\nNPTS=1" + " " * size + "DT\n1\n",
+    "numbers in a line": lambda size: "1," * (size // 2),
+    "columns": lambda size: ("1," * 490 + "\n") * (size // 981),
+    "lines of nothing": lambda size: "\n" * size + "1",
+    "lines of words": lambda size: "a\n" * (size // 2),
+    "words behind numbers": lambda size: "0,1\n" * (size // 8) + "a",
+    "comments": lambda size: "#\n" * (size // 2),
+}
+SIZES = (40, 40_000, 2_000_000, 60_000_000)
+ENDLESS = ("/proc/kmsg", "/dev/zero", "/dev/tty", "/proc/self/mem", "/proc/kcore")
+
+
+def record_text(name: str) -> str:
+    return record_of(name).decode()
+
+
+@st.composite
+def hostile_records(draw: Draw) -> Input:
+    """A small file that asks for much memory or time, a large one that is no motion, or one without an end."""
+    case = {"case.toml": CASE.format(motion='kind = "none"\n').encode()}
+    said = ("--set", "motion.unit=g")
+    if draw(st.integers(0, 3)) == 0:
+        return Input(
+            arguments=("check", "case.toml", "--motion", draw(st.sampled_from(ENDLESS)), *said),
+            files=case,
+            bounded=True,
+        )
+    content = HOSTILE[draw(st.sampled_from(sorted(HOSTILE)))](draw(st.sampled_from(SIZES)))
+    return Input(
+        arguments=("check", "case.toml", "--motion", "motion", *said),
+        files=case | {"motion": content.encode()},
+        bounded=True,
+    )
+
+
 @st.composite
 def any_rows(draw: Draw) -> str:
     """Rows of a table: rising times and moderate values, some of them replaced by any number."""
@@ -129,4 +178,5 @@ KINDS: dict[str, tuple[st.SearchStrategy[Input], float]] = {
     "mesh": (meshes(), 0.15),
     "table": (motion_tables(), 0.15),
     "record": (records(), 0.05),
+    "hostile": (hostile_records(), 0.02),
 }

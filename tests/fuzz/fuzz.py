@@ -2,8 +2,8 @@
 
 Every input goes through the command line, in this process: it must end with 0, 2 (refused, with words), 3 (failed,
 with words) or 4 (stopped by the clock here, which a long run must hear), never with a traceback, and within two
-minutes. What breaks this is kept as files in FOLDER, to be looked at again:
-`(cd FOLDER/case_17 && sh command)`.
+minutes; a file that is no motion, within two seconds of computing and 300 MB. What breaks this is kept as files in
+FOLDER, to be looked at again: `(cd FOLDER/case_17 && sh command)`.
 """
 
 import collections
@@ -11,6 +11,7 @@ import contextlib
 import faulthandler
 import io
 import os
+import resource
 import shutil
 import signal
 import sys
@@ -18,6 +19,7 @@ import tempfile
 import threading
 import time
 import traceback
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -43,6 +45,7 @@ KINDS = (
         "reading": (options(reading=True), 0.02),
     }
 )
+MOST_CPU, MOST_BYTES = 2.0, 300_000_000  #: of an input that is bounded [s, bytes]
 LONG, HANGING = 10.0, 120.0  #: a run is asked to stop after the one, and given up after the other [s]
 ALLOWED = {0, 2, 3, 4}
 SHORT_OF_WORDS = {2, 3}  #: of exit codes, those that owe an explanation
@@ -57,13 +60,16 @@ class End:
     code: int | None  #: exit code; None: an exception came through
     words: str
     took_s: float
+    cpu_s: float
+    bounded: bool
 
     @property
     def broken(self) -> bool:
         """A promise was not kept."""
         owed = self.code in SHORT_OF_WORDS and not self.words.strip()
         foreign = self.code != 0 and any(phrase in self.words for phrase in FOREIGN)
-        return self.code not in ALLOWED or foreign or owed
+        slow = self.bounded and self.cpu_s > MOST_CPU
+        return self.code not in ALLOWED or foreign or owed or slow
 
 
 def end_of(given_input: Input) -> End:
@@ -71,22 +77,48 @@ def end_of(given_input: Input) -> End:
     folder = Path(tempfile.mkdtemp(prefix="fuzz", dir=MEMORY if MEMORY.is_dir() else None))
     said, before = io.StringIO(), Path.cwd()
     clock = threading.Timer(LONG, os.kill, (os.getpid(), signal.SIGINT))
-    began = time.monotonic()
+    began, cpu_began = time.monotonic(), time.process_time()
+
+    def end(code: int | None, words: str) -> End:
+        return End(
+            code=code,
+            words=words,
+            took_s=time.monotonic() - began,
+            cpu_s=time.process_time() - cpu_began,
+            bounded=given_input.bounded,
+        )
+
     try:
         write_input(given_input, folder)
         os.chdir(folder)
         faulthandler.dump_traceback_later(HANGING, exit=True)
         clock.start()
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        with (
+            contextlib.redirect_stdout(said),
+            contextlib.redirect_stderr(said),
+            little_memory() if given_input.bounded else contextlib.nullcontext(),
+        ):
             code = main(given_input.arguments)
-        return End(code=code, words=said.getvalue(), took_s=time.monotonic() - began)
+        return end(code, said.getvalue())
     except (Exception, KeyboardInterrupt):
-        return End(code=None, words=traceback.format_exc(), took_s=time.monotonic() - began)
+        return end(None, traceback.format_exc())
     finally:
         clock.cancel()
         faulthandler.cancel_dump_traceback_later()
         os.chdir(before)
         shutil.rmtree(folder, ignore_errors=True)
+
+
+@contextlib.contextmanager
+def little_memory() -> Iterator[None]:
+    """Limit what this process may allocate besides what it has."""
+    present = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    resource.setrlimit(resource.RLIMIT_AS, (present + MOST_BYTES, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, before)
 
 
 def write_input(given_input: Input, folder: Path) -> None:

@@ -34,6 +34,7 @@ class Input:
 
     arguments: tuple[str, ...]
     files: Mapping[str, bytes] = field(default_factory=dict)
+    bounded: bool = False  #: to be refused in little time and memory
 
 
 #: every key of a case file, dotted

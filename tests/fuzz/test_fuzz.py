@@ -19,7 +19,16 @@ def compiled():
 
 @pytest.mark.parametrize(
     ("kind", "count"),
-    [("text", 150), ("mesh", 35), ("table", 35), ("record", 40), ("case", 25), ("option", 20), ("folder", 5)],
+    [
+        ("text", 150),
+        ("mesh", 35),
+        ("table", 35),
+        ("record", 40),
+        ("hostile", 40),
+        ("case", 25),
+        ("option", 20),
+        ("folder", 5),
+    ],
 )
 def test_any_input_is_refused_with_words_or_computed(kind, count):
     @settings(max_examples=count, derandomize=True, suppress_health_check=list(HealthCheck))

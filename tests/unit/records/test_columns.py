@@ -1,10 +1,13 @@
 """Columns of numbers: what is understood, and one message for each way to be wrong."""
 
+import os
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from fem.records.files import read_record
-from fem.records.source import LARGEST_FILE
+from fem.records.source import LARGEST_FILE, MOST_SAMPLES
 
 G = 9.80665
 
@@ -141,7 +144,8 @@ def test_no_message_quotes_what_is_in_the_file(tmp_path):
 
 
 def test_missing_files_folders_and_oversized_files_are_refused_before_reading(tmp_path):
-    for path in (tmp_path / "none.csv", tmp_path):
+    os.mkfifo(tmp_path / "endless")
+    for path in (tmp_path / "none.csv", tmp_path, tmp_path / "endless", Path("/dev/zero")):
         with pytest.raises(ValueError, match="does not exist or is not a file"):
             read_record(path)
     large = tmp_path / "large.csv"
@@ -149,6 +153,17 @@ def test_missing_files_folders_and_oversized_files_are_refused_before_reading(tm
         file.truncate(LARGEST_FILE + 1)  # sparse: takes no room
     with pytest.raises(ValueError, match="may have at most 64 MB"):
         read_record(large)
+
+
+def test_files_of_the_kernel_that_never_end_are_taken_at_the_size_they_state():
+    with pytest.raises(ValueError, match="the file is empty"):
+        read_record(Path("/proc/self/status"))
+
+
+@pytest.mark.parametrize("content", ["1 " * 501, "0,1\n" + "1," * 600 + "\n", "1\n" * (MOST_SAMPLES + 1)])
+def test_lines_that_no_motion_has_are_refused(tmp_path, content):
+    with pytest.raises(ValueError, match="at most 1000000 lines of 1000 characters"):
+        table(tmp_path, content, sample_interval=0.01)
 
 
 def test_values_are_arrays_of_numbers(tmp_path):

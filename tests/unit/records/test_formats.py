@@ -156,6 +156,21 @@ class TestDirections:
             (found,) = read(tmp_path, text).components
             assert found.direction == direction, text[:200]
 
+    @pytest.mark.parametrize(
+        ("code", "comment", "direction"),
+        [
+            (0, "<SCNL>BMR.BNZ.AK.--", "vertical"),
+            (0, "RcrdId: AK2018.AK.BMR.BNZ", "vertical"),
+            (0, "<SCNL>BMR.BNE.AK.--", "horizontal"),
+            (0, "none", "horizontal"),  # its name is "0 deg"
+            (90, "<SCNL>BMR.BNZ.AK.--", None),
+            (400, "<SCNL>BMR.HNZ.AK.--", "vertical"),
+        ],
+    )
+    def test_cosmos_names_the_sensor_in_a_comment_too(self, tmp_path, code, comment, direction):
+        (found,) = read(tmp_path, files.cosmos([(FIRST, code)], comment=comment)).components
+        assert found.direction == direction
+
     def test_down_is_turned_upward(self, tmp_path):
         for text in (files.cosmos([(100.0 * FIRST, 401)]), files.smc(100.0 * FIRST, "DOWN")):
             (found,) = read(tmp_path, text).components
@@ -222,6 +237,18 @@ def test_a_length_that_is_not_that_of_the_samples_is_refused(tmp_path):
     text = files.cosmos([(FIRST, 90)]).replace(f"{FIRST.size * STEP:15.6f}", f"{99.0:15.6f}")
     with pytest.raises(ValueError, match=r"a length of 99 s, and 2003 samples 0.005 s apart take 10"):
         read(tmp_path, text)
+
+
+@pytest.mark.parametrize("step", ["1e-300", "1e-9", "100.", "1e11"])
+def test_an_interval_that_no_sensor_has_is_refused(tmp_path, step):
+    with pytest.raises(ValueError, match="it must be between 1e-06 and 10 s"):
+        read(tmp_path, files.peer(FIRST / G).replace(".0050", step))
+
+
+@pytest.mark.parametrize(("name", "count"), [("PEER", "2003"), ("ESM", "NDATA: 2003")])
+def test_a_count_is_believed_only_when_the_numbers_are_there(tmp_path, name, count):
+    with pytest.raises(ValueError, match="999999999 as number of samples"):
+        read(tmp_path, written(name)[2].replace(count, count.replace("2003", "999999999")))
 
 
 def test_the_name_of_a_file_does_not_matter(tmp_path):
