@@ -23,9 +23,9 @@ def code(text: object) -> Markup:
     return Markup("<code>{}</code>").format(text)
 
 
-def bold(text: object) -> Markup:
+def strong(text: object) -> Markup:
     """A word within a text that stands out."""
-    return Markup("<b>{}</b>").format(text)
+    return Markup("<strong>{}</strong>").format(text)
 
 
 def link(text: str, name: str) -> Markup:
@@ -215,6 +215,16 @@ class PageSection:
     name: str  #: of the heading
     blocks: Sequence["Block"]
     look: str = ""
+
+
+def section(title: str, name: str, *blocks: "Block", look: str = "") -> PageSection:
+    """A section of these blocks."""
+    return PageSection(title, name, blocks, look)
+
+
+def columns(*blocks: "Block") -> Group:
+    """Blocks side by side."""
+    return Group("columns", blocks)
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from fem.assessment.summary import own_motion_name, rule_says, run_slid, run_til
 from fem.case.boxes import Box
 from fem.case.case import Case
 from fem.case.motion_tables import FloorMotionTable
+from fem.html import sections as html
 from fem.html.units import degrees, number, quantity, short, typeset
 from fem.model.container import modes_of_a_body
 from fem.model.static_checks import StaticChecks
@@ -141,6 +142,15 @@ def _dashpot(case: Case, numerics: Numerics) -> str:
     if stated is None:
         return words
     return f"{words}, both found so that the rigid container has {short(stated)} of Housner's restitution"
+
+
+def limits_section(case: Case, result: RunResult | None = None) -> html.PageSection:
+    """What a result rests on, and what it leaves out."""
+    assumed = html.Group("", [html.Heading("Assumed"), html.Bullets(assumptions(case, result))])
+    missing = html.Group("", [html.Heading("Not covered"), html.Bullets(exclusions(case))])
+    return html.section(
+        "Assumptions and exclusions", "assumptions", html.Group("columns even", [assumed, missing])
+    )
 
 
 def assumptions(case: Case, result: RunResult | None = None) -> list[str]:

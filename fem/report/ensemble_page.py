@@ -1,6 +1,7 @@
 """The report of an ensemble: where half of the draws overturn, the curve or boundary, its points, the request."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -9,10 +10,20 @@ from fem.batch.labels import axis_label, in_words, place_in_words
 from fem.case.case import load_case
 from fem.ensemble.answers import EnsembleAnswer, axes_of, ensemble_answer, interval_in_words
 from fem.ensemble.run import fragility_lines
+from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, number, short, typeset
+from fem.report.comparison import asked_rows, limits_section
 from fem.report.motion_part import motions_of_ensemble
-from fem.report.studies import PageTable, again_from_files, axis_row, drawings, page_table, study_page
+from fem.report.studies import (
+    again_from_files,
+    answer_section,
+    axes_table,
+    drawings,
+    repeat_section,
+    study_html,
+    unfinished,
+)
 from fem.results.errors import FolderError
 from fem.results.kinds import ENSEMBLE, read_result
 from fem.results.outcome import COUNTED
@@ -32,32 +43,63 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
         raise FolderError(
             f"{folder}: the ensemble is not finished; continue it with --resume, then report it"
         )
-    case = load_case(str(folder / "base.toml"))
+    case, axes = load_case(str(folder / "base.toml")), axes_of(info)
     answer, name = ensemble_answer(info), str(info.get("ensemble") or folder.name)
-    words = region_labels(info)
-    return study_page(
-        "ensemble.html.j2",
+    given = html.Pairs(asked_rows(case), caption="Base case, where nothing changes it", look="asked")
+    varied = html.Group("", [axes_table(axes, info["derived"]), random_table(info)])
+    return study_html(
+        "an ensemble",
         info=info,
+        name=name,
         case=case,
         signature=signature,
-        answer=answer.sentence if answer else None,
-        title=info.get("title") or name,
-        name=name,
         hash=str(info["asked"]),
-        answers=answer_table(answer, info) if answer and answer.others else None,
-        regions=[(words[region], count) for region, count in info["regions"].items() if count],
-        fitted=[typeset(f"{head}: {line}.") for head, line in fragility_lines(info)],
-        drawn=drawings(folder, FIGURES, "ensemble"),
-        motions=motions_of_ensemble(folder, info),
-        axes=[axis_row(axis) for axis in axes_of(info)],
-        random=random_table(info),
-        points=points_table(info),
-        provenance=[
-            ("ensemble", f"{name}, {info['status']}, model {info['model']}"),
-            ("draws", f"{info['draws']} at each point, {info['sampling']}, seed {info['seed']}"),
-            ("hash", info["asked"]),
+        sections=[
+            found_section(info, answer),
+            html.section(
+                "The answer for each value of the other axes",
+                "answers",
+                *([answer_table(answer, info)] if answer and answer.others else []),
+            ),
+            html.section(
+                "Fragility curve" if len(axes) == 1 else "Boundary",
+                "drawn",
+                *drawings(folder, FIGURES, "ensemble"),
+            ),
+            motions_of_ensemble(folder, info),
+            html.section("The ensemble", "asked", html.columns(varied, given)),
+            html.section("Points", "points", points_table(info)),
+            limits_section(case),
+            repeat_section(
+                [
+                    ("ensemble", f"{name}, {info['status']}, model {info['model']}"),
+                    ("draws", f"{info['draws']} at each point, {info['sampling']}, seed {info['seed']}"),
+                    ("hash", info["asked"]),
+                ],
+                info,
+                again_from_files(folder, study="ensemble", name=name, case=case),
+            ),
         ],
-        again=again_from_files(folder, study="ensemble", name=name, case=case),
+    )
+
+
+def found_section(info: Mapping[str, Any], answer: EnsembleAnswer | None) -> html.PageSection:
+    """The answer, how many points there are of each region, and the curve that was fitted."""
+    words = region_labels(info)
+    regions = ", ".join(f"{words[region]} at {count}" for region, count in info["regions"].items() if count)
+    motions = (
+        "the motions of the set, each equally often"
+        if info.get("motions")
+        else "the floor motion of the base case"
+    )
+    return answer_section(
+        info,
+        answer.sentence if answer else None,
+        f"{len(info['points'])} points of {info['draws']} draws{unfinished(info)}; share that overturned: {regions}.",
+        *(typeset(f"{head}: {line}.") for head, line in fragility_lines(info)),
+        *([f"Held fixed: {info['held']}."] if info.get("held") else []),
+        note=f"A share of draws over the uncertain quantities listed below, under {motions}. It is not the probability "
+        "of failure in an earthquake. Nothing is known between the points.",
     )
 
 
@@ -67,7 +109,7 @@ def region_labels(info: Mapping[str, Any]) -> dict[str, str]:
     return {"below": f"at most {limit}", "undecided": "not decided", "above": f"more than {limit}"}
 
 
-def answer_table(answer: EnsembleAnswer, info: Mapping[str, Any]) -> PageTable:
+def answer_table(answer: EnsembleAnswer, info: Mapping[str, Any]) -> html.Table:
     """Where half of the draws overturn, for each combination of values of the other axes."""
 
     def in_axis(value: float | None) -> str:
@@ -84,35 +126,44 @@ def answer_table(answer: EnsembleAnswer, info: Mapping[str, Any]) -> PageTable:
         for point, found, _ in answer.rows
     )
     heads = ("", "half of the draws overturned at", f"{100.0 * info['confidence']:g} % interval", few)
-    return page_table("answers", dict.fromkeys(heads, False), rows)
+    return html.table_of("answers", html.in_order(*heads), rows)
 
 
-def random_table(info: Mapping[str, Any]) -> PageTable:
+def random_table(info: Mapping[str, Any]) -> html.Table:
     """What is drawn: by the file, and over the ranges of the unknown inputs."""
     rows = [[key, _drawn(spread)] for key, spread in info["random"].items()]
     rows += [[key, "over its range in [uncertainty]"] for key in info.get("drawn_over_uncertainty") or ()]
-    return page_table("random quantities", {"key": False, "drawn": False}, rows, caption="Random quantities")
+    columns = html.in_order("key", "drawn")
+    return html.table_of("random quantities", columns, rows, caption="Random quantities")
 
 
-def points_table(info: Mapping[str, Any]) -> PageTable:
+def points_table(info: Mapping[str, Any]) -> html.Table:
     """A row a point: the counts, the share that overturned, its interval, the region."""
-    axes, words = axes_of(info), region_labels(info)
-    counted = ("draws", *COUNTED)
-    numbers = (*counted, "share", f"{100.0 * info['confidence']:g} % interval")
-    columns = dict.fromkeys((axis_label(axis) for axis in axes), True)
-    columns |= dict.fromkeys(numbers, True) | {"region": False}
+    words, share = region_labels(info), partial(number, factor=100.0, figures=3)
+    columns: list[html.Column[Mapping[str, Any]]] = [
+        *(html.Column(axis_label(axis), partial(_on_axis, axis), html.NUMBER) for axis in axes_of(info)),
+        *(html.Column(name, partial(_count, name), html.NUMBER) for name in ("draws", *COUNTED)),
+        html.Column(
+            "share",
+            lambda point: ABSENT if point["probability"] is None else f"{share(point['probability'])} %",
+            html.NUMBER,
+        ),
+        html.Column(
+            f"{100.0 * info['confidence']:g} % interval",
+            lambda point: f"{share(point['low'])} to {share(point['high'])} %",
+            html.NUMBER,
+        ),
+        html.Column("region", lambda point: words[point["region"]]),
+    ]
+    return html.table_of("points", columns, info["points"], file="points.csv")
 
-    def row(point: Mapping[str, Any]) -> Iterator[str]:
-        yield from (_on_axis(axis, point[axis.key]) for axis in axes)
-        yield from (str(point[name]) for name in counted)
-        yield number(point["probability"], 100.0, 3) + " %" if point["probability"] is not None else ABSENT
-        yield f"{number(point['low'], 100.0, 3)} to {number(point['high'], 100.0, 3)} %"
-        yield words[point["region"]]
 
-    return page_table("points", columns, (list(row(point)) for point in info["points"]), file="points.csv")
+def _count(name: str, point: Mapping[str, Any]) -> str:
+    return str(point[name])
 
 
-def _on_axis(axis: Axis, value: Any) -> str:
+def _on_axis(axis: Axis, point: Mapping[str, Any]) -> str:
+    value = point[axis.key]
     return str(value) if isinstance(value, bool | str) else short(value)
 
 

@@ -1,16 +1,15 @@
 """The part of a page about a set of motions: measures and spectra, the outcome of each, and of all together."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from markupsafe import Markup
 
+from fem.html import sections as html
 from fem.html.units import ABSENT, millimetres, number, rotation_ratio, short
 from fem.records.units import STANDARD_GRAVITY
-from fem.report.studies import PageTable, drawings, page_table
+from fem.report.studies import drawings
 from fem.results.outcome import COUNTED, ROCKING, SLIDING, Ending, ending_of
 from fem.sweep.cells import Shown
 from fem.sweep.motion_outcomes import MotionOutcome, motions_at
@@ -19,124 +18,150 @@ from fem.sweep.table import SweepTable
 MOST_POINTS = 12  #: beside one another in the table of outcomes
 
 
-@dataclass(frozen=True, kw_only=True)
-class MotionPart:
-    """What a page shows of a set of motions."""
-
-    numbers: PageTable
-    drawn: Sequence[Markup]  #: spectra, and the share that overturns over the strength
-    note: str  #: how the motions are counted
-    outcomes: PageTable | None = None  #: a row a motion, a column a point; None with too many points
-    together: PageTable | None = None  #: a row a point: worst, mean, share that overturns
+#: what the columns of the motions mean
+PEAKS = (
+    "PGA, PGV and PGD are the peaks of acceleration, velocity and displacement of the floor; D5-95 is the time from 5 "
+    "to 95 % of the integral of the squared acceleration."
+)
 
 
-def motions_of_ensemble(folder: Path, info: Mapping[str, Any]) -> MotionPart | None:
-    """The motions that an ensemble draws, with their outcomes; None where it has none, or is not finished."""
+def motions_of_ensemble(folder: Path, info: Mapping[str, Any]) -> html.PageSection:
+    """The motions that an ensemble draws, with their outcomes; empty where it has none, or is not finished."""
     motions = info.get("motions")
     if not motions:
-        return None
-    rows = ([one["file"], *(str(one[name]) for name in COUNTED)] for one in motions)
-    return MotionPart(
-        numbers=_numbers(motions),
-        drawn=_drawn(folder, info, "ensemble"),
-        outcomes=page_table(
-            "outcome of each motion",
-            {"motion": False} | dict.fromkeys(COUNTED, True),
-            rows,
-            caption="Draws under each motion, at all points",
-            file="motions.csv",
-        ),
-        note=f"Every draw is under one of {len(motions)} motions, each equally often. The intervals are those of "
-        f"a sample of {len(motions)} motions: draws under one motion say little of others.",
+        return html.section("", "motions")
+    outcomes = html.table_of(
+        "outcome of each motion",
+        html.in_order("motion", *COUNTED, look=html.NUMBER),
+        ([one["file"], *(str(one[name]) for name in COUNTED)] for one in motions),
+        caption="Draws under each motion, at all points",
+        file="motions.csv",
     )
+    note = (
+        f"Every draw is under one of {len(motions)} motions, each equally often. The intervals are those of "
+        f"a sample of {len(motions)} motions: draws under one motion say little of others."
+    )
+    return _section(folder, info, "ensemble", [outcomes], note)
 
 
-def motions_of_sweep(folder: Path, table: SweepTable) -> MotionPart | None:
-    """The motions of a sweep, with what each did at each point of the other axes; None as for an ensemble."""
+def motions_of_sweep(folder: Path, table: SweepTable) -> html.PageSection:
+    """The motions of a sweep, with what each did at each point of the other axes; empty as for an ensemble."""
     if not table.info.get("motions"):
-        return None
+        return html.section("", "motions")
     points = list(motions_at(table.axes, _shown(table)))
     rows = table.info["motion_set"]
     places = [row["where"] for row in rows]
-    outcomes = None
+    tables = [_together(places, rows)]
     if len(points) <= MOST_POINTS:
-        heads = {"motion": False} | dict.fromkeys((place or "outcome" for place in places), False)
         lines = ([some[0].motion, *map(_outcome, some)] for some in zip(*(p for _, p in points), strict=True))
-        outcomes = page_table(
-            "outcome of each motion", heads, lines, caption="Outcome, with the worse sign", file="table.csv"
+        columns = html.in_order("motion", *(place or "outcome" for place in places))
+        tables.append(
+            html.table_of(
+                "outcome of each motion",
+                columns,
+                lines,
+                caption="Outcome, with the worse sign",
+                file="table.csv",
+            )
         )
-    return MotionPart(
-        numbers=_numbers(table.info["motions"]),
-        drawn=_drawn(folder, table.info, "sweep"),
-        outcomes=outcomes,
-        together=_together(places, rows),
-        note="A motion counts once, with the worse of its signs. The interval is that of the share among all motions "
-        "of this kind, had these been drawn from them at random.",
+    note = (
+        "A motion counts once, with the worse of its signs. The interval is that of the share among all motions "
+        "of this kind, had these been drawn from them at random."
+    )
+    return _section(folder, table.info, "sweep", tables, note)
+
+
+def _section(
+    folder: Path, info: Mapping[str, Any], command: str, tables: Sequence[html.Table], note: str
+) -> html.PageSection:
+    """Tables of outcomes, the motions in numbers, their spectra, and how they are counted."""
+    return html.section(
+        "The motions",
+        "motions",
+        *tables,
+        _numbers(info["motions"]),
+        *drawings(folder, info.get("motion_figures") or (), command, prefix="motion"),
+        html.Note(f"{note} {PEAKS}"),
     )
 
 
-def _drawn(folder: Path, info: Mapping[str, Any], command: str) -> Sequence[Markup]:
-    return drawings(folder, info.get("motion_figures") or (), command, prefix="motion")
+class _Component(NamedTuple):
+    """One direction of a motion."""
+
+    name: str
+    peaks: Mapping[str, Any]
+
+    def number(self, key: str, factor: float = 1.0) -> str:
+        """One of its numbers."""
+        return number(self.peaks[key], factor, 3)
 
 
-def _numbers(motions: Sequence[Mapping[str, Any]]) -> PageTable:
+def _numbers(motions: Sequence[Mapping[str, Any]]) -> html.Table:
     """A row a component: peaks, significant duration, length, step."""
-    heads = ("PGA [m/s²]", "PGA [g]", "PGV [m/s]", "PGD [mm]", "D5-95 [s]", "length [s]", "step [s]")
-    columns = {"motion": False} | dict.fromkeys(heads, True)
-
-    def row(one: Mapping[str, Any], word: str) -> Iterator[str]:
-        peak = one["peak_acceleration_m_s2"]
-        yield f"{one['file']}{word}"
-        yield from (number(peak, figures=3), number(peak, 1.0 / STANDARD_GRAVITY, 3))
-        yield number(one["peak_velocity_m_s"], figures=3)
-        yield millimetres(one["peak_displacement_m"])
-        yield number(one["significant_s"], figures=3)
-        yield from (short(one["duration_s"]), short(one["step_s"]))
-
-    rows = [
-        list(row(part, word))
+    peak = "peak_acceleration_m_s2"
+    columns: list[html.Column[_Component]] = [
+        html.Column("motion", lambda one: one.name),
+        html.Column("PGA [m/s²]", lambda one: one.number(peak), html.NUMBER),
+        html.Column("PGA [g]", lambda one: one.number(peak, 1.0 / STANDARD_GRAVITY), html.NUMBER),
+        html.Column("PGV [m/s]", lambda one: one.number("peak_velocity_m_s"), html.NUMBER),
+        html.Column("PGD [mm]", lambda one: millimetres(one.peaks["peak_displacement_m"]), html.NUMBER),
+        html.Column("D5-95 [s]", lambda one: one.number("significant_s"), html.NUMBER),
+        html.Column("length [s]", lambda one: short(one.peaks["duration_s"]), html.NUMBER),
+        html.Column("step [s]", lambda one: short(one.peaks["step_s"]), html.NUMBER),
+    ]
+    components = [
+        _Component(f"{part['file']}{word}", part)
         for one in motions
         for part, word in ((one, ""), (one["vertical"], " (vertical)"))
         if part
     ]
-    return page_table(
-        "motions", columns, rows, caption="The motions, as the base case takes them", file="motions.csv"
+    return html.table_of(
+        "motions", columns, components, caption="The motions, as the base case takes them", file="motions.csv"
     )
 
 
-def _together(places: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> PageTable:
-    heads = {
-        "": False,
-        "motions": True,
-        "overturned": True,
-        "95 % interval": True,
-        "failed": True,
-        "worst": False,
-        "largest slip": False,
-        "mean rotation ratio": True,
-        "mean slip [mm]": True,
-    }
+class _Place(NamedTuple):
+    """What all motions did at a point of the other axes."""
 
-    def row(place: str, one: Mapping[str, Any]) -> Iterator[str]:
-        yield place
-        yield from (str(one["motions"]), str(one["overturned"]))
-        yield f"{short(one['low'], 100.0, 3)} to {short(one['high'], 100.0, 3)} %"
-        yield str(one["failed"] or "")
-        worst = _words(one["worst_outcome"], one["worst_rotation_ratio"])
-        yield f"{one['worst_motion']}: {worst}" if one["worst_motion"] else ABSENT
-        slip = one["worst_slip_m"]
-        yield f"{millimetres(slip)} mm, {one['worst_slip_motion']}" if slip else ABSENT
-        of = f" (of {one['stood']})" if one["stood"] < one["motions"] else ""
-        yield rotation_ratio(one["mean_rotation_ratio"]) + (of if one["stood"] else "")
-        yield millimetres(one["mean_slip_m"])
+    name: str
+    counts: Mapping[str, Any]
 
-    return page_table(
+
+def _together(places: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> html.Table:
+    def worst(place: _Place) -> str:
+        one = place.counts
+        words = _words(one["worst_outcome"], one["worst_rotation_ratio"])
+        return f"{one['worst_motion']}: {words}" if one["worst_motion"] else ABSENT
+
+    def slip(place: _Place) -> str:
+        largest = place.counts["worst_slip_m"]
+        return f"{millimetres(largest)} mm, {place.counts['worst_slip_motion']}" if largest else ABSENT
+
+    def mean_ratio(place: _Place) -> str:
+        one = place.counts
+        of = f" (of {one['stood']})" if 0 < one["stood"] < one["motions"] else ""
+        return rotation_ratio(one["mean_rotation_ratio"]) + of
+
+    def interval(place: _Place) -> str:
+        return f"{short(place.counts['low'], 100.0, 3)} to {short(place.counts['high'], 100.0, 3)} %"
+
+    columns: list[html.Column[_Place]] = [
+        html.Column("", lambda place: place.name, optional=True),
+        html.Column("motions", lambda place: str(place.counts["motions"]), html.NUMBER),
+        html.Column("overturned", lambda place: str(place.counts["overturned"]), html.NUMBER),
+        html.Column("95 % interval", interval, html.NUMBER),
+        html.Column("failed", lambda place: str(place.counts["failed"] or ""), html.NUMBER, optional=True),
+        html.Column("worst", worst),
+        html.Column("largest slip", slip),
+        html.Column("mean rotation ratio", mean_ratio, html.NUMBER),
+        html.Column("mean slip [mm]", lambda place: millimetres(place.counts["mean_slip_m"]), html.NUMBER),
+    ]
+    return html.table_of(
         "the set of motions",
-        heads,
-        (list(row(*pair)) for pair in zip(places, rows, strict=True)),
+        columns,
+        map(_Place, places, rows),
         caption="All motions together; means are of those under which it stood",
         file="motion_set.csv",
-        optional=frozenset({"", "failed"}),
     )
 
 

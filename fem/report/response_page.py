@@ -7,15 +7,31 @@ from pathlib import Path
 from typing import Any
 
 from fem.case.case import load_case
+from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, millimetres, number, rotation_ratio, short
-from fem.report.studies import Again, PageTable, drawings, page_table, study_page, text_of
+from fem.report.comparison import asked_rows, limits_section
+from fem.report.studies import (
+    Again,
+    answer_section,
+    drawings,
+    repeat_section,
+    study_html,
+    text_of,
+    unfinished,
+)
 from fem.response.answer import found_at, response_answer
 from fem.response.records import PointRow
 from fem.results.errors import FolderError
 from fem.results.kinds import RESPONSE, read_result
 
 FIGURES = ("figures/response_curve.svg", "figures/sections.svg", "figures/portraits.svg")
+STABLE = ": amplitudes do not diverge, and without drive the motion dies out."
+METHOD = (
+    "Long-time motion under a harmonic floor whose frequency is swept up and down, the motion carried on from one "
+    "frequency to the next. Only the motions that the sweep meets are found; there may be more. Nothing is known "
+    "between the frequencies."
+)
 #: options of the command, by the names that the result has for them
 OPTIONS = {
     "--from": "first_Hz",
@@ -44,31 +60,56 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
             f"{folder}: the response curve is not finished; continue it with --resume, then report it"
         )
     case, name = load_case(str(folder / "case.toml")), str(info.get("case") or folder.name)
-    judged = [point["stable"] for point in info["points"] if point["stable"] is not None]
-    return study_page(
-        "response.html.j2",
+    return study_html(
+        "a response curve",
         info=info,
+        name=name,
         case=case,
         signature=signature,
-        answer=response_answer(info),
-        title=info.get("title") or name,
-        name=name,
         hash=str(info["asked"]),
-        counts=Counter(PointRow(**point).words for point in info["points"]).most_common(),
-        stable=f"{sum(judged)} of {len(judged)}",
-        drawn=drawings(folder, FIGURES, "response curve"),
-        branches=branch_table(info),
-        drive=drive_rows(info["request"]),
-        points=points_table(info),
-        provenance=[
-            ("response curve", f"{name}, {info['status']}, model {case.solver.model}"),
-            ("hash", info["asked"]),
+        sections=[
+            found_section(info),
+            html.section("Response", "drawn", *drawings(folder, FIGURES, "response curve")),
+            html.section("Where the curve changes", "branches", *branch_tables(info)),
+            html.section(
+                "The drive and the case",
+                "asked",
+                html.columns(
+                    html.Pairs(drive_rows(info["request"]), caption="Drive", look="asked"),
+                    html.Pairs(asked_rows(case), caption="Case", look="asked"),
+                ),
+            ),
+            html.section("Points", "points", points_table(info)),
+            limits_section(case),
+            repeat_section(
+                [
+                    ("response curve", f"{name}, {info['status']}, model {case.solver.model}"),
+                    ("hash", info["asked"]),
+                ],
+                info,
+                Again(
+                    words="Save the file below as case.toml:",
+                    command=shlex.join(
+                        ["python", "-m", "fem", "response", "case.toml", *_options(info["request"])]
+                    ),
+                    files=[("case.toml", text_of(folder / "case.toml"))],
+                ),
+            ),
         ],
-        again=Again(
-            words="Save the file below as case.toml:",
-            command=shlex.join(["python", "-m", "fem", "response", "case.toml", *_options(info["request"])]),
-            files=[("case.toml", text_of(folder / "case.toml"))],
-        ),
+    )
+
+
+def found_section(info: Mapping[str, Any]) -> html.PageSection:
+    """The answer, and how many points were computed, of which kinds."""
+    counts = Counter(PointRow(**point).words for point in info["points"]).most_common()
+    counted = ", ".join(f"{count} {words}" for words, count in counts)
+    judged = [point["stable"] for point in info["points"] if point["stable"] is not None]
+    return answer_section(
+        info,
+        response_answer(info),
+        f"{len(info['points'])} of {2 * info['request']['count']} points{unfinished(info)}: {counted}.",
+        html.joined(f"{sum(judged)} of {len(judged)} points are ", html.strong("stable"), STABLE),
+        note=METHOD,
     )
 
 
@@ -94,8 +135,8 @@ def drive_rows(request: Mapping[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def branch_table(info: Mapping[str, Any]) -> PageTable:
-    """Coexisting motions, jumps and drop-outs."""
+def branch_tables(info: Mapping[str, Any]) -> list[html.Block]:
+    """Coexisting motions, jumps and drop-outs, where there are any."""
 
     def rows() -> Iterator[list[str]]:
         for found in info["drop_outs"]:
@@ -113,44 +154,30 @@ def branch_table(info: Mapping[str, Any]) -> PageTable:
                 f"{found['what']}, rotation ratio {before} to {after}",
             ]
 
-    heads = ("what", "sweep", "where", "how")
-    return page_table("branches", dict.fromkeys(heads, False), rows())
+    found = list(rows())
+    return [html.table_of("branches", html.in_order("what", "sweep", "where", "how"), found)] if found else []
 
 
-def points_table(info: Mapping[str, Any]) -> PageTable:
+def points_table(info: Mapping[str, Any]) -> html.Table:
     """A row a point, in the order in which they were swept."""
-    columns = {
-        "sweep": False,
-        "frequency [Hz]": True,
-        "motion": False,
-        "rotation ratio": True,
-        "slip stroke [mm]": True,
-        "impacts a period": True,
-        "without drive": False,
-        "dies out in [s]": True,
-        "stable": False,
-        "why failed": False,
-    }
-
-    def row(point: PointRow) -> Iterator[str]:
-        yield point.direction
-        yield short(point.frequency_Hz)
-        yield point.words + (", from its start" if point.began == "case" else "")
-        yield rotation_ratio(point.rotation_ratio)
-        yield millimetres(point.slip_stroke_m)
-        yield number(point.impacts_per_period, figures=3)
-        yield point.undriven or ABSENT
-        yield number(point.undriven_s, figures=3)
-        yield ABSENT if point.stable is None else ("yes" if point.stable else "no")
-        yield point.reason or ""
-
-    return page_table(
-        "points",
-        columns,
-        (list(row(PointRow(**point))) for point in info["points"]),
-        file="response.csv",
-        optional=frozenset({"why failed"}),
-    )
+    columns: list[html.Column[PointRow]] = [
+        html.Column("sweep", lambda point: point.direction),
+        html.Column("frequency [Hz]", lambda point: short(point.frequency_Hz), html.NUMBER),
+        html.Column(
+            "motion", lambda point: point.words + (", from its start" if point.began == "case" else "")
+        ),
+        html.Column("rotation ratio", lambda point: rotation_ratio(point.rotation_ratio), html.NUMBER),
+        html.Column("slip stroke [mm]", lambda point: millimetres(point.slip_stroke_m), html.NUMBER),
+        html.Column(
+            "impacts a period", lambda point: number(point.impacts_per_period, figures=3), html.NUMBER
+        ),
+        html.Column("without drive", lambda point: point.undriven or ABSENT),
+        html.Column("dies out in [s]", lambda point: number(point.undriven_s, figures=3), html.NUMBER),
+        html.Column("stable", lambda point: {None: ABSENT, True: "yes", False: "no"}[point.stable]),
+        html.Column("why failed", lambda point: point.reason or "", optional=True),
+    ]
+    points = [PointRow(**point) for point in info["points"]]
+    return html.table_of("points", columns, points, file="response.csv")
 
 
 def _options(request: Mapping[str, Any]) -> Iterator[str]:

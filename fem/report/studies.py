@@ -1,36 +1,21 @@
-"""Common parts of the reports of sweeps, ensembles and response curves: tables, drawings, how to repeat them."""
+"""Common parts of the reports of sweeps, ensembles and response curves: answer, drawings, how to repeat them."""
 
-import datetime as dt
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from markupsafe import Markup
+from markupsafe import escape
 
 from fem.batch.axes import Axis
 from fem.case.case import Case
-from fem.html.page import Signature, render_page, svg_element
+from fem.html import sections as html
+from fem.html.page import Page, Signature, html_of, svg_element
 from fem.html.units import short, typeset
-from fem.report.comparison import asked_rows, assumptions, exclusions
 from fem.results.errors import FolderError
 
 MOST_DRAWING_BYTES = 400_000  #: of a drawing, as SVG
-MOST_ROWS = 1000  #: of a table on a page
-
-
-@dataclass(frozen=True, kw_only=True)
-class PageTable:
-    """A table on a page; the first column names its rows."""
-
-    label: str  #: for those who cannot see it
-    head: Sequence[str]
-    rows: Sequence[Sequence[str]]
-    caption: str = ""
-    numbers: frozenset[int] = frozenset()  #: columns that are aligned to the right
-    left_out: str = ""  #: what the table does not show
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,92 +27,95 @@ class Again:
     files: Sequence[tuple[str, str]]  #: names and texts of the files that it needs
 
 
-def page_table(
-    label: str,
-    columns: Mapping[str, bool],
-    rows: Iterable[Sequence[str]],
-    *,
-    caption: str = "",
-    file: str = "",
-    optional: frozenset[str] = frozenset(),
-) -> PageTable:
-    """A table, cut to the rows that a page can carry.
-
-    Args:
-        label: for those who cannot see it.
-        columns: heads, and whether they are over numbers.
-        rows: a text for each column.
-        caption: above it.
-        file: holds all rows.
-        optional: columns that are left out where they are empty in every row.
-    """
-    listed = [list(row) for row in rows]
-    heads = list(columns)
-    kept = [k for k, head in enumerate(heads) if head not in optional or any(row[k] for row in listed)]
-    more = len(listed) - MOST_ROWS
-    return PageTable(
-        label=label,
-        head=[heads[k] for k in kept],
-        rows=[[typeset(row[k]) for k in kept] for row in listed[:MOST_ROWS]],
-        caption=caption,
-        numbers=frozenset(place for place, k in enumerate(kept) if columns[heads[k]]),
-        left_out=f"{more} more rows are in {file}." if more > 0 else "",
-    )
-
-
-def study_page(
-    template: str,
+def study_html(
+    kind: str,
     *,
     info: Mapping[str, Any],
+    name: str,
     case: Case,
     signature: Signature | None,
-    answer: str | None,
-    scripts: Sequence[str] = (),
-    data: Mapping[str, Any] | None = None,
+    sections: Sequence[html.Block],
     **content: Any,
 ) -> str:
     """The page of a study, as the text of an HTML file.
 
     Args:
-        template: its file name.
-        info: the content of the file that marks the study's folder.
+        kind: of study.
+        info: the content of the file that marks its folder.
+        name: of the study.
         case: that it starts from.
         signature: author, checker, revision.
-        answer: the sentence that comes first; None where there is none.
-        scripts, data: as `render_page`, beside the script of the signature.
-        content: further variables of the template.
+        sections: what it shows.
+        content: further fields of the page.
     """
-    return render_page(
-        template,
-        scripts=[*scripts, "signature.js"],
-        data=data,
-        info=info,
-        case=case,
-        signature=(signature or Signature()).completed(case.named),
-        answer=typeset(answer[0].upper() + answer[1:]) if answer else None,
-        asked=asked_rows(case),
-        assumptions=assumptions(case),
-        exclusions=exclusions(case),
-        version=metadata.version("unanchored"),
-        today=dt.date.today().isoformat(),
-        **content,
+    return html_of(
+        Page(
+            kind=f"Report of {kind}",
+            title=info.get("title") or name,
+            name=name,
+            signature=(signature or Signature()).completed(case.named),
+            sections=sections,
+            **content,
+        )
     )
 
 
-def axis_row(axis: Axis) -> tuple[str, str, str]:
-    """Key, values and their number."""
+def answer_section(
+    info: Mapping[str, Any], answer: str | None, count: str, *more: html.Block, note: str
+) -> html.PageSection:
+    """The answer of a study, how far it was computed, what else there is to say, and how to read it."""
+    sentence = [html.Paragraph(typeset(f"{answer[0].upper()}{answer[1:]}."), "sentence")] if answer else []
+    counted = count if answer else html.Paragraph(count, "sentence")
+    look = f"answer {'stood' if info['status'] == 'completed' else 'open'}"
+    return html.section("Found", "found", *sentence, counted, *more, html.Note(note), look=look)
+
+
+def unfinished(info: Mapping[str, Any]) -> str:
+    """How a study ended that is not complete; empty of one that is."""
+    return "" if info["status"] == "completed" else f" ({info['status']})"
+
+
+def repeat_section(
+    rows: Sequence[tuple[str, str]], info: Mapping[str, Any], again: Again
+) -> html.PageSection:
+    """From what a study was computed, and how to compute it again."""
+    versions = ", ".join(f"{name} {version}" for name, version in (info.get("versions") or {}).items())
+    files = [
+        block for name, text in again.files for block in (html.Heading(html.code(name)), html.Listing(text))
+    ]
+    return html.section(
+        "Provenance and how to repeat it",
+        "provenance",
+        html.Pairs([*rows, ("versions", versions)], look="asked"),
+        again.words,
+        html.Listing(again.command, "command"),
+        *files,
+    )
+
+
+def axes_table(axes: Sequence[Axis], derived: Mapping[str, str]) -> html.Table:
+    """The axes of a study, and the keys that follow from them."""
+    rows = [(axis.key, axis_words(axis), str(len(axis.values))) for axis in axes]
+    rows += [(key, escape(f"= {rule}"), "follows") for key, rule in derived.items()]
+    columns: list[html.Column[tuple[str, str, str]]] = [
+        html.Column("key", lambda row: html.Cell(html.code(row[0]))),
+        html.Column("values", lambda row: row[1]),
+        html.Column("count", lambda row: row[2], html.NUMBER),
+    ]
+    return html.table_of("axes", columns, rows, caption="Axes")
+
+
+def axis_words(axis: Axis) -> str:
+    """The values of an axis."""
     first, last = axis.values[0], axis.values[-1]
     if axis.scale in ("linear", "log") and isinstance(first, int | float) and isinstance(last, int | float):
-        words = f"{short(first)} to {short(last)} {axis.unit}, {axis.scale}".replace(" ,", ",")
-    else:
-        words = ", ".join(str(value) for value in axis.values[:12]) + (
-            " ..." if len(axis.values) > 12 else ""
-        )
-        words += f" {axis.unit}" if axis.unit else ""
-    return axis.key, typeset(words), str(len(axis.values))
+        return f"{short(first)} to {short(last)} {axis.unit}, {axis.scale}".replace(" ,", ",")
+    words = ", ".join(str(value) for value in axis.values[:12])
+    more = " ..." if len(axis.values) > 12 else ""
+    return f"{words}{more} {axis.unit}".rstrip()
 
 
-def drawings(folder: Path, names: Iterable[str], command: str, *, prefix: str = "drawn") -> list[Markup]:
+def drawings(folder: Path, names: Iterable[str], command: str, *, prefix: str = "drawn") -> list[html.Block]:
     """Drawings that a study has made, for the page; those that are missing, outside or too large are left out.
 
     Args:
@@ -144,14 +132,16 @@ def drawings(folder: Path, names: Iterable[str], command: str, *, prefix: str = 
         inside = path.resolve().is_relative_to(folder.resolve())
         if not inside or not path.is_file() or path.stat().st_size > MOST_DRAWING_BYTES:
             continue
-        text = path.read_text(encoding="utf-8")
+        text, label = path.read_text(encoding="utf-8"), path.stem.replace("_", " ")
         try:
-            drawn.append(svg_element(text, label=path.stem.replace("_", " "), prefix=f"{prefix}{k}"))
+            drawn.append(
+                html.Figure(svg_element(text, label=label, prefix=f"{prefix}{k}"), f"figure: {label}")
+            )
         except ValueError as error:
             raise FolderError(
                 f"{path}: {error}; remove it and repeat the {command}, which draws it again"
             ) from None
-    return drawn
+    return [html.Group("drawn" if len(drawn) > 1 else "", drawn)] if drawn else []
 
 
 def text_of(path: Path) -> str:

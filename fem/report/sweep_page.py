@@ -8,11 +8,13 @@ import csv
 import re
 import shlex
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from markupsafe import Markup
 from numpy.typing import NDArray
 
 from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
@@ -20,11 +22,21 @@ from fem.batch.answers import ends_in_words, ranges_in_words
 from fem.batch.labels import axis_label
 from fem.case.case import load_case
 from fem.figures.style import STATE_COLOURS, VERMILLION
+from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, millimetres, number, short
 from fem.report.animation import colour_scale, packed
+from fem.report.comparison import asked_rows, limits_section
 from fem.report.motion_part import motions_of_sweep
-from fem.report.studies import PageTable, again_from_files, axis_row, drawings, page_table, study_page
+from fem.report.studies import (
+    again_from_files,
+    answer_section,
+    axes_table,
+    drawings,
+    repeat_section,
+    study_html,
+    unfinished,
+)
 from fem.results.errors import FolderError
 from fem.sweep.answers import AnswerRow, SweepAnswer, sweep_answer
 from fem.sweep.table import SweepTable, open_sweep
@@ -59,6 +71,7 @@ OUTCOMES = (
     ("failed", "no outcome: failed", VERMILLION, False),
     ("", "not computed", "#FFFFFF", False),
 )
+SWATCH = Markup('<span class="swatch" style="background:{}"></span>{}')
 NUMBER = re.compile(r"[-+]?\d+(\.\d*)?(e[-+]?\d+)?")
 
 
@@ -71,85 +84,163 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
     """
     table = open_sweep(folder)
     info, case = table.info, load_case(str(folder / "base.toml"))
-    data = map_data(table, folder)
-    known = {column["name"] for column in data["columns"]}
-    answer = sweep_answer(table, folder)
-    name = str(info.get("sweep") or folder.name)
-    return study_page(
-        "sweep.html.j2",
+    data, drawn = map_data(table, folder), drawings(folder, table.info.get("maps") or [], "sweep")
+    answer, name = sweep_answer(table, folder), str(info.get("sweep") or folder.name)
+    given = html.Pairs(asked_rows(case), caption="Base case, where no axis changes it", look="asked")
+    return study_html(
+        "a sweep",
         info=info,
+        name=name,
         case=case,
         signature=signature,
-        answer=answer.sentence if answer else None,
+        hash=str(info.get("sweep_hash") or ""),
         scripts=["map.js"],
         data={"sweep": data},
-        title=info.get("title") or name,
-        name=name,
-        hash=str(info.get("sweep_hash") or ""),
-        answers=answer_table(answer) if answer and answer.others else None,
-        axes=[axis_row(axis) for axis in table.axes],
-        labels=[axis_label(axis) for axis in table.axes],
-        longest=_longest(table),
-        quantities=[(name, label) for name, label, *_ in QUANTITIES if name in known],
-        flags=[(name, label) for name, label in FLAGS if name in known],
-        deciding=deciding(table),
-        counts=counts(table),
-        computed=int((table["status"] != "").sum()),
-        failures=failures(table),
-        thresholds=_thresholds(folder / "thresholds.csv"),
-        drawn=drawings(folder, info.get("maps") or [], "sweep"),
-        motions=motions_of_sweep(folder, table),
-        provenance=[
-            ("sweep", f"{name}, {info['status']}, model {info.get('model')}"),
-            ("sweep hash", info.get("sweep_hash")),
-            ("base hash", info.get("base_hash")),
+        sections=[
+            found_section(table, answer.sentence if answer else None),
+            html.section(
+                "The answer for each value of the other axes",
+                "answers",
+                *([answer_table(answer)] if answer and answer.others else []),
+            ),
+            motions_of_sweep(folder, table),
+            html.section("The map", "map-title", cell_map(table, data), look="screen" if drawn else ""),
+            html.section("Maps as drawn", "drawn", *drawn),
+            html.section(
+                "Counts", "counts", counts_table(table), *_failures(table), *_thresholds(folder, info)
+            ),
+            html.section("The sweep", "asked", html.columns(axes_table(table.axes, info["derived"]), given)),
+            limits_section(case),
+            repeat_section(
+                [
+                    ("sweep", f"{name}, {info['status']}, model {info.get('model')}"),
+                    ("sweep hash", str(info.get("sweep_hash"))),
+                    ("base hash", str(info.get("base_hash"))),
+                ],
+                info,
+                again_from_files(folder, study="sweep", name=name, case=case),
+            ),
         ],
-        again=again_from_files(folder, study="sweep", name=name, case=case),
-        number=number,
     )
 
 
-def answer_table(answer: SweepAnswer) -> PageTable:
+def found_section(table: SweepTable, answer: str | None) -> html.PageSection:
+    """The answer, how many cells have which outcome, and how sure they are."""
+    info, computed = table.info, int((table["status"] != "").sum())
+    counted = ", ".join(f"{count} {label}" for label, _, count, _ in counts(table))
+    return answer_section(
+        info,
+        answer,
+        f"{computed} of {info['cells']} cells{unfinished(info)}: {counted}.",
+        *([f"Held fixed: {info['held']}."] if info.get("held") else []),
+        *_sure_lines(table),
+        note="What happened under these motions, in a study. Nothing is known between the cells: a region of "
+        "overturning that is smaller than a cell is missed.",
+    )
+
+
+def _sure_lines(table: SweepTable) -> Iterator[str]:
+    """How many cells are how sure, what their copies change, and which inputs decide."""
+    info = table.info
+    if not (sure := info.get("sure")):
+        if info["unsure"] is not None:
+            yield (
+                f"{info['unsure']} cells are unsure: of {info['perturbed']} perturbed cells, these stand or overturn "
+                "depending on small changes of friction, amplitude, phase or contact damping."
+            )
+        return
+    yield html.joined(
+        f"{sure[SURE]} cells are ",
+        html.strong(SURE),
+        f": every copy of them has the same outcome. {sure[REGIME_UNSURE]} are ",
+        html.strong(REGIME_UNSURE),
+        ": none of their copies overturns, or all do, but they rest, slide or rock in different ways. "
+        f"{info['unsure']} are ",
+        html.strong(UNSURE),
+        ": they stand or overturn depending on unknown inputs, or on small changes of the motion.",
+    )
+    left_out = f" Left out: {info['left_out']}." if info.get("left_out") else ""
+    yield (
+        "A copy changes one input over its range in [uncertainty], a pair of them or all at once, or the motion, "
+        f"friction or damping a little: {info['copies']} copies of {info['perturbed']} cells.{left_out}"
+    )
+    if found := [html.joined(html.code(key), f" ({count})") for key, count in deciding(table)]:
+        yield html.joined("Unsure cells are decided by ", Markup(", ").join(found), ".")
+
+
+def cell_map(table: SweepTable, data: Mapping[str, Any]) -> html.CellMap:
+    """The map, first over the one or two longest axes."""
+    labels, known = [axis_label(axis) for axis in table.axes], {column["name"] for column in data["columns"]}
+    longest = sorted(sorted(range(len(labels)), key=lambda k: -len(table.axes[k].values))[:2])
+    shown = (("outcome", "outcome"), *FLAGS, *((name, label) for name, label, *_ in QUANTITIES))
+    return html.CellMap(
+        [html.Choice(name, label) for name, label in shown if name in known],
+        *([html.Choice(k, label, k == first) for k, label in enumerate(labels)] for first in longest),
+    )
+
+
+def counts_table(table: SweepTable) -> html.Table:
+    """How many cells have which outcome."""
+    columns: list[html.Column[tuple[str, str, int, float]]] = [
+        html.Column("outcome", lambda row: SWATCH.format(row[1], row[0])),
+        html.Column("cells", lambda row: str(row[2]), html.NUMBER),
+        html.Column("share", lambda row: f"{number(row[3], 100, 3)} %", html.NUMBER),
+    ]
+    return html.table_of("counts", columns, counts(table))
+
+
+def answer_table(answer: SweepAnswer) -> html.Table:
     """The answers: where, up to where it stood, where it first overturned, the slip, what else there is to say."""
     up_to, first = (
         ("stood up to", "first overturned at") if answer.rising else ("stood from", "overturned up to")
     )
 
-    def row(row: AnswerRow) -> Iterator[str]:
-        found = row.answer
-        yield answer.where(row) + (": every motion" if len(row.point) < len(answer.others) else "")
-        for end in ends_in_words(found, answer.axis):
-            yield end or ABSENT
-        yield f"{millimetres(found.slip)} mm" if found.slip is not None else ""
-        for ranges in (found.stood_again, found.failed, found.unsure):
-            yield ranges_in_words(ranges, answer.axis)
+    def where(row: AnswerRow) -> str:
+        return answer.where(row) + (": every motion" if len(row.point) < len(answer.others) else "")
 
-    more = ("slip there", "stood again", "no outcome", "unsure")
-    return page_table(
-        "answers",
-        dict.fromkeys(("", up_to, first, *more), False),
-        (list(row(one)) for one in answer.rows),
-        file="answers.csv",
-        optional=frozenset(more),
-    )
+    def end(k: int, row: AnswerRow) -> str:
+        return ends_in_words(row.answer, answer.axis)[k] or ABSENT
+
+    def slip(row: AnswerRow) -> str:
+        return "" if row.answer.slip is None else f"{millimetres(row.answer.slip)} mm"
+
+    columns: list[html.Column[AnswerRow]] = [
+        html.Column("", where),
+        html.Column(up_to, partial(end, 0)),
+        html.Column(first, partial(end, 1)),
+        html.Column("slip there", slip, optional=True),
+        html.Column(
+            "stood again", lambda row: ranges_in_words(row.answer.stood_again, answer.axis), optional=True
+        ),
+        html.Column("no outcome", lambda row: ranges_in_words(row.answer.failed, answer.axis), optional=True),
+        html.Column("unsure", lambda row: ranges_in_words(row.answer.unsure, answer.axis), optional=True),
+    ]
+    return html.table_of("answers", columns, answer.rows, file="answers.csv")
 
 
-def _longest(table: SweepTable) -> list[int]:
-    """The one or two axes that are first shown: across and up."""
-    return sorted(sorted(range(len(table.axes)), key=lambda k: -len(table.axes[k].values))[:2])
+def _failures(table: SweepTable) -> list[html.Block]:
+    """Cells without an outcome, where there are any."""
+    lines = [f"cell {cell}: {reason}" for cell, reason in failures(table)]
+    return [html.Heading("Without an outcome"), html.Bullets(lines, "")] if lines else []
 
 
-def _thresholds(path: Path) -> PageTable | None:
+def _thresholds(folder: Path, info: Mapping[str, Any]) -> list[html.Block]:
     """The refined changes of outcome, where they were asked for."""
+    path = folder / "thresholds.csv"
     if not path.is_file():
-        return None
+        return []
     try:
         with path.open(encoding="utf-8", newline="") as stream:
             header, *rows = list(csv.reader(stream))
     except (OSError, ValueError) as error:
         raise FolderError(f"{path}: cannot be read ({error}); repeat the sweep with --force") from None
     shown = ([short(float(one), figures=5) if NUMBER.fullmatch(one) else one for one in row] for row in rows)
-    return page_table("changes of outcome", dict.fromkeys(header, False), shown, file=path.name)
+    held = f"They hold {info['held']}; a range of an unknown input moves them." if info.get("held") else ""
+    return [
+        html.Heading("Changes of outcome, refined"),
+        *([html.Note(held)] if held else []),
+        html.table_of("changes of outcome", html.in_order(*header), shown, file=path.name),
+    ]
 
 
 def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:

@@ -10,7 +10,6 @@ from study_folders import ensemble_folder, response_folder
 from fem.__main__ import main
 from fem.report.ensemble_page import ensemble_report
 from fem.report.response_page import response_report
-from fem.report.studies import MOST_ROWS, page_table
 from fem.results.errors import FolderError
 
 #: headings in the order in which a reader wants them
@@ -106,11 +105,3 @@ def test_an_interrupted_one_shows_what_there_is_without_an_answer(kind, tmp_path
     assert "(interrupted)" in page
     assert "half of 100 draws" not in page
     assert "largest rotation 0.62" not in page
-
-
-def test_a_long_table_says_what_it_leaves_out():
-    table = page_table(
-        "t", {"a": True, "b": False}, ([str(k), ""] for k in range(MOST_ROWS + 5)), file="t.csv"
-    )
-    assert len(table.rows) == MOST_ROWS
-    assert table.left_out == "5 more rows are in t.csv."
