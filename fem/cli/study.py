@@ -1,6 +1,5 @@
 """`study`: every claim of the paper (Knoedel and Hrabowski), checked."""
 
-import difflib
 import importlib
 import sys
 from collections.abc import Sequence
@@ -10,6 +9,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from fem.case.case import CaseError
+from fem.case.validation import did_you_mean
 from fem.cli.console import EXIT_CODES, Jobs, Quiet, flag
 from fem.results.files import to_json
 from fem.runtime.progress import ScreenReporter
@@ -40,14 +40,11 @@ def study(
         The study: seed.
     """
     if name not in STUDIES:
-        raise CaseError(f"no study {name!r}{_near(name, STUDIES)} (known: {', '.join(STUDIES)})")
+        raise CaseError(f"no study {_unknown(name, STUDIES)}")
     every = importlib.import_module("fem.evidence.paper.index").all_claims()
     known = [claim.name for claim in every]
-    for wanted in only:
-        if wanted not in known:
-            raise CaseError(
-                f"--only {wanted!r}: no such claim{_near(wanted, known)} (known: {', '.join(known)})"
-            )
+    if unknown := [wanted for wanted in only if wanted not in known]:
+        raise CaseError(f"--only: no such claim {_unknown(unknown[0], known)}")
     chosen = [claim for claim in every if not only or claim.name in only]
     folder = out if out is not None else Path("outputs") / f"study_{name}"
     document = _checked(folder, chosen, jobs=jobs, force=force, quiet=quiet)
@@ -55,7 +52,7 @@ def study(
         print(to_json(document).rstrip())
     else:
         page = importlib.import_module("fem.evidence.paper.page")
-        print("\n".join(page.table_lines(document)))
+        print("\n".join(page.lines_of(document)))
         print(f"{folder / 'study.html'} shows the runs, figures and numbers behind them")
     return EXIT_CODES[document["status"]]
 
@@ -84,6 +81,6 @@ def _checked(
     return document
 
 
-def _near(name: str, known: Sequence[str]) -> str:
-    near = difflib.get_close_matches(name, known, n=1)
-    return f"; did you mean {near[0]!r}?" if near else ""
+def _unknown(name: str, known: Sequence[str]) -> str:
+    near = did_you_mean(name, known)
+    return f"{name!r}{f'; {near}' if near else ''} (known: {', '.join(known)})"

@@ -2,17 +2,15 @@
 
 import importlib
 import sys
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
-from fem.cli.console import ELSEWHERE_OUT, AsJson, Quiet
-from fem.results.errors import writing_into
-from fem.results.files import to_json, write_atomically
-from fem.runtime.identity import versions
+from fem.cli.console import AsJson, Quiet
+from fem.cli.evidence import compute_into
 
-MISSED = 3
 FOLDER = Path("outputs") / "validate"
 
 
@@ -31,15 +29,7 @@ def validate(
         if not quiet:
             print(name, file=sys.stderr, flush=True)
 
-    result = suite.run_validation(data, before=report)
-    document = to_json(result.to_dict(versions()))
-    with writing_into(out, ELSEWHERE_OUT):
-        out.mkdir(parents=True, exist_ok=True)
-        write_atomically(out / "validate.json", document)
-        write_atomically(out / "validate.html", pages.page(result))
-    if as_json:
-        print(document.rstrip())
-    else:
-        print("\n".join(pages.table_lines(result)))
-        print(f"{out / 'validate.html'} shows the tables")
-    return 0 if result.missed == 0 else MISSED
+    suite.require(data)  # refused before a folder is made
+    return compute_into(
+        out, "validate", partial(suite.run_validation, data, before=report), pages, as_json=as_json
+    )

@@ -2,16 +2,15 @@
 
 import importlib
 import sys
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from fem.cli.console import ELSEWHERE_OUT, AsJson, Quiet, flag
-from fem.results.errors import writing_into
-from fem.results.files import to_json, write_atomically
+from fem.cli.console import AsJson, Quiet, flag
+from fem.cli.evidence import compute_into
 
-FAILED = 3
 FOLDER = Path("outputs") / "verify"
 
 
@@ -32,16 +31,10 @@ def verify(
         if not quiet:
             print(f"[{number}/{count}] {check.topic}: {check.title}", file=sys.stderr, flush=True)
 
-    with writing_into(out, ELSEWHERE_OUT):
-        out.mkdir(parents=True, exist_ok=True)
-    result = suite.run_suite(quick=quick, topics=topic, before=report)
-    document = to_json(result.to_dict())
-    with writing_into(out, ELSEWHERE_OUT):
-        write_atomically(out / "verify.json", document)
-        write_atomically(out / "verify.html", pages.page(result))
-    if as_json:
-        print(document.rstrip())
-    else:
-        print("\n".join(pages.table_lines(result)))
-        print(f"{out / 'verify.html'} shows the convergence plots")
-    return 0 if result.failures == 0 else FAILED
+    return compute_into(
+        out,
+        "verify",
+        partial(suite.run_suite, quick=quick, topics=topic, before=report),
+        pages,
+        as_json=as_json,
+    )

@@ -28,6 +28,11 @@ def strong(text: object) -> Markup:
     return Markup("<strong>{}</strong>").format(text)
 
 
+def looking(text: object, look: str) -> Markup:
+    """A part of a text with a look."""
+    return Markup('<span class="{}">{}</span>').format(look, text)
+
+
 def link(text: str, name: str) -> Markup:
     """A link to a section of the same page."""
     return Markup('<a href="#{}">{}</a>').format(name, text)
@@ -54,10 +59,18 @@ class Note:
 
 
 @dataclass(frozen=True)
+class Quote:
+    """Words of somebody else."""
+
+    text: str
+
+
+@dataclass(frozen=True)
 class Heading:
     """A heading within a section."""
 
     text: str
+    name: str = ""  #: where it can be linked to
 
 
 @dataclass(frozen=True)
@@ -208,6 +221,15 @@ class Group:
 
 
 @dataclass(frozen=True)
+class Folded:
+    """Blocks behind a line that opens them."""
+
+    summary: str
+    blocks: Sequence["Block"]
+    open: bool = False
+
+
+@dataclass(frozen=True)
 class PageSection:
     """A part of a page with a heading that can be linked to; without blocks it is left out."""
 
@@ -270,6 +292,7 @@ Block = (
     str
     | Paragraph
     | Note
+    | Quote
     | Heading
     | Bullets
     | Listing
@@ -278,6 +301,7 @@ Block = (
     | Table
     | Figure
     | Group
+    | Folded
     | PageSection
     | Legend
     | Player

@@ -56,9 +56,9 @@ def test_measured_restitutions():
     found = impacts.compute()
     assert found.tests == 3
     assert not found.missed
-    judged = [one for one in found.findings if one.passed is not None]
-    assert [one.measured for one in judged] == [0.67]
-    assert "fitted" in judged[0].quantity
+    judged = [one for one in found.findings if one.holds is not None]
+    assert [one.reference for one in judged] == [0.67]
+    assert "fitted" in judged[0].what
 
 
 def test_a_folder_of_another_kind_is_refused(tmp_path):
@@ -77,7 +77,7 @@ def test_a_folder_of_another_kind_is_refused(tmp_path):
 @pytest.mark.skipif(not DATA.is_dir(), reason="the motions of the rocks are not here")
 def test_the_experiments_meet_their_criteria():
     result = run_validation(DATA)
-    assert result.missed == 0, result.sentence
+    assert result.failures == 0, result.sentence
 
 
 @pytest.mark.skipif(not DATA.is_dir(), reason="the motions of the rocks are not here")

@@ -1,4 +1,4 @@
-"""The verification checks pass: every quick one, each row with its own tolerance."""
+"""The verification checks pass: every quick one, each finding with its own tolerance."""
 
 from pathlib import Path
 
@@ -11,13 +11,13 @@ QUICK = [check for check in CHECKS if check.quick]
 
 
 @pytest.mark.parametrize("check", QUICK, ids=lambda check: f"{check.topic}: {check.title}")
-def test_every_row_of_a_verification_check_passes(check):
-    rows = list(check.rows())
-    assert rows
+def test_every_finding_of_a_verification_check_holds(check):
+    findings = list(check.findings())
+    assert findings
     failed = [
-        f"{row.case}: {row.compared}: {row.value:.6g} for {row.reference:.6g}"
-        for row in rows
-        if not row.passed
+        f"{one.case}: {one.what}: {one.value:.6g} for {one.reference:.6g}"
+        for one in findings
+        if not one.holds
     ]
     assert not failed
 

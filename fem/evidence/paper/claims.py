@@ -1,16 +1,18 @@
-"""A claim of the paper, what its check found, and the rule from comparisons to a conclusion.
+"""A claim of the paper, what its check showed, and the rule from comparisons to a conclusion.
 
-A conclusion is never written down: it follows from comparisons of measured numbers with limits by `conclude`.
+A conclusion is never written down: it follows from findings, which compare numbers with limits, by `conclude`.
 Rotation > 0 tilts toward +x; SI units, each with its number.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from enum import Enum
 from typing import Any, Literal, TypeVar
 
+from fem.evidence.findings import Finding
 from fem.evidence.paper.cases import PaperCase
 from fem.evidence.paper.experiments import Experiments, VariantBand
+from fem.evidence.suite import failures
 
 
 class Conclusion(Enum):
@@ -29,46 +31,10 @@ class Conclusion(Enum):
 ClaimKind = Literal["statement", "print", "remark"]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Comparison:
-    """A measured number against a limit."""
-
-    what: str
-    measured: float
-    relation: Literal["=", "<=", ">="]
-    limit: float
-    unit: str = "-"
-    tolerance: float = 0.0  #: of "=", absolute
-    inside: bool = True  #: whether it is made inside the stated bounds of the claim
-
-    def __post_init__(self) -> None:
-        # of a count, a truth value or a numpy number
-        object.__setattr__(self, "measured", float(self.measured))
-
-    @property
-    def holds(self) -> bool:
-        """Whether the measured number satisfies the relation; nan never does."""
-        if self.relation == "=":
-            return abs(self.measured - self.limit) <= self.tolerance
-        return self.measured <= self.limit if self.relation == "<=" else self.measured >= self.limit
-
-
-def at_most(what: str, measured: float, limit: float, unit: str = "-", *, inside: bool = True) -> Comparison:
-    """The measured number must not exceed the limit."""
-    return Comparison(what=what, measured=measured, relation="<=", limit=limit, unit=unit, inside=inside)
-
-
-def at_least(what: str, measured: float, limit: float, unit: str = "-", *, inside: bool = True) -> Comparison:
-    """The measured number must reach the limit."""
-    return Comparison(what=what, measured=measured, relation=">=", limit=limit, unit=unit, inside=inside)
-
-
-def equal(
-    what: str, measured: float, limit: float, tolerance: float, unit: str = "-", *, inside: bool = True
-) -> Comparison:
-    """The measured number must be within an absolute tolerance of the limit."""
-    one = at_most(what, measured, limit, unit, inside=inside)
-    return replace(one, relation="=", tolerance=tolerance)
+#: keys of a comparison of study.json and what of a finding they hold
+KEYS = {"measured": "value", "limit": "reference"} | {
+    name: name for name in ("what", "relation", "unit", "tolerance", "inside", "holds")
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,10 +72,10 @@ class ClaimFigure:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finding:
-    """Result of the check of a claim."""
+class ClaimResult:
+    """What the check of a claim showed."""
 
-    comparisons: Sequence[Comparison]
+    comparisons: Sequence[Finding]
     reading: str  #: what the numbers say, in a sentence or two
     bounds: str = ""  #: of the comparisons marked `inside`; empty: the claim as the paper makes it
     kind: ClaimKind = "statement"
@@ -126,7 +92,7 @@ class Finding:
     def to_dict(self) -> dict[str, Any]:
         """Plain data for `study.json`, without the contents of the figures."""
         return {
-            "comparisons": [asdict(one) | {"holds": one.holds} for one in self.comparisons],
+            "comparisons": [one.document(KEYS) for one in self.comparisons],
             "reading": self.reading,
             "bounds": self.bounds,
             "setups": [{"what": case.what, "command": case.command} for case in self.cases],
@@ -138,7 +104,7 @@ class Finding:
         }
 
 
-def conclude(comparisons: Sequence[Comparison], bounds: str, kind: ClaimKind = "statement") -> Conclusion:
+def conclude(comparisons: Sequence[Finding], bounds: str, kind: ClaimKind = "statement") -> Conclusion:
     """Confirmed if every comparison holds; within bounds if bounds are stated, all comparisons inside them hold and
     there is one; else refuted, or a misprint. A remark compares nothing; a claim without comparisons is undecided.
     """
@@ -154,13 +120,13 @@ def conclude(comparisons: Sequence[Comparison], bounds: str, kind: ClaimKind = "
     return Conclusion.MISPRINT if kind == "print" else Conclusion.REFUTED
 
 
-def counts_in_words(comparisons: Sequence[Comparison], bounds: str) -> str:
+def counts_in_words(comparisons: Sequence[Finding], bounds: str) -> str:
     """How many comparisons hold, in all and inside the bounds."""
-    holding = sum(one.holds for one in comparisons)
-    text = f"{holding} of {len(comparisons)} comparisons hold"
-    if bounds and holding < len(comparisons):
-        inside = [one.holds for one in comparisons if one.inside]
-        text += f"; {sum(inside)} of {len(inside)} inside the bounds"
+    failed = failures(comparisons)
+    text = f"{len(comparisons) - failed} of {len(comparisons)} comparisons hold"
+    if bounds and failed:
+        inside = [one for one in comparisons if one.inside]
+        text += f"; {len(inside) - failures(inside)} of {len(inside)} inside the bounds"
     return text
 
 
@@ -172,11 +138,11 @@ class Claim:
     section: str
     quote: str
     tried: str  #: how it is checked, in a sentence
-    check: Callable[[Experiments], Finding]
+    check: Callable[[Experiments], ClaimResult]
 
 
 #: what the check of a claim yields, in any order; text is the reading
-Evidence = Iterator[Comparison | PaperCase | ClaimTable | ClaimFigure | VariantBand | str]
+Evidence = Iterator[Finding | PaperCase | ClaimTable | ClaimFigure | VariantBand | str]
 Kind = TypeVar("Kind")
 
 
@@ -190,14 +156,14 @@ def claim(
     """
 
     def claimed_by(function: Callable[[Experiments], Evidence]) -> Claim:
-        def check(experiments: Experiments) -> Finding:
+        def check(experiments: Experiments) -> ClaimResult:
             found = list(function(experiments))
 
             def of(kind: type[Kind]) -> list[Kind]:
                 return [one for one in found if isinstance(one, kind)]
 
-            return Finding(
-                comparisons=of(Comparison),
+            return ClaimResult(
+                comparisons=of(Finding),
                 reading=" ".join(of(str)),
                 bounds=bounds,
                 kind=kind,

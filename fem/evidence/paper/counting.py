@@ -6,27 +6,10 @@ from itertools import pairwise
 
 import numpy as np
 
+from fem.evidence.findings import Finding, at_least, at_most
+from fem.evidence.paper import criteria, maps
 from fem.evidence.paper.cases import BOX, SHELL, STACK, PaperCase, friction
-from fem.evidence.paper.claims import (
-    ClaimFigure,
-    ClaimTable,
-    Comparison,
-    Evidence,
-    at_least,
-    at_most,
-    claim,
-    outcomes,
-    table,
-)
-from fem.evidence.paper.criteria import (
-    CRITERIA,
-    Contingency,
-    Criterion,
-    paper_rule,
-    predicted_mode,
-    static_rule,
-    tilting_rule,
-)
+from fem.evidence.paper.claims import ClaimFigure, ClaimTable, Evidence, claim, outcomes, table
 from fem.evidence.paper.dimensions import (
     ANGULAR_FREQUENCY,
     FREQUENCY_PARAMETER,
@@ -37,29 +20,18 @@ from fem.evidence.paper.dimensions import (
 )
 from fem.evidence.paper.experiments import Experiments
 from fem.evidence.paper.figures import curve, draw_curves, draw_map
-from fem.evidence.paper.maps import (
-    FAST,
-    FREQUENCIES,
-    FRICTION,
-    SHAPE_FREQUENCIES,
-    SLENDERNESS,
-    OutcomeMap,
-    pairs,
-    shape_maps,
-    stack_map,
-)
 from fem.figures.heat_map import MapCurve
 from fem.results.outcome import Outcome
 
 UNSAFE = "sure cells it calls standing and that overturn"
 
 
-def _maps(experiments: Experiments) -> list[OutcomeMap]:
+def _maps(experiments: Experiments) -> list[maps.OutcomeMap]:
     """All maps: the rigid ones first, of these the stack's first."""
     return [
         one
         for rigid in (True, False)
-        for one in (stack_map(experiments, rigid=rigid), *shape_maps(experiments, rigid=rigid))
+        for one in (maps.stack_map(experiments, rigid=rigid), *maps.shape_maps(experiments, rigid=rigid))
     ]
 
 
@@ -71,19 +43,21 @@ def _maps(experiments: Experiments) -> list[OutcomeMap]:
 def static_rule_is_conservative(experiments: Experiments) -> Evidence:
     """Static rule under the run's own peak against runs, over frequency and peak of the stack, and over slenderness and
     friction at three frequencies; two floors below the static limits."""
-    maps = _maps(experiments)
-    for one in maps:
-        unsafe = one.count(static_rule, sure=True).unconservative
+    every_map = _maps(experiments)
+    for one in every_map:
+        unsafe = one.count(criteria.static_rule, sure=True).unconservative
         wrong = f"{one.title}: share of its verdicts 'overturns' that are wrong"
-        share = one.standing_share(static_rule)
+        share = one.standing_share(criteria.static_rule)
         yield at_most(f"{one.title}: {UNSAFE}", unsafe, 0.0, inside=one.rigid)
         yield at_least(wrong, share, 0.5, inside=one.fast and one.rigid)
-    stack = maps[0]
+    stack = every_map[0]
     slow, fast = (
-        stack.standing_share(static_rule, [one for one in FREQUENCIES if (one > FAST) is wanted])
+        stack.standing_share(
+            criteria.static_rule, [one for one in maps.FREQUENCIES if (one > maps.FAST) is wanted]
+        )
         for wanted in (False, True)
     )
-    rigid = [one.count(static_rule, sure=True) for one in maps if one.rigid]
+    rigid = [one.count(criteria.static_rule, sure=True) for one in every_map if one.rigid]
     yield (
         "The static rule under the run's own peak is on the unsafe side in "
         f"{sum(one.unconservative for one in rigid)} of {sum(one.cells for one in rigid)} sure cells of the "
@@ -92,16 +66,22 @@ def static_rule_is_conservative(experiments: Experiments) -> Evidence:
         f"3 p and in {100.0 * fast:.0f} % above 3 p. See the figure. These are counts of overturning."
     )
     yield from _below_the_limits(experiments)
-    yield from _witnesses(stack, static_rule)
+    yield from _witnesses(stack, criteria.static_rule)
     yield draw_curves(
         "static-rule-over-frequency",
         "Share of the motions that the static rule turns over and the rigid stack stands (peaks from "
         "g a/c to 12 m/s²).",
         "angular frequency [rad/s] | share that stands [-]",
-        [curve(FREQUENCIES, [stack.standing_share(static_rule, [one]) for one in FREQUENCIES], style="o-")],
+        [
+            curve(
+                maps.FREQUENCIES,
+                [stack.standing_share(criteria.static_rule, [one]) for one in maps.FREQUENCIES],
+                style="o-",
+            )
+        ],
         y_limits=(0.0, 1.05),
     )
-    yield _shape_figure(shape_maps(experiments)[-1])
+    yield _shape_figure(maps.shape_maps(experiments)[-1])
 
 
 def _below_the_limits(experiments: Experiments) -> Evidence:
@@ -145,7 +125,7 @@ def _below_the_limits(experiments: Experiments) -> Evidence:
     yield outcomes("Below the static limits", experiments, cases)
 
 
-def _bound(one: Comparison) -> str:
+def _bound(one: Finding) -> str:
     return "a bound" if one.holds else "no bound"
 
 
@@ -156,28 +136,31 @@ def _bound(one: Comparison) -> str:
 )
 def paper_criteria(experiments: Experiments) -> Evidence:
     """The paper's criteria against the same runs, with and without A <= a/2."""
-    maps = _maps(experiments)
-    for name, rule in (("Eqs. 8 to 13", tilting_rule), ("with A <= a/2", paper_rule)):
-        for one in maps:
+    every_map = _maps(experiments)
+    for name, rule in (("Eqs. 8 to 13", criteria.tilting_rule), ("with A <= a/2", criteria.paper_rule)):
+        for one in every_map:
             unsafe = one.count(rule, sure=True).unconservative
-            gain = one.count(rule).share_right - one.count(static_rule).share_right
+            gain = one.count(rule).share_right - one.count(criteria.static_rule).share_right
             what = f"{name}, {one.title}"
-            inside = rule is tilting_rule
+            inside = rule is criteria.tilting_rule
             yield at_most(f"{what}: {UNSAFE}", unsafe, 0.0, inside=inside)
             yield at_least(f"{what}: share right less that of the static rule", gain, 0.0, inside=inside)
-    stack = maps[0]
-    modes = Counter((predicted_mode(cell.motion), str(cell.row["outcome"])) for cell in stack.cells)
+    stack = every_map[0]
+    modes = Counter((criteria.predicted_mode(cell.motion), str(cell.row["outcome"])) for cell in stack.cells)
+    tilting, paper, static = (
+        _in_words(stack.count(rule))
+        for rule in (criteria.tilting_rule, criteria.paper_rule, criteria.static_rule)
+    )
     right = sum(count for (predicted, found), count in modes.items() if predicted == found)
     yield (
-        f"On the map of the rigid stack Eqs. 8 to 13 are {_in_words(stack.count(tilting_rule))}; with A <= a/2 "
-        f"{_in_words(stack.count(paper_rule))}; the static rule {_in_words(stack.count(static_rule))}. Of the "
-        f"modes of section 5 the criteria predict {right} of {modes.total()} correctly. A criterion is a bound on the "
-        "safe side only where it is never unconservative."
+        f"On the map of the rigid stack Eqs. 8 to 13 are {tilting}; with A <= a/2 {paper}; the static rule "
+        f"{static}. Of the modes of section 5 the criteria predict {right} of {modes.total()} correctly. A criterion "
+        "is a bound on the safe side only where it is never unconservative."
     )
-    yield from _witnesses(stack, paper_rule)
-    yield _criteria_table(maps)
+    yield from _witnesses(stack, criteria.paper_rule)
+    yield _criteria_table(every_map)
     yield _mode_table(modes)
-    smooth = np.linspace(min(FREQUENCIES), max(FREQUENCIES), 100)
+    smooth = np.linspace(min(maps.FREQUENCIES), max(maps.FREQUENCIES), 100)
     yield draw_map(
         "criteria-map",
         "Outcome of the rigid stack, mu 0.4/0.2, with the criteria; hatched: unsure cells.",
@@ -185,7 +168,11 @@ def paper_criteria(experiments: Experiments) -> Evidence:
         [
             MapCurve(x=smooth, y=HALF_WIDTH * smooth**2, label="A = a/2"),
             MapCurve(x=smooth, y=np.full_like(smooth, UPLIFT), label="M_T = M_R"),
-            MapCurve(x=smooth, y=np.full_like(smooth, PAPER_MU[0] * GRAVITY), label="stiction"),
+            MapCurve(
+                x=smooth,
+                y=np.full_like(smooth, PAPER_MU[0] * GRAVITY),
+                label="stiction",
+            ),
         ],
     )
 
@@ -198,10 +185,10 @@ def paper_criteria(experiments: Experiments) -> Evidence:
 )
 def less_conservative(experiments: Experiments) -> Evidence:
     """The same maps: rule, criteria, rigid runs and runs of the shell."""
-    stack, shell = (stack_map(experiments, rigid=rigid) for rigid in (True, False))
-    rule, paper = stack.count(static_rule), stack.count(paper_rule)
-    unsafe = stack.count(paper_rule, sure=True).unconservative
-    both = pairs(stack, shell)
+    stack, shell = (maps.stack_map(experiments, rigid=rigid) for rigid in (True, False))
+    rule, paper = stack.count(criteria.static_rule), stack.count(criteria.paper_rule)
+    unsafe = stack.count(criteria.paper_rule, sure=True).unconservative
+    both = maps.pairs(stack, shell)
     differ = [pair for pair in both if pair[0].fell != pair[1].fell]
     share = len(differ) / max(len(both), 1)
     fewer = "conservative verdicts of the paper's criteria less those of the static rule"
@@ -226,44 +213,44 @@ def less_conservative(experiments: Experiments) -> Evidence:
 )
 def region_of_safety(experiments: Experiments) -> Evidence:
     """Outcome over slenderness and friction under 4.0 m/s²."""
-    maps, shells = (shape_maps(experiments, rigid=rigid) for rigid in (True, False))
-    for one in (*maps, *shells):
+    every_map, shells = (maps.shape_maps(experiments, rigid=rigid) for rigid in (True, False))
+    for one in (*every_map, *shells):
         changes = f"{one.title}: changes from falling back to standing along c/a"
         yield at_least(
             f"{one.title}: share of cells that stand", one.standing_share(), 0.05, inside=one.rigid
         )
         yield at_most(changes, _re_entries(one), 0.0, inside=False)
-    both = [pair for one, other in zip(maps, shells, strict=True) for pair in pairs(one, other)]
+    both = [pair for one, other in zip(every_map, shells, strict=True) for pair in maps.pairs(one, other)]
     yield (
         "The safe region depends on the motion: it is "
-        f"{', '.join(f'{100.0 * one.standing_share():.0f} %' for one in maps)} of the cells of the rigid "
-        f"container at {', '.join(f'{one:g}' for one in SHAPE_FREQUENCIES)} rad/s. Along c/a it is left and "
-        f"re-entered {sum(_re_entries(one) for one in maps)} times in {len(maps) * len(FRICTION)} rows of "
-        f"cells. The outcome of the shell differs from that of the rigid container in "
+        f"{', '.join(f'{100.0 * one.standing_share():.0f} %' for one in every_map)} of the cells of the rigid "
+        f"container at {', '.join(f'{one:g}' for one in maps.SHAPE_FREQUENCIES)} rad/s. Along c/a it is left and "
+        f"re-entered {sum(_re_entries(one) for one in every_map)} times in {len(every_map) * len(maps.FRICTION)} rows "
+        f"of cells. The outcome of the shell differs from that of the rigid container in "
         f"{sum(one.fell != other.fell for one, other in both)} of {len(both)} cells. These "
         "are outcomes of single motions; for regions with a probability, see python -m fem ensemble boundary."
     )
-    yield from [one.every[-1].case for one in (*maps, *shells[-1:])]
-    yield from [_shape_figure(one) for one in maps[:2]]
+    yield from [one.every[-1].case for one in (*every_map, *shells[-1:])]
+    yield from [_shape_figure(one) for one in every_map[:2]]
 
 
-def _re_entries(one: OutcomeMap) -> int:
+def _re_entries(one: maps.OutcomeMap) -> int:
     """How often the rows of a map go from falling back to standing."""
     return sum(before.fell and after.stood for row in one.rows for before, after in pairwise(row))
 
 
-def _in_words(one: Contingency) -> str:
+def _in_words(one: criteria.Contingency) -> str:
     return (
         f"right in {one.right} of {one.cells} cells, conservative in {one.conservative} and unconservative in "
         f"{one.unconservative}"
     )
 
 
-def _criteria_table(maps: Sequence[OutcomeMap]) -> ClaimTable:
+def _criteria_table(every_map: Sequence[maps.OutcomeMap]) -> ClaimTable:
     found = [
         (one.title, name, one.count(criterion), one.count(criterion, sure=True))
-        for one in maps
-        for name, criterion in CRITERIA.items()
+        for one in every_map
+        for name, criterion in criteria.CRITERIA.items()
     ]
     return table(
         "Criteria against runs, cell by cell",
@@ -293,7 +280,7 @@ def _mode_table(modes: Counter[tuple[Outcome, str]]) -> ClaimTable:
     )
 
 
-def _witnesses(one: OutcomeMap, criterion: Criterion) -> list[PaperCase]:
+def _witnesses(one: maps.OutcomeMap, criterion: criteria.Criterion) -> list[PaperCase]:
     """One sure cell of either error, to be run again."""
 
     sure = [cell for cell in one.cells if cell.sure]
@@ -304,9 +291,9 @@ def _witnesses(one: OutcomeMap, criterion: Criterion) -> list[PaperCase]:
     ]
 
 
-def _shape_figure(one: OutcomeMap) -> ClaimFigure:
+def _shape_figure(one: maps.OutcomeMap) -> ClaimFigure:
     frequency = f"{one.every[0].motion.angular_frequency:g}"
-    shapes = np.array(SLENDERNESS)
+    shapes = np.array(maps.SLENDERNESS)
     return draw_map(
         f"slenderness-friction-{frequency}".replace(".", "-"),
         f"Outcome over slenderness and friction (mu_k = mu_s/2): {one.title}; hatched: unsure cells.",

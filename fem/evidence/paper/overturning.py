@@ -7,8 +7,9 @@ import numpy as np
 from contact.reference.closed_forms_overturning import sustained_sine_threshold_slender
 from contact.reference.floor_acceleration import sine_floor
 from contact.reference.rocking import first_swing_threshold
+from fem.evidence.findings import at_least, at_most
 from fem.evidence.paper.cases import FOR_MAPS, NO_SLIDING, PLATEAU, RIGID, SHELL, STACK
-from fem.evidence.paper.claims import Evidence, at_least, at_most, claim, table
+from fem.evidence.paper.claims import Evidence, claim, table
 from fem.evidence.paper.dimensions import (
     ANGULAR_FREQUENCY,
     FREQUENCY_PARAMETER,

@@ -1,17 +1,22 @@
 """The page of the checked claims, and their table for a terminal, made from `study.json`."""
 
-import datetime as dt
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from markupsafe import Markup
+
+from fem.evidence.page import result_of, table_lines
 from fem.evidence.paper.claims import Conclusion
-from fem.html.page import Signature, render_page, svg_element
+from fem.html import sections
+from fem.html.page import Page, Signature, html_of, svg_element
+from fem.html.sections import NUMBER
+from fem.html.units import ABSENT
 from fem.results.errors import FolderError
 from fem.results.folder import read_result
 from fem.results.kinds import PAPER
 
-MARKS = {
+LOOKS = {
     Conclusion.CONFIRMED.value: "pass",
     Conclusion.BOUNDED.value: "doubt",
     Conclusion.REFUTED.value: "fail",
@@ -19,6 +24,26 @@ MARKS = {
     Conclusion.MISPRINT.value: "doubt",
     Conclusion.REMARK.value: "quiet",
 }
+RELATIONS = {"<=": "≤", ">=": "≥", "=": "="}
+PAPER_TITLE = Markup(
+    "Knoedel and Hrabowski, <i>A simple stick-slip model for the overturning stability of unanchored containers</i>"
+)
+RULE = Markup(
+    "The check of each claim compares measured numbers with limits. A claim is <b>confirmed</b> if every comparison "
+    "holds; <b>confirmed within stated bounds</b> if bounds are stated, every comparison inside them holds and one "
+    "outside does not; <b>refuted</b> otherwise. A printed number that does not follow is a <b>misprint</b>, and a "
+    "sentence that claims nothing a run could refute has a <b>remark</b>: neither is counted as refuted. The rule is "
+    "the same code for all claims. The paper assumes a rigid body on a harmonic floor, and so does a conclusion, "
+    "unless it says otherwise. The <b>band</b> beside it shows how the result depends on the deformable shell, on the "
+    "stiffness and damping of the contact, and on the support: the rigid container; the 8 mm shell on two corners with "
+    "a third, one and three times the contact penalty and contact damping ratios of 0.5 and 2; on feet; and on a flat "
+    "base. A cell of a map is <b>sure</b> if small perturbations (amplitude ±2 %, friction ±0.02, contact damping 0.5, "
+    "phase) do not change standing into overturning, with mu<sub>k</sub>/mu<sub>s</sub> as in the paper; what that "
+    "ratio decides is counted under “Slipping stabilises”. Failed runs are not counted. A run shows only that the "
+    "container did not overturn under this motion."
+)
+Entry = Mapping[str, Any]  #: of study.json
+FEW_ROWS, FEW_TABLES = 12, 2  #: of a claim whose tables are open
 
 
 def paper_report(folder: Path, *, signature: Signature | None = None) -> str:
@@ -28,27 +53,24 @@ def paper_report(folder: Path, *, signature: Signature | None = None) -> str:
         FolderError: `study.json` is missing, damaged, or something else.
     """
     path = folder / PAPER.mark
-    document = read_result(path, PAPER)
+    study = read_result(path, PAPER)
     try:
         files = {one.stem: one.read_text(encoding="utf-8") for one in (folder / "figures").glob("*.svg")}
-        entries = [entry for group in document["groups"] for entry in group["statements"]]
-        drawings = [one for entry in entries for one in entry.get("drawings", ()) if one["name"] in files]
-        return render_page(
-            "study.html.j2",
-            scripts=["signature.js"],
-            name=f"study_{document['study']}",
-            signature=signature or Signature(),
-            today=dt.date.today().isoformat(),
-            study=document,
-            marks=MARKS,
-            figures={
-                one["name"]: svg_element(files[one["name"]], label=one["caption"], prefix=one["name"])
-                for one in drawings
-            },
-            versions=", ".join(f"{name} {version}" for name, version in document["versions"].items()),
-            number=number,
-            plural=plural,
-            limit=limit,
+        return html_of(
+            Page(
+                kind="Study",
+                title="The paper, claim by claim",
+                name=f"study_{study['study']}",
+                introduction=_introduction(study),
+                sections=[
+                    sections.PageSection("How a conclusion is reached", "rule", [RULE]),
+                    sections.PageSection("Overview", "overview", [_overview(study["groups"])]),
+                    *(_group(group, files) for group in study["groups"]),
+                    sections.PageSection("Not checked", "untried", [_untried(study["untried"])]),
+                ],
+                signature=signature or Signature(),
+                hash=study["program"],
+            )
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise FolderError(
@@ -57,18 +79,136 @@ def paper_report(folder: Path, *, signature: Signature | None = None) -> str:
         ) from None
 
 
-def table_lines(document: Mapping[str, Any]) -> list[str]:
+def lines_of(study: Mapping[str, Any]) -> list[str]:
     """One line a claim, for a terminal, and the counts."""
-    lines = []
-    for group in document["groups"]:
-        lines += ["", group["title"]]
-        for entry in group["statements"]:
-            rule = entry.get("rule") or entry.get("error", "")
-            lines.append(f"  {entry['name']:<26} {entry['verdict']:<31} {rule}")
-    counts = ", ".join(
-        f"{count} {plural(name, count)}" for name, count in document["counts"].items() if count
+    groups = [(group["title"], [_line(one) for one in group["statements"]]) for group in study["groups"]]
+    counts = ", ".join(f"{count} {plural(name, count)}" for name, count in study["counts"].items() if count)
+    return table_lines(groups, f"{study['statements']} claims: {counts}")
+
+
+def _line(one: Entry) -> str:
+    return f"  {one['name']:<26} {one['verdict']:<31} {_rule(one)}"
+
+
+def _rule(one: Entry) -> str:
+    """How many comparisons hold, or why there are none."""
+    return str(one.get("rule") or one.get("error", ""))
+
+
+def _introduction(study: Mapping[str, Any]) -> list[sections.Block]:
+    unfinished = sections.joined("; the study is ", sections.strong(study["status"]))
+    versions = ", ".join(f"{name} {version}" for name, version in study["versions"].items())
+    counts = [
+        sections.Headline(sections.looking(plural(name, count), LOOKS[name]), str(count))
+        for name, count in study["counts"].items()
+        if count
+    ]
+    return [
+        sections.joined(
+            PAPER_TITLE,
+            f": {study['statements']} claims, each checked by runs or closed forms",
+            "" if study["status"] == "completed" else unfinished,
+            ".",
+        ),
+        sections.Headlines(counts),
+        sections.Note(
+            f"python -m fem study seed; {versions}; program {study['program'][:12]}; computed in "
+            f"{study['wall_s']:.0f} s."
+        ),
+    ]
+
+
+def _overview(groups: Sequence[Mapping[str, Any]]) -> sections.Table:
+    rows = []
+    for group in groups:
+        rows.append(sections.TableRow([sections.Cell(group["title"], span=len(OVERVIEW))]))
+        rows += sections.table_of("", OVERVIEW, group["statements"]).rows
+    head = [sections.Cell(column.head) for column in OVERVIEW]
+    return sections.Table("overview of all claims", head, rows, look="claims")
+
+
+def _group(group: Mapping[str, Any], files: Mapping[str, str]) -> sections.PageSection:
+    claims = [sections.Group("claim", list(_claim(one, files))) for one in group["statements"]]
+    return sections.PageSection(group["title"], group["title"].lower().replace(" ", "-"), claims)
+
+
+def _conclusion(one: Entry) -> Markup:
+    bounds = f": {one['bounds']}" if one["verdict"] == Conclusion.BOUNDED.value else ""
+    return sections.joined(sections.looking(one["verdict"], LOOKS[one["verdict"]]), bounds)
+
+
+def _claim(one: Entry, files: Mapping[str, str]) -> Iterator[sections.Block]:
+    title, section = one["name"].replace("-", " ").capitalize(), f"(section {one['section']})"
+    yield sections.Heading(sections.joined(title, " ", sections.looking(section, "quiet")), one["name"])
+    yield sections.Quote(one["quote"])
+    yield sections.Paragraph(_conclusion(one), "conclusion")
+    if "error" in one:
+        yield sections.Paragraph(f"Not computed: {one['error']}", "fail")
+        return
+    yield one["reading"]
+    rule = f" {one['rule']}." if one["rule"] else ""
+    failed = f" {one['failed_runs']} failed runs are not counted." if one["failed_runs"] else ""
+    yield sections.Note(f"Check: {one['tried']}{rule}{failed}")
+    if one["comparisons"]:
+        bounded = bool(one["bounds"])
+        yield sections.table_of(
+            f"comparisons of {one['name']}",
+            [sections.Column("compared", lambda row: _compared(row, bounded)), *COMPARISONS],
+            one["comparisons"],
+            row_look=lambda row: "outside" if bounded and not row["inside"] else "",
+        )
+    for drawing in one["drawings"]:
+        if (name := drawing["name"]) in files:
+            caption = drawing["caption"]
+            yield sections.Figure(
+                svg_element(files[name], label=caption, prefix=name), caption, caption=caption
+            )
+    if band := one["band"]:
+        unit = "" if band["unit"] == "-" else f" {band['unit']}"
+        yield sections.table_of(
+            f"band of {one['name']}",
+            MEMBERS,
+            band["members"],
+            caption=f"Band: {band['quantity']}, {number(band['low'])} to {number(band['high'])}{unit}. "
+            f"Criterion: {band['criterion']}; it {band['summary']}.",
+        )
+    for table in one["tables"]:
+        few = len(table["rows"]) <= FEW_ROWS and len(one["tables"]) <= FEW_TABLES
+        rows = ([number(value) for value in row] for row in table["rows"])
+        columns = sections.in_order(*table["columns"], look=NUMBER)
+        yield sections.Folded(
+            table["caption"], [sections.table_of(table["caption"], columns, rows)], open=few
+        )
+    if setups := one["setups"]:
+        commands = [
+            block
+            for setup in setups
+            for block in (sections.Note(setup["what"]), sections.Listing(setup["command"], ""))
+        ]
+        runs = "1 run" if len(setups) == 1 else f"{len(setups)} runs"
+        yield sections.Folded(f"Run it again ({runs})", commands)
+
+
+def _compared(row: Entry, bounded: bool) -> str:
+    if not bounded or row["inside"]:
+        return str(row["what"])
+    return sections.joined(row["what"], " ", sections.looking("(outside the bounds)", "note"))
+
+
+def _band_summary(one: Entry) -> str:
+    return str(one["band"]["summary"]) if one.get("band") else ABSENT
+
+
+def _limit(row: Entry) -> str:
+    tolerance = f" ± {number(row['tolerance'])}" if row["tolerance"] else ""
+    return f"{RELATIONS[row['relation']]} {number(row['limit'])}{tolerance}"
+
+
+def _untried(untried: Sequence[Entry]) -> sections.Table:
+    rows = [(one["section"], one["quote"], one["reason"]) for one in untried]
+    return sections.table_of(
+        "sentences that are not checked", sections.in_order("section", "sentence", "reason"), rows
     )
-    return [*lines, "", f"{document['statements']} claims: {counts}"]
 
 
 def plural(conclusion: str, count: int) -> str:
@@ -88,8 +228,22 @@ def number(value: Any) -> str:
     return str(value)
 
 
-def limit(comparison: Mapping[str, Any]) -> str:
-    """The limit of a comparison, with its relation."""
-    sign = {"<=": "≤", ">=": "≥", "=": "="}[comparison["relation"]]
-    tolerance = f" ± {number(comparison['tolerance'])}" if comparison["tolerance"] else ""
-    return f"{sign} {number(comparison['limit'])}{tolerance}"
+OVERVIEW = [
+    sections.Column[Entry]("section", lambda one: one["section"]),
+    sections.Column("claim", lambda one: sections.link(one["quote"], one["name"])),
+    sections.Column("conclusion", _conclusion),
+    sections.Column("comparisons that hold", lambda one: _rule(one) or ABSENT),
+    sections.Column("over deformation, contact and support", _band_summary),
+]
+COMPARISONS = [
+    sections.Column[Entry]("measured", lambda row: number(row["measured"]), NUMBER),
+    sections.Column("limit", _limit, NUMBER),
+    sections.Column("unit", lambda row: row["unit"]),
+    sections.Column("holds", lambda row: result_of(row["holds"], "yes", "no")),
+]
+MEMBERS = [
+    sections.Column[Entry]("container and floor", lambda one: one["what"]),
+    sections.Column("outcome", lambda one: number(one["outcome"])),
+    sections.Column("value", lambda one: number(one["value"]), NUMBER),
+    sections.Column("holds", lambda one: number(one["holds"])),
+]

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from contact.reference.closed_forms_rocking import holding_acceleration
+from fem.evidence.findings import Finding, at_least, at_most, equal
 from fem.evidence.paper.cases import BOX, FOR_MAPS, NO_SLIDING, RIGID, SHELL, STACK, PaperCase, friction
-from fem.evidence.paper.claims import Comparison, Evidence, at_least, at_most, claim, equal
+from fem.evidence.paper.claims import Evidence, claim
 from fem.evidence.paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HALF_WIDTH, UPLIFT, WIDTH
 from fem.evidence.paper.experiments import Experiments
 from fem.evidence.paper.figures import curve, draw_curves
@@ -106,9 +107,9 @@ def uplift_limit(experiments: Experiments) -> Evidence:
     yield third
     yield (
         f"On corners the stack begins to turn at {_between(comparisons[:-1])} of g a/c. A flat base on an "
-        f"elastic bed opens at its edge at {third.measured:.2f} of g a/(3 c) already, when the resultant of the linear "
+        f"elastic bed opens at its edge at {third.value:.2f} of g a/(3 c) already, when the resultant of the linear "
         "pressure leaves the middle third; this is not tilting. It tilts, about a narrow strip, at "
-        f"{comparisons[-1].measured:.2f} g a/c."
+        f"{comparisons[-1].value:.2f} g a/c."
     )
     yield experiments.band(
         STACK.but(NO_SLIDING, peak=0.97 * UPLIFT, frequency=ANGULAR_FREQUENCY, duration=5.0),
@@ -220,9 +221,9 @@ def _turn(experiments: Experiments, case: PaperCase) -> float:
     return after - float(history["rotation_rad"][0])
 
 
-def _between(onsets: Sequence[Comparison]) -> str:
+def _between(onsets: Sequence[Finding]) -> str:
     """The smallest and the largest of some onsets."""
-    values = [one.measured for one in onsets]
+    values = [one.value for one in onsets]
     return f"{min(values):.4f} to {max(values):.4f}"
 
 
@@ -233,7 +234,7 @@ def _first(scan: Sequence[PaperCase], seen: list[bool]) -> PaperCase:
 
 def _onset(
     what: str, seen: list[bool], shares: tuple[float, ...] = AROUND, *, inside: bool = True
-) -> Comparison:
+) -> Finding:
     """Where a scan first sees something, if it sees it from there on; else nan."""
     first = seen.index(True) if True in seen else 0
     measured = 0.5 * (shares[first - 1] + shares[first]) if first and all(seen[first:]) else math.nan

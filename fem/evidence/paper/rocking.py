@@ -6,8 +6,9 @@ import numpy as np
 
 from contact.reference.closed_forms_rocking import quarter_period
 from contact.reference.rigid_block import RigidBlock
+from fem.evidence.findings import at_least, at_most, equal
 from fem.evidence.paper.cases import BOX, FOR_MAPS, NO_SLIDING, PLATEAU, RIGID, SHELL, STACK, PaperCase
-from fem.evidence.paper.claims import Evidence, at_least, at_most, claim, equal
+from fem.evidence.paper.claims import Evidence, claim
 from fem.evidence.paper.dimensions import GRAVITY, HEIGHT, PLATEAU_PEAK, WIDTH
 from fem.evidence.paper.experiments import CaseRun, Experiments, VariantBand, stands, variant_result
 from fem.evidence.paper.figures import curve, draw_curves

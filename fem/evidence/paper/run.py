@@ -13,6 +13,7 @@ from fem.evidence.paper.claims import Claim, Conclusion
 from fem.evidence.paper.experiments import Experiments, InterruptedStudyError
 from fem.evidence.paper.index import TOPICS, UNTRIED, all_claims
 from fem.evidence.paper.page import paper_report
+from fem.evidence.suite import attempted
 from fem.results.errors import FolderError
 from fem.results.folder import REMEDY, ResultFolder, open_result_folder, program_of_results
 from fem.results.kinds import PAPER
@@ -75,24 +76,17 @@ def check_claims(
 
 def _checked(claim: Claim, experiments: Experiments, place: ResultFolder) -> dict[str, Any]:
     """Check a claim: its entry of `study.json`. A claim that cannot be computed gives the reason."""
-    began = time.perf_counter()
-    entry = {
-        "name": claim.name,
-        "section": claim.section,
-        "quote": claim.quote,
-        "tried": claim.tried,
-        "program": program_of_results()["program"],
-    }
+    entry: dict[str, Any] = {name: getattr(claim, name) for name in ("name", "section", "quote", "tried")}
+    entry["program"] = program_of_results()["program"]
     experiments.failed.clear()
-    try:
-        finding = claim.check(experiments)
-    except (ArithmeticError, ValueError, RuntimeError, LookupError, TypeError) as error:
-        found = {"verdict": Conclusion.UNDECIDED.value, "error": f"{type(error).__name__}: {error}"}
+    done = attempted(lambda: claim.check(experiments))
+    if done.result is None:
+        entry |= {"verdict": Conclusion.UNDECIDED.value, "error": done.reason}
     else:
-        for figure in finding.figures:
+        for figure in done.result.figures:
             place.write_text(f"{FIGURES}/{figure.name}.svg", figure.svg)
-        found = finding.to_dict() | {"failed_runs": len(experiments.failed)}
-    return entry | found | {"seconds": time.perf_counter() - began}
+        entry |= done.result.to_dict() | {"failed_runs": len(experiments.failed)}
+    return entry | {"seconds": done.seconds}
 
 
 def _document(status: str, entries: Entries, began: float) -> dict[str, Any]:

@@ -7,8 +7,9 @@ from contact.reference.floor_acceleration import sine_floor
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import first_swing_threshold, simulate_rocking
 from fem.assessment.joint_demands import joint_demands
+from fem.evidence.findings import at_most, equal
 from fem.evidence.paper.cases import PLATEAU, RIGID, SHELL, STACK, PaperCase
-from fem.evidence.paper.claims import Evidence, at_most, claim, equal, outcomes, table
+from fem.evidence.paper.claims import Evidence, claim, outcomes, table
 from fem.evidence.paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HALF_WIDTH, HEIGHT, PLATEAU_PEAK, WIDTH
 from fem.evidence.paper.experiments import Experiments
 from fem.evidence.paper.figures import curve, draw_curves

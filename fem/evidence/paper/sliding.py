@@ -8,8 +8,9 @@ import numpy as np
 from contact.reference.floor_acceleration import sine_floor
 from contact.reference.sliding import RigidSlider, simulate_sliding
 from fem.batch.runner import Row
+from fem.evidence.findings import at_most
 from fem.evidence.paper.cases import BOX, FOR_MAPS, PLATEAU, RIGID, STACK, friction
-from fem.evidence.paper.claims import Evidence, at_most, claim, table
+from fem.evidence.paper.claims import Evidence, claim, table
 from fem.evidence.paper.dimensions import ANGULAR_FREQUENCY, GRAVITY, HEIGHT, HOLDING, PAPER_MU, WIDTH
 from fem.evidence.paper.experiments import Experiments, capped_ratio, stands
 from fem.evidence.paper.figures import curve, draw_curves

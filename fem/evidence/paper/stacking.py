@@ -10,8 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from fem.batch.runner import Row
+from fem.evidence.findings import at_most, equal
 from fem.evidence.paper.cases import FOR_MAPS, STACK, PaperCase, friction
-from fem.evidence.paper.claims import Evidence, at_most, claim, equal, table
+from fem.evidence.paper.claims import Evidence, claim, table
 from fem.evidence.paper.dimensions import ANGULAR_FREQUENCY, PLATEAU_PEAK, STATED_PEAK, WIDTH
 from fem.evidence.paper.experiments import Experiments, capped_ratio, stands
 from fem.figures.heat_map import MapAxis

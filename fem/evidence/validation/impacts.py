@@ -10,8 +10,9 @@ from functools import cache
 
 import numpy as np
 
+from fem.evidence.findings import prediction
 from fem.evidence.validation.bodies import rigid_case
-from fem.evidence.validation.findings import Experiment, Prediction, Predictor
+from fem.evidence.validation.experiments import Experiment, Predictor
 from fem.evidence.validation.tables import measured_table
 from fem.evidence.verification.runs import run
 
@@ -83,32 +84,32 @@ def compute() -> Experiment:
         f"taken), its mass (concrete, {DENSITY:g} kg/m3), what bears at each edge ({100 * STRIP:g} % of the width) and "
         "the thickness of the rubber (deep against that). No preset is fitted",
         findings=(
-            Prediction(
-                quantity="slenderness 5 on rubber: restitution over Housner's, width fitted",
+            prediction(
+                "slenderness 5 on rubber: restitution over Housner's, width fitted",
+                f"{fit:.3f}",
                 measured=rubber,
-                predicted=f"{fit:.3f}",
                 criterion=f"within {WITHIN} by the fit",
-                passed=abs(fit - rubber) <= WITHIN,
+                met=abs(fit - rubber) <= WITHIN,
                 note="a fit of one unknown to one number: it shows that the preset can give it, not that it does",
             ),
-            Prediction(
-                quantity=f"the same for widths of {', '.join(f'{one:g}' for one in some)} m",
+            prediction(
+                f"the same for widths of {', '.join(f'{one:g}' for one in some)} m",
+                over_widths,
                 measured=rubber,
-                predicted=over_widths,
                 note="no prediction without the width",
             ),
-            Prediction(
-                quantity="width fitted with other strips that bear",
+            prediction(
+                "width fitted with other strips that bear",
+                widths,
                 measured="not reported",
-                predicted=widths,
                 note=f"with a modulus of {MODULI[0] / 1e6:g} and {MODULI[1] / 1e6:g} MPa, the range of the preset "
                 f"({100 * STRIP:g} %): {soft:g} and {stiff:g} m",
             ),
             *(
-                Prediction(
-                    quantity=f"slenderness {slenderness:g} on concrete: restitution over Housner's",
+                prediction(
+                    f"slenderness {slenderness:g} on concrete: restitution over Housner's",
+                    f"{(found := restitution_ratio('concrete', slenderness, width)):.3f}",
                     measured=measured["concrete", slenderness],
-                    predicted=f"{(found := restitution_ratio('concrete', slenderness, width)):.3f}",
                     note=f"a prediction, off by {found - measured['concrete', slenderness]:+.3f}: a rigid block on its "
                     "edges loses no more than Housner's, and one so light crushes nothing; give "
                     "contact.restitution_over_housner where it is measured",

@@ -17,8 +17,9 @@ from pathlib import Path
 import numpy as np
 
 from fem.case.case import Case
+from fem.evidence.findings import Finding, prediction
 from fem.evidence.validation.bodies import cross_validated, rigid_case, specimen
-from fem.evidence.validation.findings import Experiment, Prediction, Predictor
+from fem.evidence.validation.experiments import Experiment, Predictor
 from fem.evidence.validation.tables import measured_table
 from fem.model.container import Container
 from fem.model.model import build_model
@@ -171,7 +172,7 @@ def _rock(angle: float) -> tuple[Case, Container]:
     return case, specimen(case, centroid=CENTROID, inertia_ratio=INERTIA)
 
 
-def _findings(rock: int, found: Sequence[tuple[float, ShakeTest]]) -> list[Prediction]:
+def _findings(rock: int, found: Sequence[tuple[float, ShakeTest]]) -> list[Finding]:
     """Measured and predicted outcomes of a rock, each test predicted by the fit on the others."""
     count = len(found)
     with ThreadPoolExecutor(max_workers=cores()) as pool:
@@ -182,27 +183,27 @@ def _findings(rock: int, found: Sequence[tuple[float, ShakeTest]]) -> list[Predi
     share, seen = sum(predicted) / count, sum(measured) / count
     unsure = sum(_is_unsure(test, angle) for angle, test in wrong)
     findings = [
-        Prediction(
-            quantity=f"rock {rock}: share of outcomes predicted, fitted on the other half",
+        prediction(
+            f"rock {rock}: share of outcomes predicted, fitted on the other half",
+            round(agreement, 3),
             measured="1",
-            predicted=round(agreement, 3),
             criterion=f"at least {LEAST_AGREEMENT}",
-            passed=agreement >= LEAST_AGREEMENT,
+            met=agreement >= LEAST_AGREEMENT,
             note="the other rock on the same table agrees with this one in 0.87 of 582 tests",
         ),
-        Prediction(
-            quantity=f"rock {rock}: share overturned",
+        prediction(
+            f"rock {rock}: share overturned",
+            round(share, 3),
             measured=round(seen, 3),
-            predicted=round(share, 3),
             criterion=f"within {SHARE_WITHIN}",
-            passed=abs(share - seen) <= SHARE_WITHIN,
+            met=abs(share - seen) <= SHARE_WITHIN,
         ),
-        Prediction(
-            quantity=f"rock {rock}: wrong predictions that the program itself calls unsure",
+        prediction(
+            f"rock {rock}: wrong predictions that the program itself calls unsure",
+            unsure,
             measured=len(wrong),
-            predicted=unsure,
             criterion="at least half",
-            passed=unsure >= UNSURE_SHARE * len(wrong),
+            met=unsure >= UNSURE_SHARE * len(wrong),
         ),
     ]
     for low, high in BINS:
@@ -210,10 +211,10 @@ def _findings(rock: int, found: Sequence[tuple[float, ShakeTest]]) -> list[Predi
         if some:
             to = f"to {high:g} g" if math.isfinite(high) else "g and more"
             findings.append(
-                Prediction(
-                    quantity=f"rock {rock}: overturned of {len(some)} with a peak from {low:g} {to}",
+                prediction(
+                    f"rock {rock}: overturned of {len(some)} with a peak from {low:g} {to}",
+                    sum(predicted[k] for k in some),
                     measured=sum(measured[k] for k in some),
-                    predicted=sum(predicted[k] for k in some),
                 )
             )
     return findings

@@ -1,12 +1,24 @@
 """The suite of experiments."""
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
+from fem.evidence.findings import prediction
+from fem.evidence.suite import attempted
 from fem.evidence.validation import cube, impacts, pulses, rocks
-from fem.evidence.validation.findings import Experiment, ValidationResult
+from fem.evidence.validation.experiments import Experiment, ValidationResult
+
+
+def require(data: Path | None) -> None:
+    """Refuse a folder that does not hold the rock motions.
+
+    Raises:
+        MotionFolderError: the folder is of another kind.
+    """
+    if data is not None:
+        rocks.read_tests(data)
 
 
 def run_validation(
@@ -18,19 +30,33 @@ def run_validation(
         data: folder of the rock motions; None leaves that experiment out.
 
     Raises:
-        MotionFolderError: the folder is of another kind.
+        MotionFolderError: as for `require`.
     """
-    if data is not None:
-        rocks.read_tests(data)  # refused before anything is computed
-    found = []
+    require(data)
+    experiments = []
     for name, compute in (
-        ("rocks", lambda: rocks.compute(data)),
+        ("rocks", partial(rocks.compute, data)),
         ("cube", cube.compute),
         ("pulses", pulses.compute),
         ("impacts", impacts.compute),
     ):
         before(name)
-        began = time.perf_counter()
-        experiment: Experiment = compute()
-        found.append(replace(experiment, seconds=time.perf_counter() - began))
-    return ValidationResult(experiments=tuple(found))
+        done = attempted(compute)
+        experiment = done.result or not_computed(name, done.reason)
+        experiments.append(replace(experiment, seconds=done.seconds))
+    return ValidationResult(experiments=tuple(experiments))
+
+
+def not_computed(name: str, reason: str) -> Experiment:
+    """An experiment that failed, which is a criterion missed."""
+    failure = prediction("computed at all", "no", measured="-", criterion="computed", met=False, note=reason)
+    return Experiment(
+        name=name,
+        title=name,
+        source="",
+        licence="",
+        tests=0,
+        fitted="",
+        findings=(failure,),
+        not_computed=reason,
+    )

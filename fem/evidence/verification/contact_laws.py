@@ -5,7 +5,6 @@ Kanoknukulchai, Comput. Methods Appl. Mech. Eng. 8 (1976) 249: exact by d'Alembe
 """
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,20 +16,11 @@ from contact.reference.closed_forms_rocking import damped_drop_restitution, drop
 from contact.stepping.body import VELOCITY_Z
 from contact.stepping.scheme import generalised_alpha, newmark
 from fem.assessment.verdict import audit
+from fem.evidence.findings import analytic, convergence
+from fem.evidence.verification import runs
 from fem.evidence.verification.bodies import Flight, free_run, full_body
+from fem.evidence.verification.checks import Findings, check
 from fem.evidence.verification.meshes import graded_block, grid_mesh
-from fem.evidence.verification.rows import Row, analytic, check, convergence
-from fem.evidence.verification.runs import (
-    BOX,
-    GRAVITY,
-    STACK,
-    Keys,
-    finish,
-    lifted,
-    run,
-    with_motion,
-    with_steps_of,
-)
 from fem.model.model import Model, build_model
 from fem.solid.assembly import assemble
 from fem.solid.reduction import static_response
@@ -38,14 +28,14 @@ from fem.solid.reduction import static_response
 LANDING = 3.0  #: of damped drops, far above g sqrt(m/k) [m/s]
 #: the bar's 10 m/s would strain it by a third, and the exact solution is that of small strains [m/s]
 BAR_SPEED = 0.02
-LIGHT: Keys = {"gravity_m_s2": 0.01, "container.weight_N": 100.0}
+LIGHT: runs.Keys = {"gravity_m_s2": 0.01, "container.weight_N": 100.0}
 
 
 @check("contact", "contact patch test on a graded base")
-def patch_test() -> Iterator[Row]:
+def patch_test() -> Findings:
     """A homogeneous elastic block stands on a graded flat base with uniform pressure; nu = 0."""
     mesh = graded_block()
-    weight = GRAVITY * mesh.mass
+    weight = runs.GRAVITY * mesh.mass
     for order in (1, 2):
         elements = assemble(mesh, youngs_modulus=1e8, poisson_ratio=0.0, order=order)
         support = choose_support("flat", elements.nodes[elements.base_nodes, 0], depth=0.5, order=order)
@@ -65,12 +55,12 @@ def patch_test() -> Iterator[Row]:
 
 
 @check("contact", "static penetration")
-def penetration() -> Iterator[Row]:
+def penetration() -> Findings:
     """Static penetration under the weight: weight over penalty and area, in a run that stays at rest."""
     found = {}
     for penalty in (1e8, 1e9, 1e10, 1e11):
         values = {"contact.normal_penalty_Pa_m": penalty, "support.kind": "flat", "solver.duration_s": 0.05}
-        found[1.0 / penalty] = float(run(STACK, values).track.max_penetration)
+        found[1.0 / penalty] = float(runs.run(runs.STACK, values).track.max_penetration)
     yield analytic(
         "rigid stack on a flat base",
         "penetration at a penalty of 1e11 Pa/m [m]; order in 1/penalty",
@@ -83,21 +73,21 @@ def penetration() -> Iterator[Row]:
 
 
 @check("contact", "flat drops")
-def flat_drops() -> Iterator[Row]:
+def flat_drops() -> Findings:
     """Largest floor force of a flat drop without damping."""
     source = "m g + sqrt((m g)^2 + k m v^2)"
     for speed in (0.1, 1.0):
-        model = build_model(BOX.with_values({"contact.damping_ratio": 0.0, "solver.duration_s": 0.02}))
+        model = build_model(runs.BOX.with_values({"contact.damping_ratio": 0.0, "solver.duration_s": 0.02}))
         gap = 1e-4 * speed
-        done = finish(lifted(model, gap, math.sqrt(speed**2 - 2.0 * GRAVITY * gap)))
+        done = runs.finish(runs.lifted(model, gap, math.sqrt(speed**2 - 2.0 * runs.GRAVITY * gap)))
         found = 2.0 * float(done.track.peak_corner_force)
-        exact = drop_force(mass=2500.0, stiffness=model.base_stiffness, speed=speed, gravity=GRAVITY)
+        exact = drop_force(mass=2500.0, stiffness=model.base_stiffness, speed=speed, gravity=runs.GRAVITY)
         case = f"rigid box lands flat at {speed} m/s"
         yield analytic(case, "largest floor force [N]", found, exact, source=source, relative=5e-3)
 
 
 @check("contact", "damped drops")
-def damped_drops() -> Iterator[Row]:
+def damped_drops() -> Findings:
     """Rebound from springs and dashpots that do not pull, almost without gravity; steps of one size."""
     steps = (4e-5, 2e-5, 1e-5, 5e-6)
     for ratio in (0.05, 0.1, 0.2, 0.5):
@@ -118,7 +108,7 @@ def damped_drops() -> Iterator[Row]:
 
 
 @check("contact", "impact of a bar", quick=False)
-def impact_bar() -> Iterator[Row]:
+def impact_bar() -> Findings:
     """An elastic bar strikes a wall: one reflection of the wave, then it leaves."""
     found = bar_impact(elements=400)
     case, source = "bar of 400 elements, penalty E/h, generalised-alpha 0.5", "d'Alembert: 2 L/c, rho c v, v"
@@ -133,7 +123,7 @@ def impact_bar() -> Iterator[Row]:
 
 
 @check("contact", "the energy audit refuses a gain")
-def stiff_trapezoidal() -> Iterator[Row]:
+def stiff_trapezoidal() -> Findings:
     """The trapezoidal rule gains energy on a stiff penalty: the audit of a run must refuse it."""
     compared = "refused by the audit for a gain (1) or not (0)"
     for name, trapezoidal, ratio, refused in (
@@ -148,7 +138,7 @@ def stiff_trapezoidal() -> Iterator[Row]:
 
 
 @check("contact", "opening edges")
-def opening_edges() -> Iterator[Row]:
+def opening_edges() -> Findings:
     """Floor acceleration that grows slowly: when an edge of a flat base opens, when a block on corners lifts."""
     jerk = 0.4  # toward -x [m/s3]
     coefficients = np.array([[0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, -jerk]])
@@ -160,13 +150,13 @@ def opening_edges() -> Iterator[Row]:
         ("corners", 1.0, "first_uplift", corner, moment),
     ):
         mesh = {"solver.element_size_m": 0.1, "solver.order": 2}
-        case = STACK.with_values({"support.kind": support, "solver.duration_s": 8.0} | mesh)
-        done = finish(with_motion(build_model(case), floor))
+        case = runs.STACK.with_values({"support.kind": support, "solver.duration_s": 8.0} | mesh)
+        done = runs.finish(runs.with_motion(build_model(case), floor))
         yield analytic(
             f"rigid stack, support {support}, floor acceleration growing by {jerk} m/s3",
             f"acceleration when {compared} [m/s2]",
             jerk * float(done.track[event]),
-            GRAVITY * 1.1 / (share * 4.0),
+            runs.GRAVITY * 1.1 / (share * 4.0),
             source=source,
             relative=0.01,
         )
@@ -180,8 +170,8 @@ def rebound(damping_ratio: float, step: float) -> float:
         "contact.normal_penalty_Pa_m": 1e9,
         "solver.duration_s": 0.02,
     }
-    model = lifted(build_model(BOX.with_values(values)), 1e-3, LANDING)
-    done = finish(with_steps_of(model, step))
+    model = runs.lifted(build_model(runs.BOX.with_values(values)), 1e-3, LANDING)
+    done = runs.finish(runs.with_steps_of(model, step))
     return float(done.model.run.old.pose[VELOCITY_Z]) / LANDING
 
 
@@ -232,4 +222,4 @@ def bar_impact(*, elements: int, trapezoidal: bool = False, penalty_ratio: float
 def as_model(flight: Flight) -> Model:
     """A model whose run is the flight's, for the audit; the energy to overturn is the flight's energy."""
     control = flight.run.control._replace(reference_energy=flight.first_energy)
-    return replace(build_model(STACK), run=flight.run._replace(control=control))
+    return replace(build_model(runs.STACK), run=flight.run._replace(control=control))

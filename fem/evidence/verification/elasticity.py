@@ -6,15 +6,16 @@ solutions: `fem.evidence.verification.manufactured`.
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from scipy.sparse.linalg import eigsh, spsolve
 
+from fem.evidence.findings import Convergence, analytic, computed, convergence, printed
+from fem.evidence.verification.checks import Findings, check
 from fem.evidence.verification.manufactured import NewtonError, dynamic_error, static_error
 from fem.evidence.verification.meshes import mapped_mesh
-from fem.evidence.verification.rows import Convergence, Row, analytic, check, computed, convergence, printed
 from fem.runtime.arrays import BoolArray, FloatArray, IntArray
 from fem.solid.assembly import FiniteElements, assemble
 from fem.solid.elasticity import cauchy_stress, plane_stress_lame
@@ -26,7 +27,7 @@ NAFEMS = "NAFEMS TNSB Rev. 3 (1990)"
 
 
 @check("elasticity", "patch tests")
-def patch_tests() -> Iterator[Row]:
+def patch_tests() -> Findings:
     """A homogeneous state, prescribed on the whole boundary, at finite strain and rotation: reproduced exactly."""
     gradient = turn(0.5) @ np.array([[1.03, 0.02], [-0.01, 0.96]]) - np.eye(2)
     expected = cauchy_stress(gradient, plane_stress_lame(E, NU))
@@ -52,7 +53,7 @@ def patch_tests() -> Iterator[Row]:
 
 
 @check("elasticity", "rigid rotation")
-def rigid_rotation() -> Iterator[Row]:
+def rigid_rotation() -> Findings:
     """A rotation by 0.3 rad stores no strain energy; linear strain would."""
     for order in (1, 2):
         elements = distorted_block(order)
@@ -64,7 +65,7 @@ def rigid_rotation() -> Iterator[Row]:
 
 
 @check("elasticity", "Cook's membrane")
-def cook() -> Iterator[Row]:
+def cook() -> Findings:
     """Cook's membrane: the bilinear values, and the limit."""
     source = "bilinear quads integrated exactly, two decimals"
     for cells, reference in ((2, 11.80), (4, 18.29), (8, 22.08), (16, 23.43)):
@@ -85,7 +86,7 @@ def cook() -> Iterator[Row]:
 
 
 @check("elasticity", "NAFEMS benchmarks")
-def nafems() -> Iterator[Row]:
+def nafems() -> Findings:
     """NAFEMS LE1 and FV32."""
     case = "NAFEMS LE1, elliptic membrane, 32 x 32 quadratic"
     yield printed(case, "sigma_zz at D [Pa]", le1_stress(), 92.7e6, source=NAFEMS, absolute=0.05e6)
@@ -96,7 +97,7 @@ def nafems() -> Iterator[Row]:
 
 
 @check("elasticity", "elastica")
-def elastica() -> Iterator[Row]:
+def elastica() -> Findings:
     """Cantilever under an end load, extrapolated from two thicknesses to none."""
     exact = {1.0: (0.301721, 0.056433), 2.0: (0.493457, 0.160642), 5.0: (0.713792, 0.387628)}
     thick, thin = (elastica_tip(list(exact), slenderness) for slenderness in (25.0, 50.0))
@@ -109,7 +110,7 @@ def elastica() -> Iterator[Row]:
 
 
 @check("elasticity", "free square")
-def free_square() -> Iterator[Row]:
+def free_square() -> Findings:
     """Frequencies of the free square."""
     case = "free-free unit square, nu = 0.3, 24 x 24 quadratic"
     exact = (2.43265, 2.59096, 2.59096, 2.75536, 3.13163)
@@ -119,7 +120,7 @@ def free_square() -> Iterator[Row]:
 
 
 @check("elasticity", "column under its weight")
-def column() -> Iterator[Row]:
+def column() -> Findings:
     """A column under its own weight, nu = 0: rho g c^2/(2E)."""
     density, gravity, height, modulus = 333.0, 9.81, 4.0, 1e9
     mesh = mapped_mesh(2, 8, lambda s, t: (1.1 * (s - 0.5), height * t), thickness=0.3, density=density)
@@ -136,7 +137,7 @@ def column() -> Iterator[Row]:
 
 
 @check("elasticity", "manufactured solution, static")
-def static_orders() -> Iterator[Row]:
+def static_orders() -> Findings:
     """L2 order of the displacement, static, at finite strain and rotation on curved meshes."""
     for order, cells in ((1, (4, 8, 16)), (2, (3, 6, 12, 24))):
         orders = in_space({1.0 / n: static_error(order, n) for n in cells}, order)
@@ -149,7 +150,7 @@ def static_orders() -> Iterator[Row]:
 
 
 @check("elasticity", "manufactured solution, dynamic", quick=False)
-def dynamic_orders() -> Iterator[Row]:
+def dynamic_orders() -> Findings:
     """L2 order of the displacement of a body that rotates, is strained and flies; the step is refined as well."""
     for order, counts in ((1, {4: 20, 8: 40, 16: 80}), (2, {2: 20, 4: 57, 8: 160})):
         orders = in_space(

@@ -7,7 +7,6 @@ are those of `fem.evidence.verification.runs`.
 """
 
 import math
-from collections.abc import Iterator
 from itertools import product
 
 import numpy as np
@@ -17,22 +16,12 @@ from contact.reference.sliding import RigidSlider, simulate_sliding
 from contact.stepping.ledger import CRUSHING, IMBALANCE
 from contact.stepping.modal_body import make_modal_body
 from contact.stepping.scheme import generalised_alpha
+from fem.evidence.findings import analytic, computed, convergence
+from fem.evidence.verification import runs
 from fem.evidence.verification.bodies import Flight, free_run
+from fem.evidence.verification.checks import Findings, check
 from fem.evidence.verification.restitution import peaks
 from fem.evidence.verification.rocking import BLOCK, RELEASED, difference_of_rotation
-from fem.evidence.verification.rows import Row, analytic, check, computed, convergence
-from fem.evidence.verification.runs import (
-    BOX,
-    GRAVITY,
-    SOLID,
-    STACK,
-    Finished,
-    Keys,
-    bisected,
-    finish,
-    harmonic,
-    run,
-)
 from fem.model.model import Model, build_model
 from fem.solid.nodal_body import advance_body
 
@@ -74,7 +63,7 @@ def landed(share: float, step: float) -> tuple[Flight, float, float]:
 
 
 @check("floor", "a landing that crushes the floor")
-def landing() -> Iterator[Row]:
+def landing() -> Findings:
     """What the springs hold at the cap comes back, the rest indents the floor; second order in the step."""
     source = "m v^2/2 - F^2/(2 k) = F w, rebound F/sqrt(k m)"
     for share in (0.3, 0.6, 0.9):
@@ -100,26 +89,26 @@ def landing() -> Iterator[Row]:
     )
 
 
-def slab(stiffness: float, cap: float, ratio: float | None = None) -> Keys:
+def slab(stiffness: float, cap: float, ratio: float | None = None) -> runs.Keys:
     """Keys of a slab with this stiffness [N/m] and cap [N] of a corner, and damping ratio of the contact."""
-    keys: Keys = {
+    keys: runs.Keys = {
         "floor.kind": "slab",
         "floor.corner_patch_m": PATCH,
         "floor.youngs_modulus_Pa": 31e9,
         "floor.poisson_ratio": 0.2,
         "floor.bearing_strength_Pa": cap / (PATCH[0] * PATCH[1]),
     }
-    found = float(build_model(STACK.with_values(keys)).run.contact.normal_stiffness[0])
+    found = float(build_model(runs.STACK.with_values(keys)).run.contact.normal_stiffness[0])
     keys["floor.youngs_modulus_Pa"] *= stiffness / found
     return keys if ratio is None else keys | {"contact.damping_ratio": ratio}
 
 
 @check("floor", "the work of crushing")
-def work_of_crushing() -> Iterator[Row]:
+def work_of_crushing() -> Findings:
     """The ledger's work against the area under force and indentation, added up from the outside; energy closes."""
-    driven = harmonic(4.0 / OMEGA**2, OMEGA) | {"solver.duration_s": 3.0}
-    for name, keys in {"rigid stack": {}, "solid stack, 20 modes": SOLID}.items():
-        model = build_model(STACK.with_values(driven | keys | slab(8.1e9, 0.44e6)))
+    driven = runs.harmonic(4.0 / OMEGA**2, OMEGA) | {"solver.duration_s": 3.0}
+    for name, keys in {"rigid stack": {}, "solid stack, 20 modes": runs.SOLID}.items():
+        model = build_model(runs.STACK.with_values(driven | keys | slab(8.1e9, 0.44e6)))
         area = area_under_the_curves(model)
         ledger, reference = model.run.ledger, model.run.control.reference_energy
         case = f"{name}, 4 m/s2 at {OMEGA} rad/s, 3 s, cap 0.44 MN"
@@ -137,22 +126,22 @@ def work_of_crushing() -> Iterator[Row]:
 
 def area_under_the_curves(model: Model) -> float:
     """Area under force and permanent indentation of all points [J], the model stepped to its end step by step."""
-    run, area = model.run, 0.0
-    while float(run.clock[0].time) < model.duration:
-        force, crushed = run.old.force[:, 1].copy(), run.old.crushed.copy()
-        run.clock[0].attempt_limit = int(run.clock[0].steps + run.clock[0].rejected) + 1
-        advance_body(model.body, run, model.duration)
-        run.clock[0].samples_drained = run.clock[0].samples
-        area += float((0.5 * (force + run.old.force[:, 1]) * (run.old.crushed - crushed)).sum())
+    state, area = model.run, 0.0
+    while float(state.clock[0].time) < model.duration:
+        force, crushed = state.old.force[:, 1].copy(), state.old.crushed.copy()
+        state.clock[0].attempt_limit = int(state.clock[0].steps + state.clock[0].rejected) + 1
+        advance_body(model.body, state, model.duration)
+        state.clock[0].samples_drained = state.clock[0].samples
+        area += float((0.5 * (force + state.old.force[:, 1]) * (state.old.crushed - crushed)).sum())
     return area
 
 
 @check("floor", "restitution of a corner that crushes")
-def restitution() -> Iterator[Row]:
+def restitution() -> Findings:
     """Housner's whatever the cap, the stiffness and the dashpot, to what the springs hold at the cap and give back."""
-    free: Keys = RELEASED | {"contact.mu_static": 0.8, "solver.duration_s": 2.5}
+    free: runs.Keys = RELEASED | {"contact.mu_static": 0.8, "solver.duration_s": 2.5}
     for stiffness, cap, (ratios, tolerance) in product(STIFFNESSES, CAPS, RATIOS.items()):
-        found = {ratio: run(STACK, free | slab(stiffness, cap, ratio)) for ratio in ratios}
+        found = {ratio: runs.run(runs.STACK, free | slab(stiffness, cap, ratio)) for ratio in ratios}
         exact = BLOCK.housner_restitution
         worst, value = max(
             ((ratio, peaks(done)) for ratio, done in found.items()), key=lambda one: abs(one[1] - exact)
@@ -168,29 +157,33 @@ def restitution() -> Iterator[Row]:
 
 
 @check("floor", "limit of an incline")
-def incline_limit() -> Iterator[Row]:
+def incline_limit() -> Findings:
     """A box begins to slide where the slope is mu_static, to either side."""
-    for sign, (name, keys) in product((1.0, -1.0), {"rigid box": {}, "solid box, 20 modes": SOLID}.items()):
+    for sign, (name, keys) in product(
+        (1.0, -1.0), {"rigid box": {}, "solid box, 20 modes": runs.SOLID}.items()
+    ):
         held = keys | {"contact.mu_static": 0.1, "solver.duration_s": 1.0}
 
-        def slides(per_cent: float, held: Keys = held, sign: float = sign) -> bool:
-            done = run(BOX, held | {"floor.slope_percent": sign * per_cent})
+        def slides(per_cent: float, held: runs.Keys = held, sign: float = sign) -> bool:
+            done = runs.run(runs.BOX, held | {"floor.slope_percent": sign * per_cent})
             return abs(float(done.joint.slip)) > 1e-5
 
-        found = bisected(slides, 9.0, 11.0, resolution=1e-3)
+        found = runs.bisected(slides, 9.0, 11.0, resolution=1e-3)
         case = f"{name}, mu 0.1, floor falls toward {'+x' if sign > 0.0 else '-x'}"
         yield analytic(case, "limit of the slope [%]", found, 10.0, source="tan = mu", relative=5e-3)
 
 
 @check("floor", "a slider on a slope")
-def slider_on_slope() -> Iterator[Row]:
+def slider_on_slope() -> Findings:
     """Slip that a slope makes one-sided, over 5 s."""
     for per_cent in (2.0, -10.0):
         angle, friction = math.atan(0.01 * per_cent), {"contact.mu_static": 0.3, "contact.mu_kinetic": 0.2}
-        keys = harmonic(0.05, 10.0) | friction | {"floor.slope_percent": per_cent, "solver.duration_s": 5.0}
-        done = run(BOX, keys)
-        slider = RigidSlider(mu_static=0.3, mu_kinetic=0.2, gravity=GRAVITY * math.cos(angle))
-        floor = sine_floor(amplitude=0.05, angular_frequency=10.0).on_slope(GRAVITY * math.sin(angle))
+        keys = (
+            runs.harmonic(0.05, 10.0) | friction | {"floor.slope_percent": per_cent, "solver.duration_s": 5.0}
+        )
+        done = runs.run(runs.BOX, keys)
+        slider = RigidSlider(mu_static=0.3, mu_kinetic=0.2, gravity=runs.GRAVITY * math.cos(angle))
+        floor = sine_floor(amplitude=0.05, angular_frequency=10.0).on_slope(runs.GRAVITY * math.sin(angle))
         exact = simulate_sliding(slider, floor, duration=5.0)
         found, reference = done.history["slip_m"], exact.at(done.history["time_s"])[0]
         yield computed(
@@ -203,10 +196,10 @@ def slider_on_slope() -> Iterator[Row]:
 
 
 @check("floor", "a block on a slope")
-def block_on_slope() -> Iterator[Row]:
+def block_on_slope() -> Findings:
     """Rotation of the stack up to the first impact, driven on a slope."""
     for per_cent, (name, keys) in product(
-        (3.0, -3.0), {"rigid stack": {}, "solid stack, 20 modes": SOLID}.items()
+        (3.0, -3.0), {"rigid stack": {}, "solid stack, 20 modes": runs.SOLID}.items()
     ):
         done = rocked_on_slope(per_cent, keys)
         floor = sine_floor(amplitude=4.5 / OMEGA**2, angular_frequency=OMEGA)
@@ -219,8 +212,12 @@ def block_on_slope() -> Iterator[Row]:
         )
 
 
-def rocked_on_slope(per_cent: float, keys: Keys) -> Finished:
+def rocked_on_slope(per_cent: float, keys: runs.Keys) -> runs.Finished:
     """The stack on a stiff floor with a slope [%], driven to rock."""
-    stiff: Keys = {"contact.normal_penalty_Pa_m": 5e10, "output.history_s": 0.002, "solver.duration_s": 2.0}
-    values = harmonic(4.5 / OMEGA**2, OMEGA) | stiff | keys | {"floor.slope_percent": per_cent}
-    return finish(build_model(STACK.with_values(values)))
+    stiff: runs.Keys = {
+        "contact.normal_penalty_Pa_m": 5e10,
+        "output.history_s": 0.002,
+        "solver.duration_s": 2.0,
+    }
+    values = runs.harmonic(4.5 / OMEGA**2, OMEGA) | stiff | keys | {"floor.slope_percent": per_cent}
+    return runs.finish(build_model(runs.STACK.with_values(values)))

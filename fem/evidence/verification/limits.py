@@ -5,7 +5,6 @@ those of its springs.
 """
 
 import math
-from collections.abc import Iterator
 from itertools import product
 
 import numpy as np
@@ -15,7 +14,8 @@ from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 from contact.reference.planar_motion import PlanarMode
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
-from fem.evidence.verification.rows import Row, analytic, check, computed, convergence
+from fem.evidence.findings import analytic, computed, convergence
+from fem.evidence.verification.checks import Findings, check
 from fem.evidence.verification.runs import FRICTION, SOLID, STACK, Keys, harmonic, run
 from fem.model.model import build_model
 from fem.results.outcome import Outcome
@@ -29,7 +29,7 @@ PLANAR_BLOCK = "event-driven planar block"
 
 
 @check("limits", "limit of a rigid container")
-def rigid_container() -> Iterator[Row]:
+def rigid_container() -> Findings:
     """The stiffer the container on the same floor, the nearer to the rigid model: like 1/E."""
     penalty = build_model(STACK.with_values(RELEASED)).penalty
     keys = RELEASED | {"contact.normal_penalty_Pa_m": penalty, "solver.step_s": 5e-4}
@@ -49,7 +49,7 @@ def rigid_container() -> Iterator[Row]:
 
 
 @check("limits", "limit of a stiff floor")
-def stiff_floor() -> Iterator[Row]:
+def stiff_floor() -> Findings:
     """The stiffer the floor, the nearer the rigid model to the analytic block: like 1/penalty."""
     default, errors = build_model(STACK).penalty, {}
     for factor in (0.1, 0.3, 1.0, 3.0):
@@ -70,7 +70,7 @@ def stiff_floor() -> Iterator[Row]:
 
 
 @check("limits", "limit of many modes")
-def many_modes() -> Iterator[Row]:
+def many_modes() -> Findings:
     """A shell through its first impact: the more elastic modes, the nearer to very many."""
     keys = SHELL | RELEASED | {"solver.step_s": 2.5e-4, "solver.duration_s": 1.3}
     reference = rotation(keys | {"solver.elastic_modes": 160})
@@ -90,7 +90,7 @@ def many_modes() -> Iterator[Row]:
 
 
 @check("limits", "rest under the stated motion")
-def stated_motion() -> Iterator[Row]:
+def stated_motion() -> Findings:
     """The stack under 50 mm at 6.928 rad/s, below uplift: it stays at rest for ten cycles."""
     models: dict[str, Keys] = {"rigid": {}, "solid, 20 modes": SOLID, "shell of 8 mm, 20 modes": SHELL}
     source = "2.40 < 2.698 (uplift) < 3.924 m/s2 (slip)"
@@ -103,7 +103,7 @@ def stated_motion() -> Iterator[Row]:
 
 
 @check("limits", "the plateau's acceleration")
-def plateau() -> Iterator[Row]:
+def plateau() -> Findings:
     """The stack at the plateau's 4.0 m/s2: rocks without slip and stands, at three penalties."""
     default = build_model(STACK).penalty
     source = f"{PLANAR_BLOCK}; 0.38 to 0.43 for e of 0.85 to 0.96"
@@ -120,7 +120,7 @@ def plateau() -> Iterator[Row]:
 
 
 @check("limits", "a floor that starts with a jerk")
-def jerk() -> Iterator[Row]:
+def jerk() -> Findings:
     """The floor starts with a jerk under a stack at rest, mu 0.4/0.4."""
     settings = {"contact.mu_static": 0.4, "motion.start": "rest", "solver.duration_s": 20.0}
     for omega, exact, note in ((6.93, 0.2505, "the reference is for 6.93 rad/s"), (6.928, 0.25040, "")):
@@ -131,7 +131,7 @@ def jerk() -> Iterator[Row]:
 
 
 @check("limits", "slide-rocking")
-def slide_rocking() -> Iterator[Row]:
+def slide_rocking() -> Findings:
     """The stack under 0.1 m at 8 rad/s on friction 0.3: it rocks and slides."""
     done = run(STACK, harmonic(0.1, 8.0) | {"contact.mu_static": 0.3, "solver.duration_s": 2.5})
     case, rotated = "rigid stack, A = 0.1 m, Omega = 8 rad/s, mu 0.3", done.track.max_rotation
@@ -142,7 +142,7 @@ def slide_rocking() -> Iterator[Row]:
 
 
 @check("limits", "full model", quick=False)
-def full_model() -> Iterator[Row]:
+def full_model() -> Findings:
     """Every node free to move: first impact and velocity ratio, against exact values and the reduced model."""
     keys = TILTED | {
         "container.youngs_modulus_Pa": 2.1e12,
@@ -166,7 +166,7 @@ def full_model() -> Iterator[Row]:
 
 
 @check("limits", "a shell refined")
-def refined_shell() -> Iterator[Row]:
+def refined_shell() -> Findings:
     """The default motion of the stack, a shell: it depends on no number of the discretisation.
 
     Its friction does not fall: with mu_k below mu_s the regime after an impact is chance.
@@ -199,7 +199,7 @@ def refined_shell() -> Iterator[Row]:
 
 
 @check("limits", "friction that decides")
-def friction_decides() -> Iterator[Row]:
+def friction_decides() -> Findings:
     """A strong fast floor: with mu_k = mu_s/2 the stack slides and stands, with mu_k = mu_s it overturns."""
     floor = sine_floor(amplitude=10.3333 / 36.0, angular_frequency=6.0)
     motion = harmonic(10.3333 / 36.0, 6.0) | {"contact.mu_static": 0.4, "solver.duration_s": 20.0}
@@ -234,7 +234,7 @@ def friction_decides() -> Iterator[Row]:
 
 
 @check("limits", "a start at rest")
-def start_at_rest() -> Iterator[Row]:
+def start_at_rest() -> Findings:
     """Floors that find the stack at rest: it slides first, and may rock only where its slip turns round."""
     body = RigidBlock.homogeneous(width=1.1, height=4.0)
     block = PlanarBlock(body=body, mu_static=0.4, mu_kinetic=0.2)
@@ -257,7 +257,7 @@ def start_at_rest() -> Iterator[Row]:
 
 
 @check("limits", "full model through an impact", quick=False)
-def full_model_through_an_impact() -> Iterator[Row]:
+def full_model_through_an_impact() -> Findings:
     """Every node of the shell free to move, through its first impact: the same motion as with 20 modes.
 
     With small steps: with those of `solver.energy_tolerance` = 1 the slip, where mu_k is 0.2, scatters by 1 mm if the

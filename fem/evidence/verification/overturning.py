@@ -14,30 +14,13 @@ from functools import partial
 import numpy as np
 
 from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion
-from contact.reference.closed_forms_overturning import (
-    half_sine_threshold_slender,
-    initiation_mode,
-    one_sine_threshold_slender,
-    rectangular_pulse_duration,
-    rocking_friction,
-    sustained_sine_threshold_slender,
-    velocity_step_threshold,
-)
+from contact.reference import closed_forms_overturning
 from contact.reference.floor_acceleration import FloorAcceleration, half_sine_pulse, one_sine_pulse
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import first_swing_threshold
-from fem.evidence.verification.rows import Row, analytic, check, computed
-from fem.evidence.verification.runs import (
-    GRAVITY,
-    STACK,
-    STIFF_SOLID,
-    Keys,
-    bisected,
-    finish,
-    pulse,
-    run,
-    with_motion,
-)
+from fem.evidence.findings import analytic, computed
+from fem.evidence.verification import runs
+from fem.evidence.verification.checks import Findings, check
 from fem.model.container import Container, discretise
 from fem.model.model import build_model
 from fem.results.outcome import Outcome
@@ -45,9 +28,12 @@ from fem.results.outcome import Outcome
 BLOCK = RigidBlock.homogeneous(width=1.1, height=4.0)
 RATE, UPLIFT = BLOCK.frequency_parameter, BLOCK.uplift_acceleration
 #: the corner does not slide under any motion
-ROUGH: Keys = {"contact.mu_static": 5.0, "solver.duration_s": 12.0, "output.history_s": 0.05}
+ROUGH: runs.Keys = {"contact.mu_static": 5.0, "solver.duration_s": 12.0, "output.history_s": 0.05}
 #: name -> keys, tolerance
-MODELS: dict[str, tuple[Keys, float]] = {"rigid": ({}, 0.01), "stiff solid, 20 modes": (STIFF_SOLID, 0.02)}
+MODELS: dict[str, tuple[runs.Keys, float]] = {
+    "rigid": ({}, 0.01),
+    "stiff solid, 20 modes": (runs.STIFF_SOLID, 0.02),
+}
 LEAST_POINTS = 75  #: of the grid of first motions
 RESOLUTION = 5e-4  #: of a threshold found by bisection
 SPAN = 0.06  #: of the bracket around the expected threshold
@@ -55,13 +41,13 @@ PEAK = "peak acceleration over g tan al above which it overturns without impact"
 
 
 @check("overturning", "initiation of motion")
-def initiation() -> Iterator[Row]:
+def initiation() -> Findings:
     """First motion of a resting block on an accelerating floor, over a grid of parameters."""
     seen: Counter[str] = Counter()
     wrong: list[str] = []
     containers: dict[float, Container] = {}
     for lam, ratio, mu_static, mu_kinetic in initiation_grid():
-        expected = initiation_mode(
+        expected = closed_forms_overturning.initiation_mode(
             acceleration_ratio=ratio, slenderness=lam, mu_static=mu_static, mu_kinetic=mu_kinetic
         ).value
         found = first_motion(lam, ratio, mu_static, mu_kinetic, containers)
@@ -84,10 +70,12 @@ def initiation() -> Iterator[Row]:
 
 
 @check("overturning", "overturning by a harmonic floor")
-def sustained_sine() -> Iterator[Row]:
+def sustained_sine() -> Findings:
     """A harmonic floor without end: slender sqrt(1 + w^2), and the stack's own exact values."""
     for w, exact in ((1.0, 1.41347), (6.0, 6.21218)):
-        source = f"event-driven block; slender {sustained_sine_threshold_slender(w):.5f}"
+        source = (
+            f"event-driven block; slender {closed_forms_overturning.sustained_sine_threshold_slender(w):.5f}"
+        )
         for name, (values, tolerance) in MODELS.items():
             found = threshold(partial(sine, w=w), exact * UPLIFT, values) / UPLIFT
             case = f"{name}: harmonic floor, w = {w:g}"
@@ -95,12 +83,12 @@ def sustained_sine() -> Iterator[Row]:
 
 
 @check("overturning", "overturning by pulses")
-def pulses() -> Iterator[Row]:
+def pulses() -> Findings:
     """Half a sine and a whole one."""
     w = 3.0
     for shape, angle, slender, acceleration in (
-        ("half-sine", math.pi, half_sine_threshold_slender(w), half_sine_pulse),
-        ("sine", 2.0 * math.pi, one_sine_threshold_slender(w), one_sine_pulse),
+        ("half-sine", math.pi, closed_forms_overturning.half_sine_threshold_slender(w), half_sine_pulse),
+        ("sine", 2.0 * math.pi, closed_forms_overturning.one_sine_threshold_slender(w), one_sine_pulse),
     ):
         length = angle / (w * RATE)
         exact = (
@@ -116,28 +104,28 @@ def pulses() -> Iterator[Row]:
         )
         source = f"event-driven block; slender {slender:.5f}"
         for name, (values, tolerance) in MODELS.items():
-            keys = partial(pulse, length=length, shape=shape)
+            keys = partial(runs.pulse, length=length, shape=shape)
             found = threshold(keys, exact * UPLIFT, values) / UPLIFT
             case = f"{name}: {shape} pulse, w = {w:g}"
             yield computed(case, PEAK, found, exact, source=source, relative=tolerance)
 
 
 @check("overturning", "overturning by a rectangular pulse")
-def rectangular() -> Iterator[Row]:
+def rectangular() -> Findings:
     """Shortest rectangular pulse of twice the uplift acceleration that overturns."""
-    exact = rectangular_pulse_duration(BLOCK, 2.0 * UPLIFT)
+    exact = closed_forms_overturning.rectangular_pulse_duration(BLOCK, 2.0 * UPLIFT)
     compared = "shortest length that overturns without impact [s]"
     source = "work of the pulse = g R (1 - cos al); exact quadrature"
     for name, (values, tolerance) in MODELS.items():
-        found = threshold(lambda length: pulse(2.0 * UPLIFT, length), exact, values)
+        found = threshold(lambda length: runs.pulse(2.0 * UPLIFT, length), exact, values)
         case = f"{name}: rectangular pulse of 2 g tan al"
         yield analytic(case, compared, found, exact, source=source, relative=tolerance)
 
 
 @check("overturning", "overturning by a velocity step")
-def velocity_step() -> Iterator[Row]:
+def velocity_step() -> Findings:
     """Sudden floor velocity that overturns; here the container gets it, relative to the floor."""
-    exact = velocity_step_threshold(BLOCK)
+    exact = closed_forms_overturning.velocity_step_threshold(BLOCK)
     compared = "least velocity that overturns without impact [m/s]"
     source = "kinetic energy of the kick = M g R (1 - cos al)"
     for name, (values, tolerance) in MODELS.items():
@@ -148,7 +136,7 @@ def velocity_step() -> Iterator[Row]:
         yield analytic(case, compared, found, exact, source=source, relative=tolerance)
 
 
-def sine(peak: float, w: float) -> Keys:
+def sine(peak: float, w: float) -> runs.Keys:
     """Keys of a harmonic floor of a peak acceleration [m/s2], Omega = w p."""
     return {
         "motion.kind": "harmonic",
@@ -172,7 +160,7 @@ def initiation_grid() -> Iterator[tuple[float, float, float, float]]:
         mu_kinetic = share * mu_static
         boundaries = [(ratio, 1.0 / lam), (mu_kinetic, 1.0 / lam)]
         if ratio > 1.0 / lam:
-            boundaries.append((mu_static, rocking_friction(ratio, lam)))
+            boundaries.append((mu_static, closed_forms_overturning.rocking_friction(ratio, lam)))
         else:
             boundaries.append((ratio, mu_static))
         if all(abs(value / limit - 1.0) > 0.05 for value, limit in boundaries):
@@ -183,7 +171,7 @@ def first_motion(
     lam: float, ratio: float, mu_static: float, mu_kinetic: float, containers: dict[float, Container]
 ) -> str:
     """What a block of 1 m x lam m does at first under a floor acceleration of ratio x g."""
-    case = STACK.with_values(
+    case = runs.STACK.with_values(
         {
             "container.width_m": 1.0,
             "container.depth_m": 1.0,
@@ -198,8 +186,8 @@ def first_motion(
     if lam not in containers:
         containers[lam] = discretise(case)
     growth = 0.05 if ratio <= 1.0 / lam else 0.0
-    motion = growing_then_steady(ratio * GRAVITY, growth)
-    done = finish(with_motion(build_model(case, containers[lam]), motion, (0.05, 0.05 + growth)))
+    motion = growing_then_steady(ratio * runs.GRAVITY, growth)
+    done = runs.finish(runs.with_motion(build_model(case, containers[lam]), motion, (0.05, 0.05 + growth)))
     slides = float(done.joint.max_slip) > 1e-4
     rocks = float(done.track.max_rocking) > 1e-3 * done.model.static.slenderness_angle
     return Outcome.of(slides=slides, rocks=rocks)
@@ -216,12 +204,12 @@ def growing_then_steady(acceleration: float, growth: float) -> FloorMotion:
     return as_floor_motion(PIECEWISE, breaks=knots, coefficients=coefficients)
 
 
-def threshold(keys: Callable[[float], Keys], expected: float, values: Keys) -> float:
+def threshold(keys: Callable[[float], runs.Keys], expected: float, values: runs.Keys) -> float:
     """Least parameter that overturns the stack without an impact, near `expected`; nan if it is not near."""
-    container = discretise(STACK.with_values(ROUGH | values))
+    container = discretise(runs.STACK.with_values(ROUGH | values))
 
     def overturns(parameter: float) -> bool:
-        done = run(STACK, ROUGH | values | keys(parameter), container)
+        done = runs.run(runs.STACK, ROUGH | values | keys(parameter), container)
         return done.status == "overturned" and int(done.track.impacts) == 0
 
-    return bisected(overturns, expected * (1.0 - SPAN), expected * (1.0 + SPAN), resolution=RESOLUTION)
+    return runs.bisected(overturns, expected * (1.0 - SPAN), expected * (1.0 + SPAN), resolution=RESOLUTION)

@@ -1,62 +1,160 @@
-"""The verification table for people: lines for a terminal, and one self-contained page with convergence plots."""
+"""The verification suite for people: lines for a terminal, and a page with every finding and convergence plots."""
 
-import datetime as dt
 import math
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from fem.evidence.verification.rows import Convergence, Row
+from fem.evidence import page
+from fem.evidence.findings import Convergence, Finding, Value
+from fem.evidence.suite import failures
 from fem.evidence.verification.suite import ComputedCheck, SuiteResult
 from fem.figures.style import house_style, svg_of
-from fem.html.page import render_page, svg_element
+from fem.html import sections
+from fem.html.page import Page, html_of, svg_element
+from fem.html.sections import NUMBER
 from fem.html.units import ABSENT, short, typeset
 from fem.runtime.arrays import FloatArray
-from fem.runtime.identity import versions
 
 LEAST_SIX = 1e-3  #: smaller values are errors, and printed with three figures
-HEADING = f"{'value':>13} {'reference':>12}  {'kind':<9} {'error':>9} {'tolerance':>9}  order"
+SHOWS = "shows the convergence plots"
+INTRODUCTION = Markup(
+    "Every row checks that the equations are solved right. A reference is <b>analytic</b> (a closed form, or a "
+    "statement such as symmetry), <b>printed</b> (in the literature), or <b>computed</b> (by code that shares nothing "
+    "with what is checked, or as a converged limit). An error is absolute, in the unit of the row, or relative where "
+    "the tolerance is in per cent. An order is the observed slope of the error over the refinement, by least squares "
+    "over all refinements; the expected order is in brackets. The overview gives the largest error over its tolerance "
+    "and the number of observed orders of each topic."
+)
+SYMBOLS = (
+    "SI units. Rotation > 0 toward +x. al: slenderness angle, from the vertical to the line from a corner to the mass "
+    "centre; p: frequency parameter of rocking; e: restitution, a ratio of angular velocities; f1/f_c: first elastic "
+    "over contact frequency; E, h: Young's modulus, element size; g: gravity; a/c: half width over height of the mass "
+    "centre."
+)
 
 
-def table_lines(result: SuiteResult) -> list[str]:
-    """The table for a terminal, one line a row, and the number of failures."""
-    lines, topic = [], ""
-    for check in result.checks:
-        if check.topic != topic:
-            topic = check.topic
-            lines += ["", topic.upper().ljust(76) + HEADING]
-        lines.append(f"  {check.title}  ({check.seconds:.1f} s)")
-        for row in check.rows:
-            lines += _row_lines(row)
+def lines_of(result: SuiteResult) -> list[str]:
+    """The findings for a terminal, one line each, and the number of failures."""
     verdict = "all pass" if result.failures == 0 else f"{result.failures} FAIL"
-    return [*lines, "", f"{result.count} rows in {result.seconds:.0f} s: {verdict}"]
+    groups = [
+        (topic.upper().ljust(page.WIDE) + page.HEADING, [line for check in checks for line in _lines(check)])
+        for topic, checks in result.topics.items()
+    ]
+    return page.table_lines(groups, f"{result.count} rows in {result.seconds:.0f} s: {verdict}")
 
 
-def page(result: SuiteResult) -> str:
-    """The page: every row with its source, and a plot of every convergence."""
-    topics: dict[str, list[ComputedCheck]] = {}
-    for check in result.checks:
-        topics.setdefault(check.topic, []).append(check)
-    return render_page(
-        "verify.html.j2",
-        result=result,
-        versions=", ".join(f"{name} {version}" for name, version in versions().items()),
-        today=dt.date.today().isoformat(),
-        topics=topics.items(),
-        sums={
-            topic: _sum_of([row for check in checks for row in check.rows])
-            for topic, checks in topics.items()
-        },
-        plots={topic: _plots(topic, checks) for topic, checks in topics.items()},
-        number=lambda value: short(value, figures=6 if abs(value) >= LEAST_SIX else 3),
-        typeset=typeset,
-        error=_error,
-        tolerance=_tolerance,
-        order=_order,
+def _lines(check: ComputedCheck) -> list[str]:
+    findings = (line for finding in check.findings for line in page.finding_lines(finding))
+    return [f"  {check.title}  ({check.seconds:.1f} s)", *findings]
+
+
+def page_of(result: SuiteResult) -> str:
+    """The page: every finding with its source, and a plot of every convergence."""
+    failed, count = result.failures, result.count
+    sentence = f"{failed} of {count} rows fail." if failed else f"All {count} rows pass."
+    extent = "Quick checks: the slowest checks are left out" if result.quick else "All checks"
+    topics = [Topic(topic, checks) for topic, checks in result.topics.items()]
+    return html_of(
+        Page(
+            kind="Verification",
+            title="Verification",
+            name="verify",
+            introduction=[
+                sections.Paragraph(sentence, f"sentence {'fail' if failed else 'pass'}"),
+                page.computed_now(f"{extent}. Computed in {result.seconds:.0f} s"),
+            ],
+            sections=[
+                INTRODUCTION,
+                sections.Note(SYMBOLS),
+                sections.table_of(
+                    "overview", OVERVIEW, topics, row_look=lambda one: page.look_of(*one.findings)
+                ),
+                *(topic.section for topic in topics),
+            ],
+        )
     )
+
+
+class Topic(NamedTuple):
+    """The checks of a topic."""
+
+    name: str
+    checks: Sequence[ComputedCheck]
+
+    @property
+    def findings(self) -> list[Finding]:
+        """Those of all its checks."""
+        return [finding for check in self.checks for finding in check.findings]
+
+    @property
+    def largest_use(self) -> str:
+        """The largest error over its tolerance."""
+        used = [finding.error / finding.tolerance for finding in self.findings if finding.tolerance]
+        return f"{max(used):.2f}" if used and math.isfinite(max(used)) else ABSENT
+
+    @property
+    def convergences(self) -> list[tuple[str, Convergence]]:
+        """Names and orders of the findings that have one."""
+        return [(one.name, one.convergence) for one in self.findings if one.convergence is not None]
+
+    @property
+    def section(self) -> sections.PageSection:
+        """All findings, and the plots of convergences."""
+        rows = [row for check in self.checks for row in _rows(check)]
+        plots = [
+            sections.Figure(convergence_plot(convergence, f"{self.name}-{k}"), "", caption=typeset(name))
+            for k, (name, convergence) in enumerate(self.convergences)
+        ]
+        table = sections.Table(f"rows of {self.name}", HEAD, rows, look="checks")
+        return sections.PageSection(self.name, self.name, [table, sections.Group("plots", plots)])
+
+
+OVERVIEW = [
+    sections.Column[Topic]("topic", lambda one: sections.link(one.name, one.name)),
+    sections.Column("checks", lambda one: str(len(one.checks)), NUMBER),
+    sections.Column("rows", lambda one: str(len(one.findings)), NUMBER),
+    sections.Column("failed", lambda one: str(failures(one.findings)), NUMBER),
+    sections.Column("error / tolerance", lambda one: one.largest_use, NUMBER),
+    sections.Column("orders", lambda one: str(len(one.convergences) or ABSENT), NUMBER),
+]
+COLUMNS = [
+    sections.Column[Finding]("value", lambda one: _number(one.value), NUMBER),
+    sections.Column("reference", lambda one: _number(one.reference), NUMBER),
+    sections.Column("its source", lambda one: _source(one)),
+    sections.Column("error", page.error, NUMBER),
+    sections.Column("tolerance", page.tolerance, NUMBER),
+    sections.Column("order", page.order, NUMBER),
+    sections.Column("passed", lambda one: page.result_of(one.holds, "pass", "FAIL")),
+]
+HEAD = [sections.Cell(column.head, column.look) for column in COLUMNS]
+
+
+def _rows(check: ComputedCheck) -> Iterator[sections.TableRow]:
+    """The title of a check; then for each finding its name, and its numbers."""
+    yield _spanning(typeset(check.title), "check")
+    numbers = sections.table_of("", COLUMNS, check.findings, row_look=page.look_of).rows
+    for finding, row in zip(check.findings, numbers, strict=True):
+        yield _spanning(page.noted(finding.name, finding.note), f"case {row.look}".rstrip())
+        yield row
+
+
+def _spanning(text: str, look: str) -> sections.TableRow:
+    return sections.TableRow([sections.Cell(text, span=len(COLUMNS))], look)
+
+
+def _source(finding: Finding) -> str:
+    if not finding.source:
+        return finding.kind
+    return sections.joined(finding.kind, ": ", sections.looking(typeset(finding.source), "note"))
+
+
+def _number(value: Value) -> str:
+    value = float(value)
+    return short(value, figures=6 if abs(value) >= LEAST_SIX else 3)
 
 
 def convergence_plot(convergence: Convergence, prefix: str = "plot") -> Markup:
@@ -80,27 +178,6 @@ def convergence_plot(convergence: Convergence, prefix: str = "plot") -> Markup:
     return svg_element(svg_of(figure), label=label, prefix=prefix)
 
 
-def _plots(topic: str, checks: Sequence[ComputedCheck]) -> list[tuple[str, Markup]]:
-    """Caption and plot of every convergence of a topic."""
-    return [
-        (f"{row.case}: {row.compared}", convergence_plot(row.convergence, f"{topic}-{i}-{k}"))
-        for i, check in enumerate(checks)
-        for k, row in enumerate(check.rows)
-        if row.convergence is not None
-    ]
-
-
-def _sum_of(rows: Sequence[Row]) -> dict[str, Any]:
-    """Summary of the rows of a topic, for the overview of the page."""
-    used = [row.error / row.tolerance for row in rows if row.tolerance]
-    return {
-        "rows": len(rows),
-        "failed": sum(not row.passed for row in rows),
-        "use": f"{max(used):.2f}" if used and math.isfinite(max(used)) else ABSENT,
-        "orders": sum(row.convergence is not None for row in rows) or ABSENT,
-    }
-
-
 def _labels(sizes: FloatArray) -> list[str]:
     """Labels of the refinements on a logarithmic axis; empty where one would cover the one before."""
     labels, last = {}, -math.inf
@@ -108,38 +185,3 @@ def _labels(sizes: FloatArray) -> list[str]:
         if math.log(size) - last > 0.1 * math.log(sizes.max() / sizes.min()):
             labels[size], last = f"{size:.2g}", math.log(size)
     return [labels.get(size, "") for size in sizes]
-
-
-def _row_lines(row: Row) -> list[str]:
-    name = f"    {row.case}: {row.compared}"
-    figures = (
-        f"{_number(row.value):>13} {_number(row.reference):>12}  {row.kind:<9} "
-        f"{_error(row):>9} {_tolerance(row):>9}  {_order(row):<13}{'' if row.passed else ' FAIL'}"
-    )
-    lines = [name.ljust(76) + figures] if len(name) <= 75 else [name, " " * 76 + figures]
-    if not row.passed and row.note:
-        lines.append(f"      {row.note}")
-    return [line.rstrip() for line in lines]
-
-
-def _number(value: float) -> str:
-    return f"{value:.6g}" if math.isfinite(value) else "-"
-
-
-def _error(row: Row) -> str:
-    if not math.isfinite(row.error):
-        return "-"
-    return f"{100.0 * row.error:.2g} %" if row.relative else f"{row.error:.2g}"
-
-
-def _tolerance(row: Row) -> str:
-    if row.tolerance is None:
-        return ""
-    return f"{100.0 * row.tolerance:.2g} %" if row.relative else f"{row.tolerance:.2g}"
-
-
-def _order(row: Row) -> str:
-    if row.convergence is None:
-        return ""
-    sign = ">= " if row.convergence.at_least else ""
-    return f"{row.convergence.observed:.2f} ({sign}{row.convergence.expected:g})"

@@ -8,7 +8,6 @@ closed form; its reference is `fem.evidence.verification.block_on_springs`.
 
 import itertools
 import math
-from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
@@ -16,9 +15,10 @@ import numpy as np
 from contact.interface.penalty import contact_frequency
 from contact.reference.rigid_block import RigidBlock
 from fem.case.case import Case
+from fem.evidence.findings import analytic, computed, convergence
 from fem.evidence.verification.block_on_springs import evenly_spaced, next_turning_point
+from fem.evidence.verification.checks import Findings, check
 from fem.evidence.verification.rocking import turning_points
-from fem.evidence.verification.rows import Row, analytic, check, computed, convergence
 from fem.evidence.verification.runs import GRAVITY, SOLID, STACK, Finished, Keys, finish
 from fem.model.container import Container, discretise
 from fem.model.model import build_model
@@ -31,7 +31,7 @@ housner = partial(analytic, source="1 - 1.5 sin^2 al, Housner 1963")
 
 
 @check("restitution", "slendernesses")
-def slendernesses() -> Iterator[Row]:
+def slendernesses() -> Findings:
     """Rigid blocks on corners."""
     known = {1.5: 0.5385, 2.0: 0.7, 2.5: 0.7931, 3.6364: 0.8945, 4.0: 0.91176, 10.0: 0.98515}
     for lam, exact in known.items():
@@ -40,7 +40,7 @@ def slendernesses() -> Iterator[Row]:
 
 
 @check("restitution", "the error of a soft floor")
-def penalty_limit() -> Iterator[Row]:
+def penalty_limit() -> Findings:
     """The error of the rigid block's restitution falls with the penalty."""
     exact = 1.0 - 1.5 / (1.0 + (4.0 / 1.1) ** 2)
     factors = (1.0 / 3.0, 1.0, 3.0, 9.0)
@@ -57,7 +57,7 @@ def penalty_limit() -> Iterator[Row]:
 
 
 @check("restitution", "penalties, steps, meshes")
-def variations() -> Iterator[Row]:
+def variations() -> Findings:
     """Two penalties, two steps, two meshes, three slendernesses: the worst of each."""
     stiff = SOLID | {"container.youngs_modulus_Pa": 4e12}
     models: dict[str, tuple[Keys, float]] = {
@@ -80,7 +80,7 @@ def variations() -> Iterator[Row]:
 
 
 @check("restitution", "stiffness of the container")
-def stiffness_of_the_container() -> Iterator[Row]:
+def stiffness_of_the_container() -> Findings:
     """Solid stacks from f1/f_c = 7 up: the limit of what is claimed."""
     for modulus in (4.3e11, 8.5e11, 2.1e12):
         elastic = {"container.youngs_modulus_Pa": modulus, "solver.element_size_m": 0.1}
@@ -91,7 +91,7 @@ def stiffness_of_the_container() -> Iterator[Row]:
 
 
 @check("restitution", "centroids and columns")
-def centroids_and_columns() -> Iterator[Row]:
+def centroids_and_columns() -> Findings:
     """Boxes filled below and above their middle, two boxes and eight, and a column 1:20: as Housner's."""
     for centroid in (0.25, 0.35, 0.5, 0.65):
         filled = {"container.centroid_m": centroid, "container.section": "shell", "container.wall_m": 0.008}
@@ -109,7 +109,7 @@ def centroids_and_columns() -> Iterator[Row]:
 
 
 @check("restitution", "tolerances and steps of time stepping")
-def tolerances_and_steps() -> Iterator[Row]:
+def tolerances_and_steps() -> Findings:
     """Restitution depends on neither the tolerance of the energy balance nor the largest step."""
     for kind in ("corners", "flat"):
         found = [
@@ -138,7 +138,7 @@ def tolerances_and_steps() -> Iterator[Row]:
 
 
 @check("restitution", "a stated restitution")
-def stated() -> Iterator[Row]:
+def stated() -> Findings:
     """`contact.restitution_over_housner` in free rocking, in the program and by a block on springs of its own."""
     asked = {
         2.0: (0.67, 0.9, 1.0, 1.15),
@@ -174,7 +174,7 @@ def stated() -> Iterator[Row]:
 
 
 @check("restitution", "a bed of springs")
-def bed_of_springs() -> Iterator[Row]:
+def bed_of_springs() -> Findings:
     """A flat base keeps more than Housner's: as a rigid block on springs that shares no code, by two turning points."""
     beds: tuple[tuple[str, Keys, tuple[float, ...]], ...] = (
         ("corners", {}, (0.05,)),

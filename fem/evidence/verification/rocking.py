@@ -6,7 +6,6 @@ otherwise. Housner, BSSA 53 (1963).
 """
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 
@@ -20,7 +19,8 @@ from contact.reference.closed_forms_rocking import (
 from contact.reference.floor_acceleration import FloorAcceleration, sine_floor
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
-from fem.evidence.verification.rows import Row, analytic, check, computed
+from fem.evidence.findings import analytic, computed
+from fem.evidence.verification.checks import Findings, check
 from fem.evidence.verification.runs import GRAVITY, STACK, STIFF_SOLID, Finished, Keys, harmonic, pulse, run
 from fem.results.history import History
 
@@ -31,7 +31,7 @@ MODELS: dict[str, Keys] = {"rigid stack": {}, "stiff solid stack, 20 modes": STI
 
 
 @check("rocking", "first impact after release")
-def first_impacts() -> Iterator[Row]:
+def first_impacts() -> Findings:
     """Time from release to the first impact."""
     source = "quarter period, exact (elliptic integral)"
     for share in (0.1, 0.25, 0.75, 0.9):
@@ -47,7 +47,7 @@ def first_impacts() -> Iterator[Row]:
 
 
 @check("rocking", "decay of free rocking")
-def free_decay() -> Iterator[Row]:
+def free_decay() -> Findings:
     """Turning points of free rocking, cos(al - theta_n) - cos al = e^(2n) [cos(al - theta_0) - cos al]."""
     source = "energy relation with Housner's e"
     note = "the error of e adds up from impact to impact: 0.0003 of 0.8945 is 0.1 % of each peak"
@@ -65,7 +65,7 @@ def free_decay() -> Iterator[Row]:
 
 
 @check("rocking", "equation of motion on a moving floor")
-def equation_of_motion() -> Iterator[Row]:
+def equation_of_motion() -> Findings:
     """Rotation under a moving floor, before any impact."""
     for name, factor, omega, until in (("grows", 1.5, 1.88337, 1.2), ("returns", 1.2, 6.928, 0.35)):
         amplitude = factor * GRAVITY * 1.1 / 4.0 / omega**2
@@ -82,7 +82,7 @@ def equation_of_motion() -> Iterator[Row]:
 
 
 @check("rocking", "tilt statics")
-def tilt_statics() -> Iterator[Row]:
+def tilt_statics() -> Findings:
     """Floor acceleration that holds the tilted block: between one that lifts it further and one that lets it fall."""
     for share in (0.2, 0.7):
         rotation = share * SLENDERNESS
@@ -99,7 +99,7 @@ def tilt_statics() -> Iterator[Row]:
 
 
 @check("rocking", "friction at an impact")
-def friction_at_impact() -> Iterator[Row]:
+def friction_at_impact() -> Findings:
     """Impulses of the first impact: their ratio is the friction that keeps it from sliding."""
     source = "Housner's impact: 3 tan al/(4 + tan^2 al) = 0.2024"
     done = run(STACK, RELEASED | {"solver.duration_s": 0.9, "output.history_s": 0.001})
@@ -127,7 +127,7 @@ def friction_at_impact() -> Iterator[Row]:
 
 
 @check("rocking", "steady orbit")
-def steady_orbit() -> Iterator[Row]:
+def steady_orbit() -> Findings:
     """The steady symmetric orbit: the slender closed form, and the run against the exact block."""
     orbit = symmetric_orbit_slender(acceleration_ratio=3.0, frequency_ratio=3.0, restitution=0.9)
 

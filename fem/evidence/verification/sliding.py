@@ -7,7 +7,6 @@ Dyn. 11 (1983); Newmark, Geotechnique 15 (1965).
 """
 
 import math
-from collections.abc import Iterator
 from itertools import groupby, product
 
 import numpy as np
@@ -21,21 +20,9 @@ from contact.reference.closed_forms_sliding import (
 from contact.reference.floor_acceleration import half_sine_pulse, sine_floor
 from contact.reference.sliding import RigidSlider, simulate_sliding
 from contact.stepping.ledger import FRICTION as FRICTION_HEAT
-from fem.evidence.verification.rows import Row, analytic, check, computed
-from fem.evidence.verification.runs import (
-    BOX,
-    FRICTION,
-    GRAVITY,
-    SOLID,
-    STACK,
-    STIFF_SOLID,
-    Finished,
-    Keys,
-    bisected,
-    harmonic,
-    pulse,
-    run,
-)
+from fem.evidence.findings import analytic, computed
+from fem.evidence.verification import runs
+from fem.evidence.verification.checks import Findings, check
 from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
 
@@ -44,13 +31,13 @@ PERIOD = 2.0 * math.pi / OMEGA
 STROKE_TOLERANCE = 5e-3
 LARGEST, LAST = 79.144e-3, 19.893e-3  #: slip of the paper's box, largest and after ten periods [m]
 #: 8 mm of steel
-SHELL: Keys = {
+SHELL: runs.Keys = {
     "solver.model": "reduced",
     "solver.order": 2,
     "container.section": "shell",
     "container.wall_m": 0.008,
 }
-SUPPORTS: dict[str, Keys] = {
+SUPPORTS: dict[str, runs.Keys] = {
     "corners": {"support.kind": "corners", "solver.element_size_m": 0.2},
     "feet": {"support.kind": "feet", "support.foot_m": 0.1, "solver.element_size_m": 0.2},
     "flat": {"support.kind": "flat", "solver.element_size_m": 0.1},
@@ -59,22 +46,22 @@ SUPPORTS: dict[str, Keys] = {
 SHORTEST_STOP = 5e-3
 SLIDER = "event-driven slider"
 #: the box of the paper on a floor of 50 mm at 10 rad/s
-PAPER_BOX = harmonic(0.05, 10.0) | FRICTION
+PAPER_BOX = runs.harmonic(0.05, 10.0) | runs.FRICTION
 
 
 @check("sliding", "stick limit")
-def stick_limit() -> Iterator[Row]:
+def stick_limit() -> Findings:
     """Amplitude above which the box slides, by bisection: A Omega^2 = mu_s g."""
 
     def slides(peak: float) -> bool:
-        values = harmonic(peak / OMEGA**2, OMEGA) | FRICTION | {"solver.duration_s": 2.0 * PERIOD}
-        return run(BOX, values).outcome == Outcome.SLIDE
+        values = runs.harmonic(peak / OMEGA**2, OMEGA) | runs.FRICTION | {"solver.duration_s": 2.0 * PERIOD}
+        return runs.run(runs.BOX, values).outcome == Outcome.SLIDE
 
     yield analytic(
         "rigid box, mu 0.4/0.2, Omega = 10 rad/s",
         "floor acceleration above which it slides [m/s2]",
-        bisected(slides, 3.0, 5.0, resolution=1e-4),
-        0.4 * GRAVITY,
+        runs.bisected(slides, 3.0, 5.0, resolution=1e-4),
+        0.4 * runs.GRAVITY,
         source="mu_s g",
         relative=5e-3,
         note="the springs of the stick reduce it by a factor of 1 + (Omega/omega_contact)^2",
@@ -82,35 +69,35 @@ def stick_limit() -> Iterator[Row]:
 
 
 @check("sliding", "incline")
-def incline() -> Iterator[Row]:
+def incline() -> Findings:
     """Down a slope of 30 degrees: a floor of gravity g cos, accelerating by -g sin along the slope."""
     angle = math.radians(30.0)
     slope = {
-        "gravity_m_s2": GRAVITY * math.cos(angle),
+        "gravity_m_s2": runs.GRAVITY * math.cos(angle),
         "container.height_m": 0.5,
         "contact.mu_static": 0.2,
         "solver.duration_s": 1.0,
     }
-    done = run(BOX, slope | pulse(-GRAVITY * math.sin(angle), 5.0))
+    done = runs.run(runs.BOX, slope | runs.pulse(-runs.GRAVITY * math.sin(angle), 5.0))
     late = done.history["time_s"] >= 0.2
     square = np.polyfit(done.history["time_s"][late], done.history["slip_m"][late], 2)[0]
     yield analytic(
         "rigid plate on a slope of 30 degrees, mu 0.2",
         "acceleration down the slope [m/s2]",
         2.0 * float(square),
-        incline_acceleration(angle=angle, mu_kinetic=0.2, gravity=GRAVITY),
+        incline_acceleration(angle=angle, mu_kinetic=0.2, gravity=runs.GRAVITY),
         source="g (sin - mu cos) = 3.20586 m/s2",
         relative=1e-3,
     )
 
 
 @check("sliding", "lasting stick")
-def stuck() -> Iterator[Row]:
+def stuck() -> Findings:
     """Half of the friction limit, one way, for 20 s: no slip, and none that grows."""
     held = {"contact.mu_static": 0.4, "solver.duration_s": 20.0, "output.history_s": 0.05}
-    models: dict[str, Keys] = {"rigid box": {}, "solid box, 20 modes": SOLID}
+    models: dict[str, runs.Keys] = {"rigid box": {}, "solid box, 20 modes": runs.SOLID}
     for name, values in models.items():
-        done = run(BOX, pulse(0.2 * GRAVITY, 20.0) | held | values)
+        done = runs.run(runs.BOX, runs.pulse(0.2 * runs.GRAVITY, 20.0) | held | values)
         slip = done.history["slip_m"]
         case, source = f"{name}, 0.2 g one way for 20 s, mu 0.4", "below the friction limit"
         yield analytic(case, "largest slip [m]", done.joint.max_slip, source=source, absolute=1e-5)
@@ -119,7 +106,7 @@ def stuck() -> Iterator[Row]:
 
 
 @check("sliding", "creep of the regularised law")
-def creep() -> Iterator[Row]:
+def creep() -> Findings:
     """Friction regularised in velocity creeps at v_reg atanh(s) under the share s of its limit."""
     share, velocity = 0.5, 1e-3
     regularised = {
@@ -128,7 +115,7 @@ def creep() -> Iterator[Row]:
         "contact.mu_static": 0.4,
         "solver.duration_s": 20.0,
     }
-    done = run(BOX, regularised | pulse(-share * 0.4 * GRAVITY, 20.0))
+    done = runs.run(runs.BOX, regularised | runs.pulse(-share * 0.4 * runs.GRAVITY, 20.0))
     yield analytic(
         "rigid box, friction regularised in velocity, half its limit for 20 s",
         "creep [m]",
@@ -141,25 +128,27 @@ def creep() -> Iterator[Row]:
 
 
 @check("sliding", "friction heat")
-def friction_heat() -> Iterator[Row]:
+def friction_heat() -> Findings:
     """Heat of friction of a box given a push: mu_k times weight times path."""
-    done = run(BOX, FRICTION | {"initial.velocity_m_s": 2.0, "solver.duration_s": 2.0})
+    done = runs.run(runs.BOX, runs.FRICTION | {"initial.velocity_m_s": 2.0, "solver.duration_s": 2.0})
     slip, heat = float(done.joint.slip_travel), float(done.model.run.ledger[FRICTION_HEAT])
     case, compared = "rigid box pushed at 2 m/s, mu 0.4/0.2", "friction heat over mu_k M g and path"
     heat /= 0.2 * 24525.0 * slip
     yield analytic(case, compared, heat, 1.0, source="Coulomb", absolute=STROKE_TOLERANCE)
-    path = 2.0**2 / (2.0 * 0.2 * GRAVITY)
+    path = 2.0**2 / (2.0 * 0.2 * runs.GRAVITY)
     yield analytic(case, "path [m]", slip, path, source="v^2/(2 mu_k g)", relative=STROKE_TOLERANCE)
 
 
 @check("sliding", "a push on every support")
-def push_on_every_support() -> Iterator[Row]:
+def push_on_every_support() -> Findings:
     """Path of a box and of the stack pushed at 1 m/s, on corners, feet and flat base, rigid and as a shell."""
-    path = 1.0 / (2.0 * 0.2 * GRAVITY)
-    pushed: Keys = {"contact.mu_static": 0.2, "initial.velocity_m_s": 1.0, "solver.duration_s": 1.0}
-    for (name, case, tolerance), kind in product((("box", BOX, 1e-3), ("stack", STACK, 5e-3)), SUPPORTS):
+    path = 1.0 / (2.0 * 0.2 * runs.GRAVITY)
+    pushed: runs.Keys = {"contact.mu_static": 0.2, "initial.velocity_m_s": 1.0, "solver.duration_s": 1.0}
+    for (name, case, tolerance), kind in product(
+        (("box", runs.BOX, 1e-3), ("stack", runs.STACK, 5e-3)), SUPPORTS
+    ):
         for model, values in {"rigid": {}, "shell": SHELL}.items():
-            done = run(case, SUPPORTS[kind] | pushed | values)
+            done = runs.run(case, SUPPORTS[kind] | pushed | values)
             yield analytic(
                 f"{model} {name} on {kind}, pushed at 1 m/s, mu 0.2",
                 "path [m]",
@@ -171,26 +160,26 @@ def push_on_every_support() -> Iterator[Row]:
 
 
 @check("sliding", "half-sine pulse")
-def half_sine() -> Iterator[Row]:
+def half_sine() -> Findings:
     """Slip under half a sine of 2.65 m/s2 and 2 s, little above stiction.
 
     2.65 m/s2 are 0.98 of the stack's uplift: on feet and a flat base it tilts and slides further than the slider.
     """
-    models: dict[str, Keys] = {"rigid": {}, "shell": SHELL}
-    runs = [
-        (f"{model} box on {kind}", BOX, SUPPORTS[kind] | values)
+    models: dict[str, runs.Keys] = {"rigid": {}, "shell": SHELL}
+    boxes = [
+        (f"{model} box on {kind}", runs.BOX, SUPPORTS[kind] | values)
         for kind, (model, values) in product(SUPPORTS, models.items())
     ]
-    runs.append(("rigid stack on corners", STACK, {}))
+    boxes.append(("rigid stack on corners", runs.STACK, {}))
     for mu in (0.25, 0.26):
-        slider = RigidSlider(mu_static=mu, mu_kinetic=mu, gravity=GRAVITY)
+        slider = RigidSlider(mu_static=mu, mu_kinetic=mu, gravity=runs.GRAVITY)
         exact = simulate_sliding(slider, half_sine_pulse(peak=2.65, duration=2.0), duration=3.0).largest_slip
-        motion = pulse(2.65, 2.0, "half-sine") | {"contact.mu_static": mu, "solver.duration_s": 3.0}
-        for name, case, values in runs:
+        motion = runs.pulse(2.65, 2.0, "half-sine") | {"contact.mu_static": mu, "solver.duration_s": 3.0}
+        for name, case, values in boxes:
             yield computed(
                 f"{name}, half-sine of 2.65 m/s2 and 2 s, mu {mu}",
                 "largest slip [m]",
-                run(case, motion | values).joint.max_slip,
+                runs.run(case, motion | values).joint.max_slip,
                 exact,
                 source=SLIDER,
                 relative=STROKE_TOLERANCE,
@@ -198,19 +187,19 @@ def half_sine() -> Iterator[Row]:
 
 
 @check("sliding", "steady strokes")
-def steady_strokes() -> Iterator[Row]:
+def steady_strokes() -> Findings:
     """Steady slip from peak to peak under a harmonic floor, one coefficient of friction."""
     sampling = {"solver.duration_s": 30 * PERIOD, "output.history_s": PERIOD / 400}
     source = "2 sqrt(1 - (pi kappa/2)^2), or two stops a cycle"
     for kappa, stroke in ((0.2, 1.898741), (0.5, 1.237982), (0.7, 0.432494)):
-        done = run(BOX, harmonic(AMPLITUDE, OMEGA) | friction_of(kappa) | sampling)
+        done = runs.run(runs.BOX, runs.harmonic(AMPLITUDE, OMEGA) | friction_of(kappa) | sampling)
         case, found = f"rigid box, mu g/(A Omega^2) = {kappa}", stroke_of(done) / AMPLITUDE
         compared = "steady slip, peak to peak, over A"
         yield analytic(case, compared, found, stroke, source=source, relative=STROKE_TOLERANCE)
 
 
 @check("sliding", "sliding without stops")
-def sliding_without_stops() -> Iterator[Row]:
+def sliding_without_stops() -> Findings:
     """Friction ratio up to which the slider never stops: the motion on either side of it."""
     for static_ratio, reference in ((1.0, 0.53703), (2.0, 0.39322)):
         limit = never_stops_ratio(static_ratio)
@@ -236,11 +225,11 @@ def sliding_without_stops() -> Iterator[Row]:
 
 
 @check("sliding", "a turn without a stop")
-def turn_without_a_stop() -> Iterator[Row]:
+def turn_without_a_stop() -> Findings:
     """Friction that falls over 0.1 mm of slip: a slip that turns round without a stop keeps its kinetic friction."""
     kappa = 0.95 * never_stops_ratio(2.0)
-    kinetic = kappa * AMPLITUDE * OMEGA**2 / GRAVITY
-    slider = RigidSlider(mu_static=2.0 * kinetic, mu_kinetic=kinetic, gravity=GRAVITY)
+    kinetic = kappa * AMPLITUDE * OMEGA**2 / runs.GRAVITY
+    slider = RigidSlider(mu_static=2.0 * kinetic, mu_kinetic=kinetic, gravity=runs.GRAVITY)
     floor = sine_floor(amplitude=AMPLITUDE, angular_frequency=OMEGA)
     steady = simulate_sliding(slider, floor, duration=41.0 * PERIOD, slip_velocity=-AMPLITUDE * OMEGA)
     start = {
@@ -252,7 +241,8 @@ def turn_without_a_stop() -> Iterator[Row]:
     yield computed(
         "rigid box, mu_s = 2 mu_k over 0.1 mm, 0.95 of the friction ratio at which it never stops",
         "steady slip, peak to peak, over A",
-        stroke_of(run(BOX, harmonic(AMPLITUDE, OMEGA) | friction_of(kappa, 2.0) | start)) / AMPLITUDE,
+        stroke_of(runs.run(runs.BOX, runs.harmonic(AMPLITUDE, OMEGA) | friction_of(kappa, 2.0) | start))
+        / AMPLITUDE,
         steady.peak_to_peak(39.0 * PERIOD, 40.0 * PERIOD) / AMPLITUDE,
         source=f"{SLIDER} whose friction falls at once",
         relative=STROKE_TOLERANCE,
@@ -260,14 +250,14 @@ def turn_without_a_stop() -> Iterator[Row]:
 
 
 @check("sliding", "friction that falls with the velocity")
-def falling_friction() -> Iterator[Row]:
+def falling_friction() -> Findings:
     """Steady stroke of the paper's box where friction falls from 0.4 to 0.2 like exp(-(v/v_s)^2)."""
     for stribeck, stroke in ((0.1, 37.222e-3), (0.3, 12.522e-3)):
         changed = {"contact.stribeck_velocity_m_s": stribeck, "solver.duration_s": 20.0}
         yield computed(
             f"rigid box, A = 0.05 m, Omega = 10 rad/s, v_s = {stribeck:g} m/s",
             "steady slip, peak to peak [m]",
-            stroke_of(run(BOX, PAPER_BOX | changed)),
+            stroke_of(runs.run(runs.BOX, PAPER_BOX | changed)),
             stroke,
             source="rigid slider in steps of 10 us, explicit",
             relative=STROKE_TOLERANCE,
@@ -275,20 +265,22 @@ def falling_friction() -> Iterator[Row]:
 
 
 @check("sliding", "the paper's box on a fast floor")
-def paper_slider() -> Iterator[Row]:
+def paper_slider() -> Findings:
     """Steady stroke of the box with 0.4/0.2 on a floor of 50 mm at 10 rad/s: rigid, and elastic."""
-    models: dict[str, Keys] = {"rigid box": {}, "stiff solid box, 20 modes": STIFF_SOLID}
+    models: dict[str, runs.Keys] = {"rigid box": {}, "stiff solid box, 20 modes": runs.STIFF_SOLID}
     for name, values in models.items():
-        found = stroke_of(run(BOX, PAPER_BOX | values | {"solver.duration_s": 20.0}))
+        found = stroke_of(runs.run(runs.BOX, PAPER_BOX | values | {"solver.duration_s": 20.0}))
         case = f"{name}, A = 0.05 m, Omega = 10 rad/s, mu 0.4/0.2"
         compared = "steady slip, peak to peak [m]"
         yield computed(case, compared, found, 78.745e-3, source=SLIDER, relative=STROKE_TOLERANCE)
 
 
 @check("sliding", "position of the paper's box")
-def paper_slider_position() -> Iterator[Row]:
+def paper_slider_position() -> Findings:
     """Slip of that box: the largest, after ten periods, and at every instant of them."""
-    done = run(BOX, PAPER_BOX | {"solver.duration_s": 10.0 * PERIOD, "output.history_s": PERIOD / 100})
+    done = runs.run(
+        runs.BOX, PAPER_BOX | {"solver.duration_s": 10.0 * PERIOD, "output.history_s": PERIOD / 100}
+    )
     times, slip = done.history["time_s"], done.history["slip_m"]
     exact = slip_of_the_papers_slider(times)
     case = "rigid box, A = 0.05 m, Omega = 10 rad/s, mu 0.4/0.2"
@@ -303,13 +295,13 @@ def paper_slider_position() -> Iterator[Row]:
 
 
 @check("sliding", "a short stop")
-def short_stops() -> Iterator[Row]:
+def short_stops() -> Findings:
     """The same box, which the floor finds at rest: its first stops last 8 ms, and are 6 % from none at all.
 
     While it stops, its floor needs 0.94 of static friction. Springs that overshoot by 6 % end the stop at once.
     """
-    stiff: Keys = {"contact.normal_penalty_Pa_m": 1e11}
-    bodies: dict[str, tuple[Keys, float]] = {
+    stiff: runs.Keys = {"contact.normal_penalty_Pa_m": 1e11}
+    bodies: dict[str, tuple[runs.Keys, float]] = {
         "rigid box": ({}, 0.004),
         "rigid box, 1e11 Pa/m": (stiff, 0.004),
         "shell, 20 modes": (SHELL, 0.03),
@@ -317,7 +309,7 @@ def short_stops() -> Iterator[Row]:
     }
     values = PAPER_BOX | {"motion.start": "rest", "solver.duration_s": 10.0 * PERIOD}
     for name, (keys, tolerance) in bodies.items():
-        done = run(BOX, values | keys)
+        done = runs.run(runs.BOX, values | keys)
         found = float(done.history["slip_m"].min())
         exact = float(slip_of_the_papers_slider(done.history["time_s"], start_velocity=-0.5).min())
         yield computed(
@@ -332,58 +324,58 @@ def short_stops() -> Iterator[Row]:
 
 
 @check("sliding", "a pull below stiction")
-def pull_below_stiction() -> Iterator[Row]:
+def pull_below_stiction() -> Findings:
     """A pull switched on at once, below static friction: spring and shell swing over it, the box does not slide off."""
-    bodies: dict[str, Keys] = {
+    bodies: dict[str, runs.Keys] = {
         "rigid box": {},
         "shell on corners": SHELL,
         "shell on its flat base": SHELL | {"support.kind": "flat"},
     }
     for name, keys in bodies.items():
         for share in (0.8, 0.98):
-            values = pulse(share * 0.4 * GRAVITY, 0.5) | FRICTION | {"solver.duration_s": 1.0}
+            values = runs.pulse(share * 0.4 * runs.GRAVITY, 0.5) | runs.FRICTION | {"solver.duration_s": 1.0}
             yield analytic(
                 f"{name}, {share:g} of stiction for 0.5 s, mu 0.4/0.2",
                 "largest slip over the width",
-                run(BOX, values | keys).joint.max_slip / 1.1,
+                runs.run(runs.BOX, values | keys).joint.max_slip / 1.1,
                 source="a rigid slider rests",
                 absolute=1e-4,
             )
 
 
 @check("sliding", "rectangular pulse")
-def pulses() -> Iterator[Row]:
+def pulses() -> Findings:
     """Slip after a rectangular pulse, one way."""
     source = "V^2/(2 mu g) (1 - mu g/a0)"
     for kinetic in (0.4, 0.2):
         friction = {"contact.mu_static": 0.4, "contact.mu_kinetic": kinetic}
-        done = run(BOX, pulse(8.0, 0.3) | friction | {"solver.duration_s": 2.0})
-        exact = pulse_slip(peak=8.0, duration=0.3, mu_static=0.4, mu_kinetic=kinetic, gravity=GRAVITY)
+        done = runs.run(runs.BOX, runs.pulse(8.0, 0.3) | friction | {"solver.duration_s": 2.0})
+        exact = pulse_slip(peak=8.0, duration=0.3, mu_static=0.4, mu_kinetic=kinetic, gravity=runs.GRAVITY)
         case, found = f"rigid box, 8 m/s2 for 0.3 s, mu 0.4/{kinetic}", done.history["slip_m"][-1]
         yield analytic(case, "residual slip [m]", found, exact, source=source, relative=STROKE_TOLERANCE)
 
 
-def friction_of(kappa: float, static_ratio: float = 1.0) -> Keys:
+def friction_of(kappa: float, static_ratio: float = 1.0) -> runs.Keys:
     """Coefficients with mu_k g = kappa A Omega^2 and mu_s = static_ratio mu_k."""
-    kinetic = kappa * AMPLITUDE * OMEGA**2 / GRAVITY
+    kinetic = kappa * AMPLITUDE * OMEGA**2 / runs.GRAVITY
     return {"contact.mu_static": static_ratio * kinetic, "contact.mu_kinetic": kinetic}
 
 
-def near_the_limit(kappa: float, static_ratio: float) -> Finished:
+def near_the_limit(kappa: float, static_ratio: float) -> runs.Finished:
     """Forty cycles of the box at a friction ratio."""
     settings = {"solver.duration_s": 40.0 * PERIOD, "output.history_s": PERIOD / 1000}
-    return run(BOX, harmonic(AMPLITUDE, OMEGA) | friction_of(kappa, static_ratio) | settings)
+    return runs.run(runs.BOX, runs.harmonic(AMPLITUDE, OMEGA) | friction_of(kappa, static_ratio) | settings)
 
 
 def slip_of_the_papers_slider(times: FloatArray, start_velocity: float = 0.0) -> FloatArray:
     """Slip [m] of the rigid slider with 0.4/0.2 on a floor of 50 mm at 10 rad/s, times (n,) [s]."""
-    slider = RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=GRAVITY)
+    slider = RigidSlider(mu_static=0.4, mu_kinetic=0.2, gravity=runs.GRAVITY)
     floor = sine_floor(amplitude=0.05, angular_frequency=10.0)
     motion = simulate_sliding(slider, floor, duration=float(times[-1]), slip_velocity=start_velocity)
     return motion.at(times)[0]
 
 
-def longest_stop(done: Finished, since: float) -> float:
+def longest_stop(done: runs.Finished, since: float) -> float:
     """Longest interval without sliding after an instant [s]."""
     late = done.history["time_s"] > since
     modes = [mode for mode, chosen in zip(done.history.modes, late, strict=True) if chosen]
@@ -391,7 +383,7 @@ def longest_stop(done: Finished, since: float) -> float:
     return max(stops, default=0) * done.model.case.output.history_s
 
 
-def stroke_of(done: Finished) -> float:
+def stroke_of(done: runs.Finished) -> float:
     """Slip from peak to peak over the last period [m]."""
     times, slip = done.history["time_s"], done.history["slip_m"]
     return float(np.ptp(slip[times >= times[-1] - PERIOD * (1.0 + 1e-9)]))

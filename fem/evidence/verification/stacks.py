@@ -6,7 +6,6 @@ rows refine the penalty.
 """
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,17 +14,18 @@ from contact.reference.floor_acceleration import half_sine_pulse, sine_floor
 from contact.reference.sliding import RigidSlider, simulate_sliding
 from contact.reference.two_block_motion import TwoBlockMotion, simulate_two_blocks
 from contact.reference.two_blocks import Pattern, StackedBlock, TwoBlockStack, energy
-from fem.evidence.verification.rows import Row, analytic, check, computed, convergence
-from fem.evidence.verification.runs import GRAVITY, SOLID, STACK, Finished, Keys, harmonic, pulse, run
+from fem.evidence.findings import analytic, computed, convergence
+from fem.evidence.verification import runs
+from fem.evidence.verification.checks import Findings, check
 from fem.results.history import History
 
 OMEGA = 6.928  #: of the motions of the paper [rad/s]
 SLENDERNESS = math.atan2(1.1, 4.0)
-TWO_TALL: Keys = {"container.boxes": 2, "container.height_m": 2.0, "container.weight_N": 49050.0}
-TWO_LOW: Keys = {"container.boxes": 2, "container.height_m": 1.0, "container.weight_N": 24525.0}
-LOOSE: Keys = {"container.joints": "loose"}
+TWO_TALL: runs.Keys = {"container.boxes": 2, "container.height_m": 2.0, "container.weight_N": 49050.0}
+TWO_LOW: runs.Keys = {"container.boxes": 2, "container.height_m": 1.0, "container.weight_N": 24525.0}
+LOOSE: runs.Keys = {"container.joints": "loose"}
 #: nothing slides
-ROUGH: Keys = {"contact.mu_static": 5.0, "contact.mu_kinetic": 5.0}
+ROUGH: runs.Keys = {"contact.mu_static": 5.0, "contact.mu_kinetic": 5.0}
 TALL, SLENDER = {"height_m": 2.0, "mass_kg": 5000.0}, {"width_m": 0.7, "height_m": 2.0, "mass_kg": 3000.0}
 #: a narrow heavy block with a low centre, beside the axis of a wide one
 BESIDE = (
@@ -39,17 +39,17 @@ BLOCKS = "event-driven blocks, plastic impacts"
 class BoxPair:
     """Two boxes that differ, under a half-sine pulse."""
 
-    boxes: tuple[Keys, Keys]
+    boxes: tuple[runs.Keys, runs.Keys]
     peak: float  #: [m/s2]
     length: float  #: of the pulse [s]
     duration: float  #: [s]
 
-    def run(self, **values: float) -> Finished:
+    def run(self, **values: float) -> runs.Finished:
         """The run; keys as `contact__normal_penalty_Pa_m`."""
         keys = {key.replace("__", "."): value for key, value in values.items()}
-        motion = pulse(self.peak, self.length, "half-sine")
+        motion = runs.pulse(self.peak, self.length, "half-sine")
         settings = {"container.box": list(self.boxes), "solver.duration_s": self.duration}
-        return run(STACK, LOOSE | ROUGH | motion | settings | {"output.history_s": 0.001} | keys)
+        return runs.run(runs.STACK, LOOSE | ROUGH | motion | settings | {"output.history_s": 0.001} | keys)
 
     @property
     def exact(self) -> TwoBlockMotion:
@@ -61,19 +61,19 @@ class BoxPair:
             for box in self.boxes
         )
         stack = TwoBlockStack(
-            lower=lower, upper=upper, gravity=GRAVITY, offset=self.boxes[1].get("offset_m", 0.0)
+            lower=lower, upper=upper, gravity=runs.GRAVITY, offset=self.boxes[1].get("offset_m", 0.0)
         )
         floor = half_sine_pulse(peak=self.peak, duration=self.length)
         return simulate_two_blocks(stack, floor, duration=self.duration)
 
 
 @check("stacks", "slider at a joint")
-def slider_at_joint() -> Iterator[Row]:
+def slider_at_joint() -> Findings:
     """The upper of two boxes on a lower one that the floor holds."""
     two = LOOSE | ROUGH | TWO_LOW
     edge = math.sqrt(2.0 * 0.55 / 3.0)
-    settings = pulse(3.0, 2.0) | {"solver.duration_s": 2.0, "output.history_s": 0.001}
-    done = run(STACK, two | settings | {"joints.mu_static": 0.0})
+    settings = runs.pulse(3.0, 2.0) | {"solver.duration_s": 2.0, "output.history_s": 0.001}
+    done = runs.run(runs.STACK, two | settings | {"joints.mu_static": 0.0})
     times, slip = done.history["time_s"], done.history["box_2_slip_m"]
     before = times < 0.99 * edge
     case = "box on a box that is pulled away under it at 3 m/s2, no friction between"
@@ -107,9 +107,9 @@ def slider_at_joint() -> Iterator[Row]:
     floor = sine_floor(amplitude=4.0 / OMEGA**2, angular_frequency=OMEGA)
     for static, kinetic in ((0.2, 0.2), (0.3, 0.2), (0.35, 0.2)):
         friction = {"joints.mu_static": static, "joints.mu_kinetic": kinetic}
-        motion = harmonic(4.0 / OMEGA**2, OMEGA) | {"solver.duration_s": 3.0}
-        done = run(STACK, two | motion | friction)
-        slider = RigidSlider(mu_static=static, mu_kinetic=kinetic, gravity=GRAVITY)
+        motion = runs.harmonic(4.0 / OMEGA**2, OMEGA) | {"solver.duration_s": 3.0}
+        done = runs.run(runs.STACK, two | motion | friction)
+        slider = RigidSlider(mu_static=static, mu_kinetic=kinetic, gravity=runs.GRAVITY)
         exact = simulate_sliding(slider, floor, duration=3.0).at(done.history["time_s"])[0]
         yield computed(
             f"box on a box that does not slide, friction {static}/{kinetic} between, harmonic floor",
@@ -122,14 +122,14 @@ def slider_at_joint() -> Iterator[Row]:
 
 
 @check("stacks", "rough joints")
-def rough_joints() -> Iterator[Row]:
+def rough_joints() -> Findings:
     """Joints that neither slide nor open: the bolted stack, through its impacts."""
-    motion = harmonic(4.0 / OMEGA**2, OMEGA) | {"contact.mu_static": 1.0, "output.history_s": 0.005}
-    stiff = SOLID | {"container.youngs_modulus_Pa": 1e12}
+    motion = runs.harmonic(4.0 / OMEGA**2, OMEGA) | {"contact.mu_static": 1.0, "output.history_s": 0.005}
+    stiff = runs.SOLID | {"container.youngs_modulus_Pa": 1e12}
     for name, values, duration in (("rigid", {}, 6.0), ("solid of 1e12 Pa, 20 modes", stiff, 2.0)):
         keys = TWO_TALL | motion | values | {"solver.duration_s": duration}
-        bolted = run(STACK, keys).history["rotation_rad"]
-        loose = run(STACK, keys | LOOSE | {"joints.mu_static": 2.0}).history["rotation_rad"]
+        bolted = runs.run(runs.STACK, keys).history["rotation_rad"]
+        loose = runs.run(runs.STACK, keys | LOOSE | {"joints.mu_static": 2.0}).history["rotation_rad"]
         yield computed(
             f"two boxes, friction 2 between, 4 m/s2 at 6.928 rad/s for {duration:g} s, {name}",
             "rotation of the lowest box, largest difference over al",
@@ -140,19 +140,19 @@ def rough_joints() -> Iterator[Row]:
 
 
 STARTS = {
-    Pattern.AS_ONE: BoxPair(boxes=(TALL, TALL), peak=GRAVITY, length=0.15, duration=0.3),
-    Pattern.UPPER_ALONE: BoxPair(boxes=BESIDE, peak=GRAVITY, length=0.15, duration=0.3),
-    Pattern.SAME_WAY: BoxPair(boxes=(TALL, SLENDER), peak=GRAVITY, length=0.15, duration=0.3),
-    Pattern.OPPOSITE_WAYS: BoxPair(boxes=(TALL, TALL), peak=4.0 * GRAVITY, length=0.3, duration=0.24),
+    Pattern.AS_ONE: BoxPair(boxes=(TALL, TALL), peak=runs.GRAVITY, length=0.15, duration=0.3),
+    Pattern.UPPER_ALONE: BoxPair(boxes=BESIDE, peak=runs.GRAVITY, length=0.15, duration=0.3),
+    Pattern.SAME_WAY: BoxPair(boxes=(TALL, SLENDER), peak=runs.GRAVITY, length=0.15, duration=0.3),
+    Pattern.OPPOSITE_WAYS: BoxPair(boxes=(TALL, TALL), peak=4.0 * runs.GRAVITY, length=0.3, duration=0.24),
 }
 
 
 @check("stacks", "start of the four patterns")
-def four_patterns() -> Iterator[Row]:
+def four_patterns() -> Findings:
     """When each pattern starts under a pulse, by the angle of the interface that opens then."""
     for pattern, pair in STARTS.items():
         exact, history = pair.exact, pair.run(contact__normal_penalty_Pa_m=1e11).history
-        case = f"{exact.patterns[-1].value}: {pair.peak / GRAVITY:g} g for {pair.length} s"
+        case = f"{exact.patterns[-1].value}: {pair.peak / runs.GRAVITY:g} g for {pair.length} s"
         times = history["time_s"]
         states = exact.at(times)
         found = rotations(history)
@@ -176,10 +176,10 @@ def four_patterns() -> Iterator[Row]:
 
 
 @check("stacks", "impacts of two boxes")
-def impacts() -> Iterator[Row]:
+def impacts() -> Findings:
     """All four patterns and the impacts between them, on stiffer and stiffer contact."""
     for name, boxes in (("slender on tall", (TALL, SLENDER)), ("tall beside the axis of a low one", BESIDE)):
-        pair = BoxPair(boxes=boxes, peak=GRAVITY, length=0.15, duration=1.0)
+        pair = BoxPair(boxes=boxes, peak=runs.GRAVITY, length=0.15, duration=1.0)
         exact, errors = pair.exact, {}
         for penalty in (1e9, 1e10, 1e11):
             history = pair.run(contact__normal_penalty_Pa_m=penalty).history
@@ -201,9 +201,9 @@ def impacts() -> Iterator[Row]:
 
 
 @check("stacks", "momentum, energy and mirror image")
-def balance() -> Iterator[Row]:
+def balance() -> Findings:
     """What the impacts of two boxes keep and lose."""
-    pair = BoxPair(boxes=(TALL, SLENDER), peak=GRAVITY, length=0.15, duration=1.0)
+    pair = BoxPair(boxes=(TALL, SLENDER), peak=runs.GRAVITY, length=0.15, duration=1.0)
     exact, case = pair.exact, "slender on tall, 1 g for 0.15 s"
     # every 10 us, since forces at an impact jump
     fine = {"output__history_s": 1e-5, "solver__step_s": 2e-4, "solver__duration_s": 0.5}
@@ -212,7 +212,7 @@ def balance() -> Iterator[Row]:
     first, last = np.searchsorted(times, (0.4, 0.49))  # the floor moves steadily, and an impact is within
     for name, force, weight, columns in (
         ("horizontal", "shear_force_N", 0.0, ("centre_x_m", "box_2_x_m")),
-        ("vertical", "normal_force_N", sum(masses) * GRAVITY, ("centre_z_m", "box_2_z_m")),
+        ("vertical", "normal_force_N", sum(masses) * runs.GRAVITY, ("centre_z_m", "box_2_z_m")),
     ):
         momentum = np.sum(
             [mass * np.gradient(history[one], times) for mass, one in zip(masses, columns, strict=True)],
@@ -242,7 +242,7 @@ def balance() -> Iterator[Row]:
     low, tall = BESIDE
     mirrored = (low, tall | {"offset_m": -tall["offset_m"]})
     sides = [
-        rotations(BoxPair(boxes=boxes, peak=sign * GRAVITY, length=0.15, duration=1.0).run().history)
+        rotations(BoxPair(boxes=boxes, peak=sign * runs.GRAVITY, length=0.15, duration=1.0).run().history)
         for sign, boxes in ((1.0, BESIDE), (-1.0, mirrored))
     ]
     yield analytic(
@@ -256,11 +256,11 @@ def balance() -> Iterator[Row]:
 
 
 @check("stacks", "ten boxes at rest")
-def ten_boxes() -> Iterator[Row]:
+def ten_boxes() -> Findings:
     """A stack of ten boxes settles and stays."""
     ten = {"container.boxes": 10, "container.height_m": 1.0, "container.weight_N": 24525.0}
-    for name, values in (("rigid", {}), ("solid, 20 modes", SOLID)):
-        done = run(STACK, ten | LOOSE | values | {"solver.duration_s": 2.0})
+    for name, values in (("rigid", {}), ("solid, 20 modes", runs.SOLID)):
+        done = runs.run(runs.STACK, ten | LOOSE | values | {"solver.duration_s": 2.0})
         joints = done.model.run.joints
         yield analytic(
             f"ten loose boxes of 1.1 x 1 m, {name}, floor at rest for 2 s",

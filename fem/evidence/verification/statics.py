@@ -4,10 +4,9 @@ Homogeneous containers of 1.1 x 1.0 m, 2500 kg each. The paper takes g = 10 and 
 tolerance is half a unit of the last one. With g = 9.81 the mass is kept; those values are closed forms.
 """
 
-from collections.abc import Iterator
-
 from fem.case.tables import StaticTable
-from fem.evidence.verification.rows import Row, analytic, check, printed
+from fem.evidence.findings import analytic, printed
+from fem.evidence.verification.checks import Findings, check
 from fem.model.static_checks import StaticChecks, static_checks
 
 #: a_gR, S and T_C of the paper, q and gamma_I
@@ -39,7 +38,7 @@ def paper_checks(*, boxes: int, gravity: float, peak: float = 2.4) -> StaticChec
 
 
 @check("statics", "the paper's numbers (Knoedel and Hrabowski)")
-def paper_numbers() -> Iterator[Row]:
+def paper_numbers() -> Findings:
     """Section 7 with g = 10: one box, and four."""
     for boxes, case, numbers in (
         (1, "1 box, g = 10", (10e3, 5e3, 13.75e3, 10e3, 5e3, 1.98)),
@@ -59,7 +58,7 @@ def paper_numbers() -> Iterator[Row]:
 
 
 @check("statics", "the same with g = 9.81")
-def with_exact_gravity() -> Iterator[Row]:
+def with_exact_gravity() -> Findings:
     """The same containers with g = 9.81, and the stack under the floor motions of the runs below."""
     box, stack = (paper_checks(boxes=boxes, gravity=9.81) for boxes in (1, 4))
     for case, found, numbers in (

@@ -1,15 +1,17 @@
 """The verification suite: all checks by topic, from the elements to the limits of whole models.
 
-A check that cannot be computed gives a row that fails, with the reason; the others are still computed.
+A check that cannot be computed gives a finding that fails, with the reason; the others are still computed.
 """
 
-import difflib
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
+from fem.case.validation import did_you_mean
+from fem.evidence.findings import Finding, analytic
+from fem.evidence.suite import attempted, failures
 from fem.evidence.verification import (
     contact_laws,
     elasticity,
@@ -24,7 +26,7 @@ from fem.evidence.verification import (
     time_stepping,
     vertical,
 )
-from fem.evidence.verification.rows import Check, Row, analytic
+from fem.evidence.verification.checks import Check
 from fem.evidence.verification.runs import STACK, run
 from fem.runtime.identity import versions
 
@@ -43,24 +45,28 @@ MODULES = (
     limits,
 )
 CHECKS = tuple(check for module in MODULES for check in vars(module).values() if isinstance(check, Check))
+#: keys of a row of verify.json and what of a finding they hold
+KEYS = {"compared": "what", "passed": "holds"} | {
+    name: name
+    for name in ("case", "value", "reference", "kind", "source", "tolerance", "relative", "note", "error")
+}
 
 
 class UnknownTopicError(ValueError):
     """There is no such topic."""
 
     def __init__(self, name: str, known: Sequence[str]) -> None:
-        near = difflib.get_close_matches(name, known, n=1)
-        hint = f"; did you mean {near[0]!r}?" if near else ""
+        hint = f"; {near}" if (near := did_you_mean(name, known)) else ""
         super().__init__(f"unknown topic {name!r}{hint} (known: {', '.join(known)})")
 
 
 @dataclass(frozen=True, kw_only=True)
 class ComputedCheck:
-    """A check with its rows."""
+    """A check with its findings."""
 
     topic: str
     title: str
-    rows: tuple[Row, ...]
+    findings: tuple[Finding, ...]
     seconds: float
 
     @property
@@ -78,34 +84,52 @@ class SuiteResult:
     seconds: float
 
     @property
-    def rows(self) -> Iterator[tuple[ComputedCheck, Row]]:
-        """Every row with its check, in order."""
-        return ((check, row) for check in self.checks for row in check.rows)
+    def findings(self) -> Iterator[Finding]:
+        """Every finding, in order."""
+        return (finding for check in self.checks for finding in check.findings)
+
+    @property
+    def topics(self) -> dict[str, list[ComputedCheck]]:
+        """The checks of each topic, in order."""
+        topics: dict[str, list[ComputedCheck]] = {}
+        for check in self.checks:
+            topics.setdefault(check.topic, []).append(check)
+        return topics
 
     @property
     def failures(self) -> int:
-        """Number of rows that fail."""
-        return sum(not row.passed for _, row in self.rows)
+        """Number of findings that fail."""
+        return failures(self.findings)
 
     @property
     def count(self) -> int:
-        """Number of rows."""
-        return sum(len(check.rows) for check in self.checks)
+        """Number of findings."""
+        return len(list(self.findings))
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain data, for JSON."""
         return {
             "quick": self.quick,
             "passed": self.failures == 0,
-            "rows": [{**check.names, **row.to_dict()} for check, row in self.rows],
+            "rows": [
+                check.names | finding.document(KEYS) | {"convergence": _convergence(finding)}
+                for check in self.checks
+                for finding in check.findings
+            ],
             "checks": [
-                {**check.names, "rows": len(check.rows), "seconds": check.seconds} for check in self.checks
+                check.names | {"rows": len(check.findings), "seconds": check.seconds} for check in self.checks
             ],
             "count": self.count,
             "failures": self.failures,
             "seconds": self.seconds,
             "versions": versions(),
         }
+
+
+def _convergence(finding: Finding) -> dict[str, Any] | None:
+    if finding.convergence is None:
+        return None
+    return asdict(finding.convergence) | {"observed": finding.convergence.observed}
 
 
 def chosen_checks(*, quick: bool, topics: Sequence[str] = ()) -> list[Check]:
@@ -148,10 +172,8 @@ def run_suite(
 
 
 def _compute(check: Check) -> ComputedCheck:
-    began = time.perf_counter()
-    try:
-        rows = tuple(check.rows())
-    except (ArithmeticError, ValueError, RuntimeError, LookupError) as error:
-        reason = f"{type(error).__name__}: {error}"
-        rows = (analytic(check.title, "computed at all", math.nan, source="", absolute=0.0, note=reason),)
-    return ComputedCheck(topic=check.topic, title=check.title, rows=rows, seconds=time.perf_counter() - began)
+    done = attempted(lambda: tuple(check.findings()))
+    findings = done.result or (
+        analytic(check.title, "computed at all", math.nan, source="", absolute=0.0, note=done.reason),
+    )
+    return ComputedCheck(topic=check.topic, title=check.title, findings=findings, seconds=done.seconds)

@@ -6,28 +6,18 @@ added to the floor.
 """
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 
 from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from contact.stepping.scheme import Scheme, generalised_alpha, newmark
+from fem.evidence.findings import Finding, analytic, convergence
+from fem.evidence.verification import runs
 from fem.evidence.verification.bodies import Flight, free_run, full_body
+from fem.evidence.verification.checks import Findings, check
 from fem.evidence.verification.manufactured import moving_body_error
 from fem.evidence.verification.meshes import graded_block
-from fem.evidence.verification.rows import Row, analytic, check, convergence
-from fem.evidence.verification.runs import (
-    SOLID,
-    STACK,
-    Finished,
-    Keys,
-    finish,
-    harmonic,
-    run,
-    with_motion,
-    with_steps_of,
-)
 from fem.model.model import build_model
 from fem.runtime.arrays import FloatArray
 from fem.solid.assembly import FiniteElements, assemble
@@ -40,15 +30,15 @@ SCHEMES = {
     TRAPEZOIDAL: newmark(0.25, 0.5),
 }
 CHUNG_HULBERT = "Chung and Hulbert 1993"
-MODELS: dict[str, Keys] = {"rigid stack": {}, "solid stack, 20 modes": SOLID}
+MODELS: dict[str, runs.Keys] = {"rigid stack": {}, "solid stack, 20 modes": runs.SOLID}
 OMEGA, DAMPING = 2.0 * math.pi, 0.05  #: of the oscillator
 SPIN = 20.0  #: of a block thrown into the air [rad/s]
 #: rocks, slides and strikes for 5 s
-VIOLENT = harmonic(0.1, 8.0) | {"contact.mu_static": 0.3, "solver.duration_s": 5.0}
+VIOLENT = runs.harmonic(0.1, 8.0) | {"contact.mu_static": 0.3, "solver.duration_s": 5.0}
 
 
 @check("time", "order on a linear oscillator")
-def linear_order() -> Iterator[Row]:
+def linear_order() -> Findings:
     """Order 2 on a damped oscillator, in position and velocity."""
     end = 1.3
     for name, scheme in SCHEMES.items():
@@ -64,7 +54,7 @@ def linear_order() -> Iterator[Row]:
 
 
 @check("time", "order at large rotation")
-def large_rotation_order() -> Iterator[Row]:
+def large_rotation_order() -> Findings:
     """Order 2 on a body that rotates by more than a radian while strained, with a manufactured source."""
     for name in ("generalised-alpha 0.5", TRAPEZOIDAL):
         errors = {0.5 / n: moving_body_error(SCHEMES[name], 0.5 / n) for n in (20, 40, 80, 160)}
@@ -79,7 +69,7 @@ def large_rotation_order() -> Iterator[Row]:
 
 
 @check("time", "spectral radius")
-def spectral_radii() -> Iterator[Row]:
+def spectral_radii() -> Findings:
     """Largest eigenvalue of a step at (almost) infinite frequency, from steps of the stepper."""
     note = "three equal eigenvalues meet at infinity: at 1e5 they differ by a cube root of rounding"
     compared = "spectral radius at omega h = 1e5"
@@ -90,7 +80,7 @@ def spectral_radii() -> Iterator[Row]:
 
 
 @check("time", "period error")
-def period_errors() -> Iterator[Row]:
+def period_errors() -> Findings:
     """Elongation of the period at omega h = 0.3, from the eigenvalues of a step."""
     compared = "elongation of the period at omega h = 0.3"
     for name, scheme in SCHEMES.items():
@@ -102,15 +92,15 @@ def period_errors() -> Iterator[Row]:
 
 
 @check("time", "energy closure")
-def energy_closure() -> Iterator[Row]:
+def energy_closure() -> Findings:
     """The energy balance closes with the square of the step if nothing opens, slides or strikes."""
     vibrating = {"initial.velocity_m_s": 1e-3, "contact.damping_ratio": 0.0, "solver.duration_s": 0.1}
     kinetic = 0.5 * 1e4 * 1e-6
     for name, values in MODELS.items():
         errors: dict[float, float] = {}
         for step in (2e-4, 1e-4, 5e-5, 2.5e-5):
-            model = build_model(STACK.with_values(values | vibrating))
-            clock = finish(with_steps_of(model, step)).model.run.clock[0]
+            model = build_model(runs.STACK.with_values(values | vibrating))
+            clock = runs.finish(runs.with_steps_of(model, step)).model.run.clock[0]
             errors[step] = max(-float(clock.least_imbalance), float(clock.most_imbalance)) / kinetic
         orders = convergence("step [s]", errors, order=2.0, within=0.15, at_least=True)
         yield analytic(
@@ -122,7 +112,7 @@ def energy_closure() -> Iterator[Row]:
 
 
 @check("time", "spin")
-def spin() -> Iterator[Row]:
+def spin() -> Findings:
     """A block thrown spinning: it keeps its angular momentum, and rotates evenly if it is stiff."""
     turn = 2.0 * math.pi / SPIN
     errors = {turn / count: spinning(1e8, turn / count)[0] for count in (200, 400, 800)}
@@ -145,17 +135,19 @@ def spin() -> Iterator[Row]:
 
 
 @check("time", "mirror symmetry")
-def mirror() -> Iterator[Row]:
+def mirror() -> Findings:
     """The floor's motion mirrored: the container's motion mirrored."""
     note = "sin(Omega t + pi) is -sin(Omega t) except for rounding"
     for name, values in MODELS.items():
-        one, other = (run(STACK, VIOLENT | values | {"motion.phase_rad": phase}) for phase in (0.0, math.pi))
+        one, other = (
+            runs.run(runs.STACK, VIOLENT | values | {"motion.phase_rad": phase}) for phase in (0.0, math.pi)
+        )
         case = f"{name}, slide-rocking for 5 s, floor mirrored"
         yield same_rotation(case, one, -other.history["rotation_rad"], source="symmetry", note=note)
 
 
 @check("time", "scaling")
-def scaling() -> Iterator[Row]:
+def scaling() -> Findings:
     """Lengths times four, times times two: the same rotation."""
     scaled = {
         "container.width_m": 4.4,
@@ -168,18 +160,20 @@ def scaling() -> Iterator[Row]:
         "solver.element_size_m": 4.0,
         "output.history_s": 0.01,
     }
-    one, other = run(STACK, VIOLENT), run(STACK, VIOLENT | scaled)
+    one, other = runs.run(runs.STACK, VIOLENT), runs.run(runs.STACK, VIOLENT | scaled)
     case = "rigid stack, slide-rocking for 5 s, lengths x 4 and times x 2"
     yield same_rotation(case, one, other.history["rotation_rad"], source="dimensional analysis")
 
 
 @check("time", "Galilean invariance")
-def galilei() -> Iterator[Row]:
+def galilei() -> Findings:
     """A constant velocity of 3 m/s added to the floor and the container: the same relative motion."""
     still, travelling = (
-        finish(
-            with_motion(
-                with_steps_of(build_model(STACK.with_values(VIOLENT | {"solver.duration_s": 2.0})), 1e-5),
+        runs.finish(
+            runs.with_motion(
+                runs.with_steps_of(
+                    build_model(runs.STACK.with_values(VIOLENT | {"solver.duration_s": 2.0})), 1e-5
+                ),
                 *stepped_floor(drift),
             )
         )
@@ -289,7 +283,9 @@ def stepped_floor(drift: float) -> tuple[FloorMotion, tuple[float, ...]]:
     return motion, knots[1:]
 
 
-def same_rotation(case: str, done: Finished, other: FloatArray, *, source: str, note: str = "") -> Row:
+def same_rotation(
+    case: str, done: runs.Finished, other: FloatArray, *, source: str, note: str = ""
+) -> Finding:
     """The row of a rotation that must equal that of a run at every sample."""
     rotation, angle = done.history["rotation_rad"], done.block.slenderness_angle
     count = min(rotation.size, other.size)

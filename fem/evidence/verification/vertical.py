@@ -5,46 +5,38 @@ under both against the event-driven block. Stack and box are those of `fem.evide
 """
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 
 from contact.reference.floor_acceleration import FloorAcceleration, sine_floor
 from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 from contact.reference.sliding import RigidSlider, simulate_sliding
+from fem.evidence.findings import analytic, computed
+from fem.evidence.verification import runs
+from fem.evidence.verification.checks import Findings, check
 from fem.evidence.verification.rocking import difference_of_rotation
-from fem.evidence.verification.rows import Row, analytic, check, computed
-from fem.evidence.verification.runs import (
-    BOX,
-    GRAVITY,
-    SOLID,
-    STACK,
-    Finished,
-    Keys,
-    harmonic,
-    pulse,
-    run,
-)
 
 OMEGA = 6.928
 #: the mass and the springs of the contact do not follow gravity here
-FIXED: Keys = {"container.mass_kg": 1e4, "contact.normal_penalty_Pa_m": 4e9}
-MODELS: dict[str, Keys] = {"rigid stack": {}, "solid stack, 20 modes": SOLID}
+FIXED: runs.Keys = {"container.mass_kg": 1e4, "contact.normal_penalty_Pa_m": 4e9}
+MODELS: dict[str, runs.Keys] = {"rigid stack": {}, "solid stack, 20 modes": runs.SOLID}
 
 
-def vertical(keys: Keys) -> Keys:
+def vertical(keys: runs.Keys) -> runs.Keys:
     """Keys of a motion along x as those of the vertical one."""
     return {key.replace("motion.", "vertical."): value for key, value in keys.items()}
 
 
 @check("vertical", "a constant vertical acceleration")
-def another_gravity() -> Iterator[Row]:
+def another_gravity() -> Findings:
     """A floor that accelerates upward by a is a floor at rest under gravity g + a, up to the third impact."""
-    driven = FIXED | harmonic(4.5 / OMEGA**2, OMEGA) | {"solver.duration_s": 4.0, "output.history_s": 0.002}
+    driven = (
+        FIXED | runs.harmonic(4.5 / OMEGA**2, OMEGA) | {"solver.duration_s": 4.0, "output.history_s": 0.002}
+    )
     for name, model in MODELS.items():
         for acceleration in (-3.0, 3.0):
-            lifted = run(STACK, driven | model | vertical(pulse(acceleration, 10.0)))
-            heavier = run(STACK, driven | model | {"gravity_m_s2": GRAVITY + acceleration})
+            lifted = runs.run(runs.STACK, driven | model | vertical(runs.pulse(acceleration, 10.0)))
+            heavier = runs.run(runs.STACK, driven | model | {"gravity_m_s2": runs.GRAVITY + acceleration})
             times = heavier.history["time_s"]
             until = times < third_impact(heavier)
             difference = np.abs(lifted.history["rotation_rad"] - heavier.history["rotation_rad"])[until]
@@ -58,17 +50,17 @@ def another_gravity() -> Iterator[Row]:
 
 
 @check("vertical", "a slider under both motions")
-def slider_under_both() -> Iterator[Row]:
+def slider_under_both() -> Findings:
     """Slip of a box under harmonic motions along x and upward, of one and of another frequency."""
     for ratio, phase in ((1.0, 0.5 * math.pi), (2.5, 0.0)):
         upward = 5.0 / (10.0 * ratio) ** 2, 10.0 * ratio
-        keys = harmonic(0.05, 10.0) | vertical(harmonic(*upward)) | {"vertical.phase_rad": phase}
+        keys = runs.harmonic(0.05, 10.0) | vertical(runs.harmonic(*upward)) | {"vertical.phase_rad": phase}
         friction = {"contact.mu_static": 0.3, "contact.mu_kinetic": 0.2}
-        done = run(BOX, keys | friction | {"solver.duration_s": 5.0})
+        done = runs.run(runs.BOX, keys | friction | {"solver.duration_s": 5.0})
         floor = sine_floor(amplitude=0.05, angular_frequency=10.0).with_vertical(
             sine_floor(amplitude=upward[0], angular_frequency=upward[1], phase=phase)
         )
-        slider = RigidSlider(mu_static=0.3, mu_kinetic=0.2, gravity=GRAVITY)
+        slider = RigidSlider(mu_static=0.3, mu_kinetic=0.2, gravity=runs.GRAVITY)
         exact = simulate_sliding(slider, floor, duration=5.0)
         found, reference = done.history["slip_m"], exact.at(done.history["time_s"])[0]
         yield computed(
@@ -81,16 +73,20 @@ def slider_under_both() -> Iterator[Row]:
 
 
 @check("vertical", "a block under both motions")
-def block_under_both() -> Iterator[Row]:
+def block_under_both() -> Findings:
     """Rotation of the stack under harmonic motions along x and upward: up to the first impact, and its first peaks.
 
     The second pair overturns it in its third swing.
     """
     for ratio, phase, peaks in ((1.0, 0.5 * math.pi, 3), (1.0, 0.0, 2), (2.0, 0.0, 3)):
         upward = 4.5 / (OMEGA * ratio) ** 2, OMEGA * ratio
-        keys = harmonic(5.0 / OMEGA**2, OMEGA) | vertical(harmonic(*upward)) | {"vertical.phase_rad": phase}
+        keys = (
+            runs.harmonic(5.0 / OMEGA**2, OMEGA)
+            | vertical(runs.harmonic(*upward))
+            | {"vertical.phase_rad": phase}
+        )
         stiff = {"contact.normal_penalty_Pa_m": 5e10, "output.history_s": 0.002, "solver.duration_s": 4.0}
-        done = run(STACK, keys | stiff)
+        done = runs.run(runs.STACK, keys | stiff)
         floor = sine_floor(amplitude=5.0 / OMEGA**2, angular_frequency=OMEGA).with_vertical(
             sine_floor(amplitude=upward[0], angular_frequency=upward[1], phase=phase)
         )
@@ -113,7 +109,7 @@ def block_under_both() -> Iterator[Row]:
         )
 
 
-def third_impact(done: Finished) -> float:
+def third_impact(done: runs.Finished) -> float:
     """When the rotation passes through zero for the third time [s]; infinite where it does not."""
     rotation, times = done.history["rotation_rad"], done.history["time_s"]
     tilted = np.abs(rotation) > 1e-3 * done.block.slenderness_angle
@@ -122,7 +118,7 @@ def third_impact(done: Finished) -> float:
     return float(instants[turns[2] + 1]) if turns.size > 2 else math.inf
 
 
-def difference_of_peaks(done: Finished, floor: FloorAcceleration, count: int) -> float:
+def difference_of_peaks(done: runs.Finished, floor: FloorAcceleration, count: int) -> float:
     """Largest difference of the largest |rotation| of each of the first swings from the event-driven block, over al."""
     times, friction = done.history["time_s"], done.model.case.contact
     block = PlanarBlock(body=done.block, mu_static=friction.mu_static, mu_kinetic=friction.mu_kinetic)

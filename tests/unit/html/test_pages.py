@@ -65,7 +65,7 @@ def test_every_kind_of_block_is_set_and_its_texts_are_escaped(page, block):
     texts |= {"rows": [("<t>", "a")], "lines": ["<t>"], "values": [Headline("<t>", "a")], "blocks": ["<t>"]}
     texts |= {"quantities": [Choice(1, "<t>")], "across": (), "exaggerations": (), "start": "<t>"}
     texts |= {"end": "", "colours": (), "name": "n", "look": "", "loose": False, "meshed": False}
-    texts |= {"head": [Cell("<t>")]}
+    texts |= {"head": [Cell("<t>")], "summary": "<t>"}
     if block is str:
         made = "<t>"
     else:

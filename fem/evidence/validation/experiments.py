@@ -1,22 +1,17 @@
-"""The findings of an experiment: predictions beside measurements, and whether they meet the criteria set beforehand."""
+"""An experiment with its findings: predictions beside measurements, by criteria that were set beforehand."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
 
-Value = float | str
+from fem.evidence.findings import Finding
+from fem.evidence.suite import failures
+from fem.runtime.identity import versions
 
-
-@dataclass(frozen=True, kw_only=True)
-class Prediction:
-    """One comparison; without a criterion it is stated and not judged."""
-
-    quantity: str  #: with its unit
-    measured: Value
-    predicted: Value
-    criterion: str = ""
-    passed: bool | None = None  #: None where there is no criterion
-    note: str = ""
+#: keys of a finding of validate.json and what of a finding they hold
+KEYS = {"quantity": "what", "measured": "reference", "predicted": "value", "passed": "met"} | {
+    name: name for name in ("criterion", "note")
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,15 +33,15 @@ class Experiment:
     licence: str
     tests: int  #: how many are compared
     fitted: str  #: which inputs were fitted, on which tests, and to what
-    findings: tuple[Prediction, ...] = ()
+    findings: tuple[Finding, ...] = ()
     others: tuple[Predictor, ...] = ()
     not_computed: str = ""  #: the reason, where there is nothing to compare
     seconds: float = 0.0
 
     @property
-    def missed(self) -> tuple[Prediction, ...]:
-        """Findings that miss their criterion."""
-        return tuple(finding for finding in self.findings if finding.passed is False)
+    def missed(self) -> int:
+        """Number of findings that miss their criterion."""
+        return failures(self.findings)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,14 +51,19 @@ class ValidationResult:
     experiments: tuple[Experiment, ...]
 
     @property
-    def missed(self) -> int:
+    def findings(self) -> Iterator[Finding]:
+        """Every finding, in order."""
+        return (finding for one in self.experiments for finding in one.findings)
+
+    @property
+    def failures(self) -> int:
         """Number of findings that miss their criterion."""
-        return sum(len(one.missed) for one in self.experiments)
+        return failures(self.findings)
 
     @property
     def judged(self) -> int:
         """Number of findings with a criterion."""
-        return sum(finding.passed is not None for one in self.experiments for finding in one.findings)
+        return sum(finding.holds is not None for finding in self.findings)
 
     @property
     def sentence(self) -> str:
@@ -72,21 +72,23 @@ class ValidationResult:
             return "No experiment was computed."
         skipped = sum(bool(one.not_computed) for one in self.experiments)
         rest = f"; {skipped} of {len(self.experiments)} experiments not computed" if skipped else ""
-        if self.missed:
+        if self.failures:
             names = ", ".join(one.title for one in self.experiments if one.missed)
-            return f"{self.missed} of {self.judged} predictions miss their criterion ({names}){rest}."
+            return f"{self.failures} of {self.judged} predictions miss their criterion ({names}){rest}."
         return f"All {self.judged} predictions meet their criterion{rest}."
 
-    def to_dict(self, versions: Mapping[str, str]) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """Everything as plain data, for JSON."""
         return {
-            "passed": self.missed == 0,
-            "missed": self.missed,
+            "passed": self.failures == 0,
+            "missed": self.failures,
             "judged": self.judged,
             "sentence": self.sentence,
             "experiments": [
-                asdict(one) | {"computed": not one.not_computed, "missed": len(one.missed)}
+                asdict(one)
+                | {"findings": [finding.document(KEYS) for finding in one.findings]}
+                | {"computed": not one.not_computed, "missed": one.missed}
                 for one in self.experiments
             ],
-            "versions": dict(versions),
+            "versions": versions(),
         }

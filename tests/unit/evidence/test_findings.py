@@ -1,4 +1,4 @@
-"""The verification table: a row with any kind of error fails, and the command says so."""
+"""A finding with any kind of error fails, the suite goes on after a failure, and `verify` says so."""
 
 import errno
 import json
@@ -9,14 +9,15 @@ import pytest
 
 import fem.results.files
 from fem.__main__ import main
+from fem.evidence.findings import analytic, at_least, at_most, convergence, equal, prediction
 from fem.evidence.verification import suite
-from fem.evidence.verification.page import convergence_plot, page, table_lines
-from fem.evidence.verification.rows import analytic, check, convergence
+from fem.evidence.verification.checks import check
+from fem.evidence.verification.page import convergence_plot, lines_of, page_of
 from fem.evidence.verification.suite import run_suite
 
 
-def row(value, *, tolerance=0.01, reference=2.0, **optional):
-    within = {"relative" if optional.pop("relative", False) else "absolute": tolerance}
+def finding(value, *, tolerance=0.01, reference=2.0, relative=False, **optional):
+    within = {"relative" if relative else "absolute": tolerance}
     text = "a quantity <b> [m]"
     return analytic("a case", text, value, reference, source="somebody", note="a note", **within, **optional)
 
@@ -26,72 +27,81 @@ def falling(errors, *, at_least=False):
     return convergence("h [m]", by_size, order=2.0, within=0.1, at_least=at_least)
 
 
-def test_a_row_passes_within_its_tolerance_and_not_beyond():
-    assert row(2.01 - 1e-12).passed
-    assert not row(2.011).passed
-    assert not row(1.989).passed
-    assert row(2.019, relative=True).passed
-    assert not row(2.021, relative=True).passed
-    assert row(-2.019, relative=True, reference=-2.0).passed
+SECOND = falling([1e-2 / 4**k for k in range(4)])
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_a_value_that_is_not_finite_fails(value):
-    assert not row(value).passed
-    assert not row(value, relative=True).passed
-    assert row(value).to_dict()["value"] is None
+@pytest.mark.parametrize(
+    ("found", "holds"),
+    [
+        (finding(2.01 - 1e-12), True),
+        (finding(2.011), False),
+        (finding(1.989), False),
+        (finding(2.019, relative=True), True),
+        (finding(2.021, relative=True), False),
+        (finding(-2.019, relative=True, reference=-2.0), True),
+        *((at_most("a", value, 1.0), value <= 1.0) for value in (1.0, 1.1, math.nan)),
+        *((at_least("a", value, 1.0), value >= 1.0) for value in (1.0, 0.9, math.nan)),
+        *((equal("a", value, 1.0, 0.05), value == 1.04) for value in (1.04, 1.06, math.nan)),
+        *(
+            (finding(value, relative=share), False)
+            for value in (math.nan, math.inf)
+            for share in (True, False)
+        ),
+        *((prediction("a", 1.0, measured="2 to 3", met=met), met) for met in (True, False, None)),
+    ],
+)
+def test_a_finding_holds_by_its_numbers_or_its_criterion_and_never_with_nan(found, holds):
+    assert found.holds is holds
 
 
 def test_the_observed_order_is_the_slope_and_must_be_the_expected_one():
-    second = falling([1e-2 / 4**k for k in range(4)])
-    assert second.observed == pytest.approx(2.0, abs=1e-12)
-    assert second.passed
+    assert SECOND.observed == pytest.approx(2.0, abs=1e-12)
+    assert SECOND.finest == 1e-2 / 64
+    assert SECOND.passed
     assert not falling([1e-2 / 2**k for k in range(4)]).passed
     assert not falling([1e-2 / 8**k for k in range(4)]).passed
     assert falling([1e-2 / 8**k for k in range(4)], at_least=True).passed
     assert not falling([1e-2, 3e-3, 0.0, 1e-4]).passed
 
 
-def test_a_row_with_an_order_needs_both():
-    good, bad = falling([1e-2 / 4**k for k in range(3)]), falling([1e-2, 1e-2, 1e-2])
-    assert row(2.0, convergence=good).passed
-    assert not row(2.0, convergence=bad).passed
-    assert not row(3.0, convergence=good).passed
-    assert row(good.finest, reference=0.0, tolerance=None, convergence=good).passed
-    assert good.finest == 1e-2 / 16
+def test_a_finding_with_an_order_needs_both():
+    assert finding(2.0, convergence=SECOND).holds
+    assert not finding(2.0, convergence=falling([1e-2, 1e-2, 1e-2])).holds
+    assert not finding(3.0, convergence=SECOND).holds
+    assert finding(SECOND.finest, reference=0.0, tolerance=None, convergence=SECOND).holds
 
 
 def broken():
-    yield row(2.0)
+    yield finding(2.0)
     raise ArithmeticError("no equilibrium")
 
 
 @pytest.fixture
 def small_suite(monkeypatch):
-    """Two topics: one that passes, one with a row that fails and a check that cannot be computed."""
-    good = check("cellar", "good")(lambda: [row(2.0, convergence=falling([1e-2 / 4**k for k in range(3)]))])
-    off = check("attic", "off", quick=False)(lambda: [row(2.5), row(2.0)])
+    """Two topics: one that passes, one with a finding that fails and a check that cannot be computed."""
+    good = check("cellar", "good")(lambda: [finding(2.0, convergence=SECOND)])
+    off = check("attic", "off", quick=False)(lambda: [finding(2.5), finding(2.0)])
     monkeypatch.setattr(suite, "CHECKS", (good, off, check("attic", "broken", quick=False)(broken)))
 
 
-def test_a_check_that_cannot_be_computed_is_a_row_that_fails(small_suite):
-    found = run_suite(quick=False)
-    assert (found.count, found.failures) == (4, 2)
-    last = list(found.rows)[-1][1]
-    assert not last.passed
+def test_a_check_that_cannot_be_computed_is_a_finding_that_fails(small_suite):
+    result = run_suite(quick=False)
+    assert (result.count, result.failures) == (4, 2)
+    last = list(result.findings)[-1]
+    assert not last.holds
     assert "no equilibrium" in last.note
 
 
 def test_the_terminal_names_what_fails(small_suite):
-    lines = table_lines(run_suite(quick=False))
+    lines = lines_of(run_suite(quick=False))
     assert sum("FAIL" in line for line in lines) == 3
     assert lines[-1].endswith("2 FAIL")
     assert any("no equilibrium" in line for line in lines)
-    assert table_lines(run_suite(quick=True))[-1].endswith("all pass")
+    assert lines_of(run_suite(quick=True))[-1].endswith("all pass")
 
 
 def test_the_page_needs_nothing_from_elsewhere(small_suite):
-    text = page(run_suite(quick=False))
+    text = page_of(run_suite(quick=False))
     assert text.count("<svg") == 1
     assert "a quantity &lt;b&gt; [m]" in text
     assert "src=" not in text
@@ -106,7 +116,7 @@ def test_a_plot_is_the_same_bytes_again():
 
 
 @pytest.mark.parametrize(("options", "code"), [(["--quick"], 0), ([], 3), (["--room", "cellar"], 0)])
-def test_the_command_ends_with_3_if_a_row_fails(small_suite, tmp_path, capsys, options, code):
+def test_the_command_ends_with_3_if_a_finding_fails(small_suite, tmp_path, capsys, options, code):
     assert main(["verify", *options, "--out", str(tmp_path), "--json"]) == code
     document = json.loads(capsys.readouterr().out)
     assert document == json.loads((tmp_path / "verify.json").read_text())

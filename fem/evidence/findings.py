@@ -1,0 +1,203 @@
+"""A number of the program beside its reference or limit, and whether it holds: the row of every table of evidence.
+
+A reference is `analytic` (a closed form, or a statement such as symmetry), `printed` (in the literature), `computed`
+(by code that shares nothing with what is checked, or as a converged limit), `measured` (in a laboratory), or a `limit`.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Literal, SupportsFloat
+
+import numpy as np
+
+Kind = Literal["analytic", "printed", "computed", "measured", "limit"]
+Value = float | str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Convergence:
+    """Errors over a refinement, and the order at which they must fall."""
+
+    against: str  #: what was refined, with its unit
+    sizes: tuple[float, ...]  #: of the refinement, all positive
+    errors: tuple[float, ...]
+    expected: float  #: order
+    tolerance: float  #: of the order
+    at_least: bool = False  #: a higher order passes as well
+
+    @property
+    def observed(self) -> float:
+        """Slope of log(error) over log(size), least squares; nan if an error is not positive."""
+        if not min(self.errors) > 0.0:
+            return math.nan
+        return float(np.polyfit(np.log(self.sizes), np.log(self.errors), 1)[0])
+
+    @property
+    def finest(self) -> float:
+        """The error at the smallest size."""
+        return self.errors[int(np.argmin(self.sizes))]
+
+    @property
+    def passed(self) -> bool:
+        """Whether the observed order is the expected one."""
+        difference = self.observed - self.expected
+        return difference >= -self.tolerance and (self.at_least or difference <= self.tolerance)
+
+
+def convergence(
+    against: str,
+    errors: Mapping[float, SupportsFloat],
+    *,
+    order: float,
+    within: float,
+    at_least: bool = False,
+) -> Convergence:
+    """Errors by size, and the order that they must have `within` a tolerance."""
+    return Convergence(
+        against=against,
+        sizes=tuple(float(size) for size in errors),
+        errors=tuple(float(error) for error in errors.values()),
+        expected=order,
+        tolerance=within,
+        at_least=at_least,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """A comparison; it holds by its numbers, or by a criterion in words that was set beforehand."""
+
+    what: str  #: quantity, with its unit if `unit` has none
+    value: Value
+    reference: Value  #: or limit
+    kind: Kind  #: of the reference
+    relation: Literal["=", "<=", ">="] = "="
+    tolerance: float | None = 0.0  #: of "="; None: the order or a criterion decides
+    relative: bool = False  #: tolerance and error are shares of the reference
+    convergence: Convergence | None = None
+    criterion: str = ""
+    met: bool | None = None  #: the criterion; None: stated and not judged
+    case: str = ""  #: what was computed
+    unit: str = "-"
+    source: str = ""  #: of the reference
+    note: str = ""
+    inside: bool = True  #: whether it is made inside the stated bounds of its claim
+
+    @property
+    def name(self) -> str:
+        """What was compared, of what case."""
+        return f"{self.case}: {self.what}" if self.case else self.what
+
+    @property
+    def error(self) -> float:
+        """|value - reference|, over |reference| if relative; nan if the value is, or where either is text."""
+        if isinstance(self.value, str) or isinstance(self.reference, str):
+            return math.nan
+        difference = abs(self.value - self.reference)
+        return difference / abs(self.reference) if self.relative else difference
+
+    @property
+    def holds(self) -> bool | None:
+        """Whether relation, tolerance, order and criterion are satisfied, as far as they are given; nan never does."""
+        if self.kind == "measured":
+            return self.met
+        value, reference = float(self.value), float(self.reference)
+        if self.relation != "=":
+            return value <= reference if self.relation == "<=" else value >= reference
+        if self.tolerance is not None and not self.error <= self.tolerance:
+            return False
+        return self.convergence is None or self.convergence.passed
+
+    def document(self, names: Mapping[str, str]) -> dict[str, Any]:
+        """Plain data for JSON: attributes under the keys of a suite."""
+        return {key: getattr(self, name) for key, name in names.items()}
+
+
+def finding(
+    kind: Kind,
+    case: str,
+    what: str,
+    value: SupportsFloat | None = None,
+    reference: SupportsFloat = 0.0,
+    *,
+    source: str,
+    absolute: float | None = None,
+    relative: float | None = None,
+    convergence: Convergence | None = None,
+    note: str = "",
+) -> Finding:
+    """A value against a reference, with an `absolute` or a `relative` tolerance, an order of convergence, or both.
+
+    The reference of a difference is zero; the value of a convergence, if not given, is its finest error.
+    """
+    if value is None:
+        value = math.nan if convergence is None else convergence.finest
+    return Finding(
+        kind=kind,
+        case=case,
+        what=what,
+        value=float(value),
+        reference=float(reference),
+        source=source,
+        tolerance=absolute if relative is None else relative,
+        relative=relative is not None,
+        convergence=convergence,
+        note=note,
+    )
+
+
+analytic = partial(finding, "analytic")
+printed = partial(finding, "printed")
+computed = partial(finding, "computed")
+
+
+def limited(
+    relation: Literal["=", "<=", ">="],
+    what: str,
+    value: SupportsFloat,
+    limit: float,
+    unit: str = "-",
+    *,
+    tolerance: float = 0.0,
+    inside: bool = True,
+) -> Finding:
+    """A value, count or truth value against a limit."""
+    return Finding(
+        kind="limit",
+        what=what,
+        value=float(value),
+        relation=relation,
+        reference=limit,
+        tolerance=tolerance,
+        unit=unit,
+        inside=inside,
+    )
+
+
+at_most = partial(limited, "<=")
+at_least = partial(limited, ">=")
+
+
+def equal(
+    what: str, value: SupportsFloat, limit: float, tolerance: float, unit: str = "-", *, inside: bool = True
+) -> Finding:
+    """The value must be within an absolute tolerance of the limit."""
+    return limited("=", what, value, limit, unit, tolerance=tolerance, inside=inside)
+
+
+def prediction(
+    what: str, value: Value, *, measured: Value, criterion: str = "", met: bool | None = None, note: str = ""
+) -> Finding:
+    """A prediction beside what was measured; without a criterion it is stated and not judged."""
+    return Finding(
+        kind="measured",
+        what=what,
+        value=value,
+        reference=measured,
+        tolerance=None,
+        criterion=criterion,
+        met=met,
+        note=note,
+    )
