@@ -14,24 +14,13 @@ from fem.ensemble.fragility import Lognormal
 from fem.ensemble.plan import Ensemble
 from fem.ensemble.statistics import PointResult
 from fem.ensemble.unknown import UnknownInputs
+from fem.figures import style
 from fem.figures.heat_map import Panel, draw_heat_map
-from fem.figures.style import (
-    BLACK,
-    BLUE,
-    GREY,
-    SKY,
-    VERMILLION,
-    head,
-    house_style,
-    legend_above,
-    panels,
-    svg_of,
-)
 from fem.runtime.arrays import FloatArray
 from fem.sweep.maps import map_axis
 
 #: of the regions; lightness differs as well
-COLOURS = {"below": SKY, "undecided": "#DDDDDD", "above": VERMILLION}
+COLOURS = {"below": style.SKY, "undecided": "#DDDDDD", "above": style.VERMILLION}
 FINE = 240  #: points of a drawn curve
 LINE, SMALL_LINE = 92, 104  #: letters of a line above a figure
 MOST_NUMBERS = 320  #: cells of a panel up to which each holds its number
@@ -44,10 +33,10 @@ def ensemble_figures(
     fragility: Mapping[str, Any] | None,
 ) -> dict[str, str]:
     """Figures as SVG documents, by name."""
-    with house_style():
+    with style.house_style():
         if len(ensemble.axes) == 1:
-            return {"fragility": svg_of(draw_fragility(ensemble, unknown, points, fragility or {}))}
-        return {"boundary": svg_of(draw_boundary(ensemble, unknown, points))}
+            return {"fragility": style.svg_of(draw_fragility(ensemble, unknown, points, fragility or {}))}
+        return {"boundary": style.svg_of(draw_boundary(ensemble, unknown, points))}
 
 
 def draw_fragility(
@@ -58,9 +47,9 @@ def draw_fragility(
 ) -> Figure:
     """Counts with their intervals, and the lognormal curve with its band."""
     statement = fill(_statement(ensemble, unknown), SMALL_LINE)
-    figure, (axes,) = panels((3.2,), header=3 + statement.count("\n"))
+    figure, (axes,) = style.panels((3.2,), header=3 + statement.count("\n"))
     axis = ensemble.axes[0]
-    head(figure, ensemble.title or ensemble.name, statement)
+    style.head(figure, ensemble.title or ensemble.name, statement)
     fitted = fragility.get("lognormal")
     if fitted is not None:
         strengths = np.linspace(float(axis.values[0]), float(axis.values[-1]), FINE)
@@ -68,10 +57,10 @@ def draw_fragility(
         if "resampled" in fitted:
             low, high = band_of(fitted["resampled"], strengths, ensemble.confidence)
             axes.fill_between(
-                strengths, low, high, color=BLUE, alpha=0.18, linewidth=0, label="bootstrap band"
+                strengths, low, high, color=style.BLUE, alpha=0.18, linewidth=0, label="bootstrap band"
             )
         word = "lognormal fitted" if fitted["adequate"] else "lognormal, which does not fit"
-        axes.plot(strengths, curve.probability(strengths), color=BLUE, linestyle="--", label=word)
+        axes.plot(strengths, curve.probability(strengths), color=style.BLUE, linestyle="--", label=word)
     known = [point for point in points if point.estimate.value is not None]
     value = np.array([point.estimate.value for point in known], dtype=float)
     low = np.array([point.estimate.low for point in known])
@@ -80,7 +69,7 @@ def draw_fragility(
         [point.values[axis.key] for point in known],
         value,
         yerr=[np.maximum(value - low, 0.0), np.maximum(high - value, 0.0)],
-        color=BLACK,
+        color=style.BLACK,
         marker="o",
         markersize=3.0,
         linewidth=0.8,
@@ -88,12 +77,12 @@ def draw_fragility(
         label=f"counted, {100.0 * ensemble.confidence:g} % interval",
     )
     asked = f"{100.0 * ensemble.probability:g} %"
-    axes.axhline(ensemble.probability, color=GREY, linewidth=0.8, linestyle=":", label=asked)
+    axes.axhline(ensemble.probability, color=style.GREY, linewidth=0.8, linestyle=":", label=asked)
     axes.set_ylim(-0.02, 1.02)
     axes.margins(x=0.02)
     axes.set_ylabel("probability of overturning [-]")
     axes.set_xlabel(axis_label(axis))
-    legend_above(axes)
+    style.legend_above(axes)
     return figure
 
 
@@ -111,7 +100,7 @@ def draw_boundary(ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[P
     codes = np.array([list(COLOURS).index(point.region) for point in points]).reshape(shape)
     shares = [point.estimate.value for point in points]
     texts = np.array(["?" if share is None else f"{100.0 * share:.0f}" for share in shares]).reshape(shape)
-    panels = [
+    maps = [
         Panel(
             values=codes[k],
             title="" if held is None else f"{axis_label(outer[0])} = {held:g}",
@@ -124,7 +113,7 @@ def draw_boundary(ensemble: Ensemble, unknown: UnknownInputs, points: Sequence[P
     return draw_heat_map(
         x,
         map_axis(down),
-        panels,
+        maps,
         title=f"{ensemble.title or ensemble.name}\n{fill(_statement(ensemble, unknown), LINE)}",
         colours={words[region]: colour for region, colour in COLOURS.items()},
     )

@@ -10,28 +10,12 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from fem.assessment.ranges import LEAST_DEGREES, LEAST_LENGTH
-from fem.figures.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    NEAR_LIMIT,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILLION,
-    curve_panel,
-    draw_limits,
-    head,
-    keep_visible,
-    legend_above,
-    number,
-    time_panels,
-)
+from fem.figures import style
 from fem.results.reader import OpenedRun
 from fem.results.run_result import BoxResult
 
-COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY)  #: of so many boxes; of more, those of a colour map
+#: of so many boxes; of more, those of a colour map
+COLOURS = (style.BLUE, style.VERMILLION, style.GREEN, style.ORANGE, style.PURPLE, style.SKY)
 LEGEND_COLUMNS = 6
 THICK, THIN = 3.2, 0.9  #: lines of the lowest and the uppermost box
 FARTHEST = 2.0  #: end of the scale of rotations, over the slenderness angle
@@ -69,31 +53,35 @@ def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ..
     history, verdict = run.history, run.verdict
     names = [quantity.lowest, *(quantity.further.format(k) for k in range(2, len(boxes) + 1))]
     largest = max(float(np.abs(history[name]).max()) for name in names)
-    tilted = quantity is ROTATION and largest >= NEAR_LIMIT * run.slenderness_angle
+    tilted = quantity is ROTATION and largest >= style.NEAR_LIMIT * run.slenderness_angle
     entries = len(boxes) + tilted + (verdict.fell_box is not None)
-    figure, (axes,) = time_panels((2.3,), history=history, header=1 + math.ceil(entries / LEGEND_COLUMNS))
+    figure, (axes,) = style.time_panels(
+        (2.3,), history=history, header=1 + math.ceil(entries / LEGEND_COLUMNS)
+    )
     for k, name in enumerate(names):
         curve = quantity.factor * history[name], colour_of(k, len(boxes)), "-", f"box {k + 1}"
         # of boxes that move as one, each is seen below the next
         width = THIN + (THICK - THIN) * (1.0 - k / (len(boxes) - 1))
-        curve_panel(axes, quantity.label, history["time_s"], curve, zero=k == 0, linewidth=width)
-    keep_visible(axes, 10.0 * quantity.least)
+        style.curve_panel(axes, quantity.label, history["time_s"], curve, zero=k == 0, linewidth=width)
+    style.keep_visible(axes, 10.0 * quantity.least)
     if tilted:
         angle = math.degrees(run.slenderness_angle)
-        keep_visible(axes, 1.12 * angle)
-        draw_limits(axes, angle, f"α, ±{number(angle, 4)}°", color=BLACK, linestyle="-.")
+        style.keep_visible(axes, 1.12 * angle)
+        style.draw_limits(axes, angle, f"α, ±{style.number(angle, 4)}°", color=style.BLACK, linestyle="-.")
         low, high = axes.get_ylim()
         # a box that falls leaves the scale
         axes.set_ylim(max(low, -FARTHEST * angle), min(high, FARTHEST * angle))
     if verdict.fell_box is not None and verdict.overturned_at_s is not None:
         name = f"fell, {verdict.overturned_at_s:.3f} s"
-        axes.axvline(verdict.overturned_at_s, color=GREY, linestyle=(0, (1, 2)), linewidth=1.0, label=name)
-    legend_above(axes, LEGEND_COLUMNS)
+        axes.axvline(
+            verdict.overturned_at_s, color=style.GREY, linestyle=(0, (1, 2)), linewidth=1.0, label=name
+        )
+    style.legend_above(axes, LEGEND_COLUMNS)
     sizes = [quantity.factor * quantity.largest(box) for box in boxes]
     most = int(np.argmax(sizes))
-    most_words = f"< {quantity.least:g}" if 0.0 < sizes[most] < quantity.least else number(sizes[most])
+    most_words = f"< {quantity.least:g}" if 0.0 < sizes[most] < quantity.least else style.number(sizes[most])
     title = f"{quantity.title}: {most_words}{quantity.unit} at most (box {most + 1})"
-    head(figure, title, status=run.status)
+    style.head(figure, title, status=run.status)
     return figure
 
 

@@ -23,17 +23,7 @@ from fem.case.uncertainty import (
     TOLERANCE,
     WEAKENING,
 )
-from fem.figures.style import (
-    BLACK,
-    BLUE,
-    STATE_COLOURS,
-    VERMILLION,
-    curve_panel,
-    head,
-    legend_above,
-    panels,
-    time_panels,
-)
+from fem.figures import style
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
 from fem.results.run_result import BandMember, RigidCheckResult, RunAndBlock, Verdict
@@ -69,16 +59,16 @@ def rigid_check_figure(run: OpenedRun) -> Figure | None:
     reasons = "; ".join(check.reasons)
     fair = "A fair comparison" if check.meaningful else f"No fair comparison: {reasons}"
     lines = textwrap.wrap(f"{fair}.{_ratios(check)}", LINE_LENGTH)
-    figure, (above, below) = time_panels((2.4, 1.35), header=3 + len(lines))
-    curve_panel(
+    figure, (above, below) = style.time_panels((2.4, 1.35), header=3 + len(lines))
+    style.curve_panel(
         above,
         "rotation [degrees]",
         time,
-        (found, BLUE, "-", f"container, {run.case.solver.model} model"),
-        (block, VERMILLION, "--", f"analytic {check.reference or 'rigid block'}"),
+        (found, style.BLUE, "-", f"container, {run.case.solver.model} model"),
+        (block, style.VERMILLION, "--", f"analytic {check.reference or 'rigid block'}"),
         zero=False,
     )
-    for key, colour, marker in (("run", BLUE, "o"), ("block", VERMILLION, "x")):
+    for key, colour, marker in (("run", style.BLUE, "o"), ("block", style.VERMILLION, "x")):
         above.plot(
             [getattr(peak, f"{key}_s") for peak in check.peaks],
             [math.degrees(getattr(peak, f"{key}_rad")) for peak in check.peaks],
@@ -87,16 +77,16 @@ def rigid_check_figure(run: OpenedRun) -> Figure | None:
             fillstyle="none",
             markersize=6,
         )
-    for key, colour, style in (("run", BLUE, (0, (1, 2))), ("block", VERMILLION, (0, (4, 3)))):
+    for key, colour, dashes in (("run", style.BLUE, (0, (1, 2))), ("block", style.VERMILLION, (0, (4, 3)))):
         impact = getattr(check.first_impact_s, key, None)
         if impact is not None:
             label = f"first impact, {'container' if key == 'run' else 'block'}: {impact:.4f} s"
             for axes in (above, below):
-                axes.axvline(impact, color=colour, linestyle=style, linewidth=1.0, label=label)
+                axes.axvline(impact, color=colour, linestyle=dashes, linewidth=1.0, label=label)
                 label = ""
-    curve_panel(below, "difference [degrees]", time, (found - block, BLACK, "-", None))
-    legend_above(above, columns=2)
-    head(figure, "Comparison with the analytic rigid block", "\n".join(lines))
+    style.curve_panel(below, "difference [degrees]", time, (found - block, style.BLACK, "-", None))
+    style.legend_above(above, columns=2)
+    style.head(figure, "Comparison with the analytic rigid block", "\n".join(lines))
     return figure
 
 
@@ -109,7 +99,7 @@ def band_figure(run: OpenedRun) -> Figure | None:
     groups: dict[str, list[BandMember]] = {}
     for member in band.members:
         groups.setdefault(_group_of(member), []).append(member)
-    figure, (above, below) = panels((2.2, 1.5), header=3)
+    figure, (above, below) = style.panels((2.2, 1.5), header=3)
     for place, members in enumerate(groups.values()):
         spread = np.linspace(-0.3, 0.3, len(members)) if len(members) > 1 else np.zeros(1)
         for offset, member in zip(spread, members, strict=True):
@@ -119,16 +109,16 @@ def band_figure(run: OpenedRun) -> Figure | None:
                     place + offset,
                     height,
                     marker="o" if member.outcome else "x",
-                    color=STATE_COLOURS.get(member.outcome or "", VERMILLION),
-                    markeredgecolor=BLACK if member.outcome else VERMILLION,
+                    color=style.STATE_COLOURS.get(member.outcome or "", style.VERMILLION),
+                    markeredgecolor=style.BLACK if member.outcome else style.VERMILLION,
                     markersize=9 if own else 5,
                     linestyle="none",
                 )
     for outcome in band.outcomes:
-        above.plot([], [], "o", color=STATE_COLOURS[outcome], markersize=8, label=outcome)
+        above.plot([], [], "o", color=style.STATE_COLOURS[outcome], markersize=8, label=outcome)
     if any(member.outcome is None for member in band.members):
-        above.plot([], [], "x", color=VERMILLION, label="the solution failed")
-    above.axhline(1.0, color=BLACK, linestyle="-.", linewidth=1.0, label="slenderness angle")
+        above.plot([], [], "x", color=style.VERMILLION, label="the solution failed")
+    above.axhline(1.0, color=style.BLACK, linestyle="-.", linewidth=1.0, label="slenderness angle")
     above.set_ylim(0.0, 1.3)
     above.set_ylabel("rotation ratio [-]")
     below.set_ylim(bottom=0.0)
@@ -138,12 +128,12 @@ def band_figure(run: OpenedRun) -> Figure | None:
     below.set_xlabel("changed input, or several at once [-]")
     for axes in (above, below):
         axes.set_xlim(-0.6, len(groups) - 0.4)
-    legend_above(above, columns=4)
+    style.legend_above(above, columns=4)
     sure = verdict.sure or ("unsure" if band.unsure else "the same outcome throughout")
     low, high = band.rotation_ratio or (0.0, 0.0)
     ratios = " to ".join(map(ratio_in_words, (low, high)))
     statement = f"rotation ratio {ratios}; the large mark is the run itself"
-    head(figure, f"Band over what is not known, {sure}: {' or '.join(band.outcomes)}", statement)
+    style.head(figure, f"Band over what is not known, {sure}: {' or '.join(band.outcomes)}", statement)
     return figure
 
 

@@ -5,23 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
-from fem.figures.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    LEGEND_GAP,
-    LINE,
-    NEAR_LIMIT,
-    ORANGE,
-    PURPLE,
-    VERMILLION,
-    curve_panel,
-    head,
-    legend_above,
-    number,
-    time_panels,
-)
+from fem.figures import style
 from fem.results.history import CRUSHING_COLUMN, History
 from fem.results.reader import OpenedRun
 from fem.results.run_result import Energy, StaticResult
@@ -34,7 +18,7 @@ DECIMALS = 3  #: of an energy in a legend
 def energy_figure(run: OpenedRun) -> Figure:
     """Energy stored; supplied and dissipated since the start; imbalance of the time stepping."""
     history, energy = run.history, run.typed_result.energy or Energy()
-    figure, axes = time_panels((1.7, 1.9, 0.9), gaps=(LEGEND_GAP + LINE, LEGEND_GAP))
+    figure, axes = style.time_panels((1.7, 1.9, 0.9), gaps=(style.LEGEND_GAP + style.LINE, style.LEGEND_GAP))
     largest = max(
         float(np.abs(history[name]).max())
         for name in ("kinetic_J", "strain_J", "base_work_J", "imbalance_J", *DISSIPATED)
@@ -42,14 +26,16 @@ def energy_figure(run: OpenedRun) -> Figure:
     unit = ("kJ", 1e3) if largest >= SMALL else ("J", 1.0)
     _draw_stored(axes[0], run, energy.reference_J, *unit)
     _draw_supplied(axes[1], history, *unit)
-    imbalance = (history["imbalance_J"], PURPLE, "-", _imbalance_limits(energy))
-    curve_panel(axes[2], "imbalance [J]", history["time_s"], imbalance)
-    legend_above(axes[0])
-    legend_above(axes[1], columns=3)
-    legend_above(axes[2])
+    imbalance = (history["imbalance_J"], style.PURPLE, "-", _imbalance_limits(energy))
+    style.curve_panel(axes[2], "imbalance [J]", history["time_s"], imbalance)
+    style.legend_above(axes[0])
+    style.legend_above(axes[1], columns=3)
+    style.legend_above(axes[2])
     closure = energy.closure_error
-    share = "" if closure is None else f": largest imbalance {number(closure, 2)} of the energy to overturn"
-    head(figure, f"Energy{share}", status=run.status)
+    share = (
+        "" if closure is None else f": largest imbalance {style.number(closure, 2)} of the energy to overturn"
+    )
+    style.head(figure, f"Energy{share}", status=run.status)
     return figure
 
 
@@ -59,37 +45,37 @@ def _draw_stored(axes: Axes, run: OpenedRun, reference: float | None, unit: str,
     # From the mass centre of the standing container: the work that its weight can still do.
     static = run.typed_result.static or StaticResult()
     raised = history["potential_J"] - run.case.weight * (static.centroid_m or 0.0)
-    curve_panel(
+    style.curve_panel(
         axes,
         f"stored [{unit}]",
         history["time_s"],
-        (history["kinetic_J"] / size, BLUE, "-", "kinetic"),
-        (raised / size, VERMILLION, "--", "gravity"),
-        (history["strain_J"] / size, GREEN, ":", "strain"),
+        (history["kinetic_J"] / size, style.BLUE, "-", "kinetic"),
+        (raised / size, style.VERMILLION, "--", "gravity"),
+        (history["strain_J"] / size, style.GREEN, ":", "strain"),
         zero=False,
     )
-    if reference and raised.max() > NEAR_LIMIT * reference:
-        label = f"to overturn, {number(reference / size)} {unit}"
-        axes.axhline(reference / size, color=BLACK, linestyle="-.", linewidth=0.9, label=label)
+    if reference and raised.max() > style.NEAR_LIMIT * reference:
+        label = f"to overturn, {style.number(reference / size)} {unit}"
+        axes.axhline(reference / size, color=style.BLACK, linestyle="-.", linewidth=0.9, label=label)
 
 
 def _draw_supplied(axes: Axes, history: History, unit: str, size: float) -> None:
     """Energies since the start; the rest of the floor's work is stored, also in the springs of the contact."""
     crushing = history[CRUSHING_COLUMN] if history.crushing else np.zeros(len(history))
     stored = history["base_work_J"] - sum(history[name] for name in (*DISSIPATED, "imbalance_J")) - crushing
-    crushed = [(crushing, "crushing of the floor", PURPLE, "-")] if history.crushing else []
+    crushed = [(crushing, "crushing of the floor", style.PURPLE, "-")] if history.crushing else []
     curves = []
     for values, name, colour, line in (
-        (history["base_work_J"], "work of the floor", BLUE, "-"),
-        (stored, "stored", GREY, "-"),
-        (history["friction_J"], "friction", VERMILLION, "--"),
-        (history["contact_damping_J"], "contact damping", GREEN, "-."),
-        (history["material_damping_J"], "material damping", ORANGE, ":"),
+        (history["base_work_J"], "work of the floor", style.BLUE, "-"),
+        (stored, "stored", style.GREY, "-"),
+        (history["friction_J"], "friction", style.VERMILLION, "--"),
+        (history["contact_damping_J"], "contact damping", style.GREEN, "-."),
+        (history["material_damping_J"], "material damping", style.ORANGE, ":"),
         *crushed,
     ):
         end = round(float(values[-1]) / size, DECIMALS) + 0.0  # no minus zero
-        curves.append((values / size, colour, line, f"{name}, {number(end)} {unit}"))
-    curve_panel(axes, f"since the start [{unit}]", history["time_s"], *curves)
+        curves.append((values / size, colour, line, f"{name}, {style.number(end)} {unit}"))
+    style.curve_panel(axes, f"since the start [{unit}]", history["time_s"], *curves)
 
 
 def _imbalance_limits(energy: Energy) -> str:
@@ -99,6 +85,5 @@ def _imbalance_limits(energy: Energy) -> str:
         return text
     dissipated = sum(getattr(energy, key) or 0.0 for key in (*DISSIPATED, CRUSHING_COLUMN))
     loss = max(LOSS_SHARE_LIMIT * dissipated, LOSS_LIMIT * reference)
-    return (
-        f"{text}; a loss of {number(loss)} J or a gain of {number(GAIN_LIMIT * reference, 2)} J fails the run"
-    )
+    gain = style.number(GAIN_LIMIT * reference, 2)
+    return f"{text}; a loss of {style.number(loss)} J or a gain of {gain} J fails the run"

@@ -8,21 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fem.figures.style import (
-    BLACK,
-    BLUE,
-    GREY,
-    LEGEND_GAP,
-    NEAR_LIMIT,
-    VERMILLION,
-    changing_weight,
-    curve_panel,
-    draw_limits,
-    head,
-    legend_above,
-    number,
-    time_panels,
-)
+from fem.figures import style
 from fem.results.reader import OpenedRun
 from fem.runtime.arrays import FloatArray
 
@@ -42,40 +28,46 @@ def forces_figure(run: OpenedRun) -> Figure:
         for force, large in ((normal, weight), (shear, contact.mu_static * weight))
     ]
     cut = any(limit is not None for limit in limits)
-    figure, axes = time_panels((1.5, 1.7), history=history, gaps=(LEGEND_GAP,), header=3 if cut else 2)
+    figure, axes = style.time_panels(
+        (1.5, 1.7), history=history, gaps=(style.LEGEND_GAP,), header=3 if cut else 2
+    )
     for panel, force, label, colour in (
-        (axes[0], normal, "normal force [kN]", BLUE),
-        (axes[1], shear, "shear force [kN]", VERMILLION),
+        (axes[0], normal, "normal force [kN]", style.BLUE),
+        (axes[1], shear, "shear force [kN]", style.VERMILLION),
     ):
-        curve_panel(panel, label, time, (force, colour, "-", None), zero=False, linewidth=0.8)
-    changing = changing_weight(history, run.case.gravity_m_s2)
+        style.curve_panel(panel, label, time, (force, colour, "-", None), zero=False, linewidth=0.8)
+    changing = style.changing_weight(history, run.case.gravity_m_s2)
     times = " times (g + a_v)/g" if changing is not None else ""
-    name = f"weight, {number(weight, 4)} kN{times}"
+    name = f"weight, {style.number(weight, 4)} kN{times}"
     if changing is None:
-        axes[0].axhline(weight, color=BLACK, linestyle="--", linewidth=0.9, label=name)
+        axes[0].axhline(weight, color=style.BLACK, linestyle="--", linewidth=0.9, label=name)
     else:
         axes[0].plot(
-            changing[0], weight * changing[1], color=BLACK, linestyle="--", linewidth=0.9, label=name
+            changing[0], weight * changing[1], color=style.BLACK, linestyle="--", linewidth=0.9, label=name
         )
-    if cap is not None and NEAR_LIMIT * 1e-3 * cap < normal.max():
-        label = f"a corner crushes at {number(1e-3 * cap)} kN"
-        axes[0].axhline(1e-3 * cap, color=BLACK, linestyle=":", linewidth=0.9, label=label)
+    if cap is not None and style.NEAR_LIMIT * 1e-3 * cap < normal.max():
+        label = f"a corner crushes at {style.number(1e-3 * cap)} kN"
+        axes[0].axhline(1e-3 * cap, color=style.BLACK, linestyle=":", linewidth=0.9, label=label)
     axes[0].set_ylim(bottom=0.0)
     friction = {"static": (contact.mu_static, "--"), "kinetic": (contact.mu_kinetic, ":")}
-    for name, (mu, style) in friction.items():
-        label = f"{name} friction{' of the weight' if not times else ''}, ±{number(mu * weight)} kN{times}"
-        draw_limits(axes[1], mu * weight, label, of_weight=changing, color=BLACK, linestyle=style)
+    for name, (mu, dashes) in friction.items():
+        label = (
+            f"{name} friction{' of the weight' if not times else ''}, ±{style.number(mu * weight)} kN{times}"
+        )
+        style.draw_limits(
+            axes[1], mu * weight, label, of_weight=changing, color=style.BLACK, linestyle=dashes
+        )
         if contact.mu_static == contact.mu_kinetic:
             break
     for panel, force, limit in zip(axes, (normal, shear), limits, strict=True):
         if limit is not None:
             cut_off(panel, time, force, limit)
-        legend_above(panel)
+        style.legend_above(panel)
     statement = (
-        f"marks at the rim: beyond the scale, up to {number(normal.max(), 4)} and "
-        f"{number(np.abs(shear).max(), 4)} kN, when the contact's damper stops an impact"
+        f"marks at the rim: beyond the scale, up to {style.number(normal.max(), 4)} and "
+        f"{style.number(np.abs(shear).max(), 4)} kN, when the contact's damper stops an impact"
     )
-    head(figure, "Forces of the floor on the container", statement if cut else "", status=run.status)
+    style.head(figure, "Forces of the floor on the container", statement if cut else "", status=run.status)
     return figure
 
 
@@ -93,4 +85,4 @@ def cut_off(axes: Axes, time: FloatArray, force: FloatArray, limit: float) -> No
         # Marks closer than that would overlap.
         _, apart = np.unique(np.round(beyond / (time[-1] - time[0]) * MARKS), return_index=True)
         rim = np.full(len(apart), sign * limit)
-        axes.plot(beyond[apart], rim, marker, color=GREY, markersize=3, clip_on=False)
+        axes.plot(beyond[apart], rim, marker, color=style.GREY, markersize=3, clip_on=False)

@@ -13,23 +13,7 @@ from matplotlib.figure import Figure
 
 from fem.assessment.joint_demands import edge_forces
 from fem.case.boxes import shared_face
-from fem.figures.style import (
-    BLACK,
-    BLUE,
-    LEFT,
-    LEGEND_GAP,
-    LINE,
-    RIGHT,
-    SKY,
-    VERMILLION,
-    head,
-    keep_visible,
-    kept_samples,
-    legend_above,
-    number,
-    time_panels,
-    zero_line,
-)
+from fem.figures import style
 from fem.results.history import JOINT_COLUMNS
 from fem.results.reader import OpenedRun
 from fem.results.run_result import Verdict
@@ -57,8 +41,8 @@ def joints_figure(run: OpenedRun) -> Figure | None:
         1e-3 * np.array([history[name.format(joint)][standing] for joint in range(1, history.joints + 1)])
         for name in JOINT_COLUMNS
     )
-    figure, axes = time_panels(
-        (1.1, 0.7), history=history, gaps=(LEGEND_GAP,), header=HEADER, above=RANGES + BELOW
+    figure, axes = style.time_panels(
+        (1.1, 0.7), history=history, gaps=(style.LEGEND_GAP,), header=HEADER, above=RANGES + BELOW
     )
     levels = np.array([*(box.bottom for box in stack[1:]), stack[-1].top])
     weight = 1e-3 * case.gravity_m_s2 * np.cumsum([box.mass for box in stack[:0:-1]])[::-1]
@@ -67,33 +51,38 @@ def joints_figure(run: OpenedRun) -> Figure | None:
     _draw_ranges(over_height[1], levels, shear, "shear", "kN", [mu * weight, -mu * weight])
     _draw_ranges(over_height[2], levels, moment, "moment", "kNm", [half * weight, -half * weight])
     over_height[0].legend(
-        loc="lower left", bbox_to_anchor=(0.0, 1.0 + LINE / RANGES), ncols=3, borderaxespad=0.1
+        loc="lower left", bbox_to_anchor=(0.0, 1.0 + style.LINE / RANGES), ncols=3, borderaxespad=0.1
     )
     left, right = (np.maximum(0.0, -edge) for edge in edge_forces(normal, moment, 2.0 * half[:, None]))
     beyond = np.maximum(0.0, np.abs(shear) - mu * np.maximum(normal, 0.0))
-    zero_line(axes[0])
-    _draw_bolt_force(axes[0], time, left, "left edge", BLUE)
-    _draw_bolt_force(axes[0], time, right, "right edge", VERMILLION, sign=-1.0)
-    keep_visible(axes[0], LEAST_FORCE)
+    style.zero_line(axes[0])
+    _draw_bolt_force(axes[0], time, left, "left edge", style.BLUE)
+    _draw_bolt_force(axes[0], time, right, "right edge", style.VERMILLION, sign=-1.0)
+    style.keep_visible(axes[0], LEAST_FORCE)
     axes[0].yaxis.set_major_formatter(lambda value, position: f"{abs(value):g}")  # both are tension
-    _draw_bolt_force(axes[1], time, beyond, f"beyond μ = {number(mu)}", BLUE)
+    _draw_bolt_force(axes[1], time, beyond, f"beyond μ = {style.number(mu)}", style.BLUE)
     axes[1].set_ylim(0.0, max(1.08 * float(beyond.max()), LEAST_FORCE))
     for panel, label in zip(axes, ("tension [kN]", "shear [kN]"), strict=True):
         panel.set_ylabel(label)
-        legend_above(panel)
+        style.legend_above(panel)
     title = "Joints between the boxes: forces over the height, and what bolts must carry"
-    head(figure, title, status=run.status)
+    style.head(figure, title, status=run.status)
     return figure
 
 
 def _side_by_side(figure: Figure) -> list[Axes]:
     """Three panels side by side below the header, over the height above the floor."""
     wide, tall = figure.get_size_inches()
-    each = (wide - LEFT - RIGHT - 2.0 * BETWEEN) / 3.0
-    bottom = tall - 0.08 - HEADER * LINE - RANGES
+    each = (wide - style.LEFT - style.RIGHT - 2.0 * BETWEEN) / 3.0
+    bottom = tall - 0.08 - HEADER * style.LINE - RANGES
     found: list[Axes] = []
     for place in range(3):
-        rectangle = ((LEFT + place * (each + BETWEEN)) / wide, bottom / tall, each / wide, RANGES / tall)
+        rectangle = (
+            (style.LEFT + place * (each + BETWEEN)) / wide,
+            bottom / tall,
+            each / wide,
+            RANGES / tall,
+        )
         found.append(figure.add_axes(rectangle, sharey=found[0] if found else None))
         found[-1].tick_params(labelleft=place == 0)
     found[0].set_ylabel("above the floor [m]")
@@ -110,24 +99,26 @@ def _draw_ranges(
     levels, top, box = levels[:-1], levels[-1], np.diff(levels).min(initial=levels[0])
     low, high = forces.min(axis=1), forces.max(axis=1)
     usually = np.quantile(forces, USUAL, axis=1)
-    axes.axvline(0.0, color=BLACK, linewidth=0.7)
+    axes.axvline(0.0, color=style.BLACK, linewidth=0.7)
     for (start, end), colour, label in (
-        ((low, high), SKY, "least to largest"),
-        (usually, BLUE, "nine tenths of the time"),
+        ((low, high), style.SKY, "least to largest"),
+        (usually, style.BLUE, "nine tenths of the time"),
     ):
         bars = axes.barh(levels, end - start, left=start, height=THICK * box, label=label)
         for bar in bars:
             bar.set(color=colour, linewidth=0.8)
     name_of_marks: str | None = "weight above: N, ±μN, ±N × width/2"
     for mark in marks:
-        axes.plot(mark, levels, "|", color=BLACK, markersize=11.0, markeredgewidth=1.2, label=name_of_marks)
+        axes.plot(
+            mark, levels, "|", color=style.BLACK, markersize=11.0, markeredgewidth=1.2, label=name_of_marks
+        )
         name_of_marks = None
     axes.set_ylim(0.0, top)
     axes.grid(visible=False, axis="y")
     axes.set_xlabel(f"{name} [{unit}]")
     axes.margins(x=0.06)
     joint = int(np.abs(forces).max(axis=1).argmax())
-    largest = f"up to {number(np.abs(forces[joint]).max())} {unit}, at {number(levels[joint])} m"
+    largest = f"up to {style.number(np.abs(forces[joint]).max())} {unit}, at {style.number(levels[joint])} m"
     axes.set_title(largest, fontsize=8.0, pad=4.0)
 
 
@@ -137,9 +128,9 @@ def _draw_bolt_force(
     """The largest of forces (J, n) >= 0 at every instant, drawn upwards or, with `sign` -1, downwards."""
     largest = forces.max(axis=0)
     joint, instant = np.unravel_index(int(forces.argmax()), forces.shape)
-    where = f": {number(largest[instant])} kN at most, joint {joint + 1}, {time[instant]:.3f} s"
+    where = f": {style.number(largest[instant])} kN at most, joint {joint + 1}, {time[instant]:.3f} s"
     if largest[instant] == 0.0:
         axes.plot([], [], color=colour, label=f"{name}: none")
         return
-    kept = kept_samples(largest)
+    kept = style.kept_samples(largest)
     axes.fill_between(time[kept], sign * largest[kept], color=colour, linewidth=0.4, label=name + where)

@@ -7,25 +7,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fem.figures.style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    LINE,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILLION,
-    head,
-    house_style,
-    legend_above,
-    panels,
-    spectrum_axes,
-)
+from fem.figures import style
 from fem.runtime.arrays import FloatArray
 
-COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, SKY, PURPLE, GREY)
+COLOURS = (style.BLUE, style.VERMILLION, style.GREEN, style.ORANGE, style.SKY, style.PURPLE, style.GREY)
 LINES = ("-", "--", ":", "-.")
 MOST_NAMED = 8  #: motions that the legend names
 NAMES_A_LINE = 3
@@ -56,11 +41,11 @@ def draw_spectra(
     groups = [("horizontal", [name for name in spectra if name not in vertical])]
     if vertical:
         groups.append(("vertical", list(vertical)))
-    with house_style():
+    with style.house_style():
         lines = max(_legend_lines(len(names)) for _, names in groups)
-        gaps = [0.35 + LINE * lines] * (len(groups) - 1)
-        figure, axes = panels([2.6] * len(groups), gaps=gaps, header=2 + lines)
-        head(figure, "Response spectra of the motions", "pseudo-acceleration, 5 % damping")
+        gaps = [0.35 + style.LINE * lines] * (len(groups) - 1)
+        figure, axes = style.panels([2.6] * len(groups), gaps=gaps, header=2 + lines)
+        style.head(figure, "Response spectra of the motions", "pseudo-acceleration, 5 % damping")
         for panel, (direction, names) in zip(axes, groups, strict=True):
             if len(names) > MOST_DRAWN:
                 _draw_fractiles(panel, periods, np.array([spectra[name] for name in names]))
@@ -70,11 +55,11 @@ def draw_spectra(
                 panel.plot(periods, spectra[name], color=colour, linestyle=line, linewidth=0.8, label=label)
             if len(names) > 1:
                 mean = np.mean([spectra[name] for name in names], axis=0)
-                panel.plot(periods, mean, color=BLACK, linewidth=1.8, label=f"mean of {len(names)}")
-            spectrum_axes(panel)
+                panel.plot(periods, mean, color=style.BLACK, linewidth=1.8, label=f"mean of {len(names)}")
+            style.spectrum_axes(panel)
             panel.set_ylabel(f"{direction} [m/s²]")
             if lines:
-                legend_above(panel, NAMES_A_LINE)
+                style.legend_above(panel, NAMES_A_LINE)
         axes[-1].set_xlabel("period [s]")
         return figure
 
@@ -83,10 +68,16 @@ def _draw_fractiles(panel: Axes, periods: FloatArray, spectra: FloatArray) -> No
     """Bands of spectra (n, k) that hold all motions, and those from 16 to 84 %; the median."""
     low, middle, high = np.quantile(spectra, (0.16, 0.5, 0.84), axis=0)
     panel.fill_between(
-        periods, spectra.min(axis=0), spectra.max(axis=0), color=BLUE, alpha=0.15, linewidth=0.0, label="all"
+        periods,
+        spectra.min(axis=0),
+        spectra.max(axis=0),
+        color=style.BLUE,
+        alpha=0.15,
+        linewidth=0.0,
+        label="all",
     )
-    panel.fill_between(periods, low, high, color=BLUE, alpha=0.35, linewidth=0.0, label="16 to 84 %")
-    panel.plot(periods, middle, color=BLUE, linewidth=1.2, label="median")
+    panel.fill_between(periods, low, high, color=style.BLUE, alpha=0.35, linewidth=0.0, label="16 to 84 %")
+    panel.plot(periods, middle, color=style.BLUE, linewidth=1.2, label="median")
 
 
 def _legend_lines(motions: int) -> int:
@@ -98,9 +89,11 @@ def _legend_lines(motions: int) -> int:
 
 def draw_shares(curves: Sequence[ShareCurve], *, title: str, label: str) -> Figure:
     """Share of the motions that overturns over their strength, with intervals."""
-    with house_style():
-        figure, (axes,) = panels((3.0,), header=2 + -(-len(curves) // NAMES_A_LINE))
-        head(figure, title, "share of the motions that overturn, worse sign of each, with 95 % intervals")
+    with style.house_style():
+        figure, (axes,) = style.panels((3.0,), header=2 + -(-len(curves) // NAMES_A_LINE))
+        style.head(
+            figure, title, "share of the motions that overturn, worse sign of each, with 95 % intervals"
+        )
         widths = [float(np.ptp(one.strengths)) for one in curves]
         for k, one in enumerate(curves):
             known = np.isfinite(one.share)
@@ -122,5 +115,5 @@ def draw_shares(curves: Sequence[ShareCurve], *, title: str, label: str) -> Figu
         axes.set_ylabel("share that overturns [-]")
         axes.set_xlabel(label)
         if any(one.label for one in curves):
-            legend_above(axes, NAMES_A_LINE)
+            style.legend_above(axes, NAMES_A_LINE)
         return figure

@@ -8,25 +8,13 @@ from matplotlib.figure import Figure
 
 from fem.case.case import CaseError
 from fem.case.recorded import MotionKey, recorded_motion
-from fem.figures.style import (
-    BLUE,
-    GREEN,
-    TIME,
-    VERMILLION,
-    curve_panel,
-    head,
-    house_style,
-    legend_above,
-    number,
-    panels,
-    spectrum_axes,
-)
+from fem.figures import style
 from fem.records.processing import motion_of
 from fem.records.record import Component
 from fem.records.spectrum import Spectrum, evenly_sampled, log_spaced_periods, response_spectrum
 from fem.results.reader import OpenedRun
 
-COLOURS = (BLUE, VERMILLION, GREEN)
+COLOURS = (style.BLUE, style.VERMILLION, style.GREEN)
 LINES = ("-", "--", ":")
 DAMPED = "pseudo-acceleration, 5 % of critical damping"
 
@@ -51,12 +39,12 @@ def spectrum_figure(run: OpenedRun) -> Figure | None:
         return None
     if not found:
         return None
-    figure, (axes,) = panels((2.4,), header=2 + (len(found) > 1))
+    figure, (axes,) = style.panels((2.4,), header=2 + (len(found) > 1))
     _draw_spectra(axes, found)
     periods, largest = _largest(found[0][1])
-    head(
+    style.head(
         figure,
-        f"Response spectrum of the floor's motion: {number(largest)} m/s² at {number(periods)} s",
+        f"Response spectrum of the floor's motion: {style.number(largest)} m/s² at {style.number(periods)} s",
         DAMPED,
     )
     return figure
@@ -70,8 +58,8 @@ def record_figure(components: Sequence[Component], title: str) -> Figure:
         title: such as the name of the file.
     """
     named = [(one.name or one.direction or "", one) for one in components]
-    with house_style():
-        figure, axes = panels((1.3, 1.3, 1.3, 2.2), gaps=(0.1, 0.1, 0.75), header=2 + (len(named) > 1))
+    with style.house_style():
+        figure, axes = style.panels((1.3, 1.3, 1.3, 2.2), gaps=(0.1, 0.1, 0.75), header=2 + (len(named) > 1))
         for k, (name, one) in enumerate(named):
             displacement, velocity, acceleration = motion_of(one)
             for panel, label, values in (
@@ -85,17 +73,17 @@ def record_figure(components: Sequence[Component], title: str) -> Figure:
                     "-",
                     name if panel is axes[0] and len(named) > 1 else None,
                 )
-                curve_panel(panel, label, one.times, curve, zero=k == 0)
+                style.curve_panel(panel, label, one.times, curve, zero=k == 0)
         for panel in axes[:2]:
             panel.tick_params(labelbottom=False)
-        axes[2].set_xlabel(TIME)
+        axes[2].set_xlabel(style.TIME)
         _draw_spectra(axes[3], named)
         if len(named) > 1:
-            legend_above(axes[0])
+            style.legend_above(axes[0])
         first = components[0]
         peak = float(np.abs(motion_of(first)[2]).max())
-        statement = f"{first.times.size} samples of {number(first.step)} s; below: {DAMPED}"
-        head(figure, f"{title}: {number(peak)} m/s² at most", statement)
+        statement = f"{first.times.size} samples of {style.number(first.step)} s; below: {DAMPED}"
+        style.head(figure, f"{title}: {style.number(peak)} m/s² at most", statement)
         return figure
 
 
@@ -115,8 +103,8 @@ def _draw_spectra(axes: Axes, named: Sequence[tuple[str, Component]]) -> None:
             linestyle=LINES[k % len(LINES)],
             label=name if len(named) > 1 else None,
         )
-    spectrum_axes(axes)
+    style.spectrum_axes(axes)
     axes.set_ylabel("spectrum [m/s²]")
     axes.set_xlabel("period [s]")
     if len(named) > 1:
-        legend_above(axes)
+        style.legend_above(axes)

@@ -15,6 +15,7 @@ from contact.stepping.observables import ROCKING
 from fem.assessment.ranges import LEAST_DEGREES
 from fem.assessment.summary import ratio_in_words
 from fem.assessment.verdict import SLIDING
+from fem.figures import style
 from fem.figures.boxes import OPENING, ROTATION, SLIP, box_figure
 from fem.figures.checks import band_figure, rigid_check_figure
 from fem.figures.energy import energy_figure
@@ -22,32 +23,6 @@ from fem.figures.forces import forces_figure
 from fem.figures.joints import joints_figure
 from fem.figures.modes import modes_figure
 from fem.figures.recorded import spectrum_figure
-from fem.figures.style import (
-    BLACK,
-    BLUE,
-    GAP,
-    GREEN,
-    GREY,
-    LEGEND_GAP,
-    NEAR_LIMIT,
-    PLANE,
-    VERMILLION,
-    WIDTH,
-    Drawing,
-    changing_weight,
-    cursor_axes,
-    curve_panel,
-    draw_limits,
-    head,
-    house_style,
-    keep_visible,
-    kept_samples,
-    legend_above,
-    number,
-    panels,
-    svg_of,
-    time_panels,
-)
 from fem.model.container import Container
 from fem.results.reader import OpenedRun
 from fem.results.run_result import StaticResult, Verdict
@@ -65,19 +40,19 @@ def figures_of(run: OpenedRun) -> dict[str, Figure]:
     """
     if len(run.history) < 2:
         return {}
-    with house_style():
+    with style.house_style():
         drawn = {name: draw(run) for name, draw in FIGURES.items()}
     return {name: figure for name, figure in drawn.items() if figure is not None}
 
 
-def draw_all(run: OpenedRun, container: Container) -> list[Drawing]:
+def draw_all(run: OpenedRun, container: Container) -> list[style.Drawing]:
     """The figures of a run as SVG, with the elastic modes of its container whatever the model.
 
     Raises:
         FolderError: the history is missing or damaged.
     """
     figures, elements = figures_of(run), container.elements
-    with house_style():
+    with style.house_style():
         figures["modes"] = modes_figure(
             points=elements.nodes,
             cells=elements.cells,
@@ -87,9 +62,9 @@ def draw_all(run: OpenedRun, container: Container) -> list[Drawing]:
         )
     drawings = []
     for name, figure in figures.items():
-        svg = svg_of(figure)  # lays the figure out
+        svg = style.svg_of(figure)  # lays the figure out
         title = figure.texts[0].get_text()  # written by `head`
-        drawings.append(Drawing(name=name, title=title, cursor=cursor_axes(figure), svg=svg))
+        drawings.append(style.Drawing(name=name, title=title, cursor=style.cursor_axes(figure), svg=svg))
     return drawings
 
 
@@ -97,43 +72,45 @@ def base_motion_figure(run: OpenedRun) -> Figure:
     """Displacement, velocity and acceleration of the floor, along x and upward."""
     history, static = run.history, run.typed_result.static or StaticResult()
     displacement, acceleration = 1e3 * history["base_displacement_m"], history["base_acceleration_m_s2"]
-    gaps = (LEGEND_GAP if history.vertical else GAP, LEGEND_GAP)
-    figure, axes = time_panels((1.25, 1.25, 1.35), gaps=gaps, header=2 if history.vertical else 1)
+    gaps = (style.LEGEND_GAP if history.vertical else style.GAP, style.LEGEND_GAP)
+    figure, axes = style.time_panels((1.25, 1.25, 1.35), gaps=gaps, header=2 if history.vertical else 1)
     for panel, column, factor, label, colour in (
-        (axes[0], "displacement_m", 1e3, "displacement [mm]", BLUE),
-        (axes[1], "velocity_m_s", 1.0, "velocity [m/s]", GREEN),
-        (axes[2], "acceleration_m_s2", 1.0, "acceleration [m/s²]", VERMILLION),
+        (axes[0], "displacement_m", 1e3, "displacement [mm]", style.BLUE),
+        (axes[1], "velocity_m_s", 1.0, "velocity [m/s]", style.GREEN),
+        (axes[2], "acceleration_m_s2", 1.0, "acceleration [m/s²]", style.VERMILLION),
     ):
         values = factor * history[f"base_{column}"]
         name = "along x" if history.vertical and panel is axes[0] else None
-        curve_panel(panel, label, history["time_s"], (values, colour, "-", name))
+        style.curve_panel(panel, label, history["time_s"], (values, colour, "-", name))
         if history.vertical:
             upward = factor * history[f"base_vertical_{column}"]
-            curve_panel(panel, label, history["time_s"], (upward, GREY, "-", name and "upward"), zero=False)
-        keep_visible(panel, LEAST_MOTION)
+            style.curve_panel(
+                panel, label, history["time_s"], (upward, style.GREY, "-", name and "upward"), zero=False
+            )
+        style.keep_visible(panel, LEAST_MOTION)
     peak, moved = float(np.abs(acceleration).max()), float(np.abs(displacement).max())
-    weight = changing_weight(history, run.case.gravity_m_s2)
+    weight = style.changing_weight(history, run.case.gravity_m_s2)
     downhill = abs(run.case.gravity_downhill)
-    for limit, style, name in (
+    for limit, dashes, name in (
         (static.uplift_acceleration_m_s2, "--", "tilts"),
         (run.case.contact.mu_static * run.case.gravity_toward_floor - downhill, ":", "slides"),
     ):
         if limit and limit < 1.3 * peak:
-            label = f"a static load {name} it from {number(limit)} m/s²"
+            label = f"a static load {name} it from {style.number(limit)} m/s²"
             if history.vertical:
-                label = f"{name} statically from {number(limit)} (g + a_v)/g"
-            draw_limits(axes[2], limit, label, of_weight=weight, color=BLACK, linestyle=style)
+                label = f"{name} statically from {style.number(limit)} (g + a_v)/g"
+            style.draw_limits(axes[2], limit, label, of_weight=weight, color=style.BLACK, linestyle=dashes)
     if axes[2].get_legend_handles_labels()[0]:
-        legend_above(axes[2])
-    title = f"Motion of the floor: {number(moved)} mm and {number(peak)} m/s² at most"
+        style.legend_above(axes[2])
+    title = f"Motion of the floor: {style.number(moved)} mm and {style.number(peak)} m/s² at most"
     if not (peak or moved):
         title = "The floor stands still"
     if history.vertical:
-        legend_above(axes[0])
+        style.legend_above(axes[0])
         vertical = float(np.abs(history["base_vertical_acceleration_m_s2"]).max())
         along = title if peak or moved else "Motion of the floor"
-        title = f"{along}; {number(vertical)} m/s² upward or downward"
-    head(figure, title)
+        title = f"{along}; {style.number(vertical)} m/s² upward or downward"
+    style.head(figure, title)
     return figure
 
 
@@ -146,25 +123,33 @@ def rotation_figure(run: OpenedRun) -> Figure:
     figure, axes = _panel(run, rotation, "rotation [degrees]", f"{run.case.solver.model} model", legend=True)
     if check is not None:
         block = np.degrees(check["analytic_rotation_rad"])
-        curve_panel(
-            axes, "rotation [degrees]", check["time_s"], (block, VERMILLION, "--", "rigid block"), zero=False
+        style.curve_panel(
+            axes,
+            "rotation [degrees]",
+            check["time_s"],
+            (block, style.VERMILLION, "--", "rigid block"),
+            zero=False,
         )
     largest, rocking = float(np.abs(rotation).max()), ROCKING * angle
-    if largest >= NEAR_LIMIT * angle:
-        keep_visible(axes, 1.12 * angle)
-        draw_limits(axes, angle, f"slenderness angle ±{number(angle, 4)}°", color=BLACK, linestyle="-.")
+    if largest >= style.NEAR_LIMIT * angle:
+        style.keep_visible(axes, 1.12 * angle)
+        style.draw_limits(
+            axes, angle, f"slenderness angle ±{style.number(angle, 4)}°", color=style.BLACK, linestyle="-."
+        )
     else:
-        keep_visible(axes, 1.2 * rocking)
+        style.keep_visible(axes, 1.2 * rocking)
         if largest < 10.0 * rocking:
-            name = f"counts as rocking, ±{number(rocking, 2)}°"
-            draw_limits(axes, rocking, name, color=GREY, linestyle=":")
-        axes.plot([], [], " ", label=f"slenderness angle ±{number(angle, 4)}°: far off the scale")
+            name = f"counts as rocking, ±{style.number(rocking, 2)}°"
+            style.draw_limits(axes, rocking, name, color=style.GREY, linestyle=":")
+        axes.plot([], [], " ", label=f"slenderness angle ±{style.number(angle, 4)}°: far off the scale")
     _mark_impact(axes, verdict)
-    legend_above(axes)
+    style.legend_above(axes)
     found = math.degrees(verdict.max_rotation_rad or math.radians(largest))
-    largest_shown = f"< {LEAST_DEGREES:g}" if 0.0 < found < LEAST_DEGREES else number(found)
+    largest_shown = f"< {LEAST_DEGREES:g}" if 0.0 < found < LEAST_DEGREES else style.number(found)
     ratio = ratio_in_words(found / angle)
-    head(figure, f"Rotation: {largest_shown}° at most, {ratio} of the slenderness angle", status=run.status)
+    style.head(
+        figure, f"Rotation: {largest_shown}° at most, {ratio} of the slenderness angle", status=run.status
+    )
     return figure
 
 
@@ -176,16 +161,18 @@ def slip_figure(run: OpenedRun) -> Figure:
     limit = 1e3 * SLIDING * run.case.container.width_m
     small = bool(np.abs(slip).max() < 10.0 * limit)
     figure, axes = _panel(run, slip, "slip [mm]", zero=True, legend=small)
-    keep_visible(axes, 1.5 * limit)
+    style.keep_visible(axes, 1.5 * limit)
     if small:
-        draw_limits(axes, limit, f"counts as sliding, ±{number(limit, 2)} mm", color=GREY, linestyle=":")
-        legend_above(axes)
+        style.draw_limits(
+            axes, limit, f"counts as sliding, ±{style.number(limit, 2)} mm", color=style.GREY, linestyle=":"
+        )
+        style.legend_above(axes)
     largest = 1e3 * (verdict.max_slip_m or 0.0)
     travel = 1e3 * (verdict.slip_travel_m or 0.0)
     left = verdict.residual_slip_m  # the end may lie between two samples
     end = slip[-1] if left is None else 1e3 * left
     title = f"Slip: {_millimetres(largest)} at most, {_millimetres(end)} at the end, {_millimetres(travel)} travelled"
-    head(figure, title, status=run.status)
+    style.head(figure, title, status=run.status)
     return figure
 
 
@@ -199,11 +186,11 @@ def uplift_figure(run: OpenedRun) -> Figure:
     axes.set_ylim(0.0, max(1.08 * float(uplift.max()), run.case.container.width_m))
     if struck:
         _mark_impact(axes, verdict)
-        legend_above(axes)
+        style.legend_above(axes)
     impacts, largest = verdict.impacts, 1e3 * (verdict.max_uplift_m or 0.0)
     count = "" if impacts is None else f", {impacts} impact{'' if impacts == 1 else 's'}"
-    title = f"Uplift of the base: {number(largest)} mm at most{count}"
-    head(figure, title if largest > 0.0 else "The base never opens", status=run.status)
+    title = f"Uplift of the base: {style.number(largest)} mm at most{count}"
+    style.head(figure, title if largest > 0.0 else "The base never opens", status=run.status)
     return figure
 
 
@@ -217,26 +204,28 @@ def phase_portrait_figure(run: OpenedRun) -> Figure | None:
     if run.verdict.boxes and run.verdict.boxes[0].max_rotation_rad < ROCKING * angle:
         return None
     rotation, rate = run.history["rotation_rad"], run.history["angular_velocity_rad_s"]
-    figure, (axes,) = panels((4.0,), width=0.8 * WIDTH, header=2)
-    axes.set_label(PLANE)  # for `cursor_axes`
-    kept = kept_samples(rotation, rate)
-    axes.plot(np.degrees(rotation[kept]), np.degrees(rate[kept]), color=BLUE, linewidth=0.7)
-    axes.plot(*np.degrees([rotation[0], rate[0]]), "o", color=GREEN, label="start")
-    axes.plot(*np.degrees([rotation[-1], rate[-1]]), "s", color=VERMILLION, label="end")
-    if parameter and np.abs(rotation).max() >= NEAR_LIMIT * angle:
+    figure, (axes,) = style.panels((4.0,), width=0.8 * style.WIDTH, header=2)
+    axes.set_label(style.PLANE)  # for `cursor_axes`
+    kept = style.kept_samples(rotation, rate)
+    axes.plot(np.degrees(rotation[kept]), np.degrees(rate[kept]), color=style.BLUE, linewidth=0.7)
+    axes.plot(*np.degrees([rotation[0], rate[0]]), "o", color=style.GREEN, label="start")
+    axes.plot(*np.degrees([rotation[-1], rate[-1]]), "s", color=style.VERMILLION, label="end")
+    if parameter and np.abs(rotation).max() >= style.NEAR_LIMIT * angle:
         tilt = np.linspace(-angle, angle, 201)
         bound = parameter * np.sqrt(2.0 * (1.0 - np.cos(angle - np.abs(tilt))))
         outline = np.degrees([[*tilt, *tilt[::-1]], [*bound, *-bound[::-1]]])
-        axes.plot(*outline, "--", color=BLACK, linewidth=1.0, label="a free rigid block returns from within")
+        axes.plot(
+            *outline, "--", color=style.BLACK, linewidth=1.0, label="a free rigid block returns from within"
+        )
     axes.margins(x=0.06)
     least = 1.2 * ROCKING * math.degrees(angle)
     axes.set_xlim(min(axes.get_xlim()[0], -least), max(axes.get_xlim()[1], least))
-    keep_visible(axes, least)
+    style.keep_visible(axes, least)
     axes.set_xlabel("rotation [degrees]")
     axes.set_ylabel("angular velocity [degrees/s]")
-    legend_above(axes)
+    style.legend_above(axes)
     of_box = " of box 1" if run.verdict.boxes else ""
-    head(figure, f"Phase portrait of the rotation{of_box}", status=run.status)
+    style.head(figure, f"Phase portrait of the rotation{of_box}", status=run.status)
     return figure
 
 
@@ -265,14 +254,14 @@ def _panel(
     zero: bool = False,
 ) -> tuple[Figure, Axes]:
     """One curve over time with the states of motion below it, and room for a legend above."""
-    figure, (axes,) = time_panels((2.3,), history=run.history, header=2 if legend else 1)
-    curve_panel(axes, label, run.history["time_s"], (values, BLUE, "-", name), zero=zero)
+    figure, (axes,) = style.time_panels((2.3,), history=run.history, header=2 if legend else 1)
+    style.curve_panel(axes, label, run.history["time_s"], (values, style.BLUE, "-", name), zero=zero)
     return figure, axes
 
 
 def _millimetres(value: float) -> str:
     """A slip in a title; below 0.01 mm it has no practical meaning."""
-    return "< 0.01 mm" if 0.0 < abs(value) < 0.01 else f"{number(value)} mm"
+    return "< 0.01 mm" if 0.0 < abs(value) < 0.01 else f"{style.number(value)} mm"
 
 
 def _mark_impact(axes: Axes, verdict: Verdict) -> None:
@@ -280,4 +269,4 @@ def _mark_impact(axes: Axes, verdict: Verdict) -> None:
     impact = verdict.first_impact_s
     if impact is not None:
         label = f"first impact, {impact:.3f} s"
-        axes.axvline(impact, color=GREY, linestyle=(0, (1, 2)), linewidth=1.0, label=label)
+        axes.axvline(impact, color=style.GREY, linestyle=(0, (1, 2)), linewidth=1.0, label=label)

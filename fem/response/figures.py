@@ -9,25 +9,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from fem.figures.style import (
-    BLACK,
-    BLUE,
-    GREY,
-    VERMILLION,
-    WIDTH,
-    head,
-    house_style,
-    legend_above,
-    panels,
-    svg_of,
-)
+from fem.figures import style
 from fem.response.branches import coexistences
 from fem.response.records import PointRecord
 from fem.response.request import ResponseRequest
 
 LOOKS = {
-    "up": {"color": BLUE, "marker": "^", "linestyle": "-"},
-    "down": {"color": VERMILLION, "marker": "v", "linestyle": "--"},
+    "up": {"color": style.BLUE, "marker": "^", "linestyle": "-"},
+    "down": {"color": style.VERMILLION, "marker": "v", "linestyle": "--"},
 }
 PORTRAITS = 6  #: of the most different motions
 COLUMNS = 3
@@ -36,17 +25,17 @@ FREQUENCY = "frequency of the drive [Hz]"
 
 def response_figures(request: ResponseRequest, records: Sequence[PointRecord]) -> dict[str, str]:
     """Figures as SVG documents, by name."""
-    with house_style():
+    with style.house_style():
         drawn = {"response_curve": draw_curves(request, records)}
         if any(record.stands for record in records):
             drawn |= {"sections": draw_sections(request, records), "portraits": draw_portraits(records)}
-        return {name: svg_of(figure) for name, figure in drawn.items()}
+        return {name: style.svg_of(figure) for name, figure in drawn.items()}
 
 
 def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Figure:
     """Largest rotation and slip stroke over frequency, up and down."""
-    figure, (rotation, slip, life) = panels((2.4, 1.2, 1.2), gaps=(0.12, 0.12), header=3)
-    head(
+    figure, (rotation, slip, life) = style.panels((2.4, 1.2, 1.2), gaps=(0.12, 0.12), header=3)
+    style.head(
         figure,
         f"{request.case.title or request.case.name}: frequency swept, the motion carried on",
         statement_of(request, records),
@@ -85,14 +74,14 @@ def draw_curves(request: ResponseRequest, records: Sequence[PointRecord]) -> Fig
     for axes in (rotation, slip):
         axes.tick_params(labelbottom=False)
     life.set_xlabel(FREQUENCY)
-    legend_above(rotation)
+    style.legend_above(rotation)
     return figure
 
 
 def draw_sections(request: ResponseRequest, records: Sequence[PointRecord]) -> Figure:
     """Rotation at the sections over frequency: n dots for a motion of period n, a smear for one without period."""
-    figure, (up, down) = panels((2.0, 2.0), gaps=(0.12,), header=2)
-    head(
+    figure, (up, down) = style.panels((2.0, 2.0), gaps=(0.12,), header=2)
+    style.head(
         figure,
         "Poincaré sections: rotation at the instant at which the floor turns back at +A",
         "n dots belong to a motion that repeats after n periods of the drive, a smear to one that does not repeat",
@@ -123,7 +112,7 @@ def draw_portraits(records: Sequence[PointRecord]) -> Figure:
     """Phase portraits of motions that differ the most, with their sections."""
     chosen = choose_portraits(records)
     rows = -(-len(chosen) // COLUMNS)
-    figure = Figure(figsize=(WIDTH, 0.6 + 2.3 * rows), layout="constrained")
+    figure = Figure(figsize=(style.WIDTH, 0.6 + 2.3 * rows), layout="constrained")
     figure.suptitle(
         "Phase portraits of the long-time motion\n"
         "dots: Poincaré sections, one a period; an impact is a jump of the angular velocity",
@@ -178,9 +167,13 @@ def _draw_portrait(axes: Axes, record: PointRecord) -> None:
     row, look = record.row, LOOKS[record.row.direction]
     rotation, rate = np.degrees(record.portrait).T
     repeats = row.long_time in ("periodic", "rest")
-    axes.plot(rotation, rate, color=look["color"] if repeats else GREY, linewidth=0.9 if repeats else 0.6)
+    axes.plot(
+        rotation, rate, color=look["color"] if repeats else style.GREY, linewidth=0.9 if repeats else 0.6
+    )
     turned, turning = np.degrees(record.sections[:, :2]).T
-    axes.plot(turned, turning, linestyle="none", marker="o", markersize=2.6, markeredgewidth=0.0, color=BLACK)
+    axes.plot(
+        turned, turning, linestyle="none", marker="o", markersize=2.6, markeredgewidth=0.0, color=style.BLACK
+    )
     axes.set_title(f"{row.frequency_Hz:.3g} Hz, {row.direction}: {row.words}", fontsize=7.5)
     axes.margins(0.08)
 

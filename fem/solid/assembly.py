@@ -32,17 +32,7 @@ from skfem import (
 from skfem.helpers import ddot, sym_grad, trace
 
 from fem.runtime.arrays import FloatArray, IntArray
-from fem.solid.elasticity import (
-    CellBlocks,
-    LamePair,
-    cauchy_stress,
-    cell_blocks,
-    element_forces,
-    first_stress_tangent,
-    plane_stress_lame,
-    von_mises,
-    with_own_scratch,
-)
+from fem.solid import elasticity
 
 #: A field over the elevation: (x, z) of any shape (...) -> the two components, shape (2, ...).
 VectorField = Callable[[FloatArray, FloatArray], Any]
@@ -105,7 +95,7 @@ class FiniteElements:
     base_nodes: IntArray  #: nodes at z = 0, by rising x
     mass: csr_array  #: consistent mass, the same for x and z, shape (n, n) [kg]
     stiffness: csc_array  #: linear plane stress, shape (2n, 2n), interleaved [N/m]
-    lame: LamePair = field(repr=False)
+    lame: elasticity.LamePair = field(repr=False)
     gradient: FloatArray = field(repr=False)  #: derivatives of the shape functions, (2, m, q, k) [1/m]
     weights: FloatArray = field(repr=False)  #: volume of each quadrature point, (m, q) [m3]
     _basis: Basis = field(repr=False)
@@ -117,9 +107,9 @@ class FiniteElements:
         return 2 * len(self.nodes)
 
     @cached_property
-    def blocks(self) -> CellBlocks:
+    def blocks(self) -> elasticity.CellBlocks:
         """The cells in blocks, for the internal forces."""
-        return cell_blocks(self.cells, self.gradient, self.weights)
+        return elasticity.cell_blocks(self.cells, self.gradient, self.weights)
 
     @property
     def nodal_mass(self) -> FloatArray:
@@ -142,8 +132,8 @@ class FiniteElements:
     def force_and_energy(self, displacement: FloatArray) -> tuple[FloatArray, float]:
         """Gradient of the strain energy, shape (n, 2) [N], and the energy itself [J]."""
         force = np.empty_like(self.nodes)
-        energy = element_forces(
-            with_own_scratch(self.blocks),
+        energy = elasticity.element_forces(
+            elasticity.with_own_scratch(self.blocks),
             self.lame.first,
             self.lame.shear,
             np.ascontiguousarray(displacement, dtype=float),
@@ -161,7 +151,7 @@ class FiniteElements:
 
     def tangent(self, displacement: FloatArray) -> csc_array:
         """Derivative of `internal_force`, shape (2n, 2n), interleaved [N/m]."""
-        moduli = first_stress_tangent(self.displacement_gradient(displacement), self.lame)
+        moduli = elasticity.first_stress_tangent(self.displacement_gradient(displacement), self.lame)
         cells, k = self.cells.shape
         moduli = moduli * self.weights
         shapes = self.gradient
@@ -181,12 +171,12 @@ class FiniteElements:
         cells are averaged by area, but only those of the greatest thickness there. So where a wall (thick out
         of plane) meets a sheet, the node shows the wall's stress, not diluted by the sheet's.
         """
-        stress = cauchy_stress(self.displacement_gradient(displacement), self.lame)
+        stress = elasticity.cauchy_stress(self.displacement_gradient(displacement), self.lame)
         return self._recovery @ stress.reshape(3, -1).T
 
     def nodal_von_mises(self, displacement: FloatArray) -> FloatArray:
         """Equivalent stress of `nodal_stress`, shape (n,) [Pa]."""
-        return von_mises(self.nodal_stress(displacement).T)
+        return elasticity.von_mises(self.nodal_stress(displacement).T)
 
     def area_load(self, density: VectorField) -> FloatArray:
         """Consistent nodal forces of a load per area of elevation [N/m2], shape (n, 2) [N]."""
@@ -221,7 +211,7 @@ def assemble(mesh: QuadMesh, *, youngs_modulus: float, poisson_ratio: float, ord
     Raises:
         ValueError: elastic constants out of range.
     """
-    lame = plane_stress_lame(youngs_modulus, poisson_ratio)
+    lame = elasticity.plane_stress_lame(youngs_modulus, poisson_ratio)
     basis = _scalar_basis(mesh, order)
     thickness = _at_points(basis, mesh.thickness)
     density = _at_points(basis, mesh.areal_density)

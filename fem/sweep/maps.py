@@ -19,14 +19,14 @@ from numpy.typing import NDArray
 from fem.assessment.sureness import REGIME_UNSURE
 from fem.batch.axes import Axis
 from fem.batch.labels import axis_label, axis_name
+from fem.figures import style
 from fem.figures.heat_map import MapAxis, Panel, draw_heat_map, value_label
-from fem.figures.style import BLACK, GREY, STATE_COLOURS, VERMILLION, WIDTH, house_style, number, svg_of
 from fem.results.files import write_atomically
 from fem.results.outcome import Outcome
 from fem.sweep.plan import MapChoice
 from fem.sweep.table import SweepTable
 
-OUTCOME_COLOURS = {**STATE_COLOURS, "failed": VERMILLION, "": "#FFFFFF"}
+OUTCOME_COLOURS = {**style.STATE_COLOURS, "failed": style.VERMILLION, "": "#FFFFFF"}
 MOST_PANELS = 12
 LEAST_SLIP_MM = 1e-2  #: less is no slip
 JOINT_SLIP = "max_joint_slip_m"
@@ -45,7 +45,7 @@ def draw_maps(table: SweepTable, folder: Path, choice: MapChoice) -> list[str]:
         loose = ("joint_slip",) if np.isfinite(table.columns.get(JOINT_SLIP, np.nan)).any() else ()
         figures = {kind: sweep_map(table, kind, choice) for kind in ("outcome", "rotation", "slip", *loose)}
     for name, figure in figures.items():
-        write_atomically(folder / f"{name}.svg", svg_of(figure))
+        write_atomically(folder / f"{name}.svg", style.svg_of(figure))
     return [f"{folder.name}/{name}.svg" for name in figures]
 
 
@@ -82,7 +82,7 @@ def sweep_map(table: SweepTable, kind: str, choice: MapChoice) -> Figure:
         title=title,
         colours=matplotlib.colormaps["cividis"],
         norm=LogNorm(LEAST_SLIP_MM, largest),
-        bar=f"slip [mm] (below {number(LEAST_SLIP_MM)}: none)",
+        bar=f"slip [mm] (below {style.number(LEAST_SLIP_MM)}: none)",
     )
 
 
@@ -94,11 +94,11 @@ def rotation_curve(table: SweepTable) -> Figure:
     ratio = np.where(table.outcome == Outcome.OVERTURNED, 1.0, table["rotation_ratio"])
     unsure = table.columns.get("unsure")
     low, high = table.columns.get("band_rotation_ratio_low"), table.columns.get("band_rotation_ratio_high")
-    with house_style():
-        figure = Figure(figsize=(WIDTH, 3.4), layout="constrained")
+    with style.house_style():
+        figure = Figure(figsize=(style.WIDTH, 3.4), layout="constrained")
         axes = figure.add_subplot()
         if low is not None and high is not None and np.isfinite(low).any():
-            axes.vlines(places, np.minimum(low, 1.0), np.minimum(high, 1.0), color=GREY, linewidth=1.0)
+            axes.vlines(places, np.minimum(low, 1.0), np.minimum(high, 1.0), color=style.GREY, linewidth=1.0)
         for word, colour in OUTCOME_COLOURS.items():
             chosen = table.outcome == word
             if word and chosen.any():
@@ -109,7 +109,7 @@ def rotation_curve(table: SweepTable) -> Figure:
                 places[chosen],
                 ratio[chosen],
                 "o",
-                color=BLACK,
+                color=style.BLACK,
                 fillstyle="none",
                 markersize=8,
                 label="unsure",
