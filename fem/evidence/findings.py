@@ -6,7 +6,7 @@ A reference is `analytic` (a closed form, or a statement such as symmetry), `pri
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from functools import partial
 from typing import Any, Literal, SupportsFloat
 
@@ -16,63 +16,60 @@ Kind = Literal["analytic", "printed", "computed", "measured", "limit"]
 Value = float | str
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Convergence:
     """Errors over a refinement, and the order at which they must fall."""
 
     against: str  #: what was refined, with its unit
-    sizes: tuple[float, ...]  #: of the refinement, all positive
-    errors: tuple[float, ...]
-    expected: float  #: order
-    tolerance: float  #: of the order
+    errors: Mapping[float, SupportsFloat]  #: by the size of the refinement, all positive
+    _: KW_ONLY
+    order: float  #: expected
+    within: float  #: tolerance of the order
     at_least: bool = False  #: a higher order passes as well
 
     @property
     def observed(self) -> float:
         """Slope of log(error) over log(size), least squares; nan if an error is not positive."""
-        if not min(self.errors) > 0.0:
+        errors = [float(error) for error in self.errors.values()]
+        if not min(errors) > 0.0:
             return math.nan
-        return float(np.polyfit(np.log(self.sizes), np.log(self.errors), 1)[0])
+        return float(np.polyfit(np.log(list(self.errors)), np.log(errors), 1)[0])
 
     @property
     def finest(self) -> float:
         """The error at the smallest size."""
-        return self.errors[int(np.argmin(self.sizes))]
+        return float(self.errors[min(self.errors)])
 
     @property
     def passed(self) -> bool:
         """Whether the observed order is the expected one."""
-        difference = self.observed - self.expected
-        return difference >= -self.tolerance and (self.at_least or difference <= self.tolerance)
+        difference = self.observed - self.order
+        return difference >= -self.within and (self.at_least or difference <= self.within)
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return {
+            "against": self.against,
+            "sizes": list(self.errors),
+            "errors": list(self.errors.values()),
+            "expected": self.order,
+            "tolerance": self.within,
+            "at_least": self.at_least,
+            "observed": self.observed,
+        }
 
 
-def convergence(
-    against: str,
-    errors: Mapping[float, SupportsFloat],
-    *,
-    order: float,
-    within: float,
-    at_least: bool = False,
-) -> Convergence:
-    """Errors by size, and the order that they must have `within` a tolerance."""
-    return Convergence(
-        against=against,
-        sizes=tuple(float(size) for size in errors),
-        errors=tuple(float(error) for error in errors.values()),
-        expected=order,
-        tolerance=within,
-        at_least=at_least,
-    )
-
-
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Finding:
     """A comparison; it holds by its numbers, or by a criterion in words that was set beforehand."""
 
     what: str  #: quantity, with its unit if `unit` has none
     value: Value
-    reference: Value  #: or limit
-    kind: Kind  #: of the reference
+    reference: Value = 0.0  #: or limit
+    unit: str = "-"
+    _: KW_ONLY
+    kind: Kind = "limit"  #: of the reference
     relation: Literal["=", "<=", ">="] = "="
     tolerance: float | None = 0.0  #: of "="; None: the order or a criterion decides
     relative: bool = False  #: tolerance and error are shares of the reference
@@ -80,10 +77,14 @@ class Finding:
     criterion: str = ""
     met: bool | None = None  #: the criterion; None: stated and not judged
     case: str = ""  #: what was computed
-    unit: str = "-"
     source: str = ""  #: of the reference
     note: str = ""
     inside: bool = True  #: whether it is made inside the stated bounds of its claim
+
+    def __post_init__(self) -> None:
+        if self.kind == "limit":  # of a count, a truth value or a numpy number
+            object.__setattr__(self, "value", float(self.value))
+            object.__setattr__(self, "reference", float(self.reference))
 
     @property
     def name(self) -> str:
@@ -115,7 +116,19 @@ class Finding:
         return {key: getattr(self, name) for key, name in names.items()}
 
 
-def finding(
+at_most = partial(Finding, relation="<=")
+at_least = partial(Finding, relation=">=")
+prediction = partial(Finding, kind="measured", tolerance=None)
+
+
+def equal(
+    what: str, value: Value, limit: float, tolerance: float, unit: str = "-", *, inside: bool = True
+) -> Finding:
+    """The value must be within an absolute tolerance of the limit."""
+    return Finding(what, value, limit, unit, tolerance=tolerance, inside=inside)
+
+
+def referred(
     kind: Kind,
     case: str,
     what: str,
@@ -135,11 +148,11 @@ def finding(
     if value is None:
         value = math.nan if convergence is None else convergence.finest
     return Finding(
+        what,
+        float(value),
+        float(reference),
         kind=kind,
         case=case,
-        what=what,
-        value=float(value),
-        reference=float(reference),
         source=source,
         tolerance=absolute if relative is None else relative,
         relative=relative is not None,
@@ -148,56 +161,6 @@ def finding(
     )
 
 
-analytic = partial(finding, "analytic")
-printed = partial(finding, "printed")
-computed = partial(finding, "computed")
-
-
-def limited(
-    relation: Literal["=", "<=", ">="],
-    what: str,
-    value: SupportsFloat,
-    limit: float,
-    unit: str = "-",
-    *,
-    tolerance: float = 0.0,
-    inside: bool = True,
-) -> Finding:
-    """A value, count or truth value against a limit."""
-    return Finding(
-        kind="limit",
-        what=what,
-        value=float(value),
-        relation=relation,
-        reference=limit,
-        tolerance=tolerance,
-        unit=unit,
-        inside=inside,
-    )
-
-
-at_most = partial(limited, "<=")
-at_least = partial(limited, ">=")
-
-
-def equal(
-    what: str, value: SupportsFloat, limit: float, tolerance: float, unit: str = "-", *, inside: bool = True
-) -> Finding:
-    """The value must be within an absolute tolerance of the limit."""
-    return limited("=", what, value, limit, unit, tolerance=tolerance, inside=inside)
-
-
-def prediction(
-    what: str, value: Value, *, measured: Value, criterion: str = "", met: bool | None = None, note: str = ""
-) -> Finding:
-    """A prediction beside what was measured; without a criterion it is stated and not judged."""
-    return Finding(
-        kind="measured",
-        what=what,
-        value=value,
-        reference=measured,
-        tolerance=None,
-        criterion=criterion,
-        met=met,
-        note=note,
-    )
+analytic = partial(referred, "analytic")
+printed = partial(referred, "printed")
+computed = partial(referred, "computed")

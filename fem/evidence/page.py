@@ -88,4 +88,4 @@ def order(finding: Finding) -> str:
     if finding.convergence is None:
         return ""
     sign = ">= " if finding.convergence.at_least else ""
-    return f"{finding.convergence.observed:.2f} ({sign}{finding.convergence.expected:g})"
+    return f"{finding.convergence.observed:.2f} ({sign}{finding.convergence.order:g})"

@@ -87,7 +87,7 @@ def compute() -> Experiment:
             prediction(
                 "slenderness 5 on rubber: restitution over Housner's, width fitted",
                 f"{fit:.3f}",
-                measured=rubber,
+                reference=rubber,
                 criterion=f"within {WITHIN} by the fit",
                 met=abs(fit - rubber) <= WITHIN,
                 note="a fit of one unknown to one number: it shows that the preset can give it, not that it does",
@@ -95,13 +95,13 @@ def compute() -> Experiment:
             prediction(
                 f"the same for widths of {', '.join(f'{one:g}' for one in some)} m",
                 over_widths,
-                measured=rubber,
+                reference=rubber,
                 note="no prediction without the width",
             ),
             prediction(
                 "width fitted with other strips that bear",
                 widths,
-                measured="not reported",
+                reference="not reported",
                 note=f"with a modulus of {MODULI[0] / 1e6:g} and {MODULI[1] / 1e6:g} MPa, the range of the preset "
                 f"({100 * STRIP:g} %): {soft:g} and {stiff:g} m",
             ),
@@ -109,7 +109,7 @@ def compute() -> Experiment:
                 prediction(
                     f"slenderness {slenderness:g} on concrete: restitution over Housner's",
                     f"{(found := restitution_ratio('concrete', slenderness, width)):.3f}",
-                    measured=measured["concrete", slenderness],
+                    reference=measured["concrete", slenderness],
                     note=f"a prediction, off by {found - measured['concrete', slenderness]:+.3f}: a rigid block on its "
                     "edges loses no more than Housner's, and one so light crushes nothing; give "
                     "contact.restitution_over_housner where it is measured",

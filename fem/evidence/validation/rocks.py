@@ -186,7 +186,7 @@ def _findings(rock: int, found: Sequence[tuple[float, ShakeTest]]) -> list[Findi
         prediction(
             f"rock {rock}: share of outcomes predicted, fitted on the other half",
             round(agreement, 3),
-            measured="1",
+            reference="1",
             criterion=f"at least {LEAST_AGREEMENT}",
             met=agreement >= LEAST_AGREEMENT,
             note="the other rock on the same table agrees with this one in 0.87 of 582 tests",
@@ -194,14 +194,14 @@ def _findings(rock: int, found: Sequence[tuple[float, ShakeTest]]) -> list[Findi
         prediction(
             f"rock {rock}: share overturned",
             round(share, 3),
-            measured=round(seen, 3),
+            reference=round(seen, 3),
             criterion=f"within {SHARE_WITHIN}",
             met=abs(share - seen) <= SHARE_WITHIN,
         ),
         prediction(
             f"rock {rock}: wrong predictions that the program itself calls unsure",
             unsure,
-            measured=len(wrong),
+            reference=len(wrong),
             criterion="at least half",
             met=unsure >= UNSURE_SHARE * len(wrong),
         ),
@@ -214,7 +214,7 @@ def _findings(rock: int, found: Sequence[tuple[float, ShakeTest]]) -> list[Findi
                 prediction(
                     f"rock {rock}: overturned of {len(some)} with a peak from {low:g} {to}",
                     sum(predicted[k] for k in some),
-                    measured=sum(measured[k] for k in some),
+                    reference=sum(measured[k] for k in some),
                 )
             )
     return findings

@@ -49,7 +49,7 @@ def run_validation(
 
 def not_computed(name: str, reason: str) -> Experiment:
     """An experiment that failed, which is a criterion missed."""
-    failure = prediction("computed at all", "no", measured="-", criterion="computed", met=False, note=reason)
+    failure = prediction("computed at all", "no", reference="-", criterion="computed", met=False, note=reason)
     return Experiment(
         name=name,
         title=name,

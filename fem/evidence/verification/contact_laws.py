@@ -16,7 +16,7 @@ from contact.reference.closed_forms_rocking import damped_drop_restitution, drop
 from contact.stepping.body import VELOCITY_Z
 from contact.stepping.scheme import generalised_alpha, newmark
 from fem.assessment.verdict import audit
-from fem.evidence.findings import analytic, convergence
+from fem.evidence.findings import Convergence, analytic
 from fem.evidence.verification import runs
 from fem.evidence.verification.bodies import Flight, free_run, full_body
 from fem.evidence.verification.checks import Findings, check
@@ -68,7 +68,7 @@ def penetration() -> Findings:
         98100.0 / (1e11 * 1.1 * 1.1),
         source="weight/(penalty x area)",
         relative=1e-6,
-        convergence=convergence("1/penalty [m/Pa]", found, order=1.0, within=0.02),
+        convergence=Convergence("1/penalty [m/Pa]", found, order=1.0, within=0.02),
     )
 
 
@@ -101,7 +101,7 @@ def damped_drops() -> Findings:
             exact,
             source="contact ends where k x + c v = 0 (Schwager and Poschel 2007)",
             relative=2e-3,
-            convergence=convergence("step [s]", errors, order=1.0, within=0.2, at_least=True),
+            convergence=Convergence("step [s]", errors, order=1.0, within=0.2, at_least=True),
             note="order 1: the dashpot starts to act at touchdown; no step control, since it compares the energy "
             "balance with the energy to overturn, which is almost zero without gravity",
         )

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.sparse.linalg import eigsh, spsolve
 
-from fem.evidence.findings import Convergence, analytic, computed, convergence, printed
+from fem.evidence.findings import Convergence, analytic, computed, printed
 from fem.evidence.verification.checks import Findings, check
 from fem.evidence.verification.manufactured import NewtonError, dynamic_error, static_error
 from fem.evidence.verification.meshes import mapped_mesh
@@ -81,7 +81,7 @@ def cook() -> Findings:
         limit,
         source="converged value; the order is that of the corner's singularity",
         absolute=0.005,
-        convergence=convergence("h/side", errors, order=1.0, within=0.1, at_least=True),
+        convergence=Convergence("h/side", errors, order=1.0, within=0.1, at_least=True),
     )
 
 
@@ -184,7 +184,7 @@ def turn(angle: float) -> FloatArray:
 
 def in_space(errors: Mapping[float, float], element_order: int) -> Convergence:
     """L2 errors by element size over the side: one order more than the elements have."""
-    return convergence("h/side", errors, order=element_order + 1.0, within=0.1)
+    return Convergence("h/side", errors, order=element_order + 1.0, within=0.1)
 
 
 def cook_deflection(order: int, cells: int) -> float:

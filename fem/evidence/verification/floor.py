@@ -16,7 +16,7 @@ from contact.reference.sliding import RigidSlider, simulate_sliding
 from contact.stepping.ledger import CRUSHING, IMBALANCE
 from contact.stepping.modal_body import make_modal_body
 from contact.stepping.scheme import generalised_alpha
-from fem.evidence.findings import analytic, computed, convergence
+from fem.evidence.findings import Convergence, analytic, computed
 from fem.evidence.verification import runs
 from fem.evidence.verification.bodies import Flight, free_run
 from fem.evidence.verification.checks import Findings, check
@@ -85,7 +85,7 @@ def landing() -> Findings:
         "mean of 21 caps from 0.3 to 0.7",
         "indentation, error over the exact one",
         source=source,
-        convergence=convergence("step [s]", errors, order=2.0, within=0.25),
+        convergence=Convergence("step [s]", errors, order=2.0, within=0.25),
     )
 
 

@@ -14,7 +14,7 @@ from contact.reference.planar_block import PlanarBlock, simulate_planar_block
 from contact.reference.planar_motion import PlanarMode
 from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
-from fem.evidence.findings import analytic, computed, convergence
+from fem.evidence.findings import Convergence, analytic, computed
 from fem.evidence.verification.checks import Findings, check
 from fem.evidence.verification.runs import FRICTION, SOLID, STACK, Keys, harmonic, run
 from fem.model.model import build_model
@@ -38,7 +38,7 @@ def rigid_container() -> Findings:
         1.0 / modulus: largest(rotation(keys | SOLID | {"container.youngs_modulus_Pa": modulus}) - rigid)
         for modulus in (1e10, 3e10, 1e11, 3e11)
     }
-    orders = convergence("1/E [1/Pa]", errors, order=1.0, within=0.15)
+    orders = Convergence("1/E [1/Pa]", errors, order=1.0, within=0.15)
     yield computed(
         "solid stack, 20 modes, released from 0.5 al, up to the impact",
         "rotation, largest difference from the rigid model over al, at E = 3e11 Pa; order in 1/E",
@@ -59,7 +59,7 @@ def stiff_floor() -> Findings:
         )
         difference = done.history["rotation_rad"] - exact.at(done.history["time_s"])[0]
         errors[1.0 / factor] = largest(difference)
-    orders = convergence("default penalty/penalty", errors, order=1.0, within=0.25)
+    orders = Convergence("default penalty/penalty", errors, order=1.0, within=0.25)
     yield computed(
         "rigid stack released from 0.5 al, up to the impact",
         "rotation, largest difference from the analytic block over al, at 3 x the default penalty",
@@ -79,7 +79,7 @@ def many_modes() -> Findings:
         for count in (0, 4, 8, 16, 32, 64)
     }
     against = "1/(modes + the 4 attachment modes)"
-    orders = convergence(against, errors, order=1.0, within=0.2, at_least=True)
+    orders = Convergence(against, errors, order=1.0, within=0.2, at_least=True)
     yield computed(
         "shell stack of 8 mm released from 0.5 al, through its first impact, 64 modes",
         "rotation, largest difference from 160 modes over al; order in 1/(modes + 4)",
@@ -218,7 +218,7 @@ def friction_decides() -> Findings:
         exact,
         source=PLANAR_BLOCK,
         relative=0.02,
-        convergence=convergence("default penalty/penalty", errors, order=1.0, within=0.25),
+        convergence=Convergence("default penalty/penalty", errors, order=1.0, within=0.25),
     )
     gripping = PlanarBlock(body=body, mu_static=0.4, mu_kinetic=0.4)
     over = simulate_planar_block(gripping, floor, duration=20.0)

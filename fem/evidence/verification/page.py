@@ -162,13 +162,16 @@ def convergence_plot(convergence: Convergence, prefix: str = "plot") -> Markup:
 
     `prefix` keeps the ids of plots in one page apart.
     """
-    sizes, errors = np.array(convergence.sizes), np.array(convergence.errors)
+    sizes, errors = (
+        np.array(list(convergence.errors)),
+        np.array(list(convergence.errors.values()), dtype=float),
+    )
     with house_style():
         figure = Figure(figsize=(3.6, 2.7), layout="constrained")
         axes = figure.add_subplot(xlabel=convergence.against, ylabel="error")
         axes.loglog(sizes, errors, "o-", color="#20507a", label=f"observed {convergence.observed:.2f}")
-        guide = errors[np.argmin(sizes)] * (sizes / sizes.min()) ** convergence.expected
-        axes.loglog(sizes, guide, "--", color="#999999", label=f"order {convergence.expected:g}")
+        guide = errors[np.argmin(sizes)] * (sizes / sizes.min()) ** convergence.order
+        axes.loglog(sizes, guide, "--", color="#999999", label=f"order {convergence.order:g}")
         axes.set_xticks(sizes, _labels(sizes), rotation=30)
         axes.set_xticks([], minor=True)
         axes.margins(0.05)

@@ -15,7 +15,7 @@ import numpy as np
 from contact.interface.penalty import contact_frequency
 from contact.reference.rigid_block import RigidBlock
 from fem.case.case import Case
-from fem.evidence.findings import analytic, computed, convergence
+from fem.evidence.findings import Convergence, analytic, computed
 from fem.evidence.verification.block_on_springs import evenly_spaced, next_turning_point
 from fem.evidence.verification.checks import Findings, check
 from fem.evidence.verification.rocking import turning_points
@@ -52,7 +52,7 @@ def penalty_limit() -> Findings:
         found[1.0 / 9.0],
         exact,
         absolute=RIGID_TOLERANCE,
-        convergence=convergence("default penalty/penalty", errors, order=1.0, within=0.25),
+        convergence=Convergence("default penalty/penalty", errors, order=1.0, within=0.25),
     )
 
 

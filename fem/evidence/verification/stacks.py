@@ -14,7 +14,7 @@ from contact.reference.floor_acceleration import half_sine_pulse, sine_floor
 from contact.reference.sliding import RigidSlider, simulate_sliding
 from contact.reference.two_block_motion import TwoBlockMotion, simulate_two_blocks
 from contact.reference.two_blocks import Pattern, StackedBlock, TwoBlockStack, energy
-from fem.evidence.findings import analytic, computed, convergence
+from fem.evidence.findings import Convergence, analytic, computed
 from fem.evidence.verification import runs
 from fem.evidence.verification.checks import Findings, check
 from fem.results.history import History
@@ -191,7 +191,7 @@ def impacts() -> Findings:
             "rotations, largest difference over the largest rotation",
             source=BLOCKS,
             absolute=0.02,
-            convergence=convergence(
+            convergence=Convergence(
                 "1/penalty [m/Pa]",
                 {1.0 / penalty: error for penalty, error in errors.items()},
                 order=0.75,

@@ -6,7 +6,7 @@ A check that cannot be computed gives a finding that fails, with the reason; the
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 from fem.case.validation import did_you_mean
@@ -112,7 +112,9 @@ class SuiteResult:
             "quick": self.quick,
             "passed": self.failures == 0,
             "rows": [
-                check.names | finding.document(KEYS) | {"convergence": _convergence(finding)}
+                check.names
+                | finding.document(KEYS)
+                | {"convergence": finding.convergence and finding.convergence.document}
                 for check in self.checks
                 for finding in check.findings
             ],
@@ -124,12 +126,6 @@ class SuiteResult:
             "seconds": self.seconds,
             "versions": versions(),
         }
-
-
-def _convergence(finding: Finding) -> dict[str, Any] | None:
-    if finding.convergence is None:
-        return None
-    return asdict(finding.convergence) | {"observed": finding.convergence.observed}
 
 
 def chosen_checks(*, quick: bool, topics: Sequence[str] = ()) -> list[Check]:

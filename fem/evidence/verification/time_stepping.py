@@ -12,7 +12,7 @@ import numpy as np
 from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion
 from contact.stepping.modal_body import ModalBody, make_modal_body
 from contact.stepping.scheme import Scheme, generalised_alpha, newmark
-from fem.evidence.findings import Finding, analytic, convergence
+from fem.evidence.findings import Convergence, Finding, analytic
 from fem.evidence.verification import runs
 from fem.evidence.verification.bodies import Flight, free_run, full_body
 from fem.evidence.verification.checks import Findings, check
@@ -43,7 +43,7 @@ def linear_order() -> Findings:
     end = 1.3
     for name, scheme in SCHEMES.items():
         errors = {end / count: oscillator_error(scheme, end / count, end) for count in (40, 80, 160, 320)}
-        orders = convergence("step/period", errors, order=2.0, within=0.1)
+        orders = Convergence("step/period", errors, order=2.0, within=0.1)
         yield analytic(
             f"damped oscillator, {name}",
             "error after 1.3 periods over the amplitude",
@@ -58,7 +58,7 @@ def large_rotation_order() -> Findings:
     """Order 2 on a body that rotates by more than a radian while strained, with a manufactured source."""
     for name in ("generalised-alpha 0.5", TRAPEZOIDAL):
         errors = {0.5 / n: moving_body_error(SCHEMES[name], 0.5 / n) for n in (20, 40, 80, 160)}
-        orders = convergence("step [s]", errors, order=2.0, within=0.1)
+        orders = Convergence("step [s]", errors, order=2.0, within=0.1)
         yield analytic(
             f"full model, manufactured motion through 1.4 rad, {name}",
             "error of the nodes at 0.5 s over the size of the body",
@@ -102,7 +102,7 @@ def energy_closure() -> Findings:
             model = build_model(runs.STACK.with_values(values | vibrating))
             clock = runs.finish(runs.with_steps_of(model, step)).model.run.clock[0]
             errors[step] = max(-float(clock.least_imbalance), float(clock.most_imbalance)) / kinetic
-        orders = convergence("step [s]", errors, order=2.0, within=0.15, at_least=True)
+        orders = Convergence("step [s]", errors, order=2.0, within=0.15, at_least=True)
         yield analytic(
             f"{name} vibrating on closed springs, generalised-alpha 0.5",
             "largest energy balance error over the first kinetic energy",
@@ -116,7 +116,7 @@ def spin() -> Findings:
     """A block thrown spinning: it keeps its angular momentum, and rotates evenly if it is stiff."""
     turn = 2.0 * math.pi / SPIN
     errors = {turn / count: spinning(1e8, turn / count)[0] for count in (200, 400, 800)}
-    orders = convergence("step [s]", errors, order=2.0, within=0.2)
+    orders = Convergence("step [s]", errors, order=2.0, within=0.2)
     yield analytic(
         "block of E = 1e8 Pa thrown at 20 rad/s, full model, generalised-alpha 1",
         "angular momentum, largest relative change in one revolution",

@@ -9,7 +9,7 @@ import pytest
 
 import fem.results.files
 from fem.__main__ import main
-from fem.evidence.findings import analytic, at_least, at_most, convergence, equal, prediction
+from fem.evidence.findings import Convergence, analytic, at_least, at_most, equal, prediction
 from fem.evidence.verification import suite
 from fem.evidence.verification.checks import check
 from fem.evidence.verification.page import convergence_plot, lines_of, page_of
@@ -24,7 +24,7 @@ def finding(value, *, tolerance=0.01, reference=2.0, relative=False, **optional)
 
 def falling(errors, *, at_least=False):
     by_size = {0.1 / 2**k: error for k, error in enumerate(errors)}
-    return convergence("h [m]", by_size, order=2.0, within=0.1, at_least=at_least)
+    return Convergence("h [m]", by_size, order=2.0, within=0.1, at_least=at_least)
 
 
 SECOND = falling([1e-2 / 4**k for k in range(4)])
@@ -47,7 +47,7 @@ SECOND = falling([1e-2 / 4**k for k in range(4)])
             for value in (math.nan, math.inf)
             for share in (True, False)
         ),
-        *((prediction("a", 1.0, measured="2 to 3", met=met), met) for met in (True, False, None)),
+        *((prediction("a", 1.0, reference="2 to 3", met=met), met) for met in (True, False, None)),
     ],
 )
 def test_a_finding_holds_by_its_numbers_or_its_criterion_and_never_with_nan(found, holds):

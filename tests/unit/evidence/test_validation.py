@@ -29,7 +29,7 @@ def experiment(name: str, *met: bool | None, not_computed: str = "") -> Experime
         tests=3,
         fitted="nothing",
         findings=tuple(
-            prediction("side", 0.5, measured=1.0, criterion="" if one is None else "all", met=one)
+            prediction("side", 0.5, reference=1.0, criterion="" if one is None else "all", met=one)
             for one in met
         ),
         not_computed=not_computed,
