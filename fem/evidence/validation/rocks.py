@@ -8,14 +8,15 @@ motions come from a folder that the user names; the table of this package has ou
 import csv
 import gzip
 import math
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
 
+from fem.batch.runner import Runner
+from fem.batch.workers import LocalWorkers
 from fem.case.case import Case
 from fem.evidence.findings import Finding, prediction
 from fem.evidence.validation.bodies import cross_validated, rigid_case, specimen
@@ -115,12 +116,15 @@ def compute(folder: Path | None) -> Experiment:
             DESCRIBED, not_computed="the motions are not part of the program: name their folder with --data"
         )
     tests = read_tests(folder)
-    fits, findings = [], []
-    for rock in SPECIMENS:
-        halves = cross_validated(tests, partial(fitted_angle, rock=rock))
-        fits.append(" and ".join(f"{angle:.3f}" for angle, _ in halves))
-        found = [(angle, test) for angle, others in halves for test in others]
-        findings += _findings(rock, found)
+    with LocalWorkers(cores()) as workers_of:
+        runner = Runner(workers_of=workers_of)
+        tried = predictions(runner, [(test, angle) for angle in ANGLES for test in tests])
+        fits, findings = [], []
+        for rock in SPECIMENS:
+            halves = cross_validated(tests, partial(fitted_angle, tried=tried, rock=rock))
+            fits.append(" and ".join(f"{angle:.3f}" for angle, _ in halves))
+            pairs = [(test, angle) for angle, others in halves for test in others]
+            findings += _findings(rock, pairs, list(predictions(runner, pairs).values()))
     return replace(
         DESCRIBED,
         tests=len(tests),
@@ -130,15 +134,27 @@ def compute(folder: Path | None) -> Experiment:
     )
 
 
-def fitted_angle(tests: Sequence[ShakeTest], rock: int) -> float:
+def predictions(
+    runner: Runner, pairs: Sequence[tuple[ShakeTest, float]]
+) -> dict[tuple[ShakeTest, float], bool]:
+    """Whether the program's rigid block overturns in each test at an angle, on all cores."""
+    return dict(zip(pairs, runner.each("rocks", pairs, _unpacked), strict=True))
+
+
+def _unpacked(pair: tuple[ShakeTest, float]) -> bool:
+    return overturns(*pair)
+
+
+def fitted_angle(
+    tests: Sequence[ShakeTest], tried: Mapping[tuple[ShakeTest, float], bool], rock: int
+) -> float:
     """The angle with the most outcomes right; the mean where several are as good [rad]."""
     scores = {
-        angle: sum(overturns(test, angle) == test.overturned[rock - 1] for test in tests) for angle in ANGLES
+        angle: sum(tried[test, angle] == test.overturned[rock - 1] for test in tests) for angle in ANGLES
     }
     return float(np.mean([angle for angle, score in scores.items() if score == max(scores.values())]))
 
 
-@cache
 def overturns(test: ShakeTest, angle: float) -> bool:
     """Whether the program's rigid block overturns."""
     case, container = _rock(angle)
@@ -172,16 +188,16 @@ def _rock(angle: float) -> tuple[Case, Container]:
     return case, specimen(case, centroid=CENTROID, inertia_ratio=INERTIA)
 
 
-def _findings(rock: int, found: Sequence[tuple[float, ShakeTest]]) -> list[Finding]:
+def _findings(
+    rock: int, pairs: Sequence[tuple[ShakeTest, float]], predicted: Sequence[bool]
+) -> list[Finding]:
     """Measured and predicted outcomes of a rock, each test predicted by the fit on the others."""
-    count = len(found)
-    with ThreadPoolExecutor(max_workers=cores()) as pool:
-        predicted = list(pool.map(lambda one: overturns(one[1], one[0]), found))
-    measured = [test.overturned[rock - 1] for _, test in found]
-    wrong = [one for one, a, b in zip(found, predicted, measured, strict=True) if a != b]
+    count = len(pairs)
+    measured = [test.overturned[rock - 1] for test, _ in pairs]
+    wrong = [one for one, a, b in zip(pairs, predicted, measured, strict=True) if a != b]
     agreement = 1.0 - len(wrong) / count
     share, seen = sum(predicted) / count, sum(measured) / count
-    unsure = sum(_is_unsure(test, angle) for angle, test in wrong)
+    unsure = sum(_is_unsure(test, angle) for test, angle in wrong)
     findings = [
         prediction(
             f"rock {rock}: share of outcomes predicted, fitted on the other half",
@@ -207,7 +223,7 @@ def _findings(rock: int, found: Sequence[tuple[float, ShakeTest]]) -> list[Findi
         ),
     ]
     for low, high in BINS:
-        some = [k for k, (_, test) in enumerate(found) if low <= test.peak < high]
+        some = [k for k, (test, _) in enumerate(pairs) if low <= test.peak < high]
         if some:
             to = f"to {high:g} g" if math.isfinite(high) else "g and more"
             findings.append(
