@@ -8,7 +8,7 @@ from markupsafe import Markup
 
 from fem.evidence.findings import Finding, Value
 from fem.evidence.suite import failures
-from fem.html.sections import Cell, joined, looking
+from fem.html.sections import Cell, joined, marked
 from fem.html.units import short, typeset
 from fem.runtime.identity import versions
 
@@ -25,7 +25,7 @@ def computed_now(extent: str = "Computed") -> str:
 
 def noted(text: str, note: str) -> Markup:
     """The name of a finding, with its note behind it."""
-    return joined(typeset(text), *((" ", looking(f"({typeset(note)})", "note")) if note else ()))
+    return joined(typeset(text), *((" ", marked(f"({typeset(note)})", "note")) if note else ()))
 
 
 def result_of(holds: bool | None, yes: str, no: str) -> Cell:

@@ -28,8 +28,8 @@ def strong(text: object) -> Markup:
     return Markup("<strong>{}</strong>").format(text)
 
 
-def looking(text: object, look: str) -> Markup:
-    """A part of a text with a look."""
+def marked(text: object, look: str) -> Markup:
+    """Words within a text that have a look of their own."""
     return Markup('<span class="{}">{}</span>').format(look, text)
 
 
@@ -203,10 +203,10 @@ def _cell(content: str | Cell, look: str) -> Cell:
 
 @dataclass(frozen=True)
 class Figure:
-    """A drawing."""
+    """A drawing; with a label in a box that scrolls."""
 
     svg: Markup
-    label: str  #: for those who cannot see it
+    label: str = ""  #: for those who cannot see it
     _: KW_ONLY
     axes: Mapping[str, Any] | None = None  #: where a cursor moves over it
     caption: str = ""

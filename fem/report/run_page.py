@@ -1,62 +1,63 @@
 """The report of a run: one page from its folder, verdict first, with everything needed to check it."""
 
 import datetime as dt
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import nullcontext
-from importlib import metadata
 
-from contact.reference.event_driven import EventError
 from fem.assessment.code_note import code_note
-from fem.assessment.floor_words import drawn_level
-from fem.assessment.joint_tables import joints_note
-from fem.assessment.loose_boxes import BOXES_NOTE, box_rows, largest_joint_slip
+from fem.assessment.loose_boxes import largest_joint_slip
 from fem.assessment.ranges import (
-    impact_note,
     largest_rotation,
     largest_slip,
     largest_uplift,
     residual_slip,
     rotation_ratio,
 )
-from fem.assessment.rigid_check import check_against_rigid_block
 from fem.assessment.rule_or_run import believed
-from fem.assessment.summary import (
-    BAND_NOTE,
-    MARGIN_NOTE,
-    outcome_sentence,
-    result_rows,
-)
+from fem.assessment.summary import MARGIN_NOTE, outcome_sentence, result_rows
 from fem.case.case import Case
 from fem.figures.cache import drawings_of
-from fem.html.page import Signature, render_page, svg_element
-from fem.html.units import ABSENT, millimetres, number, quantity, short, typeset
-from fem.html.units import rotation_ratio as ratio_alone
-from fem.model.model import Model, build_model
-from fem.report.animation import (
-    COLOURS,
-    animation_of,
-    colour_scale,
-    exaggeration,
-    exaggerations,
-    player_data,
+from fem.html import sections as html
+from fem.html.page import Page, Signature, html_of
+from fem.html.units import ABSENT, number, quantity, short, typeset
+from fem.model.model import build_model
+from fem.report.animation import animation_of
+from fem.report.comparison import asked_rows, compared_table, limits_section
+from fem.report.run_sections import (
+    RunView,
+    block_section,
+    boxes_section,
+    joints_section,
+    modes_section,
+    motion_section,
+    sheet_section,
+    variations_section,
 )
-from fem.report.comparison import asked_rows, assumptions, compared_rows, exclusions
 from fem.report.sketch import sketch
-from fem.report.static_sheet import static_sheet
-from fem.report.stills import stills
 from fem.report.variation_table import VariationTable, variations_meanwhile
 from fem.results.errors import FolderError
 from fem.results.fields import Fields
 from fem.results.history import History
 from fem.results.kinds import RUN
-from fem.results.outcome import Outcome
+from fem.results.outcome import ROCKING, Outcome
 from fem.results.reader import OpenedRun
-from fem.results.run_result import RigidCheckResult, Verdict
-from fem.solid.modes import FEW, elastic_mode_table
+from fem.results.run_result import Energy, Numerics, Verdict
 
-#: figures beside the animation, in the order of reading; the others have their own sections
-MOTION = ("rotation", "slip", "base_motion", "spectrum", "uplift", "forces", "phase_portrait", "energy")
-SHORT_MOTION = ("rotation", "slip")
+READ_AS = (
+    " utilisation is demand over capacity; above 1 the rule says that it slides or overturns. Rotation ratio is the "
+    "largest |rotation| over the slenderness angle α; left alone at 1, the container falls. Slip > 0 to the right, "
+    "rotation > 0 clockwise; forces act on the container, and are means over milliseconds in impacts."
+)
+#: terms of the energy balance: fields of the result, and words
+ENERGIES = {
+    "reference_J": "to overturn",
+    "base_work_J": "work of the floor",
+    "friction_J": "friction",
+    "contact_damping_J": "contact damping",
+    "material_damping_J": "material damping",
+    "crushing_J": "crushing of the floor",
+    "numerical_J": "error at the end, > 0 lost",
+}
 
 
 def run_report(
@@ -98,123 +99,236 @@ def run_report(
         else nullcontext(lambda: None)
     )
     with varying as variations:
-        return _page(run, model, signature or Signature(), variations, brief, message)
+        view = RunView(
+            run=run,
+            model=model,
+            history=_history(run, message),
+            shown=animation_of(model, _fields(run, message)),
+            drawn=drawings_of(run, model.container),
+            brief=brief,
+        )
+        return html_of(_page(view, signature, variations))
 
 
 def _page(
-    run: OpenedRun,
-    model: Model,
-    signature: Signature,
-    variations: Callable[[], VariationTable | None],
-    brief: bool,
-    message: Callable[[str], None],
-) -> str:
-    """The page; the variations are waited for last."""
-    case, result, static, mesh = run.case, run.typed_result, model.static, model.container.mesh
-    verdict, history = result.verdict or Verdict(), _history(run, message)
-    shown = animation_of(model, _fields(run, message))
-    drawn, compared = drawings_of(run, model.container), compared_rows(static, verdict, case)
-    motion = [drawn[name] for name in (SHORT_MOTION if brief else MOTION) if name in drawn]
-    played = player_data(shown, history, model=model) if len(history) > 1 and not brief else {}
-    computed = dt.datetime.fromtimestamp(run.place.result.stat().st_mtime)
-    return render_page(
-        "run.html.j2",
-        scripts=["player.js", "signature.js"] if played else ["signature.js"],
-        data={"run": played} if played else {},
-        played=played,
-        title=case.title or run.name,
-        name=run.name,
-        hash=str(result.case_hash or ""),
-        run=run,
-        case=case,
-        result=result,
-        verdict=verdict,
-        sentence=typeset(outcome_sentence(result)),
-        standing=_standing(run.status, verdict),
-        signature=signature.completed(case.named),
-        brief=brief,
-        sketch=sketch(
-            case,
-            centroid=static.centroid,
-            peak_acceleration=static.own_motion.sliding.demand * case.gravity_m_s2 / static.weight
-            - static.downhill,
-            peak_vertical=static.peak_vertical_acceleration,
-        ),
-        asked=asked_rows(case),
-        assumptions=assumptions(case, result),
-        exclusions=exclusions(case),
-        compared=compared,
-        ruling=compared[2:4] if case.has_vertical else compared[:2],
-        sheet=static_sheet(static, case),
-        head=_head(verdict),
-        boxes=[[typeset(cell) for cell in row] for row in box_rows(result)],
-        believed=[typeset(sentence) for sentence in believed(result)],
-        found=[(name, typeset(value)) for name, value in result_rows(result)],
-        warnings=[typeset(warning) for warning in result.warnings or ()],
-        shown=shown,
-        exaggerations=exaggerations(shown, mesh.height),
-        first_exaggeration=exaggeration(shown, mesh.height),
-        colours=colour_scale("YlGnBu", COLOURS),
-        stills=stills(
-            shown, history, verdict, angle=static.slenderness_angle, width=mesh.width, height=mesh.height
-        ),
-        motion=[one for one in motion if one.name != "base_motion" or _floor_moves(case)],
-        drawn=drawn,
-        svg_of=lambda drawing: svg_element(drawing.svg, label=drawing.title, prefix=drawing.name),
-        check=rigid_check(run, model, history),
-        modes=elastic_mode_table(model.container.lowest_modes(FEW)),  # also of a rigid run
-        resolved=run.place.resolved.read_text(encoding="utf-8"),
-        computed=computed.strftime("%Y-%m-%d %H:%M"),
-        version=metadata.version("unanchored"),
-        today=dt.date.today().isoformat(),
-        notes={
-            "code": typeset(code_note(static.to_result())),
-            "margin": MARGIN_NOTE,
-            "band": BAND_NOTE,
-            "joints": joints_note(verdict),
-            "boxes": BOXES_NOTE,
-            "level": drawn_level(case.floor.slope_percent),
-            "impact": impact_note(verdict),
-        },
-        rotation_ratio=ratio_alone,
-        millimetres=millimetres,
-        number=number,
-        quantity=quantity,
-        short=short,
-        variations=variations(),
+    view: RunView, signature: Signature | None, variations: Callable[[], VariationTable | None]
+) -> Page:
+    """The sections in the order of reading; the variations are waited for last."""
+    further = [] if view.brief else [modes_section, block_section, joints_section, sheet_section]
+    behind = [part(view) for part in (motion_section, boxes_section)]
+    proof = [part(view) for part in (*further, numerics_section, provenance_section)]
+    static, case = static_section(view), case_section(view)
+    varied = variations()
+    first = [verdict_section(view, varied), case, limits_section(view.case, view.result)]
+    return Page(
+        kind=f"{'Short report' if view.brief else 'Report'} of a run",
+        title=view.case.title or view.run.name,
+        name=view.run.name,
+        hash=str(view.result.case_hash or ""),
+        signature=(signature or Signature()).completed(view.case.named),
+        sections=[
+            html.Group("first", first),
+            static,
+            *behind,
+            variations_section(view, varied),
+            *proof,
+        ],
+        scripts=["player.js"] if view.played else [],
+        data={"run": view.played} if view.played else {},
     )
 
 
-def rigid_check(run: OpenedRun, model: Model, history: History) -> RigidCheckResult | None:
-    """The comparison with the analytic block: that of the run, or else made now; None of an unfinished run."""
-    result = run.typed_result
-    if result.rigid_check is not None:
-        return result.rigid_check
-    if run.status not in RUN.finished or result.verdict is None or len(history) < 2:
-        return None
-    try:
-        return check_against_rigid_block(model, history, result.verdict).result
-    except (ValueError, EventError) as error:
-        return RigidCheckResult(reasons=(str(error),))
+def verdict_section(view: RunView, variations: VariationTable | None) -> html.PageSection:
+    """The answer: one sentence, the first figures, and where to read on."""
+    verdict = view.verdict
+    return html.section(
+        "Verdict",
+        "verdict-title",
+        html.Paragraph(typeset(outcome_sentence(view.result)), "sentence"),
+        *([html.Headlines(list(_headlines(view)))] if verdict.outcome else []),
+        html.Note(html.joined(*_reading(view, variations))),
+        look=f"answer {_standing(view.run.status, verdict)}",
+    )
 
 
-def _floor_moves(case: Case) -> bool:
-    return case.motion.kind != "none" or case.has_vertical
-
-
-def _head(verdict: Verdict) -> dict[str, str]:
+def _headlines(view: RunView) -> Iterator[html.Headline]:
     """The first figures of the page, with their ranges."""
-    slip, joint = largest_joint_slip(verdict)
-    figures = {
-        "rotation": largest_rotation(verdict),
-        "ratio": rotation_ratio(verdict),
-        "slip": largest_slip(verdict),
-        "residual": residual_slip(verdict),
-        "joint_slip": slip,
-        "joint": joint,
-        "uplift": largest_uplift(verdict),
-    }
-    return {name: typeset(words or ABSENT) for name, words in figures.items()}
+    verdict, loose = view.verdict, bool(view.boxes)
+    yield html.Headline(
+        "largest rotation",
+        _words(largest_rotation(verdict)),
+        f"{_words(rotation_ratio(verdict))} of the slenderness angle",
+    )
+    yield html.Headline(
+        f"largest slip{' on the floor' if loose else ''}",
+        _words(largest_slip(verdict)),
+        f"at the end: {_words(residual_slip(verdict))}",
+    )
+    if loose:
+        slip, joint = largest_joint_slip(verdict)
+        where = html.joined(_words(joint), "; see ", html.link("the boxes", "boxes"))
+        yield html.Headline("largest slip between boxes", _words(slip), where)
+    impacts = f"{verdict.impacts} impact{'' if verdict.impacts == 1 else 's'}"
+    yield html.Headline("largest uplift", _words(largest_uplift(verdict)), impacts)
+    sliding, overturning = view.compared[2:4] if view.case.has_vertical else view.compared[:2]
+    yield html.Headline(
+        "static rule, same motion",
+        f"{overturning.rule}, {sliding.rule}",
+        f"utilisations {overturning.utilisation} and {sliding.utilisation}",
+    )
+    yield html.Headline("how sure", *_sure(verdict))
+
+
+def _words(text: str | None) -> str:
+    return typeset(text or ABSENT)
+
+
+def _sure(verdict: Verdict) -> tuple[str, str]:
+    """How sure the outcome is, and why."""
+    if (band := verdict.band) is not None:
+        decided = f"; decided by {', '.join(verdict.decided_by)}" if verdict.decided_by else ""
+        known = verdict.sure or ("unsure" if band.unsure else "same outcome")
+        return known, f"{', '.join(band.outcomes)}{decided}"
+    if verdict.sure:
+        return verdict.sure, "far below the static limits"
+    return "not computed", html.joined(html.code("run --band"), " computes it")
+
+
+def _reading(view: RunView, variations: VariationTable | None) -> Iterator[str]:
+    """How the answer is to be read, and where there is more."""
+    yield (
+        "What happened under this one motion. This is a study, not a verification, and says nothing about other "
+        "motions. "
+    )
+    if view.verdict.outcome in ROCKING:
+        yield f"{MARGIN_NOTE} "
+    if variations is not None and (count := len(variations.lines) - 1):
+        yield html.link(f"{variations.changed} of {count} variations", "variations")
+        yield f" change{'s' if variations.changed == 1 else ''} the outcome. "
+    if warnings := len(view.result.warnings or ()):
+        yield f"{warnings} warning{'' if warnings == 1 else 's'}: see "
+        yield html.link("numerics", "numerics")
+        yield "."
+
+
+def case_section(view: RunView) -> html.PageSection:
+    """The container in elevation, and the case in words."""
+    static = view.model.static
+    drawn = sketch(
+        view.case,
+        centroid=static.centroid,
+        peak_acceleration=static.own_motion.sliding.demand * view.case.gravity_m_s2 / static.weight
+        - static.downhill,
+        peak_vertical=static.peak_vertical_acceleration,
+    )
+    asked = html.Pairs(asked_rows(view.case), look="asked")
+    return html.section("The case", "asked", html.columns(html.Figure(drawn), asked))
+
+
+def static_section(view: RunView) -> html.PageSection:
+    """The static rule beside the run, which of them governs, and all that the run found."""
+    code = typeset(code_note(view.model.static.to_result()))
+    own = "Only the rule under the peak floor acceleration of this run is compared with the run."
+    note: list[str] = [f"{code} {own}" if code else own]
+    if not view.brief:
+        note += [" See ", html.link("the static calculation", "sheet"), " for the numbers."]
+    found = [(name, typeset(value)) for name, value in result_rows(view.result)]
+    return html.section(
+        "Static rule and run",
+        "static",
+        compared_table(view.compared, loose=bool(view.boxes)),
+        *(typeset(sentence) for sentence in believed(view.result)),
+        html.Note(html.joined(*note)),
+        html.Note(html.joined(html.strong("Read as:"), READ_AS)),
+        html.Pairs(found, caption="What the run found", look="found"),
+    )
+
+
+def numerics_section(view: RunView) -> html.PageSection:
+    """Warnings; steps and energies."""
+    warnings = [typeset(warning) for warning in view.result.warnings or ()]
+    said: html.Block = html.Bullets(warnings, "") if warnings else "No warnings."
+    if view.brief or view.result.numerics is None:
+        title = "Warnings" if view.brief else "Numerics and warnings"
+        return html.section(title, "numerics", said)
+    steps = html.Pairs(_stepping(view.case, view.result.numerics), caption="Stepping")
+    energies = html.Pairs(_energies(view), caption="Energy balance")
+    return html.section("Numerics and warnings", "numerics", said, html.columns(steps, energies))
+
+
+def _stepping(case: Case, numerics: Numerics) -> list[tuple[str, str]]:
+    """How the run was stepped: name and value."""
+    solver, least = case.solver, numerics.smallest_step_s
+    tiny = least is not None and 0.0 < least < 1e-7
+    smallest = quantity(least, "ns", 1e9, 3) if tiny else quantity(least, "µs", 1e6, 3)
+    scheme = f"spectral radius {short(solver.spectral_radius)}"
+    if solver.scheme == "newmark":
+        scheme = f"β {short(solver.newmark_beta)}, γ {short(solver.newmark_gamma)}"
+    penalty, penetrations = (
+        numerics.normal_penalty_Pa_m,
+        (numerics.static_penetration_m, numerics.max_penetration_m),
+    )
+    return [
+        ("unknowns, contact nodes", f"{numerics.unknowns}, {numerics.contact_nodes}"),
+        ("scheme", f"{solver.scheme}, {scheme}"),
+        ("steps, rejected", f"{numerics.steps}, {numerics.rejected}"),
+        (
+            "step, smallest to largest",
+            f"{smallest} to {quantity(numerics.largest_step_s, 'ms', 1000, 3)}",
+        ),
+        (
+            "element size, order",
+            f"{quantity(solver.element_size_m, 'mm', 1000, 3)}, {solver.order}",
+        ),
+        *([("contact penalty", quantity(penalty, "GPa/m", 1e-9))] if penalty is not None else []),
+        (
+            "penetration, static and largest",
+            ", ".join(quantity(one, "µm", 1e6, 3) for one in penetrations),
+        ),
+    ]
+
+
+def _energies(view: RunView) -> list[tuple[str, str]]:
+    """The energy balance at the end: name and value."""
+    energy = view.result.energy or Energy()
+    error = f"{number(energy.closure_error, figures=3)} of the energy to overturn"
+    rows = [
+        (words, quantity(getattr(energy, key), "J"))
+        for key, words in ENERGIES.items()
+        if key != "crushing_J" or view.case.floor.is_slab
+    ]
+    return [*rows, ("largest error", error)]
+
+
+def provenance_section(view: RunView) -> html.PageSection:
+    """From what the run was computed, and how to compute it again."""
+    run, result = view.run, view.result
+    computed = f"{dt.datetime.fromtimestamp(run.place.result.stat().st_mtime):%Y-%m-%d %H:%M}"
+    if result.wall_s:
+        computed += f", in {quantity(result.wall_s, 's', figures=3)}"
+    if result.wall_s and result.compile_s:
+        compiled = quantity(result.compile_s, "s", figures=3)
+        computed += f", of which {compiled} compilation, once after installation"
+    saved = "resolved.toml of the run" if view.brief else "the case below"
+    again = html.joined(
+        f"save {saved} as ", html.code("case.toml"), ", then ", html.code("python -m fem run case.toml")
+    )
+    rows = [
+        ("case", f"{run.name}, status {run.status}"),
+        ("computed", computed),
+        ("case hash", html.joined(html.code(result.case_hash), " (SHA-256 of the resolved case)")),
+        ("versions", ", ".join(f"{name} {version}" for name, version in (result.versions or {}).items())),
+        ("again", again),
+    ]
+    if view.brief:
+        return html.section("Provenance", "provenance", html.Pairs(rows))
+    return html.section(
+        "Provenance",
+        "provenance",
+        html.Pairs(rows),
+        html.Heading("Resolved case: every default written out"),
+        html.Listing(run.place.resolved.read_text(encoding="utf-8")),
+    )
 
 
 def _history(run: OpenedRun, message: Callable[[str], None]) -> History:

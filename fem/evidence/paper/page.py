@@ -99,7 +99,7 @@ def _introduction(study: Mapping[str, Any]) -> list[sections.Block]:
     unfinished = sections.joined("; the study is ", sections.strong(study["status"]))
     versions = ", ".join(f"{name} {version}" for name, version in study["versions"].items())
     counts = [
-        sections.Headline(sections.looking(plural(name, count), LOOKS[name]), str(count))
+        sections.Headline(sections.marked(plural(name, count), LOOKS[name]), str(count))
         for name, count in study["counts"].items()
         if count
     ]
@@ -134,12 +134,12 @@ def _group(group: Mapping[str, Any], files: Mapping[str, str]) -> sections.PageS
 
 def _conclusion(one: Entry) -> Markup:
     bounds = f": {one['bounds']}" if one["verdict"] == Conclusion.BOUNDED.value else ""
-    return sections.joined(sections.looking(one["verdict"], LOOKS[one["verdict"]]), bounds)
+    return sections.joined(sections.marked(one["verdict"], LOOKS[one["verdict"]]), bounds)
 
 
 def _claim(one: Entry, files: Mapping[str, str]) -> Iterator[sections.Block]:
     title, section = one["name"].replace("-", " ").capitalize(), f"(section {one['section']})"
-    yield sections.Heading(sections.joined(title, " ", sections.looking(section, "quiet")), one["name"])
+    yield sections.Heading(sections.joined(title, " ", sections.marked(section, "quiet")), one["name"])
     yield sections.Quote(one["quote"])
     yield sections.Paragraph(_conclusion(one), "conclusion")
     if "error" in one:
@@ -192,7 +192,7 @@ def _claim(one: Entry, files: Mapping[str, str]) -> Iterator[sections.Block]:
 def _compared(row: Entry, bounded: bool) -> str:
     if not bounded or row["inside"]:
         return str(row["what"])
-    return sections.joined(row["what"], " ", sections.looking("(outside the bounds)", "note"))
+    return sections.joined(row["what"], " ", sections.marked("(outside the bounds)", "note"))
 
 
 def _band_summary(one: Entry) -> str:

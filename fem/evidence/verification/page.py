@@ -149,7 +149,7 @@ def _spanning(text: str, look: str) -> sections.TableRow:
 def _source(finding: Finding) -> str:
     if not finding.source:
         return finding.kind
-    return sections.joined(finding.kind, ": ", sections.looking(typeset(finding.source), "note"))
+    return sections.joined(finding.kind, ": ", sections.marked(typeset(finding.source), "note"))
 
 
 def _number(value: Value) -> str:

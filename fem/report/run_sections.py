@@ -1,0 +1,424 @@
+"""The sections of the page of a run behind its first sheet: the motion, how sure it is, what it is compared with."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Any
+
+from contact.reference.event_driven import EventError
+from fem.assessment.floor_words import drawn_level
+from fem.assessment.joint_tables import joints_note
+from fem.assessment.loose_boxes import BOXES_NOTE, box_rows
+from fem.assessment.ranges import impact_note
+from fem.assessment.rigid_check import check_against_rigid_block
+from fem.assessment.summary import BAND_NOTE
+from fem.case.case import Case
+from fem.figures.style import Drawing
+from fem.html import sections as html
+from fem.html.page import svg_element
+from fem.html.units import millimetres, number, quantity, rotation_ratio, short
+from fem.model.model import Model
+from fem.report.animation import (
+    COLOURS,
+    Animation,
+    colour_scale,
+    exaggeration,
+    exaggerations,
+    player_data,
+)
+from fem.report.comparison import Compared, compared_rows
+from fem.report.static_sheet import SheetLine, static_sheet
+from fem.report.stills import stills
+from fem.report.variation_table import VariationTable, Varied
+from fem.results.history import History
+from fem.results.kinds import RUN
+from fem.results.outcome import Outcome
+from fem.results.reader import OpenedRun
+from fem.results.run_result import JointDemand, RigidCheckResult, RunResult, Verdict
+from fem.solid.modes import FEW, elastic_mode_table
+
+#: figures beside the animation, in the order of reading; the others have their own sections
+MOTION = ("rotation", "slip", "base_motion", "spectrum", "uplift", "forces", "phase_portrait", "energy")
+SHORT_MOTION = ("rotation", "slip")
+KEYS = (
+    "Space or k plays and pauses, comma and full stop go by a sample, j and l by 0.1 s; a click on a curve goes to its "
+    "instant."
+)
+NOT_WORSE = (
+    "A stronger motion is not always worse: the container may stand under a motion that is stronger than one that "
+    "overturns it."
+)
+DEGREES = 57.29577951308232  #: in a radian
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunView:
+    """A run as its page shows it."""
+
+    run: OpenedRun
+    model: Model
+    history: History
+    shown: Animation
+    drawn: Mapping[str, Drawing]
+    brief: bool  #: of three printed sheets at most
+
+    @property
+    def case(self) -> Case:
+        """The case, resolved."""
+        return self.run.case
+
+    @property
+    def result(self) -> RunResult:
+        """What `run.json` holds."""
+        return self.run.typed_result
+
+    @property
+    def verdict(self) -> Verdict:
+        """What the run found; empty before there is anything."""
+        return self.result.verdict or Verdict()
+
+    @cached_property
+    def compared(self) -> list[Compared]:
+        """The static rules beside the run."""
+        return compared_rows(self.model.static, self.verdict, self.case)
+
+    @cached_property
+    def boxes(self) -> Sequence[Sequence[str]]:
+        """A row for each box of a loose stack."""
+        return box_rows(self.result)
+
+    @cached_property
+    def played(self) -> dict[str, Any]:
+        """What the animation plays; empty where there is none."""
+        if len(self.history) < 2 or self.brief:
+            return {}
+        return player_data(self.shown, self.history, model=self.model)
+
+    @property
+    def note_on_level(self) -> str:
+        """That a floor is drawn level which slopes; empty of one that is level."""
+        return drawn_level(self.case.floor.slope_percent)
+
+    def figures(self, *names: str) -> list[html.Figure]:
+        """Those of these drawings that there are."""
+        return [
+            html.Figure(
+                svg_element(one.svg, label=one.title, prefix=one.name),
+                f"figure: {one.title}",
+                axes=one.cursor,
+            )
+            for one in (self.drawn[name] for name in names if name in self.drawn)
+        ]
+
+
+def motion_section(view: RunView) -> html.PageSection:
+    """The animation, the curves beside it, and stills for paper."""
+    moves = view.case.motion.kind != "none" or view.case.has_vertical
+    names = SHORT_MOTION if view.brief else MOTION
+    curves = view.figures(*(name for name in names if name != "base_motion" or moves))
+    if not curves:
+        return html.section("The motion", "motion-title", "There are no samples to show.")
+    player = [_player(view)] if view.played else []
+    shown = html.Group("motion brief" if view.brief else "motion", [*player, html.Group("curves", curves)])
+    return html.section("The motion", "motion-title", shown, *_stills(view))
+
+
+def _player(view: RunView) -> html.Player:
+    shown, height = view.shown, view.model.container.mesh.height
+    chosen = exaggeration(shown, height)
+    return html.Player(
+        f"{_what_is_played(view)} Red: normal force, blue: friction, on the container; dashed: where it first stood on "
+        f"the floor; ○: mass centre{' of each box' if view.boxes else ''}; ▲: where the middle of its base first was"
+        f"{f'; {view.note_on_level}' if view.note_on_level else ''}. {KEYS}",
+        loose=bool(view.boxes),
+        exaggerations=[
+            html.Choice(factor, f"× {short(factor)}", factor == chosen)
+            for factor in exaggerations(shown, height)
+        ],
+        meshed=bool(shown.frames),
+        legend=_legend(view),
+    )
+
+
+def _what_is_played(view: RunView) -> str:
+    shown, every = view.shown, f"every {short(view.played['step'], 1000)} ms"
+    if shown.stress_scale:
+        return (
+            f"The rigid motion follows the history ({every}); deformation and stress follow {len(shown.frames)} frames "
+            "and are interpolated between them. Largest stress in the frames: "
+            f"{quantity(shown.largest_stress, 'MPa', 1e-6, 3)}, in one place; 98 % of the values lie within the scale."
+        )
+    if shown.frames:
+        rigid = "The boxes are rigid: they have" if view.boxes else "The container is rigid: it has"
+        forces = f"the contact forces {len(shown.frames)} frames"
+        return f"The motion follows the history ({every}), {forces}. {rigid} no stress."
+    return "No fields were written: the container is shown without deformation."
+
+
+def _legend(view: RunView, more: str = "") -> html.Legend | None:
+    """The colours of the stress, where there is any."""
+    if not view.shown.stress_scale:
+        return None
+    most = quantity(view.shown.stress_scale, "MPa", 1e-6, 3)
+    return html.Legend("von Mises stress 0", f"{most} and more{more}", colour_scale("YlGnBu", COLOURS))
+
+
+def _stills(view: RunView) -> list[html.Block]:
+    mesh, angle = view.model.container.mesh, view.model.static.slenderness_angle
+    found = stills(view.shown, view.history, view.verdict, angle=angle, width=mesh.width, height=mesh.height)
+    if not found:
+        return []
+    legend = _legend(view, f"; elastic part × {short(exaggeration(view.shown, mesh.height))}")
+    level = view.note_on_level
+    return [
+        html.Group(
+            "whole",
+            [
+                html.Heading("Stills"),
+                html.Group("stills", [html.Figure(one.svg, caption=one.caption) for one in found]),
+                *([legend] if legend else []),
+                *([html.Note(f"In these drawings {level}.")] if level else []),
+            ],
+        )
+    ]
+
+
+def boxes_section(view: RunView) -> html.PageSection:
+    """What each box of a loose stack did."""
+    if not view.boxes:
+        return html.section("", "boxes")
+    heads = ("largest rotation [°]", "largest slip [mm]", "slip left [mm]", "largest opening [mm]")
+    columns: list[html.Column[Sequence[str]]] = [
+        *html.in_order("box", *heads, look=html.NUMBER),
+        html.Column("fell", lambda row: html.Cell(row[5] or "no", "fail" if row[5] else "")),
+    ]
+    return html.section(
+        "Boxes of the loose stack",
+        "boxes",
+        html.table_of("boxes of the loose stack", columns, view.boxes),
+        html.Note(BOXES_NOTE),
+        look="brief" if view.brief else "",
+    )
+
+
+def variations_section(view: RunView, variations: VariationTable | None) -> html.PageSection:
+    """The outcome under changed assumptions, and over the unknown inputs."""
+    title, band = "How the outcome changes", view.figures("band")
+    noted: list[html.Block] = [*band, html.Note(BAND_NOTE)] if band else []
+    if view.brief:
+        return html.section(title, "variations", *noted, look="brief")
+    if variations is None:
+        return html.section(title, "variations", f"Not computed: the run is {view.run.status}.", *noted)
+    model, other = variations.model, ""
+    if model != view.case.solver.model:
+        other = f" (the run itself used the {view.case.solver.model} model)"
+    harmless = f" {NOT_WORSE}" if view.case.motion.kind != "none" else ""
+    return html.section(
+        title,
+        "variations",
+        html.joined(
+            "Each line is a separate run with the ",
+            html.strong(model),
+            f" model{other}; one thing is changed. {variations.sentence}",
+        ),
+        _varied_table(variations, loose=bool(view.boxes)),
+        html.Note(
+            "* the outcome differs from the first line. Sliding counts from 10⁻⁴ of the width, rocking from 10⁻² of "
+            f"the slenderness angle.{harmless}"
+        ),
+        *_left_out(variations),
+        *noted,
+    )
+
+
+def _varied_table(variations: VariationTable, *, loose: bool) -> html.Table:
+    def outcome(line: Varied) -> str:
+        if line.row.outcome:
+            return f"{line.row.outcome}{' *' if line.changed else ''}"
+        return html.joined(html.marked("no outcome", "fail"), f": {line.row.reason}")
+
+    def turned(line: Varied) -> str:
+        fell = line.row.outcome == Outcome.OVERTURNED
+        return "≥ 1, fell" if fell else rotation_ratio(line.row.rotation_ratio)
+
+    def length(name: str, line: Varied) -> str:
+        return millimetres(getattr(line.row, name))
+
+    lengths = {
+        f"{'slip on floor' if loose else 'largest slip'} [mm]": "max_slip_m",
+        **({"between boxes [mm]": "max_joint_slip_m"} if loose else {}),
+        "slip left [mm]": "residual_slip_m",
+        "uplift [mm]": "max_uplift_m",
+    }
+    columns: list[html.Column[Varied]] = [
+        html.Column("changed", lambda line: line.variation.subject),
+        html.Column("to", lambda line: line.variation.change),
+        html.Column("outcome", outcome),
+        html.Column("rotation ratio", turned, html.NUMBER),
+        *(html.Column(head, partial(length, name), html.NUMBER) for head, name in lengths.items()),
+    ]
+    first = variations.lines[0]
+    return html.table_of(
+        "variations of the run",
+        columns,
+        variations.lines,
+        row_look=lambda line: "given" if line is first else "changed" if line.changed else "",
+        look="long",
+    )
+
+
+def _left_out(variations: VariationTable) -> list[html.Block]:
+    """Which variations were left out, where there are any."""
+    if not variations.left_out:
+        return []
+    price = quantity(variations.price, "s", figures=2)
+    listed = "; ".join(f"{one.subject} {one.change}" for one in variations.left_out)
+    return [
+        html.Note(
+            html.joined(
+                html.strong("Left out"),
+                f" to save time (a line takes about {price}): {listed}. ",
+                html.code("python -m fem report"),
+                " with ",
+                html.code("--all-variations"),
+                " computes them.",
+            )
+        )
+    ]
+
+
+def modes_section(view: RunView) -> html.PageSection:
+    """The elastic modes of the container, also of a rigid run."""
+    solver, numerics = view.case.solver, view.result.numerics
+    modes = elastic_mode_table(view.model.container.lowest_modes(FEW))
+    used = {
+        "rigid": "; this rigid run uses none",
+        "reduced": f"; this run uses {solver.elastic_modes}, with a damping ratio of "
+        f"{short(view.case.container.damping_ratio)} in the first, proportional to frequency in the others",
+    }.get(solver.model, "")
+    contact = ""
+    if numerics and solver.model != "rigid" and (bounce := numerics.contact_frequency_Hz):
+        contact = (
+            f" Contact frequency {quantity(bounce, 'Hz')}: first elastic over contact frequency "
+            f"{number(modes[0]['frequency_Hz'] / bounce, figures=3)}. Restitution hardly depends on it; forces, "
+            "accelerations and stresses of an impact do depend on the contact stiffness."
+        )
+    columns: list[html.Column[Mapping[str, float]]] = [
+        html.Column("mode", lambda row: str(int(row["mode"]))),
+        html.Column("frequency [Hz]", lambda row: number(row["frequency_Hz"], figures=5), html.NUMBER),
+        html.Column("period [ms]", lambda row: number(row["period_s"], 1000, 4), html.NUMBER),
+        html.Column("to the first", lambda row: number(row["ratio_to_first"]), html.NUMBER),
+    ]
+    return html.section(
+        "Elastic modes",
+        "modes",
+        f"Modes of the container without contact{used}.{contact}",
+        html.columns(html.table_of("elastic modes", columns, modes)),
+        *view.figures("modes"),
+    )
+
+
+def block_section(view: RunView) -> html.PageSection:
+    """The run beside the analytic rigid block."""
+    title, check = "Comparison with the analytic rigid block", rigid_check(view.run, view.model, view.history)
+    if check is None:
+        return html.section(title, "block", f"Not compared: the run is {view.run.status}.")
+    fair = html.joined("The comparison is fair.")
+    if not check.meaningful:
+        fair = html.joined(html.strong("No fair comparison:"), f" {'; '.join(check.reasons)}.")
+    introduction = html.joined(
+        "A rigid block with the same mass centre, inertia, friction and floor, computed from event to event by "
+        "independent code. ",
+        fair,
+    )
+    table = [_block_table(check)] if check.reference else []
+    return html.section(title, "block", introduction, *table, *view.figures("rigid_check"))
+
+
+def _block_table(check: RigidCheckResult) -> html.Table:
+    first, ratio, apart = check.first_impact_s, check.velocity_ratio, check.largest_difference_before_impact
+    rows = (
+        [("first impact [s]", number(first.run, figures=5), number(first.block, figures=5))] if first else []
+    )
+    rows += [("velocity ratio there", number(ratio.run), number(ratio.block))] if ratio else []
+    rows += [
+        (f"peak {k} [°]", number(peak.run_rad, DEGREES), number(peak.block_rad, DEGREES))
+        for k, peak in enumerate(check.peaks, 1)
+    ]
+    if apart is not None:
+        words = "largest difference before an impact, of the slenderness angle"
+        rows.append((words, number(apart, figures=3), ""))
+    columns = html.in_order("compared", "run", "block", look=html.NUMBER)
+    return html.table_of("run and analytic block", columns, rows)
+
+
+def rigid_check(run: OpenedRun, model: Model, history: History) -> RigidCheckResult | None:
+    """The comparison with the analytic block: that of the run, or else made now; None of an unfinished run."""
+    result = run.typed_result
+    if result.rigid_check is not None:
+        return result.rigid_check
+    if run.status not in RUN.finished or result.verdict is None or len(history) < 2:
+        return None
+    try:
+        return check_against_rigid_block(model, history, result.verdict).result
+    except (ValueError, EventError) as error:
+        return RigidCheckResult(reasons=(str(error),))
+
+
+def joints_section(view: RunView) -> html.PageSection:
+    """The forces in the joints of a bolted stack."""
+    if not view.result.joints:
+        return html.section("", "joints")
+    forces = {
+        "shear [kN]": "max_shear_N",
+        "moment [kNm]": "max_moment_Nm",
+        "bolts left [kN]": "bolt_tension_left_N",
+        "bolts right [kN]": "bolt_tension_right_N",
+        "bolt shear [kN]": "bolt_shear_N",
+    }
+
+    def force(name: str, joint: JointDemand) -> str:
+        return number(getattr(joint, name), 1e-3, 3)
+
+    def normal(joint: JointDemand) -> str:
+        return f"{force('min_normal_N', joint)} to {force('max_normal_N', joint)}"
+
+    def friction(joint: JointDemand) -> str:
+        needed = joint.friction_needed
+        return "none holds" if needed is None else number(needed, figures=3)
+
+    columns: list[html.Column[JointDemand]] = [
+        html.Column("at [m]", lambda joint: short(joint.height_m)),
+        html.Column("normal [kN]", normal, html.NUMBER),
+        *(html.Column(head, partial(force, name), html.NUMBER) for head, name in forces.items()),
+        html.Column("friction needed", friction, html.NUMBER),
+    ]
+    return html.section(
+        f"Joints between the boxes{impact_note(view.verdict)}",
+        "joints",
+        html.table_of("joints between the boxes", columns, view.result.joints),
+        html.Note(joints_note(view.verdict)),
+        *view.figures("joints"),
+    )
+
+
+def sheet_section(view: RunView) -> html.PageSection:
+    """The static calculation, with its numbers."""
+
+    def source(line: SheetLine) -> str:
+        colon = ": " if line.source and line.verdict else ""
+        return html.joined(line.source, colon, html.strong(line.verdict) if line.verdict else "")
+
+    columns: list[html.Column[SheetLine]] = [
+        html.Column("quantity", lambda line: line.name),
+        html.Column("formula", lambda line: line.formula),
+        html.Column("with numbers", lambda line: line.numbers),
+        html.Column("result", lambda line: f"{line.result} {line.unit}", html.NUMBER),
+        html.Column("source", source, "note"),
+    ]
+    tables = (
+        html.table_of(heading, columns, lines, caption=heading, look="sheet")
+        for heading, lines in static_sheet(view.model.static, view.case)
+    )
+    introduction = "Equilibrium of the rigid container on its corners, every line with its numbers."
+    return html.section("Static calculation", "sheet", introduction, *tables)
