@@ -13,7 +13,6 @@ from fem.model.support import build_support
 from fem.model.validity import require_memory
 from fem.runtime.arrays import IntArray
 from fem.runtime.threads import use_one_blas_thread
-from fem.solid.array_cache import ArrayCache, no_cache
 from fem.solid.assembly import FiniteElements, assemble
 from fem.solid.modes import ElasticModes, elastic_modes, signs_of
 from fem.solid.reduction import ReducedBasis, StaticResponse, reduced_basis, static_response
@@ -96,10 +95,10 @@ def modes_of_a_body(case: Case) -> int:
     return math.ceil(case.solver.elastic_modes / case.container.bodies)
 
 
-def discretise(case: Case, mesh: ContainerMesh | None = None, cache: ArrayCache = no_cache) -> Container:
+def discretise(case: Case, mesh: ContainerMesh | None = None) -> Container:
     """Build elements, contact nodes and elastic modes of a case's container.
 
-    `mesh` is given where it is built already; `cache` holds the arrays that take long to compute.
+    `mesh` is given where it is built already.
 
     Raises:
         CaseError, MeshError: bad input.
@@ -110,12 +109,12 @@ def discretise(case: Case, mesh: ContainerMesh | None = None, cache: ArrayCache 
     require_memory(case, node_count(mesh, case.solver.order), support.index.size)
     elements = _assembled(case, mesh)
     if case.container.is_loose:
-        return _loose(case, mesh, elements, support, cache)
+        return _loose(case, mesh, elements, support)
     nodes = elements.base_nodes[support.index]
     if not case.output.stop_when_overturned:  # lying on its side it touches with the upper corners, too
         nodes = np.concatenate([nodes, _upper_corners(elements)])
-    response = static_response(elements, nodes, cache)
-    basis, first = _elastic(case, elements, response, modes_of_a_body(case), cache)
+    response = static_response(elements, nodes)
+    basis, first = _elastic(case, elements, response, modes_of_a_body(case))
     return Container(
         mesh=mesh,
         elements=elements,
@@ -136,15 +135,15 @@ def _assembled(case: Case, mesh: ContainerMesh) -> FiniteElements:
 
 
 def _elastic(
-    case: Case, elements: FiniteElements, response: StaticResponse, modes: int, cache: ArrayCache
+    case: Case, elements: FiniteElements, response: StaticResponse, modes: int
 ) -> tuple[ReducedBasis, float]:
     """Elastic modes of a reduced model, and the lowest angular frequency [rad/s]."""
     none = _no_modes(elements)
     if case.solver.model == "reduced":
-        basis = reduced_basis(elements, response, modes, cache)
+        basis = reduced_basis(elements, response, modes)
         return basis, float(basis.angular_frequencies[0])
     if case.solver.model == "full":
-        return none, float(elastic_modes(elements, 1, cache).angular_frequencies[0])
+        return none, float(elastic_modes(elements, 1).angular_frequencies[0])
     return none, math.inf
 
 
@@ -156,9 +155,7 @@ def _no_response(elements: FiniteElements) -> StaticResponse:
     return StaticResponse(displacement=np.zeros((0, *elements.nodes.shape)), compliance=np.zeros((0, 0)))
 
 
-def _loose(
-    case: Case, mesh: ContainerMesh, elements: FiniteElements, support: Support, cache: ArrayCache
-) -> Container:
+def _loose(case: Case, mesh: ContainerMesh, elements: FiniteElements, support: Support) -> Container:
     """A container of boxes that share no node; boxes with equal meshes are analysed once."""
     known: dict[tuple[bytes, ...], BoxModel] = {}
     boxes, nodes = [], []
@@ -169,7 +166,7 @@ def _loose(
             for part in (own.points, own.quads, own.region, own.thickness, own.areal_density)
         )
         if key not in known:
-            known[key] = _box(case, own, lambda name, *rest, k=number: cache(f"box {k} {name}", *rest))
+            known[key] = _box(case, own)
         boxes.append(known[key])
         place = np.empty(len(boxes[-1].elements.nodes), dtype=np.int64)
         place[boxes[-1].elements.cells] = elements.cells[mesh.box == number]
@@ -197,13 +194,13 @@ def _loose(
     return replace(container, nodes=container.corners[touching])
 
 
-def _box(case: Case, mesh: ContainerMesh, cache: ArrayCache) -> BoxModel:
+def _box(case: Case, mesh: ContainerMesh) -> BoxModel:
     elements = _assembled(case, mesh)
     corners = np.concatenate([elements.base_nodes[[0, -1]], _upper_corners(elements)])
     response = _no_response(elements)
     if case.solver.model != "rigid":
-        response = static_response(elements, corners, cache)
-    basis, first = _elastic(case, elements, response, modes_of_a_body(case), cache)
+        response = static_response(elements, corners)
+    basis, first = _elastic(case, elements, response, modes_of_a_body(case))
     return BoxModel(
         mesh=mesh,
         elements=elements,

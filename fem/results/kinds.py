@@ -37,7 +37,6 @@ RUN = ResultKind(
     own=(
         "checkpoint.npz",
         "band.json",
-        "members/member_*.npz",
         "summary.txt",
         "history.csv",
         "rigid_check.csv",

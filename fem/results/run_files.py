@@ -26,16 +26,6 @@ class RunFiles:
         self.variations = path / "variations.json"  #: the run under other assumptions, from a report
         self.checkpoint = path / "checkpoint.npz"  #: of an unfinished run
         self.band = path / "band.json"  #: finished members of an unfinished band
-        self.members = path / "members"  #: folder of the checkpoints of its other members
-        self.setup = path / ".setup"  #: folder of the arrays of an unfinished set-up
-
-    def member_checkpoint(self, number: int) -> Path:
-        """Checkpoint of a member of a band, numbered from 1."""
-        return self.members / f"member_{number}.npz"
-
-    def setup_part(self, number: int) -> Path:
-        """Arrays of a set-up that were stored together, numbered from 1."""
-        return self.setup / f"part_{number}.npz"
 
     def require_free_names(self, case: Case) -> None:
         """Refuse a mesh or motion file whose copy would replace a result.

@@ -3,7 +3,7 @@
 `fem.case.uncertainty` says which inputs these are, in which ranges, and makes the changed cases; here they are run, and
 `fem.assessment.sureness` says what they show. All have the container of the run. Members of rigid and reduced models
 that take seconds run without a history; those that change one input have one where a stack needs the forces in its
-joints; long ones and those of the `full` model have one and a checkpoint. What does not fit the budget is left out:
+joints; long ones and those of the `full` model have one. What does not fit the budget is left out:
 first the draws, then the changes of which another of the same input is tried. The choice follows from the sizes and
 steps of the run, not from the clock, so that a resumed or repeated band is the same.
 """
@@ -13,8 +13,6 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from itertools import count
-from typing import Protocol
 
 from fem.assessment.joint_demands import joint_demands
 from fem.assessment.ranges import largest_bolt_forces
@@ -44,10 +42,10 @@ from fem.results.run_result import (
     StaticResult,
     Verdict,
 )
-from fem.run.checkpoint import CheckpointWriter
+from fem.run.band_checkpoint import BandCheckpoint
 from fem.run.outcome import run_without_history
 from fem.run.recorder import Recorder
-from fem.run.simulation import BEGINNING, Progress, simulate
+from fem.run.simulation import simulate
 from fem.runtime.threads import cores
 from fem.solid.nodal_body import full_model_memory
 
@@ -57,7 +55,7 @@ NEAR_LIMIT = 0.7
 BELOW_UPLIFT = (0.85, 1.0)
 #: processor time for the members, by the estimate below [s]; members that are computed in any case
 BUDGET_S, LEAST_MEMBERS = 30.0, 6
-SHORT_S = 5.0  #: estimated time up to which a member needs no checkpoint [s]
+SHORT_S = 5.0  #: estimated time up to which a member is stepped in one go [s]
 MEMBER_COST = 1.2  #: of a member over the run: stiffer floors and tighter tolerances take more steps
 #: processor time of one attempted step of a modal model: fixed, by (base points)^2, by unknowns x 2 base points [s].
 #: Measured: 0.42e-6 (rigid) and 0.87e-6 (20 modes) on corners, 4.3e-6 (feet), 5.6e-6 and 25e-6 (flat)
@@ -72,7 +70,7 @@ class Plan:
 
     changes: tuple[InputChange, ...]
     left_out: tuple[InputChange, ...]  #: for which there is no time
-    short: bool  #: members are so short that none needs a checkpoint
+    short: bool  #: members are so short that they are stepped in one go
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,36 +79,6 @@ class Shared:
 
     recovery: Recovery | None  #: of stresses
     joints: Joints | None  #: of a stack
-
-
-class MemberStore(Protocol):
-    """Where the members of a band are stored while it is computed, to continue an interrupted one."""
-
-    def read_members(self) -> list[BandMember]:
-        """The finished members."""
-
-    def write_members(self, members: Sequence[BandMember], number: int | None = None) -> None:
-        """Store the finished members; the one of this number needs its checkpoint no more."""
-
-    def open_member(
-        self, number: int, model: Model, recorder: Recorder
-    ) -> tuple[CheckpointWriter | None, Progress]:
-        """Put a member where its checkpoint says; returns what writes the next one, and the progress."""
-
-
-class NothingStored:
-    """A `MemberStore` for a band in memory."""
-
-    def read_members(self) -> list[BandMember]:
-        """None."""
-        return []
-
-    def write_members(self, members: Sequence[BandMember], number: int | None = None) -> None:
-        """Store nothing."""
-
-    def open_member(self, number: int, model: Model, recorder: Recorder) -> tuple[None, Progress]:
-        """Leave a member at t = 0."""
-        return None, BEGINNING
 
 
 def wants_band(asked: bool | None, case: Case, result: RunResult) -> bool:
@@ -159,7 +127,7 @@ def cost_of(numerics: Numerics) -> float:
 
 
 def with_band(
-    model: Model, result: RunResult, *, stop: Callable[[], bool], checkpoint: MemberStore
+    model: Model, result: RunResult, *, stop: Callable[[], bool], checkpoint: BandCheckpoint | None = None
 ) -> Verdict | None:
     """Compute the members of a band side by side and judge the verdict of the run by them.
 
@@ -167,7 +135,7 @@ def with_band(
         model: of the run; the mesh and modes of its container serve every member.
         result: of the run, which is itself a member.
         stop: called in pauses; true ends the band.
-        checkpoint: of the band, to resume from; or none.
+        checkpoint: of the finished members, to resume from.
 
     Returns:
         The verdict with its band, or None if it was stopped.
@@ -176,7 +144,7 @@ def with_band(
         OSError: a checkpoint could not be written; the other members have stopped then.
     """
     plan = plan_of(model, result)
-    found = {_key(one.values): one for one in checkpoint.read_members()}
+    found = {_key(one.values): one for one in (checkpoint.read_members() if checkpoint else ())}
     one_at_a_time, broken, stored = threading.Lock(), threading.Event(), time.monotonic()
     shared = Shared(
         recovery=recovery_of(model) if model.case.solver.model == "reduced" else None,
@@ -186,7 +154,7 @@ def with_band(
     def halted() -> bool:
         return stop() or broken.is_set()
 
-    def member_of(number: int, change: InputChange) -> BandMember:
+    def member_of(change: InputChange) -> BandMember:
         nonlocal stored
         key = _key(change.values)
         if key in found:
@@ -194,12 +162,12 @@ def with_band(
         if halted():
             return _without_outcome(change, "interrupted")
         try:
-            member = _run_member(model, plan, number, change, shared, halted, checkpoint)
+            member = _run_member(model, plan, change, shared, halted)
             with one_at_a_time:
                 if member.status != "interrupted":
                     found[key] = member
-                    if not plan.short or time.monotonic() - stored > STORED_S:
-                        checkpoint.write_members(list(found.values()), number)
+                    if checkpoint and (not plan.short or time.monotonic() - stored > STORED_S):
+                        checkpoint.write_members(list(found.values()))
                         stored = time.monotonic()
         except BaseException:
             broken.set()  # stops the other members
@@ -210,9 +178,10 @@ def with_band(
     if model.case.solver.model == "full":
         workers = runs_in_memory(workers, full_model_memory(len(model.container.elements.nodes)))
     with ThreadPoolExecutor(max_workers=workers) as pool:
-        members = list(pool.map(member_of, count(1), plan.changes))
+        members = list(pool.map(member_of, plan.changes))
     if any(member.status == "interrupted" for member in members):
-        checkpoint.write_members(list(found.values()))
+        if checkpoint:
+            checkpoint.write_members(list(found.values()))
         return None
     verdict = result.verdict or Verdict()
     own = _member(None, model.case, model, result.status, verdict, result.joints)
@@ -220,13 +189,7 @@ def with_band(
 
 
 def _run_member(
-    run: Model,
-    plan: Plan,
-    number: int,
-    change: InputChange,
-    shared: Shared,
-    stop: Callable[[], bool],
-    checkpoint: MemberStore,
+    run: Model, plan: Plan, change: InputChange, shared: Shared, stop: Callable[[], bool]
 ) -> BandMember:
     """One member; a problem of any kind is its error, never an outcome."""
     try:
@@ -242,11 +205,7 @@ def _run_member(
                 return _without_outcome(change, "failed", error)
             return _member(change, case, model, status, verdict, None)
         recorder = Recorder(model, shared.recovery, joints=shared.joints)
-        if plan.short:
-            ending = simulate(model, recorder, stop=stop)
-        else:
-            save, progress = checkpoint.open_member(number, model, recorder)
-            ending = simulate(model, recorder, stop=stop, save=save, progress=progress)
+        ending = simulate(model, recorder, stop=stop)
     # bad input, no equilibrium, a singular matrix
     except (ValueError, ArithmeticError, RuntimeError) as problem:
         return _without_outcome(change, "failed", str(problem))
@@ -254,7 +213,6 @@ def _run_member(
         return _without_outcome(change, ending.status, ending.error)
     history = recorder.history()
     verdict = verdict_of(model, history, recorder.largest_von_mises)
-    # of a resumed member the first samples are gone
     joints = joint_demands(model, history) if plan.short else None
     return _member(change, case, model, ending.status, verdict, joints)
 

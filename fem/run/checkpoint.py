@@ -3,8 +3,7 @@
 A checkpoint is written in a pause of the stepping. It holds everything of the run that changes - coordinates,
 velocities, friction springs, stored factors of the contact, energy ledger, step control, record, samples not yet
 written, the recorder's memory - bit for bit. What follows from the case alone (mesh, modes, floor) is built again, and
-factors of the bodies follow from the step size. `fem.run.output` adds what the files of a run held at that time; a
-member of a band writes none.
+factors of the bodies follow from the step size. `fem.run.output` adds what the files of a run held at that time.
 """
 
 import time

@@ -14,7 +14,8 @@ from fem.model.model import Model
 from fem.results.history import History
 from fem.results.kinds import RUN
 from fem.results.run_result import RigidCheckResult, RunResult
-from fem.run.band import MemberStore, rests_far_below_limits, wants_band, with_band
+from fem.run.band import rests_far_below_limits, wants_band, with_band
+from fem.run.band_checkpoint import BandCheckpoint
 from fem.runtime.progress import Reporter
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ def add_checks(
     model: Model,
     history_of: Callable[[], History],
     wanted: WantedChecks,
-    members: MemberStore,
+    members: BandCheckpoint | None,
     *,
     reporter: Reporter,
     stop: Callable[[], bool],
@@ -44,7 +45,7 @@ def add_checks(
     Args:
         result, model: of the run; history_of: gives its samples.
         wanted: what is asked for.
-        members: where the members of a band are stored.
+        members: where the finished members of a band are stored.
         reporter: of the band.
         stop: called in pauses; true ends the band.
 

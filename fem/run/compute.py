@@ -16,7 +16,6 @@ from fem.results.fields import Fields, Frame, FrameKeeper
 from fem.results.history import History
 from fem.results.reader import pyvista_grid
 from fem.results.run_result import RunResult, Verdict
-from fem.run.band import NothingStored
 from fem.run.checks import WantedChecks, add_checks
 from fem.run.output import Stopwatch
 from fem.run.recorder import Recorder
@@ -134,7 +133,7 @@ def compute_on(container: Container | None, case: Case, wanted: WantedChecks) ->
     result = begun(model, case_hash(resolved))
     result, history = stepped(model, result, recorder, reporter=silent, stop=lambda: False)
     result, block = add_checks(
-        result, model, lambda: history, wanted, NothingStored(), reporter=silent, stop=lambda: False
+        result, model, lambda: history, wanted, None, reporter=silent, stop=lambda: False
     )
     if block is not None:
         history = history.with_analytic(block.analytic_rotation)

@@ -28,7 +28,6 @@ from fem.run.band_checkpoint import BandCheckpoint
 from fem.run.checkpoint import CheckpointWriter
 from fem.run.checks import WantedChecks, add_checks, lacks_band, lacks_checks
 from fem.run.output import Start, Stopwatch, open_output, read_start
-from fem.run.setup_cache import SetupCache
 from fem.run.size import required_disk, size_in_words
 from fem.run.solve import begun, in_words, resolve, stepped
 from fem.runtime.compilation import compilation_announced
@@ -38,7 +37,6 @@ from fem.solid.nodal_body import advance_body
 from mesh.container import ContainerMesh
 
 WAY_ON = "--resume continues from the last checkpoint"
-SETUP_PARTS = ".setup/part_*.npz"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,7 +84,7 @@ def run_case(
             longest = longest_run(case, *build_motions(case))
             size = size_in_words(case, nodes, longest)
             place.require_room(required_disk(case, nodes, longest), size, way_out)
-        model = set_up(case, mesh, place, request, force=options.force, reporter=reporter)
+        model = set_up(case, mesh, reporter)
         with interruptible(reporter) as stop:
             result = known
             if result is None:
@@ -193,9 +191,9 @@ def store(result: RunResult, case: Case, place: ResultFolder) -> RunResult:
     place.write_text(RunFiles(place.path).summary.name, plain_summary(result, folder=place.path))
     place.write_result(result.to_json())
     if result.status in RUN.finished:
-        place.remove("checkpoint.npz", SETUP_PARTS)
+        place.remove("checkpoint.npz")
         if result.verdict is not None and result.verdict.band is not None:
-            place.remove("band.json", "members/member_*.npz")
+            place.remove("band.json")
     return result
 
 
@@ -211,24 +209,15 @@ def draw(model: Model, folder: Path, reporter: Reporter) -> None:
         )
 
 
-def set_up(
-    case: Case, mesh: ContainerMesh, place: ResultFolder, request: str, *, force: bool, reporter: Reporter
-) -> Model:
-    """Build the model of a case and compile the kernels that step it; arrays that take long are cached in the folder.
+def set_up(case: Case, mesh: ContainerMesh, reporter: Reporter) -> Model:
+    """Build the model of a case and compile the kernels that step it.
 
     Raises:
-        CaseError, MeshError: it cannot be built; the cache is removed then.
+        CaseError, MeshError: it cannot be built.
     """
-    if force:
-        place.remove(SETUP_PARTS)
-    try:
-        with ending_at_once(), compilation_announced(reporter.message):
-            cache = SetupCache(place, case_hash=request, reporter=reporter)
-            model = build_model(case, discretise(case, mesh, cache))
-            advance_body(model.body, model.run, 0.0)  # no step: compiles
-    except ValueError:
-        place.remove(SETUP_PARTS)
-        raise
+    with ending_at_once(), compilation_announced(reporter.message):
+        model = build_model(case, discretise(case, mesh))
+        advance_body(model.body, model.run, 0.0)  # no step: compiles
     return model
 
 

@@ -6,19 +6,16 @@ of Multibody Systems (2013), chapter 5. Lanczos iteration with shift and inversi
 Mathematics of Computation 35 (1980) 1251) on the complement of the rigid modes. Rotation > 0 tilts toward +x.
 """
 
-import functools
 from dataclasses import dataclass
-from itertools import count as count_from
 from pathlib import Path
 
 import numpy as np
 from scipy.linalg import cholesky, eigh, qr, solve_triangular
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import LinearOperator, SuperLU, eigsh
+from scipy.sparse.linalg import LinearOperator, eigsh
 
 from fem.results.vtu import FrameFormat
 from fem.runtime.arrays import FloatArray
-from fem.solid.array_cache import ArrayCache, no_cache
 from fem.solid.assembly import FiniteElements, factorised
 
 FEW = 5  #: modes in the table and the figure of a run: one row of shapes
@@ -51,7 +48,7 @@ def rigid_modes(elements: FiniteElements) -> FloatArray:
     return modes / np.sqrt(_modal_masses(elements, modes))[:, None, None]
 
 
-def elastic_modes(elements: FiniteElements, count: int, cache: ArrayCache = no_cache) -> ElasticModes:
+def elastic_modes(elements: FiniteElements, count: int) -> ElasticModes:
     """The `count` lowest elastic modes, at most all but the three rigid ones of the unknowns.
 
     The same input gives the same shapes and signs: the largest component of each shape is positive (the first of
@@ -61,7 +58,7 @@ def elastic_modes(elements: FiniteElements, count: int, cache: ArrayCache = no_c
     if elements.unknowns <= max(_DENSE_UNKNOWNS, 4 * count):
         squares, vectors = _dense_modes(elements, rigid, count)
     else:
-        squares, vectors = _lanczos_modes(elements, rigid, count, cache)
+        squares, vectors = _lanczos_modes(elements, rigid, count)
     shapes = vectors.T.reshape(count, -1, 2)
     shapes /= np.sqrt(_modal_masses(elements, shapes))[:, None, None]
     return ElasticModes(frequencies_Hz=np.sqrt(squares) / (2.0 * np.pi), shapes=shapes * signs_of(shapes))
@@ -112,29 +109,16 @@ def _dense_modes(elements: FiniteElements, rigid: FloatArray, count: int) -> tup
     return 1.0 / inverses[::-1] - shift, basis @ vectors[:, ::-1]
 
 
-def _lanczos_modes(
-    elements: FiniteElements, rigid: FloatArray, count: int, cache: ArrayCache
-) -> tuple[FloatArray, FloatArray]:
+def _lanczos_modes(elements: FiniteElements, rigid: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
     mass, stiffness = elements.vector_mass, elements.stiffness
     shift = _first_square_estimate(elements, rigid)
 
     # K alone is singular; K + shift M is positive definite, and any shift near the first elastic mode keeps
     # both the factor well conditioned and the wanted modes apart.
-    @functools.cache
-    def factor() -> SuperLU:
-        return factorised(stiffness + shift * mass)
-
-    number = count_from(1)
+    factor = factorised(stiffness + shift * mass)
 
     def solve(momentum: FloatArray) -> FloatArray:
-        # The iteration asks for the same solutions in the same order every time, so that they can be restored.
-        solution = np.empty(momentum.shape)
-        cache(
-            f"solution {next(number)}",
-            solution,
-            lambda: _without_rigid_motion(factor().solve(momentum), rigid, mass),
-        )
-        return solution
+        return _without_rigid_motion(factor.solve(momentum), rigid, mass)
 
     # Without symmetry, so that no mode is missed.
     start = np.random.default_rng(0).standard_normal(elements.unknowns)

@@ -5,17 +5,14 @@ acceleration (inertia relief). With one for every contact degree of freedom the 
 exact, however few free modes are kept. Rubin, AIAA J. 13 (1975) 995; Craig, Structural Dynamics (1981), ch. 19.
 """
 
-import functools
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import scipy.linalg
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import SuperLU
 
 from fem.runtime.arrays import FloatArray, IntArray
-from fem.solid.array_cache import ArrayCache, blocks, no_cache
 from fem.solid.assembly import FiniteElements, factorised
 from fem.solid.modes import elastic_modes, rigid_modes
 
@@ -43,7 +40,7 @@ class ReducedBasis:
     shapes: FloatArray  #: (m, n, 2) mass-normalised [1/sqrt(kg)]
 
 
-def static_response(elements: FiniteElements, base: IntArray, cache: ArrayCache = no_cache) -> StaticResponse:
+def static_response(elements: FiniteElements, base: IntArray) -> StaticResponse:
     """Response of the free elastic container to unit forces at the nodes `base` (n_c,).
 
     The body is held at three degrees of freedom, which carry nothing: the loads are self-balanced. The rigid motion is
@@ -57,29 +54,22 @@ def static_response(elements: FiniteElements, base: IntArray, cache: ArrayCache 
     free[[2 * first, 2 * first + 1, 2 * last]] = False
     dofs = (2 * np.asarray(base)[:, None] + np.arange(2)).ravel()
 
-    @functools.cache
-    def factor() -> SuperLU:
-        return factorised(elements.stiffness[:, free][free])
-
-    def responses_to(loaded: IntArray) -> FloatArray:
+    factor = factorised(elements.stiffness[:, free][free])
+    displacement = np.empty((dofs.size, elements.unknowns))
+    for block in blocks(dofs.size, LOADS):
+        loaded = dofs[block]
         loads = -rigid_momentum @ rigid[:, loaded]
         loads[loaded, np.arange(loaded.size)] += 1.0
         responses = np.zeros_like(loads)
-        responses[free] = factor().solve(loads[free])
-        return (responses - rigid.T @ (rigid_momentum.T @ responses)).T
-
-    displacement = np.empty((dofs.size, elements.unknowns))
-    for block in blocks(dofs.size, LOADS):
-        cache(f"answers {block.start}", displacement[block], partial(responses_to, dofs[block]))
+        responses[free] = factor.solve(loads[free])
+        displacement[block] = (responses - rigid.T @ (rigid_momentum.T @ responses)).T
     compliance = displacement[:, dofs]
     return StaticResponse(
         displacement=displacement.reshape(dofs.size, -1, 2), compliance=0.5 * (compliance + compliance.T)
     )
 
 
-def reduced_basis(
-    elements: FiniteElements, response: StaticResponse, modes: int, cache: ArrayCache = no_cache
-) -> ReducedBasis:
+def reduced_basis(elements: FiniteElements, response: StaticResponse, modes: int) -> ReducedBasis:
     """Span of `modes` free modes and all attachment modes, diagonalised (Rayleigh-Ritz).
 
     Orthonormalised twice: first the attachment modes against the free ones, by products with the mass, which cancel to
@@ -88,9 +78,9 @@ def reduced_basis(
     mass, stiffness, unknowns = elements.vector_mass, elements.stiffness, elements.unknowns
     free = np.zeros((0, unknowns))
     if modes > 0:
-        free = elastic_modes(elements, min(modes, unknowns - 3), cache).shapes.reshape(-1, unknowns)
+        free = elastic_modes(elements, min(modes, unknowns - 3)).shapes.reshape(-1, unknowns)
     attached = response.displacement.reshape(-1, unknowns)
-    products = _products(attached, mass, cache, "masses of the attachment modes")
+    products = _products(attached, mass)
     scale = 1.0 / np.sqrt(products.diagonal())
     shared = (free @ mass) @ attached.T * scale
     # The part of an attachment mode (of mass 1) outside the free modes; rounding noise if they span it.
@@ -98,42 +88,36 @@ def reduced_basis(
     kept = values > INDEPENDENT
     own = directions[:, kept] / np.sqrt(values[kept])
     columns = np.vstack([free, np.empty((own.shape[1], unknowns))])
-    _combine(columns[len(free) :], (own.T * scale, attached), (-(shared @ own).T, free), cache, "columns")
-    gram = _products(columns, mass, cache, "masses of the columns")
-    projected = _products(columns, stiffness, cache, "stiffnesses of the columns")
+    _combine(columns[len(free) :], (own.T * scale, attached), (-(shared @ own).T, free))
+    gram = _products(columns, mass)
+    projected = _products(columns, stiffness)
     squares, combination = scipy.linalg.eigh(projected, gram)
     shapes = np.empty_like(columns)
-    _combine(shapes, (combination.T, columns), (np.zeros((squares.size, 0)), free[:0]), cache, "shapes")
+    _combine(shapes, (combination.T, columns), (np.zeros((squares.size, 0)), free[:0]))
     return ReducedBasis(angular_frequencies=np.sqrt(squares), shapes=shapes.reshape(squares.size, -1, 2))
 
 
-def _products(rows: FloatArray, matrix: csc_array, cache: ArrayCache, name: str) -> FloatArray:
+def _products(rows: FloatArray, matrix: csc_array) -> FloatArray:
     """rows matrix rows^T, symmetric to the bit."""
     found = np.empty((len(rows), len(rows)))
-
-    def product(some: slice) -> FloatArray:
-        return np.asarray((rows[some] @ matrix) @ rows.T)
-
     for block in blocks(len(rows), _affordable(rows)):
-        cache(f"{name} {block.start}", found[block], partial(product, block))
+        found[block] = (rows[block] @ matrix) @ rows.T
     return 0.5 * (found + found.T)
 
 
 def _combine(
-    target: FloatArray,
-    one: tuple[FloatArray, FloatArray],
-    other: tuple[FloatArray, FloatArray],
-    cache: ArrayCache,
-    name: str,
+    target: FloatArray, one: tuple[FloatArray, FloatArray], other: tuple[FloatArray, FloatArray]
 ) -> None:
     """Sum of two products of coefficients and rows, into `target`."""
     (factors, rows), (more_factors, more_rows) = one, other
-
-    def combined(some: slice) -> FloatArray:
-        return factors[some] @ rows + more_factors[some] @ more_rows
-
     for block in blocks(len(target), _affordable(rows)):
-        cache(f"{name} {block.start}", target[block], partial(combined, block))
+        target[block] = factors[block] @ rows + more_factors[block] @ more_rows
+
+
+def blocks(count: int, largest: int) -> Iterator[slice]:
+    """Slices of at most `largest` that cover `count` items; they depend on sizes alone, never on speed."""
+    for first in range(0, count, largest):
+        yield slice(first, min(first + largest, count))
 
 
 def _affordable(rows: FloatArray) -> int:
