@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from fem.assessment.loose_boxes import largest_joint_slip, limits
 from fem.assessment.sureness import below_uplift, rests_on_stiff_floor
-from fem.case.uncertainty import MU_KINETIC, STRIBECK, WEAKENING
+from fem.case.unknown_inputs import MU_KINETIC, STRIBECK, WEAKENING
 from fem.results.outcome import ROCKING, SLIDING, Outcome
 from fem.results.run_result import BandMember, RunResult, StaticResult, Verdict
 

@@ -13,7 +13,8 @@ from typing import Protocol
 
 import numpy as np
 
-from fem.case.uncertainty import INPUTS, InputChange
+from fem.case.uncertainty import InputChange
+from fem.case.unknown_inputs import INPUTS
 from fem.results.outcome import ROCKING, Outcome
 from fem.results.run_result import Band, BandMember, BoxReach, RunResult, StaticResult, Verdict
 

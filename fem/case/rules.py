@@ -126,48 +126,6 @@ SOLVER_RULES = (
 )
 
 
-#: keys of [uncertainty] that hold a range, and what both ends are
-RANGES = {
-    "mu_kinetic": q.FRICTION,
-    "joints_mu_static": q.FRICTION,
-    "joints_mu_kinetic": q.FRICTION,
-    "joints_weakening_m": q.WEAKENING,
-    "weakening_m": q.WEAKENING,
-    "stribeck_velocity_m_s": q.STRIBECK_VELOCITY,
-    "normal_penalty_Pa_m": q.PENALTY,
-    "bearing_strength_Pa": q.BEARING_STRENGTH,
-    "floor_youngs_modulus_Pa": q.FLOOR_STIFFNESS,
-    "damping_ratio": q.CONTACT_DAMPING,
-    "restitution_over_housner": q.RESTITUTION,
-    "material_damping_ratio": q.MATERIAL_DAMPING,
-}
-
-
-def _range_refused(key: str) -> Rule:
-    """A range rises, and both of its ends are values that the input may have."""
-
-    def reason(table: Any) -> str:
-        ends = getattr(table, key)
-        if not isinstance(ends, list):
-            return ""
-        for end in ends:
-            try:
-                RANGES[key].check(end)
-            except ValueError as error:
-                return str(error)
-        if ends[0] <= ends[1]:
-            return ""
-        return (
-            f"must be [low, high] with low at most high, got {ends}; write {ends[::-1]}, "
-            'or "known" for the value of the case alone'
-        )
-
-    return Rule(f"uncertainty.{key}", lambda table: not reason(table), reason)
-
-
-UNCERTAINTY_RULES = tuple(map(_range_refused, RANGES))
-
-
 def _plausible_density(key: str) -> Rule:
     """The mean density that follows from the weight or the mass of a box is that of some material."""
 

@@ -4,15 +4,16 @@ A key carries its unit. The type, range and unit of one key are checked by its `
 rules of `fem.case.rules` and `fem.case.motion_rules`. Keys of an option that is not chosen are checked and not used.
 """
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, assert_never
 
 from pydantic import BeforeValidator, Field, Strict, ValidationInfo, field_validator
 
 from fem.case import quantities as q
 from fem.case.floors import FloorTable
 from fem.case.motion_tables import MotionTable, VerticalTable
-from fem.case.rules import CONTACT_RULES, CONTAINER_RULES, SOLVER_RULES, UNCERTAINTY_RULES
+from fem.case.rules import CONTACT_RULES, CONTAINER_RULES, SOLVER_RULES
 from fem.case.table import CaseTable, case_key
+from fem.case.unknown_inputs import UNCERTAINTY_RULES
 
 #: a range [low, high], or that the value of the case is known
 Unknown = Annotated[list[float], Field(min_length=2, max_length=2)] | Literal["known"] | None
@@ -182,10 +183,20 @@ class ContactTable(CaseTable):
     rules = CONTACT_RULES
 
     @property
+    def sticks(self) -> bool:
+        """Whether a point may stick, on an elastic spring; by the regularised law it creeps under any force."""
+        match self.friction:
+            case "elastic-stick":
+                return True
+            case "regularised":
+                return False
+        assert_never(self.friction)
+
+    @property
     def drops_at_once(self) -> bool:
         """Whether mu_static falls to mu_kinetic at once when the support breaks loose."""
         gradual = self.weakening_m > 0.0 or self.stribeck_velocity_m_s > 0.0
-        return self.mu_kinetic < self.mu_static and self.friction == "elastic-stick" and not gradual
+        return self.mu_kinetic < self.mu_static and self.sticks and not gradual
 
     @property
     def dashpot(self) -> float:

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from fem.assessment.summary import ratio_in_words
-from fem.case.uncertainty import (
+from fem.case.unknown_inputs import (
     DASHPOT,
     JOINTS_MU_KINETIC,
     JOINTS_MU_STATIC,

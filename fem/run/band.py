@@ -19,16 +19,8 @@ from fem.assessment.ranges import largest_bolt_forces
 from fem.assessment.sureness import judged, static_use
 from fem.assessment.verdict import verdict_of
 from fem.case.case import Case
-from fem.case.uncertainty import (
-    TOLERANCE,
-    InputChange,
-    Value,
-    apart_from_floor,
-    changes_of,
-    draws_of,
-    pairs_of,
-    stiff_floor,
-)
+from fem.case.uncertainty import InputChange, apart_from_floor, changes_of, draws_of, pairs_of, stiff_floor
+from fem.case.unknown_inputs import TOLERANCE, Value
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model, build_model
 from fem.model.recovery import Recovery, recovery_of

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 
 from fem.batch.container_cache import PenaltyCache
 from fem.case.case import Case
-from fem.case.uncertainty import TOLERANCE, InputChange, changes_of, draws_of, pairs_of
+from fem.case.uncertainty import InputChange, changes_of, draws_of, pairs_of
+from fem.case.unknown_inputs import TOLERANCE
 from fem.sweep.perturbation import SMALL
 from fem.sweep.plan import Sweep
 

@@ -13,7 +13,8 @@ from fem.case.case import Case
 from fem.case.quantities import CONTACT_DAMPING, DRAWS, Quantity
 from fem.case.strength import scaled_motion
 from fem.case.tables import CaseTable
-from fem.case.uncertainty import DASHPOT, InputChange
+from fem.case.uncertainty import InputChange
+from fem.case.unknown_inputs import DASHPOT
 
 SHARE = Quantity(unit="", least=0.0, most=0.5, advice="0.02 is two per cent")
 FRICTION_STEP = Quantity(unit="", least=0.0, most=1.0, advice="0.02 is usual")

@@ -5,7 +5,7 @@ from cases import LEAST
 
 from fem.case.case import Case, CaseError, case_hash, read_case, to_toml
 from fem.case.template import case_template
-from fem.case.uncertainty import ranges_of
+from fem.case.unknown_inputs import ranges_of
 
 LOOSE = "joints = 'loose'"
 BOX = "[[container.box]]\n"

@@ -7,7 +7,8 @@ from cases import named_case
 
 from fem.__main__ import main
 from fem.case.case import CaseError, load_case, read_case, to_toml
-from fem.case.uncertainty import changes_of, ranges_of
+from fem.case.uncertainty import changes_of
+from fem.case.unknown_inputs import ranges_of
 from fem.model.geometry import build_container
 from fem.model.model import build_model
 from fem.run.compute import compute

@@ -10,7 +10,7 @@ from cases import named_case
 import fem
 from fem.assessment.summary import plain_summary
 from fem.case.case import CaseError, read_case, to_toml
-from fem.case.uncertainty import ranges_of
+from fem.case.unknown_inputs import ranges_of
 from fem.response.request import ResponseRequest
 from fem.results.history import BOX_COLUMNS, read_history
 from fem.results.reader import open_run

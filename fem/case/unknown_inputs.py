@@ -1,0 +1,288 @@
+"""The inputs that a case may not know, a row each: where it stands, when it matters, the range it has.
+
+Where the case says nothing in its table [uncertainty], a range follows the case: friction falls from `mu_static` by an
+amount and a way not measured for this floor; the stiffness of a rigid floor is known within a factor of nine downwards
+(the point of a corner) and three upwards (a casting), stiffness and strength of a slab and damping within a factor of
+two either way; and a harmonic motion begins in one of several ways.
+
+Friction between loose boxes is not that of the floor: other surfaces meet there. Where [joints] does not give it, a
+case takes the floor's, and the joints have ranges of their own: `mu_static` within a factor of two unless it is given,
+its fall as on the floor.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, NamedTuple
+
+from contact.reference.rigid_block import RigidBlock
+from fem.case import quantities as q
+from fem.case.motion_rules import LEAST_RAMP
+from fem.case.problem import Rule
+from fem.case.rules import longest_time
+
+SOFTEST, STIFFEST = 1.0 / 9.0, 3.0  #: contact stiffness over that of the case
+DAMPING = (0.5, 2.0)  #: contact and material damping over those of the case
+SLAB = (0.5, 2.0)  #: Young's modulus and bearing strength of a slab over those of the case
+JOINTS = (0.5, 2.0)  #: static friction between loose boxes over that of the case, where this has the floor's
+LOSS = (0.8, 1.5)  #: loss at an impact, 1 - e, over that of the case where its restitution is given
+WEAKENING_M, STRIBECK_M_S = 5e-3, 0.3  #: largest slip and velocity over which friction falls
+WEAKENINGS_BETWEEN_M = (1e-4, 1e-3)
+RAMP_CYCLES = 2.0
+MOVES = 1e-9  #: cosine of the phase of a floor that starts at rest
+
+MU_KINETIC, WEAKENING, STRIBECK = "contact.mu_kinetic", "contact.weakening_m", "contact.stribeck_velocity_m_s"
+#: between loose boxes
+JOINTS_MU_STATIC, JOINTS_MU_KINETIC = "joints.mu_static", "joints.mu_kinetic"
+JOINTS_WEAKENING = "joints.weakening_m"
+START, RAMP, TOLERANCE = "motion.start", "motion.ramp_cycles", "solver.energy_tolerance"
+PENALTY, DASHPOT, RESTITUTION, MATERIAL = (
+    "contact.normal_penalty_Pa_m",
+    "contact.damping_ratio",
+    "contact.restitution_over_housner",
+    "container.damping_ratio",
+)
+STRENGTH, MODULUS = "floor.bearing_strength_Pa", "floor.youngs_modulus_Pa"
+
+Value = float | str
+Ends = tuple[float, float]
+KNOWN = "known"  #: in place of a range
+
+
+@dataclass(frozen=True, kw_only=True)
+class InputRange:
+    """The values that an input of a case may have."""
+
+    key: str  #: dotted
+    own: Value  #: of the case
+    ends: tuple[Value, ...]  #: that differ from the case's own; one after the other, lowest first
+    between: tuple[float, ...] = ()  #: tried one at a time, too
+    drawn: Callable[[float], Value]  #: value at a place from 0 to 1
+
+    def share(self, value: float) -> float:
+        """How far a value lies on the way from the case's own to the end of the range."""
+        assert isinstance(self.own, float)
+        ahead = [
+            end for end in self.ends if isinstance(end, float) and (end - self.own) * (value - self.own) > 0.0
+        ]
+        return abs(value - self.own) / abs(ahead[0] - self.own) if ahead else 1.0
+
+
+class UnknownNumber(NamedTuple):
+    """A number that a case may not know: [low, high] in [uncertainty], or "known"."""
+
+    key: str  #: dotted
+    name: str  #: in [uncertainty]
+    quantity: q.Quantity  #: what both ends are
+    #: unless stated: factors on the case's own value, or both ends from the case and that value
+    ends: Ends | Callable[[Any, float], Ends]
+    matters: Callable[[Any], bool] = lambda case: True  #: where the case has a value at all
+    #: of the draws: with a power above 1 most lie near the lower end; None: logarithmic, unless it begins at zero
+    power: float | None = None
+    between: Callable[[float, float], tuple[float, ...]] = (
+        lambda low, high: ()
+    )  #: values tried between the ends
+
+    def range_in(self, case: Any, penalty: float | None) -> InputRange | None:
+        """The range in a case; None where it makes no difference."""
+        own, stated = _own(case, self.key, penalty), getattr(case.uncertainty, self.name)
+        if own is None or not self.matters(case):
+            return None
+        low, high = self._default(case, own) if stated is None else (own, own) if stated == KNOWN else stated
+        return InputRange(
+            key=self.key,
+            own=own,
+            ends=tuple(end for end in sorted({low, high}) if not math.isclose(end, own, rel_tol=1e-12)),
+            between=tuple(value for value in self.between(low, high) if low < value < high and value != own),
+            drawn=partial(self._drawn, low, high),
+        )
+
+    def _default(self, case: Any, own: float) -> Ends:
+        if not isinstance(self.ends, tuple):
+            return self.ends(case, own)
+        least, most = self.quantity.least or 0.0, (self.quantity.below or math.inf) * (1.0 - 1e-9)
+        low, high = self.ends
+        return max(least, low * own), min(most, self.quantity.most or math.inf, high * own)
+
+    def _drawn(self, low: float, high: float, place: float) -> float:
+        if self.power is not None:
+            return short(low + (high - low) * place**self.power)
+        return short(low * (high / low) ** place if low > 0.0 else high * place)
+
+    def refusal(self, table: Any) -> str:
+        """What is wrong with the stated range, "" if nothing: it rises between values that the input may have."""
+        ends = getattr(table, self.name)
+        if not isinstance(ends, list):
+            return ""
+        for end in ends:
+            try:
+                self.quantity.check(end)
+            except ValueError as error:
+                return str(error)
+        if ends[0] <= ends[1]:
+            return ""
+        return (
+            f"must be [low, high] with low at most high, got {ends}; write {ends[::-1]}, "
+            'or "known" for the value of the case alone'
+        )
+
+
+class UnknownChoice(NamedTuple):
+    """An input that may be otherwise than the case says: true in [uncertainty]; false or "known"."""
+
+    key: str  #: dotted
+    name: str  #: in [uncertainty]
+    other: Callable[[Any], Value | None]  #: None where it makes no difference
+
+    def range_in(self, case: Any, penalty: float | None) -> InputRange | None:
+        """The range in a case; None where it makes no difference."""
+        own, other = _own(case, self.key, penalty), self.other(case)
+        if other is None or getattr(case.uncertainty, self.name) not in (None, True):
+            return None
+        return InputRange(
+            key=self.key, own=own, ends=(other,), drawn=lambda place: own if place < 0.5 else other
+        )
+
+
+def short(value: float) -> float:
+    """Twelve digits: a third of 0.3 is 0.1."""
+    return float(f"{value:.12g}")
+
+
+def _own(case: Any, key: str, penalty: float | None) -> Any:
+    """What a case has of an input, with what follows where the case itself says nothing; None: nothing."""
+    table, _, name = key.partition(".")
+    if key in (PENALTY, DASHPOT) and case.contact.restitution_over_housner is not None:
+        return None  # they follow from it
+    if key == PENALTY:
+        return None if case.floor.is_slab else penalty
+    if key == DASHPOT:  # that of a slab matters little where it crushes
+        return case.contact_damping_ratio
+    return case.joint_friction[name] if table == "joints" else getattr(getattr(case, table), name)
+
+
+def _is_loose(case: Any) -> bool:
+    return case.container.is_loose
+
+
+def _falls(case: Any) -> bool:
+    """Whether friction on the floor may fall, by a law that says how."""
+    contact = case.contact
+    return contact.sticks and (
+        contact.mu_kinetic < contact.mu_static or isinstance(case.uncertainty.mu_kinetic, list)
+    )
+
+
+def _joints_fall(case: Any) -> bool:
+    """Whether friction between loose boxes may fall, by a law that says how."""
+    own = case.joint_friction
+    falls = own["mu_kinetic"] < own["mu_static"] or isinstance(case.uncertainty.joints_mu_kinetic, list)
+    return case.contact.sticks and case.container.is_loose and falls
+
+
+def _middle(low: float, high: float) -> tuple[float]:
+    return (short(0.5 * (low + high)),)
+
+
+def _other_start(case: Any) -> Value | None:
+    """With the floor or at rest, where the floor of a harmonic motion begins with a jerk."""
+    motion = case.motion
+    if motion.kind != "harmonic" or motion.ramp_cycles != 0.0 or abs(math.cos(motion.phase_rad)) <= MOVES:
+        return None
+    return "rest" if motion.start == "moving" else "moving"
+
+
+def _other_ramp(case: Any) -> Value | None:
+    """Of a harmonic motion: none, or of two cycles, half of the motion at most."""
+    motion = case.motion
+    if motion.kind != "harmonic":
+        return None
+    if motion.ramp_cycles != 0.0:
+        return 0.0
+    ramp = min(RAMP_CYCLES, short(0.5 * (motion.cycles or longest_time(case) / motion.period) * (1.0 - 1e-9)))
+    return ramp if ramp == 0.0 or ramp >= LEAST_RAMP else None
+
+
+def _joints_mu_static(case: Any, own: float) -> Ends:
+    if case.joints.mu_static is not None:
+        return own, own
+    return JOINTS[0] * own, min(q.FRICTION.most or math.inf, JOINTS[1] * own)
+
+
+def _restitutions(case: Any, ratio: float) -> Ends:
+    """By the loss at an impact of a homogeneous block."""
+    box = case.container
+    height = 0.5 * (box.total_height - box.height_m) + box.centroid_m
+    block = RigidBlock(half_width=0.5 * box.width_m, centroid_height=height, gravity=case.gravity_m_s2)
+    housner = block.housner_restitution
+    less, more = ((1.0 - share * (1.0 - ratio * housner)) / housner for share in (LOSS[1], LOSS[0]))
+    return short(max(q.RESTITUTION.least or 0.0, less)), short(more)
+
+
+def _to_static(case: Any, own: float) -> Ends:
+    return own, case.contact.mu_static
+
+
+def _joints_to_static(case: Any, own: float) -> Ends:
+    return own, case.joint_friction["mu_static"]
+
+
+def _slower(case: Any, own: float) -> Ends:
+    return 0.0, max(WEAKENING_M, own)
+
+
+def _faster(case: Any, own: float) -> Ends:
+    return 0.0, max(STRIBECK_M_S, own)
+
+
+def _weakenings(low: float, high: float) -> tuple[float, ...]:
+    return WEAKENINGS_BETWEEN_M
+
+
+def _is_elastic(case: Any) -> bool:
+    return case.solver.model != "rigid"
+
+
+def _any_falls(case: Any) -> bool:
+    return _falls(case) or _joints_fall(case)
+
+
+Number, Choice = UnknownNumber, UnknownChoice
+#: every input that may vary, those first that decide most often
+UNKNOWN: tuple[UnknownNumber | UnknownChoice, ...] = (
+    Number(MU_KINETIC, "mu_kinetic", q.FRICTION, _to_static, power=1.0, between=_middle),
+    Number(WEAKENING, "weakening_m", q.WEAKENING, _slower, _falls, 3.0, _weakenings),
+    Number(STRIBECK, "stribeck_velocity_m_s", q.STRIBECK_VELOCITY, _faster, _any_falls, 2.0),
+    Number(JOINTS_MU_STATIC, "joints_mu_static", q.FRICTION, _joints_mu_static, _is_loose),
+    Number(JOINTS_MU_KINETIC, "joints_mu_kinetic", q.FRICTION, _joints_to_static, _is_loose, 1.0, _middle),
+    Number(JOINTS_WEAKENING, "joints_weakening_m", q.WEAKENING, _slower, _joints_fall, 3.0, _weakenings),
+    Choice(START, "start", _other_start),
+    Choice(RAMP, "ramp", _other_ramp),
+    Number(PENALTY, "normal_penalty_Pa_m", q.PENALTY, (SOFTEST, STIFFEST)),
+    Number(STRENGTH, "bearing_strength_Pa", q.BEARING_STRENGTH, SLAB),
+    Number(MODULUS, "floor_youngs_modulus_Pa", q.FLOOR_STIFFNESS, SLAB),
+    Number(DASHPOT, "damping_ratio", q.CONTACT_DAMPING, DAMPING),
+    Number(RESTITUTION, "restitution_over_housner", q.RESTITUTION, _restitutions, power=1.0),
+    Number(MATERIAL, "material_damping_ratio", q.MATERIAL_DAMPING, DAMPING, _is_elastic),
+)
+INPUTS = (*(one.key for one in UNKNOWN), TOLERANCE)
+QUANTITIES = {one.key: one.quantity for one in UNKNOWN if isinstance(one, UnknownNumber)}
+
+
+def _ends_hold(one: UnknownNumber) -> Rule:
+    return Rule(f"uncertainty.{one.name}", lambda table: not one.refusal(table), one.refusal)
+
+
+UNCERTAINTY_RULES = tuple(_ends_hold(one) for one in UNKNOWN if isinstance(one, UnknownNumber))
+
+
+def ranges_of(case: Any, penalty: float | None) -> tuple[InputRange, ...]:
+    """The ranges of all unknown inputs that make a difference, in the order of `INPUTS` and without the numerics.
+
+    Args:
+        case: with its table [uncertainty].
+        penalty: normal stiffness of its contact, chosen where the case says "auto" [Pa/m]; None: leave it out.
+    """
+    ranges = (one.range_in(case, penalty) for one in UNKNOWN)
+    return tuple(one for one in ranges if one is not None and one.ends)
