@@ -81,10 +81,11 @@ DOORS = {
 }
 
 #: modules that load others by name, when they are needed: commands, the package's own names, pyvista, meshio,
-#: matplotlib, and with the rigid check scipy.integrate
+#: matplotlib, with the rigid check scipy.integrate, and with draws scipy.stats
 LOADING_LATE = {
     "fem/__main__.py",
     "fem/__init__.py",
+    "fem/case/uncertainty.py",
     "fem/figures/cache.py",
     "fem/results/fields.py",
     "fem/results/reader.py",
