@@ -98,7 +98,7 @@ def _stiffer(case: Case) -> str:
 
 def regularised_friction_creeps(result: RunResult, case: Case) -> str | None:
     """v = v_reg artanh(s) under a steady load of share s of what friction carries: no true stick."""
-    if case.contact.friction != "regularised":
+    if case.contact.sticks:
         return None
     share = _own_motion(result).utilisation_sliding
     start = "friction regularised in velocity never sticks: the container creeps"

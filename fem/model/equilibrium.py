@@ -29,6 +29,9 @@ from mesh.container import ContainerMesh
 #: error of a base point at which the iterations of a step stop, over the static penetration
 POINT_TOLERANCE = 1e-6
 
+#: of the kernels, by the name of the friction law in a case
+CODES = {"elastic-stick": ELASTIC_STICK, "regularised": REGULARISED}
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Equilibrium:
@@ -133,7 +136,6 @@ def _strain(elements: FiniteElements, response: StaticResponse, force: FloatArra
 
 def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) -> Contact:
     """The floor under so many springs, those of the base first."""
-    laws = {"elastic-stick": ELASTIC_STICK, "regularised": REGULARISED}
     chosen, corner = case.contact, 0.5 * float(springs[:base].sum())
     if case.floor.is_slab:
         slab = slab_of(case, mesh.mass)
@@ -151,7 +153,7 @@ def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) ->
         mu_kinetic=np.full(springs.size, chosen.mu_kinetic),
         weakening=np.full(springs.size, chosen.weakening_m),
         stribeck_velocity=chosen.stribeck_velocity_m_s,
-        friction=laws[chosen.friction],
+        friction=CODES[chosen.friction],
         regularisation_velocity=chosen.regularisation_velocity_m_s,
         force_scale=mesh.mass * case.gravity_m_s2,
         resolution=1e-15 * (mesh.width + mesh.height),

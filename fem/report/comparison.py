@@ -175,7 +175,7 @@ def assumptions(case: Case, result: RunResult | None = None) -> list[str]:
     contact, numerics = case.contact, (result and result.numerics) or Numerics()
     law = (
         "regularised in displacement: a container at rest does not creep"
-        if contact.friction == "elastic-stick"
+        if contact.sticks
         else "regularised in velocity: under load it creeps"
     )
     lines = [

@@ -151,7 +151,7 @@ class Preview:
             (static.by_code is not None, code_note(static.to_result())),
             *((True, note) for note in doubts(self.motion, case.gravity_m_s2)),
             (
-                case.contact.friction == "regularised",
+                not case.contact.sticks,
                 "friction regularised in velocity creeps under constant load; elastic-stick does not",
             ),
             (

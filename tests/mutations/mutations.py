@@ -297,8 +297,8 @@ MUTATIONS = (
     ),
     Mutation(
         name="a band that does not try mu_kinetic up to mu_static",
-        old="friction = (contact.mu_kinetic, contact.mu_static)",
-        new="friction = (contact.mu_kinetic, contact.mu_kinetic)",
+        old="return own, case.contact.mu_static",
+        new="return own, case.contact.mu_kinetic",
         tests=("verification/sureness/test_sure_verdicts.py", "unit/case/test_case_uncertainty.py"),
     ),
     Mutation(
