@@ -7,6 +7,7 @@ this package and of the sources named for a kernel from elsewhere.
 
 import hashlib
 import os
+import stat
 import tempfile
 from collections.abc import Callable
 from functools import cache, partial
@@ -21,6 +22,10 @@ from numba.core.typing.typeof import typeof
 from numba.extending import register_jitable
 
 from contact.pieces import KernelCompiler, PieceCompiler
+
+
+class CacheFolderError(RuntimeError):
+    """Compiled kernels would come from a folder that is not safe."""
 
 
 @cache
@@ -46,9 +51,30 @@ def cache_folder(sources: tuple[Path, ...] = ()) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
         if not os.access(folder, os.W_OK):
             raise PermissionError(folder)
+        _require_own(folder, folder.parent, root)
     except OSError:
         folder = Path(tempfile.mkdtemp(prefix="unanchored-kernels-"))
     return folder
+
+
+def _require_own(*folders: Path) -> None:
+    """Refuse folders in which others may put code that would be loaded as kernels.
+
+    Raises:
+        CacheFolderError: one is neither the user's nor root's, or others may write it.
+    """
+    for folder in folders if hasattr(os, "getuid") else ():
+        state = folder.stat()
+        ours = state.st_uid in (os.getuid(), 0)
+        sticky = (
+            state.st_mode & stat.S_ISVTX and folder is folders[-1]
+        )  # as /tmp: nobody replaces what is another's
+        shared = stat.S_IWOTH | (stat.S_IWGRP if state.st_gid != os.getgid() else 0)
+        if not ours or (state.st_mode & shared and not sticky):
+            raise CacheFolderError(
+                f"others may write {folder}, from which compiled kernels are loaded and run: name a folder of your "
+                "own as NUMBA_CACHE_DIR, or take the right to write from them"
+            )
 
 
 #: of all kernels: they own no memory, so numba's runtime, which would count references at every call, is left out, and

@@ -7,7 +7,7 @@ import pytest
 from numba.core import types
 from numba.core.errors import TypingError
 
-from contact.jit import compiled, inlined
+from contact.jit import CacheFolderError, cache_folder, compiled, inlined
 from contact.structs import struct
 
 
@@ -89,3 +89,21 @@ def test_a_call_by_class_takes_the_types_of_the_first_of_its_classes():
     assert sum_of.call_by_class(Others(np.ones((2, 2), np.int64)), 2.0) == 8.0
     assert sum_of.call_by_class(Weights(np.ones(4)), 2.0) == 8.0
     assert len(sum_of.entry.overloads) == 2
+
+
+@pytest.mark.parametrize(("level", "mode"), [(0, 0o777), (1, 0o777), (2, 0o777), (0, 0o1777)])
+def test_kernels_are_not_loaded_from_where_others_may_put_them(tmp_path, monkeypatch, level, mode):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    cache_folder.cache_clear()
+    folder = cache_folder()
+    (folder, folder.parent, tmp_path)[level].chmod(mode)
+    cache_folder.cache_clear()
+    with pytest.raises(
+        CacheFolderError, match=r"others may write .*: name a folder of your own as NUMBA_CACHE_DIR"
+    ):
+        cache_folder()
+    tmp_path.chmod(0o1777)  # as /tmp
+    folder.chmod(0o755)
+    folder.parent.chmod(0o755)
+    assert cache_folder() == folder
+    cache_folder.cache_clear()
