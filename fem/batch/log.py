@@ -2,7 +2,8 @@
 
 Numbers are written in the shortest form that reads back to the same bits. While a study runs, rows are appended in the
 order in which they are ready; a kill leaves whole lines and at most one broken one, which is cut off when the study
-is resumed. At the end the table is replaced by one in the order of the study.
+is resumed. At the end the table is replaced by one in the order of the study. A text that a spreadsheet would compute,
+such as a file name that begins with "=", has an apostrophe before it.
 """
 
 import csv
@@ -29,7 +30,10 @@ def line_of(values: Iterable[Any]) -> str:
 
 def fields_of(line: str) -> list[str]:
     """The fields of one line."""
-    return next(csv.reader([line]))
+    return [
+        field[1:] if field[:1] == "'" and _is_computed(field[1:]) else field
+        for field in next(csv.reader([line]))
+    ]
 
 
 def number_in(field: str) -> float | None:
@@ -139,4 +143,15 @@ def _text(value: Any) -> str:
         return "true" if value else "false"
     if isinstance(value, float | np.floating):
         return repr(float(value))
-    return " ".join(str(value).split())
+    text = " ".join(str(value).split())
+    return f"'{text}" if _is_computed(text) else text
+
+
+def _is_computed(text: str) -> bool:
+    """Whether a spreadsheet would take a text for a formula."""
+    if text[:1] not in ("=", "+", "-", "@"):
+        return False
+    try:
+        return not [float(word) for word in text.split()]
+    except ValueError:
+        return True
