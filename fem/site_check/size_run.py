@@ -14,7 +14,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from fem.batch.log import LoggedRuns, fields_of, line_of
+from fem.batch.log import LoggedRuns, fields_of, line_of, table_of_lines
 from fem.batch.runner import Row, Runner
 from fem.batch.workers import LocalWorkers, WorkersOf
 from fem.case.case import Case
@@ -145,6 +145,7 @@ def run_size(
             return None
         place.check()
         result = size_result(axis, work.answers(), followers(request, axis.key))
+        place.write_text(RUNS, work.table())
         place.write_text(FIGURE, draw_size(result, inputs_of(request)))
         wall = {"wall_s": time.perf_counter() - began}
         place.write_result({"status": "completed"} | mark | wall | result.to_json())
@@ -184,6 +185,15 @@ class _Sizing:
     def values(self, key: SizeKey, row: Row) -> tuple[Any, ...]:
         """The row of a run for the log."""
         return (key.value, *self.tried[key.value].rows.values(key.run, row))
+
+    def table(self) -> str:
+        """`runs.csv`: by value, and in the order of each verification, whatever the order in which runs ended."""
+        lines = (
+            line_of([value, *fields_of(tried.rows.lines[key])])
+            for value, tried in sorted(self.tried.items())
+            for key in tried.rows.in_order()
+        )
+        return table_of_lines(("value", *COLUMNS), lines)
 
     def note(self, line: str) -> None:
         """Add a line of the log."""

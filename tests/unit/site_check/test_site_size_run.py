@@ -61,7 +61,7 @@ def test_an_interrupted_size_continues_to_the_same_result(place):
     folder, before = place / "found", result_in(place / "found")
     log = folder / "runs.csv"
     lines = log.read_text(encoding="utf-8").splitlines(keepends=True)
-    log.write_text("".join(lines[:14]), encoding="utf-8")
+    log.write_text("".join([lines[0], *lines[13:0:-1]]), encoding="utf-8")  # as two cores may have been ready
     (folder / "size.json").write_text(json.dumps(before | {"status": "running"}), encoding="utf-8")
     asked = load_site(place / "hall.toml")
     axis = size_axis(asked, "container.boxes", high=5.0)
@@ -69,7 +69,7 @@ def test_an_interrupted_size_continues_to_the_same_result(place):
         run_size(asked, axis, folder, jobs=1)
     result = run_size(asked, axis, folder, jobs=1, resume=True)
     assert json.loads(json.dumps(result.to_json())) == {key: before[key] for key in result.to_json()}
-    assert sorted(log.read_text(encoding="utf-8").splitlines(keepends=True)) == sorted(lines)
+    assert log.read_text(encoding="utf-8") == "".join(lines)
 
 
 def test_a_finished_size_is_not_computed_again(place, monkeypatch):
