@@ -5,6 +5,7 @@ mesh and motion files from the same paths, on a shared file system.
 """
 
 import asyncio
+import logging
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
@@ -29,6 +30,8 @@ def cluster(address: str) -> Iterator[WorkersOf]:
         SchedulerError: it does not answer, has no workers, or they run another version of this program.
         WorkersLostError: the workers died.
     """
+    for name in ("distributed", "distributed.client"):  # what matters is raised here
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         # A client waits for ever for a peer that accepts the connection and does not answer.
         asyncio.run(asyncio.wait_for(_identity(address), ANSWER_S))
@@ -55,9 +58,9 @@ def cluster(address: str) -> Iterator[WorkersOf]:
 
             try:
                 yield workers_of
-            except (KilledWorker, CancelledError) as error:
+            except (KilledWorker, CancelledError):
                 raise WorkersLostError(
-                    f"the workers of {address} died ({error}); --resume continues"
+                    f"the scheduler {address} or its workers died; --resume continues"
                 ) from None
 
 

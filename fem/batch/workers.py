@@ -158,6 +158,8 @@ def hand_out(
                 try:
                     found = future.result()
                 except BrokenExecutor as error:
+                    if stop():  # the signal that asked for it ended the workers, too
+                        return
                     raise WorkersLostError(
                         f"a worker process died ({error}); perhaps it ran out of memory: --resume continues, -j 1 "
                         "needs less memory"
@@ -207,7 +209,8 @@ def _is_main(name: str, variables: Mapping[str, object]) -> bool:
 
 def _end_with_parent(parent: int, over: Semaphore) -> None:
     """End this worker when the work is over, or when the process that started it has ended."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles Ctrl-C
+    for number in (signal.SIGINT, signal.SIGTERM):  # of a whole process group: the parent handles them
+        signal.signal(number, signal.SIG_IGN)
 
     def watch() -> None:
         while os.getppid() == parent and not over.acquire(timeout=1.0):

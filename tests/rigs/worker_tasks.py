@@ -1,6 +1,7 @@
 """Work for processes, in a module that they can import: what is in a test module has a name that only pytest knows."""
 
 import os
+import signal
 import time
 
 
@@ -8,6 +9,12 @@ def who_works(chunk) -> int:
     """The process that works, after a short time."""
     time.sleep(0.05)
     return os.getpid()
+
+
+def hear_the_group_end(chunk) -> int:
+    """Receive the signal by which a batch scheduler ends a job, and work on."""
+    os.kill(os.getpid(), signal.SIGTERM)
+    return who_works(chunk)
 
 
 def end_the_process(chunk) -> None:

@@ -3,7 +3,7 @@
 import os
 
 import pytest
-from worker_tasks import end_the_process, who_works
+from worker_tasks import end_the_process, hear_the_group_end, who_works
 
 from fem.assessment.verdict import verdict_of
 from fem.batch.container_cache import container_key
@@ -65,6 +65,19 @@ def test_processes_give_the_rows_that_threads_give(cases, monkeypatch):
 def test_a_process_that_dies_ends_the_work_with_a_word():
     with pytest.raises(WorkersLostError, match="a worker process died"), LocalWorkers(2) as workers_of:
         list(hand_out(range(4), end_the_process, workers_of("full", 4), at_a_time=1))
+
+
+def test_workers_that_end_with_the_job_are_not_lost():
+    with LocalWorkers(2) as workers_of:
+        found = list(hand_out(range(4), hear_the_group_end, workers_of("full", 4), at_a_time=1))
+        assert sorted(item for chunk, _ in found for item in chunk) == list(range(4))
+    asked = iter([False] * 4)
+    with LocalWorkers(2) as workers_of:
+        pools = workers_of("full", 4)
+        assert (
+            list(hand_out(range(4), end_the_process, pools, at_a_time=1, stop=lambda: next(asked, True)))
+            == []
+        )
 
 
 def test_many_cases_are_shared_by_this_process_and_others():
