@@ -8,18 +8,20 @@ solution failed, 4 interrupted.
 import difflib
 import errno
 import gc
+import io
 import os
 import re
 import sys
 from collections import defaultdict
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib import metadata
 from typing import Literal, NoReturn
 
 from cyclopts import App, CycloptsError, Group, MissingArgumentError, UnusedCliTokensError
 
 from fem.runtime.late_modules import load_late
-from fem.runtime.signals import INTERRUPTED, raise_on_signal
+from fem.runtime.signals import INTERRUPTED, interruptions, raise_on_signal
 from fem.runtime.threads import use_one_blas_thread
 
 BAD_INPUT, FAILED = 2, 3
@@ -110,6 +112,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         arguments: what stands behind `python -m fem`; None takes it from the process.
     """
     use_one_blas_thread()
+    before = interruptions()
     tokens = list(sys.argv[1:] if arguments is None else arguments)
     if tokens and tokens[0] not in COMMANDS and tokens[0] not in FLAGS:
         return _refuse(_unknown_command(tokens[0]))
@@ -120,8 +123,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         command = f"{tokens[0]} " if tokens and tokens[0] in COMMANDS else ""
         return _refuse(f"{_in_words(error)}\nsee python -m fem {command}--help")
     except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
-        return INTERRUPTED
+        return _refuse("interrupted", INTERRUPTED)
+    except MemoryError:
+        return _refuse(
+            "out of memory; fewer jobs (-j 1), larger elements or the model rigid need less, and --resume continues",
+            FAILED,
+        )
     except BrokenPipeError:
         # The reader has seen enough; Python would complain once more when it flushes at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -130,6 +137,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = FAILED if error.errno in NO_ROOM else BAD_INPUT
         return _refuse(f"{error.filename or 'input or output'}: {error.strerror or error}", code)
     except Exception as error:
+        if interruptions() > before:
+            return _refuse("interrupted", INTERRUPTED)
         if type(error).__module__.partition(".")[0] not in OWN_PACKAGES:
             raise  # not the user's fault: show where
         return _refuse(str(error), getattr(error, "exit_code", BAD_INPUT))
@@ -158,8 +167,19 @@ def _in_words(error: CycloptsError) -> str:
 
 def _refuse(message: str, exit_code: int = BAD_INPUT) -> int:
     sys.stdout.flush()
-    print(message.strip(), file=sys.stderr)
+    with suppress(BrokenPipeError):
+        print(message.strip(), file=sys.stderr)
     return exit_code
+
+
+def _take_any_stream() -> None:
+    """Let both streams be closed, and of an encoding that lacks some signs, as that of a pipe on Windows does."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w"))
+        elif isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
 
 
 def program() -> NoReturn:
@@ -170,6 +190,7 @@ def program() -> NoReturn:
     """
     raise_on_signal()
     load_late()
+    _take_any_stream()
     # A pass of the cyclic collector for every 700 objects would be a fifth of a short run, most of it over the
     # modules that are being loaded.
     gc.set_threshold(COLLECT_EVERY)

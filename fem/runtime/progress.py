@@ -4,6 +4,7 @@ On a terminal the line is rewritten in place; elsewhere a plain line is printed 
 stream, so that the standard output holds results alone. A quiet reporter prints warnings alone.
 """
 
+import os
 import sys
 import time as clock
 from collections.abc import Callable
@@ -42,6 +43,14 @@ class SilentReporter(Reporter):
     """Prints nothing: for sweeps, tests and library use."""
 
 
+class ErrorStream(Console):
+    """The error stream; work goes on unseen when its reader has left, as behind `2>&1 | head -n 1`."""
+
+    def on_broken_pipe(self) -> None:
+        """Write nowhere from now on."""
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
+
+
 class ScreenReporter(Reporter):
     """Reports to a person: in place on a terminal, by plain lines elsewhere.
 
@@ -58,7 +67,7 @@ class ScreenReporter(Reporter):
         quiet: bool = False,
         now: Callable[[], float] = clock.monotonic,
     ) -> None:
-        self._console = console or Console(file=sys.stderr, highlight=False)
+        self._console = console or ErrorStream(file=sys.stderr, highlight=False)
         self._quiet, self._now, self._due = quiet, now, 0.0
         self._pause = REDRAW_S if self._console.is_terminal else PLAIN_S
         self._bar = self._new_bar()

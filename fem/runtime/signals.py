@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from fem.runtime.progress import Reporter
 
 INTERRUPTED = 4  #: the exit code
+_raised: list[int] = []
 DEFAULTS: dict[signal.Signals, Any] = {
     signal.SIGINT: signal.default_int_handler,
     signal.SIGTERM: signal.SIG_DFL,
@@ -82,5 +83,11 @@ def _exit(number: int, frame: FrameType | None) -> None:
     os._exit(INTERRUPTED)
 
 
+def interruptions() -> int:
+    """How often a signal has raised KeyboardInterrupt, of which a module in C makes other errors while it is loaded."""
+    return len(_raised)
+
+
 def _raise(number: int, frame: FrameType | None) -> None:
+    _raised.append(number)
     raise KeyboardInterrupt

@@ -130,6 +130,58 @@ def test_an_interrupt_a_full_disk_or_a_missing_file_is_reported_in_a_line(
     assert capsys.readouterr().err == f"{words}\n"
 
 
+def run_in_shell(command):
+    done = subprocess.run(
+        ["bash", "-c", command.format(python=sys.executable)], capture_output=True, text=True, check=False
+    )
+    return done.returncode, done.stdout, done.stderr
+
+
+def test_an_output_stream_that_lacks_some_signs_gets_others():
+    said = "from fem import __main__ as m; m.build_app = lambda: lambda *_, **__: print('a ─'); m.program()"
+    code, out, err = run_in_shell(f'PYTHONIOENCODING=cp1252 {{python}} -c "{said}" list')
+    assert (code, err) == (0, "") and out.endswith(" ?\n")
+
+
+@pytest.mark.parametrize("closed", [">&-", "2>&-", ">&- 2>&-", "<&- >&- 2>&-"])
+def test_streams_that_are_closed_are_no_error(closed):
+    code, _, err = run_in_shell(f"{{python}} -m fem list {closed}")
+    assert (code, err) == (0, "")
+
+
+def test_an_interrupt_of_which_a_module_in_c_makes_another_error_is_told_as_one():
+    said = """
+import os, signal
+signal.signal(signal.SIGINT, signal.default_int_handler)
+from fem import __main__ as command_line
+def importing(*_, **__):
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+    except KeyboardInterrupt:
+        raise ImportError('initialization failed') from None
+command_line.build_app = lambda: importing
+command_line.program()
+"""
+    assert run_in_shell(f'{{python}} -c "{said}" list') == (4, "", "interrupted\n")
+
+
+def test_too_little_memory_is_told_in_a_line(monkeypatch, capsys):
+    def fail(*_, **__):
+        raise MemoryError
+
+    monkeypatch.setattr(command_line, "build_app", lambda: fail)
+    assert command_line.main(["list"]) == 3
+    assert capsys.readouterr().err.startswith("out of memory; ")
+
+
+def test_work_goes_on_when_nobody_reads_its_progress_any_more():
+    said = (
+        "import sys; from fem.runtime.progress import ScreenReporter as R; r = R();"
+        "[r.message('a' * 9999) for _ in range(99)]; print('done')"
+    )
+    assert run_in_shell(f'{{python}} -c "{said}" 2> >(head -n 1 > /dev/null)')[:2] == (0, "done\n")
+
+
 def test_a_reader_that_leaves_early_is_no_error():
     command = f"{sys.executable} -m fem schema | head -n 1; exit ${{PIPESTATUS[0]}}"
     result = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=False)
