@@ -33,7 +33,7 @@ from fem.assessment.ranges import (
     rotation_in_words,
     rotation_ratio,
 )
-from fem.assessment.rule_or_run import believed
+from fem.assessment.rule_or_run import governing
 from fem.assessment.sureness import sureness_in_words
 from fem.results.outcome import ROCKING, SLIDING, Outcome
 from fem.results.run_result import (
@@ -54,8 +54,8 @@ INVISIBLE = 1e-9  #: in the units of people: smaller numbers are rounding
 BAND_NOTE = (
     "The band repeats the run with changed inputs: one at a time to the ends of the ranges that [uncertainty] states "
     "or that follow from the case, and with all of them drawn at once. Numbers in parentheses are the least and the "
-    "largest of the runs that end as this one does. Where the outcome differs, the inputs named decide, and not this "
-    "run."
+    "largest of the runs with the same outcome as this one. If outcomes differ, the verdict depends on the named "
+    "inputs, not on this run."
 )
 MARGIN_NOTE = (
     "The rotation ratio is not a margin. The margin is the factor on the motion at which the container overturns; a "
@@ -85,7 +85,7 @@ def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
     yield from _table_of_pairs("The run", result_rows(result))
     if result.static is not None:
         yield _static_table(result.static, verdict)
-        yield from (Text(f"{sentence}\n") for sentence in believed(result))
+        yield from (Text(f"{sentence}\n") for sentence in governing(result))
         if note := code_note(result.static):
             yield Text(f"{note}\n")
     yield from box_table(result)

@@ -110,7 +110,7 @@ def _require_plausible(record: Record, component: Component, peak: float, scale:
 
 
 def _peak_notes(table: MotionKey, component: Component, peak: float, scale: float) -> tuple[str, ...]:
-    """That the peak is unusual."""
+    """Notes on an unusually small or large peak."""
     if USUAL_PEAKS[0] <= peak <= USUAL_PEAKS[1]:
         return ()
     size = "hardly moves a container" if peak < USUAL_PEAKS[0] else "is beyond almost all records"

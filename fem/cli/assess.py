@@ -54,7 +54,7 @@ def assess(
     """
     request = importlib.import_module("fem.site_check.file").load_site(site, motion)
     folder = out if out is not None else Path("outputs") / request.name
-    # Loaded only now, so that bad input is answered before anything is compiled.
+    # Loaded late: bad input is refused before anything is compiled.
     study = importlib.import_module("fem.site_check.run")
     with connected(scheduler) as workers_of:
         result = study.run_site(

@@ -31,7 +31,7 @@ def ensemble(
     """
     asked = importlib.import_module("fem.ensemble.file").load_ensemble(ensemble)
     folder = out if out is not None else Path("outputs") / asked.name
-    # Loaded only now, so that bad input is answered before anything is compiled.
+    # Loaded late: bad input is refused before anything is compiled.
     study = importlib.import_module("fem.ensemble.run")
     with connected(scheduler) as workers_of:
         result = study.run_ensemble(

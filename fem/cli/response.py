@@ -62,7 +62,7 @@ def response(
         largest_period=largest_period,
     )
     folder = out if out is not None else Path("outputs") / f"{loaded.name}-response"
-    # Loaded only now, so that bad input is answered before anything is compiled.
+    # Loaded late: bad input is refused before anything is compiled.
     study = importlib.import_module("fem.response.run")
     result = study.run_response(
         request, folder=folder, force=force, resume=resume, reporter=ScreenReporter(quiet=quiet)

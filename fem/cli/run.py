@@ -61,7 +61,7 @@ def run(
         print(text, file=sys.stdout if dry_run else sys.stderr)
     if dry_run:
         return 0
-    # Loaded only now, so that bad input is answered before anything is compiled.
+    # Loaded late: bad input is refused before anything is compiled.
     solver = importlib.import_module("fem.run.run")
     options = solver.RunOptions(check_rigid=check_rigid, band=band, resume=resume, force=force)
     result = solver.run_case(

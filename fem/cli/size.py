@@ -57,7 +57,7 @@ def size(
         request, over, low=low, high=high, count=count
     )
     folder = out if out is not None else Path("outputs") / f"{request.name}_size"
-    # Loaded only now, so that bad input is answered before anything is compiled.
+    # Loaded late: bad input is refused before anything is compiled.
     study = importlib.import_module("fem.site_check.size_run")
     with connected(scheduler) as workers_of:
         result = study.run_size(

@@ -34,7 +34,7 @@ def sweep(
     """
     asked = load_sweep(sweep)
     folder = out if out is not None else Path("outputs") / asked.name
-    # Loaded only now, so that bad input is answered before anything is compiled.
+    # Loaded late: bad input is refused before anything is compiled.
     solver = importlib.import_module("fem.sweep.run")
     with connected(scheduler) as workers_of:
         info = solver.run_sweep(

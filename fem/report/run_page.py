@@ -13,7 +13,7 @@ from fem.assessment.ranges import (
     residual_slip,
     rotation_ratio,
 )
-from fem.assessment.rule_or_run import believed
+from fem.assessment.rule_or_run import governing
 from fem.assessment.summary import MARGIN_NOTE, outcome_sentence, result_rows
 from fem.case.case import Case
 from fem.figures.cache import drawings_of
@@ -237,7 +237,7 @@ def static_section(view: RunView) -> html.PageSection:
         "Static rule and run",
         "static",
         compared_table(view.compared, loose=bool(view.boxes)),
-        *(typeset(sentence) for sentence in believed(view.result)),
+        *(typeset(sentence) for sentence in governing(view.result)),
         html.Note(html.joined(*note)),
         html.Note(html.joined(html.strong("Read as:"), READ_AS)),
         html.Pairs(found, caption="What the run found", look="found"),

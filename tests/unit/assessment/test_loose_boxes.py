@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from fem.assessment.loose_boxes import box_rows, largest_joint_slip
-from fem.assessment.rule_or_run import believed
+from fem.assessment.rule_or_run import governing
 from fem.assessment.summary import outcome_sentence, plain_summary
 from fem.results.run_result import (
     ActionResult,
@@ -108,13 +108,13 @@ def test_of_many_boxes_the_table_has_those_that_decide():
     [
         (
             0.0,
-            "The rule says nothing of the joints between its boxes, where the run slid 36.5 mm (box 2 on box 1).",
+            "The rule does not cover the joints between its boxes, where the run slid 36.5 mm (box 2 on box 1).",
         ),
-        (0.01, "and the run slid; which of the two is to be believed, only the band can say"),
+        (0.01, "and the run slid; only the band can tell which of the two governs"),
     ],
 )
 def test_the_static_rule_is_that_of_the_stack_on_its_floor(on_floor, words):
     run = result((1, {"max_slip_m": on_floor}), (2, {"max_slip_m": 0.0365}), outcome="slide")
     rule = ActionResult(utilisation_sliding=0.765, utilisation_overturning=0.9)
-    (said,) = believed(replace(run, static=replace(STATIC, own_motion=rule)))
+    (said,) = governing(replace(run, static=replace(STATIC, own_motion=rule)))
     assert said.startswith("Sliding: the static rule holds at 0.765") and words in said

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from fem.assessment.ranges import IMPACT, in_figures, largest_stress, residual_slip, with_range
-from fem.assessment.rule_or_run import believed
+from fem.assessment.rule_or_run import governing
 from fem.assessment.sureness import judged, sureness_in_words
 from fem.case.uncertainty import InputChange
 from fem.results.run_result import (
@@ -228,30 +228,34 @@ def test_an_elastic_stress_beyond_yield_is_no_bare_number():
 @pytest.mark.parametrize(
     ("own", "members", "words"),
     [
-        ({"outcome": "slide"}, None, "only the band can say"),
-        ({"outcome": "slide"}, [(EQUAL, RESTS)], "Believe the rule: with contact.mu_kinetic = 0.4"),
+        ({"outcome": "slide"}, None, "only the band can tell"),
+        ({"outcome": "slide"}, [(EQUAL, RESTS)], "The rule governs: with contact.mu_kinetic = 0.4"),
         (
             {"outcome": "slide"},
             [(EQUAL, {})],
-            "Believe the run: it slides with every law of friction tried (1)",
+            "The run governs: it slides with every friction law tried (1)",
         ),
-        ({"outcome": "slide"}, [(STIFF, {})], "Believe the run: its friction does not fall"),
-        ({"outcome": "rock"}, None, "only the band can say"),
-        ({"outcome": "rock"}, [(FLOOR, RESTS)], "Believe the rule: it is below uplift of a rigid block"),
-        ({"outcome": "rock"}, [(FLOOR, {})], "Neither is to be believed: it is below uplift"),
-        ({"outcome": "rock"}, [(STIFF, {})], "Believe the run: it rocks with every single change"),
+        ({"outcome": "slide"}, [(STIFF, {})], "The run governs: its friction does not drop"),
+        ({"outcome": "rock"}, None, "only the band can tell"),
+        (
+            {"outcome": "rock"},
+            [(FLOOR, RESTS)],
+            "The rule governs: the motion is below uplift of a rigid block",
+        ),
+        ({"outcome": "rock"}, [(FLOOR, {})], "Inconclusive: the motion is below uplift"),
+        ({"outcome": "rock"}, [(STIFF, {})], "The run governs: it rocks with every single change"),
         (
             {"outcome": "rock"},
             [(STIFF, RESTS)],
-            "Neither is to be believed without contact.normal_penalty_Pa_m",
+            "Inconclusive: rocking depends on contact.normal_penalty_Pa_m",
         ),
         ({"outcome": "rest"}, [(STIFF, {})], None),
     ],
 )
-def test_where_rule_and_run_disagree_it_is_said_which_is_to_be_believed(own, members, words):
+def test_where_rule_and_run_disagree_it_is_said_which_governs(own, members, words):
     static = StaticResult(own_motion=ActionResult(utilisation_sliding=0.8, utilisation_overturning=0.95))
     given = Verdict(**own) if members is None else verdict(*members, **own)
-    said = believed(RunResult(status="completed", verdict=given, static=static))
+    said = governing(RunResult(status="completed", verdict=given, static=static))
     assert [words in one for one in said] == ([] if words is None else [True])
     over = replace(static, own_motion=ActionResult(utilisation_sliding=1.1, utilisation_overturning=1.1))
-    assert believed(RunResult(status="completed", verdict=given, static=over)) == ()
+    assert governing(RunResult(status="completed", verdict=given, static=over)) == ()
