@@ -17,7 +17,7 @@ def test_every_law_has_a_code_of_its_own():
 
 @pytest.mark.parametrize("law", LAWS)
 def test_every_law_sticks_or_creeps(law):
-    assert ContactTable(mu_static=0.4, friction=law).sticks == (law == "elastic-stick")
+    assert ContactTable.model_construct(friction=law).sticks == (law == "elastic-stick")
 
 
 def test_a_law_that_nobody_knows_is_refused():
