@@ -1,8 +1,8 @@
 """Base motion: harmonic motion, pulses, no motion; tables of recorded motion are in `contact.motion.table`.
 
 The floor moves along x, positive toward +x; SI units. `compiled` gives the data for `floor_motion`; `break_times` (the
-acceleration jumps or its formula changes) and `time_scale` are for the step control. `peak_acceleration` is a
-magnitude, for the static checks.
+acceleration jumps or its formula changes), `span` and `time_scale` are for the step control. `peak_acceleration` and
+`peak_within` are magnitudes, for the static checks. The four classes have the same methods.
 """
 
 import math
@@ -60,6 +60,15 @@ class NoMotion:
     def time_scale(self) -> float:
         """Infinite: nothing happens [s]."""
         return math.inf
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Start and end [s]: it has no end."""
+        return 0.0, math.inf
+
+    def peak_within(self, duration: float) -> float:
+        """Largest |acceleration| up to `duration`, the end of the run [m/s2]."""
+        return 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,9 +138,18 @@ class HarmonicMotion:
         return np.array(sorted(end for end in ends if 0.0 < end <= self.duration), dtype=float)
 
     @property
+    def span(self) -> tuple[float, float]:
+        """Start and end [s]: the floor may go on for as long as the run does."""
+        return 0.0, math.inf
+
+    @property
     def peak_acceleration(self) -> float:
         """Largest |acceleration| within the run [m/s2]: A Omega^2 once a whole half cycle is not tapered."""
         return self.amplitude * _peak_of_unit(replace(self, amplitude=1.0))
+
+    def peak_within(self, duration: float) -> float:
+        """Largest |acceleration| [m/s2]; the run is that of the motion."""
+        return self.peak_acceleration
 
     def compiled(self) -> FloorMotion:
         """Data for `floor_motion`."""
@@ -216,6 +234,18 @@ class PulseMotion:
     def time_scale(self) -> float:
         """Length of the pulse [s]."""
         return self.pulse
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Start and end of the pulse [s]."""
+        return self.delay, self.delay + self.pulse
+
+    def peak_within(self, duration: float) -> float:
+        """Largest |acceleration| up to `duration`, the end of the run [m/s2]."""
+        # between these instants its size is monotonic
+        quarters = self.delay + self.pulse * np.array([0.0, 0.25, 0.5, 0.75])
+        instants = np.append(quarters, duration)
+        return float(np.abs(self.evaluate(instants[instants <= duration])[2]).max())
 
     def compiled(self) -> FloorMotion:
         """Data for `floor_motion`."""

@@ -67,6 +67,17 @@ class TableMotion:
         """Shortest period that the samples resolve: ten times their median spacing [s]."""
         return SPACINGS_PER_PERIOD * float(np.median(np.diff(self.times)))
 
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last time of the table [s]."""
+        return float(self.times[0]), float(self.times[-1])
+
+    def peak_within(self, duration: float) -> float:
+        """Largest |acceleration| from 0 to `duration`, the end of the run [m/s2]."""
+        instants = np.append(self.times, [0.0, duration])  # linear between samples
+        inside = np.unique(instants[(instants >= 0.0) & (instants <= duration)])
+        return float(np.abs(self.evaluate(inside)[2]).max())
+
     def compiled(self) -> FloorMotion:
         """Data for `floor_motion`: displacement, velocity, acceleration, jerk from each sample on."""
         x, v, a = sampled_motion(self.times, self.values, self.quantity)

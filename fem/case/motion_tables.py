@@ -5,7 +5,7 @@ case, on which its hash depends.
 """
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Literal, assert_never
 
 from fem.case import quantities as q
 from fem.case.motion_rules import (
@@ -144,7 +144,9 @@ class FloorMotionTable(PulseAndTableKeys, HarmonicKeys):
                 return self.amplitude * self.angular_frequency**2
             case "pulse":
                 return abs(self.factor * (self.peak_acceleration_m_s2 or 0.0))
-        return None if self.scale_to_m_s2 is None else abs(self.scale_to_m_s2)
+            case "table":
+                return None if self.scale_to_m_s2 is None else abs(self.scale_to_m_s2)
+        assert_never(self.kind)
 
     @property
     def angular_frequency(self) -> float:

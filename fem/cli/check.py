@@ -129,9 +129,9 @@ def _page(preview: Preview, document: dict[str, Any]) -> str:
 def _motion_lines(name: str, more: str, keys: FloorMotionTable, motion: MotionResult) -> Iterator[str]:
     """What moves the floor in one direction, and the numbers of its motion."""
     table = f"table {keys.file}" if keys.file else "in the file of [motion]"
-    kinds = {"none": "at rest", "pulse": f"{keys.shape} pulse", "table": table}
     harmonic = f"A = {keys.amplitude:.4g} m, Omega = {keys.angular_frequency:.4g} rad/s"
-    yield f"  {name:<11} {kinds.get(keys.kind, harmonic)}, peak {motion.peak_in_run_m_s2 or 0.0:.4g} m/s2"
+    words = {"none": "at rest", "harmonic": harmonic, "pulse": f"{keys.shape} pulse", "table": table}
+    yield f"  {name:<11} {words[keys.kind]}, peak {motion.peak_in_run_m_s2 or 0.0:.4g} m/s2"
     if length := motion_in_words(motion):
         yield f"  {more:<11} {length}"
 

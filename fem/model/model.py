@@ -106,7 +106,10 @@ class Model:
 
 
 def build_model(
-    case: Case, container: Container | None = None, equilibrium: Equilibrium | None = None
+    case: Case,
+    container: Container | None = None,
+    equilibrium: Equilibrium | None = None,
+    motions: tuple[BaseMotion, BaseMotion] | None = None,
 ) -> Model:
     """Discretise a case, settle it on its floor and write its initial state.
 
@@ -114,11 +117,12 @@ def build_model(
         container: of the case, where it is built already.
         equilibrium: of that container, where `same_equilibrium` allows its reuse; computed again where the
             vertical motion begins otherwise.
+        motions: of the floor, where they are built already.
 
     Raises:
         CaseError, MeshError: bad input, no equilibrium at the start.
     """
-    motion, vertical = build_motions(case)
+    motion, vertical = motions or build_motions(case)
     compiled_motion, compiled_vertical = motion.compiled(), vertical.compiled()
     z, velocity_z, acceleration_z = floor_motion(compiled_vertical, 0.0)
     container, gravity = container or discretise(case), case.gravity_toward_floor + acceleration_z

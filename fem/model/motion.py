@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, assert_never
 
 import numpy as np
 
@@ -63,18 +63,9 @@ def _built(case: Case, table: MotionKey) -> BaseMotion:
         raise CaseError(f"[{table}] {error}") from error
 
 
-def motion_span(motion: BaseMotion) -> tuple[float, float]:
-    """Start and end of a pulse or a record; any other motion has no end [s]."""
-    if isinstance(motion, PulseMotion):
-        return motion.delay, motion.delay + motion.pulse
-    if isinstance(motion, TableMotion):
-        return float(motion.times[0]), float(motion.times[-1])
-    return 0.0, math.inf
-
-
 def motions_end(*motions: BaseMotion) -> float:
     """When the last of them ends; infinite where none has an end [s]."""
-    return max((motion_span(one)[1] for one in motions if not isinstance(one, NoMotion)), default=math.inf)
+    return max((one.span[1] for one in motions if not isinstance(one, NoMotion)), default=math.inf)
 
 
 def longest_run(case: Case, *motions: BaseMotion) -> float:
@@ -115,7 +106,7 @@ def motion_result(case: Case, motion: BaseMotion, vertical: BaseMotion) -> Motio
 
 def _evaluated(motion: BaseMotion, duration: float) -> MotionResult:
     """Numbers of a motion that is evaluated, for a run of this duration [s]."""
-    begin, end = motion_span(motion)
+    begin, end = motion.span
     if isinstance(motion, HarmonicMotion):
         end = motion.end_time if math.isfinite(motion.end_time) else duration
     peaks = np.abs(motion.evaluate(_extremes_of(motion, begin, end))).max(axis=1)
@@ -136,7 +127,7 @@ def _evaluated(motion: BaseMotion, duration: float) -> MotionResult:
         residual_velocity_m_s=None if residual is None else float(residual[1]),
         residual_displacement_m=None if residual is None else float(residual[0]),
         covered=covered,
-        peak_in_run_m_s2=peak_acceleration_within(motion, duration),
+        peak_in_run_m_s2=motion.peak_within(duration),
     )
 
 
@@ -159,24 +150,11 @@ def _zeros(times: FloatArray, values: FloatArray) -> FloatArray:
     return np.asarray(times[:-1][through] + share * np.diff(times)[through])
 
 
-def peak_acceleration_within(motion: BaseMotion, duration: float) -> float:
-    """Largest |acceleration| of the floor up to `duration`, the end of the run [m/s2]."""
-    if isinstance(motion, NoMotion | HarmonicMotion):
-        return motion.peak_acceleration  # within the duration of its case
-    if isinstance(motion, PulseMotion):  # between these instants its size is monotonic
-        quarters = motion.delay + motion.pulse * np.array([0.0, 0.25, 0.5, 0.75])
-        instants = np.append(quarters, duration)
-        return float(np.abs(motion.evaluate(instants[instants <= duration])[2]).max())
-    instants = np.append(motion.times, [0.0, duration])  # linear between samples
-    inside = np.unique(instants[(instants >= 0.0) & (instants <= duration)])
-    return float(np.abs(motion.evaluate(inside)[2]).max())
-
-
 def peaks_in_run(case: Case, motion: BaseMotion, vertical: BaseMotion) -> tuple[float, float | None]:
     """Largest |acceleration| of the floor in the run, along x and vertical [m/s2]; None: no vertical motion."""
     duration = longest_run(case, motion, vertical)
-    upward = peak_acceleration_within(vertical, duration) if case.has_vertical else None
-    return peak_acceleration_within(motion, duration), upward
+    upward = vertical.peak_within(duration) if case.has_vertical else None
+    return motion.peak_within(duration), upward
 
 
 def motion_notes(motion: BaseMotion, table: MotionKey = "motion") -> list[str]:
@@ -253,3 +231,4 @@ def _build(case: Case, table: MotionKey) -> BaseMotion:
             return _plausible(
                 TableMotion(times=made.times, values=made.values, quantity=motion.quantity), table
             )
+    assert_never(motion.kind)

@@ -6,6 +6,7 @@ them all. No kernel is loaded here, so that `check` stays quick where the keys a
 
 import math
 from dataclasses import replace
+from typing import assert_never
 
 from fem.case.case import Case
 from fem.case.motion_tables import FloorMotionTable
@@ -35,22 +36,24 @@ def numbers_from_keys(motion: FloorMotionTable, duration: float) -> MotionResult
     None where the motion must be evaluated: a table, ramps, a run that ends before the peaks, or before the motion.
     """
     peak = motion.nominal_peak or 0.0
-    if motion.kind == "none":
-        return MotionResult(kind="none", peak_acceleration_m_s2=0.0, peak_in_run_m_s2=0.0)
-    if motion.kind == "harmonic":
-        if motion.ramp_cycles > 0.0 or motion.cycles is not None or duration < motion.period:
+    match motion.kind:
+        case "none":
+            return MotionResult(kind="none", peak_acceleration_m_s2=0.0, peak_in_run_m_s2=0.0)
+        case "harmonic":
+            if motion.ramp_cycles > 0.0 or motion.cycles is not None or duration < motion.period:
+                return None
+            amplitude, rate = motion.amplitude, motion.angular_frequency
+            return _covered("harmonic", duration, (peak, amplitude * rate, amplitude))
+        case "pulse":
+            length = motion.pulse_s
+            if motion.shape is None or length is None or duration < motion.delay_s + length:
+                return None
+            velocity, displacement = PULSE_ENDS[motion.shape]
+            peaks = (peak, velocity * peak * length, displacement * peak * length**2)
+            return _covered("pulse", motion.delay_s + length, peaks)
+        case "table":
             return None
-        amplitude, rate = motion.amplitude, motion.angular_frequency
-        return _covered("harmonic", duration, (peak, amplitude * rate, amplitude))
-    if motion.kind == "pulse" and motion.shape is not None and motion.pulse_s is not None:
-        end = motion.delay_s + motion.pulse_s
-        velocity, displacement = PULSE_ENDS[motion.shape]
-        if duration < end:
-            return None
-        return _covered(
-            "pulse", end, (peak, velocity * peak * motion.pulse_s, displacement * peak * motion.pulse_s**2)
-        )
-    return None
+    assert_never(motion.kind)
 
 
 def _covered(kind: str, length: float, peaks: tuple[float, float, float]) -> MotionResult:

@@ -11,7 +11,7 @@ from contact.stepping.state import Control
 from fem.case.case import Case, CaseError
 from fem.model.container import Container
 from fem.model.loose_stack import struck_mass
-from fem.model.motion import longest_run, motion_span
+from fem.model.motion import longest_run
 from fem.model.static_checks import StaticChecks
 from fem.runtime.arrays import FloatArray
 
@@ -60,7 +60,7 @@ def largest_step_of(case: Case, static: StaticChecks, *motions: BaseMotion) -> t
         largest = solver.step_s
     most = largest
     for motion in motions:
-        wanted, (begin, end) = STEP_OF_MOTION * motion.time_scale, motion_span(motion)
+        wanted, (begin, end) = STEP_OF_MOTION * motion.time_scale, motion.span
         pieces = (end - begin) / wanted if math.isfinite(end) else math.inf
         short = pieces <= MOST_PIECES and end - begin < SHORT_SHARE * duration
         inside = np.asarray(motion.break_times, dtype=float)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import NamedTuple, assert_never
 
 from markupsafe import Markup
 
@@ -271,9 +271,11 @@ def motion_in_words(motion: FloorMotionTable) -> str:
                 f"{motion.shape} pulse, {quantity(motion.factor * (motion.peak_acceleration_m_s2 or 0.0), 'm/s²')} for "
                 f"{quantity(motion.pulse_s, 's')}, from t = {short(motion.delay_s)} s"
             )
-    unit = f", {motion.unit}" if motion.unit else ""
-    record = f"record {motion.file}" if motion.file else "vertical component of that record"
-    return f"{record} ({motion.quantity}{unit}), {scale_in_words(motion)}, baseline {motion.baseline}"
+        case "table":
+            unit = f", {motion.unit}" if motion.unit else ""
+            record = f"record {motion.file}" if motion.file else "vertical component of that record"
+            return f"{record} ({motion.quantity}{unit}), {scale_in_words(motion)}, baseline {motion.baseline}"
+    assert_never(motion.kind)
 
 
 def scale_in_words(motion: FloorMotionTable) -> str:

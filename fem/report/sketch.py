@@ -8,6 +8,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
+from typing import assert_never
 
 from markupsafe import Markup
 from matplotlib.axes import Axes
@@ -221,5 +222,7 @@ def _motion(case: Case, peak: float) -> list[str]:
             return [f"x = A sin(Ωt{phase})", f"A = {amplitude}, Ω = {omega} rad/s, peak {short(peak)} m/s²"]
         case "pulse":
             return [f"{motion.shape} pulse", f"{short(motion.pulse_s)} s long, peak {short(peak)} m/s²"]
-    scale = f"scale {short(motion.scale)}, " if motion.scale_to_m_s2 is None else ""
-    return [f"record {motion.file}", f"{scale}peak {short(peak)} m/s²"]
+        case "table":
+            scale = f"scale {short(motion.scale)}, " if motion.scale_to_m_s2 is None else ""
+            return [f"record {motion.file}", f"{scale}peak {short(peak)} m/s²"]
+    assert_never(motion.kind)

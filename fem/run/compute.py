@@ -11,6 +11,7 @@ from fem.case.validation import CaseError
 from fem.model.container import Container, discretise
 from fem.model.geometry import build_container
 from fem.model.model import build_model
+from fem.model.motion import build_motions
 from fem.model.recovery import recovery_of
 from fem.results.fields import Fields, Frame, FrameKeeper
 from fem.results.history import History
@@ -117,10 +118,10 @@ def compute_on(container: Container | None, case: Case, wanted: WantedChecks) ->
     """
     use_one_blas_thread()
     watch, silent = Stopwatch(), SilentReporter()
-    mesh = build_container(case)
-    resolved = resolve(case, mesh)
+    mesh, motions = build_container(case), build_motions(case)
+    resolved = resolve(case, mesh, motions)
     with compilation_announced(lambda text: print(text, file=sys.stderr)):
-        model = build_model(case, container or discretise(case, mesh))
+        model = build_model(case, container or discretise(case, mesh), motions=motions)
         advance_body(model.body, model.run, 0.0)  # no step: compiles
     elements = model.container.elements
     keeper = FrameKeeper(

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from contact.motion.base_motion import BaseMotion
 from fem.assessment.summary import plain_summary
 from fem.case.case import Case, case_hash, to_toml
 from fem.figures.cache import write_figures
@@ -69,7 +70,8 @@ def run_case(
     options, reporter, watch = options or RunOptions(), reporter or SilentReporter(), Stopwatch()
     files, mesh = RunFiles(folder), build_container(case)
     files.require_free_names(case)
-    resolved = resolve(case, mesh)
+    motions = build_motions(case)
+    resolved = resolve(case, mesh, motions)
     request = case_hash(resolved)
     known = finished_result(folder, request, options, reporter)
     if known is not None and not lacks_checks(known, case, options) and not _lacks_figures(files, case):
@@ -81,10 +83,10 @@ def run_case(
         if known is None:
             nodes = node_count(mesh, case.solver.order)
             way_out = "set a larger output.fields_s (0: no frames) or output.history_s"
-            longest = longest_run(case, *build_motions(case))
+            longest = longest_run(case, *motions)
             size = size_in_words(case, nodes, longest)
             place.require_room(required_disk(case, nodes, longest), size, way_out)
-        model = set_up(case, mesh, reporter)
+        model = set_up(case, mesh, motions, reporter)
         with interruptible(reporter) as stop:
             result = known
             if result is None:
@@ -209,14 +211,16 @@ def draw(model: Model, folder: Path, reporter: Reporter) -> None:
         )
 
 
-def set_up(case: Case, mesh: ContainerMesh, reporter: Reporter) -> Model:
+def set_up(
+    case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, BaseMotion], reporter: Reporter
+) -> Model:
     """Build the model of a case and compile the kernels that step it.
 
     Raises:
         CaseError, MeshError: it cannot be built.
     """
     with ending_at_once(), compilation_announced(reporter.message):
-        model = build_model(case, discretise(case, mesh))
+        model = build_model(case, discretise(case, mesh), motions=motions)
         advance_body(model.body, model.run, 0.0)  # no step: compiles
     return model
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from contact.motion.base_motion import BaseMotion
 from fem.assessment.joint_demands import joint_demands
 from fem.assessment.summary import outcome_sentence
 from fem.assessment.verdict import energy_of, numerics_of, verdict_of
@@ -15,7 +16,7 @@ from fem.case.case import Case
 from fem.case.rules import ends_at_rest, longest_time
 from fem.model.floor import floor_result
 from fem.model.model import Model
-from fem.model.motion import build_motions, motion_result, peaks_in_run
+from fem.model.motion import motion_result, peaks_in_run
 from fem.model.static_checks import static_checks_of
 from fem.model.step_size import largest_step_of
 from fem.model.support import normal_penalty
@@ -28,13 +29,13 @@ from fem.runtime.progress import Reporter
 from mesh.container import ContainerMesh
 
 
-def resolve(case: Case, mesh: ContainerMesh) -> Case:
+def resolve(case: Case, mesh: ContainerMesh, motions: tuple[BaseMotion, BaseMotion]) -> Case:
     """The case with every "auto" replaced by the value chosen; running it again gives the same result.
 
     A duration that depends on when the container comes to rest stays "auto".
 
     Raises:
-        CaseError: a motion that cannot be built, or that the given step would step over.
+        CaseError: a motion that the given step would step over.
     """
     chosen: dict[str, Any] = {}
     # a contact that follows from a slab or a stated restitution stays so
@@ -44,7 +45,6 @@ def resolve(case: Case, mesh: ContainerMesh) -> Case:
     if case.solver.duration_s == "auto" and not ends_at_rest(case):
         chosen["solver.duration_s"] = longest_time(case)
     if case.solver.step_s == "auto":
-        motions = build_motions(case)
         static = static_checks_of(case, mesh, *peaks_in_run(case, *motions))
         chosen["solver.step_s"], _ = largest_step_of(case, static, *motions)
     return case.with_values(chosen) if chosen else case

@@ -11,6 +11,7 @@ from fem.case.uncertainty import changes_of
 from fem.case.unknown_inputs import ranges_of
 from fem.model.geometry import build_container
 from fem.model.model import build_model
+from fem.model.motion import build_motions
 from fem.run.compute import compute
 from fem.run.solve import resolve
 
@@ -87,7 +88,7 @@ def test_it_excludes_a_slab_which_has_its_own():
 
 def test_the_resolved_case_states_it_and_gives_the_same_run():
     case = stack(0.97, initial__rotation_rad=0.1, solver__duration_s=1.5)
-    resolved = read_case(to_toml(resolve(case, build_container(case))))
+    resolved = read_case(to_toml(resolve(case, build_container(case), build_motions(case))))
     assert resolved.contact.restitution_over_housner == 0.97
     assert resolved.contact.damping_ratio is None
     runs = [compute(one, band=False) for one in (case, resolved)]

@@ -1,0 +1,65 @@
+"""Every kind of floor motion is known wherever one is asked for; another one is refused, not taken for a known one."""
+
+import math
+from typing import get_args
+
+import numpy as np
+import pytest
+from cases import named_case
+
+from fem.case.motion_tables import MotionTable, VerticalTable
+from fem.case.strength import scaled_motion
+from fem.model.motion import build_motion, build_motions, motion_result
+from fem.model.motion_summary import summary_from_keys
+from fem.report.comparison import motion_in_words
+
+KINDS = get_args(MotionTable.model_fields["kind"].annotation)
+PEAK = 2.0
+#: keys of a motion of each kind with this peak
+KEYS = {
+    "none": {},
+    "harmonic": {"motion.peak_acceleration_m_s2": PEAK, "motion.frequency_Hz": 1.0},
+    "pulse": {"motion.shape": "sine", "motion.peak_acceleration_m_s2": PEAK, "motion.pulse_s": 1.0},
+    "table": {"motion.file": "record.txt", "motion.unit": "g", "motion.scale_to_m_s2": PEAK},
+}
+
+
+def test_the_vertical_motion_has_the_same_kinds():
+    assert get_args(VerticalTable.model_fields["kind"].annotation) == KINDS == tuple(KEYS)
+
+
+@pytest.fixture
+def case_of(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "record.txt").write_text("".join(f"{0.01 * k} {math.sin(0.2 * k)}\n" for k in range(200)))
+    return lambda kind: named_case("least", {"motion.kind": kind, **KEYS[kind]})
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_is_built_with_its_peak_span_and_words(case_of, kind):
+    case, peak = case_of(kind), 0.0 if kind == "none" else PEAK
+    motion = build_motion(case)
+    assert case.motion.nominal_peak == peak == pytest.approx(motion.peak_acceleration)
+    assert motion.peak_within(20.0) == pytest.approx(peak)
+    assert motion.peak_within(0.1) <= motion.peak_within(20.0)
+    begin, end = motion.span
+    assert begin <= 0.0 < end and motion.time_scale > 0.0
+    assert motion.evaluate(np.array([0.3, 0.6])).shape == (3, 2)
+    found = motion_result(case, *build_motions(case))
+    assert (found.kind, found.peak_in_run_m_s2) == (kind, pytest.approx(peak))
+    assert motion_in_words(case.motion)
+    doubled = case.with_values(scaled_motion(case, 2.0))
+    assert build_motion(doubled).peak_acceleration == pytest.approx(2.0 * peak)
+
+
+@pytest.mark.parametrize("kind", ["ramp"])
+def test_another_kind_is_refused(kind):
+    case = named_case("harmonic")
+    other = case.motion.model_copy(update={"kind": kind})
+    for ask in (motion_in_words, lambda motion: motion.nominal_peak):
+        with pytest.raises(AssertionError, match=kind):
+            ask(other)
+    changed = case.model_copy(update={"motion": other})
+    for ask in (build_motion, summary_from_keys, lambda case: scaled_motion(case, 2.0)):
+        with pytest.raises(AssertionError, match=kind):
+            ask(changed)
