@@ -1,7 +1,7 @@
 """What the floor amounts to, in words for `check`, the summary and the page."""
 
-from fem.assessment.ranges import FEW, MANY, in_figures
 from fem.results.run_result import FloorNumbers
+from fem.runtime.units import FEW, MANY, in_figures
 
 KILONEWTON = ("kN", 1e-3)
 LEAST = 0.1  #: of a number in a unit, before a smaller unit is taken

@@ -1,35 +1,23 @@
 """A loose stack in words and as a table: what each box did over what is below it, the floor or the next box."""
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 from rich.console import RenderableType
 from rich.text import Text
 
 from contact.stepping.observables import ROCKING, SLIDING
 from fem.assessment.joint_tables import titled_table
-from fem.assessment.ranges import (
-    LEAST_DEGREES,
-    LEAST_LENGTH,
-    Reach,
-    in_figures,
-    signed_with_range,
-    with_range,
-)
-from fem.results.run_result import BoxReach, BoxResult, RunResult, StaticResult, Verdict
+from fem.results.figures import BOX_FIGURES, BoxResult
+from fem.results.run_result import BoxReach, RunResult, StaticResult, Verdict
+from fem.runtime.units import SHORT_MILLIMETRES as LENGTH
+from fem.runtime.units import in_figures
 
 AS_ONE = "the boxes moved as one"
-FIGURES = 3  #: of a length in the first line
 MOST_BOXES = 12  #: boxes in a table; of more, those with a largest value
 BOXES_NOTE = (
     "The boxes stand on one another without bolts. Slip and opening of a box are over what is below it: the floor or "
     "the next box. The rotation ratio is the largest rotation of any box over the slenderness angle of the whole stack."
-)
-LARGEST: tuple[Callable[[BoxResult], float], ...] = (
-    lambda box: box.max_rotation_rad,
-    lambda box: box.max_slip_m,
-    lambda box: abs(box.residual_slip_m),
-    lambda box: box.max_opening_m,
 )
 
 
@@ -49,13 +37,13 @@ def joints_in_words(verdict: Verdict, static: StaticResult | None) -> str:
         return ""
     slip_limit, opening_limit = limits(static or StaticResult())
     moved = []
-    for verb, preposition, size, limit in (
-        ("slid", "on", LARGEST[1], slip_limit),
-        ("opened", "from", LARGEST[3], opening_limit),
+    for verb, preposition, key, limit in (
+        ("slid", "on", "max_slip_m", slip_limit),
+        ("opened", "from", "max_opening_m", opening_limit),
     ):
-        most = max(range(1, len(boxes)), key=lambda k: size(boxes[k]))
-        if size(boxes[most]) > limit:
-            length = in_figures(size(boxes[most]), FIGURES, 1e3)
+        most = _most(boxes, key, above=1)
+        if boxes[most][key] > limit:
+            length = in_figures(boxes[most][key], LENGTH.figures, LENGTH.factor)
             moved.append(f"box {most + 1} {verb} {length} mm {preposition} box {most}")
     return ", ".join(moved) or AS_ONE
 
@@ -65,17 +53,22 @@ def largest_joint_slip(verdict: Verdict) -> tuple[str, str]:
     boxes = verdict.boxes or ()
     if len(boxes) < 2:
         return "", ""
-    most = max(range(1, len(boxes)), key=lambda k: boxes[k].max_slip_m)
+    most = _most(boxes, "max_slip_m", above=1)
     reach = _reaches(verdict)[most]
-    slip = _length(boxes[most].max_slip_m, reach.max_slip_m, "mm")
+    slip = LENGTH.text(boxes[most].max_slip_m, reach.max_slip_m if reach else None)
     return slip, f"box {most + 1} on box {most}"
+
+
+def _most(boxes: Sequence[BoxResult], key: str, above: int = 0) -> int:
+    """The place of the box with the largest figure, among those from a place on."""
+    return max(range(above, len(boxes)), key=lambda k: abs(boxes[k][key] or 0.0))
 
 
 def limits(static: StaticResult) -> tuple[float, float]:
     """Slip and opening from which a joint counts as sliding and rocking [m], by the limits of the whole stack."""
     centroid, angle = static.centroid_m, static.slenderness_angle_rad
     if centroid is None or angle is None:
-        return LEAST_LENGTH, LEAST_LENGTH
+        return LENGTH.least, LENGTH.least
     width = 2.0 * centroid * math.tan(angle)
     return SLIDING * width, ROCKING * angle * width
 
@@ -88,32 +81,18 @@ def box_rows(result: RunResult) -> list[tuple[str, ...]]:
     verdict = result.verdict or Verdict()
     rows: list[tuple[str, ...]] = []
     for number, (box, reach) in enumerate(zip(verdict.boxes or (), _reaches(verdict), strict=True), 1):
-        degrees, least = math.degrees(1.0), math.radians(LEAST_DEGREES)
-        turned, left = reach.max_rotation_rad, reach.residual_slip_m
-        of_band = f"in {reach.fell} of {_members(verdict)} runs" if reach.fell else ""
-        rows.append(
-            (
-                str(number),
-                with_range(box.max_rotation_rad, turned, factor=degrees, least=least, many=FIGURES),
-                _length(box.max_slip_m, reach.max_slip_m),
-                signed_with_range(
-                    box.residual_slip_m, left, "", factor=1e3, least=LEAST_LENGTH, many=FIGURES
-                ),
-                _length(box.max_opening_m, reach.max_opening_m),
-                ", ".join(filter(None, ("fell" if box.fell else "", of_band))),
-            )
+        of_band = f"in {reach.fell} of {_members(verdict)} runs" if reach and reach.fell else ""
+        figures = (
+            one.text(box[key], reach[key] if reach else None, bare=True) for key, one in BOX_FIGURES.items()
         )
+        rows.append((str(number), *figures, ", ".join(filter(None, ("fell" if box.fell else "", of_band)))))
     return rows
 
 
-def _length(value: float, reach: Reach | None, unit: str = "") -> str:
-    return with_range(value, reach, unit, factor=1e3, least=LEAST_LENGTH, many=FIGURES)
-
-
-def _reaches(verdict: Verdict) -> Sequence[BoxReach]:
-    """The ranges of each box over the band; empty ones where there is none."""
+def _reaches(verdict: Verdict) -> Sequence[BoxReach | None]:
+    """The ranges of each box over the band, where there is one."""
     found = verdict.band.boxes if verdict.band is not None else None
-    return found or [BoxReach()] * len(verdict.boxes or ())
+    return found or [None] * len(verdict.boxes or ())
 
 
 def _members(verdict: Verdict) -> int:
@@ -126,9 +105,8 @@ def box_table(result: RunResult) -> Iterator[RenderableType]:
     if not rows:
         return
     shown = _shown((result.verdict or Verdict()).boxes or ())
-    table = titled_table(
-        "Boxes, from the floor up", "box", ">rotation degrees", ">slip mm", ">slip left mm", ">opening mm", ""
-    )
+    heads = (f">{one.words} {one.unit.name}" for one in BOX_FIGURES.values())
+    table = titled_table("Boxes, from the floor up", "box", *heads, "")
     for k in shown:
         table.add_row(*(cell.replace(" (", "\n(").replace(", ", ",\n") for cell in rows[k]))
     yield table
@@ -139,5 +117,5 @@ def box_table(result: RunResult) -> Iterator[RenderableType]:
 def _shown(boxes: Sequence[BoxResult]) -> Sequence[int]:
     if len(boxes) <= MOST_BOXES:
         return range(len(boxes))
-    chosen = {max(range(len(boxes)), key=lambda k: size(boxes[k])) for size in LARGEST}
+    chosen = {_most(boxes, key) for key in BOX_FIGURES}
     return sorted(chosen | {k for k, box in enumerate(boxes) if box.fell})

@@ -1,8 +1,8 @@
 """The floor's motions of a run in words: length, samples and peaks, and what of them the run leaves out."""
 
-from fem.assessment.ranges import in_figures
 from fem.records.units import STANDARD_GRAVITY
 from fem.results.run_result import MotionResult
+from fem.runtime.units import in_figures
 
 ROUNDING = 1e-9  #: share of a peak
 NAMES = {"table": "record", "pulse": "pulse"}

@@ -18,23 +18,10 @@ from fem.assessment.floor_words import floor_rows
 from fem.assessment.joint_tables import joint_tables, titled_table
 from fem.assessment.loose_boxes import box_table, fall_in_words, joints_in_words, largest_joint_slip
 from fem.assessment.motion_words import covered_in_words, missing_peak, motion_in_words
-from fem.assessment.ranges import (
-    LEAST_LENGTH,
-    LEAST_RATIO,
-    bolt_forces,
-    contents_acceleration,
-    corner_force,
-    crushes,
-    indentation,
-    largest_slip,
-    largest_stress,
-    largest_uplift,
-    residual_slip,
-    rotation_in_words,
-    rotation_ratio,
-)
+from fem.assessment.ranges import bolt_forces, crushes, in_words, largest_ratio, largest_slip
 from fem.assessment.rule_or_run import governing
 from fem.assessment.sureness import sureness_in_words
+from fem.results.figures import FIGURES, summary_order
 from fem.results.outcome import ROCKING, SLIDING, Outcome
 from fem.results.run_result import (
     ActionResult,
@@ -176,21 +163,22 @@ def rule_says(check: str, utilisation: float | None) -> str:
 
 def run_slid(verdict: Verdict) -> str:
     """Whether the run slid, and how far; of a loose stack, on the floor and between the boxes."""
-    if verdict.max_slip_m is None:
+    slip = largest_slip(verdict)
+    if not slip:
         return "-"
     sliding = not {verdict.outcome, *verdict.modes}.isdisjoint(SLIDING)
     if not verdict.boxes:
-        return f"{'slid' if sliding else 'held'}, slip {largest_slip(verdict)}"
+        return f"{'slid' if sliding else 'held'}, slip {slip}"
     between, _ = largest_joint_slip(verdict)
-    return f"slip {largest_slip(verdict)}" + (f", {between} between boxes" if between else "")
+    return f"slip {slip}" + (f", {between} between boxes" if between else "")
 
 
 def run_tilted(verdict: Verdict) -> str:
     """Whether the run overturned, and how far it turned."""
     if verdict.outcome == Outcome.OVERTURNED:
         return "overturned"
-    ratio = verdict.rotation_ratio
-    return "-" if ratio is None else f"stood, ratio {rotation_ratio(verdict)}"
+    ratio = largest_ratio(verdict)
+    return f"stood, ratio {ratio}" if ratio else "-"
 
 
 def _table_of_pairs(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[Table]:
@@ -203,36 +191,29 @@ def _table_of_pairs(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[Tab
 
 def result_rows(result: RunResult) -> list[tuple[str, str]]:
     """Name and value of what the run found, in the order of reading, without what it did not reach."""
-    verdict, static = result.verdict or Verdict(), result.static or StaticResult()
-    numerics, motion = result.numerics or Numerics(), result.motion or MotionResult()
-    impacts, lowest = verdict.impacts, " of box 1" if verdict.boxes else ""
+    verdict, motion = result.verdict or Verdict(), result.motion or MotionResult()
+    energy, lowest = result.energy or Energy(), " of box 1" if verdict.boxes else ""
+    #: rows behind that of a figure
+    behind = {
+        "slip_travel_m": [
+            ("largest slip between boxes", ", ".join(filter(None, largest_joint_slip(verdict))))
+        ],
+        "max_corner_force_N": floor_rows(result.floor),
+        "max_indentation_m": [("work of crushing", _crushing(energy, verdict))],
+    }
     rows = [
         ("floor motion", motion_in_words(motion)),
         ("vertical motion", motion_in_words(motion.vertical or MotionResult())),
-        ("simulated time", _simulated(verdict, numerics)),
+        ("simulated time", _simulated(verdict, result.numerics or Numerics())),
         ("states seen", ", ".join(verdict.modes)),
-        ("largest rotation", rotation_in_words(verdict)),
-        (f"largest slip{lowest}", largest_slip(verdict)),
-        (f"slip at the end{lowest}", residual_slip(verdict)),
-        (f"path of slip{lowest}", _lengths(verdict.slip_travel_m)),
-        ("largest slip between boxes", ", ".join(filter(None, largest_joint_slip(verdict)))),
-        (f"largest uplift{lowest}", largest_uplift(verdict)),
-        ("largest corner force", corner_force(verdict, numerics)),
-        *floor_rows(result.floor),
-        ("indentation of the floor", indentation(verdict)),
-        ("work of crushing", _crushing(result.energy or Energy(), verdict)),
-        ("first uplift", _unit(verdict.first_uplift_s, 1.0, "s")),
-        ("impacts", "" if impacts is None else str(impacts)),
-        ("velocity ratio, first impact", _restitution(verdict, static)),
-        ("displacement of the top", _lengths(verdict.max_top_displacement_m)),
-        (
-            "acceleration of the contents",
-            contents_acceleration(verdict, numerics),
-        ),
-        ("von Mises stress", largest_stress(verdict)),
+    ]
+    for key in summary_order():
+        name = FIGURES[key].words + (lowest if FIGURES[key].lowest else "")
+        rows += [(name, in_words(result, key)), *behind.get(key, [])]
+    rows += [
         ("bolts, largest tension and shear", bolt_forces(result)),
         ("outcomes of the band", _band(verdict.band)),
-        *_rigid_rows(result.rigid_check, static.slenderness_angle_rad),
+        *_rigid_rows(result.rigid_check, (result.static or StaticResult()).slenderness_angle_rad),
     ]
     return [(name, value) for name, value in rows if value]
 
@@ -254,20 +235,6 @@ def numerics_rows(result: RunResult) -> list[tuple[str, str]]:
         ("computing time", _times(result, numerics)),
     ]
     return [(name, value) for name, value in rows if value]
-
-
-def ratio_in_words(ratio: float) -> str:
-    """A rotation ratio with three figures; below a tenth of what counts as rocking, only that limit."""
-    if 0.0 < ratio < LEAST_RATIO:
-        return f"< {LEAST_RATIO:g}"
-    return f"{ratio:#.3g}".rstrip(".") if ratio else "0"
-
-
-def _restitution(verdict: Verdict, static: StaticResult) -> str:
-    found, housner = verdict.restitution_first, static.housner_restitution
-    if found is None:
-        return "-" if verdict.impacts else ""
-    return f"{found:.3f}" + (f" (Housner {housner:.3f})" if housner is not None else "")
 
 
 def _crushing(energy: Energy, verdict: Verdict) -> str:
@@ -345,21 +312,6 @@ def _files(folder: Path) -> list[str]:
         else ["ParaView: no fields were written; output.fields_s > 0 writes them"]
     )
     return [*paraview, f"History: {folder / 'history.csv'}", f"All results: {folder / 'run.json'}"]
-
-
-def _lengths(*values: float | None) -> str:
-    return "" if values[0] is None else f"{', '.join(map(_millimetres, values))} mm"
-
-
-def _millimetres(value: float | None) -> str:
-    """A length given in metres; below 0.01 mm only that limit."""
-    if value is not None and 1e-3 * INVISIBLE <= abs(value) < LEAST_LENGTH:
-        return f"< {1e3 * LEAST_LENGTH:g}"
-    return _number(value, 1e3)
-
-
-def _unit(value: float | None, factor: float, unit: str) -> str:
-    return "" if value is None else f"{_number(value, factor)} {unit}"
 
 
 def _filters(numerics: Numerics) -> str:

@@ -9,31 +9,17 @@ import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Protocol
+from typing import Any
 
 import numpy as np
 
 from fem.case.uncertainty import InputChange
 from fem.case.unknown_inputs import INPUTS
+from fem.results.figures import BOX_FIGURES, Place, RunFigures, keys_of
 from fem.results.outcome import ROCKING, Outcome
 from fem.results.run_result import Band, BandMember, BoxReach, RunResult, StaticResult, Verdict
 
 SURE, REGIME_UNSURE, UNSURE = "sure", "regime unsure", "unsure"
-#: figures of a band, each [low, high]
-FIGURES = (
-    "rotation_ratio",
-    "max_slip_m",
-    "residual_slip_m",
-    "max_uplift_m",
-    "max_indentation_m",
-    "max_corner_force_N",
-    "max_acceleration_m_s2",
-    "max_von_mises_Pa",
-    "bolt_tension_N",
-    "bolt_shear_N",
-)
-#: and of each box of a loose stack
-BOX_FIGURES = ("max_rotation_rad", "max_slip_m", "residual_slip_m", "max_opening_m")
 ANOTHER_SIZE = 10.0
 #: slip over the width, and rotation ratio, from which another size is another way to stand
 LARGE_SLIP, LARGE_ROTATION = 0.01, 0.1
@@ -41,40 +27,6 @@ LARGE_SLIP, LARGE_ROTATION = 0.01, 0.1
 SAME, OTHER_REGIME, OTHER_END = 0, 1, 2
 ORDER = {key: k for k, key in enumerate(INPUTS)}
 MOST_DRAWN = 3  #: inputs named where only draws differ
-
-
-class BoxStanding(Protocol):
-    """What a box of a loose stack shows; slip and opening over what is below it."""
-
-    @property
-    def max_rotation_rad(self) -> float: ...
-
-    @property
-    def max_slip_m(self) -> float: ...
-
-    @property
-    def max_opening_m(self) -> float: ...
-
-
-class Standing(Protocol):
-    """What a run shows that is compared with another."""
-
-    @property
-    def outcome(self) -> str | None:
-        """None where it failed."""
-
-    @property
-    def rotation_ratio(self) -> float | None: ...
-
-    @property
-    def max_slip_m(self) -> float | None: ...
-
-    @property
-    def fell_box(self) -> int | None: ...
-
-    @property
-    def boxes(self) -> Sequence[BoxStanding] | None:
-        """From the floor up; none of a container that moves as one body."""
 
 
 def judged(
@@ -105,6 +57,7 @@ def judged(
     found = {one.outcome for one in members}
     alike = [one for one in members if _stands(one) == _stands(own) and one.outcome is not None]
     draws = [one for one in others if one.kind == "draw"]
+    ranges: dict[str, Any] = {key: _reach(one[key] for one in alike) for key in keys_of(Place.BAND)}
     band = Band(
         outcomes=tuple(outcome for outcome in Outcome if outcome in found),
         unsure=sure == UNSURE,
@@ -114,7 +67,7 @@ def judged(
         draws_left_out=len(left_out) - len(missing),
         members=tuple(members),
         boxes=_reach_of_boxes(alike, members),
-        **{name: _reach(getattr(one, name) for one in alike) for name in FIGURES},
+        **ranges,
     )
     stiff = [key for change in changes if change.kind == "floor" for key in change.inputs]
     deciding = [*deciding_inputs(levels, changes), *(stiff if below_uplift(members) else [])]
@@ -175,11 +128,11 @@ def _drawn(band: Band) -> str:
     return f"overturned in {band.draws_overturned} of {band.draws} draws{left_out}"
 
 
-def _stands(member: Standing) -> bool:
+def _stands(member: RunFigures) -> bool:
     return member.outcome != Outcome.OVERTURNED
 
 
-def difference(own: Standing, other: Standing, width: float) -> int:
+def difference(own: RunFigures, other: RunFigures, width: float) -> int:
     """How another run differs from a run, of SAME, OTHER_REGIME, OTHER_END; a failed one does not say.
 
     Args:
@@ -197,7 +150,7 @@ def difference(own: Standing, other: Standing, width: float) -> int:
     return OTHER_REGIME if own.outcome != other.outcome or another else SAME
 
 
-def _sizes(one: Standing, width: float) -> Iterator[float]:
+def _sizes(one: RunFigures, width: float) -> Iterator[float]:
     """Slips, rotations and openings, each over the size from which it is large."""
     ratio, boxes = one.rotation_ratio or 0.0, one.boxes or ()
     yield (one.max_slip_m or 0.0) / (LARGE_SLIP * width)
@@ -222,7 +175,7 @@ def _reach_of_boxes(
     fell = Counter(one.fell_box for one in members)
     found = []
     for number, same in enumerate(zip(*(one.boxes for one in alike if one.boxes), strict=True), 1):
-        values = {name: [getattr(box, name) for box in same] for name in BOX_FIGURES}
+        values = {name: [box[name] for box in same] for name in BOX_FIGURES}
         reach = {name: (min(some), max(some)) for name, some in values.items()}
         found.append(BoxReach(fell=fell[number], **reach))
     return tuple(found) or None

@@ -23,9 +23,10 @@ from contact.stepping.observables import FORCE_WINDOW, ROCKING, SLIDING
 from fem.case.case import Case
 from fem.model.floor import YIELD_STRENGTH, is_steel_shell, plastic_work, steel_capacity
 from fem.model.model import Model
+from fem.results.figures import BoxResult
 from fem.results.history import History
 from fem.results.outcome import Outcome
-from fem.results.run_result import BoxResult, Energy, Numerics, Verdict
+from fem.results.run_result import Energy, Numerics, Verdict
 from fem.runtime.arrays import FloatArray
 
 RotationT = TypeVar("RotationT", float, FloatArray)
@@ -54,7 +55,7 @@ def _slides(model: Model) -> bool:
     return any(joint.max_slip > SLIDING * joint.width for joint in further)
 
 
-def rotation_ratio(rotation: RotationT, slenderness_angle: float) -> RotationT:
+def relative_rotation(rotation: RotationT, slenderness_angle: float) -> RotationT:
     """|rotation| over the slenderness angle [-], both in rad."""
     return abs(rotation) / slenderness_angle
 
@@ -88,7 +89,7 @@ def verdict_from(
         outcome=outcome,
         modes=_modes_seen(track.modes, outcome, slides=_slides(model)),
         max_rotation_rad=rotation,
-        rotation_ratio=rotation_ratio(rotation, angle),
+        rotation_ratio=relative_rotation(rotation, angle),
         max_slip_m=joint.max_slip,
         residual_slip_m=joint.slip,
         slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),

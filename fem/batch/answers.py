@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import NamedTuple
 
-from fem.assessment.ranges import LEAST_LENGTH
 from fem.batch.axes import Axis
 from fem.batch.labels import in_words, plain_number
 from fem.results.outcome import Ending
+from fem.runtime.units import MILLIMETRES
 
 #: axes of the floor's strength, that first along which an answer is given where a study does not say
 STRENGTHS = (
@@ -184,7 +184,7 @@ def table_lines(rows: Iterable[tuple[str, str]], file: str = "") -> Iterator[str
 
 
 def _slip_in_words(slip: float) -> str:
-    return f"slip there {plain_number(1e3 * slip)} mm" if slip >= LEAST_LENGTH else "no slip there"
+    return f"slip there {plain_number(1e3 * slip)} mm" if slip >= MILLIMETRES.least else "no slip there"
 
 
 def _ranges(marked: Iterable[tuple[float, bool]]) -> Iterator[Range]:

@@ -21,6 +21,7 @@ from fem.model.equilibrium import same_equilibrium
 from fem.model.model import Model, build_model
 from fem.model.motion import build_motions, motion_result
 from fem.model.recovery import recovery_of
+from fem.results.figures import BOXES, SCALARS
 from fem.results.outcome import Outcome
 from fem.results.run_result import Verdict
 from fem.run.outcome import run_without_history
@@ -28,38 +29,6 @@ from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 from fem.runtime.progress import Reporter, SilentReporter, clock_time
 from fem.runtime.threads import cores
-
-#: scalars of a verdict, as columns; None where they do not apply
-SCALARS = (
-    "outcome",
-    "max_rotation_rad",
-    "rotation_ratio",
-    "max_slip_m",
-    "residual_slip_m",
-    "slip_peak_to_peak_m",
-    "slip_travel_m",
-    "max_uplift_m",
-    "impacts",
-    "first_opening_s",
-    "first_uplift_s",
-    "first_impact_s",
-    "overturned_at_s",
-    "restored",
-    "restitution_first",
-    "max_corner_force_N",
-    "max_top_displacement_m",
-    "max_acceleration_m_s2",
-    "max_von_mises_Pa",
-    "fell_box",
-    "max_joint_slip_m",
-    "max_joint_opening_m",
-)
-#: columns with one number for each box of a loose stack, from the floor up, by what they hold of it
-BOXES = {
-    "box_rotations_rad": "max_rotation_rad",
-    "box_slips_m": "max_slip_m",
-    "box_openings_m": "max_opening_m",
-}
 
 #: cases handed to a core at a time
 CASES_AT_A_TIME = {"rigid": 16, "reduced": 4, "full": 1}

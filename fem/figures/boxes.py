@@ -1,7 +1,6 @@
 """Figures of a loose stack, whose boxes move separately: rotation, slip and opening of each box over time."""
 
 import math
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -9,10 +8,9 @@ from matplotlib import colormaps
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from fem.assessment.ranges import LEAST_DEGREES, LEAST_LENGTH
 from fem.figures import style
+from fem.results.figures import BOX_FIGURES, BoxResult
 from fem.results.reader import OpenedRun
-from fem.results.run_result import BoxResult
 
 #: of so many boxes; of more, those of a colour map
 COLOURS = (style.BLUE, style.VERMILLION, style.GREEN, style.ORANGE, style.PURPLE, style.SKY)
@@ -27,24 +25,32 @@ class BoxQuantity(NamedTuple):
     title: str
     label: str  #: of the vertical axis, with the unit
     unit: str  #: behind a number of the title
-    factor: float  #: from SI units
-    least: float  #: a smaller value is rounding, in the units of the figure
+    figure: str  #: the largest, of `BOX_FIGURES`
     lowest: str  #: column of the lowest box
     further: str  #: .. of a box above it, whose number takes the place of the braces
-    largest: Callable[[BoxResult], float]
+
+    @property
+    def factor(self) -> float:
+        """From SI units."""
+        return BOX_FIGURES[self.figure].unit.factor
+
+    @property
+    def least(self) -> float:
+        """A smaller value is rounding, in the units of the figure."""
+        return self.factor * BOX_FIGURES[self.figure].unit.least
 
 
 ROTATION = BoxQuantity(
-    *("Rotation of each box", "rotation [degrees]", "°", math.degrees(1.0), LEAST_DEGREES),
-    *("rotation_rad", "box_{}_rotation_rad", lambda box: box.max_rotation_rad),
+    *("Rotation of each box", "rotation [degrees]", "°", "max_rotation_rad"),
+    *("rotation_rad", "box_{}_rotation_rad"),
 )
 SLIP = BoxQuantity(
-    *("Slip of each box over what is below", "slip [mm]", " mm", 1e3, 1e3 * LEAST_LENGTH),
-    *("slip_m", "box_{}_slip_m", lambda box: box.max_slip_m),
+    *("Slip of each box over what is below", "slip [mm]", " mm", "max_slip_m"),
+    *("slip_m", "box_{}_slip_m"),
 )
 OPENING = BoxQuantity(
-    *("Opening under each box", "opening [mm]", " mm", 1e3, 1e3 * LEAST_LENGTH),
-    *("uplift_m", "box_{}_opening_m", lambda box: box.max_opening_m),
+    *("Opening under each box", "opening [mm]", " mm", "max_opening_m"),
+    *("uplift_m", "box_{}_opening_m"),
 )
 
 
@@ -77,7 +83,7 @@ def box_figure(run: OpenedRun, quantity: BoxQuantity, boxes: tuple[BoxResult, ..
             verdict.overturned_at_s, color=style.GREY, linestyle=(0, (1, 2)), linewidth=1.0, label=name
         )
     style.legend_above(axes, LEGEND_COLUMNS)
-    sizes = [quantity.factor * quantity.largest(box) for box in boxes]
+    sizes = [quantity.factor * box[quantity.figure] for box in boxes]
     most = int(np.argmax(sizes))
     most_words = f"< {quantity.least:g}" if 0.0 < sizes[most] < quantity.least else style.number(sizes[most])
     title = f"{quantity.title}: {most_words}{quantity.unit} at most (box {most + 1})"

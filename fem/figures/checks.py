@@ -6,7 +6,6 @@ import textwrap
 import numpy as np
 from matplotlib.figure import Figure
 
-from fem.assessment.summary import ratio_in_words
 from fem.case.unknown_inputs import (
     DASHPOT,
     JOINTS_MU_KINETIC,
@@ -27,6 +26,7 @@ from fem.figures import style
 from fem.results.outcome import Outcome
 from fem.results.reader import OpenedRun
 from fem.results.run_result import BandMember, RigidCheckResult, RunAndBlock, Verdict
+from fem.runtime.units import RATIO
 
 FALLEN_ROW = 1.18  #: rotation ratio at which overturned members are drawn
 LINE_LENGTH = 105  #: characters of a line of text in a figure
@@ -131,7 +131,7 @@ def band_figure(run: OpenedRun) -> Figure | None:
     style.legend_above(above, columns=4)
     sure = verdict.sure or ("unsure" if band.unsure else "the same outcome throughout")
     low, high = band.rotation_ratio or (0.0, 0.0)
-    ratios = " to ".join(map(ratio_in_words, (low, high)))
+    ratios = " to ".join(map(RATIO.text, (low, high)))
     statement = f"rotation ratio {ratios}; the large mark is the run itself"
     style.head(figure, f"Band over what is not known, {sure}: {' or '.join(band.outcomes)}", statement)
     return figure

@@ -12,8 +12,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from contact.stepping.observables import ROCKING
-from fem.assessment.ranges import LEAST_DEGREES
-from fem.assessment.summary import ratio_in_words
 from fem.assessment.verdict import SLIDING
 from fem.figures import style
 from fem.figures.boxes import OPENING, ROTATION, SLIP, box_figure
@@ -27,6 +25,7 @@ from fem.model.container import Container
 from fem.results.reader import OpenedRun
 from fem.results.run_result import StaticResult, Verdict
 from fem.runtime.arrays import FloatArray
+from fem.runtime.units import DEGREES, RATIO
 from fem.solid.modes import FEW
 
 LEAST_MOTION = 1e-3  #: of the floor, on its axes [mm, m/s, m/s2]
@@ -145,8 +144,8 @@ def rotation_figure(run: OpenedRun) -> Figure:
     _mark_impact(axes, verdict)
     style.legend_above(axes)
     found = math.degrees(verdict.max_rotation_rad or math.radians(largest))
-    largest_shown = f"< {LEAST_DEGREES:g}" if 0.0 < found < LEAST_DEGREES else style.number(found)
-    ratio = ratio_in_words(found / angle)
+    least, ratio = math.degrees(DEGREES.least), RATIO.text(found / angle)
+    largest_shown = f"< {least:g}" if 0.0 < found < least else style.number(found)
     style.head(
         figure, f"Rotation: {largest_shown}° at most, {ratio} of the slenderness angle", status=run.status
     )

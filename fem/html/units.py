@@ -6,8 +6,7 @@ A trailing zero that is known is kept: 98.10, not 98.1.
 import math
 import re
 
-from fem.assessment.ranges import LEAST_LENGTH
-from fem.assessment.summary import ratio_in_words
+from fem.runtime.units import MILLIMETRES, RATIO
 
 ABSENT = "–"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -40,8 +39,8 @@ def quantity(value: float | None, unit: str, factor: float = 1.0, figures: int =
 
 def millimetres(value: float | None) -> str:
     """A length given in metres, without its unit; below 0.01 mm only that limit."""
-    if value is not None and 0.0 < abs(value) < LEAST_LENGTH:
-        return f"< {short(LEAST_LENGTH, 1000.0)}"
+    if value is not None and 0.0 < abs(value) < MILLIMETRES.least:
+        return f"< {short(MILLIMETRES.least, 1000.0)}"
     return number(value, 1000.0, 3)
 
 
@@ -50,9 +49,9 @@ def degrees(value: float | None, figures: int = 4) -> str:
     return quantity(value, "°", 180.0 / math.pi, figures).replace("\u00a0", "")
 
 
-def rotation_ratio(value: float | None) -> str:
+def ratio(value: float | None) -> str:
     """A largest rotation over the slenderness angle."""
-    return ABSENT if value is None else typeset(ratio_in_words(value))
+    return ABSENT if value is None else typeset(RATIO.text(value))
 
 
 def typeset(text: str) -> str:

@@ -12,8 +12,7 @@ import numpy as np
 import pyvista
 
 from fem.assessment.floor_words import drawn_level
-from fem.assessment.summary import ratio_in_words
-from fem.assessment.verdict import rotation_ratio
+from fem.assessment.verdict import relative_rotation
 from fem.figures.style import number
 from fem.render.scene import BAR, BOTTOM, SIDE, View
 from fem.results.errors import FolderError
@@ -21,6 +20,7 @@ from fem.results.fields import Frame
 from fem.results.history import ANALYTIC_COLUMN
 from fem.results.reader import OpenedRun
 from fem.runtime.arrays import FloatArray
+from fem.runtime.units import RATIO
 
 INK, FAINT = "#222222", "#666666"
 LONGEST = 62  #: characters of a title
@@ -55,7 +55,7 @@ def caption(run: OpenedRun, frame: Frame) -> tuple[str, str]:
     title = title if len(title) <= LONGEST else f"{title[: LONGEST - 3]}..."
     status = "" if run.status in ("completed", "overturned") else f" ({run.status})"
     degrees = f"{round(math.degrees(rotation), 2) + 0.0:.2f}".replace("-", "−")  # no minus zero
-    ratio = ratio_in_words(rotation_ratio(rotation, run.slenderness_angle))
+    ratio = RATIO.text(relative_rotation(rotation, run.slenderness_angle))
     box = f" (box {most + 1})" if len(rotations) > 1 and not ratio.startswith("<") and ratio != "0" else ""
     lines = (
         f"t = {frame.time:.3f} s    {run.history.modes[sample]}",

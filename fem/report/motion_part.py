@@ -4,14 +4,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from fem.html import sections as html
-from fem.html.units import ABSENT, millimetres, number, rotation_ratio, short
+from fem.html.units import ABSENT, millimetres, number, ratio, short
 from fem.records.units import STANDARD_GRAVITY
 from fem.report.studies import drawings
-from fem.results.outcome import COUNTED, ROCKING, SLIDING, Ending, ending_of
-from fem.sweep.cells import Shown
+from fem.results.outcome import COUNTED, ROCKING, SLIDING
+from fem.sweep.cells import shown_at
 from fem.sweep.motion_outcomes import MotionOutcome, motions_at
 from fem.sweep.table import SweepTable
 
@@ -48,7 +46,8 @@ def motions_of_sweep(folder: Path, table: SweepTable) -> html.PageSection:
     """The motions of a sweep, with what each did at each point of the other axes; empty as for an ensemble."""
     if not table.info.get("motions"):
         return html.section("", "motions")
-    points = list(motions_at(table.axes, _shown(table)))
+    shown = {cell: shown_at(table, cell) for cell in range(len(table["cell"]))}
+    points = list(motions_at(table.axes, shown))
     rows = table.info["motion_set"]
     places = [row["where"] for row in rows]
     tables = [_together(places, rows)]
@@ -140,7 +139,7 @@ def _together(places: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> html.
     def mean_ratio(place: _Place) -> str:
         one = place.counts
         of = f" (of {one['stood']})" if 0 < one["stood"] < one["motions"] else ""
-        return rotation_ratio(one["mean_rotation_ratio"]) + of
+        return ratio(one["mean_rotation_ratio"]) + of
 
     def interval(place: _Place) -> str:
         return f"{short(place.counts['low'], 100.0, 3)} to {short(place.counts['high'], 100.0, 3)} %"
@@ -165,30 +164,14 @@ def _together(places: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> html.
     )
 
 
-def _shown(table: SweepTable) -> dict[int, Shown]:
-    """What each cell shows."""
-    found = {}
-    for cell in range(len(table["cell"])):
-        outcome = str(table["outcome"][cell])
-        ratio, slip = float(table["rotation_ratio"][cell]), float(table["max_slip_m"][cell])
-        kind = ending_of(str(table["status"][cell]), outcome)
-        found[cell] = Shown(
-            kind=kind,
-            outcome=None if kind is Ending.FAILED else outcome,
-            rotation_ratio=ratio if np.isfinite(ratio) else None,
-            max_slip_m=slip if np.isfinite(slip) else None,
-        )
-    return found
-
-
 def _outcome(one: MotionOutcome) -> str:
     """An outcome with the figures that belong to it."""
     words = _words(one.outcome, one.rotation_ratio)
     return f"{words}, {millimetres(one.max_slip_m)} mm" if one.outcome in SLIDING else words
 
 
-def _words(outcome: str | None, ratio: float | None) -> str:
+def _words(outcome: str | None, turned: float | None) -> str:
     """An outcome, and the rotation ratio of what rocked."""
     if outcome is None:
         return "failed"
-    return f"{outcome}, {rotation_ratio(ratio)}" if outcome in ROCKING else outcome
+    return f"{outcome}, {ratio(turned)}" if outcome in ROCKING else outcome

@@ -9,7 +9,7 @@ from typing import Any
 from fem.case.case import load_case
 from fem.html import sections as html
 from fem.html.page import Signature
-from fem.html.units import ABSENT, millimetres, number, rotation_ratio, short
+from fem.html.units import ABSENT, millimetres, number, ratio, short
 from fem.report.comparison import asked_rows, limits_section
 from fem.report.studies import (
     Again,
@@ -146,7 +146,7 @@ def branch_tables(info: Mapping[str, Any]) -> list[html.Block]:
             words = f"{' or '.join(found['up'])} going up, {' or '.join(found['down'])} going down"
             yield ["coexist", "up and down", found_at(found), words]
         for found in info["jumps"]:
-            before, after = (rotation_ratio(one) for one in found["rotation_ratio"])
+            before, after = (ratio(one) for one in found["rotation_ratio"])
             yield [
                 "jump",
                 found["direction"],
@@ -166,7 +166,7 @@ def points_table(info: Mapping[str, Any]) -> html.Table:
         html.Column(
             "motion", lambda point: point.words + (", from its start" if point.began == "case" else "")
         ),
-        html.Column("rotation ratio", lambda point: rotation_ratio(point.rotation_ratio), html.NUMBER),
+        html.Column("rotation ratio", lambda point: ratio(point.rotation_ratio), html.NUMBER),
         html.Column("slip stroke [mm]", lambda point: millimetres(point.slip_stroke_m), html.NUMBER),
         html.Column(
             "impacts a period", lambda point: number(point.impacts_per_period, figures=3), html.NUMBER

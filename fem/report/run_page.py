@@ -7,11 +7,10 @@ from contextlib import nullcontext
 from fem.assessment.code_note import code_note
 from fem.assessment.loose_boxes import largest_joint_slip
 from fem.assessment.ranges import (
+    largest_ratio,
     largest_rotation,
     largest_slip,
-    largest_uplift,
-    residual_slip,
-    rotation_ratio,
+    of_band,
 )
 from fem.assessment.rule_or_run import governing
 from fem.assessment.summary import MARGIN_NOTE, outcome_sentence, result_rows
@@ -157,19 +156,19 @@ def _headlines(view: RunView) -> Iterator[html.Headline]:
     yield html.Headline(
         "largest rotation",
         _words(largest_rotation(verdict)),
-        f"{_words(rotation_ratio(verdict))} of the slenderness angle",
+        f"{_words(largest_ratio(verdict))} of the slenderness angle",
     )
     yield html.Headline(
         f"largest slip{' on the floor' if loose else ''}",
         _words(largest_slip(verdict)),
-        f"at the end: {_words(residual_slip(verdict))}",
+        f"at the end: {_words(of_band(verdict, 'residual_slip_m'))}",
     )
     if loose:
         slip, joint = largest_joint_slip(verdict)
         where = html.joined(_words(joint), "; see ", html.link("the boxes", "boxes"))
         yield html.Headline("largest slip between boxes", _words(slip), where)
     impacts = f"{verdict.impacts} impact{'' if verdict.impacts == 1 else 's'}"
-    yield html.Headline("largest uplift", _words(largest_uplift(verdict)), impacts)
+    yield html.Headline("largest uplift", _words(of_band(verdict, "max_uplift_m")), impacts)
     sliding, overturning = view.compared[2:4] if view.case.has_vertical else view.compared[:2]
     yield html.Headline(
         "static rule, same motion",

@@ -16,7 +16,7 @@ from fem.case.case import Case
 from fem.figures.style import Drawing
 from fem.html import sections as html
 from fem.html.page import svg_element
-from fem.html.units import millimetres, number, quantity, rotation_ratio, short
+from fem.html.units import millimetres, number, quantity, ratio, short
 from fem.model.model import Model
 from fem.report.animation import (
     COLOURS,
@@ -239,7 +239,7 @@ def _varied_table(variations: VariationTable, *, loose: bool) -> html.Table:
 
     def turned(line: Varied) -> str:
         fell = line.row.outcome == Outcome.OVERTURNED
-        return "≥ 1, fell" if fell else rotation_ratio(line.row.rotation_ratio)
+        return "≥ 1, fell" if fell else ratio(line.row.rotation_ratio)
 
     def length(name: str, line: Varied) -> str:
         return millimetres(getattr(line.row, name))

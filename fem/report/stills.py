@@ -10,14 +10,13 @@ from typing import NamedTuple
 import numpy as np
 from markupsafe import Markup
 
-from fem.assessment.ranges import LEAST_LENGTH
-from fem.assessment.summary import ratio_in_words
-from fem.assessment.verdict import rotation_ratio
+from fem.assessment.verdict import relative_rotation
 from fem.report.animation import Animation, AnimationFrame, colour_scale, exaggeration, round_down
 from fem.results.history import History
 from fem.results.outcome import ROCKING, SLIDING, Outcome
 from fem.results.run_result import Verdict
 from fem.runtime.arrays import FloatArray
+from fem.runtime.units import MILLIMETRES, RATIO
 
 MOST = 6
 MOST_ELASTIC = 0.05  #: enlarged elastic part over the height of the container
@@ -82,7 +81,7 @@ def _instants(shown: Animation, history: History, verdict: Verdict) -> dict[int,
     if not seen.isdisjoint((*ROCKING, Outcome.OVERTURNED)):
         wanted.append((int(np.argmax(rotation)), "farthest to the right"))
         wanted.append((int(np.argmin(rotation)), "farthest to the left"))
-    if not seen.isdisjoint(SLIDING) or (verdict.max_joint_slip_m or 0.0) > LEAST_LENGTH:
+    if not seen.isdisjoint(SLIDING) or (verdict.max_joint_slip_m or 0.0) > MILLIMETRES.least:
         wanted.append((int(np.argmax(slip)), "largest slip"))
     chosen: dict[int, str] = {}
     for k, name in [*wanted, (len(times) - 1, "last frame")]:
@@ -99,7 +98,7 @@ def _most_turned(rotation: FloatArray) -> int:
 def _rotation_in_words(rotations: FloatArray, angle: float) -> str:
     """The rotation ratio, of a loose stack that of the box that has turned most."""
     most = _most_turned(rotations)
-    ratio, box = ratio_in_words(rotation_ratio(rotations[most], angle)), f" (box {most + 1})"
+    ratio, box = RATIO.text(relative_rotation(rotations[most], angle)), f" (box {most + 1})"
     sign = "−" if rotations[most] < 0.0 and not ratio.startswith("<") else ""
     named = len(rotations) > 1 and not ratio.startswith("<") and ratio != "0"
     return f"rotation ratio {sign}{ratio}{box if named else ''}"

@@ -24,7 +24,7 @@ from fem.case.case import load_case
 from fem.figures.style import STATE_COLOURS, VERMILLION
 from fem.html import sections as html
 from fem.html.page import Signature
-from fem.html.units import ABSENT, millimetres, number, short
+from fem.html.units import ABSENT, millimetres, number, short, typeset
 from fem.report.animation import colour_scale, packed
 from fem.report.comparison import asked_rows, limits_section
 from fem.report.motion_part import motions_of_sweep
@@ -38,27 +38,17 @@ from fem.report.studies import (
     unfinished,
 )
 from fem.results.errors import FolderError
+from fem.results.figures import FIGURES, Place, keys_of
+from fem.runtime import units
 from fem.sweep.answers import AnswerRow, SweepAnswer, sweep_answer
 from fem.sweep.table import SweepTable, open_sweep
 
-#: what can be shown: column, words for it, unit, factor
+#: what can be shown: column, words for it, its unit
 QUANTITIES = (
-    ("rotation_ratio", "rotation ratio", "", 1.0),
-    ("max_slip_m", "largest slip", "mm", 1e3),
-    ("residual_slip_m", "slip left at the end", "mm", 1e3),
-    ("max_uplift_m", "largest uplift", "mm", 1e3),
-    ("max_joint_slip_m", "largest slip between loose boxes", "mm", 1e3),
-    ("max_joint_opening_m", "largest opening between loose boxes", "mm", 1e3),
-    ("fell_box", "first box that fell", "", 1.0),
-    ("impacts", "impacts", "", 1.0),
-    ("first_uplift_s", "first uplift", "s", 1.0),
-    ("overturned_at_s", "overturned at", "s", 1.0),
-    ("max_corner_force_N", "largest corner force", "kN", 1e-3),
-    ("max_acceleration_m_s2", "acceleration of the contents", "m/s²", 1.0),
-    ("max_von_mises_Pa", "von Mises stress", "MPa", 1e-6),
-    ("band_rotation_ratio_low", "rotation ratio, perturbed, least", "", 1.0),
-    ("band_rotation_ratio_high", "rotation ratio, perturbed, most", "", 1.0),
-    ("wall_s", "computing time", "s", 1.0),
+    *((key, FIGURES[key].map_words or FIGURES[key].words, FIGURES[key].unit) for key in keys_of(Place.MAP)),
+    ("band_rotation_ratio_low", "rotation ratio, perturbed, least", units.RATIO),
+    ("band_rotation_ratio_high", "rotation ratio, perturbed, most", units.RATIO),
+    ("wall_s", "computing time", units.SECONDS),
 )
 #: shown by a colour for every word: how sure a cell is; of folders of before, whether it is unsure
 FLAGS = (("sure", "how sure"), ("unsure", "unsure"))
@@ -258,10 +248,10 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
     if _has(table, "unsure"):
         columns += _sureness(table)
     room = MOST_BYTES - sum(len(one["values"]) for one in columns)
-    for k, (name, label, unit, factor) in enumerate(QUANTITIES):
+    for k, (name, label, unit) in enumerate(QUANTITIES):
         if k >= 1 and not _has(table, name):
             continue
-        column = _column(table, name, label, unit, factor)
+        column = _column(table, name, label, unit)
         room -= len(column["values"])
         if room < 0 and k < NEEDED:
             raise FolderError(
@@ -343,9 +333,10 @@ def _has(table: SweepTable, name: str) -> bool:
     return name in table.columns and bool(np.isfinite(table[name].astype(float)).any())
 
 
-def _column(table: SweepTable, name: str, label: str, unit: str, factor: float) -> dict[str, Any]:
+def _column(table: SweepTable, name: str, label: str, unit: units.Unit) -> dict[str, Any]:
     values: NDArray[Any] = table.columns.get(name, np.full(len(table["cell"]), np.nan)).astype("<f4")
-    return {"name": name, "label": label, "unit": unit, "factor": factor, "values": packed(values, "<f4")}
+    column = {"name": name, "label": label, "unit": typeset(unit.name), "factor": unit.factor}
+    return column | {"values": packed(values, "<f4")}
 
 
 def _plain(values: NDArray[Any]) -> list[Any]:

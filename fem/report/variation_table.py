@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from fem.assessment.summary import ratio_in_words
 from fem.batch.runner import run_cases
 from fem.case.case import Case
 from fem.report.variations import Variation, by_importance, variations_of
@@ -24,6 +23,7 @@ from fem.results.json_block import JsonBlock
 from fem.results.outcome import Outcome
 from fem.results.run_result import RunResult
 from fem.runtime.identity import versions
+from fem.runtime.units import RATIO
 
 NO_SAMPLES_S = 1e4  #: interval of a history of which only the first row is taken
 AFFORDED_S = 4.0  #: wall time for lines that are not asked for
@@ -81,7 +81,7 @@ class VariationTable:
         rows = [line.row for line in self.lines if line.row.outcome != Outcome.OVERTURNED]
         ratios = [row.rotation_ratio for row in rows if row.rotation_ratio is not None]
         if ratios:
-            low, high = ratio_in_words(min(ratios)), ratio_in_words(max(ratios))
+            low, high = RATIO.text(min(ratios)), RATIO.text(max(ratios))
             reach = f"ranges from {low} to {high}" if low != high else f"is {low}"
             words.append(f"Where it does not overturn, the rotation ratio {reach}.")
         return " ".join(words)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.stepping.observables import ROCKING
-from fem.assessment.verdict import SLIDING, rotation_ratio
+from fem.assessment.verdict import SLIDING, relative_rotation
 from fem.case.case import Case
 from fem.model.container import Container
 from fem.response.decay import Decay, follow_decay
@@ -43,7 +43,7 @@ class CurvePoint:
     @property
     def amplitudes(self) -> FloatArray:
         """Largest |rotation| of each period observed over the slenderness angle, shape (n,)."""
-        return rotation_ratio(self.orbit.extremes[:, 0], self.slenderness_angle)
+        return relative_rotation(self.orbit.extremes[:, 0], self.slenderness_angle)
 
     @property
     def rotation_ratio(self) -> float | None:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields
 from functools import cache
 from types import UnionType
-from typing import Any, ClassVar, Self, get_args, get_origin, get_type_hints
+from typing import Any, ClassVar, Self, TypeVar, Union, get_args, get_origin, get_type_hints
 
 
 class JsonBlock:
@@ -38,8 +38,8 @@ class JsonBlock:
     def to_json(self) -> dict[str, Any]:
         """The block as JSON types, its keys in the order of the fields."""
         block = {one.name: _plain(getattr(self, one.name)) for one in fields(self)}  # type: ignore[arg-type]
-        idle = {key for key in self.written_where_given if block[key] is None}
-        return {key: value for key, value in block.items() if key not in idle}
+        idle = self.written_where_given
+        return {key: value for key, value in block.items() if value is not None or key not in idle}
 
 
 def _plain(value: Any) -> Any:
@@ -56,8 +56,10 @@ def _readers(kind: type[JsonBlock]) -> dict[str, Callable[[Any], Any]]:
 
 
 def _reader(hint: Any) -> Callable[[Any], Any]:
-    if isinstance(hint, UnionType):  # X | None
+    if get_origin(hint) in (UnionType, Union):  # X | None
         hint = get_args(hint)[0]
+    if isinstance(hint, TypeVar):  # a number, or the ends of a range
+        return lambda value: tuple(value) if isinstance(value, list) else value
     if isinstance(hint, type) and issubclass(hint, JsonBlock):
         return hint.from_json
     if get_origin(hint) is tuple:

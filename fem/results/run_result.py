@@ -9,7 +9,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from fem.results.figures import BoxFigures, Figures, Place, RunFigures, keys_beside
 from fem.results.json_block import JsonBlock
+from fem.runtime.units import Reach
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,29 +128,14 @@ class FloorNumbers(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
-class BoxResult(JsonBlock):
-    """One box of a loose stack; slip and opening over what is below it."""
-
-    max_rotation_rad: float  #: largest |rotation|
-    max_slip_m: float  #: largest |slip|
-    residual_slip_m: float  #: signed, at the end
-    max_opening_m: float
-    fell: bool
-
-
-@dataclass(frozen=True, kw_only=True)
-class BoxReach(JsonBlock):
+class BoxReach(BoxFigures[Reach]):
     """What one box of a loose stack does over the band; figures are [low, high], as those of `Band`."""
 
-    max_rotation_rad: tuple[float, float] | None = None
-    max_slip_m: tuple[float, float] | None = None
-    residual_slip_m: tuple[float, float] | None = None
-    max_opening_m: tuple[float, float] | None = None
     fell: int = 0  #: members in which this box fell first
 
 
 @dataclass(frozen=True, kw_only=True)
-class BandMember(JsonBlock):
+class BandMember(RunFigures):
     """One run of a band."""
 
     change: str = ""  #: in words; empty: the run itself
@@ -157,34 +144,17 @@ class BandMember(JsonBlock):
     normal_penalty_Pa_m: float | None = None
     damping_ratio: float | None = None  #: of the contact
     status: str  #: completed | overturned | failed | interrupted
-    outcome: str | None = None  #: None where it failed or was stopped
-    rotation_ratio: float | None = None
     error: str | None = None
-    max_slip_m: float | None = None
-    residual_slip_m: float | None = None  #: signed, at the end
-    max_uplift_m: float | None = None
-    max_indentation_m: float | None = None
-    max_corner_force_N: float | None = None
-    max_acceleration_m_s2: float | None = None
-    max_von_mises_Pa: float | None = None
-    bolt_tension_N: float | None = (
-        None  #: largest of all joints and sides; of short members that change one input
-    )
-    bolt_shear_N: float | None = None  #: largest of all joints; likewise
-    boxes: tuple[BoxResult, ...] | None = None  #: of a loose stack, as of the verdict
-    fell_box: int | None = None
 
-    written_where_given = frozenset({"boxes", "fell_box"})
-
-    @property
-    def max_joint_slip_m(self) -> float | None:
-        """Largest slip of a box on another, of a loose stack."""
-        return max((box.max_slip_m for box in (self.boxes or ())[1:]), default=None)
+    written_where_given = keys_beside(Place.BAND) | {"boxes", "fell_box"}
 
 
 @dataclass(frozen=True, kw_only=True)
-class Band(JsonBlock):
-    """What the run does when its unknown inputs change; figures are [low, high]."""
+class Band(Figures[Reach]):
+    """What the run does when its unknown inputs change.
+
+    Its figures are the [low, high] of the members that stand where the run stands, or overturn where it overturns.
+    """
 
     outcomes: tuple[str, ...] = ()  #: that were found, from rest to overturned
     unsure: bool = False  #: the outcome is unsure: see `Verdict.sure`
@@ -192,49 +162,18 @@ class Band(JsonBlock):
     draws_overturned: int | None = None
     left_out: tuple[str, ...] = ()  #: changes that the time did not allow
     draws_left_out: int | None = None
-    # of the members that stand where the run stands, or overturn where it overturns:
-    rotation_ratio: tuple[float, float] | None = None
-    max_slip_m: tuple[float, float] | None = None
-    residual_slip_m: tuple[float, float] | None = None
-    max_uplift_m: tuple[float, float] | None = None
-    max_indentation_m: tuple[float, float] | None = None
-    max_corner_force_N: tuple[float, float] | None = None
-    max_acceleration_m_s2: tuple[float, float] | None = None
-    max_von_mises_Pa: tuple[float, float] | None = None
-    bolt_tension_N: tuple[float, float] | None = None
-    bolt_shear_N: tuple[float, float] | None = None
     boxes: tuple[BoxReach, ...] | None = None  #: of a loose stack, from the floor up
     members: tuple[BandMember, ...] = ()  #: the run itself first
 
-    written_where_given = frozenset({"boxes"})
+    written_where_given = keys_beside(Place.BAND) | {"boxes"}
 
 
 @dataclass(frozen=True, kw_only=True)
-class Verdict(JsonBlock):
+class Verdict(RunFigures):
     """Outcome, extremes and events of a run."""
 
-    outcome: str | None = None  #: rest | slide | rock | slide-rock | overturned; None where the run failed
     modes: tuple[str, ...] = ()  #: states passed through
-    max_rotation_rad: float | None = None  #: largest |rotation|
-    rotation_ratio: float | None = None  #: largest |rotation| over the slenderness angle
-    max_slip_m: float | None = None  #: largest |slip|
-    residual_slip_m: float | None = None  #: signed, at the end
-    slip_peak_to_peak_m: float | None = None  #: over the last full cycle of a harmonic drive
-    slip_travel_m: float | None = None  #: total path
-    max_uplift_m: float | None = None
-    max_indentation_m: float | None = None  #: permanent, where the floor is crushed; None: it does not crush
-    impacts: int | None = None
-    first_opening_s: float | None = None  #: a base gap opens
-    first_uplift_s: float | None = None  #: a side carries nothing
-    first_impact_s: float | None = None
-    overturned_at_s: float | None = None
-    restored: bool | None = None  #: it rocked and stands again at the end
     at_rest_s: float | None = None  #: since when it is at rest, of a run that ended for it
-    restitution_first: float | None = None
-    max_corner_force_N: float | None = None
-    max_top_displacement_m: float | None = None  #: relative to the floor
-    max_acceleration_m_s2: float | None = None  #: of the contents
-    max_von_mises_Pa: float | None = None  #: None of a rigid container
     yield_strength_Pa: float | None = None  #: that of S235 of a steel shell; None of another container
     #: at which the wall over a corner yields, and the work that a rigid-plastic corner would take (`fem.model.floor`)
     corner_capacity_N: float | None = None
@@ -243,26 +182,17 @@ class Verdict(JsonBlock):
     first_line: str | None = None  #: the verdict in one sentence, as on the page
     sure: str | None = None  #: sure | regime unsure | unsure; None: not tried
     decided_by: tuple[str, ...] = ()  #: inputs that change the outcome, the one of the smallest change first
-    boxes: tuple[BoxResult, ...] | None = None  #: of a loose stack, from the floor up
-    fell_box: int | None = None  #: the first box of a loose stack that fell, from 1 at the floor
     band: Band | None = None
 
-    written_where_given = frozenset({"boxes", "fell_box", "corner_capacity_N", "plastic_work_J"})
+    #: the forces in bolts of a run are those of its joints
+    written_where_given = frozenset(
+        {"boxes", "fell_box", "corner_capacity_N", "plastic_work_J", "bolt_tension_N", "bolt_shear_N"}
+    )
 
     def to_json(self) -> dict[str, Any]:
         """The block; of a loose stack with the box that fell, or null."""
         block = super().to_json()
         return block if self.boxes is None else block | {"fell_box": self.fell_box}
-
-    @property
-    def max_joint_slip_m(self) -> float | None:
-        """Largest slip of a box on another, of a loose stack."""
-        return max((box.max_slip_m for box in (self.boxes or ())[1:]), default=None)
-
-    @property
-    def max_joint_opening_m(self) -> float | None:
-        """Largest opening of a box from another, of a loose stack."""
-        return max((box.max_opening_m for box in (self.boxes or ())[1:]), default=None)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -25,6 +25,7 @@ from fem.model.joints import Joints, joints_of
 from fem.model.model import Model, build_model
 from fem.model.recovery import Recovery, recovery_of
 from fem.model.validity import runs_in_memory
+from fem.results.figures import Place
 from fem.results.outcome import Outcome
 from fem.results.run_result import (
     BandMember,
@@ -224,16 +225,7 @@ def _member(
         normal_penalty_Pa_m=None if case.floor.is_slab else model.penalty,
         damping_ratio=model.damping_ratio,
         outcome=verdict.outcome,
-        rotation_ratio=verdict.rotation_ratio,
-        max_slip_m=verdict.max_slip_m,
-        residual_slip_m=verdict.residual_slip_m,
-        max_uplift_m=verdict.max_uplift_m,
-        max_indentation_m=verdict.max_indentation_m,
-        max_corner_force_N=verdict.max_corner_force_N,
-        max_acceleration_m_s2=verdict.max_acceleration_m_s2,
-        max_von_mises_Pa=verdict.max_von_mises_Pa,
-        bolt_tension_N=tension,
-        bolt_shear_N=shear,
+        **verdict.figures(Place.BAND) | {"bolt_tension_N": tension, "bolt_shear_N": shear},
         boxes=verdict.boxes,
         fell_box=verdict.fell_box,
     )

@@ -23,7 +23,7 @@ from contact.stepping.control import most_attempts
 from contact.stepping.integrator import AFTERMATH_SLICE, FAILED, OVERTURNED, REACHED
 from contact.stepping.outcome import DRIVEN, FREE, UNDECIDED, is_over, on_resting_floor
 from contact.stepping.state import RunState
-from fem.assessment.verdict import audit, rotation_ratio, softer_contact
+from fem.assessment.verdict import audit, relative_rotation, softer_contact
 from fem.model.model import Model
 from fem.results.outcome import MODES
 from fem.run.recorder import Recorder
@@ -132,7 +132,7 @@ def simulate(
         code, progress = _advance(model, run, progress, pace)
         if progress.slice is None:
             recorder.drain(run)
-        ratio = rotation_ratio(float(run.old.pose[ROTATION]), control.slenderness_angle)
+        ratio = relative_rotation(float(run.old.pose[ROTATION]), control.slenderness_angle)
         reporter.update(float(clock.time), ratio, MODES[int(track.mode)])
         if progress.slice is not None:
             continue

@@ -2,10 +2,9 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from fem.assessment.ranges import LEAST_LENGTH, in_figures
-from fem.assessment.summary import ratio_in_words
 from fem.batch.intervals import binomial_interval
 from fem.results.outcome import Outcome
+from fem.runtime.units import MILLIMETRES, RATIO, in_figures
 from fem.site_check.file import SiteRequest
 from fem.site_check.result import (
     ConfirmedRun,
@@ -169,11 +168,15 @@ def _sentence(
         return f"Not fulfilled under the rule below: {overturned} of {runs} runs overturned."
     rotation, slip = _largest(groups, "rotation_ratio") or 0.0, _largest(groups, "slip_m") or 0.0
     figures = (
-        f"none of {runs} runs overturned; rotation {ratio_in_words(rotation)} of the slenderness angle (limit "
+        f"none of {runs} runs overturned; rotation {RATIO.text(rotation)} of the slenderness angle (limit "
         f"{limits.rotation_ratio:g}), slip {_slip_in_words(slip)} (limit {1e3 * limits.slip_m:g} mm)"
     )
     return f"{'Fulfilled' if fulfilled else 'Not fulfilled'} under the rule below: {figures}."
 
 
 def _slip_in_words(slip: float) -> str:
-    return f"below {1e3 * LEAST_LENGTH:g} mm" if slip < LEAST_LENGTH else f"{in_figures(slip, 3, 1e3)} mm"
+    return (
+        f"below {1e3 * MILLIMETRES.least:g} mm"
+        if slip < MILLIMETRES.least
+        else f"{in_figures(slip, 3, 1e3)} mm"
+    )

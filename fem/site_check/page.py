@@ -15,7 +15,7 @@ from markupsafe import Markup
 
 from fem.html.formula import formula_markup
 from fem.html.page import Signature, render_page, svg_element
-from fem.html.units import ABSENT, millimetres, number, quantity, rotation_ratio, short, typeset
+from fem.html.units import ABSENT, millimetres, number, quantity, ratio, short, typeset
 from fem.results.errors import FolderError
 from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
@@ -119,7 +119,7 @@ def site_report(folder: Path, *, signature: Signature | None = None) -> str:
         millimetres=millimetres,
         number=number,
         quantity=quantity,
-        rotation_ratio=rotation_ratio,
+        ratio=ratio,
         short=short,
         typeset=typeset,
     )
@@ -218,10 +218,10 @@ def confirmation(result: SiteResult) -> tuple[str, bool]:
             f"{words}: {fell} of {len(again)} runs can overturn{', so the answer is not sure' if doubt else ''}.",
             doubt,
         )
-    ratio, slip = max(ratios, default=0.0), max(slips, default=0.0)
-    beyond = ratio > inputs.rotation_ratio_limit or slip > inputs.slip_limit_m
+    turned, slip = max(ratios, default=0.0), max(slips, default=0.0)
+    beyond = turned > inputs.rotation_ratio_limit or slip > inputs.slip_limit_m
     doubt = beyond and result.result.fulfilled is True
-    found = f"largest rotation ratio {rotation_ratio(ratio)}, largest slip {millimetres(slip)} mm"
+    found = f"largest rotation ratio {ratio(turned)}, largest slip {millimetres(slip)} mm"
     return f"{words}: none overturns, {found}{', so the answer is not sure' if doubt else ''}.", doubt
 
 

@@ -1,55 +1,52 @@
 """The rows of a sweep's cells so far."""
 
+import math
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 
 from fem.batch.log import fields_of, number_in, numbers_in
-from fem.batch.runner import BOXES
+from fem.results.figures import BOXES, BoxResult, Place, RunFigures, keys_of
 from fem.results.outcome import Ending, ending_of
 from fem.runtime.arrays import BoolArray, FloatArray, IntArray
 from fem.sweep.plan import Sweep
-from fem.sweep.table import row_columns
+from fem.sweep.table import SweepTable, row_columns
 
+FIGURES = keys_of(Place.KEY)
 #: columns of what a row shows
-SHOWN = ("status", "outcome", "rotation_ratio", "max_slip_m", "fell_box", *BOXES)
-
-
-class BoxShown(NamedTuple):
-    """What a box of a loose stack shows; slip and opening over what is below it."""
-
-    max_rotation_rad: float
-    max_slip_m: float
-    max_opening_m: float
+SHOWN = ("status", "outcome", *FIGURES, "fell_box", *BOXES)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Shown:
+class RunShown(RunFigures):
     """What a cell, or a copy of it, shows."""
 
     kind: Ending
-    outcome: str | None  #: None where it failed
-    rotation_ratio: float | None
-    max_slip_m: float | None
-    fell_box: int | None = None  #: of a loose stack, as the following
-    boxes: tuple[BoxShown, ...] = ()
 
 
-def shown_in(
-    status: str, outcome: str, ratio: str, slip: str, fell_box: str, rotations: str, slips: str, openings: str
-) -> Shown:
-    """What the fields of a row show, those of `SHOWN`."""
-    kind = ending_of(status, outcome)
-    return Shown(
+def shown_in(fields: Mapping[str, str]) -> RunShown:
+    """What the fields of a row show, by the names of `SHOWN`."""
+    kind = ending_of(fields["status"], fields["outcome"])
+    boxes = zip(*(numbers_in(fields[name]) for name in BOXES), strict=True)
+    figures: dict[str, Any] = {key: number_in(fields[key]) for key in FIGURES}
+    return RunShown(
         kind=kind,
-        outcome=None if kind is Ending.FAILED else outcome,
-        rotation_ratio=number_in(ratio),
-        max_slip_m=number_in(slip),
-        fell_box=int(fell_box) if fell_box else None,
-        boxes=tuple(map(BoxShown, *map(numbers_in, (rotations, slips, openings)))),
+        outcome=None if kind is Ending.FAILED else fields["outcome"],
+        fell_box=int(fields["fell_box"]) if fields["fell_box"] else None,
+        boxes=tuple(BoxResult(**dict(zip(BOXES.values(), box, strict=True))) for box in boxes),
+        **figures,
     )
+
+
+def shown_at(table: SweepTable, cell: int) -> RunShown:
+    """What a cell of a table shows, but for the boxes of a loose stack."""
+    outcome, values = str(table["outcome"][cell]), {key: float(table[key][cell]) for key in FIGURES}
+    kind = ending_of(str(table["status"][cell]), outcome)
+    figures: dict[str, Any] = {key: one for key, one in values.items() if math.isfinite(one)}
+    return RunShown(kind=kind, outcome=None if kind is Ending.FAILED else outcome, **figures)
 
 
 class CellRows:
@@ -58,19 +55,18 @@ class CellRows:
     def __init__(self, sweep: Sweep) -> None:
         self.columns = row_columns(sweep.axes, (one.key for one in sweep.derived))
         self.lines: dict[int, str] = {}  #: row of each cell, as in the log
-        self.shown: dict[int, Shown] = {}
+        self.shown: dict[int, RunShown] = {}
         self.kind: IntArray = np.full(sweep.count, Ending.UNKNOWN)  #: endings, (n_cells,)
         self.rotation_ratio: FloatArray = np.full(sweep.count, np.nan)  #: (n_cells,)
         self.outcomes = Counter[str]()  #: how often there is each; "failed" too
-        self._places = [self.columns.index(name) for name in SHOWN]
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
-        fields = fields_of(line)
-        cell = int(fields[0])
+        fields = dict(zip(self.columns, fields_of(line), strict=True))
+        cell = int(fields["cell"])
         if cell in self.lines:
             return
-        shown = shown_in(*(fields[place] for place in self._places))
+        shown = shown_in(fields)
         self.lines[cell], self.shown[cell], self.kind[cell] = line, shown, shown.kind
         if shown.rotation_ratio is not None:
             self.rotation_ratio[cell] = shown.rotation_ratio

@@ -12,13 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from fem.assessment.ranges import LEAST_LENGTH, in_figures
-from fem.assessment.summary import ratio_in_words
 from fem.batch.axes import MOTION_FILE, Axis, point_of, shape_of
 from fem.batch.intervals import estimate
 from fem.results.outcome import COUNTED, Ending
 from fem.runtime.arrays import IntArray
-from fem.sweep.cells import Shown
+from fem.runtime.units import RATIO, SHORT_MILLIMETRES
+from fem.sweep.cells import RunShown
 
 CONFIDENCE = 0.95
 #: keys whose values of one magnitude are the signs of a motion
@@ -32,21 +31,16 @@ SET_COLUMNS = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class MotionOutcome:
+class MotionOutcome(RunShown):
     """The outcome of one motion, with the worse of its signs."""
 
     motion: str
-    kind: Ending
-    outcome: str | None  #: None where it failed
-    rotation_ratio: float | None
-    max_slip_m: float | None
 
-    @property
-    def severity(self) -> tuple[int, float]:
-        """Larger for a worse outcome."""
-        return (Ending.STANDING, Ending.FAILED, Ending.OVERTURNED).index(
-            self.kind
-        ), self.rotation_ratio or 0.0
+
+def severity(one: RunShown) -> tuple[int, float]:
+    """Larger for a worse outcome."""
+    order = (Ending.STANDING, Ending.FAILED, Ending.OVERTURNED)
+    return order.index(one.kind), one.rotation_ratio or 0.0
 
 
 def sign_axes(axes: Sequence[Axis]) -> list[Axis]:
@@ -55,7 +49,7 @@ def sign_axes(axes: Sequence[Axis]) -> list[Axis]:
 
 
 def motions_at(
-    axes: Sequence[Axis], shown: Mapping[int, Shown]
+    axes: Sequence[Axis], shown: Mapping[int, RunShown]
 ) -> Iterator[tuple[dict[str, Any], list[MotionOutcome]]]:
     """At each point on the axes that are neither motions nor signs: its values, and the outcome of each motion."""
     keys = [axis.key for axis in axes]
@@ -83,7 +77,7 @@ def set_row(found: Sequence[MotionOutcome]) -> dict[str, Any]:
     share = estimate(kinds == Ending.OVERTURNED, kinds == Ending.FAILED, replicates=1, confidence=CONFIDENCE)
     computed = [one for one in found if one.kind != Ending.FAILED]
     standing = [one for one in computed if one.kind == Ending.STANDING]
-    worst = max(computed, key=lambda one: one.severity, default=None)
+    worst = max(computed, key=severity, default=None)
     slipped = max(computed, key=lambda one: one.max_slip_m or 0.0, default=None)
     return {
         "motions": len(found),
@@ -116,14 +110,16 @@ def set_in_words(row: Mapping[str, Any]) -> str:
     if overturned:
         parts.append(f"worst {row['worst_motion']}")
     elif row["worst_rotation_ratio"] is not None:
-        ratio = ratio_in_words(row["worst_rotation_ratio"])
+        ratio = RATIO.text(row["worst_rotation_ratio"])
         parts.append(f"worst {row['worst_motion']}, {row['worst_outcome']}, rotation ratio {ratio}")
-    if (row["worst_slip_m"] or 0.0) >= LEAST_LENGTH:
-        parts.append(f"largest slip {_millimetres(row['worst_slip_m'])}, {row['worst_slip_motion']}")
+    if (row["worst_slip_m"] or 0.0) >= SHORT_MILLIMETRES.least:
+        parts.append(
+            f"largest slip {SHORT_MILLIMETRES.text(row['worst_slip_m'])}, {row['worst_slip_motion']}"
+        )
     if row["mean_rotation_ratio"] is not None:
         of = f"mean of {row['stood']}" + (f" that stood, {overturned} overturned" if overturned else "")
-        ratio = ratio_in_words(row["mean_rotation_ratio"])
-        parts.append(f"{of}: rotation ratio {ratio}, slip {_millimetres(row['mean_slip_m'])}")
+        ratio = RATIO.text(row["mean_rotation_ratio"])
+        parts.append(f"{of}: rotation ratio {ratio}, slip {SHORT_MILLIMETRES.text(row['mean_slip_m'])}")
     return "; ".join(parts)
 
 
@@ -140,32 +136,10 @@ def by_motion(points: Sequence[Sequence[MotionOutcome]]) -> dict[str, dict[str, 
     return found
 
 
-def _worst(motion: str, signs: Sequence[Shown]) -> MotionOutcome:
+def _worst(motion: str, signs: Sequence[RunShown]) -> MotionOutcome:
     """The outcome of a motion, with the worse of its signs; a failed run hides no fall and never counts as standing."""
-    each = [
-        MotionOutcome(
-            motion=motion,
-            kind=one.kind,
-            outcome=one.outcome,
-            rotation_ratio=one.rotation_ratio,
-            max_slip_m=one.max_slip_m,
-        )
-        for one in signs
-    ]
-    worst = max(each, key=lambda one: one.severity)
-    slip = max((one.max_slip_m for one in each if one.max_slip_m is not None), default=None)
-    return MotionOutcome(
-        motion=motion,
-        kind=worst.kind,
-        outcome=worst.outcome,
-        rotation_ratio=worst.rotation_ratio,
-        max_slip_m=slip,
-    )
-
-
-def _millimetres(length: float) -> str:
-    """A length given in metres; below 0.01 mm only that limit."""
-    return f"{in_figures(length, 3, 1e3, LEAST_LENGTH)} mm"
+    slip = max((one.max_slip_m for one in signs if one.max_slip_m is not None), default=None)
+    return MotionOutcome(**vars(max(signs, key=severity)) | {"motion": motion, "max_slip_m": slip})
 
 
 def _mean(values: Sequence[float | None]) -> float | None:

@@ -26,7 +26,7 @@ from fem.assessment.sureness import (
 from fem.batch.log import LoggedRuns, fields_of
 from fem.batch.runner import Row, Runner
 from fem.runtime.arrays import BoolArray
-from fem.sweep.cells import SHOWN, CellRows, Shown, shown_in
+from fem.sweep.cells import SHOWN, CellRows, RunShown, shown_in
 from fem.sweep.copies import CellCopies, Copy
 from fem.sweep.neighbours import around, band_width, coarse_cells, near_cells
 from fem.sweep.plan import CopyItem, Sweep
@@ -42,7 +42,7 @@ class PerturbedRow:
 
     line: str  #: as in the log
     copy: Copy
-    shown: Shown
+    shown: RunShown
     level: int  #: how it differs from the cell, see `fem.assessment.sureness`; a failed one as if it ended otherwise
 
 
@@ -58,10 +58,10 @@ class PerturbedRows:
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
-        cell_text, number_text, _, *fields = fields_of(line)
-        cell, number = int(cell_text), int(number_text)
+        fields = dict(zip(COLUMNS, fields_of(line), strict=True))
+        cell, number = int(fields["cell"]), int(fields["member"])
         copy, own = self.copies.of(cell)[number], self._cells.shown[cell]
-        shown = shown_in(*fields[:3], *fields[4:])
+        shown = shown_in(fields)
         level = OTHER_END
         if shown.outcome is not None:
             level = difference(own, shown, self.copies.width(cell))

@@ -8,12 +8,14 @@ import numpy as np
 
 from fem.batch.log import LoggedRuns, fields_of, table_text
 from fem.batch.runner import Runner
+from fem.results.figures import Place, keys_of
 from fem.results.outcome import Ending, ending_of
 from fem.sweep.cells import CellRows
 from fem.sweep.plan import Sweep
 from fem.sweep.threshold import Change, changes_of, least_width, values_to_try
 
-COLUMNS = ("cell", "value", "status", "outcome", "rotation_ratio", "reason", "max_slip_m")
+FIRST, *FURTHER = keys_of(Place.KEY)
+COLUMNS = ("cell", "value", "status", "outcome", FIRST, "reason", *FURTHER)
 
 #: outcomes by value along the axis, by the first cell of each line of cells
 Lines = dict[int, dict[float, str]]

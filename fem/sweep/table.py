@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from fem.batch.axes import Axis, shape_of
 from fem.batch.log import fields_of, read_lines
-from fem.batch.runner import BOXES, SCALARS
 from fem.results.errors import FolderError
+from fem.results.figures import BOXES, SCALARS
 from fem.results.kinds import SWEEP, read_result
 
 #: columns behind the values of axes and derived keys in every row

@@ -15,9 +15,10 @@ from distributed import LocalCluster
 from measuring import Figure, at_least, report
 
 from fem.batch.cluster import cluster
-from fem.batch.runner import CASES_AT_A_TIME, SCALARS, run_chunk
+from fem.batch.runner import CASES_AT_A_TIME, run_chunk
 from fem.batch.workers import hand_out
 from fem.case.case import Case, load_case
+from fem.results.figures import SCALARS
 from fem.runtime.threads import cores
 
 WORKERS, REPEATS = (1, 2, 4), 3

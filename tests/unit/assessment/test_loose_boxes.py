@@ -9,12 +9,12 @@ import pytest
 from fem.assessment.loose_boxes import box_rows, largest_joint_slip
 from fem.assessment.rule_or_run import governing
 from fem.assessment.summary import outcome_sentence, plain_summary
+from fem.results.figures import BoxResult
 from fem.results.run_result import (
     ActionResult,
     Band,
     BandMember,
     BoxReach,
-    BoxResult,
     RunResult,
     StaticResult,
     Verdict,
@@ -85,9 +85,7 @@ def test_the_figures_of_a_box_have_their_ranges_over_the_band():
         residual_slip_m=(-0.3, 0.1),
         max_opening_m=(0.0, 0.0),
     )
-    band = Band(
-        boxes=(BoxReach(), reach, BoxReach(), replace(reach, fell=2)), members=(BandMember(status=""),) * 9
-    )
+    band = Band(boxes=(reach, reach, reach, replace(reach, fell=2)), members=(BandMember(status=""),) * 9)
     run = result((2, {"max_slip_m": 0.2194, "residual_slip_m": -0.1}), band=band)
     assert box_rows(run)[1] == ("2", "0 (0 to 5.7)", "220 (100 to 250)", "about zero, up to 300", "0", "")
     assert box_rows(run)[3][-1] == "in 2 of 9 runs"

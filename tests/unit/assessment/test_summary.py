@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fem.assessment.summary import outcome_sentence, plain_summary, ratio_in_words, result_rows
+from fem.assessment.summary import outcome_sentence, plain_summary, result_rows
 from fem.assessment.warnings import warnings_for
 from fem.case.case import Case, load_case
 from fem.model.geometry import build_container
@@ -124,14 +124,6 @@ def test_the_summary_holds_what_the_run_found_in_units_for_people():
         "12000, 100 rejected, 23 unknowns",
     ):
         assert words in text
-
-
-@pytest.mark.parametrize(
-    ("ratio", "text"),
-    [(0.0, "0"), (3.7e-5, "< 0.001"), (0.0123456, "0.0123"), (0.5, "0.500"), (5.853, "5.85"), (157.2, "157")],
-)
-def test_a_rotation_ratio_has_three_figures(ratio, text):
-    assert ratio_in_words(ratio) == text
 
 
 @pytest.mark.parametrize(

@@ -1,18 +1,18 @@
-"""How sure a verdict is, which inputs decide, numbers with their ranges, and the static rule or the run."""
+"""How sure a verdict is, which inputs decide, a range across zero, and the static rule or the run."""
 
 from dataclasses import replace
 
 import pytest
 
-from fem.assessment.ranges import IMPACT, in_figures, largest_stress, residual_slip, with_range
+from fem.assessment.ranges import IMPACT, largest_stress, of_band
 from fem.assessment.rule_or_run import governing
 from fem.assessment.sureness import judged, sureness_in_words
 from fem.case.uncertainty import InputChange
+from fem.results.figures import BoxResult
 from fem.results.run_result import (
     ActionResult,
     Band,
     BandMember,
-    BoxResult,
     RunResult,
     StaticResult,
     Verdict,
@@ -182,35 +182,11 @@ def test_draws_that_overturn_are_counted():
     assert words == f"Unsure: overturned in 1 of 2 draws; what decides is {MU}."
 
 
-@pytest.mark.parametrize(
-    ("value", "reach", "words"),
-    [
-        (0.2217, (0.00134, 0.3965), "0.22 (0.0013 to 0.40) kN"),
-        (1400.3, (102.2, 1524.9), "1400 (100 to 1500) kN"),
-        (192.13, (190.0, 195.0), "192.1 (190 to 195) kN"),
-        (192.13, (192.13, 192.13), "192.1 kN"),
-        (192.13, None, "192.1 kN"),
-        (-0.0996, (-0.0996, -0.05), "-0.10 (-0.10 to -0.050) kN"),
-        (None, (1.0, 2.0), ""),
-    ],
-)
-def test_a_number_has_the_figures_that_its_range_allows(value, reach, words):
-    assert with_range(value, reach, "kN") == words
-
-
-@pytest.mark.parametrize(
-    ("value", "figures", "words"),
-    [(9.96, 2, "10"), (0.0996, 2, "0.10"), (123456.0, 2, "120000"), (0.0, 2, "0"), (2e-5, 4, "0.00002")],
-)
-def test_figures_are_rounded_without_an_exponent(value, figures, words):
-    assert in_figures(value, figures) == words
-
-
 def test_a_slip_whose_sign_changes_is_about_zero():
     known = Verdict(residual_slip_m=-0.184, band=Band(residual_slip_m=(-0.339, 0.008)))
-    assert residual_slip(known) == "about zero, up to 340 mm"
+    assert of_band(known, "residual_slip_m") == "about zero, up to 340 mm"
     one_way = replace(known, band=Band(residual_slip_m=(-0.339, -0.008)))
-    assert residual_slip(one_way) == "-180 (-340 to -8.0) mm"
+    assert of_band(one_way, "residual_slip_m") == "-180 (-340 to -8.0) mm"
 
 
 def test_an_elastic_stress_beyond_yield_is_no_bare_number():

@@ -7,11 +7,12 @@ from worker_tasks import end_the_process, hear_the_group_end, who_works
 
 from fem.assessment.verdict import verdict_of
 from fem.batch.container_cache import container_key
-from fem.batch.runner import SCALARS, run_cases
+from fem.batch.runner import run_cases
 from fem.batch.workers import WORTH_PROCESSES, LocalWorkers, WorkersLostError, hand_out
 from fem.case.case import load_case
 from fem.model.model import build_model
 from fem.model.recovery import recovery_of
+from fem.results.figures import SCALARS
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 

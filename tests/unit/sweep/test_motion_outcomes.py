@@ -5,7 +5,7 @@ import pytest
 from fem.batch.axes import read_axis
 from fem.batch.intervals import binomial_interval
 from fem.results.outcome import Ending
-from fem.sweep.cells import Shown
+from fem.sweep.cells import RunShown
 from fem.sweep.motion_outcomes import MotionOutcome, by_motion, motions_at, set_in_words, set_row, sign_axes
 
 
@@ -59,7 +59,7 @@ def test_a_motion_counts_once_with_the_worse_of_its_signs():
     ]
 
     def shown(ratio, slip=0.0, kind=Ending.STANDING):
-        return Shown(kind=kind, outcome="rock", rotation_ratio=ratio, max_slip_m=slip)
+        return RunShown(kind=kind, outcome="rock", rotation_ratio=ratio, max_slip_m=slip)
 
     cells = [
         *(

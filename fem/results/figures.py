@@ -1,0 +1,235 @@
+"""The figures of a run: what it shows in numbers, each declared once.
+
+A field is a key of `run.json`. Its `Shown` says in which words and unit people read it, and where: as a column of the
+tables of studies, in the rows of the runs of a site, as a range over the band, as a row of the summary, on maps. A new
+quantity is a field here and its value in `fem.assessment.verdict`. SI units, named in the keys; rotation > 0 toward
++x, slip > 0 moves the container to +x.
+"""
+# ruff: noqa: N815 - a field is named as its key in the file, unit and all
+
+from collections.abc import Iterator
+from dataclasses import KW_ONLY, dataclass, fields
+from enum import Flag, auto
+from typing import Annotated, Any, Generic, TypeVar, get_args, get_type_hints
+
+from fem.results.json_block import JsonBlock
+from fem.runtime.units import (
+    ACCELERATION,
+    COUNT,
+    DEGREES,
+    KILONEWTONS,
+    MEGAPASCALS,
+    RATIO,
+    SECONDS,
+    Reach,
+    Unit,
+)
+from fem.runtime.units import MILLIMETRES as MM
+from fem.runtime.units import SHORT_MILLIMETRES as SHORT_MM
+
+ValueT = TypeVar("ValueT")  #: a float of a run; [low, high] over a band
+
+
+class Place(Flag):
+    """Where a figure stands."""
+
+    KEY = auto()  #: every row of a run that a study compares
+    RUNS = auto()  #: the rows of the runs of a site, and of variations
+    COLUMN = auto()  #: the tables of sweeps, the rows of `run_cases`
+    BAND = auto()  #: the members of a band, and its ranges
+    SUMMARY = auto()  #: a row of the summary and the page of a run
+    MAP = auto()  #: the map on the page of a sweep
+
+
+KEY, RUNS, COLUMN, BAND, SUMMARY, MAP = Place
+TABLES, READ = RUNS | COLUMN | BAND, SUMMARY | MAP
+
+
+@dataclass(frozen=True)
+class Shown:
+    """How people are shown a figure, and where."""
+
+    words: str
+    unit: Unit
+    places: Place
+    _: KW_ONLY
+    head: str = ""  #: over a narrow column; empty: the words
+    map_words: str = ""  #: on a map; empty: the words
+    below: str = ""  #: the figure that it follows in a summary; empty: the one declared before
+    signed: bool = False  #: its sign means something
+    lowest: bool = False  #: of a loose stack, that of its lowest box
+    impact: bool = False  #: an impact decides
+    window: str = ""  #: key of `Numerics`: the time over which it is a mean
+    cutoff: str = ""  #: key of `Numerics`: that of the filter in place of a mean
+    column: str = ""  #: of a box: with the numbers of all boxes
+
+    def text(self, value: float | None, reach: Reach | None = None, *, bare: bool = False) -> str:
+        """The figure with its range and unit; empty where there is none."""
+        return self.unit.text(value, reach, signed=self.signed, bare=bare)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoxFigures(JsonBlock, Generic[ValueT]):
+    """What one box of a loose stack shows; slip and opening over what is below it."""
+
+    #: largest |rotation|
+    max_rotation_rad: Annotated[ValueT, Shown("rotation", DEGREES, BAND, column="box_rotations_rad")]
+    max_slip_m: Annotated[ValueT, Shown("slip", SHORT_MM, BAND, column="box_slips_m")]  #: largest |slip|
+    #: signed, at the end
+    residual_slip_m: Annotated[ValueT | None, Shown("slip left", SHORT_MM, BAND, signed=True)] = None
+    max_opening_m: Annotated[ValueT, Shown("opening", SHORT_MM, BAND, column="box_openings_m")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoxResult(BoxFigures[float]):
+    """One box of a loose stack."""
+
+    fell: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Figures(JsonBlock, Generic[ValueT]):
+    """The figures that a run has, or a band as [low, high]; None where one was not reached or is not known."""
+
+    #: largest |rotation|
+    max_rotation_rad: Annotated[ValueT | None, Shown("largest rotation", DEGREES, COLUMN | SUMMARY)] = None
+    #: largest |rotation| over the slenderness angle
+    rotation_ratio: Annotated[ValueT | None, Shown("rotation ratio", RATIO, TABLES | KEY | MAP)] = None
+    #: largest |slip|
+    max_slip_m: Annotated[
+        ValueT | None, Shown("largest slip", MM, TABLES | READ | KEY, head="slip", lowest=True)
+    ] = None
+    #: at the end
+    residual_slip_m: Annotated[
+        ValueT | None,
+        Shown(
+            *("slip at the end", MM, TABLES | READ),
+            head="residual",
+            map_words="slip left at the end",
+            signed=True,
+            lowest=True,
+        ),
+    ] = None
+    #: over the last full cycle of a harmonic drive
+    slip_peak_to_peak_m: Annotated[ValueT | None, Shown("slip, peak to peak", MM, COLUMN)] = None
+    #: total
+    slip_travel_m: Annotated[ValueT | None, Shown("path of slip", MM, COLUMN | SUMMARY, lowest=True)] = None
+    max_uplift_m: Annotated[
+        ValueT | None, Shown("largest uplift", MM, TABLES | READ, head="uplift", lowest=True)
+    ] = None
+    #: permanent, where the floor is crushed; None: it does not crush
+    max_indentation_m: Annotated[ValueT | None, Shown("indentation of the floor", MM, BAND | SUMMARY)] = None
+    impacts: Annotated[int | None, Shown("impacts", COUNT, COLUMN | READ, below="first_uplift_s")] = None
+    #: a base gap opens
+    first_opening_s: Annotated[ValueT | None, Shown("first opening", SECONDS, COLUMN)] = None
+    #: a side carries nothing
+    first_uplift_s: Annotated[ValueT | None, Shown("first uplift", SECONDS, COLUMN | READ)] = None
+    first_impact_s: Annotated[ValueT | None, Shown("first impact", SECONDS, COLUMN)] = None
+    overturned_at_s: Annotated[ValueT | None, Shown("overturned at", SECONDS, COLUMN | MAP)] = None
+    #: it rocked and stands again at the end
+    restored: Annotated[bool | None, Shown("restored", COUNT, COLUMN)] = None
+    restitution_first: Annotated[
+        ValueT | None, Shown("velocity ratio, first impact", COUNT, COLUMN | SUMMARY)
+    ] = None
+    max_corner_force_N: Annotated[
+        ValueT | None,
+        Shown(
+            *("largest corner force", KILONEWTONS, COLUMN | BAND | READ),
+            below="max_uplift_m",
+            impact=True,
+            window="corner_force_window_s",
+        ),
+    ] = None
+    #: relative to the floor
+    max_top_displacement_m: Annotated[
+        ValueT | None, Shown("displacement of the top", MM, COLUMN | SUMMARY)
+    ] = None
+    #: of the contents
+    max_acceleration_m_s2: Annotated[
+        ValueT | None,
+        Shown(
+            *("acceleration of the contents", ACCELERATION, COLUMN | BAND | READ),
+            impact=True,
+            window="acceleration_window_s",
+            cutoff="contents_filter_Hz",
+        ),
+    ] = None
+    #: None of a rigid container
+    max_von_mises_Pa: Annotated[
+        ValueT | None, Shown("von Mises stress", MEGAPASCALS, COLUMN | BAND | READ, impact=True)
+    ] = None
+    #: largest of all joints and sides; of short members of a band that change one input
+    bolt_tension_N: Annotated[ValueT | None, Shown("tension of the bolts", KILONEWTONS, BAND)] = None
+    #: largest of all joints; likewise
+    bolt_shear_N: Annotated[ValueT | None, Shown("shear of the bolts", KILONEWTONS, BAND)] = None
+
+
+JOINT_SLIP = Shown(
+    "largest slip between boxes", MM, COLUMN | MAP, map_words="largest slip between loose boxes"
+)
+JOINT_OPENING = Shown(
+    "largest opening between boxes", MM, COLUMN | MAP, map_words="largest opening between loose boxes"
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunFigures(Figures[float]):
+    """The outcome of one run with its figures."""
+
+    outcome: str | None = None  #: rest | slide | rock | slide-rock | overturned; None where the run failed
+    boxes: tuple[BoxResult, ...] | None = None  #: of a loose stack, from the floor up
+    #: the first box of a loose stack that fell, from 1 at the floor
+    fell_box: Annotated[int | None, Shown("first box that fell", COUNT, COLUMN | MAP)] = None
+
+    @property
+    def max_joint_slip_m(self) -> Annotated[float | None, JOINT_SLIP]:
+        """Largest slip of a box on another, of a loose stack."""
+        return max((box.max_slip_m for box in (self.boxes or ())[1:]), default=None)
+
+    @property
+    def max_joint_opening_m(self) -> Annotated[float | None, JOINT_OPENING]:
+        """Largest opening of a box from another, of a loose stack."""
+        return max((box.max_opening_m for box in (self.boxes or ())[1:]), default=None)
+
+    def figures(self, place: Place) -> dict[str, Any]:
+        """Its figures of a place, by key."""
+        return {key: getattr(self, key) for key in keys_of(place)}
+
+
+def _declared(kind: type) -> Iterator[tuple[str, Shown]]:
+    """The figures of a class, by key: fields, then properties."""
+    hints = get_type_hints(kind, include_extras=True)
+    derived = {key: one.fget for key, one in vars(kind).items() if isinstance(one, property)}
+    hints |= {key: get_type_hints(one, include_extras=True)["return"] for key, one in derived.items()}
+    for key in (*(one.name for one in fields(kind)), *derived):
+        yield from ((key, one) for one in get_args(hints[key]) if isinstance(one, Shown))
+
+
+FIGURES = dict(_declared(RunFigures))  #: by key, in the order of the columns of tables
+BOX_FIGURES = dict(_declared(BoxFigures))  #: of each box of a loose stack
+
+
+def keys_of(place: Place) -> tuple[str, ...]:
+    """The keys of the figures of a place, in the order of the columns of tables."""
+    return tuple(key for key, one in FIGURES.items() if place in one.places)
+
+
+def keys_beside(place: Place) -> frozenset[str]:
+    """The keys of all other figures."""
+    return frozenset(FIGURES) - {*keys_of(place)}
+
+
+#: scalars of a verdict, as columns of a table; None where they do not apply
+SCALARS = ("outcome", *keys_of(COLUMN))
+#: columns with one number for each box of a loose stack, from the floor up, by what they hold of it
+BOXES = {one.column: key for key, one in BOX_FIGURES.items() if one.column}
+
+
+def summary_order() -> list[str]:
+    """The keys of the figures of a summary, in the order of reading."""
+    keys = list(FIGURES)
+    for key, one in FIGURES.items():
+        if one.below:
+            keys.remove(key)
+            keys.insert(keys.index(one.below) + 1, key)
+    return [key for key in keys if SUMMARY in FIGURES[key].places]

@@ -1,0 +1,89 @@
+"""Units for people, and the text of a number in them, alone or with its range.
+
+Where a range is wider than a tenth, number and ends have two significant figures; more would not be known.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+Reach = tuple[float, float]
+
+WIDE = 0.1  #: width of a range over its larger end, from which two figures are enough
+FEW, MANY = 2, 4  #: significant figures
+
+
+@dataclass(frozen=True, kw_only=True)
+class Unit:
+    """A unit in which people read a quantity."""
+
+    name: str = ""
+    factor: float = 1.0  #: from SI to this unit
+    least: float = 0.0  #: sizes below it [SI] are shown as that limit
+    figures: int = MANY  #: significant figures, without trailing zeros where they are four
+
+    def text(
+        self,
+        value: float | None,
+        reach: Reach | None = None,
+        *,
+        figures: int | None = None,
+        signed: bool = False,
+        bare: bool = False,
+    ) -> str:
+        """A number with its range and unit, such as "0.22 (0.0013 to 0.40) kN"; empty where there is none.
+
+        Args:
+            value: in SI.
+            reach: the [low, high] that it has; None: the number alone.
+            figures: of a number whose range is narrow; None: those of the unit.
+            signed: its sign means something: where it changes within the range, only its largest size is known.
+            bare: without the unit.
+        """
+        if value is None:
+            return ""
+        most = max(map(abs, reach)) if reach else 0.0
+        if signed and reach is not None and reach[0] < 0.0 < reach[1] and most > self.least:
+            words = f"about zero, up to {self.in_figures(most, FEW)}"
+        else:
+            kept = figures_of(reach, figures or self.figures)
+            low, high = (self.in_figures(end, kept) for end in reach or (value, value))
+            shown = self.in_figures(value, kept)
+            words = shown if low == high else f"{shown} ({low} to {high})"
+        return words if bare else f"{words} {self.name}".rstrip()
+
+    def in_figures(self, value: float, figures: int) -> str:
+        """A number [SI] with so many significant figures, or the limit that it is below."""
+        return in_figures(value, figures, self.factor, self.least)
+
+
+def figures_of(reach: Reach | None, many: int = MANY) -> int:
+    """Significant figures that a number of such a range has."""
+    if reach is None:
+        return many
+    return FEW if reach[1] - reach[0] > WIDE * max(map(abs, reach)) else many
+
+
+def in_figures(value: float, figures: int, factor: float = 1.0, least: float = 0.0) -> str:
+    """A number with so many significant figures, without an exponent where it has at most six digits."""
+    if 0.0 < abs(value) < least:
+        return f"< {factor * least:g}"
+    shown = factor * value
+    if shown == 0.0:
+        return "0"
+    digits = figures - 1 - math.floor(math.log10(abs(float(f"{shown:.{figures - 1}e}"))))
+    if not -4 <= digits - figures + 1 <= 5 and abs(shown) < 1e-4:
+        return f"{shown:.{figures - 1}e}"
+    words = f"{round(shown, digits):.{max(digits, 0)}f}"
+    return words.rstrip("0").rstrip(".") if figures == MANY and "." in words else words
+
+
+COUNT, SECONDS = Unit(), Unit(name="s")
+MILLIMETRES = Unit(name="mm", factor=1e3, least=1e-5)
+SHORT_MILLIMETRES = replace(MILLIMETRES, figures=3)
+DEGREES = Unit(name="degrees", factor=math.degrees(1.0), least=math.radians(0.01), figures=3)
+RATIO = Unit(
+    least=1e-3, figures=3
+)  #: of a rotation to the slenderness angle; a tenth of what counts as rocking
+KILONEWTONS = Unit(name="kN", factor=1e-3)
+ACCELERATION = Unit(name="m/s2")
+MEGAPASCALS = Unit(name="MPa", factor=1e-6)

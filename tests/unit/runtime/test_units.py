@@ -1,0 +1,37 @@
+"""The text of a number: its figures, its range, its unit."""
+
+import pytest
+
+from fem.runtime.units import RATIO, Unit, in_figures
+
+
+@pytest.mark.parametrize(
+    ("value", "reach", "words"),
+    [
+        (0.2217, (0.00134, 0.3965), "0.22 (0.0013 to 0.40) kN"),
+        (1400.3, (102.2, 1524.9), "1400 (100 to 1500) kN"),
+        (192.13, (190.0, 195.0), "192.1 (190 to 195) kN"),
+        (192.13, (192.13, 192.13), "192.1 kN"),
+        (192.13, None, "192.1 kN"),
+        (-0.0996, (-0.0996, -0.05), "-0.10 (-0.10 to -0.050) kN"),
+        (None, (1.0, 2.0), ""),
+    ],
+)
+def test_a_number_has_the_figures_that_its_range_allows(value, reach, words):
+    assert Unit(name="kN").text(value, reach) == words
+
+
+@pytest.mark.parametrize(
+    ("value", "figures", "words"),
+    [(9.96, 2, "10"), (0.0996, 2, "0.10"), (123456.0, 2, "120000"), (0.0, 2, "0"), (2e-5, 4, "0.00002")],
+)
+def test_figures_are_rounded_without_an_exponent(value, figures, words):
+    assert in_figures(value, figures) == words
+
+
+@pytest.mark.parametrize(
+    ("ratio", "text"),
+    [(0.0, "0"), (3.7e-5, "< 0.001"), (0.0123456, "0.0123"), (0.5, "0.500"), (5.853, "5.85"), (157.2, "157")],
+)
+def test_a_rotation_ratio_has_three_figures(ratio, text):
+    assert RATIO.text(ratio) == text
