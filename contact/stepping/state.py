@@ -21,7 +21,13 @@ from contact.structs import struct
 UNLIMITED = 2**62
 AT_REST = as_floor_motion(UNIFORM, (0.0, 0.0, 0.0))  #: a floor that does not move
 
-#: columns of `RunState.rows`
+#: columns of `Samples.columns`, as a history names them
+ROWS = (
+    *("rotation_rad", "angular_velocity_rad_s", "slip_m", "uplift_m", "centre_x_m", "centre_z_m"),
+    *("normal_force_N", "shear_force_N", "kinetic_J", "strain_J", "potential_J"),
+    # this and the following in the order of the ledger
+    *("base_work_J", "friction_J", "contact_damping_J", "material_damping_J", "crushing_J", "imbalance_J"),
+)
 (
     ROW_ROTATION,
     ROW_ANGULAR_VELOCITY,
@@ -34,14 +40,10 @@ AT_REST = as_floor_motion(UNIFORM, (0.0, 0.0, 0.0))  #: a floor that does not mo
     ROW_KINETIC,
     ROW_STRAIN,
     ROW_POTENTIAL,
-    ROW_BASE_WORK,  # this and the following in the order of the ledger
-    ROW_FRICTION,
-    ROW_CONTACT_DAMPING,
-    ROW_MATERIAL_DAMPING,
-    ROW_CRUSHING,
-    ROW_IMBALANCE,
-) = range(17)
-ROW_COLUMNS = 17
+    ROW_BASE_WORK,
+    *_,
+) = range(len(ROWS))
+ROW_COLUMNS = len(ROWS)
 
 
 @struct
@@ -75,9 +77,16 @@ class Control(NamedTuple):
     eager: bool  #: steps grow as soon and as far as their imbalance allows: of a rigid container, for maps
 
 
-#: .. and behind them for each further box of a loose stack
-BOX_ROTATION, BOX_SLIP, BOX_OPENING, BOX_CENTRE_X, BOX_CENTRE_Z = range(5)
-BOX_COLUMNS = 5
+#: and behind them for each further box of a loose stack
+BOX_ROWS = ("box_{}_rotation_rad", "box_{}_slip_m", "box_{}_opening_m", "box_{}_x_m", "box_{}_z_m")
+BOX_ROTATION, BOX_SLIP, BOX_OPENING, BOX_CENTRE_X, BOX_CENTRE_Z = range(len(BOX_ROWS))
+BOX_COLUMNS = len(BOX_ROWS)
+
+
+def row_names(boxes: int) -> tuple[str, ...]:
+    """The columns of the samples of a stack of loose boxes, or of one body."""
+    return (*ROWS, *(name.format(box) for box in range(2, boxes + 1) for name in BOX_ROWS))
+
 
 #: what changes from step to step besides the state; `RunState.clock` is one of these
 STEP_RECORD = np.dtype(
@@ -168,7 +177,7 @@ class Samples(NamedTuple):
     """Samples on an exact grid of times, at most as many as the arrays hold: n_s."""
 
     interval: float  #: [s]
-    columns: FloatArray  #: (n_s, 17 + 5 (N - 1) or 0) of a history of N boxes, see ROW_... and BOX_...
+    columns: FloatArray  #: (n_s, n_r or 0) of a history, see `row_names`
     mode: npt.NDArray[np.int64]  #: (n_s,)
     position: FloatArray  #: (n_s, n_d or 0) coordinates of the body
     velocity: FloatArray  #: (n_s, n_d or 0)

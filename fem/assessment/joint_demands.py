@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem.case.boxes import shared_face
+from fem.case.columns import JOINTS
 from fem.model.model import Model
-from fem.results.history import JOINT_COLUMNS, History
+from fem.results.history import History
 from fem.results.run_result import JointDemand
 from fem.runtime.arrays import FloatArray
 
@@ -37,7 +38,7 @@ def _demands_of(model: Model, history: History, joint: int, standing: NDArray[np
     start, end = shared_face(lower, upper)
     width, mu = end - start, model.case.contact.mu_static
     time = history["time_s"][standing]
-    normal, shear, moment = (history[name.format(joint)][standing] for name in JOINT_COLUMNS)
+    normal, shear, moment = (history[name][standing] for name in JOINTS.names((joint,)))
     left, right = edge_forces(normal, moment, width)
     carried = mu * np.maximum(normal, 0.0)
     return JointDemand(

@@ -5,12 +5,13 @@ from typing import Any
 
 from fem.case import quantities as q
 from fem.case.boxes import BOX_RULES, JOINT_RULES, boxes_of
+from fem.case.columns import history_columns
 from fem.case.floors import FLOOR_CASE_RULES
 from fem.case.motion_rules import harmonic_angular_frequency
 from fem.case.problem import Rule, is_a_file_name, outside_the_folder
 
 MOST_SAMPLES = 2e7
-MOST_HISTORY = 2.6e9  # bytes in memory: so many samples of a single box
+MOST_HISTORY = 3.4e9  # bytes in memory: so many samples of a single box
 MOST_FRAMES = 1e6
 MOST_STEPS = 1e9
 #: simulated time of duration_s = "auto" where the floor stands or moves harmonically [s]
@@ -232,8 +233,8 @@ def _samples(case: Any) -> float:
 
 
 def _bytes_of_a_sample(case: Any) -> float:
-    """Memory of one sample, with three columns more for every joint of a stack, five for one without bolts."""
-    return 8.0 * (16 + (5 if case.container.joints == "loose" else 3) * (case.container.boxes - 1))
+    """Memory of one sample."""
+    return 8.0 * len(history_columns(case))
 
 
 def _too_many_samples(case: Any) -> str:

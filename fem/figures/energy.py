@@ -6,10 +6,11 @@ from matplotlib.figure import Figure
 
 from fem.assessment.verdict import GAIN_LIMIT, LOSS_LIMIT, LOSS_SHARE_LIMIT
 from fem.figures import style
-from fem.results.history import CRUSHING_COLUMN, History
+from fem.results.history import History
 from fem.results.reader import OpenedRun
 from fem.results.run_result import Energy, StaticResult
 
+CRUSHING = "crushing_J"  #: of a floor that crushes
 DISSIPATED = ("friction_J", "contact_damping_J", "material_damping_J")  #: columns of a history
 SMALL = 1e3  #: largest energy below which J is the unit, not kJ [J]
 DECIMALS = 3  #: of an energy in a legend
@@ -61,9 +62,9 @@ def _draw_stored(axes: Axes, run: OpenedRun, reference: float | None, unit: str,
 
 def _draw_supplied(axes: Axes, history: History, unit: str, size: float) -> None:
     """Energies since the start; the rest of the floor's work is stored, also in the springs of the contact."""
-    crushing = history[CRUSHING_COLUMN] if history.crushing else np.zeros(len(history))
+    crushing = history[CRUSHING] if CRUSHING in history else np.zeros(len(history))
     stored = history["base_work_J"] - sum(history[name] for name in (*DISSIPATED, "imbalance_J")) - crushing
-    crushed = [(crushing, "crushing of the floor", style.PURPLE, "-")] if history.crushing else []
+    crushed = [(crushing, "crushing of the floor", style.PURPLE, "-")] if CRUSHING in history else []
     curves = []
     for values, name, colour, line in (
         (history["base_work_J"], "work of the floor", style.BLUE, "-"),
@@ -83,7 +84,7 @@ def _imbalance_limits(energy: Energy) -> str:
     text, reference = "lost (> 0) or gained by the time stepping", energy.reference_J
     if not reference:
         return text
-    dissipated = sum(getattr(energy, key) or 0.0 for key in (*DISSIPATED, CRUSHING_COLUMN))
+    dissipated = sum(getattr(energy, key) or 0.0 for key in (*DISSIPATED, CRUSHING))
     loss = max(LOSS_SHARE_LIMIT * dissipated, LOSS_LIMIT * reference)
     gain = style.number(GAIN_LIMIT * reference, 2)
     return f"{text}; a loss of {style.number(loss)} J or a gain of {gain} J fails the run"

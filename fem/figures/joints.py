@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 
 from fem.assessment.joint_demands import edge_forces
 from fem.case.boxes import shared_face
+from fem.case.columns import JOINTS
 from fem.figures import style
-from fem.results.history import JOINT_COLUMNS
 from fem.results.reader import OpenedRun
 from fem.results.run_result import Verdict
 from fem.runtime.arrays import FloatArray
@@ -38,8 +38,8 @@ def joints_figure(run: OpenedRun) -> Figure | None:
     faces = np.array([shared_face(lower, upper) for lower, upper in pairwise(stack)])
     half = 0.5 * (faces[:, 1] - faces[:, 0])
     normal, shear, moment = (
-        1e-3 * np.array([history[name.format(joint)][standing] for joint in range(1, history.joints + 1)])
-        for name in JOINT_COLUMNS
+        1e-3 * np.array([history[name][standing] for name in same])
+        for same in zip(*(JOINTS.names((joint,)) for joint in range(1, history.joints + 1)), strict=True)
     )
     figure, axes = style.time_panels(
         (1.1, 0.7), history=history, gaps=(style.LEGEND_GAP,), header=HEADER, above=RANGES + BELOW

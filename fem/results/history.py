@@ -3,17 +3,13 @@
 SI units, named in the columns; x positive to the right, z up, rotation positive toward +x, forces on the container.
 Numbers are written so that reading them gives the same bits (shortest exact decimal form).
 
-A floor that crushes has one further column, the work of that since the start. A floor that moves up and down has three,
-positive upward. A bolted stack has three for every joint
-between its boxes (`fem.model.joints`), counted from the floor up. Of a loose stack the columns are those of the lowest
-box, the forces and energies those of all; every further box has five of its own, counted from the floor up, from 2.
-A run that was compared with the rigid block (`fem.assessment.rigid_check`) has the block's rotation as its last
-column, nan where it is not followed. A kill during a write may leave the last line without its end.
+Which columns there are: `fem.case.columns`. A kill during a write may leave the last line without its end.
 """
 
 import contextlib
 import hashlib
 import os
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,107 +17,45 @@ from typing import Self
 
 import numpy as np
 
+from fem.case import columns
 from fem.results.files import write_atomically
 from fem.runtime.arrays import FloatArray
 
-#: Columns of `history.csv`, followed by those of `history_columns`; `mode` is a word, all others are numbers.
-#: The last four are sums since the start: work of the floor on the container, and energy dissipated.
-HISTORY_COLUMNS = (
-    "time_s",
-    "base_displacement_m",
-    "base_velocity_m_s",
-    "base_acceleration_m_s2",
-    "rotation_rad",
-    "angular_velocity_rad_s",
-    "slip_m",
-    "uplift_m",
-    "centre_x_m",
-    "centre_z_m",
-    "normal_force_N",
-    "shear_force_N",
-    "kinetic_J",
-    "strain_J",
-    "potential_J",
-    "imbalance_J",
-    "mode",
-    "base_work_J",
-    "friction_J",
-    "contact_damping_J",
-    "material_damping_J",
-)
-MODE = HISTORY_COLUMNS.index("mode")  #: column of the word
-NUMBERS = len(HISTORY_COLUMNS) - 1
-#: Column of a floor that crushes.
-CRUSHING_COLUMN = "crushing_J"
-#: Columns of a floor that moves up and down.
-VERTICAL_COLUMNS = (
-    "base_vertical_displacement_m",
-    "base_vertical_velocity_m_s",
-    "base_vertical_acceleration_m_s2",
-)
-#: Columns of one joint.
-JOINT_COLUMNS = ("joint_{}_normal_N", "joint_{}_shear_N", "joint_{}_moment_Nm")
-#: Columns of a further box of a loose stack: slip and opening over the box below, mass centre relative to the floor.
-BOX_COLUMNS = ("box_{}_rotation_rad", "box_{}_slip_m", "box_{}_opening_m", "box_{}_x_m", "box_{}_z_m")
-#: Rotation of the analytic rigid block under the same floor motion.
-ANALYTIC_COLUMN = "analytic_rotation_rad"
-
-
-def history_columns(
-    joints: int = 0,
-    *,
-    boxes: int = 1,
-    crushing: bool = False,
-    vertical: bool = False,
-    analytic: bool = False,
-) -> tuple[str, ...]:
-    """Columns of a history.
-
-    Args:
-        joints: with forces, between bolted boxes.
-        boxes: that move each for itself.
-        crushing: the floor crushes.
-        vertical: the floor moves up and down.
-        analytic: compared with the rigid block.
-    """
-    of_joints = (name.format(joint) for joint in range(1, joints + 1) for name in JOINT_COLUMNS)
-    of_boxes = (name.format(box) for box in range(2, boxes + 1) for name in BOX_COLUMNS)
-    upward = VERTICAL_COLUMNS if vertical else ()
-    crushed, block = (CRUSHING_COLUMN,) * crushing, (ANALYTIC_COLUMN,) * analytic
-    return (*HISTORY_COLUMNS, *crushed, *upward, *of_joints, *of_boxes, *block)
+(ANALYTIC_COLUMN,) = columns.ANALYTIC.names((0,))
+KNOWN = frozenset(column.name for group in columns.GROUPS for column in group.columns)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class History:
-    """Samples of a run, in the order of `history_columns` without `mode`."""
+    """Samples of a run."""
 
-    values: FloatArray  #: (n_samples, 20 (+ 1) (+ 3) + 3 joints + 5 (boxes - 1) (+ 1)), units as in the columns' names
+    numbers: tuple[str, ...]  #: names of the columns
+    values: FloatArray  #: (n_samples, n_columns), in the units that the names end with
     modes: tuple[str, ...]  #: state of motion at each sample, length n_samples
-    vertical: bool = False  #: the floor moves up and down, and three columns say how
-    boxes: int = 1  #: that move each for itself: of a loose stack
-    crushing: bool = False  #: the floor crushes, and a column has its work
 
     @classmethod
     def empty(cls) -> Self:
         """No samples."""
-        return cls(values=np.zeros((0, NUMBERS)), modes=())
+        numbers = numbers_of(columns.ALWAYS.names((0,)))
+        return cls(numbers=numbers, values=np.zeros((0, len(numbers))), modes=())
 
     @property
     def joints(self) -> int:
-        """Joints between boxes."""
-        return _joints(self.values.shape[1] - NUMBERS, self.boxes, vertical=self.vertical)
+        """Joints between bolted boxes."""
+        return sum(name.startswith("joint_") for name in self.numbers) // len(columns.JOINTS.columns)
 
     @property
-    def numbers(self) -> tuple[str, ...]:
-        """Names of the columns of numbers, in the order of `values`."""
-        kinds = {"crushing": self.crushing, "vertical": self.vertical}
-        columns = history_columns(self.joints, boxes=self.boxes, **kinds)
-        columns += (ANALYTIC_COLUMN,) if self.values.shape[1] == len(columns) else ()
-        return tuple(name for name in columns if name != "mode")
+    def vertical(self) -> bool:
+        """Whether the floor moves up and down."""
+        return columns.VERTICAL.columns[0].name in self
 
     def with_analytic(self, rotation: FloatArray) -> Self:
         """These samples with the rotation of the rigid block as last column, shape (n_samples,) [rad]."""
-        return replace(self, values=np.column_stack([self.values, rotation]))
+        values = np.column_stack([self.values, rotation])
+        return replace(self, numbers=(*self.numbers, ANALYTIC_COLUMN), values=values)
+
+    def __contains__(self, column: str) -> bool:
+        return column in self.numbers
 
     def __len__(self) -> int:
         return len(self.modes)
@@ -146,29 +80,20 @@ class HistoryWriter:
 
     Args:
         path: the file; replaced unless `position` is given.
+        names: of all columns, for the header.
         position: length of the file to resume from (`position` of its writer); what follows is cut off.
-        joints, boxes, crushing, vertical: of the history, for the header.
 
     Raises:
         ValueError: a position beyond the end of the file.
         OSError: the file cannot be made or written.
     """
 
-    def __init__(
-        self,
-        path: Path,
-        *,
-        position: int | None = None,
-        joints: int = 0,
-        boxes: int = 1,
-        crushing: bool = False,
-        vertical: bool = False,
-    ) -> None:
+    def __init__(self, path: Path, names: Sequence[str], *, position: int | None = None) -> None:
         self.path = path
         self._digest = hashlib.sha256()
+        self._mode = names.index(columns.MODE)
         if position is None:
-            columns = history_columns(joints, boxes=boxes, crushing=crushing, vertical=vertical)
-            header = ",".join(columns) + "\n"
+            header = ",".join(names) + "\n"
             write_atomically(path, header)
             position = len(header)
         if not path.is_file() or path.stat().st_size < position:
@@ -197,7 +122,7 @@ class HistoryWriter:
         """Write samples: rows of numbers, in the columns of the header without `mode`, and their modes, length n."""
         for row, mode in zip(rows.tolist(), modes, strict=True):
             words = [repr(number) for number in row]
-            self._write(",".join([*words[:MODE], mode, *words[MODE:]]) + "\n")
+            self._write(",".join([*words[: self._mode], mode, *words[self._mode :]]) + "\n")
 
     def close(self) -> None:
         """Close the file; closing twice does no harm."""
@@ -228,30 +153,32 @@ def read_history(path: Path) -> History:
     """Read a history file, also of a running or killed run: a last line without its end is left out.
 
     Raises:
-        ValueError: other columns than `history_columns`, or a line that does not hold them (named).
+        ValueError: columns that no history has, or a line that does not hold them (named).
         OSError: the file cannot be read.
     """
     lines = _whole_lines(path)
-    columns = tuple(lines[0].split(",")) if lines else ()
-    crushing, vertical = CRUSHING_COLUMN in columns, VERTICAL_COLUMNS[0] in columns
-    boxes = 1 + sum(name.startswith("box_") for name in columns) // len(BOX_COLUMNS)
-    joints = _joints(len(columns) - len(HISTORY_COLUMNS), boxes, vertical=vertical)
-    analytic = columns[-1:] == (ANALYTIC_COLUMN,)
-    if columns != history_columns(
-        joints, boxes=boxes, crushing=crushing, vertical=vertical, analytic=analytic
-    ):
-        raise ValueError(f"{path}: not a history; its first line must be {','.join(HISTORY_COLUMNS)} ..")
-    numbers = len(columns) - 1
-    values, modes = np.empty((len(lines) - 1, numbers)), []
+    names = tuple(lines[0].split(",")) if lines else ()
+    if names[:1] != ("time_s",) or columns.MODE not in names or not all(map(_is_known, names)):
+        raise ValueError(
+            f"{path}: not a history; its first line must be {','.join(columns.ALWAYS.names((0,)))} .."
+        )
+    place, numbers = names.index(columns.MODE), numbers_of(names)
+    values, modes = np.empty((len(lines) - 1, len(numbers))), []
     for number, line in enumerate(lines[1:]):
         fields = line.split(",")
-        mode = "".join(fields[MODE : MODE + 1])
+        modes.append("".join(fields[place : place + 1]))
         try:
-            values[number] = [float(field) for field in fields[:MODE] + fields[MODE + 1 :]]
+            values[number] = [float(field) for field in fields[:place] + fields[place + 1 :]]
         except ValueError:
-            raise ValueError(f"{path}, line {number + 2}: {numbers} numbers and a mode are needed") from None
-        modes.append(mode)
-    return History(values=values, modes=tuple(modes), vertical=vertical, boxes=boxes, crushing=crushing)
+            raise ValueError(
+                f"{path}, line {number + 2}: {len(numbers)} numbers and a mode are needed"
+            ) from None
+    return History(numbers=numbers, values=values, modes=tuple(modes))
+
+
+def numbers_of(names: Sequence[str]) -> tuple[str, ...]:
+    """The columns that are numbers."""
+    return tuple(name for name in names if name != columns.MODE)
 
 
 def add_analytic_rotation(path: Path, rotation: FloatArray) -> None:
@@ -275,9 +202,8 @@ def add_analytic_rotation(path: Path, rotation: FloatArray) -> None:
     write_atomically(path, "\n".join(lines) + "\n")
 
 
-def _joints(further: int, boxes: int, *, vertical: bool) -> int:
-    """Joints of so many columns behind those of every history; two columns more or fewer are no joint."""
-    return (further - len(BOX_COLUMNS) * (boxes - 1)) // len(JOINT_COLUMNS) - vertical
+def _is_known(name: str) -> bool:
+    return re.sub(r"(?<=_)\d+(?=_)", "{}", name) in KNOWN
 
 
 def _whole_lines(path: Path) -> list[str]:

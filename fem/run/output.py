@@ -14,6 +14,7 @@ from typing import Any, TypedDict
 
 import numpy as np
 
+from fem.case.columns import history_columns
 from fem.model.model import Model
 from fem.model.recovery import recovery_of
 from fem.results.fields import FieldWriter, frame_name
@@ -125,14 +126,7 @@ def open_output(files: RunFiles, model: Model, start: Start) -> Iterator[RunOutp
     case, elements, fields = model.case, model.container.elements, None
     with ExitStack() as stack:
         history = stack.enter_context(
-            HistoryWriter(
-                files.history,
-                position=start.history_bytes,
-                joints=case.container.bolted_joints,
-                boxes=case.container.bodies,
-                crushing=case.floor.is_slab,
-                vertical=case.has_vertical,
-            )
+            HistoryWriter(files.history, history_columns(case), position=start.history_bytes)
         )
         if case.output.fields_s > 0.0:
             fields = FieldWriter(

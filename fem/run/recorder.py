@@ -9,38 +9,21 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from contact.motion.kernel import floor_history, floor_motion
-from contact.stepping import state as stepper
 from contact.stepping.body import ROTATION, State
-from contact.stepping.state import RunState, Samples
+from contact.stepping.state import ROW_ROTATION, RunState, Samples, row_names
+from fem.case.columns import JOINTS, VERTICAL, history_columns
 from fem.model.joints import Joints, joints_of
 from fem.model.model import Model
 from fem.model.recovery import Recovery
-from fem.results.history import BOX_COLUMNS, JOINT_COLUMNS, NUMBERS, VERTICAL_COLUMNS, History
+from fem.results.history import History, numbers_of
 from fem.results.outcome import MODES
 from fem.runtime.arrays import FloatArray
 
-#: the stepper's columns in the order of a history's, behind time and base motion
-ORDER = (
-    stepper.ROW_ROTATION,
-    stepper.ROW_ANGULAR_VELOCITY,
-    stepper.ROW_SLIP,
-    stepper.ROW_UPLIFT,
-    stepper.ROW_CENTRE_X,
-    stepper.ROW_CENTRE_Z,
-    stepper.ROW_NORMAL,
-    stepper.ROW_SHEAR,
-    stepper.ROW_KINETIC,
-    stepper.ROW_STRAIN,
-    stepper.ROW_POTENTIAL,
-    stepper.ROW_IMBALANCE,
-    stepper.ROW_BASE_WORK,
-    stepper.ROW_FRICTION,
-    stepper.ROW_CONTACT_DAMPING,
-    stepper.ROW_MATERIAL_DAMPING,
-)
-
 #: decimals of times that people write [s]; relative error of multiplication
 DECIMALS, ROUNDING = 12, 4.0 * float(np.finfo(float).eps)
+
+#: the floor's motion along x
+BASE = ("base_displacement_m", "base_velocity_m_s", "base_acceleration_m_s2")
 
 HistorySink = Callable[[FloatArray, Sequence[str]], None]
 FrameSink = Callable[..., object]  #: with the arguments of `fem.results.fields.FieldWriter.write`
@@ -75,7 +58,7 @@ class Recorder:
         self.largest_von_mises: float | None = None  #: over frames and samples, if any [Pa]
         #: of the joints at the last sample (J, 8), see `fem.model.joints`; the next forces follow from its change
         self.joint_motion = np.zeros((0, 0))
-        self._joint_forces = np.zeros((0, len(JOINT_COLUMNS)))
+        self._joint_forces = np.zeros((0, len(JOINTS.columns)))
         self.joints: Joints | None = None
         self.take_joints(joints or joints_of(model), model.run.old)
 
@@ -95,29 +78,13 @@ class Recorder:
 
     def history(self) -> History:
         """Everything sampled so far."""
-        empty = np.zeros((0, self._columns))
-        return History(
-            values=np.concatenate([empty, *self._rows]),
-            modes=tuple(self._modes),
-            vertical=self._model.case.has_vertical,
-            boxes=self._model.case.container.bodies,
-            crushing=self._model.case.floor.is_slab,
-        )
+        numbers = self._numbers
+        values = np.concatenate([np.zeros((0, len(numbers))), *self._rows])
+        return History(numbers=numbers, values=values, modes=tuple(self._modes))
 
     @property
-    def _columns(self) -> int:
-        vertical = len(VERTICAL_COLUMNS) if self._model.case.has_vertical else 0
-        return (
-            NUMBERS
-            + self._model.case.floor.is_slab
-            + vertical
-            + self._joint_forces.size
-            + self._of_further_boxes
-        )
-
-    @property
-    def _of_further_boxes(self) -> int:
-        return len(BOX_COLUMNS) * (self._model.case.container.bodies - 1)
+    def _numbers(self) -> tuple[str, ...]:
+        return numbers_of(history_columns(self._model.case, len(self._joint_forces)))
 
     def memory(self) -> dict[str, FloatArray]:
         """State of the recorder on which the next samples depend, by name."""
@@ -149,19 +116,15 @@ class Recorder:
         if count == 0:
             return
         times: FloatArray = np.arange(first, first + count, dtype=np.float64) * samples.interval
-        rows = np.empty((count, self._columns))
-        rows[:, 0] = as_written(times)
-        rows[:, 1:4] = floor_history(run.motion, times).T
-        rows[:, 4:NUMBERS] = samples.columns[:count, ORDER]
-        behind = NUMBERS
-        if self._model.case.floor.is_slab:
-            rows[:, behind] = samples.columns[:count, stepper.ROW_CRUSHING]
-            behind += 1
-        if self._model.case.has_vertical:
-            rows[:, behind : behind + len(VERTICAL_COLUMNS)] = floor_history(run.vertical, times).T
-        own = self._columns - self._of_further_boxes
-        rows[:, own - self._joint_forces.size : own] = self._forces_in_joints(samples, first, count)
-        rows[:, own:] = samples.columns[:count, stepper.ROW_COLUMNS :]
+        columns = dict(
+            zip(row_names(self._model.case.container.bodies), samples.columns[:count].T, strict=True)
+        )
+        columns["time_s"] = as_written(times)
+        columns |= zip(BASE, floor_history(run.motion, times), strict=True)
+        columns |= zip(VERTICAL.names((0,)), floor_history(run.vertical, times), strict=True)
+        joints = JOINTS.names(range(1, len(self._joint_forces) + 1))
+        columns |= zip(joints, self._forces_in_joints(samples, first, count).T, strict=True)
+        rows = np.column_stack([columns[name] for name in self._numbers])
         rows += 0.0  # no minus zero
         modes = [MODES[int(mode)] for mode in samples.mode[:count]]
         if self._recovery is not None and samples.position.shape[1] > 0 and not self._recovery.full:
@@ -177,7 +140,7 @@ class Recorder:
         if self.joints is None:
             return np.zeros((count, 0))
         motion = self.joints.motion(
-            samples.position[:count], samples.velocity[:count], samples.columns[:count, stepper.ROW_ROTATION]
+            samples.position[:count], samples.velocity[:count], samples.columns[:count, ROW_ROTATION]
         )
         forces = self.joints.forces(np.concatenate([self.joint_motion[None], motion]), samples.interval)
         if first == 0:

@@ -8,8 +8,8 @@ checkpoint and the one that replaces it, figures, and a page of results.
 import math
 
 from fem.case.case import Case
+from fem.case.columns import history_columns
 from fem.results.disk import in_units
-from fem.results.history import history_columns
 
 BYTES_OF_A_NODE, BYTES_OF_A_FRAME = 40.0, 2e3
 BYTES_OF_A_NUMBER = 20.0
@@ -31,13 +31,7 @@ def frames_of(case: Case, duration: float) -> int:
 
 def required_disk(case: Case, nodes: int, duration: float) -> float:
     """Size of the folder of a run of this duration [s], in bytes; `nodes` of the elements."""
-    columns = history_columns(
-        case.container.bolted_joints,
-        boxes=case.container.bodies,
-        crushing=case.floor.is_slab,
-        vertical=case.has_vertical,
-    )
-    history = BYTES_OF_A_NUMBER * len(columns) * samples_of(case, duration)
+    history = BYTES_OF_A_NUMBER * len(history_columns(case)) * samples_of(case, duration)
     frames = (BYTES_OF_A_NODE * nodes + BYTES_OF_A_FRAME) * frames_of(case, duration)
     return history + frames + BYTES_OF_A_CHECKPOINT_NODE * nodes + BYTES_BESIDE
 

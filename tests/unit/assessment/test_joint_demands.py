@@ -11,7 +11,8 @@ from cases import named_case
 from fem.assessment.joint_demands import edge_forces, joint_demands
 from fem.assessment.joint_tables import unbolted
 from fem.assessment.summary import plain_summary
-from fem.results.history import NUMBERS, History
+from fem.case.columns import ALWAYS, JOINTS
+from fem.results.history import History, numbers_of
 from fem.results.run_result import RunResult, Verdict
 
 #: normal, shear, moment at 0, 1, 2 and 3 s: pressed in the middle; beyond a sixth of the width; beyond its edge, the
@@ -28,9 +29,10 @@ def stack(overturned_at: float = np.inf):
 
 
 def demands(forces: np.ndarray, overturned_at: float = np.inf):
-    values = np.zeros((len(forces), NUMBERS + 3))
-    values[:, 0], values[:, NUMBERS:] = np.arange(len(forces)), forces
-    history = History(values=values, modes=("rock",) * len(forces))
+    numbers = (*numbers_of(ALWAYS.names((0,))), *JOINTS.names((1,)))
+    values = np.zeros((len(forces), len(numbers)))
+    values[:, 0], values[:, -3:] = np.arange(len(forces)), forces
+    history = History(numbers=numbers, values=values, modes=("rock",) * len(forces))
     return joint_demands(stack(overturned_at), history)
 
 

@@ -1,11 +1,13 @@
 """Stills of a report: the instants that this motion has, and no others."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fem.report.animation import Animation, AnimationFrame
 from fem.report.stills import stills
-from fem.results.history import HISTORY_COLUMNS, NUMBERS, History
+from fem.results.history import History
 from fem.results.run_result import Verdict
 
 COUNT, ANGLE = 21, 0.268
@@ -42,9 +44,10 @@ def animation(elastic=STIFF):
 
 
 def history():
-    values = np.zeros((COUNT, NUMBERS))
-    values[:, 0], values[:, HISTORY_COLUMNS.index("slip_m")] = TIMES, SLIP
-    return History(values=values, modes=("rest",) * COUNT)
+    empty = History.empty()
+    values = np.zeros((COUNT, len(empty.numbers)))
+    values[:, 0], values[:, empty.numbers.index("slip_m")] = TIMES, SLIP
+    return replace(empty, values=values, modes=("rest",) * COUNT)
 
 
 @pytest.mark.parametrize(

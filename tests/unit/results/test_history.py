@@ -6,29 +6,26 @@ import signal
 import subprocess
 import sys
 import textwrap
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fem.results.history import (
-    HISTORY_COLUMNS,
-    JOINT_COLUMNS,
-    NUMBERS,
-    VERTICAL_COLUMNS,
-    HistoryWriter,
-    add_analytic_rotation,
-    read_history,
-)
+from contact.stepping.state import row_names
+from fem.case.columns import ALWAYS, GROUPS, JOINTS, MODE, VERTICAL, history_columns
+from fem.results.history import HistoryWriter, add_analytic_rotation, read_history
 
+COLUMNS = ALWAYS.names((0,))
+NUMBERS = len(COLUMNS) - 1
 ROWS = np.random.default_rng(3).normal(size=(7, 20)) * 10.0 ** np.arange(-10, 10)
 MODES = ["rest", "rock", "slide", "slide-rock", "rock", "rest", "overturned"]
 
 
 def test_columns_are_the_documented_ones_in_their_order_and_come_back_to_the_last_bit(tmp_path):
     path, rows = tmp_path / "history.csv", np.hstack([ROWS, ROWS[:, :6]])
-    with HistoryWriter(path, joints=2) as writer:
+    with HistoryWriter(path, (*COLUMNS, *JOINTS.names((1, 2)))) as writer:
         writer.append(rows[:3], MODES[:3])
         writer.append(rows[3:], MODES[3:])
     assert path.read_text().splitlines()[0] == (
@@ -51,46 +48,76 @@ def test_columns_are_the_documented_ones_in_their_order_and_come_back_to_the_las
         history["joint_3_shear_N"]
 
 
-@pytest.mark.parametrize("joints", [0, 1, 2])
+def case_of(*, boxes=1, joints="bolted", vertical=False, crushing=False):
+    """The tables of a case that decide on its columns."""
+    return SimpleNamespace(
+        container=SimpleNamespace(boxes=boxes, joints=joints),
+        floor=SimpleNamespace(kind="slab" if crushing else "rigid"),
+        vertical=SimpleNamespace(kind="pulse" if vertical else "none"),
+    )
+
+
+@pytest.mark.parametrize("boxes", [1, 2, 3])
+@pytest.mark.parametrize("joints", ["bolted", "loose"])
 @pytest.mark.parametrize("vertical", [False, True])
 @pytest.mark.parametrize("crushing", [False, True])
 @pytest.mark.parametrize("analytic", [False, True])
-def test_crushing_vertical_motion_joints_and_rigid_block_follow_in_this_order(
-    tmp_path, joints, vertical, crushing, analytic
+def test_crushing_vertical_motion_joints_boxes_and_rigid_block_follow_in_this_order(
+    tmp_path, boxes, joints, vertical, crushing, analytic
 ):
-    names = ["crushing_J"] * crushing + [*VERTICAL_COLUMNS] * vertical
-    names += [name.format(joint) for joint in range(1, joints + 1) for name in JOINT_COLUMNS]
+    of_box = ("rotation_rad", "slip_m", "opening_m", "x_m", "z_m")
+    of_joint = ("normal_N", "shear_N", "moment_Nm")
+    names = ["crushing_J"] * crushing
+    names += [
+        f"base_vertical_{name}" for name in ("displacement_m", "velocity_m_s", "acceleration_m_s2")
+    ] * vertical
+    if joints == "loose":
+        names += [f"box_{box}_{name}" for box in range(2, boxes + 1) for name in of_box]
+    else:
+        names += [f"joint_{joint}_{name}" for joint in range(1, boxes) for name in of_joint]
+    case = case_of(boxes=boxes, joints=joints, vertical=vertical, crushing=crushing)
     path, rows = tmp_path / "history.csv", np.hstack([ROWS, ROWS[:, : len(names)]])
-    with HistoryWriter(path, joints=joints, crushing=crushing, vertical=vertical) as writer:
+    with HistoryWriter(path, history_columns(case)) as writer:
         writer.append(rows, MODES)
     if analytic:
         add_analytic_rotation(path, ROWS[:, 7])
     history = read_history(path)
-    assert (history.joints, history.crushing, history.vertical) == (joints, crushing, vertical)
-    assert history.numbers[20:] == (*names, *["analytic_rotation_rad"] * analytic)
+    assert (history.joints, history.vertical) == ((boxes - 1) * (joints == "bolted"), vertical)
+    assert history.numbers[NUMBERS:] == (*names, *["analytic_rotation_rad"] * analytic)
     for column, name in enumerate(names):
         assert history[name].tolist() == ROWS[:, column].tolist()
 
 
-@pytest.mark.parametrize("boxes", [2, 4])
-@pytest.mark.parametrize("vertical", [False, True])
-def test_every_further_box_of_a_loose_stack_has_five_columns(tmp_path, boxes, vertical):
-    path, rows = tmp_path / "history.csv", np.hstack([ROWS, ROWS[:, : 3 * vertical + 5 * (boxes - 1)]])
-    with HistoryWriter(path, boxes=boxes, vertical=vertical) as writer:
-        writer.append(rows, MODES)
-    add_analytic_rotation(path, ROWS[:, 7])
-    history = read_history(path)
-    assert (history.boxes, history.joints, history.vertical) == (boxes, 0, vertical)
-    names = ("rotation_rad", "slip_m", "opening_m", "x_m", "z_m")
-    further = tuple(f"box_{box}_{name}" for box in range(2, boxes + 1) for name in names)
-    assert history.numbers[-1 - len(further) :] == (*further, "analytic_rotation_rad")
-    assert history["box_2_slip_m"].tolist() == ROWS[:, 1 + 3 * vertical].tolist()
+def test_the_stepper_fills_every_column_but_time_floor_joints_and_rigid_block():
+    declared = set(history_columns(case_of(boxes=3, joints="loose", crushing=True)))
+    added = {
+        "time_s",
+        MODE,
+        *(name for name in declared if name.startswith("base_") and not name.endswith("_J")),
+    }
+    assert set(row_names(3)) == declared - added
+
+
+def test_a_column_has_its_unit_in_its_name_and_no_name_is_declared_twice():
+    columns = [column for group in GROUPS for column in group.columns]
+    assert len({column.name for column in columns}) == len(columns)
+    for column in columns:
+        assert column.name == MODE or column.name.endswith("_" + column.unit.replace("/", "_"))
+
+
+def test_a_history_of_an_older_version_is_read_by_its_header(tmp_path):
+    names = [name for name in (*COLUMNS, *VERTICAL.names((0,))) if name not in ("friction_J", "uplift_m")]
+    text = ",".join(names) + "\n" + ",".join("rest" if name == MODE else "2.5" for name in names) + "\n"
+    (tmp_path / "h.csv").write_text(text)
+    history = read_history(tmp_path / "h.csv")
+    assert history["base_vertical_velocity_m_s"].tolist() == [2.5] and history.modes == ("rest",)
+    assert "friction_J" not in history
 
 
 def test_the_rigid_block_is_the_last_column_and_is_replaced_not_repeated(tmp_path):
     path, rotation = tmp_path / "history.csv", np.array([0.1, math.nan])
     rows = np.arange(2.0 * (NUMBERS + 3)).reshape(2, -1)
-    with HistoryWriter(path, joints=1) as writer:
+    with HistoryWriter(path, (*COLUMNS, *JOINTS.names((1,)))) as writer:
         writer.append(rows, ["rest", "rock"])
     for _ in range(2):
         add_analytic_rotation(path, rotation)
@@ -105,7 +132,7 @@ def test_the_rigid_block_is_the_last_column_and_is_replaced_not_repeated(tmp_pat
 @given(st.lists(st.floats(allow_nan=False) | st.just(math.nan), min_size=20, max_size=20))
 def test_every_double_survives_as_soon_as_it_is_appended(tmp_path_factory, row):
     path = tmp_path_factory.mktemp("h") / "h.csv"
-    with HistoryWriter(path) as writer:
+    with HistoryWriter(path, COLUMNS) as writer:
         writer.append(np.array([row]), ["rest"])
         assert read_history(path).values.tobytes() == np.array([row]).tobytes()
 
@@ -115,11 +142,12 @@ def test_a_killed_writer_leaves_whole_lines_and_at_most_a_torn_last_one(tmp_path
         import sys
         from pathlib import Path
         import numpy as np
-        from fem.results.history import NUMBERS, HistoryWriter
-        writer = HistoryWriter(Path(sys.argv[1]))
+        from fem.case.columns import ALWAYS
+        from fem.results.history import HistoryWriter
+        writer = HistoryWriter(Path(sys.argv[1]), ALWAYS.names((0,)))
         print("ready", flush=True)
         while True:
-            writer.append(np.arange(50.0 * NUMBERS).reshape(50, -1), ["rock"] * 50)
+            writer.append(np.arange(50.0 * 20).reshape(50, -1), ["rock"] * 50)
     """)
     path = tmp_path / "h.csv"
     process = subprocess.Popen([sys.executable, "-c", script, str(path)], stdout=subprocess.PIPE)
@@ -139,7 +167,7 @@ def test_a_killed_writer_leaves_whole_lines_and_at_most_a_torn_last_one(tmp_path
 def test_wherever_a_file_is_torn_its_whole_lines_are_read_and_nothing_else(tmp_path):
     # A kill during a write leaves any first part of it: every one is tried.
     path = tmp_path / "h.csv"
-    with HistoryWriter(path) as writer:
+    with HistoryWriter(path, COLUMNS) as writer:
         writer.append(ROWS[:2], MODES[:2])
         settled = writer.position
         writer.append(ROWS[2:5], MODES[2:5])
@@ -152,17 +180,17 @@ def test_wherever_a_file_is_torn_its_whole_lines_are_read_and_nothing_else(tmp_p
         assert history.values.tobytes() == ROWS[:count].tobytes()
         assert history.modes == tuple(MODES[:count])
     path.write_bytes(data[: settled + 40])
-    with HistoryWriter(path, position=settled) as writer:  # as after --resume
+    with HistoryWriter(path, COLUMNS, position=settled) as writer:  # as after --resume
         writer.append(ROWS[2:5], MODES[2:5])
     assert path.read_bytes() == data
 
 
 def test_a_history_that_is_too_short_or_missing_is_not_resumed(tmp_path):
-    with HistoryWriter(tmp_path / "h.csv") as writer:
+    with HistoryWriter(tmp_path / "h.csv", COLUMNS) as writer:
         writer.append(ROWS, MODES)
     for path in (tmp_path / "h.csv", tmp_path / "none.csv"):
         with pytest.raises(ValueError, match="ends before byte 99999"):
-            HistoryWriter(path, position=99999)
+            HistoryWriter(path, COLUMNS, position=99999)
 
 
 @pytest.mark.parametrize(
@@ -170,7 +198,7 @@ def test_a_history_that_is_too_short_or_missing_is_not_resumed(tmp_path):
     [
         ("", "not a history"),
         ("time,x\n1,2\n", "not a history"),
-        (",".join(HISTORY_COLUMNS) + "\n1,2,rest\n", "line 2"),
+        (",".join(COLUMNS) + "\n1,2,rest\n", "line 2"),
     ],
 )
 def test_files_that_are_no_history_are_refused(tmp_path, text, words):

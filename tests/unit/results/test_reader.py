@@ -12,9 +12,9 @@ import pyvista
 
 import fem
 from fem.case.case import load_case
+from fem.case.columns import ALWAYS
 from fem.results.errors import FolderError
 from fem.results.fields import FieldError
-from fem.results.history import HISTORY_COLUMNS
 from fem.run.run import RunOptions, run_case
 
 ROOT = Path(__file__).parents[3]
@@ -52,7 +52,7 @@ def test_result_case_and_history_are_those_of_the_files(folder):
     assert (run.name, run.status, run.folder) == ("free_rocking", "completed", folder)
     assert run.case.resolved() == load_case(folder / "resolved.toml").resolved()
     written = np.loadtxt(folder / "history.csv", delimiter=",", skiprows=1, usecols=range(16))
-    for column, name in enumerate(HISTORY_COLUMNS[:16]):
+    for column, name in enumerate(ALWAYS.names((0,))[:16]):
         assert (run.history[name] == written[:, column]).all()
     assert len(run.history.modes) == len(written) == 201
     assert run.history is run.history  # read once

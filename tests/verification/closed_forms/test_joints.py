@@ -7,10 +7,11 @@ import pytest
 from container_runs import SLENDERNESS_ANGLE, first_impact, stack, times
 
 import fem.model.model
+from fem.case import columns
 from fem.evidence.verification.runs import Finished
 from fem.model.joints import joints_of
 from fem.model.model import Model, build_model
-from fem.results.history import JOINT_COLUMNS, History
+from fem.results.history import History
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
 
@@ -42,7 +43,7 @@ def run(heights: list[float] | None = None, **changes) -> Finished:
 
 def forces(history: History, joint: int) -> np.ndarray:
     """Normal, shear, moment (n, 3)."""
-    return np.column_stack([history[name.format(joint)] for name in JOINT_COLUMNS])
+    return np.column_stack([history[name] for name in columns.JOINTS.names((joint,))])
 
 
 def section_of_a_rocking_block(finished: Finished, height: float) -> np.ndarray:

@@ -1,0 +1,113 @@
+"""The columns of `history.csv`: name, unit, what they are measured against, and which runs have them.
+
+SI units, named in the columns; x positive to the right, z up, rotation positive toward +x, forces on the container. Of
+a loose stack the columns are those of the lowest box, the forces and energies those of all. The stepper fills the
+columns that it has by these names (`contact.stepping.state.row_names`); the rest is added by `fem.run.recorder`.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+MODE = "mode"  #: the column of the word; all others are numbers
+GROUND, FLOOR, BELOW, START = "ground", "floor", "what is below", "start of the run"
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a history; braces in its name stand for the number of a joint or a box."""
+
+    name: str
+    unit: str = ""
+    against: str = ""  #: what a place or a motion is relative to, and since when a sum runs
+
+
+@dataclass(frozen=True)
+class ColumnGroup:
+    """Columns that a run has together, once for each number."""
+
+    numbers: Callable[[Any], Iterable[int]]  #: of a case, whose tables may be read in part
+    columns: tuple[Column, ...]
+
+    def names(self, numbers: Iterable[int]) -> tuple[str, ...]:
+        """The names of its columns for these numbers."""
+        return tuple(column.name.format(number) for number in numbers for column in self.columns)
+
+
+def _is_loose(case: Any) -> bool:
+    return bool(case.container.joints == "loose")
+
+
+ALWAYS = ColumnGroup(
+    lambda case: (0,),
+    (
+        Column("time_s", "s", START),
+        Column("base_displacement_m", "m", GROUND),
+        Column("base_velocity_m_s", "m/s", GROUND),
+        Column("base_acceleration_m_s2", "m/s2", GROUND),
+        Column("rotation_rad", "rad", GROUND),
+        Column("angular_velocity_rad_s", "rad/s", GROUND),
+        Column("slip_m", "m", FLOOR),
+        Column("uplift_m", "m", FLOOR),
+        Column("centre_x_m", "m", FLOOR),
+        Column("centre_z_m", "m", FLOOR),
+        Column("normal_force_N", "N"),
+        Column("shear_force_N", "N"),
+        Column("kinetic_J", "J", GROUND),
+        Column("strain_J", "J"),
+        Column("potential_J", "J", GROUND),
+        Column("imbalance_J", "J", START),
+        Column(MODE),
+        Column("base_work_J", "J", START),  # of the floor on the container
+        Column("friction_J", "J", START),  # dissipated, as the following
+        Column("contact_damping_J", "J", START),
+        Column("material_damping_J", "J", START),
+    ),
+)
+#: a floor that crushes: the work of that
+CRUSHING = ColumnGroup(lambda case: range(case.floor.kind == "slab"), (Column("crushing_J", "J", START),))
+#: a floor that moves up and down; positive upward
+VERTICAL = ColumnGroup(
+    lambda case: range(case.vertical.kind != "none"),
+    (
+        Column("base_vertical_displacement_m", "m", GROUND),
+        Column("base_vertical_velocity_m_s", "m/s", GROUND),
+        Column("base_vertical_acceleration_m_s2", "m/s2", GROUND),
+    ),
+)
+#: the joints between the boxes of a bolted stack, from the floor up, from 1 (`fem.model.joints`)
+JOINTS = ColumnGroup(
+    lambda case: range(1, 1 if _is_loose(case) else case.container.boxes),
+    (
+        Column("joint_{}_normal_N", "N"),
+        Column("joint_{}_shear_N", "N"),
+        Column("joint_{}_moment_Nm", "Nm"),
+    ),
+)
+#: the further boxes of a loose stack, from the floor up, from 2
+BOXES = ColumnGroup(
+    lambda case: range(2, case.container.boxes + 1 if _is_loose(case) else 2),
+    (
+        Column("box_{}_rotation_rad", "rad", GROUND),
+        Column("box_{}_slip_m", "m", BELOW),
+        Column("box_{}_opening_m", "m", BELOW),
+        Column("box_{}_x_m", "m", FLOOR),
+        Column("box_{}_z_m", "m", FLOOR),
+    ),
+)
+#: a run that was compared with the rigid block (`fem.assessment.rigid_check`): nan where that is not followed
+ANALYTIC = ColumnGroup(lambda case: (), (Column("analytic_rotation_rad", "rad", GROUND),))
+GROUPS = (ALWAYS, CRUSHING, VERTICAL, JOINTS, BOXES, ANALYTIC)
+
+
+def history_columns(case: Any, joints: int | None = None) -> tuple[str, ...]:
+    """The columns of the history of a case, in their order.
+
+    Args:
+        case: or those of its tables that could be read.
+        joints: with forces; None: those between its boxes.
+    """
+    numbers = {group: group.numbers(case) for group in GROUPS}
+    if joints is not None:
+        numbers[JOINTS] = range(1, joints + 1)
+    return tuple(name for group in GROUPS for name in group.names(numbers[group]))
