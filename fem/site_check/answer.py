@@ -4,9 +4,11 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from fem.batch.intervals import binomial_interval
 from fem.results.outcome import Outcome
-from fem.runtime.units import MILLIMETRES, RATIO, in_figures
+from fem.runtime.units import RATIO, SHORT_MILLIMETRES
 from fem.site_check.file import SiteRequest
 from fem.site_check.result import (
+    LIMITED,
+    ByRule,
     ConfirmedRun,
     FurtherMotions,
     MotionSet,
@@ -48,9 +50,8 @@ def answer_of(
         )
     groups, limits = groups_of(own), request.limits
     overturned, failed = sum(one.overturned for one in groups), sum(one.failed for one in groups)
-    rotation, slip = (_largest(groups, name) for name in ("rotation_ratio", "slip_m"))
-    within = rotation is not None and rotation <= limits.rotation_ratio
-    short = slip is not None and slip <= limits.slip_m
+    found_by_rule = _largest(groups)
+    within, short = (_within(found_by_rule[name], getattr(limits, name)) for name in LIMITED)
     fulfilled = None if failed and not overturned else not overturned and within and short
     return SiteAnswer(
         fulfilled=fulfilled,
@@ -58,8 +59,7 @@ def answer_of(
         sentence=_sentence(request, fulfilled, groups, overturned=overturned, failed=failed),
         overturned=overturned,
         runs=len(own),
-        rotation_ratio=rotation,
-        slip_m=slip,
+        **vars(found_by_rule),
         rotation_fulfilled=None if failed and not overturned else not overturned and within,
         slip_fulfilled=None if failed or overturned else short,
         governing=governing_run(request, own),
@@ -79,27 +79,31 @@ def governing_run(request: SiteRequest, runs: Sequence[SiteRun]) -> SiteRun | No
     known = [group for group in groups_of(runs) if not group.failed]
     if not known:
         return None
-    limits = request.limits
     _, name, group = max(
         (
-            ((getattr(group, name) or 0.0) / limit, name, group)
+            ((group.by_rule[name] or 0.0) / getattr(request.limits, name), name, group)
             for group in known
-            for name, limit in (("rotation_ratio", limits.rotation_ratio), ("slip_m", limits.slip_m))
+            for name in LIMITED
         ),
         key=lambda one: one[0],
     )
-    figure = {"rotation_ratio": "rotation_ratio", "slip_m": "max_slip_m"}[name]
-    return max(group.runs, key=lambda run: getattr(run, figure) or 0.0)
+    return max(group.runs, key=lambda run: run[LIMITED[name]] or 0.0)
 
 
 def _same_group(one: SiteRun, other: SiteRun) -> bool:
     return len(groups_of((one, other))) == 1
 
 
-def _largest(groups: Sequence[RunGroup], name: str) -> float | None:
-    """The largest figure of all groups; None where one has none: a run overturned or failed."""
-    figures = [getattr(group, name) for group in groups]
-    return None if not figures or None in figures else max(figures)
+def _largest(groups: Iterable[RunGroup]) -> ByRule:
+    """The largest figures of all groups; None where one has none."""
+    figures = {name: [group.by_rule[name] for group in groups] for name in LIMITED}
+    return ByRule(
+        **{name: None if None in some else max(some, default=None) for name, some in figures.items()}
+    )
+
+
+def _within(value: float | None, limit: float) -> bool:
+    return value is not None and value <= limit
 
 
 def _first_overturning(found: Mapping[RunKey, SiteRun]) -> float | None:
@@ -124,8 +128,7 @@ def _scan(found: Mapping[RunKey, SiteRun]) -> tuple[ScanPoint, ...]:
                 factor=factor,
                 runs=len(by_factor[factor]),
                 overturned=sum(group.overturned for group in groups),
-                rotation_ratio=_largest(groups, "rotation_ratio"),
-                slip_m=_largest(groups, "slip_m"),
+                **vars(_largest(groups)),
             )
         )
     return tuple(points) if len(points) > 1 else ()
@@ -150,11 +153,8 @@ def _further(request: SiteRequest, found: Mapping[RunKey, SiteRun]) -> FurtherMo
 
 
 def _beyond(request: SiteRequest, run: SiteRun) -> bool:
-    return (
-        run.outcome == Outcome.OVERTURNED
-        or (run.rotation_ratio or 0.0) > request.limits.rotation_ratio
-        or (run.max_slip_m or 0.0) > request.limits.slip_m
-    )
+    limited = ((run[figure] or 0.0, getattr(request.limits, name)) for name, figure in LIMITED.items())
+    return run.outcome == Outcome.OVERTURNED or any(value > limit for value, limit in limited)
 
 
 def _sentence(
@@ -166,7 +166,7 @@ def _sentence(
         return f"No answer: {failed} of {runs} runs failed."
     if overturned:
         return f"Not fulfilled under the rule below: {overturned} of {runs} runs overturned."
-    rotation, slip = _largest(groups, "rotation_ratio") or 0.0, _largest(groups, "slip_m") or 0.0
+    rotation, slip = (_largest(groups)[name] or 0.0 for name in LIMITED)
     figures = (
         f"none of {runs} runs overturned; rotation {RATIO.text(rotation)} of the slenderness angle (limit "
         f"{limits.rotation_ratio:g}), slip {_slip_in_words(slip)} (limit {1e3 * limits.slip_m:g} mm)"
@@ -175,8 +175,5 @@ def _sentence(
 
 
 def _slip_in_words(slip: float) -> str:
-    return (
-        f"below {1e3 * MILLIMETRES.least:g} mm"
-        if slip < MILLIMETRES.least
-        else f"{in_figures(slip, 3, 1e3)} mm"
-    )
+    least = SHORT_MILLIMETRES.least
+    return f"below {1e3 * least:g} mm" if slip < least else SHORT_MILLIMETRES.text(slip)

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from fem.results.run_result import JsonBlock
-from fem.site_check.result import SiteAnswer
+from fem.site_check.result import LIMITED, ByRule, SiteAnswer
 from fem.sweep.threshold import least_width, values_to_try
 
 RESOLUTION = 0.01  #: largest width of a bracket over the value
@@ -36,15 +36,13 @@ class SizeAxis:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SizePoint(JsonBlock):
+class SizePoint(ByRule):
     """The answer at one value."""
 
     value: float
     fulfilled: bool | None = None
     overturned: int
     runs: int
-    rotation_ratio: float | None = None
-    slip_m: float | None = None
     fails: str = ""  #: why it is not fulfilled, in words
 
     def __post_init__(self) -> None:
@@ -195,8 +193,7 @@ def _point(value: float, answer: SiteAnswer) -> SizePoint:
         fulfilled=answer.fulfilled,
         overturned=answer.overturned,
         runs=answer.runs,
-        rotation_ratio=answer.rotation_ratio,
-        slip_m=answer.slip_m,
+        **{name: answer[name] for name in LIMITED},
         fails=_reason(answer),
     )
 

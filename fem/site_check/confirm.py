@@ -3,8 +3,9 @@
 from collections.abc import Mapping
 
 from fem.batch.compute_many import compute_many
+from fem.results.figures import Place
 from fem.results.outcome import Outcome
-from fem.site_check.result import ConfirmedRun, SiteRun
+from fem.site_check.result import LIMITED, ConfirmedRun, SiteRun
 from fem.site_check.runs import SET, RunCases, RunKey
 
 MODEL = "reduced"
@@ -18,8 +19,8 @@ def deciding(found: Mapping[RunKey, SiteRun], governing: SiteRun | None) -> list
     keys = [next(key for key, run in own.items() if run is governing)]
     stood = {key: run for key, run in own.items() if run.outcome != Outcome.OVERTURNED}
     if stood:
-        keys.append(max(stood, key=lambda key: stood[key].rotation_ratio or 0.0))
-        keys.append(max(stood, key=lambda key: stood[key].max_slip_m or 0.0))
+        for figure in LIMITED.values():
+            keys.append(max(stood, key=lambda key: stood[key][figure] or 0.0))
     return list(dict.fromkeys(keys))
 
 
@@ -40,8 +41,7 @@ def confirmed(
                 run=found[key],
                 model=MODEL,
                 outcome=verdict.outcome,
-                rotation_ratio=verdict.rotation_ratio,
-                max_slip_m=verdict.max_slip_m,
+                **verdict.figures(Place.KEY),
                 sure=verdict.sure or "",
                 outcomes=verdict.band.outcomes if verdict.band else (),
             )

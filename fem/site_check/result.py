@@ -6,7 +6,8 @@ Every field has the name of its key in the file, with its SI unit. Accelerations
 
 from dataclasses import dataclass
 
-from fem.results.run_result import JsonBlock
+from fem.results.figures import Place, RunFigures, keys_beside
+from fem.results.json_block import JsonBlock
 
 RESULT_FILE = "assess.json"
 USUAL_BEHAVIOUR_FACTOR = 1.5
@@ -123,7 +124,7 @@ class SiteBody(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SiteRun(JsonBlock):
+class SiteRun(RunFigures):
     """One run."""
 
     stage: str = "set"  #: set | scan | refined | further: what it is for
@@ -136,22 +137,29 @@ class SiteRun(JsonBlock):
     model: str
     building_period_s: float | None = None
     factor: float = 1.0
-    outcome: str | None = None  #: None: it failed
-    rotation_ratio: float | None = None
-    max_slip_m: float | None = None
-    residual_slip_m: float | None = None
-    max_uplift_m: float | None = None
+
+    written_where_given = keys_beside(Place.RUNS) | {"boxes"}
 
 
 @dataclass(frozen=True, kw_only=True)
-class ScanPoint(JsonBlock):
+class ByRule(JsonBlock):
+    """What counts by the rule, under the names of its limits; None where a run overturned or failed."""
+
+    rotation_ratio: float | None = None
+    slip_m: float | None = None
+
+
+#: the figure of a run that each limit is on
+LIMITED = {"rotation_ratio": "rotation_ratio", "slip_m": "max_slip_m"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class ScanPoint(ByRule):
     """All motions of the set times one factor."""
 
     factor: float
     runs: int
     overturned: int
-    rotation_ratio: float | None = None  #: by the rule
-    slip_m: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -165,20 +173,19 @@ class FurtherMotions(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ConfirmedRun(JsonBlock):
+class ConfirmedRun(RunFigures):
     """A deciding run, repeated with another model over its unknown inputs."""
 
     run: SiteRun
     model: str
-    outcome: str | None = None
-    rotation_ratio: float | None = None
-    max_slip_m: float | None = None
     sure: str = ""  #: of the verdict: sure | regime unsure | unsure
     outcomes: tuple[str, ...] = ()  #: over the band
 
+    written_where_given = keys_beside(Place.KEY) | {"boxes"}
+
 
 @dataclass(frozen=True, kw_only=True)
-class SiteAnswer(JsonBlock):
+class SiteAnswer(ByRule):
     """The answer, under the rule that is printed with it."""
 
     fulfilled: bool | None = None  #: None: the set is not valid, or runs failed
@@ -186,8 +193,6 @@ class SiteAnswer(JsonBlock):
     sentence: str
     overturned: int
     runs: int
-    rotation_ratio: float | None = None
-    slip_m: float | None = None
     rotation_fulfilled: bool | None = None
     slip_fulfilled: bool | None = None
     governing: SiteRun | None = None

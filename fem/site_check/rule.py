@@ -9,9 +9,10 @@ there, so this is the rule of this program.
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from fem.results.outcome import Outcome
-from fem.site_check.result import SiteRun
+from fem.site_check.result import LIMITED, ByRule, SiteRun
 
 MEAN_FROM = 7  #: motions from which the mean counts
 SHARE = 0.3  #: of the other horizontal component
@@ -44,24 +45,19 @@ class RunGroup:
         """Runs without an outcome."""
         return sum(run.outcome is None for run in self.runs)
 
-    @property
-    def rotation_ratio(self) -> float | None:
-        """What counts; None where a run overturned or failed."""
-        return self._counted([(run.motion, run.rotation_ratio) for run in self.runs])
+    @cached_property
+    def by_rule(self) -> ByRule:
+        """What counts."""
+        return ByRule(**{limit: self._counted(figure) for limit, figure in LIMITED.items()})
 
-    @property
-    def slip_m(self) -> float | None:
-        """What counts [m]; None where a run overturned or failed."""
-        return self._counted([(run.motion, run.max_slip_m) for run in self.runs])
-
-    def _counted(self, values: Sequence[tuple[int, float | None]]) -> float | None:
+    def _counted(self, figure: str) -> float | None:
         if self.overturned or self.failed:
             return None
         worst: dict[int, float] = {}
-        for motion, value in values:
-            if value is None:
+        for run in self.runs:
+            if run[figure] is None:
                 return None
-            worst[motion] = max(worst.get(motion, 0.0), value)
+            worst[run.motion] = max(worst.get(run.motion, 0.0), run[figure])
         return sum(worst.values()) / len(worst) if len(worst) >= MEAN_FROM else max(worst.values())
 
 
@@ -92,8 +88,9 @@ def both_directions(groups: Sequence[RunGroup]) -> list[tuple[RunGroup, float]]:
             same = replace(across.first, elevation=along.first.elevation)
             if along.first.elevation != "width" or across.first.elevation == "width":
                 continue
-            if _key(same) == _key(along.first) and along.slip_m is not None and across.slip_m is not None:
-                pairs = ((along.slip_m, across.slip_m), (across.slip_m, along.slip_m))
+            one, other = along.by_rule.slip_m, across.by_rule.slip_m
+            if _key(same) == _key(along.first) and one is not None and other is not None:
+                pairs = ((one, other), (other, one))
                 found.append((along, max(math.hypot(whole, SHARE * part) for whole, part in pairs)))
     return found
 

@@ -13,6 +13,7 @@ from fem.batch.runner import Row
 from fem.case.case import Case, read_case
 from fem.case.data_files import FILE_KEYS
 from fem.case.toml import toml_document
+from fem.results.figures import Place, keys_of
 from fem.results.outcome import Outcome
 from fem.site_check.file import FULL, SiteRequest
 from fem.site_check.result import MOTIONS, SiteRun
@@ -22,25 +23,6 @@ WIDTH = "width"  #: the elevation that a case file shows
 #: factors on the motions beside 1, and values tried between the first that overturns and the one below it
 SCANNED = (0.5, 0.75, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 3.5, 4.0)
 BETWEEN = 3
-
-COLUMNS = (
-    "stage",
-    "motion",
-    "vertical_sign",
-    "mu_static",
-    "mu_kinetic",
-    "mass",
-    "elevation",
-    "building_period_s",
-    "model",
-    "factor",
-    "outcome",
-    "rotation_ratio",
-    "max_slip_m",
-    "residual_slip_m",
-    "max_uplift_m",
-    "reason",
-)
 
 
 class RunKey(NamedTuple):
@@ -61,6 +43,9 @@ class RunKey(NamedTuple):
     def stem(self) -> str:
         """Of the names of the files of its motion."""
         return motion_stem(self.motion, self.building_period_s, further=self.stage == FURTHER)
+
+
+COLUMNS = (*RunKey._fields, "outcome", *keys_of(Place.RUNS), "reason")
 
 
 def motion_stem(number: int, period: float | None, *, further: bool = False) -> str:
@@ -207,8 +192,7 @@ class RunRows:
 
     def values(self, key: RunKey, row: Row) -> tuple[Any, ...]:
         """The row of a run for the log."""
-        figures = (row["rotation_ratio"], row["max_slip_m"], row["residual_slip_m"], row["max_uplift_m"])
-        return (*key, row["outcome"], *figures, row["reason"])
+        return (*key, *(row[name] for name in COLUMNS[len(key) :]))
 
     def note(self, line: str) -> None:
         """Add a line of the log."""
@@ -225,14 +209,8 @@ class RunRows:
             model=fields["model"],
             factor=float(fields["factor"]),
         )
-        self.found[key] = SiteRun(
-            **key._asdict(),
-            outcome=fields["outcome"] or None,
-            rotation_ratio=number_in(fields["rotation_ratio"]),
-            max_slip_m=number_in(fields["max_slip_m"]),
-            residual_slip_m=number_in(fields["residual_slip_m"]),
-            max_uplift_m=number_in(fields["max_uplift_m"]),
-        )
+        figures: dict[str, Any] = {name: number_in(fields[name]) for name in keys_of(Place.RUNS)}
+        self.found[key] = SiteRun(**key._asdict(), outcome=fields["outcome"] or None, **figures)
         self.lines[key] = line
         if fields["reason"]:
             self.reasons.append(fields["reason"])

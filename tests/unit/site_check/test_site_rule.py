@@ -26,7 +26,7 @@ def runs(count: int) -> list[SiteRun]:
 
 def test_fewer_than_seven_motions_count_by_the_largest():
     (group,) = groups_of(runs(6))
-    assert (group.motions, group.rotation_ratio, group.slip_m) == (
+    assert (group.motions, group.by_rule.rotation_ratio, group.by_rule.slip_m) == (
         6,
         pytest.approx(0.12),
         pytest.approx(0.018),
@@ -36,7 +36,7 @@ def test_fewer_than_seven_motions_count_by_the_largest():
 
 def test_seven_motions_count_by_the_mean_of_the_worse_signs():
     (group,) = groups_of(runs(7))
-    assert (group.rotation_ratio, group.slip_m) == (pytest.approx(0.08), pytest.approx(0.012))
+    assert (group.by_rule.rotation_ratio, group.by_rule.slip_m) == (pytest.approx(0.08), pytest.approx(0.012))
     assert "the mean over the 7 motions" in rule_in_words(7)
 
 
@@ -45,7 +45,7 @@ def test_one_run_that_overturned_or_failed_leaves_no_mean(outcome, overturned, f
     first, *others = runs(7)
     (group,) = groups_of([replace(first, outcome=outcome, rotation_ratio=None), *others])
     assert (group.overturned, group.failed) == (overturned, failed)
-    assert (group.rotation_ratio, group.slip_m) == (None, None)
+    assert (group.by_rule.rotation_ratio, group.by_rule.slip_m) == (None, None)
 
 
 @pytest.mark.parametrize(
