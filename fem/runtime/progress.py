@@ -23,7 +23,7 @@ class Reporter:
     def start(self, duration: float, begun: float = 0.0) -> None:
         """Work starts at `begun` [s], later than 0 in a resumed run, and will end at `duration` [s]."""
 
-    def update(self, time: float, rotation_ratio: float, mode: str) -> None:
+    def update(self, time: float, ratio: float, mode: str) -> None:
         """Work has reached `time` [s]; cheap enough to be called at every sample."""
 
     def tell(self, line: Callable[[], str]) -> None:
@@ -86,9 +86,9 @@ class ScreenReporter(Reporter):
             self._bar.start()
         self._due = self._now() + self._pause
 
-    def update(self, time: float, rotation_ratio: float, mode: str) -> None:
+    def update(self, time: float, ratio: float, mode: str) -> None:
         """Show the line if the last one is old enough."""
-        self.tell(lambda: self._line_of_run(time, rotation_ratio, mode))
+        self.tell(lambda: self._line_of_run(time, ratio, mode))
 
     def tell(self, line: Callable[[], str]) -> None:
         """Show a line if the last one is old enough."""
@@ -118,7 +118,7 @@ class ScreenReporter(Reporter):
         column = TextColumn("{task.description}", markup=False)
         return Progress(column, console=self._console, auto_refresh=False, transient=True, get_time=self._now)
 
-    def _line_of_run(self, time: float, rotation_ratio: float, mode: str) -> str:
+    def _line_of_run(self, time: float, ratio: float, mode: str) -> str:
         """Simulated time [s], rate [s/s], remaining wall time, rotation over the slenderness angle, state of motion."""
         self._bar.update(self._task, completed=time)
         task = self._bar.tasks[-1]
@@ -131,7 +131,7 @@ class ScreenReporter(Reporter):
             remaining = "time left unknown"
         return (
             f"t = {time:.3f} of {duration:g} s, {rate:.3g} s per s, {remaining}, "
-            f"rotation ratio {rotation_ratio:.3f}, {mode}"
+            f"rotation ratio {ratio:.3f}, {mode}"
         )
 
 

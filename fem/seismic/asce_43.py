@@ -169,7 +169,7 @@ def rocking_row(body: LooseBody, limits: Limits, action: FloorAction, *, vertica
         else "S_a(T_e(θ), β_e) = 2 g f_1(θ)/f_2(θ)",
         numbers=put_in,
         demand=math.inf if angle is None else angle,
-        capacity=limits.rotation_ratio * alpha,
+        capacity=limits.rotation * alpha,
         unit="rad",
         says=said,
         source=SOURCE,

@@ -104,11 +104,11 @@ class FloorAction:
 class Limits:
     """The limits that the user gives."""
 
-    rotation_ratio: float = 0.5  #: largest |rotation| over the slenderness angle [-]
+    rotation: float = 0.5  #: largest |rotation| over the slenderness angle [-]
     slip: float  #: [m]
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.rotation_ratio <= 1.0:
-            raise ValueError(f"rotation_ratio must be above 0 and at most 1, got {self.rotation_ratio}")
+        if not 0.0 < self.rotation <= 1.0:
+            raise ValueError(f"limit of rotation must be above 0 and at most 1, got {self.rotation}")
         if not 0.0 < self.slip < math.inf:
             raise ValueError(f"slip must be positive and finite, got {self.slip} m")

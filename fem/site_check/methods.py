@@ -38,7 +38,7 @@ def site_methods(
         floor: of the building; None: on the ground.
         runs: those of the set count, with both signs.
     """
-    limits = Limits(rotation_ratio=inputs.rotation_ratio_limit, slip=inputs.slip_limit_m)
+    limits = Limits(rotation=inputs.rotation_ratio_limit, slip=inputs.slip_limit_m)
     action = floor_action(site, motions, periods_s, floor)
     rows = []
     for one in bodies:
@@ -162,7 +162,7 @@ def _overturning(row: MethodRow, done: Sequence[SiteRun], limits: Limits) -> Fou
     words = f"{fell or 'none'} of {len(done)} overturned"
     if stood:
         words += f"; {_rotation(max(stood), others=fell > 0)}"
-    failed = fell > 0 or max(stood) > limits.rotation_ratio
+    failed = fell > 0 or max(stood) > limits.rotation
     return Found(words=words, compared=_compared(refused=not row.fulfilled, failed=failed))
 
 

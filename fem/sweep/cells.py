@@ -57,7 +57,7 @@ class CellRows:
         self.lines: dict[int, str] = {}  #: row of each cell, as in the log
         self.shown: dict[int, RunShown] = {}
         self.kind: IntArray = np.full(sweep.count, Ending.UNKNOWN)  #: endings, (n_cells,)
-        self.rotation_ratio: FloatArray = np.full(sweep.count, np.nan)  #: (n_cells,)
+        self.ratio: FloatArray = np.full(sweep.count, np.nan)  #: (n_cells,)
         self.outcomes = Counter[str]()  #: how often there is each; "failed" too
 
     def note(self, line: str) -> None:
@@ -69,7 +69,7 @@ class CellRows:
         shown = shown_in(fields)
         self.lines[cell], self.shown[cell], self.kind[cell] = line, shown, shown.kind
         if shown.rotation_ratio is not None:
-            self.rotation_ratio[cell] = shown.rotation_ratio
+            self.ratio[cell] = shown.rotation_ratio
         self.outcomes[shown.outcome or "failed"] += 1
 
     @property

@@ -18,20 +18,20 @@ def _size(axes: Sequence[Axis], reach: int = 1) -> tuple[int, ...]:
     return tuple(2 * reach + 1 if axis.is_numeric else 1 for axis in axes)
 
 
-def near_cells(axes: Sequence[Axis], kind: IntArray, rotation_ratio: FloatArray, close: float) -> BoolArray:
+def near_cells(axes: Sequence[Axis], kind: IntArray, ratio: FloatArray, close: float) -> BoolArray:
     """Cells next to one of another kind, or standing and close to overturning.
 
     Args:
         axes: of the sweep.
         kind: endings, in the shape of the axes.
-        rotation_ratio: in the shape of the axes; nan where there is none.
+        ratio: largest rotation over the slenderness angle, in the shape of the axes; nan where there is none.
         close: rotation ratio that counts as close.
     """
     size = _size(axes)
     highest = ndimage.maximum_filter(kind, size=size, mode="nearest")
     lowest = ndimage.minimum_filter(kind, size=size, mode="nearest")
     with np.errstate(invalid="ignore"):
-        return (highest != lowest) | ((kind == Ending.STANDING) & (rotation_ratio >= close))
+        return (highest != lowest) | ((kind == Ending.STANDING) & (ratio >= close))
 
 
 def around(axes: Sequence[Axis], cells: BoolArray, reach: int = 1) -> BoolArray:

@@ -107,7 +107,7 @@ class PerturbedRows:
         """Least and largest rotation ratio of a cell and its copies; None where there is none."""
         copies = self.rows.get(cell, {}).values()
         found = [one.shown.rotation_ratio for one in copies if one.shown.rotation_ratio is not None]
-        own = float(self._cells.rotation_ratio[cell])
+        own = float(self._cells.ratio[cell])
         return (min(own, *found), max(own, *found)) if found and np.isfinite(own) else (None, None)
 
 
@@ -166,9 +166,7 @@ def _missing(sweep: Sweep, cells: CellRows, perturbed: PerturbedRows) -> Iterato
     """Copies that are not there yet: single changes and pairs, then draws."""
     axes, shape = sweep.axes, sweep.shape
     decided = cells.decided.reshape(shape)
-    near = near_cells(
-        axes, cells.kind.reshape(shape), cells.rotation_ratio.reshape(shape), sweep.perturbation.close
-    )
+    near = near_cells(axes, cells.kind.reshape(shape), cells.ratio.reshape(shape), sweep.perturbation.close)
     begin = near.copy()
     match sweep.perturbation.cells:
         case "all":

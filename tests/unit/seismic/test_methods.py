@@ -307,7 +307,7 @@ def test_capacity_over_strength_is_where_a_method_is_used_up():
 @pytest.mark.parametrize(
     "make",
     [
-        lambda: Limits(rotation_ratio=0.0, slip=0.1),
+        lambda: Limits(rotation=0.0, slip=0.1),
         lambda: Limits(slip=math.nan),
         lambda: replace(K1, mass=-1.0),
         lambda: replace(ACTION, peak=math.inf),
