@@ -14,7 +14,7 @@ GROUND, FLOOR, BELOW, START = "ground", "floor", "what is below", "start of the 
 
 
 @dataclass(frozen=True)
-class Column:
+class HistoryColumn:
     """A column of a history; braces in its name stand for the number of a joint or a box."""
 
     name: str
@@ -27,7 +27,7 @@ class ColumnGroup:
     """Columns that a run has together, once for each number."""
 
     numbers: Callable[[Any], Iterable[int]]  #: of a case, whose tables may be read in part
-    columns: tuple[Column, ...]
+    columns: tuple[HistoryColumn, ...]
 
     def names(self, numbers: Iterable[int]) -> tuple[str, ...]:
         """The names of its columns for these numbers."""
@@ -41,62 +41,64 @@ def _is_loose(case: Any) -> bool:
 ALWAYS = ColumnGroup(
     lambda case: (0,),
     (
-        Column("time_s", "s", START),
-        Column("base_displacement_m", "m", GROUND),
-        Column("base_velocity_m_s", "m/s", GROUND),
-        Column("base_acceleration_m_s2", "m/s2", GROUND),
-        Column("rotation_rad", "rad", GROUND),
-        Column("angular_velocity_rad_s", "rad/s", GROUND),
-        Column("slip_m", "m", FLOOR),
-        Column("uplift_m", "m", FLOOR),
-        Column("centre_x_m", "m", FLOOR),
-        Column("centre_z_m", "m", FLOOR),
-        Column("normal_force_N", "N"),
-        Column("shear_force_N", "N"),
-        Column("kinetic_J", "J", GROUND),
-        Column("strain_J", "J"),
-        Column("potential_J", "J", GROUND),
-        Column("imbalance_J", "J", START),
-        Column(MODE),
-        Column("base_work_J", "J", START),  # of the floor on the container
-        Column("friction_J", "J", START),  # dissipated, as the following
-        Column("contact_damping_J", "J", START),
-        Column("material_damping_J", "J", START),
+        HistoryColumn("time_s", "s", START),
+        HistoryColumn("base_displacement_m", "m", GROUND),
+        HistoryColumn("base_velocity_m_s", "m/s", GROUND),
+        HistoryColumn("base_acceleration_m_s2", "m/s2", GROUND),
+        HistoryColumn("rotation_rad", "rad", GROUND),
+        HistoryColumn("angular_velocity_rad_s", "rad/s", GROUND),
+        HistoryColumn("slip_m", "m", FLOOR),
+        HistoryColumn("uplift_m", "m", FLOOR),
+        HistoryColumn("centre_x_m", "m", FLOOR),
+        HistoryColumn("centre_z_m", "m", FLOOR),
+        HistoryColumn("normal_force_N", "N"),
+        HistoryColumn("shear_force_N", "N"),
+        HistoryColumn("kinetic_J", "J", GROUND),
+        HistoryColumn("strain_J", "J"),
+        HistoryColumn("potential_J", "J", GROUND),
+        HistoryColumn("imbalance_J", "J", START),
+        HistoryColumn(MODE),
+        HistoryColumn("base_work_J", "J", START),  # of the floor on the container
+        HistoryColumn("friction_J", "J", START),  # dissipated, as the following
+        HistoryColumn("contact_damping_J", "J", START),
+        HistoryColumn("material_damping_J", "J", START),
     ),
 )
 #: a floor that crushes: the work of that
-CRUSHING = ColumnGroup(lambda case: range(case.floor.kind == "slab"), (Column("crushing_J", "J", START),))
+CRUSHING = ColumnGroup(
+    lambda case: range(case.floor.kind == "slab"), (HistoryColumn("crushing_J", "J", START),)
+)
 #: a floor that moves up and down; positive upward
 VERTICAL = ColumnGroup(
     lambda case: range(case.vertical.kind != "none"),
     (
-        Column("base_vertical_displacement_m", "m", GROUND),
-        Column("base_vertical_velocity_m_s", "m/s", GROUND),
-        Column("base_vertical_acceleration_m_s2", "m/s2", GROUND),
+        HistoryColumn("base_vertical_displacement_m", "m", GROUND),
+        HistoryColumn("base_vertical_velocity_m_s", "m/s", GROUND),
+        HistoryColumn("base_vertical_acceleration_m_s2", "m/s2", GROUND),
     ),
 )
 #: the joints between the boxes of a bolted stack, from the floor up, from 1 (`fem.model.joints`)
 JOINTS = ColumnGroup(
     lambda case: range(1, 1 if _is_loose(case) else case.container.boxes),
     (
-        Column("joint_{}_normal_N", "N"),
-        Column("joint_{}_shear_N", "N"),
-        Column("joint_{}_moment_Nm", "Nm"),
+        HistoryColumn("joint_{}_normal_N", "N"),
+        HistoryColumn("joint_{}_shear_N", "N"),
+        HistoryColumn("joint_{}_moment_Nm", "Nm"),
     ),
 )
 #: the further boxes of a loose stack, from the floor up, from 2
 BOXES = ColumnGroup(
     lambda case: range(2, case.container.boxes + 1 if _is_loose(case) else 2),
     (
-        Column("box_{}_rotation_rad", "rad", GROUND),
-        Column("box_{}_slip_m", "m", BELOW),
-        Column("box_{}_opening_m", "m", BELOW),
-        Column("box_{}_x_m", "m", FLOOR),
-        Column("box_{}_z_m", "m", FLOOR),
+        HistoryColumn("box_{}_rotation_rad", "rad", GROUND),
+        HistoryColumn("box_{}_slip_m", "m", BELOW),
+        HistoryColumn("box_{}_opening_m", "m", BELOW),
+        HistoryColumn("box_{}_x_m", "m", FLOOR),
+        HistoryColumn("box_{}_z_m", "m", FLOOR),
     ),
 )
 #: a run that was compared with the rigid block (`fem.assessment.rigid_check`): nan where that is not followed
-ANALYTIC = ColumnGroup(lambda case: (), (Column("analytic_rotation_rad", "rad", GROUND),))
+ANALYTIC = ColumnGroup(lambda case: (), (HistoryColumn("analytic_rotation_rad", "rad", GROUND),))
 GROUPS = (ALWAYS, CRUSHING, VERTICAL, JOINTS, BOXES, ANALYTIC)
 
 

@@ -333,7 +333,7 @@ def _has(table: SweepTable, name: str) -> bool:
     return name in table.columns and bool(np.isfinite(table[name].astype(float)).any())
 
 
-def _column(table: SweepTable, name: str, label: str, unit: units.Unit) -> dict[str, Any]:
+def _column(table: SweepTable, name: str, label: str, unit: units.DisplayUnit) -> dict[str, Any]:
     values: NDArray[Any] = table.columns.get(name, np.full(len(table["cell"]), np.nan)).astype("<f4")
     column = {"name": name, "label": label, "unit": typeset(unit.name), "factor": unit.factor}
     return column | {"values": packed(values, "<f4")}

@@ -21,8 +21,8 @@ from fem.runtime.units import (
     MEGAPASCALS,
     RATIO,
     SECONDS,
+    DisplayUnit,
     Reach,
-    Unit,
 )
 from fem.runtime.units import MILLIMETRES as MM
 from fem.runtime.units import SHORT_MILLIMETRES as SHORT_MM
@@ -50,7 +50,7 @@ class Shown:
     """How people are shown a figure, and where."""
 
     words: str
-    unit: Unit
+    unit: DisplayUnit
     places: Place
     _: KW_ONLY
     head: str = ""  #: over a narrow column; empty: the words

@@ -13,7 +13,7 @@ FEW, MANY = 2, 4  #: significant figures
 
 
 @dataclass(frozen=True, kw_only=True)
-class Unit:
+class DisplayUnit:
     """A unit in which people read a quantity."""
 
     name: str = ""
@@ -77,13 +77,13 @@ def in_figures(value: float, figures: int, factor: float = 1.0, least: float = 0
     return words.rstrip("0").rstrip(".") if figures == MANY and "." in words else words
 
 
-COUNT, SECONDS = Unit(), Unit(name="s")
-MILLIMETRES = Unit(name="mm", factor=1e3, least=1e-5)
+COUNT, SECONDS = DisplayUnit(), DisplayUnit(name="s")
+MILLIMETRES = DisplayUnit(name="mm", factor=1e3, least=1e-5)
 SHORT_MILLIMETRES = replace(MILLIMETRES, figures=3)
-DEGREES = Unit(name="degrees", factor=math.degrees(1.0), least=math.radians(0.01), figures=3)
-RATIO = Unit(
+DEGREES = DisplayUnit(name="degrees", factor=math.degrees(1.0), least=math.radians(0.01), figures=3)
+RATIO = DisplayUnit(
     least=1e-3, figures=3
 )  #: of a rotation to the slenderness angle; a tenth of what counts as rocking
-KILONEWTONS = Unit(name="kN", factor=1e-3)
-ACCELERATION = Unit(name="m/s2")
-MEGAPASCALS = Unit(name="MPa", factor=1e-6)
+KILONEWTONS = DisplayUnit(name="kN", factor=1e-3)
+ACCELERATION = DisplayUnit(name="m/s2")
+MEGAPASCALS = DisplayUnit(name="MPa", factor=1e-6)

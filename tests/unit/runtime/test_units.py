@@ -2,7 +2,7 @@
 
 import pytest
 
-from fem.runtime.units import RATIO, Unit, in_figures
+from fem.runtime.units import RATIO, DisplayUnit, in_figures
 
 
 @pytest.mark.parametrize(
@@ -18,7 +18,7 @@ from fem.runtime.units import RATIO, Unit, in_figures
     ],
 )
 def test_a_number_has_the_figures_that_its_range_allows(value, reach, words):
-    assert Unit(name="kN").text(value, reach) == words
+    assert DisplayUnit(name="kN").text(value, reach) == words
 
 
 @pytest.mark.parametrize(
