@@ -1,5 +1,6 @@
 """What the file of a study of many cases has: a heading, tables, the case it starts from, the keys that vary."""
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -88,7 +89,11 @@ def flat(name: str, content: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def base_case(
-    name: str, changes: Mapping[str, Any], origin: Origin, motion: Mapping[str, Any] | None = None
+    name: str,
+    changes: Mapping[str, Any],
+    origin: Origin,
+    motion: Mapping[str, Any] | None = None,
+    varied: Iterable[str] = (),
 ) -> Case:
     """The case that is varied, with the keys of [set] changed.
 
@@ -99,6 +104,7 @@ def base_case(
         changes: the table [set].
         origin: of the study.
         motion: keys of the first of a set of motions; the files of a shipped case are then beside the study.
+        varied: keys of the table [axes].
 
     Raises:
         CaseError: there is neither, it is outside that folder, or it cannot be used.
@@ -119,7 +125,23 @@ def base_case(
         values = {"motion.kind": "table"} | values | dict(motion)
         if not is_file:
             base = base.from_origin(replace(base.origin_with({}), folder=origin.folder))
-    return base.with_values(values) if values else base
+    try:
+        return base.with_values(values) if values else base
+    except CaseError as error:
+        raise CaseError(
+            "\n".join(_in_words_of_study(line, varied) for line in str(error).splitlines())
+        ) from None
+
+
+def _in_words_of_study(line: str, varied: Iterable[str]) -> str:
+    """What is wrong with a key of [set], in words of the file that has it."""
+    line = re.sub(r"\(--set (\S+?)=(.*)\)$", r'([set] "\1" = \2)', line)
+    for key in varied:
+        if re.search(rf"\b{key.rpartition('.')[2]}\b", line):
+            return (
+                f"{line}; {key!r} varies, and a key that must follow it stands in [derived] in place of [set]"
+            )
+    return line
 
 
 def read_axes(

@@ -76,7 +76,9 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Ensemble:
     axes = read_axes(tables.get("axes", {}), MOST_AXES, EXAMPLE, _axis)
     random = _random(tables.get("random", {}), axes)
     sets = [one.axis for one in random if isinstance(one, RandomChoice) and one.key == MOTION_FILE]
-    base = base_case(heading.case, tables.get("set", {}), origin, first_motion(sets))
+    base = base_case(
+        heading.case, tables.get("set", {}), origin, first_motion(sets), [axis.key for axis in axes]
+    )
     if base.solver.model == "full":
         raise CaseError(
             '[set] "solver.model" must be "rigid" or "reduced": an ensemble of the full model would take weeks'

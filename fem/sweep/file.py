@@ -58,7 +58,9 @@ def _read(data: Mapping[str, Any], origin: Origin) -> Sweep:
     axes = read_axes(
         flat("axes", tables.get("axes", {})), MOST_AXES, '"contact.mu_static" = [0.2, 0.3, 0.4]', read_axis
     )
-    base = base_case(heading.case, tables.get("set", {}), origin, first_motion(axes))
+    base = base_case(
+        heading.case, tables.get("set", {}), origin, first_motion(axes), [axis.key for axis in axes]
+    )
     require_verticals(axes, [axis.key for axis in axes], base)
     derived = _derived(tables.get("derived", {}), base, axes)
     varied = [axis.key for axis in axes] + [one.key for one in derived]

@@ -90,3 +90,15 @@ def test_a_key_that_is_set_and_varies_is_refused(tmp_path, read, text):
     path.write_text(changed, encoding="utf-8")
     with pytest.raises(CaseError, match=r"\[set\] 'contact\.mu_static' varies as well"):
         read(path)
+
+
+def test_a_key_that_is_set_against_an_axis_is_refused_in_words_of_the_file(tmp_path):
+    (tmp_path / "a.toml").write_text(
+        'case = "seed_stack"\n[set]\n"contact.mu_kinetic" = 0.6\n[axes]\n"contact.mu_static" = [0.6, 0.7]\n',
+        encoding="utf-8",
+    )
+    with pytest.raises(CaseError) as found:
+        load_sweep(tmp_path / "a.toml")
+    said = str(found.value)
+    assert '([set] "contact.mu_kinetic" = 0.6)' in said and "--set" not in said
+    assert "'contact.mu_static' varies, and a key that must follow it stands in [derived]" in said
