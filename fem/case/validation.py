@@ -117,7 +117,7 @@ def read_table(
         for key in content
         if key not in known
     ]
-    given = {key: value for key, value in content.items() if key in known}
+    given = model.as_meant({key: value for key, value in content.items() if key in known})
     if model is TABLES["container"] and "box" in given:
         given["box"], found = _read_boxes(given["box"])
         problems += found

@@ -3,7 +3,7 @@
 import pytest
 from cases import LEAST
 
-from fem.case.case import case_hash, load_case, read_case, to_toml
+from fem.case.case import case_from, case_hash, load_case, read_case, to_toml
 from fem.case.floors import PRESETS
 
 
@@ -29,6 +29,18 @@ def test_a_resolved_slab_has_the_numbers_of_its_preset_and_no_penalty():
     }
     assert resolved["contact"].keys().isdisjoint({"normal_penalty_Pa_m", "tangential_ratio", "damping_ratio"})
     assert read_case(to_toml(case)).resolved() == resolved
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"), [("concrete", "concrete C25/30"), ("steel", "steel plate"), ("asphalt", "asphalt")]
+)
+def test_a_preset_alone_is_a_slab_by_its_full_or_short_name(name, meant):
+    tables = load_case("seed_stack").given()
+    tables["floor"] = {"preset": name}
+    floor = case_from(tables).floor
+    assert (floor.kind, floor.preset) == ("slab", meant)
+    assert floor.youngs_modulus_Pa == PRESETS[meant].youngs_modulus
+    assert load_case("seed_stack", [f"floor.preset={name}"]).floor.preset == meant
 
 
 def test_explicit_numbers_take_the_place_of_the_preset():
