@@ -82,7 +82,7 @@ CONTAINER_RULES = (
         lambda box: (
             f"must be less than height_m = {box.height_m:g} m, got {box.centroid_m:g} m; "
             + (
-                q.LENGTH.guess(box.centroid_m, lambda meant: meant < box.height_m)
+                q.LENGTH.guess(box.centroid_m, lambda meant: 0.1 * box.height_m < meant < box.height_m)
                 or "it is measured from the bottom of one box"
             )
         ),
@@ -140,7 +140,7 @@ def _plausible_density(key: str) -> Rule:
     def reason(case: Any) -> str:
         box, value, one = case.container, getattr(case.container, key), per_kilogram(case)
         slips = {"tonnes": 1e3 * one} | ({"kilonewtons": 1e3, "kilograms": one} if key == "weight_N" else {})
-        typical = 2e3 * one * (box.width_m * box.height_m * box.depth_m)
+        typical = 1e3 * one * (box.width_m * box.height_m * box.depth_m)
         guess = q.Quantity(unit=MASSES[key].unit, typical=typical, slips=slips).guess(
             value, lambda meant: q.DENSITY.allows(density(case, meant))
         )

@@ -65,6 +65,11 @@ least    | container.weight_N=25 |
            [container] weight_N = 25 N on 1.1 x 1.1 x 1 m is a mean density of 2.11 kg/m3, it must be
 least    | container.weight_N=25 | looks like kilonewtons: 25000 N?
 least    | container.weight_N=2.5 | looks like tonnes: 24525 N?
+least    | container.weight_N=235 & container.width_m=2.44 & container.height_m=2.59 & container.depth_m=6.06 |
+           looks like kilonewtons: 235000 N?
+least    | container.height_m=2.59 & container.centroid_m=3 | got 3 m; it is measured from the bottom of one box
+least    | container.centroid_m=1.2 | got 1.2 m; it is measured from the bottom of one box
+least    | floor.kind=rigid & floor.preset=asphalt | belongs to kind = "slab"
 least    | container.mass_kg=2.5 |
            [container] mass_kg = 2.5 kg on 1.1 x 1.1 x 1 m is a mean density of 2.07 kg/m3, it must be between 5
 least    | container.mass_kg=2.5 | looks like tonnes: 2500 kg?
