@@ -44,6 +44,8 @@ def report(
         )
     if short and not (folder / "run.json").is_file():
         raise FolderError(f"{folder}: --short is for the report of a run")
+    if pdf and to is not None and to.suffix.lower() == ".pdf":
+        to = to.with_suffix(".html")  # the PDF lies beside the page
     place = _place(to if to is not None else folder / PAGE)
     reporter = ScreenReporter(quiet=quiet)
     interrupts = importlib.import_module("fem.runtime.signals")

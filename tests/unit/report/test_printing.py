@@ -56,8 +56,10 @@ def test_the_short_report_has_three_pages_at_most(folder, capsys):
 def test_without_a_browser_the_way_by_hand_is_printed(folder, monkeypatch, capsys):
     monkeypatch.setenv("PATH", str(folder))
     monkeypatch.setattr(printing, "PLACES", ())
-    assert main(["report", str(folder), "-q", "--short", "--pdf"]) == 0
-    assert capsys.readouterr().out.splitlines()[-1] == printing.BY_HAND
+    for place in ((), ("--to", str(folder / "calc.pdf"))):
+        assert main(["report", str(folder), "-q", "--short", "--pdf", *place]) == 0
+        assert capsys.readouterr().out.splitlines()[-1] == printing.BY_HAND
+    assert (folder / "calc.html").is_file()
 
 
 def test_only_a_run_has_a_short_report(tmp_path, capsys):
