@@ -1,5 +1,6 @@
 """`init`: a commented case, sweep, ensemble or site file to start from."""
 
+import re
 from pathlib import Path
 from typing import Annotated
 
@@ -28,7 +29,7 @@ def init(
         text = case_template(load_case())
     else:
         kind = next((each.kind for each in COLLECTIONS if name in each.names), "case")
-        text = next(each for each in COLLECTIONS if each.kind == kind).text(name)
+        text = _for_another_box(next(each for each in COLLECTIONS if each.kind == kind).text(name))
     path = to if to is not None else Path(f"{name or 'case'}.toml")
     try:
         with path.open("x", encoding="utf-8") as stream:
@@ -43,3 +44,8 @@ def init(
     if kind == "case":
         print(f"  python -m fem check {path}    static checks and settings, nothing is computed")
     print(f"  python -m fem {COMMANDS[kind]} {path}")
+
+
+def _for_another_box(text: str) -> str:
+    """Without what holds for the first box and its site: the patch, which follows from the wall, and [static]."""
+    return re.sub(r"\[static\][^\[]*|corner_patch_m = .*\n", "", text)
