@@ -64,7 +64,7 @@ def report(
     elif (folder / "study.json").is_file():
         page = importlib.import_module("fem.evidence.paper.page").paper_report(folder, signature=signature)
     elif (folder / "assess.json").is_file():
-        page = importlib.import_module("fem.site_check.page").site_report(folder, signature=signature)
+        page = importlib.import_module("fem.site_check.site_page").site_report(folder, signature=signature)
     else:
         opened = importlib.import_module("fem.results.reader").open_run(folder)
         with interrupts.interruptible(reporter) as stop:

@@ -60,43 +60,31 @@ class Page:
     signature: Signature | None = None  #: None of a page that nobody signs
     hash: str = ""  #: of what it shows, at the foot of every printed sheet
     scripts: Sequence[str] = ()  #: file names of the scripts that run in it, in order
-    data: Mapping[str, Any] = field(default_factory=dict)  #: what they read, by the id of its element
+    #: what they read, by the id of the element of type application/json that holds it
+    data: Mapping[str, Any] = field(default_factory=dict)
 
 
 def html_of(page: Page) -> str:
     """The text of the file."""
     signed = ("signature.js",) if page.signature else ()
-    return render_page(
-        "page.html.j2",
-        scripts=(*page.scripts, *signed),
-        data=page.data,
-        page=page,
-        signature=page.signature,
-        foot=f"unanchored {metadata.version('unanchored')}   {page.hash[:12]}",
-        version=metadata.version("unanchored"),
-        today=dt.date.today().isoformat(),
+    scripts, version = (
+        [template_text(name) for name in (*page.scripts, *signed)],
+        metadata.version("unanchored"),
     )
-
-
-def render_page(
-    template: str, *, scripts: Sequence[str] = (), data: Mapping[str, Any] | None = None, **content: Any
-) -> str:
-    """A page from a template of `fem/html/templates`.
-
-    Args:
-        template: its file name.
-        scripts: file names of the scripts that run in the page, in order.
-        data: what they read, by the id of the element of type application/json that will hold it.
-        content: the variables of the template; none may be missing.
-    """
-    texts = [template_text(name) for name in scripts]
-    page = _environment().get_template(template)
-    return page.render(
-        scripts=texts,
-        script_policy=_policy(texts),
-        data={name: _json_in_page(value) for name, value in (data or {}).items()},
-        template_text=template_text,
-        **({"foot": "unanchored", "signature": None} | content),
+    return (
+        _environment()
+        .get_template("page.html.j2")
+        .render(
+            page=page,
+            signature=page.signature,
+            style=template_text("page.css"),
+            scripts=scripts,
+            script_policy=_policy(scripts),
+            data={name: _json_in_page(value) for name, value in page.data.items()},
+            foot=f"unanchored {version}   {page.hash[:12]}".rstrip(),
+            version=version,
+            today=dt.date.today().isoformat(),
+        )
     )
 
 

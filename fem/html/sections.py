@@ -143,6 +143,10 @@ class Table:
     left_out: str = ""  #: what the table does not show
 
 
+#: what an item shows in a column
+CellOf = Callable[[Item], str]
+
+
 @dataclass(frozen=True)
 class Column(Generic[Item]):
     """A column of a table that is made from items."""
@@ -165,6 +169,7 @@ def table_of(
     *,
     row_look: Callable[[Item], str] = lambda item: "",
     file: str = "",
+    most: int = MOST_ROWS,
     **options: Any,
 ) -> Table:
     """A table with a row for each item, cut to the rows that a page can carry.
@@ -175,6 +180,7 @@ def table_of(
         items: what the rows are about.
         row_look: the look of a row.
         file: holds all rows.
+        most: rows.
         options: of the table.
     """
     listed = list(items)
@@ -186,11 +192,11 @@ def table_of(
         for k, column in enumerate(columns)
         if not column.optional or any(cells[k].text for cells, _ in rows)
     ]
-    more = len(listed) - MOST_ROWS
+    more = len(listed) - most
     return Table(
         label,
         [Cell(columns[k].head, columns[k].look) for k in kept],
-        [TableRow([cells[k] for k in kept], look) for cells, look in rows[:MOST_ROWS]],
+        [TableRow([cells[k] for k in kept], look) for cells, look in rows[:most]],
         left_out=f"{more} more rows are in {file}." if more > 0 else "",
         **options,
     )

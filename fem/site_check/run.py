@@ -41,7 +41,6 @@ from fem.site_check.motion_results import (
     write_ground,
 )
 from fem.site_check.motions import floor_motions, ground_motions, longest_period
-from fem.site_check.page import site_report
 from fem.site_check.result import (
     USUAL_BEHAVIOUR_FACTOR,
     ConfirmedRun,
@@ -52,6 +51,7 @@ from fem.site_check.result import (
     SiteResult,
 )
 from fem.site_check.runs import COLUMNS, SET, RunCases, RunKey, RunPlan, RunRows, motion_stem
+from fem.site_check.site_page import site_report
 
 RUNS, PAGE = "runs.csv", "report.html"
 #: room on the disk [bytes]: one motion in three files, one run, all else

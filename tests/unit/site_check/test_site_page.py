@@ -12,8 +12,8 @@ from site_example import example, write_example
 from fem.html.formula import formula_markup
 from fem.results.errors import FolderError
 from fem.results.files import to_json
-from fem.site_check.page import confirmation, site_report
 from fem.site_check.result import RESULT_FILE, SiteResult
+from fem.site_check.site_page import confirmation, site_report
 
 ANSWERS = {
     "fulfilled": ({}, "Fulfilled under the rule below"),
@@ -92,7 +92,7 @@ def test_in_a_building_the_floor_stands_beside_the_ground(folders):
 
 
 def test_of_many_motions_the_first_are_drawn(folders, monkeypatch):
-    monkeypatch.setattr("fem.site_check.page.MOST_DRAWN", 2)
+    monkeypatch.setattr("fem.site_check.site_page.MOST_DRAWN", 2)
     page = site_report(folders / "fulfilled")
     assert page.count('aria-label="motion ') == 2 * 2 + 1
     assert "The curves of the other 5 motions are in their files." in page

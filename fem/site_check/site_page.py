@@ -1,37 +1,41 @@
 """The page of a verification at a site: the answer first, then its basis, then all numbers."""
 
 import csv
-import datetime as dt
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, replace
-from functools import partial
-from importlib import metadata
+from dataclasses import asdict
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
-from markupsafe import Markup
 
-from fem.html.formula import formula_markup
-from fem.html.page import Signature, render_page, svg_element
+from fem.html import sections as html
+from fem.html.page import Page, Signature, html_of
 from fem.html.units import ABSENT, millimetres, number, quantity, ratio, short, typeset
 from fem.results.errors import FolderError
 from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
-from fem.site_check.figures import draw_floor, draw_methods, draw_motion, draw_scan, draw_spectra
+from fem.site_check.figures import draw_motion, draw_spectra
 from fem.site_check.result import (
     RESULT_FILE,
     MotionSet,
     SetCheck,
     SiteBody,
     SiteDocument,
-    SiteMethod,
     SiteMotion,
     SiteResult,
-    SiteRun,
 )
-from fem.site_check.rule import RunGroup, both_directions, groups_of
+from fem.site_check.site_sections import (
+    DrawnMotion,
+    SiteView,
+    every_run_section,
+    figure,
+    methods_section,
+    motions_section,
+    repeat_section,
+    runs_section,
+    sheet_section,
+    symbols,
+)
 
 COPIES = ("site.toml", "container.toml")  #: in the folder, printed on the page
 CODE = (
@@ -41,6 +45,7 @@ CODE = (
     "overturning means not fulfilled is the rule of this program: there is no mean where a body has fallen, and the "
     "code gives no rule."
 )
+SIGNING = ("prepared", "checked", "approved")
 MOST_DRAWN = 30  #: motions whose curves are on the page
 NOT_COVERED = (
     "two horizontal components at once, torsion, motion out of the plane",
@@ -51,14 +56,6 @@ NOT_COVERED = (
 )
 
 
-class RunPair(NamedTuple):
-    """The runs of one motion: with the vertical upward, and the other sign."""
-
-    motion: int
-    group: RunGroup
-    runs: tuple[SiteRun, ...]
-
-
 def site_report(folder: Path, *, signature: Signature | None = None) -> str:
     """The page, as the text of an HTML file.
 
@@ -66,62 +63,114 @@ def site_report(folder: Path, *, signature: Signature | None = None) -> str:
         FolderError: the folder holds no result of `assess`, or it is damaged.
     """
     result = read_result(folder)
-    document = result.document or SiteDocument()
-    groups = groups_of(run for run in result.runs if run.stage == "set")
-    shown_body = result.result.governing.mass if result.result.governing else result.bodies[0].mass
-    return render_page(
-        "site.html.j2",
-        scripts=["signature.js"],
+    view, document = SiteView(result=result), asdict(result.document or SiteDocument())
+    motions = [
+        DrawnMotion(motion, motion_figure(folder, motion, result) if motion.number <= MOST_DRAWN else None)
+        for motion in result.set.motions
+    ]
+    copies = [(name, _text(folder / name)) for name in COPIES if (folder / name).is_file()]
+    page = Page(
+        kind="Verification of an unanchored container",
         title=result.title or folder.name,
         name=folder.name,
         hash=result.provenance.site_hash,
-        version=metadata.version("unanchored"),
-        today=dt.date.today().isoformat(),
-        signature=(signature or Signature()).completed(asdict(document)),
-        result=result,
-        answer=result.result,
-        confirmation=confirmation(result),
-        standing={None: "open", True: "stood", False: "fell"}[result.result.fulfilled],
-        site=site_rows(result),
-        container=container_rows(result),
-        checks=[(check, found_in_words(check)) for check in result.set.checks],
-        band=period_sentence(result.set),
-        code=CODE,
-        not_covered=NOT_COVERED,
-        groups=groups,
-        both=both_directions(groups),
-        governing=governing_group(result, groups),
-        pairs=[pair for group in groups for pair in pairs_of(group)],
-        pairs_of=pairs_of,
-        signs=sorted({run.vertical_sign for run in result.runs}, reverse=True) or [1],
-        methods=merged_methods(result.methods),
-        spectra=_drawn(draw_spectra(result.action, result.set), "spectra"),
-        floor=_drawn(draw_floor(result.action, result.floor), "floor") if result.floor else "",
-        scan=_drawn(draw_scan(result.result, result.inputs), "scan") if result.result.scan else "",
-        capacities=[
-            _drawn(draw_methods(one, result.result, shown_body), f"methods-{k}")
-            for k, one in enumerate([[row for row in result.methods if row.mass == shown_body]])
-            if any(row.factor is not None for row in one)
+        signature=(signature or Signature()).completed(document),
+        sections=[
+            html.Group(
+                "first site",
+                [
+                    answer_section(result),
+                    inputs_section(result),
+                    set_section(result),
+                    html.section(
+                        "Not covered", "not-covered", html.Paragraph(f"{'; '.join(NOT_COVERED)}.", "tight")
+                    ),
+                    html.Group("sign", [f"{who}: name, date, signature" for who in SIGNING]),
+                ],
+            ),
+            runs_section(view),
+            methods_section(view),
+            motions_section(motions),
+            every_run_section(view),
+            sheet_section(view),
+            repeat_section(view, copies),
         ],
-        motions=[
-            (
-                motion,
-                _drawn(motion_figure(folder, motion, result), f"motion-{motion.number}")
-                if motion.number <= MOST_DRAWN
-                else "",
-            )
-            for motion in result.set.motions
-        ],
-        copies=[(name, _text(folder / name)) for name in COPIES if (folder / name).is_file()],
-        formula=formula_markup,
-        symbols=partial(formula_markup, prose=True),
-        friction=friction,
-        millimetres=millimetres,
-        number=number,
-        quantity=quantity,
-        ratio=ratio,
-        short=short,
-        typeset=typeset,
+    )
+    return html_of(page)
+
+
+def answer_section(result: SiteResult) -> html.PageSection:
+    """The answer, the numbers that it rests on, and the rule."""
+    answer, reasons = result.result, result.set.reasons
+    standing = {None: "open", True: "stood", False: "fell"}[answer.fulfilled]
+    repeated, doubt = confirmation(result)
+    return html.section(
+        "Answer",
+        "verdict-title",
+        html.Paragraph(typeset(answer.sentence), "sentence"),
+        *([html.Headlines(_headlines(result))] if answer.fulfilled is not None else []),
+        *([html.Paragraph(typeset(repeated), "doubt" if doubt else "")] if repeated else []),
+        html.Note(html.joined(html.strong("Rule:"), f" {answer.rule}. {CODE}")),
+        *([html.Paragraph(typeset(f"Reasons: {'; '.join(reasons)}."), "fail")] if reasons else []),
+        look=f"answer {standing}",
+    )
+
+
+def _headlines(result: SiteResult) -> list[html.Headline]:
+    answer, inputs, scan = result.result, result.inputs, result.result.scan
+    first = "none" if scan else ABSENT
+    if answer.factor_at_first_overturning is not None:
+        first = f"{short(answer.factor_at_first_overturning, figures=3)} × the set"
+    tried = f"factors {short(scan[0].factor)} to {short(scan[-1].factor)} tried" if scan else "not computed"
+    return [
+        html.Headline("overturned", f"{answer.overturned} of {answer.runs} runs"),
+        html.Headline(
+            "rotation ratio, by the rule",
+            ratio(answer.rotation_ratio),
+            f"limit {short(inputs.rotation_ratio_limit)}",
+        ),
+        html.Headline(
+            "slip, by the rule",
+            f"{millimetres(answer.slip_m)} mm",
+            f"limit {quantity(inputs.slip_limit_m, 'mm', 1000, 3)}",
+        ),
+        html.Headline("first overturned at", first, tried),
+    ]
+
+
+def inputs_section(result: SiteResult) -> html.PageSection:
+    """The action beside the container, friction and limits."""
+
+    def listed(title: str, rows: Sequence[tuple[str, str]]) -> html.Group:
+        pairs = [(symbols(name), symbols(typeset(value))) for name, value in rows]
+        return html.Group("", [html.Heading(title), html.Pairs(pairs, look="asked")])
+
+    given = [
+        listed("Action", site_rows(result)),
+        listed("Container, friction, limits", container_rows(result)),
+    ]
+    return html.section("Inputs", "inputs", html.Group("columns even", given))
+
+
+def set_section(result: SiteResult) -> html.PageSection:
+    """The checks of the set of motions, and its mean spectrum."""
+    columns: list[html.Column[SetCheck]] = [
+        html.Column("check", lambda check: check.name),
+        html.Column("found", found_in_words, html.NUMBER),
+        html.Column("required", lambda check: check.demanded),
+        html.Column(
+            "fulfilled",
+            lambda check: html.Cell("yes", "pass") if check.fulfilled else html.Cell("no", "fail"),
+        ),
+        html.Column("clause", lambda check: html.Cell(check.clause or "this program's own", "note")),
+    ]
+    drawn = draw_spectra(result.action, result.set)
+    return html.section(
+        f"The set of motions: {'its checks' if result.set.valid else 'not valid'}",
+        "set",
+        html.table_of("checks of the set of motions", columns, result.set.checks),
+        html.Note(symbols(period_sentence(result.set))),
+        figure(drawn, "spectra", "target, mean and every motion"),
     )
 
 
@@ -252,50 +301,6 @@ def period_sentence(motions: MotionSet) -> str:
     )
 
 
-def governing_group(result: SiteResult, groups: Sequence[RunGroup]) -> RunGroup | None:
-    """The group of the run that governs."""
-    run = result.result.governing
-    return next((group for group in groups if run in group.runs), None)
-
-
-def pairs_of(group: RunGroup) -> list[RunPair]:
-    """The runs of a group, motion by motion, the sign + first."""
-    numbers = sorted({run.motion for run in group.runs})
-    return [
-        RunPair(
-            number,
-            group,
-            tuple(
-                sorted(
-                    (run for run in group.runs if run.motion == number), key=lambda run: -run.vertical_sign
-                )
-            ),
-        )
-        for number in numbers
-    ]
-
-
-def friction(run: SiteRun) -> str:
-    """Both coefficients of a run."""
-    return f"{short(run.mu_static, figures=3)} / {short(run.mu_kinetic, figures=3)}"
-
-
-def merged_methods(methods: Sequence[SiteMethod]) -> list[SiteMethod]:
-    """The methods side by side; weights with the same result, to three figures, share a row."""
-    found: dict[tuple[str, ...], list[SiteMethod]] = {}
-    for one in methods:
-        shown = (
-            one.name,
-            one.quantity,
-            one.elevation,
-            number(one.utilisation, figures=3),
-            one.says,
-            one.found,
-        )
-        found.setdefault((*shown, one.compared), []).append(one)
-    return [replace(same[0], mass=", ".join(one.mass for one in same)) for same in found.values()]
-
-
 def motion_figure(folder: Path, motion: SiteMotion, result: SiteResult) -> str:
     """The figure of a motion, from its files."""
     curves = {name[-5:]: _curve(folder / name) for name in motion.files if name.endswith(".csv")}
@@ -325,7 +330,3 @@ def _text(path: Path) -> str:
 
 def _range(values: Sequence[float]) -> str:
     return " to ".join(short(value) for value in dict.fromkeys((min(values), max(values))))
-
-
-def _drawn(svg: str, prefix: str) -> Markup:
-    return svg_element(svg, label=prefix.replace("-", " "), prefix=prefix)

@@ -1,0 +1,392 @@
+"""The sections of the page of a site behind its first sheet: runs, rules of thumb, appendices."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import NamedTuple
+
+from markupsafe import Markup
+
+from fem.html import sections as html
+from fem.html.formula import formula_markup
+from fem.html.page import svg_element
+from fem.html.units import ABSENT, millimetres, number, quantity, ratio, short
+from fem.results.outcome import Outcome
+from fem.site_check.figures import draw_floor, draw_methods, draw_scan
+from fem.site_check.result import ConfirmedRun, SiteMethod, SiteMotion, SiteResult, SiteRun
+from fem.site_check.rule import RunGroup, both_directions, groups_of
+
+BOTH = (
+    "Both: the slips of the two elevations as vectors, the larger of 100 % + 30 % and 30 % + 100 % (EN 1998-1:2004, "
+    "4.3.3.5.1 (3), of effects). Friction is not linear: an estimate, no part of the rule."
+)
+MARGIN = (
+    "The margin is the factor on the set, not the ratio: a body may return from beyond its angle, and a body that a "
+    "weaker motion overturns may stand under a stronger one. Near the boundary a single run may come out otherwise "
+    "with other numerics, so read the factor as a magnitude."
+)
+symbols = partial(formula_markup, prose=True)
+
+
+class RunPair(NamedTuple):
+    """The runs of one motion: with the vertical upward, and the other sign."""
+
+    motion: int
+    group: RunGroup
+    runs: tuple[SiteRun, ...]
+
+
+class DrawnMotion(NamedTuple):
+    """A motion with its figure; without one beyond the first."""
+
+    motion: SiteMotion
+    svg: str | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class SiteView:
+    """A verification as its page shows it."""
+
+    result: SiteResult
+
+    @cached_property
+    def groups(self) -> list[RunGroup]:
+        """The runs of the set, by what they have in common."""
+        return groups_of(run for run in self.result.runs if run.stage == "set")
+
+    @property
+    def governing(self) -> RunGroup | None:
+        """The group of the run that governs."""
+        run = self.result.result.governing
+        return next((group for group in self.groups if run in group.runs), None)
+
+    @property
+    def signs(self) -> list[int]:
+        """Signs of the vertical motion that were computed."""
+        return sorted({run.vertical_sign for run in self.result.runs}, reverse=True) or [1]
+
+
+def figure(svg: str, name: str, label: str) -> html.Figure:
+    """A drawing of the page; its name keeps the ids apart."""
+    return html.Figure(svg_element(svg, label=name.replace("-", " "), prefix=name), label)
+
+
+def runs_section(view: SiteView) -> html.PageSection:
+    """What the runs found, and the margin."""
+    if not view.groups:
+        return html.section("", "found")
+    result, governing = view.result, view.governing
+    both = both_directions(view.groups)
+    signs = "with both signs of the vertical " if len(view.signs) > 1 else ""
+    blocks: list[html.Block] = [
+        f"Every motion {signs}at each weight and friction, model {result.inputs.model}. No value of friction is always "
+        "the unfavourable one: with low friction the body slides, with high friction it rocks. At a ratio of 1 the "
+        "body has reached its slenderness angle, beyond which it falls if left alone.",
+        _groups_table(view, both),
+    ]
+    if both:
+        blocks.append(html.Note(BOTH))
+    if result.floor:
+        drawn = figure(draw_floor(result.action, result.floor), "floor", "spectra of the floor")
+        blocks += [html.Heading("The floor in the building"), drawn]
+    if governing:
+        where = f"{governing.first.mass}, friction {friction(governing.first)}"
+        blocks += [
+            html.Heading(f"Motion by motion, where it governs: {where}"),
+            _governing_table(governing),
+        ]
+    if result.result.confirmed:
+        blocks += [html.Heading("The deciding runs, repeated"), _confirmed_table(result.result.confirmed)]
+    if result.result.scan:
+        drawn = figure(
+            draw_scan(result.result, result.inputs), "scan", "outcome over the factor on the motions"
+        )
+        blocks += [html.Heading("Margin"), drawn, html.Note(MARGIN)]
+    if further := result.result.further:
+        low, high = (short(end, 100, 2) for end in further.interval)
+        blocks.append(
+            f"Besides the set, {further.motions} further motions for the same action: {further.overturned} overturned "
+            f"it (95 % interval of the probability under such motions: {low} to {high} %)."
+        )
+    return html.section("What the runs found", "found", *blocks)
+
+
+class _GroupRow(NamedTuple):
+    """A row of the groups: of one elevation, or of both with only their slip."""
+
+    group: RunGroup
+    elevation: str
+    overturned: str
+    rotation: str
+    slip: float | None
+    look: str = ""
+
+
+def _groups_table(view: SiteView, both: Sequence[tuple[RunGroup, float]]) -> html.Table:
+    def row_of(group: RunGroup) -> _GroupRow:
+        failed = f", {group.failed} failed" if group.failed else ""
+        look = "given" if group is view.governing else ""
+        return _GroupRow(
+            group,
+            group.first.elevation,
+            f"{group.overturned} of {len(group.runs)}{failed}",
+            ratio(group.by_rule.rotation_ratio),
+            group.by_rule.slip_m,
+            "failed" if group.overturned or group.failed else look,
+        )
+
+    period: html.Column[_GroupRow] = html.Column(
+        "building period [s]", lambda row: short(row.group.first.building_period_s), html.NUMBER
+    )
+    columns: list[html.Column[_GroupRow]] = [
+        html.Column("weight", lambda row: row.group.first.mass),
+        html.Column("elevation", lambda row: row.elevation),
+        *([period] if view.result.floor else []),
+        html.Column("friction, static / kinetic", lambda row: friction(row.group.first), html.NUMBER),
+        html.Column("overturned", lambda row: row.overturned, html.NUMBER),
+        html.Column("rotation ratio, by the rule", lambda row: row.rotation, html.NUMBER),
+        html.Column("slip, by the rule [mm]", lambda row: millimetres(row.slip), html.NUMBER),
+    ]
+    rows = [row_of(group) for group in view.groups]
+    rows += [_GroupRow(group, "both, 100 % + 30 %", ABSENT, ABSENT, slip) for group, slip in both]
+    return html.table_of("what the runs found", columns, rows, row_look=lambda row: row.look, look="runs")
+
+
+def _run_columns(k: int, head: str, turned_head: str) -> list[html.Column[RunPair]]:
+    """What the run with sign `k` of a pair found."""
+
+    def of(cell: html.CellOf[SiteRun], pair: RunPair) -> str:
+        return cell(pair.runs[k]) if k < len(pair.runs) else ""
+
+    def turned(run: SiteRun) -> str:
+        return "fell" if run.outcome == Outcome.OVERTURNED else ratio(run.rotation_ratio)
+
+    return [
+        html.Column(head, partial(of, lambda run: run.outcome or "failed")),
+        html.Column(turned_head, partial(of, turned), html.NUMBER),
+        html.Column("slip [mm]", partial(of, lambda run: millimetres(run.max_slip_m)), html.NUMBER),
+        html.Column("residual [mm]", partial(of, lambda run: millimetres(run.residual_slip_m)), html.NUMBER),
+        html.Column("uplift [mm]", partial(of, lambda run: millimetres(run.max_uplift_m)), html.NUMBER),
+    ]
+
+
+def _governing_table(group: RunGroup) -> html.Table:
+    columns: list[html.Column[RunPair]] = [
+        html.Column("motion", lambda pair: str(pair.motion), html.NUMBER),
+        html.Column("sign", lambda pair: sign_in_words(pair.runs[0].vertical_sign)),
+        *_run_columns(0, "outcome", "rotation ratio"),
+    ]
+    single = [pair._replace(runs=(run,)) for pair in pairs_of(group) for run in pair.runs]
+    return html.table_of(
+        "motion by motion",
+        columns,
+        single,
+        row_look=lambda pair: "failed" if pair.runs[0].outcome in (Outcome.OVERTURNED, None) else "",
+        look="runs",
+    )
+
+
+def _confirmed_table(confirmed: Sequence[ConfirmedRun]) -> html.Table:
+    columns: list[html.Column[ConfirmedRun]] = [
+        html.Column("motion", lambda one: str(one.run.motion), html.NUMBER),
+        html.Column("weight", lambda one: one.run.mass),
+        html.Column("friction", lambda one: friction(one.run), html.NUMBER),
+        html.Column("model", lambda one: one.model),
+        html.Column("outcome", lambda one: one.outcome or "failed"),
+        html.Column("rotation ratio", lambda one: ratio(one.rotation_ratio), html.NUMBER),
+        html.Column("slip [mm]", lambda one: millimetres(one.max_slip_m), html.NUMBER),
+        html.Column("how sure", lambda one: one.sure or ABSENT),
+        html.Column("outcomes over unknown inputs", lambda one: ", ".join(one.outcomes) or ABSENT),
+    ]
+    return html.table_of("the deciding runs, repeated", columns, confirmed, look="runs")
+
+
+def methods_section(view: SiteView) -> html.PageSection:
+    """The simplified methods side by side, and what each says of the strength."""
+    result = view.result
+    if not result.methods:
+        return html.section("", "methods")
+    governing = result.result.governing
+    shown = governing.mass if governing else result.bodies[0].mass
+    drawn = [row for row in result.methods if row.mass == shown]
+    capacities = (
+        draw_methods(drawn, result.result, shown) if any(row.factor is not None for row in drawn) else ""
+    )
+    columns: list[html.Column[SiteMethod]] = [
+        html.Column("method", lambda row: symbols(row.name)),
+        html.Column("check", lambda row: row.quantity),
+        html.Column("weight", lambda row: row.mass + _elevation(row.elevation)),
+        html.Column("utilisation", lambda row: _utilisation(row, 3), html.NUMBER),
+        html.Column("conclusion", lambda row: row.says),
+        html.Column("the runs found", lambda row: Markup.escape(row.found)),
+        html.Column(
+            "the method is",
+            lambda row: html.Cell(
+                row.compared or ABSENT, "doubt" if row.compared == "not conservative" else ""
+            ),
+        ),
+        html.Column("source", lambda row: html.Cell(Markup.escape(row.source), "note")),
+    ]
+    return html.section(
+        "Rules of thumb side by side",
+        "methods",
+        html.joined(
+            "All use the least friction of the range and the same action as the runs. The last columns give what the "
+            "runs found, and whether the method is conservative there; formulas and numbers are in the ",
+            html.link("static calculation", "sheet"),
+            ".",
+        ),
+        html.table_of("rules of thumb side by side", columns, merged_methods(result.methods), look="methods"),
+        *([figure(capacities, "methods-0", "capacity over strength by each method")] if capacities else []),
+    )
+
+
+def motions_section(motions: Sequence[DrawnMotion]) -> html.PageSection:
+    """Appendix A: the motions in numbers and curves."""
+    columns: list[html.Column[SiteMotion]] = [
+        html.Column("motion", lambda one: str(one.number), html.NUMBER),
+        html.Column("origin", lambda one: Markup.escape(one.origin)),
+        html.Column("scale", lambda one: short(one.scale), html.NUMBER),
+        html.Column("PGA [m/s²]", lambda one: number(one.pga_m_s2, figures=3), html.NUMBER),
+        html.Column("vertical", lambda one: number(one.vertical_pga_m_s2, figures=3), html.NUMBER),
+        html.Column("PGV [m/s]", lambda one: number(one.pgv_m_s, figures=3), html.NUMBER),
+        html.Column("PGD [m]", lambda one: number(one.pgd_m, figures=3), html.NUMBER),
+        html.Column("D5-95 [s]", lambda one: number(one.d5_95_s, figures=3), html.NUMBER),
+        html.Column("end velocity [m/s]", lambda one: number(one.end_velocity_m_s, figures=2), html.NUMBER),
+        html.Column(
+            "end displacement [m]", lambda one: number(one.end_displacement_m, figures=2), html.NUMBER
+        ),
+    ]
+    curves = [
+        figure(svg, f"motion-{motion.number}", f"motion {motion.number}") for motion, svg in motions if svg
+    ]
+    more = len(motions) - len(curves)
+    return html.section(
+        "Appendix A: the motions",
+        "motions",
+        html.table_of("the motions", columns, [one.motion for one in motions], look="runs"),
+        html.Group("drawn", curves),
+        *([html.Note(f"The curves of the other {more} motions are in their files.")] if more else []),
+        look="break",
+    )
+
+
+def every_run_section(view: SiteView) -> html.PageSection:
+    """Appendix B: a row for each motion at each weight and friction."""
+    pairs = [pair for group in view.groups for pair in pairs_of(group)]
+    if not pairs:
+        return html.section("", "runs")
+    period: html.Column[RunPair] = html.Column(
+        symbols("T_1 [s]"), lambda pair: short(pair.group.first.building_period_s), html.NUMBER
+    )
+    columns: list[html.Column[RunPair]] = [
+        html.Column("motion", lambda pair: str(pair.motion), html.NUMBER),
+        html.Column("weight", lambda pair: pair.group.first.mass + _elevation(pair.group.first.elevation)),
+        *([period] if view.result.floor else []),
+        html.Column("friction", lambda pair: friction(pair.group.first), html.NUMBER),
+        *(
+            column
+            for k, sign in enumerate(view.signs)
+            for column in _run_columns(k, sign_in_words(sign), "ratio")
+        ),
+    ]
+    table = html.table_of("every run", columns, pairs, look="runs long", most=len(pairs))
+    return html.section("Appendix B: every run", "runs", table)
+
+
+def sheet_section(view: SiteView) -> html.PageSection:
+    """Appendix C: the simplified methods with their numbers."""
+    if not view.result.methods:
+        return html.section("", "sheet")
+
+    def name(row: SiteMethod) -> str:
+        return html.joined(symbols(row.name), f", {row.quantity}, {row.mass}{_elevation(row.elevation)}")
+
+    def demand(row: SiteMethod) -> str:
+        return "none" if row.demand is None else quantity(row.demand, row.unit)
+
+    columns: list[html.Column[SiteMethod]] = [
+        html.Column("method", name),
+        html.Column("formula", lambda row: formula_markup(row.formula)),
+        html.Column("with numbers", lambda row: symbols(row.numbers)),
+        html.Column("demand", demand, html.NUMBER),
+        html.Column("capacity", lambda row: quantity(row.capacity, row.unit), html.NUMBER),
+        html.Column("utilisation", lambda row: _utilisation(row, 4), html.NUMBER),
+        html.Column("valid for", lambda row: html.Cell(Markup.escape(row.validity), "note")),
+    ]
+    table = html.table_of("static calculation with numbers", columns, view.result.methods, look="methods")
+    return html.section("Appendix C: static calculation with numbers", "sheet", table)
+
+
+def repeat_section(view: SiteView, copies: Sequence[tuple[str, str]]) -> html.PageSection:
+    """Appendix D: seeds, hashes and files to compute it again."""
+    origin, motions = view.result.provenance, view.result.set
+    rows: list[tuple[str, str]] = [("command", html.code(origin.command))]
+    if motions.seed is not None:
+        lasts = quantity(motions.stationary_s, "s")
+        rows.append(("seed", f"{motions.seed}, {motions.source}, stationary part {lasts}"))
+    rows += [
+        ("hash of the site file", html.code(origin.site_hash)),
+        ("hash of the case", html.code(origin.case_hash)),
+        *((f"motion {motion.number}", _hashes(motion)) for motion in motions.motions),
+        ("versions", ", ".join(f"{name} {version}" for name, version in origin.versions)),
+    ]
+    if origin.wall_s:
+        rows.append(("computed in", quantity(origin.wall_s, "s", figures=3)))
+    files = [block for name, text in copies for block in (html.Heading(name), html.Listing(text))]
+    return html.section("Appendix D: how to repeat it", "again", html.Pairs(rows, look="asked"), *files)
+
+
+def _hashes(motion: SiteMotion) -> Markup:
+    files = zip(motion.files, motion.sha256, strict=False)
+    return Markup(" · ").join(html.joined(f"{file} ", html.code(one)) for file, one in files)
+
+
+def _elevation(elevation: str) -> str:
+    return "" if elevation == "width" else f", {elevation}"
+
+
+def _utilisation(row: SiteMethod, figures: int) -> str:
+    return "∞" if row.utilisation is None else number(row.utilisation, figures=figures)
+
+
+def sign_in_words(sign: int) -> str:
+    """How the vertical motion was taken."""
+    return "vertical as it is" if sign > 0 else "vertical reversed" if sign < 0 else "no vertical"
+
+
+def pairs_of(group: RunGroup) -> list[RunPair]:
+    """The runs of a group, motion by motion, the sign + first."""
+    return [
+        RunPair(
+            motion,
+            group,
+            tuple(
+                sorted(
+                    (run for run in group.runs if run.motion == motion), key=lambda run: -run.vertical_sign
+                )
+            ),
+        )
+        for motion in sorted({run.motion for run in group.runs})
+    ]
+
+
+def friction(run: SiteRun) -> str:
+    """Both coefficients of a run."""
+    return f"{short(run.mu_static, figures=3)} / {short(run.mu_kinetic, figures=3)}"
+
+
+def merged_methods(methods: Sequence[SiteMethod]) -> list[SiteMethod]:
+    """The methods side by side; weights with the same result, to three figures, share a row."""
+    found: dict[tuple[str, ...], list[SiteMethod]] = {}
+    for one in methods:
+        shown = (
+            one.name,
+            one.quantity,
+            one.elevation,
+            number(one.utilisation, figures=3),
+            one.says,
+            one.found,
+        )
+        found.setdefault((*shown, one.compared), []).append(one)
+    return [replace(same[0], mass=", ".join(one.mass for one in same)) for same in found.values()]
