@@ -16,12 +16,13 @@ from typing import Any
 
 import numba
 from numba.core import config
+from numba.core.cpu import CPUTargetOptions
 from numba.core.registry import CPUDispatcher
 from numba.core.types import unliteral
 from numba.core.typing.typeof import typeof
 from numba.extending import register_jitable
 
-from contact.pieces import KernelCompiler, PieceCompiler
+from contact.compiler import PLAIN, KernelCompiler, PieceCompiler
 
 
 class CacheFolderError(RuntimeError):
@@ -30,8 +31,8 @@ class CacheFolderError(RuntimeError):
 
 @cache
 def source_digest(sources: tuple[Path, ...] = ()) -> str:
-    """Digest of this package's sources, of `sources`, and of numba's version, 16 hexadecimal digits."""
-    digest = hashlib.sha256(numba.__version__.encode())
+    """Digest of this package's sources, of `sources`, of numba's version and the compiler, 16 hexadecimal digits."""
+    digest = hashlib.sha256((numba.__version__ + " plain" * PLAIN).encode())
     root = Path(__file__).parent
     for source in (*sorted(root.rglob("*.py")), *sources):
         digest.update(
@@ -81,12 +82,15 @@ def _require_own(*folders: Path) -> None:
 #: no kernel may allocate an array; they run without the interpreter's lock; division by zero follows IEEE (as in
 #: numpy); there is no fast-math, so that repeated runs give identical bytes
 OPTIONS: Any = {"error_model": "numpy", "nogil": True, "_nrt": False}
+if not hasattr(CPUTargetOptions, "_nrt"):  # numba does not promise it: all is slower then
+    del OPTIONS["_nrt"]
 
 
 def options_of_piece(inline: bool) -> Any:
     """numba's options for a function as kernels call it, see `contact.pieces`."""
     unused = {"nopython": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    return OPTIONS | unused | {"forceinline": inline, "pipeline_class": PieceCompiler}
+    asked = {"forceinline": inline} if hasattr(CPUTargetOptions, "forceinline") else {}
+    return OPTIONS | unused | asked | {"pipeline_class": PieceCompiler}
 
 
 class Kernel(CPUDispatcher):
@@ -145,7 +149,8 @@ def compiled(
     finally:
         setattr(config, "CACHE_DIR", before)  # noqa: B010
     # numba would first load all that its compiler knows (0.1 s, 27 MB); a compilation does so itself.
-    entry._cache.load_overload = entry._cache._load_overload
+    if hasattr(entry._cache, "_load_overload"):
+        entry._cache.load_overload = entry._cache._load_overload
     kernel.entry = entry
     return kernel
 

@@ -3,19 +3,38 @@
 numba optimises each function with all that it calls and makes machine code of it, and does so again for each function
 that calls it in turn. For a function that only kernels call, both are for nothing: here its code is passed on as numba
 writes it, and is optimised where it is used. It has no entry from Python.
+
+This builds on parts of numba that may change: `contact.compiler` does without this module where it cannot be imported.
 """
 
 import gc
+from collections.abc import Callable
+from inspect import signature
 from typing import Any
 
 from numba import _dynfunc  # type: ignore[attr-defined]
-from numba.core.codegen import JITCodeLibrary
+from numba.core.base import BaseContext
+from numba.core.codegen import CPUCodegen, JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.compiler_machinery import LoweringPass, register_pass
 from numba.core.typed_passes import AnnotateTypes, NativeLowering
 
 SIMPLIFIED = 1  #: level of LLVM's optimisation
 NEW_OBJECTS = 50_000  #: between two searches of Python for cycles, which else take a tenth of a compilation
+
+
+def _require(function: Callable[..., Any], *parameters: str) -> None:
+    """Refuse a numba whose function takes other parameters than this module was written for."""
+    if tuple(signature(function).parameters) != parameters:
+        raise ImportError(f"numba: {function.__qualname__} takes other parameters")
+
+
+_require(JITCodeLibrary._optimize_functions, "self", "ll_module")
+_require(JITCodeLibrary._optimize_final_module, "self")
+_require(JITCodeLibrary._finalize_final_module, "self")
+_require(CPUCodegen._function_pass_manager, "self", "kwargs")
+_require(BaseContext.insert_user_function, "self", "func", "fndesc", "libs")
+_require(DefaultPassBuilder.define_nopython_pipeline, "state", "name")
 
 
 class KernelLibrary(JITCodeLibrary):

@@ -25,6 +25,8 @@ from numba.extending import (
     unbox,
 )
 
+from contact.compiler import PLAIN
+
 Struct = TypeVar("Struct", bound=type)
 
 
@@ -52,8 +54,10 @@ class StructModel(models.OpaqueModel):
 def struct(kind: Struct) -> Struct:
     """Decorator of a NamedTuple class: pass its instances to kernels as pointers; kernels can make them, too.
 
-    What a kernel has made is gone when it returns.
+    What a kernel has made is gone when it returns. numba's own passes take twice as long with pointers.
     """
+    if PLAIN:
+        return kind
 
     @typeof_impl.register(kind)
     def type_of(value: Any, context: Any) -> StructType:

@@ -14,7 +14,9 @@ SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob
 
 #: from the foundation up: a package imports its own modules and those of lower layers, none beside or above it
 LAYERS = (
-    ("mesh", "contact.arrays", "contact.pieces", "contact.structs", "contact.local_arrays"),
+    ("mesh", "contact.arrays", "contact.pieces"),
+    ("contact.compiler",),
+    ("contact.structs", "contact.local_arrays"),
     ("contact.jit", "contact.reference"),
     ("contact.motion",),
     ("contact.interface",),

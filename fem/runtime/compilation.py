@@ -8,7 +8,10 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+import numba
 from numba.core import event
+
+from contact.compiler import PLAIN
 
 COMPILING = "numba:compile"
 #: kernels that hold the whole stepping; all others take seconds at most
@@ -52,7 +55,10 @@ class Announcer(event.Listener):
         if not self._announced and kernel_name(event) in LONG:
             self._announced = True
             self._message(
-                "compiling the stepping kernels, once after installation: a quarter of a minute or more"
+                f"compiling the stepping kernels with numba {numba.__version__}'s own passes, once after "
+                "installation: the results are the same, but it takes a minute or more"
+                if PLAIN
+                else "compiling the stepping kernels, once after installation: a quarter of a minute or more"
             )
 
     def on_end(self, event: event.Event) -> None:

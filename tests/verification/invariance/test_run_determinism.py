@@ -38,6 +38,23 @@ def test_the_number_of_threads_changes_no_byte(tmp_path, overrides):
     require_same(tmp_path / "1", tmp_path / "2")
 
 
+def test_numbas_own_passes_give_the_same_bytes(tmp_path):
+    said = []
+    for name, environment in (("pieces", {}), ("plain", {"UNANCHORED_COMPILER": "plain", "NUMBA_OPT": "1"})):
+        words = run_command("seed_stack_plateau", tmp_path / name, *THREADED[2], "output.figures=false")
+        done = subprocess.run(
+            [sys.executable, "-m", "fem", *words, "--no-band"],
+            env=os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)} | environment,
+            check=True,
+            timeout=600,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        said.append(done.stderr.count("own passes"))
+    assert said == [0, 1]
+    require_same(tmp_path / "pieces", tmp_path / "plain")
+
+
 def test_a_resolved_case_with_its_files_beside_it_gives_the_same_bytes(tmp_path, monkeypatch):
     (tmp_path / "case" / "data").mkdir(parents=True)
     monkeypatch.chdir(tmp_path / "case")  # paths relative to the current folder, as a user gives them
