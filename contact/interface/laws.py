@@ -16,6 +16,19 @@ from contact.jit import compiled
 
 ELASTIC_STICK = 0  #: code of the friction law regularised in displacement
 REGULARISED = 1  #: code of the friction law regularised in velocity
+#: the laws that the kernels handle: name -> code
+FRICTION_LAWS = {"elastic-stick": ELASTIC_STICK, "regularised": REGULARISED}
+
+
+def require_known_friction(code: int) -> None:
+    """Refuse a law of friction that the kernels do not handle.
+
+    Raises:
+        ValueError: there is no law of this code.
+    """
+    if code not in FRICTION_LAWS.values():
+        known = ", ".join(f"{value} ({name})" for name, value in FRICTION_LAWS.items())
+        raise ValueError(f"there is no friction law of code {code}; known: {known}")
 
 
 @compiled(inline=True)

@@ -22,6 +22,7 @@ from contact.interface.compliance import (
 )
 from contact.interface.laws import (
     ELASTIC_STICK,
+    REGULARISED,
     normal_force,
     regularised_friction,
     stick_friction,
@@ -86,7 +87,7 @@ def evaluate_laws(
             work.law[i, 0] = force
             work.slope[i, 0] = by_trial * trial_slope
             work.slope[i, 1] = by_limit * mu[i] * work.slope[i, 2]
-        else:
+        elif contact.friction == REGULARISED:
             force, by_normal, by_velocity = regularised_friction(
                 normal,
                 work.velocity[i, 0],

@@ -20,7 +20,7 @@ class Contact(NamedTuple):
     mu_kinetic: FloatArray  #: (n,)
     weakening: FloatArray  #: (n,) slip over which static falls to kinetic friction [m]
     stribeck_velocity: float  #: slip velocity over which it falls; 0: not with velocity [m/s]
-    friction: int  #: ELASTIC_STICK or REGULARISED
+    friction: int  #: one of `laws.FRICTION_LAWS`
     regularisation_velocity: float  #: [m/s]
     force_scale: float  #: weight of the container [N], the scale of negligible forces
     resolution: float  #: rounding of a point's position; times the slope, the least force resolved [m]

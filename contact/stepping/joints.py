@@ -6,7 +6,7 @@ Static and kinetic friction are states of a joint, not of a point: see "Static a
 
 import math
 
-from contact.interface.laws import ELASTIC_STICK, relaxed_stick, weakened_mu
+from contact.interface.laws import ELASTIC_STICK, REGULARISED, relaxed_stick, weakened_mu
 from contact.jit import compiled, inlined
 from contact.stepping.body import ANGULAR_VELOCITY, CENTRE_X, CENTRE_Z, ROTATION, VELOCITY_X, VELOCITY_Z
 from contact.stepping.observables import SLIDING
@@ -316,7 +316,7 @@ def slide(run: RunState, j: int, step: float, holding: float) -> None:
         if new.point[i, 1] >= 0.0:
             new.stick[i] = 0.0
             continue
-        if contact.friction != ELASTIC_STICK:
+        if contact.friction == REGULARISED:
             new.stick[i] = 0.0
             run.slip[i] = moved
         elif stops and normal > 0.0:
@@ -336,7 +336,7 @@ def slide(run: RunState, j: int, step: float, holding: float) -> None:
             weighted += normal * run.slip[i]
             velocity += normal * work.velocity[i, 0]
             total += normal
-            if contact.friction != ELASTIC_STICK:
+            if contact.friction == REGULARISED:
                 slides = abs(work.velocity[i, 0]) > contact.regularisation_velocity
                 every = every and slides
             else:

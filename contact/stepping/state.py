@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from contact.arrays import FloatArray
+from contact.interface.laws import require_known_friction
 from contact.interface.workspace import Contact, Workspace
 from contact.motion.kernel import UNIFORM, FloorMotion, as_floor_motion, floor_motion
 from contact.stepping.body import State
@@ -250,7 +251,11 @@ def make_run(
 
     `old` is the initial state, completed; `joints` those of a loose stack, see `make_joints`. The stiffness in the
     `contact` of a loose stack changes in place.
+
+    Raises:
+        ValueError: the kernels do not handle the law of friction.
     """
+    require_known_friction(contact.friction)
     n = old.point.shape[0]
     clock = np.zeros(1, STEP_RECORD).view(np.recarray)
     clock["smallest_step"] = NEVER

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.interface.equilibrium import SettlingError, Stance, standing, tilted
-from contact.interface.laws import ELASTIC_STICK, REGULARISED
+from contact.interface.laws import FRICTION_LAWS
 from contact.interface.penalty import relaxation_time
 from contact.interface.workspace import Contact
 from contact.stepping.body import ROTATION
@@ -29,8 +29,6 @@ from mesh.container import ContainerMesh
 #: error of a base point at which the iterations of a step stop, over the static penetration
 POINT_TOLERANCE = 1e-6
 
-#: of the kernels, by the name of the friction law in a case
-CODES = {"elastic-stick": ELASTIC_STICK, "regularised": REGULARISED}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -153,7 +151,7 @@ def _contact(case: Case, mesh: ContainerMesh, springs: FloatArray, base: int) ->
         mu_kinetic=np.full(springs.size, chosen.mu_kinetic),
         weakening=np.full(springs.size, chosen.weakening_m),
         stribeck_velocity=chosen.stribeck_velocity_m_s,
-        friction=CODES[chosen.friction],
+        friction=FRICTION_LAWS[chosen.friction],
         regularisation_velocity=chosen.regularisation_velocity_m_s,
         force_scale=mesh.mass * case.gravity_m_s2,
         resolution=1e-15 * (mesh.width + mesh.height),

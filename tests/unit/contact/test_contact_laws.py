@@ -4,11 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from block_on_floor import Block, rig
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from contact.interface.laws import (
+    FRICTION_LAWS,
     normal_force,
     regularised_friction,
     relaxed_stick,
@@ -182,3 +184,15 @@ def test_friction_falls_with_the_slip_velocity_from_static_to_kinetic():
 
 def test_without_a_stribeck_velocity_friction_does_not_depend_on_the_velocity():
     assert stribeck_mu(0.4, 0.2, 0.0, 1.0) == 0.4
+
+
+class OnUnknownFriction(Block):
+    """A block on a floor with a friction law of no known code."""
+
+    def contact(self):
+        return super().contact()._replace(friction=len(FRICTION_LAWS))
+
+
+def test_a_run_with_an_unknown_friction_law_is_refused():
+    with pytest.raises(ValueError, match=r"no friction law of code 2; known: 0 \(elastic-stick\), 1"):
+        rig(OnUnknownFriction())

@@ -15,7 +15,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from contact.interface.dense import factor_dense, substitute_dense
-from contact.interface.laws import ELASTIC_STICK, REGULARISED
+from contact.interface.laws import ELASTIC_STICK, FRICTION_LAWS
 from contact.interface.solver import evaluate_laws, solve_contact
 from contact.interface.workspace import Contact, Workspace, make_workspace
 
@@ -196,7 +196,7 @@ def test_two_points_find_the_state_that_enumeration_finds(draw, each, seed):
 
 
 @pytest.mark.parametrize(("draw", "most"), [(random_problem, 1.5e-3), (random_slab, 3e-3)])
-@pytest.mark.parametrize("friction", [ELASTIC_STICK, REGULARISED])
+@pytest.mark.parametrize("friction", FRICTION_LAWS.values(), ids=FRICTION_LAWS)
 def test_the_solver_rarely_gives_up(draw, most, friction):
     """It has no proof of convergence under friction; where it fails it says so, and the step is halved.
 
@@ -213,7 +213,7 @@ def test_the_solver_rarely_gives_up(draw, most, friction):
     st.sampled_from([random_problem, random_slab]),
     st.integers(0, 2**32 - 1),
     st.integers(1, 9),
-    st.sampled_from([ELASTIC_STICK, REGULARISED]),
+    st.sampled_from(list(FRICTION_LAWS.values())),
 )
 def test_contact_is_complementary_and_stays_in_the_cone(draw, seed, points, friction):
     problem = draw(seed, points, friction=friction)
@@ -239,7 +239,19 @@ def test_points_and_velocities_follow_from_the_forces(seed, points):
     assert work.velocity.ravel() == pytest.approx(expected, abs=1e-12 * scale)
 
 
-@pytest.mark.parametrize("friction", [ELASTIC_STICK, REGULARISED])
+@pytest.mark.parametrize("friction", FRICTION_LAWS.values(), ids=FRICTION_LAWS)
+def test_every_law_opposes_a_fast_slip_with_all_its_friction(friction):
+    problem = random_problem(1, 4, friction=friction)
+    work = problem.workspace()
+    work.point[:], work.velocity[:] = [1e3, -1e-3], [1e3, 0.0]
+    evaluate_laws(
+        problem.contact, problem.step, problem.slope, problem.each_mu, problem.start, problem.stick, work
+    )
+    assert (work.law[:, 1] > 0.0).all()
+    assert work.law[:, 0] == pytest.approx(-problem.mu * work.law[:, 1], rel=1e-12)
+
+
+@pytest.mark.parametrize("friction", FRICTION_LAWS.values(), ids=FRICTION_LAWS)
 def test_slopes_are_minus_the_derivatives_of_the_laws(friction):
     compared = 0
     for seed in range(60):
