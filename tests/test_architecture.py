@@ -18,6 +18,7 @@ LAYERS = (
     ("contact.compiler",),
     ("contact.structs", "contact.local_arrays"),
     ("contact.jit", "contact.reference"),
+    ("contact.layout",),
     ("contact.motion",),
     ("contact.interface",),
     ("contact.stepping",),
@@ -49,10 +50,17 @@ NESTED = {
 NARROW = {
     "contact.reference": {"contact.arrays"},
     "contact.motion": {"contact.arrays", "contact.jit", "contact.structs"},
-    "contact.interface": {"contact.arrays", "contact.jit", "contact.structs", "contact.motion"},
+    "contact.interface": {
+        "contact.arrays",
+        "contact.jit",
+        "contact.layout",
+        "contact.structs",
+        "contact.motion",
+    },
     "contact.stepping": {
         "contact.arrays",
         "contact.jit",
+        "contact.layout",
         "contact.structs",
         "contact.local_arrays",
         "contact.motion",

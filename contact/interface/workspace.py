@@ -1,10 +1,9 @@
 """Data of the contact problem: the constants of the floor, and the arrays of one solution."""
 
-from typing import NamedTuple
-
-import numpy as np
+from typing import Annotated, NamedTuple
 
 from contact.arrays import FloatArray, IntArray
+from contact.layout import zeros_of
 from contact.structs import struct
 
 
@@ -34,52 +33,35 @@ class Contact(NamedTuple):
 class Workspace(NamedTuple):
     """Arrays of one contact problem, shapes in terms of the n base points."""
 
-    free: FloatArray  #: (n, 2) positions of the points without contact force [m]
-    free_velocity: FloatArray  #: (n, 2) and their velocities, relative to the floor [m/s]
-    compliance: FloatArray  #: (2 n, 2 n) G [m/N], x and z of a point in turn
-    point: FloatArray  #: (n, 2) [m]
-    velocity: FloatArray  #: (n, 2) [m/s]
-    force: FloatArray  #: (n, 2) [N]
-    law: FloatArray  #: (n, 2) force of the laws at `point` [N]
-    slope: FloatArray  #: (n, 3) minus its derivatives: tangential by x, tangential by z, normal by z [N/m]
-    matrix: FloatArray  #: (2 n, 2 n) factors of the tangent over the active points
-    change: FloatArray  #: (2 n,)
-    solution: FloatArray  #: (2 n,)
-    excess: FloatArray  #: (n, 2) what friction cuts off [N]; minus d/dx of the uncut force [N/m]
-    mu: FloatArray  #: (n,) coefficients of friction in this step
-    side: IntArray  #: (n,) limit of friction reached in the last iteration: -1, 1; 0: none
-    level: IntArray  #: (n,) of the normal force in the last iteration: -1 open, 1 at the cap; 0: elastic
-    pivot: IntArray  #: (2 n,) pivots of `matrix`
-    factored_slope: FloatArray  #: (n, 3) tangents for which `matrix` was factored
-    factored_step: FloatArray  #: (1,) and step size; < 0: none [s]
-    factored_count: IntArray  #: (1,) and number of active points
-    trial: FloatArray  #: (n, 2)
-    active: IntArray  #: (n,) active points, the first `factored_count` entries
+    free: Annotated[FloatArray, "n", 2]  #: positions of the points without contact force [m]
+    free_velocity: Annotated[FloatArray, "n", 2]  #: and their velocities, relative to the floor [m/s]
+    compliance: Annotated[FloatArray, "2n", "2n"]  #: G [m/N], x and z of a point in turn
+    point: Annotated[FloatArray, "n", 2]  #: [m]
+    velocity: Annotated[FloatArray, "n", 2]  #: [m/s]
+    force: Annotated[FloatArray, "n", 2]  #: [N]
+    law: Annotated[FloatArray, "n", 2]  #: force of the laws at `point` [N]
+    slope: Annotated[
+        FloatArray, "n", 3
+    ]  #: minus its derivatives: tangential by x, tangential by z, normal by z [N/m]
+    matrix: Annotated[FloatArray, "2n", "2n"]  #: factors of the tangent over the active points
+    change: Annotated[FloatArray, "2n"]
+    solution: Annotated[FloatArray, "2n"]
+    excess: Annotated[FloatArray, "n", 2]  #: what friction cuts off [N]; minus d/dx of the uncut force [N/m]
+    mu: Annotated[FloatArray, "n"]  #: coefficients of friction in this step
+    side: Annotated[IntArray, "n"]  #: limit of friction reached in the last iteration: -1, 1; 0: none
+    level: Annotated[
+        IntArray, "n"
+    ]  #: of the normal force in the last iteration: -1 open, 1 at the cap; 0: elastic
+    pivot: Annotated[IntArray, "2n"]  #: pivots of `matrix`
+    factored_slope: Annotated[FloatArray, "n", 3]  #: tangents for which `matrix` was factored
+    factored_step: Annotated[FloatArray, 1]  #: and step size; < 0: none [s]
+    factored_count: Annotated[IntArray, 1]  #: and number of active points
+    trial: Annotated[FloatArray, "n", 2]
+    active: Annotated[IntArray, "n"]  #: active points, the first `factored_count` entries
 
 
 def make_workspace(points: int) -> Workspace:
     """Allocate the arrays for so many base points."""
-    n = points
-    return Workspace(
-        free=np.zeros((n, 2)),
-        free_velocity=np.zeros((n, 2)),
-        compliance=np.zeros((2 * n, 2 * n)),
-        point=np.zeros((n, 2)),
-        velocity=np.zeros((n, 2)),
-        force=np.zeros((n, 2)),
-        law=np.zeros((n, 2)),
-        slope=np.zeros((n, 3)),
-        matrix=np.zeros((2 * n, 2 * n)),
-        change=np.zeros(2 * n),
-        solution=np.zeros(2 * n),
-        excess=np.zeros((n, 2)),
-        mu=np.zeros(n),
-        side=np.zeros(n, dtype=np.int64),
-        level=np.zeros(n, dtype=np.int64),
-        pivot=np.zeros(2 * n, dtype=np.int64),
-        factored_slope=np.zeros((n, 3)),
-        factored_step=np.full(1, -1.0),
-        factored_count=np.zeros(1, dtype=np.int64),
-        trial=np.zeros((n, 2)),
-        active=np.zeros(n, dtype=np.int64),
-    )
+    work = Workspace(**zeros_of(Workspace, **{"n": points, "2n": 2 * points}))
+    work.factored_step[0] = -1.0
+    return work

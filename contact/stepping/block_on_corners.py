@@ -8,14 +8,18 @@ advanced once or some hundred times, in thousands of steps.
 from contact.arrays import FloatArray
 from contact.interface.workspace import Workspace
 from contact.jit import inlined
-from contact.local_arrays import local_counts, local_row, local_rows, part_row, part_rows
+from contact.layout import exchanging, parts_of, room_of
+from contact.local_arrays import local_counts, local_row, local_rows
 from contact.stepping.body import State, implements
 from contact.stepping.integrator import FAILED, advance, advance_kernel
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import BlockOnCorners, BodyOnCorners, LocalBlock, ModalBody
-from contact.stepping.state import RunState
+from contact.stepping.state import AttemptedStep, RunState
 
-NUMBERS = 50  #: of its state
+#: sizes in its layouts: coordinates, points, boxes of a loose stack
+SIZES = {"d": 3, "n": 2, "2n": 4, "N": 0, "4N": 0}
+NUMBERS, _ = room_of(State, **SIZES)
+NUMBERS_OF_WORK, COUNTS_OF_WORK = room_of(Workspace, **SIZES)
 inlined(advance)
 
 
@@ -28,8 +32,20 @@ class LocalWorkspace(Workspace):
     """A workspace in registers."""
 
 
+class LocalAttempt(AttemptedStep):
+    """An attempted step in registers."""
+
+
 class LocalRun(RunState):
     """A run whose states and workspace are in registers."""
+
+
+local_state = parts_of(LocalState, State, **SIZES)
+local_work = parts_of(LocalWorkspace, Workspace, **SIZES)
+local_run = exchanging(LocalRun, "attempt", "old", "work", "floor", "lift", "ledger")
+local_block = exchanging(
+    LocalBlock, "point", "stiffness", "damping", "cached_step", "recent", "inverse", "arm", "free_change"
+)
 
 
 def advance_on(body: ModalBody | LooseStack, run: RunState, until: float) -> int:
@@ -59,7 +75,7 @@ def has_two_points(state: State) -> bool:
 def advance_on_corners(body: BodyOnCorners, run: RunState, until: float) -> int:
     """.. of two points: from each comparison with a constant the compiler infers a size, and unrolls loops."""
     work = run.work
-    if body.point.shape[0] != 2 or run.control.base_points != 2 or run.joints.shape[0] != 1:
+    if body.point.shape[0] != 2 or run.problem.control.base_points != 2 or run.joints.shape[0] != 1:
         return FAILED
     if body.moved.shape[1] != 4 or body.across.shape[1] != 4:
         return FAILED
@@ -69,35 +85,9 @@ def advance_on_corners(body: BodyOnCorners, run: RunState, until: float) -> int:
         return FAILED
     if work.force.shape[0] != 2 or work.force.shape[1] != 2:
         return FAILED
-    if not has_two_points(run.old) or not has_two_points(run.new):
+    if not has_two_points(run.old) or not has_two_points(run.attempt.new):
         return FAILED
     return advance(body, run, until)
-
-
-@inlined
-def state_of(numbers: FloatArray, whole: State) -> LocalState:
-    """The state whose numbers these are, in the order of `make_state`; `whole` has its monitored points."""
-    return LocalState(
-        part_row(numbers, 0, 3),
-        part_row(numbers, 3, 3),
-        part_row(numbers, 6, 3),
-        part_row(numbers, 9, 3),
-        part_row(numbers, 12, 3),
-        part_row(numbers, 15, 3),
-        part_row(numbers, 18, 3),
-        part_rows(numbers, 21, 2, 2),
-        part_rows(numbers, 25, 2, 2),
-        part_rows(numbers, 29, 2, 2),
-        part_rows(numbers, 33, 2, 2),
-        part_row(numbers, 37, 2),
-        part_row(numbers, 39, 2),
-        part_row(numbers, 41, 6),
-        part_row(numbers, 47, 3),
-        whole.boxes,
-        whole.corner,
-        whole.monitor,
-        numbers,
-    )
 
 
 @inlined
@@ -118,88 +108,43 @@ def copy_pair(target: FloatArray, source: FloatArray, columns: int) -> None:
 @implements(advance_on, BlockOnCorners)
 def advance_in_registers(body: BlockOnCorners, run: RunState, until: float) -> int:
     """.. on arrays of constant shape; the work of the last attempt is copied back as far as its residual needs."""
-    if body.stiffness.size != 0 or body.point.shape[0] != 2 or run.control.base_points != 2:
+    if body.stiffness.size != 0 or body.point.shape[0] != 2 or run.problem.control.base_points != 2:
         return FAILED
-    if run.joints.shape[0] != 1 or run.old.numbers.size != NUMBERS or run.new.numbers.size != NUMBERS:
+    if run.joints.shape[0] != 1 or run.old.numbers.size != NUMBERS or run.attempt.new.numbers.size != NUMBERS:
         return FAILED
-    before, after, point, nothing = local_row(50), local_row(50), local_rows(2, 2), local_row(0)
-    floor, lift, ledger = local_rows(2, 3), local_rows(2, 3), local_row(6)
-    work = LocalWorkspace(
-        local_rows(2, 2),
-        local_rows(2, 2),
-        local_rows(4, 4),
-        local_rows(2, 2),
-        local_rows(2, 2),
-        local_rows(2, 2),
-        local_rows(2, 2),
-        local_rows(2, 3),
-        local_rows(4, 4),
-        local_row(4),
-        local_row(4),
-        local_rows(2, 2),
-        local_row(2),
-        local_counts(2),
-        local_counts(2),
-        local_counts(4),
-        local_rows(2, 3),
-        local_row(1),
-        local_counts(1),
-        local_rows(2, 2),
-        local_counts(2),
+    before, after, point, nothing = local_row(NUMBERS), local_row(NUMBERS), local_rows(2, 2), local_row(0)
+    floor, lift, ledger, none = local_rows(2, 3), local_rows(2, 3), local_row(6), local_counts(0)
+    work = local_work(run.work, local_row(NUMBERS_OF_WORK), local_counts(COUNTS_OF_WORK))
+    block = local_block(
+        body,
+        point=point,
+        stiffness=nothing,
+        damping=nothing,
+        cached_step=local_row(2),
+        recent=local_counts(1),
+        inverse=local_rows(1, 3),
+        arm=local_rows(2, 2),
+        free_change=local_row(3),
     )
-    block = LocalBlock(
-        body.mass,
-        body.inertia,
-        body.gravity,
-        body.downhill,
-        point,
-        body.shape,
-        body.across,
-        body.rest,
-        body.monitor,
-        body.monitor_shape,
-        nothing,
-        nothing,
-        body.tolerance,
-        local_row(2),
-        local_counts(1),
-        local_rows(1, 3),
-        body.elastic_compliance,
-        local_rows(2, 2),
-        body.moved,
-        local_row(3),
-    )
-    own = LocalRun(
-        run.scheme,
-        run.contact,
-        run.motion,
-        run.vertical,
-        run.breaks,
-        run.control,
-        state_of(before, run.old),
-        state_of(after, run.new),
-        work,
-        floor,
-        lift,
-        local_row(2),
-        local_row(6),
-        ledger,
-        run.clock,
-        run.joints,
-        run.track,
-        run.contents,
-        run.history,
-        run.frames,
+    attempt = LocalAttempt(local_state(run.attempt.new, after, none), slip=local_row(2), change=local_row(6))
+    own = local_run(
+        run,
+        attempt=attempt,
+        old=local_state(run.old, before, none),
+        work=work,
+        floor=floor,
+        lift=lift,
+        ledger=ledger,
     )
     copy_pair(point, body.point, 2)
     copy_row(before, run.old.numbers, NUMBERS)
-    copy_row(after, run.new.numbers, NUMBERS)
+    copy_row(after, run.attempt.new.numbers, NUMBERS)
     copy_pair(floor, run.floor, 3)
     copy_pair(lift, run.lift, 3)
     copy_row(ledger, run.ledger, 6)
     status = advance(block, own, until)
     copy_row(run.old.numbers, before, NUMBERS)
-    copy_row(run.new.numbers, after, NUMBERS)
+    copy_row(run.attempt.new.numbers, after, NUMBERS)
     copy_pair(run.floor, floor, 3)
     copy_pair(run.lift, lift, 3)
     copy_row(run.ledger, ledger, 6)

@@ -10,7 +10,7 @@ the body with the same name.
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple, TypeVar
+from typing import Annotated, Any, NamedTuple, TypeVar
 
 import numpy as np
 from numba.extending import overload
@@ -18,6 +18,7 @@ from numba.extending import overload
 from contact.arrays import FloatArray
 from contact.interface.workspace import Contact, Workspace
 from contact.jit import options_of_piece
+from contact.layout import shapes_of
 from contact.stepping.scheme import Scheme
 from contact.structs import struct
 
@@ -31,43 +32,43 @@ KINETIC, STRAIN, POTENTIAL = 0, 1, 2
 
 @struct
 class State(NamedTuple):
-    """Everything that moves, at one instant; n_d coordinates, n base points."""
+    """Everything that moves, at one instant; d coordinates, n base points, k monitored points, N boxes."""
 
-    position: FloatArray  #: (n_d,) coordinates of the body
-    velocity: FloatArray  #: (n_d,)
-    acceleration: FloatArray  #: (n_d,) of the scheme; it lags by (alpha_f - alpha_m) times the step
-    jerk: FloatArray  #: (n_d,) change of the acceleration over the last step, per second
-    internal: FloatArray  #: (n_d,) internal forces with gravity and damping
-    damping: FloatArray  #: (n_d,) material damping only
-    external: FloatArray  #: (n_d,) contact forces
-    point: FloatArray  #: (n, 2) base points relative to the floor, indented where it has been crushed [m]
-    force: FloatArray  #: (n, 2) contact forces on the container, tangential and normal [N]
-    descent: FloatArray  #: (n, 2) downward velocity of the base points [m/s] and its rate [m/s2]
-    drift: (
-        FloatArray  #: (n, 2) tangential velocity of the base points over the floor [m/s] and its rate [m/s2]
-    )
-    stick: FloatArray  #: (n,) elongation of the stuck tangential springs [m]
-    crushed: (
-        FloatArray  #: (n,) permanent indentation; a base point is above the floor by its height and this [m]
-    )
-    #: (6,) best-fit rotation, its rate, mass centre and its velocity (absolute); of a loose stack the rotation is that
-    #: of the lowest box
-    pose: FloatArray
-    #: (3,) kinetic, strain, gravity potential [J], of positions and vertical velocities relative to the floor
-    energy: FloatArray
-    boxes: FloatArray  #: (N, 6) poses of the boxes of a loose stack, from the floor up; (0, 6) for one body
-    corner: FloatArray  #: (4 N, 2) corners of its boxes relative to the floor [m]
-    monitor: FloatArray  #: (n_m, 4) monitored points: displacement relative to the floor [m], velocity [m/s]
+    position: Annotated[FloatArray, "d"]  #: coordinates of the body
+    velocity: Annotated[FloatArray, "d"]
+    acceleration: Annotated[FloatArray, "d"]  #: of the scheme; it lags by (alpha_f - alpha_m) times the step
+    jerk: Annotated[FloatArray, "d"]  #: change of the acceleration over the last step, per second
+    internal: Annotated[FloatArray, "d"]  #: internal forces with gravity and damping
+    damping: Annotated[FloatArray, "d"]  #: material damping only
+    external: Annotated[FloatArray, "d"]  #: contact forces
+    point: Annotated[
+        FloatArray, "n", 2
+    ]  #: base points over the floor, indented where it has been crushed [m]
+    force: Annotated[FloatArray, "n", 2]  #: contact forces on the container, tangential and normal [N]
+    descent: Annotated[FloatArray, "n", 2]  #: downward velocity of the base points [m/s] and its rate [m/s2]
+    drift: Annotated[FloatArray, "n", 2]  #: .. tangential velocity over the floor and its rate
+    stick: Annotated[FloatArray, "n"]  #: elongation of the stuck tangential springs [m]
+    #: permanent indentation; a base point is above the floor by its height and this [m]
+    crushed: Annotated[FloatArray, "n"]
+    #: best-fit rotation, its rate, mass centre and its velocity (absolute); of a loose stack the rotation is the lowest
+    #: box's
+    pose: Annotated[FloatArray, 6]
+    #: kinetic, strain, gravity potential [J], of positions and vertical velocities relative to the floor
+    energy: Annotated[FloatArray, 3]
+    boxes: Annotated[
+        FloatArray, "N", 6
+    ]  #: poses of the boxes of a loose stack, from the floor up; none for one body
+    corner: Annotated[FloatArray, "4N", 2]  #: corners of its boxes relative to the floor [m]
+    monitor: FloatArray  #: (k, 4) monitored points: displacement relative to the floor [m], velocity [m/s]
     numbers: FloatArray  #: all but the monitored points; the fields above are views of it
 
 
 def make_state(coordinates: int, points: int, monitors: int, boxes: int = 0) -> State:
     """Allocate a state for these numbers of coordinates, base points, monitored points and boxes of a loose stack."""
-    shapes: list[tuple[int, ...]] = [*7 * [(coordinates,)], *4 * [(points, 2)], *2 * [(points,)], (6,), (3,)]
-    shapes += [(boxes, 6), (4 * boxes, 2)]
-    numbers = np.zeros(sum(math.prod(shape) for shape in shapes))
+    shapes = shapes_of(State, **{"d": coordinates, "n": points, "N": boxes, "4N": 4 * boxes})
+    numbers = np.zeros(sum(math.prod(shape) for shape in shapes.values()))
     fields, begin = {}, 0
-    for name, shape in zip(State._fields, shapes, strict=False):
+    for name, shape in shapes.items():
         end = begin + math.prod(shape)
         fields[name], begin = numbers[begin:end].reshape(shape), end
     return State(**fields, monitor=np.zeros((monitors, 4)), numbers=numbers)

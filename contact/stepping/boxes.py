@@ -27,7 +27,7 @@ def follow_stack(run: RunState, step: float) -> None:
 
     A box falls when it has turned by 90 degrees, or when a corner of an upper box meets the floor.
     """
-    new, track, control = run.new, run.track[0], run.control
+    new, track, control = run.attempt.new, run.track[0], run.problem.control
     rocks, slides = track.mode in (ROCK, SLIDE_ROCK), track.mode in (SLIDE, SLIDE_ROCK)
     for j in range(run.joints.shape[0]):
         joint, old, box = run.joints[j], run.old.boxes[j], new.boxes[j]
@@ -40,7 +40,7 @@ def follow_stack(run: RunState, step: float) -> None:
         joint.opens = 0.0
         begin, end = points_of(run, j)
         for i in range(begin, end):
-            if run.contact.normal_stiffness[i] > 0.0:
+            if run.problem.contact.normal_stiffness[i] > 0.0:
                 joint.opens = max(joint.opens, new.point[i, 1])
         joint.max_opening = max(joint.max_opening, joint.opens)
         fallen = abs(box[ROTATION]) >= OVERTURNING_ROTATION
@@ -60,7 +60,7 @@ def follow_stack(run: RunState, step: float) -> None:
 def has_fallen(run: RunState) -> bool:
     """Whether the container has overturned, or a box of a loose stack has fallen."""
     if run.joints.shape[0] == 1:
-        lying = 0.0 if run.control.stop_when_overturned else LYING_MARGIN
+        lying = 0.0 if run.problem.control.stop_when_overturned else LYING_MARGIN
         return bool(abs(run.old.pose[ROTATION]) >= OVERTURNING_ROTATION - lying)
     fallen = False
     for j in range(run.joints.shape[0]):
@@ -85,7 +85,7 @@ def is_unsettled(run: RunState) -> bool:
     """Whether a box of a loose stack has lost its footing, or is beyond the slenderness angle of the stack."""
     unsettled = False
     for j in range(run.joints.shape[0]):
-        turned = abs(run.old.boxes[j, ROTATION]) > run.control.slenderness_angle
+        turned = abs(run.old.boxes[j, ROTATION]) > run.problem.control.slenderness_angle
         unsettled = unsettled or turned or not has_footing(run, j)
     return unsettled
 

@@ -31,8 +31,8 @@ SLOPE, BEND, APART, BEGINNING = 4, 5, 6, 7
 @inlined
 def follow_contents(body: Any, run: RunState, step: float) -> None:
     """Follow the monitored points through the step about to be accepted; not where the run keeps no history."""
-    clock, control = run.clock[0], run.control
-    if run.history.columns.shape[1] == 0:
+    clock, control = run.clock[0], run.problem.control
+    if run.buffers.history.columns.shape[1] == 0:
         return
     if clock.steps == 0:
         observe(body, run.old, run.floor[0, 0], run.lift[0, 0])
@@ -43,8 +43,8 @@ def follow_contents(body: Any, run: RunState, step: float) -> None:
     clock.unobserved += step
     if clock.unobserved * control.contents_cutoff < OBSERVED:
         return
-    observe(body, run.new, run.floor[1, 0], run.lift[1, 0])
-    monitor, top = run.new.monitor, control.top_monitors
+    observe(body, run.attempt.new, run.floor[1, 0], run.lift[1, 0])
+    monitor, top = run.attempt.new.monitor, control.top_monitors
     track = run.track[0]
     track.max_top_displacement = largest_sway(monitor[:top], track.max_top_displacement)
     track.max_acceleration = filter_contents(

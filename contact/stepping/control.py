@@ -85,9 +85,9 @@ def next_step(run: RunState) -> float:
     """The next step [s]: that of the present level, or shorter.
 
     If a gap is about to close, the step ends where it closes, and the next one, in which the dashpot acts, is small. A
-    step also ends at each instant of `run.breaks`.
+    step also ends at each instant of `run.problem.breaks`.
     """
-    clock, control = run.clock[0], run.control
+    clock, control = run.clock[0], run.problem.control
     step = step_of_level(control.largest_step, clock.level)
     if step > control.closing_step:
         due = max(closing_time(control, run.old, step), control.closing_step)
@@ -100,9 +100,9 @@ def next_step(run: RunState) -> float:
         due = max(switching_time(run.joints, step), control.event_step)
         if due < step:
             step = step_of_level(control.largest_step, step_level(control.largest_step, due))
-    while run.breaks[clock.next_break] <= clock.time:
+    while run.problem.breaks[clock.next_break] <= clock.time:
         clock.next_break += 1
-    left = run.breaks[clock.next_break] - clock.time
+    left = run.problem.breaks[clock.next_break] - clock.time
     if step >= left:
         return left
     if 2.0 * step > left:  # two equal steps instead of a whole one and a sliver
@@ -118,7 +118,7 @@ def allowed_imbalance(run: RunState, step: float, dissipated: float) -> float:
     impact is resolved in proportion to the impact; crushing does not ring and is left out. A first touch switches a
     dashpot on: the error there is of first order in the step, so it is compared with the energy that meets the floor.
     """
-    control, old, new = run.control, run.old, run.new
+    control, old, new = run.problem.control, run.old, run.attempt.new
     allowed = control.reference_energy * (control.energy_floor + control.energy_rate * step)
     allowed += control.energy_share * abs(dissipated)
     allowed += control.recent_share * run.clock[0].recent_dissipation * step / control.recent_time
@@ -147,7 +147,7 @@ def ledger_allowance(run: RunState, step: float) -> float:
     so that the ledger converges to its aim. The allowance stays above rounding; 1e5 such steps would reach the limit.
     A gain is worse than a loss, because it drives the motion.
     """
-    control, ledger, change = run.control, run.ledger, run.change
+    control, ledger, change = run.problem.control, run.ledger, run.attempt.change
     if change[IMBALANCE] < 0.0:
         aim, used = GAIN_AIM * GAIN_LIMIT * control.reference_energy, -ledger[IMBALANCE]
     else:

@@ -58,7 +58,7 @@ def close_step(run: RunState, step: float, iterations: int) -> None:
     """Make the step the state of the run and add its terms to the ledger."""
     clock = run.clock[0]
     for row in range(LEDGER_ROWS):
-        run.ledger[row] += run.change[row]
+        run.ledger[row] += run.attempt.change[row]
     if run.track[0].overturned_at == NEVER:  # the impact after overturning does not matter
         clock.least_imbalance = min(clock.least_imbalance, run.ledger[IMBALANCE])
         clock.most_imbalance = max(clock.most_imbalance, run.ledger[IMBALANCE])
@@ -69,14 +69,14 @@ def close_step(run: RunState, step: float, iterations: int) -> None:
     clock.steps += 1
     clock.iterations += iterations
     clock.smallest_step = min(clock.smallest_step, step)
-    copy_state(run.old, run.new)
+    copy_state(run.old, run.attempt.new)
     if run.joints.shape[0] > 1:
-        clock.spring_energy = spring_energy(run.contact, run.old.point, run.old.stick)
+        clock.spring_energy = spring_energy(run.problem.contact, run.old.point, run.old.stick)
         for j in range(run.joints.shape[0]):
             run.joints[j].opening = run.joints[j].opens
     for k in range(3):
         run.floor[0, k] = run.floor[1, k]
-    if run.vertical.kind != UNIFORM:
+    if run.problem.vertical.kind != UNIFORM:
         for k in range(3):
             run.lift[0, k] = run.lift[1, k]
 
@@ -84,11 +84,11 @@ def close_step(run: RunState, step: float, iterations: int) -> None:
 @inlined
 def _is_full(run: RunState) -> bool:
     """Whether the sample arrays cannot hold another largest step."""
-    ahead = run.control.largest_step
+    ahead, history, frames = run.problem.control.largest_step, run.buffers.history, run.buffers.frames
     clock = run.clock[0]
-    room = run.history.mode.size - (clock.samples - clock.samples_drained)
-    room_of_frames = run.frames.mode.size - (clock.frames - clock.frames_drained)
-    return (room - 1) * run.history.interval < ahead or (room_of_frames - 1) * run.frames.interval < ahead
+    room = history.mode.size - (clock.samples - clock.samples_drained)
+    room_of_frames = frames.mode.size - (clock.frames - clock.frames_drained)
+    return (room - 1) * history.interval < ahead or (room_of_frames - 1) * frames.interval < ahead
 
 
 @inlined
@@ -117,14 +117,14 @@ def advance(body: Any, run: RunState, until: float) -> int:
         no convergence at the smallest step, `run.old` is the last good state; or UNPREPARED: prepare the body for
         steps of `clock.unprepared_step` and call again.
     """
-    control, clock, track, loose = run.control, run.clock[0], run.track[0], stands_loose(body)
+    control, clock, track, loose = run.problem.control, run.clock[0], run.track[0], stands_loose(body)
     while clock.time < until and clock.steps + clock.rejected < clock.attempt_limit and not _is_full(run):
         step = next_step(run)
         if not prepared(body, step):
             clock.unprepared_step = step
             return UNPREPARED
         iterations = 0
-        weigh(body, run.contact, run.old)
+        weigh(body, run.problem.contact, run.old)
         begin_friction(run)
         for _ in range(WEAKENING_LIMIT):  # friction that weakens with the slip of this step
             iterations = attempt(body, run, step)
@@ -144,7 +144,7 @@ def advance(body: Any, run: RunState, until: float) -> int:
         dissipated = account(run, step)
         allowed = allowed_imbalance(run, step, dissipated)
         allowed = min(allowed, ledger_allowance(run, step))
-        used = abs(run.change[IMBALANCE]) / allowed
+        used = abs(run.attempt.change[IMBALANCE]) / allowed
         if switches and step > 1.01 * control.event_step:
             used = max(used, 9.0 if step > 4.0 * control.event_step else 2.0)
         if used > 1.0 and step > control.smallest_step:
@@ -163,18 +163,18 @@ def advance(body: Any, run: RunState, until: float) -> int:
             track,
             control,
             run.old,
-            run.new,
+            run.attempt.new,
             clock.time + step,
             step,
             run.joints[0].slides == 1,
             run.floor,
             run.lift,
-            run.change[FRICTION],
+            run.attempt.change[FRICTION],
         )
         follow_boxes(run, step, loose)
         follow_contents(body, run, step)
-        clock.samples = sample(run, run.history, clock.samples, clock.samples_drained, step, loose)
-        clock.frames = sample(run, run.frames, clock.frames, clock.frames_drained, step, loose)
+        clock.samples = sample(run, run.buffers.history, clock.samples, clock.samples_drained, step, loose)
+        clock.frames = sample(run, run.buffers.frames, clock.frames, clock.frames_drained, step, loose)
         close_step(run, step, iterations)
         # The imbalance of one step may vanish by chance while it changes sign: remember the last steps.
         stacked = run.joints.shape[0] > 1

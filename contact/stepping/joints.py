@@ -24,14 +24,14 @@ IMPACT_LOAD = 2.0  #: normal force over the weight from which there is an impact
 def points_of(run: RunState, j: int) -> tuple[int, int]:
     """First contact point of a joint, and the one behind its last."""
     if run.joints.shape[0] == 1:
-        return 0, run.new.point.shape[0]
+        return 0, run.attempt.new.point.shape[0]
     return (0, 2) if j == 0 else (4 * j - 2, 4 * j + 2)
 
 
 @inlined
 def _kinetic_friction(run: RunState, j: int, slid: float) -> float:
     """Coefficient of friction, at no velocity, of a sliding joint after a path of `slid` [m]."""
-    contact, first = run.contact, points_of(run, j)[0]
+    contact, first = run.problem.contact, points_of(run, j)[0]
     if contact.stribeck_velocity > 0.0 and contact.weakening[first] <= 0.0:
         return contact.mu_static[first]
     return weakened_mu(contact.mu_static[first], contact.mu_kinetic[first], contact.weakening[first], slid)
@@ -42,7 +42,7 @@ def begin_friction(run: RunState) -> None:
     """Coefficients of friction of the joints at the beginning of a step."""
     for j in range(run.joints.shape[0]):
         joint = run.joints[j]
-        joint.mu = run.contact.mu_static[points_of(run, j)[0]]
+        joint.mu = run.problem.contact.mu_static[points_of(run, j)[0]]
         if joint.sliding == 1:
             joint.mu = _kinetic_friction(run, j, joint.slip_since_break)
 
@@ -53,7 +53,7 @@ def weaken_friction(run: RunState) -> bool:
     changed = False
     for j in range(run.joints.shape[0]):
         joint = run.joints[j]
-        if joint.sliding == 1 and run.contact.weakening[points_of(run, j)[0]] > 0.0:
+        if joint.sliding == 1 and run.problem.contact.weakening[points_of(run, j)[0]] > 0.0:
             weakened = _kinetic_friction(run, j, joint.slip_since_break + abs(joint.slip_step))
             if abs(weakened - joint.mu) > WEAKENING_TOLERANCE:
                 joint.mu = weakened
@@ -76,14 +76,14 @@ def settle_friction(run: RunState, step: float, loose: bool | None) -> bool:
         joint = run.joints[j]
         every = joint.motion == ALL or (joint.motion == AIRBORNE and joint.sliding == 1)
         turned = False
-        if run.contact.friction == ELASTIC_STICK and joint.sliding == 1 and joint.motion != AIRBORNE:
+        if run.problem.contact.friction == ELASTIC_STICK and joint.sliding == 1 and joint.motion != AIRBORNE:
             turned = joint.velocity * joint.slip_velocity < 0.0
             every = slides_on(run, j, step, turned, loose)
-        elif run.contact.friction == ELASTIC_STICK and every and joint.sliding == 0:
+        elif run.problem.contact.friction == ELASTIC_STICK and every and joint.sliding == 0:
             every = breaks_loose(run, j, loose)
         overshoots = joint.sliding == 0 and (joint.motion == ALL) != (joint.slip_since_break > 0.0)
         changes = turned or overshoots or (joint.sliding == 1) != every
-        switches = switches or (changes and run.contact.mu_static[points_of(run, j)[0]] > 0.0)
+        switches = switches or (changes and run.problem.contact.mu_static[points_of(run, j)[0]] > 0.0)
         joint.slides = 1 if every else 0
     return switches
 
@@ -98,7 +98,7 @@ def breaks_loose(run: RunState, j: int, loose: bool | None) -> bool:
     joint = run.joints[j]
     holding, normal = holding_force(run, j, loose)
     slid = joint.slip_since_break + abs(joint.slip_step)
-    mu_static = run.contact.mu_static[points_of(run, j)[0]]
+    mu_static = run.problem.contact.mu_static[points_of(run, j)[0]]
     return abs(holding) > mu_static * normal or slid > SLIDING * joint.width
 
 
@@ -112,11 +112,11 @@ def slides_on(run: RunState, j: int, step: float, turned: bool, loose: bool | No
     joint = run.joints[j]
     if turned or joint.motion == NO_POINT:
         holding, normal = holding_force(run, j, loose)
-        if abs(holding) <= run.contact.mu_static[points_of(run, j)[0]] * normal:
+        if abs(holding) <= run.problem.contact.mu_static[points_of(run, j)[0]] * normal:
             # a stop within an impact does not last
             weight = 0.0
             for k in range(j, run.joints.shape[0]):
-                weight += run.joints[k].mass * (run.control.gravity + run.lift[1, 2])
+                weight += run.joints[k].mass * (run.problem.control.gravity + run.lift[1, 2])
             if turned and normal < IMPACT_LOAD * weight:
                 slide(run, j, step, holding)
             return False
@@ -134,9 +134,9 @@ def holding_force(run: RunState, j: int, loose: bool | None) -> tuple[float, flo
     """
     if loose is not None:
         return holding_in_stack(run, j)
-    new, track, joint = run.new, run.track[0], run.joints[j]
-    acceleration = run.floor[1, 2] - run.control.downhill
-    gravity = run.control.gravity + run.lift[1, 2]
+    new, track, joint = run.attempt.new, run.track[0], run.joints[j]
+    acceleration = run.floor[1, 2] - run.problem.control.downhill
+    gravity = run.problem.control.gravity + run.lift[1, 2]
     normal, x, z = 0.0, 0.0, 0.0
     begin, end = points_of(run, j)
     for i in range(begin, end):
@@ -147,7 +147,7 @@ def holding_force(run: RunState, j: int, loose: bool | None) -> tuple[float, flo
     if stands:
         x, z = new.point[0, 0], new.point[0, 1]
         if acceleration <= 0.0:
-            last = run.control.base_points - 1
+            last = run.problem.control.base_points - 1
             x, z = new.point[last, 0], new.point[last, 1]
     else:
         x, z = x / normal, z / normal
@@ -175,7 +175,7 @@ def touching_corner(i: int) -> int:
 @compiled
 def load_from_above(run: RunState, j: int) -> tuple[float, float, float]:
     """Forces on a box from the joint on top of it, x and z [N], and their moment about its centre, > 0 as rotation."""
-    new, x, z, moment = run.new, 0.0, 0.0, 0.0
+    new, x, z, moment = run.attempt.new, 0.0, 0.0, 0.0
     if j + 1 == run.joints.shape[0]:
         return x, z, moment
     begin, end = points_of(run, j + 1)
@@ -198,8 +198,14 @@ def holding_in_stack(run: RunState, j: int) -> tuple[float, float]:
     """`holding_force` of a joint of a loose stack: of the box on it, under the present forces from above.
 
     The box stands on the face below, which moves it and turns it; or it rocks on that face as a container on its floor.
+    With t along the face and n across it, F and M from above, a the acceleration of the place about which it turns,
+    d from there to its mass centre, w' and w its angular acceleration and velocity:
+
+        f = F/m - a + g,   push = -f t,   load = -f n
+        w' = (load d_t - push d_n + M/m) / (I/m + d^2),   or that of the carrier where the box stands
+        T = m (push + w' d_n - w^2 d_t),   N = m (load - w' d_t - w^2 d_n)
     """
-    new, joint, box, carrier = run.new, run.joints[j], run.new.boxes[j], carrier_of(run, j)
+    new, joint, box, carrier = run.attempt.new, run.joints[j], run.attempt.new.boxes[j], carrier_of(run, j)
     begin, end = points_of(run, j)
     half = (end - begin) // 2
     x, z, left, right = 0.0, 0.0, 0.0, 0.0
@@ -224,14 +230,15 @@ def holding_in_stack(run: RunState, j: int) -> tuple[float, float]:
     for side in range(2 if stands else 1):  # about which corner it would rock depends on the push
         if stands:
             first = begin + side * half
-            heavier = run.contact.normal_stiffness[first + half - 1] > run.contact.normal_stiffness[first]
+            stiffness = run.problem.contact.normal_stiffness
+            heavier = stiffness[first + half - 1] > stiffness[first]
             c = touching_corner(first + half - 1 if heavier else first)
             x, z = new.corner[c, 0], new.corner[c, 1]
         else:
             x, z = x / normal, z / normal
         shake_x, shake_z = acceleration_of(run, carrier, x, z)
-        force_x = above_x / joint.mass - shake_x + run.control.downhill
-        force_z = above_z / joint.mass - shake_z - run.control.gravity
+        force_x = above_x / joint.mass - shake_x + run.problem.control.downhill
+        force_z = above_z / joint.mass - shake_z - run.problem.control.gravity
         push, load = sine * force_z - cosine * force_x, -sine * force_x - cosine * force_z
         along, up = box[CENTRE_X] - run.floor[1, 0] - x, box[CENTRE_Z] - run.lift[1, 0] - z
         arm_x, arm_z = cosine * along - sine * up, sine * along + cosine * up
@@ -259,8 +266,8 @@ def carrier_of(run: RunState, j: int) -> int:
         begin, end = points_of(run, box)
         half, left, right = (end - begin) // 2, 0.0, 0.0
         for i in range(half):
-            left += run.new.force[begin + i, 1]
-            right += run.new.force[begin + half + i, 1]
+            left += run.attempt.new.force[begin + i, 1]
+            right += run.attempt.new.force[begin + half + i, 1]
         if left <= 0.0 or right <= 0.0:
             break
         box -= 1
@@ -272,7 +279,7 @@ def acceleration_of(run: RunState, box: int, x: float, z: float) -> tuple[float,
     """Acceleration of a box (-1: the floor) at a place relative to the floor [m/s2]."""
     if box < 0:
         return run.floor[1, 2], run.lift[1, 2]
-    now, before, step = run.new.boxes[box], run.old.boxes[box], run.clock[0].lag_step
+    now, before, step = run.attempt.new.boxes[box], run.old.boxes[box], run.clock[0].lag_step
     along, up = x + run.floor[1, 0] - now[CENTRE_X], z + run.lift[1, 0] - now[CENTRE_Z]
     turning = (now[ANGULAR_VELOCITY] - before[ANGULAR_VELOCITY]) / step
     spin = now[ANGULAR_VELOCITY] ** 2
@@ -286,8 +293,8 @@ def acceleration_of(run: RunState, box: int, x: float, z: float) -> tuple[float,
 def slide(run: RunState, j: int, step: float, holding: float) -> None:
     """Sliding of the points of a joint and elongation of their springs after a converged step.
 
-    Writes `run.slip` and `new.stick` of the points. Of the joint it writes `motion` - ALL loaded points slide in one
-    direction, SOME or NO_POINT; AIRBORNE without a load -, the force-weighted sliding [m], and the force-weighted
+    Writes `attempt.slip` and `new.stick` of the points. Of the joint it writes `motion` - ALL loaded points slide one
+    way, SOME or NO_POINT; AIRBORNE without a load -, the force-weighted sliding [m], and the force-weighted
     velocity of the loaded points at the end of the step [m/s].
 
     Args:
@@ -299,7 +306,8 @@ def slide(run: RunState, j: int, step: float, holding: float) -> None:
             that overshoot.
     """
     stops = holding < SLIDES_ON
-    contact, old, new, work, joint = run.contact, run.old, run.new, run.work, run.joints[j]
+    contact, old, new, work, joint = run.problem.contact, run.old, run.attempt.new, run.work, run.joints[j]
+    slip = run.attempt.slip
     every, any_slides, direction, weighted, total, velocity = True, False, 0.0, 0.0, 0.0, 0.0
     begin, end = points_of(run, j)
     loaded = 0.0
@@ -312,28 +320,28 @@ def slide(run: RunState, j: int, step: float, holding: float) -> None:
         if old.point[i, 1] >= 0.0:  # open at the beginning: it slides in the closed part of the step only
             below = max(0.0, new.crushed[i] - old.crushed[i] - new.point[i, 1])
             moved *= below / (below + old.point[i, 1]) if below > 0.0 else 0.0
-        run.slip[i] = 0.0
+        slip[i] = 0.0
         if new.point[i, 1] >= 0.0:
             new.stick[i] = 0.0
             continue
         if contact.friction == REGULARISED:
             new.stick[i] = 0.0
-            run.slip[i] = moved
+            slip[i] = moved
         elif stops and normal > 0.0:
             start = -holding * normal / loaded / contact.tangential_stiffness[i]
             new.stick[i] = start - contact.relaxation_time * work.velocity[i, 0]
-            run.slip[i] = moved - (new.stick[i] - stick)
+            slip[i] = moved - (new.stick[i] - stick)
         elif normal <= 0.0 or work.slope[i, 0] == 0.0:
             new.stick[i] = relaxed_stick(
                 stick, -tangential, contact.tangential_stiffness[i], contact.relaxation_time, step
             )
-            run.slip[i] = moved - (new.stick[i] - stick)
+            slip[i] = moved - (new.stick[i] - stick)
         elif old.point[i, 1] >= 0.0:
             new.stick[i] = 0.0
         else:
             new.stick[i] = stick + moved
         if normal > 0.0:
-            weighted += normal * run.slip[i]
+            weighted += normal * slip[i]
             velocity += normal * work.velocity[i, 0]
             total += normal
             if contact.friction == REGULARISED:
@@ -355,7 +363,7 @@ def slide(run: RunState, j: int, step: float, holding: float) -> None:
 
 @compiled(inline=True)
 def update_joints(run: RunState, step: float) -> None:
-    """Update the joints from the step about to be accepted; `close_joints` adds its sliding."""
+    """Update the joints from the step about to be accepted; `integrator.close_step` adds its sliding."""
     for j in range(run.joints.shape[0]):
         joint = run.joints[j]
         joint.slip_since_break = (
@@ -367,9 +375,9 @@ def update_joints(run: RunState, step: float) -> None:
         tangential, normal = 0.0, 0.0
         begin, end = points_of(run, j)
         for i in range(begin, end):
-            tangential += run.new.force[i, 0]
-            normal += run.new.force[i, 1]
-        limit = run.contact.mu_static[begin] * normal
+            tangential += run.attempt.new.force[i, 0]
+            normal += run.attempt.new.force[i, 1]
+        limit = run.problem.contact.mu_static[begin] * normal
         utilisation = abs(tangential) / limit if limit > 0.0 else 0.0
         joint.utilisation_rate = (utilisation - joint.utilisation) / step
         joint.utilisation = utilisation

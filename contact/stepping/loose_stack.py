@@ -18,6 +18,7 @@ from contact.interface.faces import (
     weigh_points,
 )
 from contact.interface.workspace import Contact, Workspace
+from contact.layout import exchanging
 from contact.stepping import body as interface
 from contact.stepping.body import (
     ANGULAR_VELOCITY,
@@ -31,6 +32,8 @@ from contact.stepping.body import (
 )
 from contact.stepping.scheme import Scheme
 from contact.structs import struct
+
+with_points = exchanging(State, "point", "force")
 
 
 @struct
@@ -107,27 +110,7 @@ def complete(stack: LooseStack, new: State, floor: float, lift: float, lift_velo
     """Internal forces, contact points, poses and energy at the converged coordinates."""
     share_forces(stack.faces, new.force, stack.corners.force)
     # the body beneath has the corners, and the forces on them, in place of the contact points
-    over_corners = State(
-        new.position,
-        new.velocity,
-        new.acceleration,
-        new.jerk,
-        new.internal,
-        new.damping,
-        new.external,
-        new.corner,
-        stack.corners.force,
-        new.descent,
-        new.drift,
-        new.stick,
-        new.crushed,
-        new.pose,
-        new.energy,
-        new.boxes,
-        new.corner,
-        new.monitor,
-        new.numbers,
-    )
+    over_corners = with_points(new, point=new.corner, force=stack.corners.force)
     interface.complete(stack.body, over_corners, floor, lift, lift_velocity)
     place_points(stack.faces, new.corner, new.point)
     open_unweighted(stack.faces, new.point)

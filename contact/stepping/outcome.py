@@ -36,7 +36,7 @@ from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody, with_own_scratch
 from contact.stepping.observables import NEVER, lifting_energy
 from contact.stepping.stack_body import stack_with_own_scratch
-from contact.stepping.state import ROW_SLIP, ROW_STRAIN, RunState
+from contact.stepping.state import ROW_SLIP, ROW_STRAIN, Buffers, RunState
 from contact.structs import struct
 
 #: energy of a container at rest, over that which it takes to overturn; and how long it must stay below [1/p]
@@ -92,8 +92,8 @@ def run_to_end(
         strained: keep the most strained samples of every slice.
     """
     own = stack_with_own_scratch(body) if isinstance(body, LooseStack) else with_own_scratch(body)
-    samples = run.history
-    run.clock["attempt_limit"] = most_attempts(run.control, duration + aftermath)
+    samples = run.buffers.history
+    run.clock["attempt_limit"] = most_attempts(run.problem.control, duration + aftermath)
     room = MOST_STRAINED * (math.ceil(duration / SLICE) + 2) if strained else 0
     coordinates = samples.position.shape[1] if strained else 0
     kept = KeptSamples(
@@ -106,14 +106,15 @@ def run_to_end(
         samples = samples._replace(
             position=samples.position[:, :coordinates], velocity=samples.velocity[:, :0]
         )
-    run = run._replace(history=samples, frames=run.frames._replace(interval=math.inf))
+    frames = run.buffers.frames._replace(interval=math.inf)
+    run = run._replace(buffers=Buffers(history=samples, frames=frames))
     ahead = SLICE if strained else math.inf  # without slices the stepping returns where the samples are full
     step_on: Callable[..., int] = advance_in_slices.call_by_class
     status = step_on(own, run, kept, ahead, float(rest_from), float(duration), DRIVEN)
     if status == UNSETTLED:
         since = float(run.clock[0].time)
-        x, velocity_x, _ = floor_motion(run.motion, since)
-        z, velocity_z, _ = floor_motion(run.vertical, since)
+        x, velocity_x, _ = floor_motion(run.problem.motion, since)
+        z, velocity_z, _ = floor_motion(run.problem.vertical, since)
         enter_floor_frame_compiled(own, run, velocity_x, velocity_z)
         run, end = on_resting_floor(run, since, (x, z)), float(duration + aftermath)
         status = step_on(own, run, kept, AFTERMATH_SLICE, math.inf, end, UNDECIDED)
@@ -133,7 +134,7 @@ def advance_compiled(body: ModalBody | LooseStack, run: RunState, until: float) 
 def on_resting_floor(run: RunState, since: float, place: Sequence[float]) -> RunState:
     """The run on a floor that stands still from `since` on [s], at this place along x and upward [m]."""
     still, level = (as_floor_motion(UNIFORM, (since, one, 0.0)) for one in place)
-    return run._replace(motion=still, vertical=level, breaks=np.full(1, np.inf))
+    return run.with_problem(motion=still, vertical=level, breaks=np.full(1, np.inf))
 
 
 @compiled
@@ -144,7 +145,7 @@ def is_over(run: RunState, part: int) -> bool:
     are together below a share of the energy to overturn, at every look for some time; the floor must not accelerate.
     The times of the looks do not depend on the slices.
     """
-    clock, track, control = run.clock[0], run.track[0], run.control
+    clock, track, control = run.clock[0], run.track[0], run.problem.control
     if part == DRIVEN:
         return False
     if track.overturned_at < NEVER:
@@ -197,7 +198,7 @@ def advance_in_slices(
         status = advance_on(body, run, min(target, until))
         if kept.slip.size == 0:
             return status
-        if run.history.columns.shape[1] > 0:
+        if run.buffers.history.columns.shape[1] > 0:
             keep_slip(run, kept)
             keep_most_strained(run, kept)
         clock.samples_drained = clock.samples
@@ -216,7 +217,7 @@ def advance_in_slices(
 @compiled
 def keep_slip(run: RunState, kept: KeptSamples) -> None:
     """Write the slip of the new samples into the ring."""
-    clock, samples = run.clock[0], run.history
+    clock, samples = run.clock[0], run.buffers.history
     for i in range(clock.samples - clock.samples_drained):
         index = clock.samples_drained + i
         if index * samples.interval <= kept.slip_until + 1e-9:
@@ -226,7 +227,7 @@ def keep_slip(run: RunState, kept: KeptSamples) -> None:
 @compiled
 def keep_most_strained(run: RunState, kept: KeptSamples) -> None:
     """Keep the most strained of the new samples, each in place of the least strained one kept."""
-    clock, samples = run.clock[0], run.history
+    clock, samples = run.clock[0], run.buffers.history
     count = clock.samples - clock.samples_drained
     for _ in range(min(count, MOST_STRAINED) if kept.strain.size > 0 else 0):
         best = 0

@@ -50,12 +50,12 @@ def write_columns(
     loose: bool | None,
 ) -> None:
     """One row of a history at the share `s` of the step; `force` (n, 2) is the contact force at this instant."""
-    old, new = run.old, run.new
+    old, new = run.old, run.attempt.new
     a, b = old.pose, new.pose
     if loose is not None:
         a, b = old.boxes[0], new.boxes[0]
-    floor, _, _ = floor_motion(run.motion, time)
-    lift, _, _ = floor_motion(run.vertical, time)
+    floor, _, _ = floor_motion(run.problem.motion, time)
+    lift, _, _ = floor_motion(run.problem.vertical, time)
     row[ROW_ROTATION] = hermite(s, step, a[ROTATION], a[ANGULAR_VELOCITY], b[ROTATION], b[ANGULAR_VELOCITY])
     row[ROW_ANGULAR_VELOCITY] = (1.0 - s) * a[ANGULAR_VELOCITY] + s * b[ANGULAR_VELOCITY]
     row[ROW_SLIP] = run.joints[0].slip + s * run.joints[0].slip_step
@@ -64,7 +64,7 @@ def write_columns(
     row[ROW_UPLIFT], row[ROW_NORMAL], row[ROW_SHEAR] = 0.0, 0.0, 0.0
     begin, end = points_of(run, 0)
     for i in range(begin, end):
-        if i < run.control.base_points:
+        if i < run.problem.control.base_points:
             row[ROW_UPLIFT] = max(row[ROW_UPLIFT], (1.0 - s) * old.point[i, 1] + s * new.point[i, 1])
         row[ROW_SHEAR] += force[i, 0]
         row[ROW_NORMAL] += force[i, 1]
@@ -73,7 +73,7 @@ def write_columns(
     for k in range(3):
         row[ROW_KINETIC + k] = (1.0 - s) * old.energy[k] + s * new.energy[k]
     for k in range(LEDGER_ROWS):
-        row[ROW_BASE_WORK + k] = run.ledger[k] + s * run.change[k]
+        row[ROW_BASE_WORK + k] = run.ledger[k] + s * run.attempt.change[k]
 
 
 @compiled(inline=True)
@@ -81,7 +81,7 @@ def write_boxes(run: RunState, row: FloatArray, s: float, step: float, floor: fl
     """What a row of a history holds of the upper boxes of a loose stack; `floor`, `lift`: place of the floor [m]."""
     for j in range(1, run.joints.shape[0]):
         joint, first = run.joints[j], ROW_COLUMNS + BOX_COLUMNS * (j - 1)
-        a, b = run.old.boxes[j], run.new.boxes[j]
+        a, b = run.old.boxes[j], run.attempt.new.boxes[j]
         row[first + BOX_ROTATION] = hermite(
             s, step, a[ROTATION], a[ANGULAR_VELOCITY], b[ROTATION], b[ANGULAR_VELOCITY]
         )
@@ -114,7 +114,7 @@ def sample(
     `written` samples exist before, and the first `origin` of them are no longer in the arrays. Positions are
     interpolated by cubics through positions and velocities of both ends, all else linearly.
     """
-    old, new, clock = run.old, run.new, run.clock[0]
+    old, new, clock = run.old, run.attempt.new, run.clock[0]
     end = clock.time + step
     while written - origin < samples.mode.size:
         time = written * samples.interval if written > 0 else 0.0

@@ -4,7 +4,7 @@ Coordinates are those of the boxes in turn, from the floor up: 3 + m for each, w
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from contact.interface.laws import ELASTIC_STICK
 from contact.interface.stacking import stacked
 from contact.interface.workspace import Contact, Workspace, make_workspace
 from contact.jit import compiled, inlined
+from contact.layout import exchanging, row_of, shapes_of
 from contact.stepping import body as interface
 from contact.stepping import modal_kernels  # noqa: F401 - registers the operations of a modal body
 from contact.stepping.body import State, implements
@@ -25,36 +26,24 @@ from contact.structs import struct
 
 @struct
 class StackBody(NamedTuple):
-    """Constants of N boxes with m modes each, k monitored points; the fields of `ModalBody` with an axis of boxes."""
+    """N boxes with as many modes each."""
 
-    mass: FloatArray  #: (N,)
-    inertia: FloatArray  #: (N,)
-    gravity: float
-    downhill: float
-    point: FloatArray  #: (N, 4, 2) corners relative to the mass centre of their box
-    shape: FloatArray  #: (N, 4, 2, m)
-    across: FloatArray  #: (N, m, 8)
-    rest: FloatArray  #: (N, 2) mass centres of the boxes in the undeformed stack on the floor
-    monitor: FloatArray  #: (k, 2) monitored points relative to the mass centre of their box
-    monitor_shape: FloatArray  #: (k, 2, m)
+    #: a `ModalBody` whose fields have an axis of boxes in front, but for gravity, downhill, tolerance, and monitored
+    #: points, which are of all boxes
+    boxes: Any
     monitors: IntArray  #: (N, 2) first monitored point of a box, and the one behind its last
-    stiffness: FloatArray  #: (N, m)
-    damping: FloatArray  #: (N, m)
-    tolerance: float
-    #: scratch of the stepping
-    cached_step: FloatArray  #: (N, slots + 1)
-    recent: IntArray  #: (N, 1)
-    inverse: FloatArray  #: (N, slots, 3 + m)
-    elastic_compliance: FloatArray  #: (N, slots, 8, 8)
-    arm: FloatArray  #: (N, 4, 2)
-    moved: FloatArray  #: (N, 3, 8)
-    free_change: FloatArray  #: (N, 3 + m)
-    energy: FloatArray  #: (N, 3)
+    energy: FloatArray  #: (N, 3) scratch
 
     @property
     def modes(self) -> int:
         """Modes of each box."""
-        return self.stiffness.shape[1]
+        return int(self.boxes.stiffness.shape[1])
+
+
+one_box = row_of(ModalBody, "gravity", "downhill", "tolerance", "monitor", "monitor_shape")
+COORDINATES = tuple(name for name, shape in shapes_of(State).items() if shape == ("d",))
+state_of_box = exchanging(State, *COORDINATES, "point", "force", "pose", "energy", "monitor")
+work_of_box = exchanging(Workspace, "free", "free_velocity", "compliance", "point", "velocity", "force")
 
 
 def make_stack(
@@ -75,9 +64,11 @@ def make_stack(
     shape = np.array(
         [np.pad(box.shape, [(0, 0), (0, 0), pad]) for box, pad in zip(boxes, wider, strict=True)]
     )
-    body = StackBody(
-        mass=np.array([box.mass for box in boxes]),
-        inertia=np.array([box.inertia for box in boxes]),
+    mass: Any = np.array([box.mass for box in boxes])
+    inertia: Any = np.array([box.inertia for box in boxes])
+    together = ModalBody(
+        mass=mass,
+        inertia=inertia,
         gravity=boxes[0].gravity,
         downhill=boxes[0].downhill,
         point=np.array([box.point for box in boxes]),
@@ -88,7 +79,6 @@ def make_stack(
         monitor_shape=np.concatenate(
             [np.pad(box.monitor_shape, [(0, 0), (0, 0), pad]) for box, pad in downwards]
         ),
-        monitors=np.column_stack([ends[:-1], ends[1:]])[::-1].copy(),
         stiffness=np.array(
             [np.pad(box.stiffness, pad, constant_values=1.0) for box, pad in zip(boxes, wider, strict=True)]
         ),
@@ -101,14 +91,18 @@ def make_stack(
         arm=np.zeros((n, CORNERS, 2)),
         moved=np.zeros((n, 3, 2 * CORNERS)),
         free_change=np.zeros((n, 3 + most)),
+    )
+    body = StackBody(
+        boxes=together,
+        monitors=np.column_stack([ends[:-1], ends[1:]])[::-1].copy(),
         energy=np.zeros((n, 3)),
     )
-    corner = (body.rest[:, None] + body.point).reshape(-1, 2)
+    corner = (together.rest[:, None] + together.point).reshape(-1, 2)
     return LooseStack(
         body=body,
         faces=make_faces(corner, normal_stiffness, tangential_stiffness),
-        mass=body.mass,
-        tolerance=body.tolerance,
+        mass=mass,
+        tolerance=together.tolerance,
         corners=make_workspace(CORNERS * n),
     )
 
@@ -116,22 +110,22 @@ def make_stack(
 def stack_with_own_scratch(stack: LooseStack) -> LooseStack:
     """The same stack, of boxes in floating frames, with scratch arrays of its own."""
     body, faces = stack.body, stack.faces
-    own = body._replace(
-        cached_step=np.tile(np.append(np.full(STEP_SLOTS, -1.0), 0.0), (body.mass.size, 1)),
-        recent=np.zeros_like(body.recent),
+    boxes = body.boxes._replace(
+        cached_step=np.tile(np.append(np.full(STEP_SLOTS, -1.0), 0.0), (len(body.energy), 1)),
+        recent=np.zeros_like(body.boxes.recent),
         **{
-            name: np.empty_like(getattr(body, name))
-            for name in ("inverse", "elastic_compliance", "arm", "moved", "free_change", "energy")
+            name: np.empty_like(getattr(body.boxes, name))
+            for name in ("inverse", "elastic_compliance", "arm", "moved", "free_change")
         },
     )
     return stack._replace(
-        body=own,
+        body=body._replace(boxes=boxes, energy=np.empty_like(body.energy)),
         faces=faces._replace(
             weight=np.ones_like(faces.weight),
             gradient=faces.gradient.copy(),
             moved=np.empty_like(faces.moved),
         ),
-        corners=make_workspace(CORNERS * body.mass.size),
+        corners=make_workspace(CORNERS * len(body.energy)),
     )
 
 
@@ -139,57 +133,37 @@ def stack_with_own_scratch(stack: LooseStack) -> LooseStack:
 def box_of(stack: StackBody, b: int) -> ModalBody:
     """One of the boxes."""
     begin, end = stack.monitors[b, 0], stack.monitors[b, 1]
-    return ModalBody(
-        stack.mass[b],
-        stack.inertia[b],
-        stack.gravity,
-        stack.downhill,
-        stack.point[b],
-        stack.shape[b],
-        stack.across[b],
-        stack.rest[b],
-        stack.monitor[begin:end],
-        stack.monitor_shape[begin:end],
-        stack.stiffness[b],
-        stack.damping[b],
-        stack.tolerance,
-        stack.cached_step[b],
-        stack.recent[b],
-        stack.inverse[b],
-        stack.elastic_compliance[b],
-        stack.arm[b],
-        stack.moved[b],
-        stack.free_change[b],
+    boxes = stack.boxes
+    return one_box(
+        boxes,
+        b,
+        gravity=boxes.gravity,
+        downhill=boxes.downhill,
+        tolerance=boxes.tolerance,
+        monitor=boxes.monitor[begin:end],
+        monitor_shape=boxes.monitor_shape[begin:end],
     )
 
 
 @inlined
 def state_of(stack: StackBody, state: State, b: int) -> State:
     """What a state holds of one of the boxes; its points are the corners."""
-    size = 3 + stack.stiffness.shape[1]
-    i, j = size * b, size * (b + 1)
-    k, m = CORNERS * b, CORNERS * (b + 1)
-    begin, end = stack.monitors[b, 0], stack.monitors[b, 1]
-    return State(
-        state.position[i:j],
-        state.velocity[i:j],
-        state.acceleration[i:j],
-        state.jerk[i:j],
-        state.internal[i:j],
-        state.damping[i:j],
-        state.external[i:j],
-        state.corner[k:m],
-        state.corner[k:m],
-        state.descent,
-        state.drift,
-        state.stick,
-        state.crushed,
-        state.boxes[b],
-        stack.energy[b],
-        state.boxes,
-        state.corner,
-        state.monitor[begin:end],
-        state.numbers,
+    size, k, m = 3 + stack.boxes.stiffness.shape[1], CORNERS * b, CORNERS * (b + 1)
+    i, j, begin, end = size * b, size * (b + 1), stack.monitors[b, 0], stack.monitors[b, 1]
+    return state_of_box(
+        state,
+        position=state.position[i:j],
+        velocity=state.velocity[i:j],
+        acceleration=state.acceleration[i:j],
+        jerk=state.jerk[i:j],
+        internal=state.internal[i:j],
+        damping=state.damping[i:j],
+        external=state.external[i:j],
+        point=state.corner[k:m],
+        force=state.corner[k:m],
+        pose=state.boxes[b],
+        energy=stack.energy[b],
+        monitor=state.monitor[begin:end],
     )
 
 
@@ -197,35 +171,21 @@ def state_of(stack: StackBody, state: State, b: int) -> State:
 def work_of(work: Workspace, b: int) -> Workspace:
     """What the workspace of all corners holds of one of the boxes."""
     k, m = CORNERS * b, CORNERS * (b + 1)
-    return Workspace(
-        work.free[k:m],
-        work.free_velocity[k:m],
-        work.compliance[2 * k : 2 * m, 2 * k : 2 * m],
-        work.point[k:m],
-        work.velocity[k:m],
-        work.force[k:m],
-        work.law,
-        work.slope,
-        work.matrix,
-        work.change,
-        work.solution,
-        work.excess,
-        work.mu,
-        work.side,
-        work.level,
-        work.pivot,
-        work.factored_slope,
-        work.factored_step,
-        work.factored_count,
-        work.trial,
-        work.active,
+    return work_of_box(
+        work,
+        free=work.free[k:m],
+        free_velocity=work.free_velocity[k:m],
+        compliance=work.compliance[2 * k : 2 * m, 2 * k : 2 * m],
+        point=work.point[k:m],
+        velocity=work.velocity[k:m],
+        force=work.force[k:m],
     )
 
 
 @implements(interface.predict, StackBody, inline=True)
 def predict(stack: StackBody, scheme: Scheme, step: float, old: State, new: State) -> None:
     """Coordinates after `step`, for the last acceleration."""
-    for b in range(stack.mass.size):
+    for b in range(stack.energy.shape[0]):
         interface.predict(box_of(stack, b), scheme, step, state_of(stack, old, b), state_of(stack, new, b))
 
 
@@ -243,7 +203,7 @@ def release(
     lift_velocity: float,
 ) -> None:
     """Corners at the end of the step without contact force, and their compliance."""
-    for b in range(stack.mass.size):
+    for b in range(stack.energy.shape[0]):
         interface.release(
             box_of(stack, b),
             scheme,
@@ -262,7 +222,7 @@ def release(
 def respond(stack: StackBody, scheme: Scheme, step: float, old: State, new: State, work: Workspace) -> float:
     """Apply the forces on the corners to the iterate; returns the remaining error over its tolerance."""
     largest = 0.0
-    for b in range(stack.mass.size):
+    for b in range(stack.energy.shape[0]):
         error = interface.respond(
             box_of(stack, b), scheme, step, state_of(stack, old, b), state_of(stack, new, b), work_of(work, b)
         )
@@ -275,7 +235,7 @@ def complete(stack: StackBody, new: State, floor: float, lift: float, lift_veloc
     """Internal forces, corners, poses and energy at the converged coordinates."""
     for row in range(new.energy.size):
         new.energy[row] = 0.0
-    for b in range(stack.mass.size):
+    for b in range(stack.energy.shape[0]):
         interface.complete(box_of(stack, b), state_of(stack, new, b), floor, lift, lift_velocity)
         for row in range(new.energy.size):
             new.energy[row] += stack.energy[b, row]
@@ -284,14 +244,14 @@ def complete(stack: StackBody, new: State, floor: float, lift: float, lift_veloc
 @implements(interface.observe, StackBody, inline=True)
 def observe(stack: StackBody, state: State, floor: float, lift: float) -> None:
     """Displacement and velocity of the monitored points."""
-    for b in range(stack.mass.size):
+    for b in range(stack.energy.shape[0]):
         interface.observe(box_of(stack, b), state_of(stack, state, b), floor, lift)
 
 
 @implements(interface.shift_velocity, StackBody, inline=True)
 def shift_velocity(stack: StackBody, state: State, velocity: float, lift_velocity: float) -> None:
     """Subtract the velocity of a new frame."""
-    for b in range(stack.mass.size):
+    for b in range(stack.energy.shape[0]):
         interface.shift_velocity(box_of(stack, b), state_of(stack, state, b), velocity, lift_velocity)
 
 
@@ -324,9 +284,9 @@ def settle_stack(
     Raises:
         SettlingError: the stack does not stand.
     """
-    body = stack.body
-    n, size = body.mass.size, 3 + body.modes
-    flat = body.shape.reshape(n, 2 * CORNERS, body.modes)
+    body, modes = stack.body.boxes, stack.body.modes
+    n, size = len(body.mass), 3 + modes
+    flat = body.shape.reshape(n, 2 * CORNERS, modes)
     weigh_points(stack.faces, (body.rest[:, None] + body.point).reshape(-1, 2), state.point, contact)
     rest = stacked(
         faces=stack.faces,

@@ -1,18 +1,21 @@
-"""Data of a run besides its body: constants of the stepping, state, records and samples, as plain arrays.
+"""Data of a run besides its body, apart by how long they live; compiled code and Python use the same tuples.
 
-Compiled code and Python use the same tuples; variable data change in place.
+`RunState` has four kinds of parts. The `problem` does not change. The progress - the old state, sums, records - changes
+in place, and is all that a checkpoint holds. The `attempt` is scratch of one step. The `buffers` hold samples until the
+caller takes them.
 """
 
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from numpy.typing import NDArray
 
 from contact.arrays import FloatArray
 from contact.interface.laws import require_known_friction
-from contact.interface.workspace import Contact, Workspace
+from contact.interface.workspace import Contact, Workspace, make_workspace
 from contact.motion.kernel import UNIFORM, FloorMotion, as_floor_motion, floor_motion
-from contact.stepping.body import State
+from contact.stepping.body import State, make_state
 from contact.stepping.ledger import ROWS as LEDGER_ROWS
 from contact.stepping.ledger import spring_energy
 from contact.stepping.observables import NEVER, make_observables
@@ -207,8 +210,8 @@ def make_samples(
 
 
 @struct
-class RunState(NamedTuple):
-    """All data of a run besides the body; variable data change in place."""
+class RunProblem(NamedTuple):
+    """What does not change in a run, but for the stiffness in the `contact` of a loose stack."""
 
     scheme: Scheme
     contact: Contact
@@ -216,20 +219,59 @@ class RunState(NamedTuple):
     vertical: FloorMotion  #: .. and upward; of the kind UNIFORM the floor stays at its height
     breaks: FloatArray  #: instants at which a step must end [s], sorted, the last one infinite
     control: Control
-    old: State
-    new: State
-    work: Workspace
+
+
+@struct
+class AttemptedStep(NamedTuple):
+    """What an attempted step writes anew, whatever it finds here: the next step does not need it."""
+
+    new: State  #: at the end of the step
+    slip: FloatArray  #: (n,) sliding of the points in the step [m]
+    change: FloatArray  #: (6,) contribution of the step to the ledger [J]
+
+
+@struct
+class Buffers(NamedTuple):
+    """Samples since the caller drained them last."""
+
+    history: Samples
+    frames: Samples
+
+
+@struct
+class RunState(NamedTuple):
+    """All data of a run besides its body.
+
+    `problem` stays as it is, `attempt` is scratch, `buffers` are emptied by the caller. All else is the progress of the
+    run, from which it goes on to the same bits: a checkpoint holds every array of it.
+    """
+
+    problem: RunProblem
+    attempt: AttemptedStep
+    buffers: Buffers
+    old: State  #: at the end of the last accepted step
+    work: Workspace  #: the contact of the last attempted step: the next one begins with its factors
     floor: FloatArray  #: (2, 3) displacement, velocity, acceleration of the floor before and after the step, along x
     lift: FloatArray  #: .. and upward
-    slip: FloatArray  #: (n,) sliding of the points in the attempted step [m]
-    change: FloatArray  #: (6,) contribution of the attempted step to the ledger [J]
     ledger: FloatArray  #: (6,) [J]
     clock: Any  #: (1,) of STEP_RECORD
     joints: Any  #: (N,) of JOINT_RECORD
     track: Any  #: (1,) of `observables.OBSERVABLES`
     contents: FloatArray  #: (8, 2 n_m) filter of the contents, see `contact.stepping.contents`
-    history: Samples
-    frames: Samples
+
+    def with_problem(self, **parts: Any) -> "RunState":
+        """The same run with other parts of its problem."""
+        return self._replace(problem=self.problem._replace(**parts))
+
+    def progress(self) -> dict[str, NDArray[Any]]:
+        """Every array of the progress, by name; the arrays themselves, not copies."""
+        found: dict[str, NDArray[Any]] = {}
+        for name, part in self._asdict().items():
+            if isinstance(part, State | Workspace):
+                found |= {f"{name}.{field}": array for field, array in part._asdict().items()}
+            elif not isinstance(part, RunProblem | AttemptedStep | Buffers):
+                found[name] = part
+        return found
 
 
 def make_run(
@@ -241,46 +283,46 @@ def make_run(
     breaks: FloatArray,
     control: Control,
     old: State,
-    new: State,
-    work: Workspace,
     history: Samples,
     frames: Samples,
     joints: Any = None,
 ) -> RunState:
     """Assemble a run at t = 0.
 
-    `old` is the initial state, completed; `joints` those of a loose stack, see `make_joints`. The stiffness in the
-    `contact` of a loose stack changes in place.
+    `old` is the initial state, completed; `joints` those of a loose stack, see `make_joints`.
 
     Raises:
         ValueError: the kernels do not handle the law of friction.
     """
     require_known_friction(contact.friction)
-    n = old.point.shape[0]
+    n, monitors = old.point.shape[0], old.monitor.shape[0]
     clock = np.zeros(1, STEP_RECORD).view(np.recarray)
     clock["smallest_step"] = NEVER
     clock["attempt_limit"] = UNLIMITED
     clock["rest_since"] = NEVER
     clock["spring_energy"] = spring_energy(contact, old.point, old.stick)
     return RunState(
-        scheme=scheme,
-        contact=contact,
-        motion=motion,
-        vertical=vertical,
-        breaks=np.append(np.asarray(breaks, dtype=float), NEVER),
-        control=control,
+        problem=RunProblem(
+            scheme=scheme,
+            contact=contact,
+            motion=motion,
+            vertical=vertical,
+            breaks=np.append(np.asarray(breaks, dtype=float), NEVER),
+            control=control,
+        ),
+        attempt=AttemptedStep(
+            new=make_state(old.position.size, n, monitors, len(old.boxes)),
+            slip=np.zeros(n),
+            change=np.zeros(LEDGER_ROWS),
+        ),
+        buffers=Buffers(history=history, frames=frames),
         old=old,
-        new=new,
-        work=work,
+        work=make_workspace(n),
         floor=np.tile(floor_motion(motion, 0.0), (2, 1)),
         lift=np.tile(floor_motion(vertical, 0.0), (2, 1)),
-        slip=np.zeros(n),
-        change=np.zeros(LEDGER_ROWS),
         ledger=np.zeros(LEDGER_ROWS),
         clock=clock,
         joints=make_joints(control.mass, control.inertia, control.width) if joints is None else joints,
         track=make_observables(),
-        contents=np.zeros((8, 2 * (old.monitor.shape[0] - control.top_monitors))),
-        history=history,
-        frames=frames,
+        contents=np.zeros((8, 2 * (monitors - control.top_monitors))),
     )

@@ -107,15 +107,15 @@ def crush(contact: Contact, step: float, old: State, new: State, work: Workspace
 
 @inlined
 def attempt(body: Any, run: RunState, step: float) -> int:
-    """Try one step and write the result to `run.new`; returns the number of iterations, or -1."""
-    old, new, work, scheme = run.old, run.new, run.work, run.scheme
+    """Try one step and write the result to `run.attempt.new`; returns the number of iterations, or -1."""
+    old, new, work, scheme = run.old, run.attempt.new, run.work, run.problem.scheme
     clock = run.clock[0]
-    floor, floor_velocity, floor_acceleration = floor_motion(run.motion, clock.time + step)
+    floor, floor_velocity, floor_acceleration = floor_motion(run.problem.motion, clock.time + step)
     run.floor[1, 0], run.floor[1, 1], run.floor[1, 2] = floor, floor_velocity, floor_acceleration
     if (
-        run.vertical.kind != UNIFORM
+        run.problem.vertical.kind != UNIFORM
     ):  # else it stays where it is, and the call would cost as much as a tenth of a step
-        run.lift[1, 0], run.lift[1, 1], run.lift[1, 2] = rare_motion(run.vertical, clock.time + step)
+        run.lift[1, 0], run.lift[1, 1], run.lift[1, 2] = rare_motion(run.problem.vertical, clock.time + step)
     lift, lift_velocity = run.lift[1, 0], run.lift[1, 1]
     slope = scheme.newmark_gamma / (scheme.newmark_beta * step)
     rebase_acceleration(scheme, old, clock.lag_step - step)
@@ -123,7 +123,7 @@ def attempt(body: Any, run: RunState, step: float) -> int:
     predict(body, scheme, step, old, new)
     copy_rows(work.force, old.force)
     # Friction follows the extrapolated velocity: its fall is a negative damping, not to be solved implicitly.
-    contact = run.contact
+    contact = run.problem.contact
     for j in range(run.joints.shape[0]):
         begin, end = points_of(run, j)
         for i in range(begin, end):
@@ -149,29 +149,36 @@ def attempt(body: Any, run: RunState, step: float) -> int:
 
 @compiled(inline=True)
 def account(run: RunState, step: float) -> float:
-    """Write the ledger terms of the attempted step to `run.change`; returns its dissipation but for crushing [J]."""
-    old, new, change = run.old, run.new, run.change
+    """Write the ledger terms of the attempted step; returns its dissipation but for crushing [J]."""
+    old, new, change = run.old, run.attempt.new, run.attempt.change
     shear = 0.0
     begin, end = points_of(run, 0)
     for i in range(begin, end):
         shear += 0.5 * (old.force[i, 0] + new.force[i, 0])
     friction, damping = contact_losses(
-        run.contact, old.point, new.point, old.force, new.force, old.stick, new.stick, run.slip
+        run.problem.contact,
+        old.point,
+        new.point,
+        old.force,
+        new.force,
+        old.stick,
+        new.stick,
+        run.attempt.slip,
     )
     material = 0.0
     for j in range(new.damping.size):
         material += 0.5 * (old.damping[j] + new.damping[j]) * (new.position[j] - old.position[j])
-    before = spring_energy(run.contact, old.point, old.stick)
+    before = spring_energy(run.problem.contact, old.point, old.stick)
     if run.joints.shape[0] > 1:  # what the springs of a corner lose as it leaves its face
         damping += run.clock[0].spring_energy - before
         before = run.clock[0].spring_energy
-    stored = spring_energy(run.contact, new.point, new.stick) - before
+    stored = spring_energy(run.problem.contact, new.point, new.stick) - before
     for row in (KINETIC, STRAIN, POTENTIAL):
         stored += new.energy[row] - old.energy[row]
-    change[BASE_WORK] = (shear + run.control.mass * run.control.downhill) * (
+    change[BASE_WORK] = (shear + run.problem.control.mass * run.problem.control.downhill) * (
         run.floor[1, 0] - run.floor[0, 0]
     )
-    change[BASE_WORK] += work_of_lift(run.control.mass, old.pose, new.pose, run.lift, step)
+    change[BASE_WORK] += work_of_lift(run.problem.control.mass, old.pose, new.pose, run.lift, step)
     change[FRICTION] = friction
     change[CONTACT_DAMPING] = damping
     change[MATERIAL_DAMPING] = material

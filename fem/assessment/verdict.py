@@ -149,8 +149,8 @@ def _largest_rotation(state: State) -> float:
 
 def _indentation(model: Model) -> float | None:
     """Largest permanent indentation under a base point [m]; None where the floor does not crush."""
-    run, base = model.run, model.run.control.base_points
-    return float(run.old.crushed[:base].max()) if np.isfinite(run.contact.cap[:base]).any() else None
+    run, base = model.run, model.run.problem.control.base_points
+    return float(run.old.crushed[:base].max()) if np.isfinite(run.problem.contact.cap[:base]).any() else None
 
 
 def _numbers(records: Any) -> SimpleNamespace:
@@ -160,7 +160,11 @@ def _numbers(records: Any) -> SimpleNamespace:
 
 def energy_of(model: Model) -> Energy:
     """The energy balance of a model that was stepped to its end."""
-    ledger, clock, reference = model.run.ledger, model.run.clock[0], model.run.control.reference_energy
+    ledger, clock, reference = (
+        model.run.ledger,
+        model.run.clock[0],
+        model.run.problem.control.reference_energy,
+    )
     return Energy(
         reference_J=reference,
         closure_error=max(-float(clock.least_imbalance), float(clock.most_imbalance)) / reference,
@@ -180,9 +184,9 @@ def softer_contact(case: Case) -> str:
 
 def audit(model: Model) -> str | None:
     """Why the energy balance fails this run, or None; of an overturned run, up to its fall."""
-    clock, reference = model.run.clock[0], model.run.control.reference_energy
+    clock, reference = model.run.clock[0], model.run.problem.control.reference_energy
     gained, lost = -float(clock.least_imbalance), float(clock.most_imbalance)
-    largest = model.run.control.largest_step
+    largest = model.run.problem.control.largest_step
     remedy = f"set solver.step_s below the {largest:.2g} s used, or {softer_contact(model.case)}"
     if not np.all(np.isfinite(model.run.ledger)):
         return (
@@ -215,7 +219,7 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
         newton_iterations=int(clock.contact_iterations),
         iterations=int(clock.iterations),
         simulated_s=float(clock.time),
-        largest_step_s=run.control.largest_step,
+        largest_step_s=run.problem.control.largest_step,
         smallest_step_s=float(clock.smallest_step) if clock.steps else None,
         stepping_cpu_s=stepping_cpu,
         normal_penalty_Pa_m=None if model.case.floor.is_slab else model.penalty,
@@ -225,7 +229,7 @@ def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
         max_penetration_m=float(run.track[0].max_penetration),
         elastic_frequencies_Hz=tuple(sorted(f for one in spectra for f in one[:elastic].tolist())),
         attachment_frequencies_Hz=tuple(sorted(f for one in spectra for f in one[elastic:].tolist())),
-        corner_force_window_s=FORCE_WINDOW / run.control.frequency_parameter,
+        corner_force_window_s=FORCE_WINDOW / run.problem.control.frequency_parameter,
         contents_filter=CONTENTS_FILTER,
         contents_filter_Hz=model.case.output.contents_filter_Hz,
     )

@@ -30,7 +30,6 @@ from mesh.container import ContainerMesh
 POINT_TOLERANCE = 1e-6
 
 
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Equilibrium:
     """A container at rest on its floor, at t = 0 with the floor at x = 0."""

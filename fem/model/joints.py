@@ -162,8 +162,8 @@ def joints_of(model: Model, heights: FloatArray | None = None) -> Joints | None:
     return Joints(
         height=lines,
         mass=total,
-        gravity=model.run.control.gravity,
-        downhill=model.run.control.downhill,
+        gravity=model.run.problem.control.gravity,
+        downhill=model.run.problem.control.downhill,
         full=model.case.solver.model == "full",
         layers=layers,
         ends=ends,

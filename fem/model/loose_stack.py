@@ -122,7 +122,7 @@ def make_stack_state(stack: LooseStack | FullStack) -> State:
         monitors = int(beneath.body.monitors.max())
     else:
         beneath, body = stack, stack.body
-        coordinates, monitors = body.mass.size * (3 + body.modes), len(body.monitor)
+        coordinates, monitors = len(body.boxes.mass) * (3 + body.modes), len(body.boxes.monitor)
     return make_state(coordinates, beneath.faces.weight.size, monitors, beneath.mass.size)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from contact.interface.equilibrium import Stance
 from contact.interface.laws import ELASTIC_STICK
-from contact.interface.workspace import Contact, make_workspace
+from contact.interface.workspace import Contact
 from contact.motion.base_motion import BaseMotion
 from contact.motion.kernel import floor_motion
 from contact.stepping import modal_kernels
@@ -77,7 +77,7 @@ class Model:
     @property
     def base_stiffness(self) -> float:
         """Of all base points together [N/m]."""
-        return float(self.run.contact.normal_stiffness[: self.container.support.index.size].sum())
+        return float(self.run.problem.contact.normal_stiffness[: self.container.support.index.size].sum())
 
     @property
     def contact_areas(self) -> FloatArray:
@@ -140,13 +140,13 @@ def build_model(
     velocity = (velocity_x, velocity_z) if case.starts_moving else (0.0, 0.0)
     if isinstance(body, LooseStack | FullStack):
         contact = own_stiffness(contact)
-        old, new = make_stack_state(body), make_stack_state(body)
+        old = make_stack_state(body)
         velocity = velocity[0] + case.initial.velocity_m_s, velocity[1]
         settle(body, contact, old, gravity=gravity, place=(x, z), velocity=velocity, lift_velocity=velocity_z)
     else:
         assert equilibrium.stance is not None
         coordinates = 3 + body.stiffness.size if isinstance(body, ModalBody) else body.coordinates
-        old, new = (make_state(coordinates, nodes.size, container.monitors.size) for _ in range(2))
+        old = make_state(coordinates, nodes.size, container.monitors.size)
         stance = equilibrium.stance.moved(x, z)
         if case.starts_moving:
             stance = stance.moving(*velocity)
@@ -168,8 +168,6 @@ def build_model(
         breaks=breaks,
         control=control,
         old=old,
-        new=new,
-        work=make_workspace(nodes.size),
         history=make_samples(
             interval,
             _chunk(FULL_HISTORY_CHUNK if full else HISTORY_CHUNK, control.largest_step, interval),

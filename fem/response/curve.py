@@ -139,7 +139,7 @@ def follow_point(
         periods=periods,
         orbit=orbit,
         decay=follow_decay(case, container, driven) if stands else None,
-        slenderness_angle=driven.run.control.slenderness_angle,
+        slenderness_angle=driven.run.problem.control.slenderness_angle,
     )
     return point, driven if stands else None
 
@@ -166,7 +166,7 @@ def settled(
 
 def judge(request: ResponseRequest, case: Case, driven: DrivenModel, orbit: Orbit) -> LongTime:
     """The long-time motion of a window of periods."""
-    control = driven.run.control
+    control = driven.run.problem.control
     angle, amplitude = control.slenderness_angle, case.amplitude
     scales = [angle, angle * control.frequency_parameter, amplitude * case.angular_frequency, amplitude]
     return classify(
@@ -181,6 +181,6 @@ def motion_of(driven: DrivenModel, orbit: Orbit) -> str:
     """One word for a window of periods, with the limits of a verdict."""
     if orbit.status == "overturned":
         return Outcome.OVERTURNED
-    rocks = orbit.extremes[:, 3].max() > ROCKING * driven.run.control.slenderness_angle
-    slides = orbit.extremes[:, 4].max() > SLIDING * driven.run.control.width
+    rocks = orbit.extremes[:, 3].max() > ROCKING * driven.run.problem.control.slenderness_angle
+    slides = orbit.extremes[:, 4].max() > SLIDING * driven.run.problem.control.width
     return Outcome.of(slides=slides, rocks=rocks)

@@ -33,7 +33,7 @@ class Decay:
 def follow_decay(case: Case, container: Container, driven: DrivenModel) -> Decay:
     """Stop the floor at a section and follow the container; `driven` does not change."""
     stopped = stop_drive(case, container, driven)
-    run, control = stopped.run, stopped.run.control
+    run, control = stopped.run, stopped.run.problem.control
     clock, track, joint = run.clock[0], run.track[0], run.joints[0]
     look = LOOK / control.frequency_parameter
     largest = abs(float(run.old.pose[ROTATION]))

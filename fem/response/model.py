@@ -13,7 +13,7 @@ from contact.motion.kernel import HARMONIC, UNIFORM, FloorMotion, as_floor_motio
 from contact.stepping.body import CENTRE_X
 from contact.stepping.control import step_level, step_of_level
 from contact.stepping.modal_body import ModalBody
-from contact.stepping.state import RunState, make_samples
+from contact.stepping.state import Buffers, RunState, make_samples
 from fem.case.case import Case
 from fem.model.container import Container
 from fem.model.model import Model, build_model
@@ -92,14 +92,16 @@ def carry_state(before: RunState, after: RunState) -> None:
     """Start `after` from the state of `before`, moved along x to where its floor is at t = 0."""
     for target, source in zip(after.old, before.old, strict=True):
         target[:] = source
-    floor, _, _ = floor_motion(after.motion, 0.0)
+    floor, _, _ = floor_motion(after.problem.motion, 0.0)
     shift = floor - before.floor[0, 0]
     after.old.position[0] += shift
     after.old.pose[CENTRE_X] += shift
     for name in CARRIED:
         after.clock[name] = before.clock[name]
-    step = step_of_level(before.control.largest_step, int(before.clock.level[0]))
-    after.clock.level = step_level(after.control.largest_step, min(step, after.control.largest_step))
+    step = step_of_level(before.problem.control.largest_step, int(before.clock.level[0]))
+    after.clock.level = step_level(
+        after.problem.control.largest_step, min(step, after.problem.control.largest_step)
+    )
     after.track[:] = before.track
     after.joints[:] = before.joints
 
@@ -118,7 +120,7 @@ def with_sections(driven: DrivenModel, count: int) -> DrivenModel:
     clock = driven.run.clock
     clock.time, clock.samples, clock.samples_drained, clock.next_break = 0.0, 0, 0, 0
     breaks = np.append(section_times(driven.period, count), np.inf)
-    return replace(driven, run=driven.run._replace(breaks=breaks))
+    return replace(driven, run=driven.run.with_problem(breaks=breaks))
 
 
 def _on_floor(model: Model, floor: FloorMotion, breaks: np.ndarray, period: float) -> DrivenModel:
@@ -128,10 +130,7 @@ def _on_floor(model: Model, floor: FloorMotion, breaks: np.ndarray, period: floa
     points = run.old.point.shape[0]
     motion = floor_motion(floor, 0.0)
     run.floor[:] = motion
-    run = run._replace(
-        motion=floor,
-        breaks=np.append(breaks[breaks > 0.0], np.inf),
-        history=make_samples(period / SAMPLES_PER_PERIOD, 4 * SAMPLES_PER_PERIOD, points, columns=True),
-        frames=make_samples(math.inf, 4, points),
-    )
+    run = run.with_problem(motion=floor, breaks=np.append(breaks[breaks > 0.0], np.inf))
+    history = make_samples(period / SAMPLES_PER_PERIOD, 4 * SAMPLES_PER_PERIOD, points, columns=True)
+    run = run._replace(buffers=Buffers(history=history, frames=make_samples(math.inf, 4, points)))
     return DrivenModel(model=replace(model, run=run), body=body, run=run, period=period)

@@ -81,7 +81,7 @@ def follow_periods(
         code, samples = _step_to(driven, end)
         if code != REACHED:
             break
-        _, floor_velocity, _ = floor_motion(run.motion, end)
+        _, floor_velocity, _ = floor_motion(run.problem.motion, end)
         pose, slip = run.old.pose, float(driven.run.joints[0].slip)
         rotation = np.append(samples[:, ROW_ROTATION], pose[ROTATION])
         sliding = np.append(samples[:, ROW_SLIP], slip)
@@ -111,7 +111,7 @@ def follow_periods(
     if code == FAILED:
         reason = (
             f"after {clock.time / driven.period:.6g} periods: the contact forces do not converge at the smallest "
-            f"step ({run.control.smallest_step:.1g} s); try {softer_contact(driven.model.case)}, "
+            f"step ({run.problem.control.smallest_step:.1g} s); try {softer_contact(driven.model.case)}, "
             "contact.weakening_m > 0, or a smaller solver.step_s"
         )
     else:
@@ -146,7 +146,7 @@ def _step_to(driven: DrivenModel, end: float) -> tuple[int, FloatArray]:
     while True:
         code = advance_compiled(driven.body, run, end)
         count = int(clock.samples - clock.samples_drained)
-        taken.append(run.history.columns[:count].copy())
+        taken.append(run.buffers.history.columns[:count].copy())
         clock.samples_drained = clock.samples
         if code != REACHED or clock.time >= end or math.isinf(end):
             return code, np.concatenate(taken)

@@ -15,8 +15,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contact.interface.workspace import Workspace
-from contact.stepping.body import State
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.modal_body import ModalBody
 from contact.stepping.state import RunState
@@ -29,9 +27,6 @@ from fem.solid.nodal_stack import FullStack
 
 #: wall time between checkpoints [s]; the stepping pauses every five seconds or so, and writing frames takes time, too
 CHECKPOINT_S = 15.0
-#: parts of `contact.stepping.state.RunState` that do not change, and those of which a part is stored
-CONSTANT = frozenset({"scheme", "contact", "motion", "vertical", "breaks", "control"})
-SAMPLES = frozenset({"history", "frames"})
 RECORDED, BODY = "recorder.", "body."
 
 Arrays = dict[str, NDArray[Any]]
@@ -139,20 +134,13 @@ def state_of(model: Model, recorder: Recorder) -> Arrays:
 
 def changing(model: Model) -> Arrays:
     """All of a model that changes from step to step, but for its samples, by name; the arrays themselves."""
-    found: Arrays = {}
-    for name, part in model.run._asdict().items():
-        if name in CONSTANT | SAMPLES:
-            continue
-        if isinstance(part, State | Workspace):
-            found |= {f"{name}.{key}": array for key, array in part._asdict().items()}
-        else:
-            found[name] = part
+    found = model.run.progress()
     stack = model.body.stack if isinstance(model.body, FullStack) else model.body
     # a step begins with the weights and the linearisation of the one before
     if isinstance(stack, LooseStack):
         found["faces.weight"], found["faces.gradient"] = stack.faces.weight, stack.faces.gradient
-        found["contact.normal_stiffness"] = model.run.contact.normal_stiffness
-        found["contact.tangential_stiffness"] = model.run.contact.tangential_stiffness
+        found["contact.normal_stiffness"] = model.run.problem.contact.normal_stiffness
+        found["contact.tangential_stiffness"] = model.run.problem.contact.tangential_stiffness
     return found
 
 
@@ -160,8 +148,8 @@ def _waiting(run: RunState, clock: NDArray[Any]) -> Arrays:
     """The samples of a run that are in no file yet, as many as this clock says."""
     found: Arrays = {}
     for name, samples, so_far, gone in (
-        ("history", run.history, "samples", "samples_drained"),
-        ("frames", run.frames, "frames", "frames_drained"),
+        ("history", run.buffers.history, "samples", "samples_drained"),
+        ("frames", run.buffers.frames, "frames", "frames_drained"),
     ):
         count = int(clock[so_far][0] - clock[gone][0])
         parts = samples._asdict().items()

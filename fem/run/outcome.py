@@ -34,12 +34,12 @@ def run_without_history(model: Model, recovery: Recovery | None) -> tuple[Verdic
         run,
         duration,
         rest_from=model.rest_from,
-        aftermath=AFTERMATH / run.control.frequency_parameter,
+        aftermath=AFTERMATH / run.problem.control.frequency_parameter,
         slip_until=until,
         cycle=min(model.case.motion.period, duration),
         strained=recovery is not None,
     )
-    interval = run.history.interval
+    interval = run.buffers.history.interval
     count = int(run.clock[0].samples)
     last = min(count - 1, int((until + 1e-9) / interval))
     numbers = np.arange(max(0, last + 1 - kept.slip.size), last + 1)

@@ -66,7 +66,7 @@ class Recorder:
         """Follow the forces in these joints, from the initial state on."""
         self.joints = joints
         if joints is not None:
-            time_scale = 1.0 / self._model.run.control.frequency_parameter
+            time_scale = 1.0 / self._model.run.problem.control.frequency_parameter
             self._joint_forces = joints.initial_forces(initial, time_scale)
             rotation = initial.pose[ROTATION : ROTATION + 1]
             self.joint_motion = joints.motion(initial.position[None], initial.velocity[None], rotation)[0]
@@ -111,7 +111,7 @@ class Recorder:
             self.joint_motion = self.joints.in_moving_frame(self.joint_motion, velocity)
 
     def _drain_history(self, run: RunState) -> None:
-        clock, samples = run.clock[0], run.history
+        clock, samples = run.clock[0], run.buffers.history
         first, count = int(clock.samples_drained), int(clock.samples - clock.samples_drained)
         if count == 0:
             return
@@ -120,8 +120,8 @@ class Recorder:
             zip(row_names(self._model.case.container.bodies), samples.columns[:count].T, strict=True)
         )
         columns["time_s"] = as_written(times)
-        columns |= zip(BASE, floor_history(run.motion, times), strict=True)
-        columns |= zip(VERTICAL.names((0,)), floor_history(run.vertical, times), strict=True)
+        columns |= zip(BASE, floor_history(run.problem.motion, times), strict=True)
+        columns |= zip(VERTICAL.names((0,)), floor_history(run.problem.vertical, times), strict=True)
         joints = JOINTS.names(range(1, len(self._joint_forces) + 1))
         columns |= zip(joints, self._forces_in_joints(samples, first, count).T, strict=True)
         rows = np.column_stack([columns[name] for name in self._numbers])
@@ -152,7 +152,7 @@ class Recorder:
         self.largest_von_mises = max(self.largest_von_mises or 0.0, stress)
 
     def _drain_frames(self, run: RunState) -> None:
-        clock, samples = run.clock[0], run.frames
+        clock, samples = run.clock[0], run.buffers.frames
         first, count = int(clock.frames_drained), int(clock.frames - clock.frames_drained)
         if self._recovery is not None and samples.position.shape[1] > 0:
             for k in range(count):
@@ -163,8 +163,8 @@ class Recorder:
                 if self._frame_sink is not None:
                     pressure = np.zeros(len(frame.displacement))
                     pressure[self._model.container.nodes] = samples.force[k, :, 1] / self._area
-                    floor, _, _ = floor_motion(run.motion, time)
-                    lift, _, _ = floor_motion(run.vertical, time)
+                    floor, _, _ = floor_motion(run.problem.motion, time)
+                    lift, _, _ = floor_motion(run.problem.vertical, time)
                     self._frame_sink(
                         float(as_written(np.array(time))),
                         displacement=frame.displacement,

@@ -102,7 +102,7 @@ def simulate(
     reporter = reporter or SilentReporter()
     full = model.case.solver.model == "full"
     advance_body(model.body, model.run, 0.0)
-    duration, control, run = model.duration, model.run.control, model.run
+    duration, control, run = model.duration, model.run.problem.control, model.run
     clock, track = run.clock[0], run.track[0]
 
     def ended(status: str, error: str | None = None) -> SimulationEnd:
@@ -188,14 +188,14 @@ def _part_of(model: Model) -> tuple[int, float]:
         return DRIVEN, min(duration, model.rest_from)
     if time < duration:
         return FREE, duration
-    return UNDECIDED, duration + AFTERMATH / model.run.control.frequency_parameter
+    return UNDECIDED, duration + AFTERMATH / model.run.problem.control.frequency_parameter
 
 
 def _leave_alone(model: Model, run: RunState, recorder: Recorder) -> tuple[float, float, float]:
     """Change to the frame of the floor, which stands still from now on; returns time [s] and place of the floor [m]."""
     since = float(run.clock[0].time)
-    x, velocity_x, _ = floor_motion(run.motion, since)
-    z, velocity_z, _ = floor_motion(run.vertical, since)
+    x, velocity_x, _ = floor_motion(run.problem.motion, since)
+    z, velocity_z, _ = floor_motion(run.problem.vertical, since)
     leave_body_alone(model.body, run, velocity_x, velocity_z)
     recorder.change_frame((velocity_x, velocity_z))
     return since, float(x), float(z)
@@ -225,7 +225,7 @@ def crushing_failure(model: Model) -> str | None:
 
 def stepping_failure(model: Model, residual: float) -> str:
     """Where and why the stepping failed, and what to try; `residual` is that of the contact forces [N]."""
-    control, clock, softer = model.run.control, model.run.clock[0], softer_contact(model.case)
+    control, clock, softer = model.run.problem.control, model.run.clock[0], softer_contact(model.case)
     if _attempts(model.run) >= most_attempts(control, float(clock.time)):
         smallest = min(float(clock.smallest_step), control.largest_step)
         return (

@@ -245,7 +245,7 @@ def advance_body(body: Body, run: RunState, until: float) -> int:
         code = body.advance(run, until)
         if code != UNPREPARED:
             return code
-        body.prepare(run.scheme, float(run.clock[0].unprepared_step))
+        body.prepare(run.problem.scheme, float(run.clock[0].unprepared_step))
 
 
 def leave_body_alone(body: Body, run: RunState, floor_velocity: float, lift_velocity: float) -> None:

@@ -20,7 +20,7 @@ from contact.stepping.body import State, implements
 from contact.stepping.integrator import advance, enter_floor_frame
 from contact.stepping.loose_stack import LooseStack
 from contact.stepping.scheme import Scheme
-from contact.stepping.stack_body import work_of
+from contact.stepping.stack_body import state_of_box, work_of
 from contact.stepping.state import RunState
 from contact.structs import struct
 from fem.runtime.arrays import FloatArray, IntArray
@@ -57,26 +57,20 @@ def state_of(stack: NodalStack, state: State, b: int) -> State:
     i, j = stack.starts[b], stack.starts[b + 1]
     k, m = CORNERS * b, CORNERS * (b + 1)
     begin, end = stack.monitors[b, 0], stack.monitors[b, 1]
-    return State(
-        state.position[i:j],
-        state.velocity[i:j],
-        state.acceleration[i:j],
-        state.jerk[i:j],
-        state.internal[i:j],
-        state.damping[i:j],
-        state.external[i:j],
-        state.corner[k:m],
-        state.force[k:m],
-        state.descent,
-        state.drift,
-        state.stick,
-        state.crushed,
-        state.boxes[b],
-        stack.energy[b],
-        state.boxes,
-        state.corner,
-        state.monitor[begin:end],
-        state.numbers,
+    return state_of_box(
+        state,
+        position=state.position[i:j],
+        velocity=state.velocity[i:j],
+        acceleration=state.acceleration[i:j],
+        jerk=state.jerk[i:j],
+        internal=state.internal[i:j],
+        damping=state.damping[i:j],
+        external=state.external[i:j],
+        point=state.corner[k:m],
+        force=state.force[k:m],
+        pose=state.boxes[b],
+        energy=stack.energy[b],
+        monitor=state.monitor[begin:end],
     )
 
 

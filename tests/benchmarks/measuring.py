@@ -90,7 +90,7 @@ class Stepped:
     @property
     def ledger(self) -> Figure:
         """Whether the run passes: steps solved and energy balanced."""
-        clock, reference = self.model.run.clock[0], self.model.run.control.reference_energy
+        clock, reference = self.model.run.clock[0], self.model.run.problem.control.reference_energy
         gained, lost = -float(clock.least_imbalance) / reference, float(clock.most_imbalance) / reference
         return Figure(
             "status; energy gained and lost over that to overturn",

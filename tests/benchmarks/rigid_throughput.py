@@ -50,7 +50,10 @@ def throughput(case: Case) -> tuple[float, str, float]:
     def fresh() -> list[Model]:
         models = [build_model(case, container) for _ in range(ROWS)]
         no_samples = make_samples(math.inf, 4, models[0].run.old.point.shape[0])
-        return [replace(model, run=model.run._replace(history=no_samples)) for model in models]
+        return [
+            replace(model, run=model.run._replace(buffers=model.run.buffers._replace(history=no_samples)))
+            for model in models
+        ]
 
     def step(models: list[Model]) -> list[int]:
         return [run_to_end(model.body, model.run, DURATION).status for model in models]

@@ -99,14 +99,14 @@ FLOOR_FAULTS = (
     ),
     Mutation(
         name="no work of gravity along the floor's displacement",
-        old="(shear + run.control.mass * run.control.downhill)",
-        new="(shear + 0.0 * run.control.mass * run.control.downhill)",
+        old="(shear + run.problem.control.mass * run.problem.control.downhill)",
+        new="(shear + 0.0 * run.problem.control.mass * run.problem.control.downhill)",
         tests=(FLOOR, "-k", "no_work"),
     ),
     Mutation(
         name="the force that holds on a slope taken downhill",
-        old="run.floor[1, 2] - run.control.downhill",
-        new="run.floor[1, 2] + run.control.downhill",
+        old="run.floor[1, 2] - run.problem.control.downhill",
+        new="run.floor[1, 2] + run.problem.control.downhill",
         tests=("verification/test_verification_checks.py", "-k", "floor and slider"),
     ),
     Mutation(

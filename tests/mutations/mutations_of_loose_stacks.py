@@ -32,8 +32,8 @@ LOOSE_STACKS = (
     ),
     Mutation(
         name="friction of the floor in every joint",
-        old="joint.mu = run.contact.mu_static[points_of(run, j)[0]]\n        if",
-        new="joint.mu = run.contact.mu_static[0]\n        if",
+        old="joint.mu = run.problem.contact.mu_static[points_of(run, j)[0]]\n        if",
+        new="joint.mu = run.problem.contact.mu_static[0]\n        if",
         tests=STACKS,
     ),
     Mutation(

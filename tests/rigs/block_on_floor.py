@@ -14,7 +14,7 @@ from contact.arrays import FloatArray
 from contact.interface.equilibrium import Stance, standing
 from contact.interface.laws import ELASTIC_STICK
 from contact.interface.penalty import relaxation_time
-from contact.interface.workspace import Contact, make_workspace
+from contact.interface.workspace import Contact
 from contact.motion.base_motion import HarmonicMotion, NoMotion, PulseMotion
 from contact.motion.kernel import PIECEWISE, FloorMotion, as_floor_motion, floor_motion
 from contact.reference.rigid_block import RigidBlock
@@ -117,7 +117,7 @@ class Rig:
 
     def advance(self, until: float) -> "Rig":
         """Step to `until` [s] or just beyond (no step is shortened for it)."""
-        limit = most_attempts(self.run.control, until)
+        limit = most_attempts(self.run.problem.control, until)
         self.clock.attempt_limit = limit
         status = advance_compiled(self.body, self.run, until)
         assert status == 0, f"stopped with status {status} at {self.time} s"
@@ -144,20 +144,20 @@ class Rig:
     @property
     def times(self) -> FloatArray:
         """Of the samples [s]."""
-        return self.run.history.interval * np.arange(self.clock.samples)
+        return self.run.buffers.history.interval * np.arange(self.clock.samples)
 
     @property
     def rotation(self) -> FloatArray:
-        return self.run.history.columns[: self.clock.samples, ROW_ROTATION]
+        return self.run.buffers.history.columns[: self.clock.samples, ROW_ROTATION]
 
     @property
     def slip(self) -> FloatArray:
-        return self.run.history.columns[: self.clock.samples, ROW_SLIP]
+        return self.run.buffers.history.columns[: self.clock.samples, ROW_SLIP]
 
     @property
     def force(self) -> FloatArray:
         """Contact forces at the samples, shape (n_samples, 2, 2) [N]."""
-        return self.run.history.force[: self.clock.samples]
+        return self.run.buffers.history.force[: self.clock.samples]
 
 
 def rig(
@@ -207,7 +207,7 @@ def rig(
     along, upward = (one if isinstance(one, FloorMotion) else one.compiled() for one in (motion, vertical))
     (x, velocity_x, _), (z, velocity_z, _) = floor_motion(along, 0.0), floor_motion(upward, 0.0)
     contact = block.contact()
-    old, new = (make_state(3 + body.stiffness.size, 2, 0) for _ in range(2))
+    old = make_state(3 + body.stiffness.size, 2, 0)
     stance = (block.standing() if stance is None else stance).moved(x, z).moving(velocity_x, velocity_z)
     old.force[:] = stance.force
     old.stick[:] = -stance.force[:, 0] / contact.tangential_stiffness
@@ -223,8 +223,6 @@ def rig(
         breaks=np.zeros(0) if breaks is None else breaks,
         control=limits_of(block, largest_step, fixed_step, energy_scale),
         old=old,
-        new=new,
-        work=make_workspace(2),
         history=make_samples(sampled, 8000, 2, columns=True),
         frames=make_samples(math.inf, 4, 2),
     )

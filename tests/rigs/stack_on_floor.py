@@ -10,7 +10,6 @@ from block_on_floor import GRAVITY, Block, Motion, limits_of
 
 from contact.arrays import FloatArray
 from contact.interface.faces import points_of_joint
-from contact.interface.workspace import make_workspace
 from contact.motion.base_motion import NoMotion
 from contact.motion.kernel import FloorMotion, floor_motion
 from contact.stepping.body import make_state
@@ -43,7 +42,7 @@ class StackRig:
 
     def advance(self, until: float) -> int:
         """Step to `until` [s] or just beyond, or to a fall; returns the status."""
-        self.run.clock[0].attempt_limit = most_attempts(self.run.control, until)
+        self.run.clock[0].attempt_limit = most_attempts(self.run.problem.control, until)
         return advance_compiled(self.stack, self.run, until)
 
     @property
@@ -53,7 +52,7 @@ class StackRig:
     @property
     def columns(self) -> FloatArray:
         """Samples so far."""
-        return self.run.history.columns[: self.run.clock[0].samples]
+        return self.run.buffers.history.columns[: self.run.clock[0].samples]
 
     def box(self, k: int, column: int) -> FloatArray:
         """A column of box k >= 1."""
@@ -117,7 +116,7 @@ def stack_rig(
     stack = make_stack(bodies, springs, springs)
     along = motion if isinstance(motion, FloorMotion) else motion.compiled()
     place, velocity, _ = floor_motion(along, 0.0)
-    old, new = (make_state(stack.body.mass.size * (3 + stack.body.modes), points, 0, n) for _ in range(2))
+    old = make_state(n * (3 + stack.body.modes), points, 0, n)
     mus = np.full(points, mu)
     mus[2:] = mu if joint_mu is None else joint_mu
     contact = whole.contact()._replace(
@@ -136,8 +135,6 @@ def stack_rig(
         breaks=np.zeros(0),
         control=limits_of(whole, largest_step, False, energy_scale),
         old=old,
-        new=new,
-        work=make_workspace(points),
         history=make_samples(sampled, room, points, columns=True, boxes=n),
         frames=make_samples(math.inf, 4, points),
         joints=make_joints(

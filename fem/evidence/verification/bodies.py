@@ -11,7 +11,7 @@ import numpy as np
 
 from contact.interface.equilibrium import Stance
 from contact.interface.laws import ELASTIC_STICK
-from contact.interface.workspace import Contact, make_workspace
+from contact.interface.workspace import Contact
 from contact.motion.kernel import UNIFORM, as_floor_motion
 from contact.stepping import modal_kernels
 from contact.stepping.body import State, make_state
@@ -99,7 +99,7 @@ def free_run(
         coordinates, points, (x, z) = body.coordinates, len(body.base), body.centroid
     else:
         coordinates, points, (x, z) = 3 + body.stiffness.size, len(body.point), body.rest
-    old, new = (make_state(coordinates, points, 0) for _ in range(2))
+    old = make_state(coordinates, points, 0)
     stance = Stance(
         centre=(float(x), float(z) + height),
         rotation=0.0,
@@ -124,7 +124,7 @@ def free_run(
         contact=_contact(np.full(points, 1.0) if springs is None else springs, caps, body.mass),
         motion=as_floor_motion(UNIFORM, (0.0, 0.0, 0.0)),
         breaks=np.full(1, until),
-        control=with_steps_of(build_model(STACK), step).run.control._replace(
+        control=with_steps_of(build_model(STACK), step).run.problem.control._replace(
             reference_energy=1.0,
             stop_when_overturned=False,
             mass=body.mass,
@@ -134,8 +134,6 @@ def free_run(
             top_monitors=0,
         ),
         old=old,
-        new=new,
-        work=make_workspace(points),
         history=make_samples(1e6 * step, 8, points, columns=True, position=samples),
         frames=make_samples(math.inf, 8, points),
     )

@@ -221,5 +221,5 @@ def bar_impact(*, elements: int, trapezoidal: bool = False, penalty_ratio: float
 
 def as_model(flight: Flight) -> Model:
     """A model whose run is the flight's, for the audit; the energy to overturn is the flight's energy."""
-    control = flight.run.control._replace(reference_energy=flight.first_energy)
-    return replace(build_model(runs.STACK), run=flight.run._replace(control=control))
+    control = flight.run.problem.control._replace(reference_energy=flight.first_energy)
+    return replace(build_model(runs.STACK), run=flight.run.with_problem(control=control))

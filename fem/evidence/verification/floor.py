@@ -98,7 +98,7 @@ def slab(stiffness: float, cap: float, ratio: float | None = None) -> runs.Keys:
         "floor.poisson_ratio": 0.2,
         "floor.bearing_strength_Pa": cap / (PATCH[0] * PATCH[1]),
     }
-    found = float(build_model(runs.STACK.with_values(keys)).run.contact.normal_stiffness[0])
+    found = float(build_model(runs.STACK.with_values(keys)).run.problem.contact.normal_stiffness[0])
     keys["floor.youngs_modulus_Pa"] *= stiffness / found
     return keys if ratio is None else keys | {"contact.damping_ratio": ratio}
 
@@ -110,11 +110,11 @@ def work_of_crushing() -> Findings:
     for name, keys in {"rigid stack": {}, "solid stack, 20 modes": runs.SOLID}.items():
         model = build_model(runs.STACK.with_values(driven | keys | slab(8.1e9, 0.44e6)))
         area = area_under_the_curves(model)
-        ledger, reference = model.run.ledger, model.run.control.reference_energy
+        ledger, reference = model.run.ledger, model.run.problem.control.reference_energy
         case = f"{name}, 4 m/s2 at {OMEGA} rad/s, 3 s, cap 0.44 MN"
         source = "sum of force times indentation over all steps"
         yield computed(case, "work of crushing [J]", ledger[CRUSHING], area, source=source, relative=1e-12)
-        at_cap = float((model.run.contact.cap * model.run.old.crushed).sum())
+        at_cap = float((model.run.problem.contact.cap * model.run.old.crushed).sum())
         yield analytic(
             case, "work of crushing [J]", ledger[CRUSHING], at_cap, source="cap x indentation", relative=2e-2
         )
@@ -206,7 +206,7 @@ def block_on_slope() -> Findings:
         yield computed(
             f"{name}, mu 1, 4.5 m/s2 at {OMEGA} rad/s, slope {per_cent:g} %",
             "rotation up to the first impact, largest difference over al",
-            difference_of_rotation(done, floor.on_slope(done.model.run.control.downhill)),
+            difference_of_rotation(done, floor.on_slope(done.model.run.problem.control.downhill)),
             source="event-driven block",
             absolute=2e-3 if keys else 1e-3,
         )

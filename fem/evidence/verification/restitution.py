@@ -202,7 +202,7 @@ def bed_of_springs() -> Findings:
 
 def turning_point_on_springs(done: Finished, kind: str) -> float:
     """|rotation| at the turning point after the first impact, by the reference on the same floor [rad]."""
-    contact, width = done.model.run.contact, 2.0 * done.block.half_width
+    contact, width = done.model.run.problem.contact, 2.0 * done.block.half_width
     return next_turning_point(
         done.block,
         places=np.array([-0.5, 0.5]) * width if kind == "corners" else evenly_spaced(width, 111),

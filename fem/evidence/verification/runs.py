@@ -147,14 +147,14 @@ def bisected(happens: Callable[[float], bool], low: float, high: float, *, resol
 
 def with_steps_of(model: Model, step: float) -> Model:
     """The model with every step of one size [s], whatever its energy balance."""
-    loose = model.run.control._replace(
+    loose = model.run.problem.control._replace(
         largest_step=step,
         smallest_step=step,
         event_step=step,
         closing_step=step,
         energy_rate=1e30,
     )
-    return replace(model, run=model.run._replace(control=loose))
+    return replace(model, run=model.run.with_problem(control=loose))
 
 
 def with_motion(model: Model, motion: FloorMotion, breaks: tuple[float, ...] = ()) -> Model:
@@ -170,7 +170,7 @@ def with_motion(model: Model, motion: FloorMotion, breaks: tuple[float, ...] = (
     model.run.floor[:] = floor, speed, acceleration
     modal_kernels.start(_modal(model), state, floor, 0.0, 0.0)
     ends = np.array([*breaks, model.duration, np.inf])
-    return replace(model, run=model.run._replace(motion=motion, breaks=ends))
+    return replace(model, run=model.run.with_problem(motion=motion, breaks=ends))
 
 
 def lifted(model: Model, height: float, speed: float) -> Model:

@@ -80,7 +80,7 @@ def test_the_ledger_holds_all_energy(elastic):
     run, reference = shaken.run, shaken.whole.reference_energy
 
     def energy() -> float:
-        return float(run.old.energy.sum()) + spring_energy(run.contact, run.old.point, run.old.stick)
+        return float(run.old.energy.sum()) + spring_energy(run.problem.contact, run.old.point, run.old.stick)
 
     start = energy()
     shaken.advance(6.0)

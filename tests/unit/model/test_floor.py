@@ -98,7 +98,7 @@ def test_waves_damp_a_light_container_on_gravel_more_than_the_least_ratio():
 @pytest.mark.parametrize("support", ["corners", "feet", "flat"])
 def test_the_points_of_a_model_share_stiffness_and_cap_of_its_corners(support):
     model = build_model(load_case("seed_stack", [*SLAB, f"support.kind={support}"]))
-    slab, contact = slab_of(model.case, model.container.mesh.mass), model.run.contact
+    slab, contact = slab_of(model.case, model.container.mesh.mass), model.run.problem.contact
     assert contact.normal_stiffness.sum() == pytest.approx(2.0 * slab.normal_stiffness)
     assert contact.tangential_stiffness.sum() == pytest.approx(2.0 * slab.tangential_stiffness)
     assert contact.cap.sum() == pytest.approx(2.0 * slab.cap)
@@ -109,7 +109,7 @@ def test_the_points_of_a_model_share_stiffness_and_cap_of_its_corners(support):
 
 
 def test_a_rigid_floor_has_no_cap():
-    contact = build_model(load_case("seed_stack", [*COARSE, "floor.kind=rigid"])).run.contact
+    contact = build_model(load_case("seed_stack", [*COARSE, "floor.kind=rigid"])).run.problem.contact
     assert np.isinf(contact.cap).all()
 
 

@@ -4,16 +4,16 @@ from typing import get_args
 
 import pytest
 
+from contact.interface.laws import FRICTION_LAWS
 from fem.case.tables import ContactTable
-from fem.model.equilibrium import CODES
 
 LAWS = get_args(ContactTable.model_fields["friction"].annotation)
 CONTACT = ContactTable(mu_static=0.4, mu_kinetic=0.4, damping_ratio=2.0)
 
 
 def test_every_law_has_a_code_of_its_own():
-    assert set(CODES) == set(LAWS)
-    assert len(set(CODES.values())) == len(LAWS)
+    assert set(FRICTION_LAWS) == set(LAWS)
+    assert len(set(FRICTION_LAWS.values())) == len(LAWS)
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -26,4 +26,4 @@ def test_a_law_that_nobody_knows_is_refused():
     with pytest.raises(AssertionError, match="viscous"):
         _ = another.sticks
     with pytest.raises(KeyError, match="viscous"):
-        _ = CODES[another.friction]
+        _ = FRICTION_LAWS[another.friction]

@@ -86,6 +86,6 @@ def test_models_of_one_container_do_not_share_what_changes(model):
     container = discretise(case)
     one = build_model(case, container)
     other = build_model(case, container, one.equilibrium)
-    one.run.contact.normal_stiffness[:] = 0.0
-    assert other.run.contact.normal_stiffness.min() > 0.0
+    one.run.problem.contact.normal_stiffness[:] = 0.0
+    assert other.run.problem.contact.normal_stiffness.min() > 0.0
     assert other.equilibrium.contact.normal_stiffness.min() > 0.0

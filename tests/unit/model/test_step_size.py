@@ -54,7 +54,9 @@ def test_a_short_pulse_rocks_the_container_as_small_steps_throughout_do():
 
 def test_the_faster_vertical_motion_sets_the_step():
     upward = {"vertical.kind": "harmonic", "vertical.amplitude_m": 1e-3, "vertical.frequency_Hz": 10.0}
-    assert build_model(rigid().with_values(upward)).run.control.largest_step == pytest.approx(0.02 * 0.1)
+    assert build_model(rigid().with_values(upward)).run.problem.control.largest_step == pytest.approx(
+        0.02 * 0.1
+    )
     with pytest.raises(CaseError, match=r"step_s = 0\.02 s would step over the motion.* at most 0\.01 s"):
         build_model(rigid(solver__step_s=0.02).with_values(upward))
 
@@ -68,7 +70,7 @@ def test_steps_end_where_either_motion_jumps():
     upward = {key.replace("motion", "vertical"): value for key, value in kicked.items()} | {
         "vertical.delay_s": 0.8
     }
-    breaks = build_model(rigid().with_values(kicked | upward)).run.breaks
+    breaks = build_model(rigid().with_values(kicked | upward)).run.problem.breaks
     assert {0.5, 0.8, 1.5, 1.8} <= set(breaks.round(12))
 
 
@@ -84,7 +86,7 @@ def test_no_step_is_made_for_a_motion_that_changes_twice_within_the_smallest():
     at_once, _ = finished(rigid().with_values(values | {"motion.delay_s": 0.0}))
     model, ending = finished(rigid().with_values(values | {"motion.delay_s": 1e-162}))
     assert ending.status == "completed", ending.error
-    assert model.run.breaks.tolist() == at_once.run.breaks.tolist()
+    assert model.run.problem.breaks.tolist() == at_once.run.problem.breaks.tolist()
     assert model.run.old.position == pytest.approx(at_once.run.old.position, rel=1e-9)
 
 
@@ -98,14 +100,14 @@ def test_a_loose_tolerance_saves_steps_of_a_rigid_container_and_keeps_its_motion
         assert coarse.run.track[0].max_rotation == pytest.approx(rotation, rel=0.01)
         assert not build_model(
             rigid(solver__energy_tolerance=tolerance, solver__model="reduced")
-        ).run.control.eager
+        ).run.problem.control.eager
 
 
 def test_no_step_is_longer_than_the_samples_in_memory_reach():
     case = rigid(output__history_s=1e-6, output__fields_s=0.0)
     model = build_model(case)
-    assert model.run.control.largest_step == pytest.approx(64e-6)
-    assert model.run.history.mode.size < 2000
+    assert model.run.problem.control.largest_step == pytest.approx(64e-6)
+    assert model.run.buffers.history.mode.size < 2000
 
 
 @pytest.fixture
@@ -130,7 +132,7 @@ def test_a_run_for_its_outcome_without_headway_fails(few_attempts):
 def test_a_run_for_its_outcome_that_is_no_longer_finite_says_so():
     """A step of 1e-163 s, over whose square the inertia is not finite; neither is the residual then."""
     model = build_model(rigid(solver__duration_s=1.0))
-    outcome = run_to_end(model.body, model.run._replace(breaks=np.array([1e-163, np.inf])), 1.0)
+    outcome = run_to_end(model.body, model.run.with_problem(breaks=np.array([1e-163, np.inf])), 1.0)
     assert outcome.status == FAILED
     residual = float(np.abs(model.run.work.law - model.run.work.force).max())
     assert not np.isfinite(residual)

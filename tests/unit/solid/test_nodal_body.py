@@ -44,7 +44,7 @@ def model():
 
 
 def newmark_matrix(model):
-    body, scheme = model.body, model.run.scheme
+    body, scheme = model.body, model.run.problem.scheme
     now, beta = 1.0 - scheme.alpha_f, scheme.newmark_beta
     inertial = (1.0 - scheme.alpha_m) / (beta * STEP**2)
     elastic = now * (1.0 + body.damping * scheme.newmark_gamma / (beta * STEP))
@@ -53,7 +53,7 @@ def newmark_matrix(model):
 
 def test_substitution_solves_with_the_newmark_matrix(model):
     body = model.body
-    body.prepare(model.run.scheme, STEP)
+    body.prepare(model.run.problem.scheme, STEP)
     nodal, matrix = body.nodal, newmark_matrix(model)
     load = np.random.default_rng(2).normal(size=body.coordinates)
     nodal.permuted[nodal.order] = load
@@ -64,7 +64,7 @@ def test_substitution_solves_with_the_newmark_matrix(model):
 
 def test_the_oldest_factors_make_room():
     model = build_model(load_case("seed_stack_plateau", COARSE))
-    body, scheme = model.body, model.run.scheme
+    body, scheme = model.body, model.run.problem.scheme
     assert not body.prepared(STEP)
     body.prepare(scheme, STEP)
     assert body.prepared(STEP)
@@ -97,11 +97,11 @@ def test_forces_and_energy_are_those_of_the_elements_less_the_source(model):
 def test_an_iterate_that_has_run_away_is_never_taken_for_converged():
     model = build_model(load_case("seed_stack_plateau", COARSE))
     body, run = model.body, model.run
-    body.prepare(run.scheme, STEP)
-    body.predict(run.scheme, STEP, run.old, run.new)
-    run.new.position[::3] = math.nan
-    body.release(run.scheme, STEP, run.old, run.new, run.work, 0.0, 0.0, 0.0, 0.0)
-    assert body.respond(run.scheme, STEP, run.old, run.new, run.work) == math.inf
+    body.prepare(run.problem.scheme, STEP)
+    body.predict(run.problem.scheme, STEP, run.old, run.attempt.new)
+    run.attempt.new.position[::3] = math.nan
+    body.release(run.problem.scheme, STEP, run.old, run.attempt.new, run.work, 0.0, 0.0, 0.0, 0.0)
+    assert body.respond(run.problem.scheme, STEP, run.old, run.attempt.new, run.work) == math.inf
 
 
 def test_walls_thin_as_a_hair_do_not_keep_the_iterations_waiting_for_rounding():

@@ -37,7 +37,7 @@ def test_slip_leaves_out_the_elastic_stick():
 
 def steady(run: Rig, period: float) -> FloatArray:
     """Slip over the last cycle [m]."""
-    return run.slip[-round(period / run.run.history.interval) - 1 :]
+    return run.slip[-round(period / run.run.buffers.history.interval) - 1 :]
 
 
 def shaken(block: Block, angular_frequency: float, cycles: float, **options) -> Rig:
@@ -70,7 +70,7 @@ def test_a_stuck_block_does_not_creep(share, stairs, sign):
     knots = [2.0 * i / stairs for i in range(stairs)]
     pulls = [sign * share * 0.4 * GRAVITY * (i + 1) / stairs for i in range(stairs)]
     run = rig(BOX, motion=piecewise_motion(knots, pulls), breaks=np.array(knots[1:])).advance(20.0)
-    leaning = run.run.history.columns[: run.clock.samples, ROW_CENTRE_X]
+    leaning = run.run.buffers.history.columns[: run.clock.samples, ROW_CENTRE_X]
     after = run.times > 3.0
     # a micrometre is 1e7 times what the rounding of the floor's 700 m leaves
     assert np.ptp(run.slip[after]) <= 1e-12

@@ -27,7 +27,7 @@ SLOPE = 0.08  # it falls toward +x
 
 
 def stepped(model: Model, until: float) -> Model:
-    run, most = model.run, most_attempts(model.run.control, until)
+    run, most = model.run, most_attempts(model.run.problem.control, until)
     run.clock[0].attempt_limit = most
     while run.clock[0].time < until:
         assert run.clock[0].steps + run.clock[0].rejected < most, "it makes no progress"
@@ -47,7 +47,7 @@ def tilted_box(model: str, **values) -> Model:
 def test_a_container_stands_still_on_a_slope(model, kind):
     keys = {"floor.slope_percent": 100.0 * SLOPE, "support.kind": kind, "solver.element_size_m": 0.275}
     on_slope = build_model(STACK.with_values(MODELS[model] | keys | {"contact.mu_static": 0.1}))
-    run, mass = on_slope.run, on_slope.run.control.mass
+    run, mass = on_slope.run, on_slope.run.problem.control.mass
     weight, angle = mass * GRAVITY, math.atan(SLOPE)
     tangential, normal = run.old.force.sum(axis=0)
     assert normal == pytest.approx(weight * math.cos(angle), rel=1e-9)
@@ -59,7 +59,7 @@ def test_a_container_stands_still_on_a_slope(model, kind):
     assert run.joints[0].max_slip == 0.0
     assert run.track[0].modes == 1  # at rest
     assert run.old.force == pytest.approx(forces, abs=1e-3 * weight)
-    assert np.abs(run.ledger).max() <= 1e-7 * run.control.reference_energy
+    assert np.abs(run.ledger).max() <= 1e-7 * run.problem.control.reference_energy
 
 
 def test_the_full_model_slides_down_a_slope_as_the_closed_form_says():
@@ -71,7 +71,7 @@ def test_the_full_model_slides_down_a_slope_as_the_closed_form_says():
     angle, run = math.atan(SLOPE), model.run
     expected = 0.5 * GRAVITY * (math.sin(angle) - 0.05 * math.cos(angle)) * run.clock[0].time ** 2
     assert run.joints[0].slip == pytest.approx(expected, rel=5e-3)
-    lost = model.run.control.mass * GRAVITY * math.sin(angle) * run.old.pose[CENTRE_X]
+    lost = model.run.problem.control.mass * GRAVITY * math.sin(angle) * run.old.pose[CENTRE_X]
     assert run.old.energy[POTENTIAL] - before == pytest.approx(-lost, rel=1e-3)
     assert abs(run.ledger[IMBALANCE]) <= 1e-3 * run.ledger[FRICTION]
 
@@ -83,7 +83,7 @@ def test_a_floor_that_carries_a_container_along_a_slope_does_no_work_on_it():
     before = float(model.run.old.energy[POTENTIAL])
     stepped(model, 1.0)
     energy, ledger = model.run.old.energy, model.run.ledger
-    kinetic = 0.5 * model.run.control.mass * float(model.run.floor[0, 1]) ** 2
+    kinetic = 0.5 * model.run.problem.control.mass * float(model.run.floor[0, 1]) ** 2
     assert energy[POTENTIAL] == pytest.approx(before, abs=1e-3 * kinetic)
     assert ledger[BASE_WORK] == pytest.approx(kinetic, rel=1e-2)
 
@@ -108,8 +108,8 @@ def test_every_model_crushes_the_floor_alike(model):
     rigid = stepped(tilted_box("rigid"), 0.12).run
     assert run.old.crushed[0] > 1e-5
     assert run.old.crushed[0] == pytest.approx(rigid.old.crushed[0], rel=0.05)
-    assert run.ledger[CRUSHING] == pytest.approx(run.contact.cap @ run.old.crushed, rel=2e-2)
-    assert (run.old.force[:, 1] <= run.contact.cap * (1.0 + 1e-9)).all()
+    assert run.ledger[CRUSHING] == pytest.approx(run.problem.contact.cap @ run.old.crushed, rel=2e-2)
+    assert (run.old.force[:, 1] <= run.problem.contact.cap * (1.0 + 1e-9)).all()
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -141,7 +141,7 @@ def test_a_cap_above_all_forces_changes_no_bit(model):
     runs = []
     for cap in (math.inf, 1e15):
         model = build_model(STACK.with_values(keys))
-        model.run.contact.cap[:] = cap
+        model.run.problem.contact.cap[:] = cap
         runs.append(stepped(model, 1.5).run)
     assert runs[0].old.numbers.tobytes() == runs[1].old.numbers.tobytes()
     assert runs[0].track[0].impacts > 0

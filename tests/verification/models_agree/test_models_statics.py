@@ -28,7 +28,7 @@ def frame_of(model: Model) -> NodalFields:
 
 def settled_displacement(model: Model) -> np.ndarray:
     """Nodal displacements (n, 2) of linear statics on unilateral springs; the middle of the base kept in x."""
-    elements, contact = model.container.elements, model.run.contact
+    elements, contact = model.container.elements, model.run.problem.contact
     weight = np.zeros((len(elements.nodes), 2))
     weight[:, 1] = -model.case.gravity_m_s2 * (elements.mass @ np.ones(len(elements.nodes)))
     pressing = np.ones(model.container.nodes.size, dtype=bool)
