@@ -23,11 +23,12 @@ from contact.stepping.observables import FORCE_WINDOW, ROCKING, SLIDING
 from fem.case.case import Case
 from fem.model.floor import YIELD_STRENGTH, is_steel_shell, plastic_work, steel_capacity
 from fem.model.model import Model
-from fem.results.figures import BoxResult
+from fem.results.figures import FIGURES, BoxResult
 from fem.results.history import History
 from fem.results.outcome import Outcome
 from fem.results.run_result import Energy, Numerics, Verdict
 from fem.runtime.arrays import FloatArray
+from fem.runtime.units import SECONDS
 
 RotationT = TypeVar("RotationT", float, FloatArray)
 
@@ -86,25 +87,16 @@ def verdict_from(
     sampled = end is not None and end > 0.0
     rocked = outcome in (Outcome.ROCK, Outcome.SLIDE_ROCK)
     return Verdict(
+        **_recorded(track=track, joint=joint),
         outcome=outcome,
         modes=_modes_seen(track.modes, outcome, slides=_slides(model)),
         max_rotation_rad=rotation,
         rotation_ratio=relative_rotation(rotation, angle),
-        max_slip_m=joint.max_slip,
-        residual_slip_m=joint.slip,
         slip_peak_to_peak_m=_peak_to_peak(model, end, time, slip),
-        slip_travel_m=joint.slip_travel,
-        max_uplift_m=track.max_uplift,
         max_indentation_m=_indentation(model),
-        impacts=track.impacts,
-        first_opening_s=_finite(track.first_opening),
-        first_uplift_s=_finite(track.first_uplift),
-        first_impact_s=_finite(track.first_impact),
-        overturned_at_s=_finite(track.overturned_at),
         restored=rocked and _largest_rotation(run.old) < ROCKING * angle,
         at_rest_s=_finite(float(run.clock[0].rest_since)),
         restitution_first=_restitution(track),
-        max_corner_force_N=track.max_corner_force,
         max_top_displacement_m=track.max_top_displacement if sampled else None,
         max_acceleration_m_s2=track.max_acceleration if sampled else None,
         max_von_mises_Pa=largest_von_mises,
@@ -116,6 +108,13 @@ def verdict_from(
         boxes=boxes or None,
         fell_box=first_fallen_box(model),
     )
+
+
+def _recorded(**records: SimpleNamespace) -> dict[str, Any]:
+    """The figures that the stepper records, by key; of an event that has not happened, None."""
+    recorded = {key: one.of.split(".") for key, one in FIGURES.items() if one.of}
+    values = {key: getattr(records[record], name) for key, (record, name) in recorded.items()}
+    return {key: _finite(value) if FIGURES[key].unit is SECONDS else value for key, value in values.items()}
 
 
 def box_results(model: Model) -> tuple[BoxResult, ...]:

@@ -2,8 +2,9 @@
 
 A field is a key of `run.json`. Its `Shown` says in which words and unit people read it, and where: as a column of the
 tables of studies, in the rows of the runs of a site, as a range over the band, as a row of the summary, on maps. A new
-quantity is a field here and its value in `fem.assessment.verdict`. SI units, named in the keys; rotation > 0 toward
-+x, slip > 0 moves the container to +x.
+quantity is recorded by the stepper (`contact.stepping`) and declared here; one that follows from several records is
+put together in `fem.assessment.verdict`. SI units, named in the keys; rotation > 0 toward +x, slip > 0 moves the
+container to +x.
 """
 # ruff: noqa: N815 - a field is named as its key in the file, unit and all
 
@@ -52,6 +53,7 @@ class Shown:
     words: str
     unit: DisplayUnit
     places: Place
+    of: str = ""  #: what the stepper records of it: a field of the lowest "joint" or of the "track"
     _: KW_ONLY
     head: str = ""  #: over a narrow column; empty: the words
     map_words: str = ""  #: on a map; empty: the words
@@ -97,13 +99,14 @@ class Figures(JsonBlock, Generic[ValueT]):
     rotation_ratio: Annotated[ValueT | None, Shown("rotation ratio", RATIO, TABLES | KEY | MAP)] = None
     #: largest |slip|
     max_slip_m: Annotated[
-        ValueT | None, Shown("largest slip", MM, TABLES | READ | KEY, head="slip", lowest=True)
+        ValueT | None,
+        Shown("largest slip", MM, TABLES | READ | KEY, "joint.max_slip", head="slip", lowest=True),
     ] = None
     #: at the end
     residual_slip_m: Annotated[
         ValueT | None,
         Shown(
-            *("slip at the end", MM, TABLES | READ),
+            *("slip at the end", MM, TABLES | READ, "joint.slip"),
             head="residual",
             map_words="slip left at the end",
             signed=True,
@@ -113,19 +116,32 @@ class Figures(JsonBlock, Generic[ValueT]):
     #: over the last full cycle of a harmonic drive
     slip_peak_to_peak_m: Annotated[ValueT | None, Shown("slip, peak to peak", MM, COLUMN)] = None
     #: total
-    slip_travel_m: Annotated[ValueT | None, Shown("path of slip", MM, COLUMN | SUMMARY, lowest=True)] = None
+    slip_travel_m: Annotated[
+        ValueT | None, Shown("path of slip", MM, COLUMN | SUMMARY, "joint.slip_travel", lowest=True)
+    ] = None
     max_uplift_m: Annotated[
-        ValueT | None, Shown("largest uplift", MM, TABLES | READ, head="uplift", lowest=True)
+        ValueT | None,
+        Shown("largest uplift", MM, TABLES | READ, "track.max_uplift", head="uplift", lowest=True),
     ] = None
     #: permanent, where the floor is crushed; None: it does not crush
     max_indentation_m: Annotated[ValueT | None, Shown("indentation of the floor", MM, BAND | SUMMARY)] = None
-    impacts: Annotated[int | None, Shown("impacts", COUNT, COLUMN | READ, below="first_uplift_s")] = None
+    impacts: Annotated[
+        int | None, Shown("impacts", COUNT, COLUMN | READ, "track.impacts", below="first_uplift_s")
+    ] = None
     #: a base gap opens
-    first_opening_s: Annotated[ValueT | None, Shown("first opening", SECONDS, COLUMN)] = None
+    first_opening_s: Annotated[
+        ValueT | None, Shown("first opening", SECONDS, COLUMN, "track.first_opening")
+    ] = None
     #: a side carries nothing
-    first_uplift_s: Annotated[ValueT | None, Shown("first uplift", SECONDS, COLUMN | READ)] = None
-    first_impact_s: Annotated[ValueT | None, Shown("first impact", SECONDS, COLUMN)] = None
-    overturned_at_s: Annotated[ValueT | None, Shown("overturned at", SECONDS, COLUMN | MAP)] = None
+    first_uplift_s: Annotated[
+        ValueT | None, Shown("first uplift", SECONDS, COLUMN | READ, "track.first_uplift")
+    ] = None
+    first_impact_s: Annotated[ValueT | None, Shown("first impact", SECONDS, COLUMN, "track.first_impact")] = (
+        None
+    )
+    overturned_at_s: Annotated[
+        ValueT | None, Shown("overturned at", SECONDS, COLUMN | MAP, "track.overturned_at")
+    ] = None
     #: it rocked and stands again at the end
     restored: Annotated[bool | None, Shown("restored", COUNT, COLUMN)] = None
     restitution_first: Annotated[
@@ -134,7 +150,7 @@ class Figures(JsonBlock, Generic[ValueT]):
     max_corner_force_N: Annotated[
         ValueT | None,
         Shown(
-            *("largest corner force", KILONEWTONS, COLUMN | BAND | READ),
+            *("largest corner force", KILONEWTONS, COLUMN | BAND | READ, "track.max_corner_force"),
             below="max_uplift_m",
             impact=True,
             window="corner_force_window_s",

@@ -1,0 +1,88 @@
+"""The declaration of the figures of a run: each stands in every place that it names, and is filled by some run."""
+
+import json
+from dataclasses import fields
+
+from fem.assessment.ranges import in_words
+from fem.assessment.summary import result_rows
+from fem.batch.runner import run_chunk
+from fem.case.case import load_case
+from fem.report.sweep_page import QUANTITIES
+from fem.results.figures import BOX_FIGURES, FIGURES, SCALARS, BoxResult, Place, keys_of, summary_order
+from fem.results.run_result import Band, BandMember, RunResult, Verdict
+from fem.site_check.result import SiteRun
+from fem.site_check.runs import COLUMNS
+from fem.sweep.table import FOUND
+
+BOX = BoxResult(max_rotation_rad=0.5, max_slip_m=0.5, max_opening_m=0.5)
+OF_FIELDS = [key for key in FIGURES if key in {one.name for one in fields(Verdict)}]
+NUMBERS = [key for key in OF_FIELDS if key not in ("impacts", "restored", "fell_box")]
+FULL = Verdict(
+    outcome="rock", boxes=(BOX, BOX), fell_box=2, **dict.fromkeys(NUMBERS, 0.5), impacts=3, restored=True
+)
+#: of a run these are the forces in its joints
+BOLTS = {"bolt_tension_N", "bolt_shear_N"}
+
+
+def test_a_figure_is_a_key_of_run_json_and_comes_back():
+    assert set(OF_FIELDS) - BOLTS <= FULL.to_json().keys()
+    empty = Verdict().to_json()
+    assert set(OF_FIELDS) - BOLTS - {"fell_box"} <= empty.keys()
+    again = Verdict.from_json(json.loads(json.dumps(FULL.to_json())))
+    assert all(again[key] == FULL[key] for key in OF_FIELDS if key not in BOLTS)
+
+
+def test_a_member_of_a_band_and_its_ranges_have_the_figures_of_a_band_and_no_others():
+    banded = set(keys_of(Place.BAND))
+    member = BandMember(status="completed", **FULL.figures(Place.BAND)).to_json()
+    reach = Band(**dict.fromkeys(banded, (0.1, 0.5)))
+    assert set(OF_FIELDS) & member.keys() == banded == set(OF_FIELDS) & reach.to_json().keys()
+    assert Band.from_json(json.loads(json.dumps(reach.to_json()))) == reach
+
+
+def test_a_figure_is_a_column_of_tables_and_of_the_runs_of_a_site():
+    assert set(keys_of(Place.COLUMN)) <= set(SCALARS) <= set(FOUND)
+    of_site = SiteRun(
+        motion=1,
+        vertical_sign=0,
+        mu_static=0.4,
+        mu_kinetic=0.2,
+        mass="full",
+        model="rigid",
+        **FULL.figures(Place.RUNS),
+    )
+    assert set(keys_of(Place.RUNS)) <= set(COLUMNS)
+    assert set(OF_FIELDS) & of_site.to_json().keys() == set(keys_of(Place.RUNS))
+
+
+def test_a_figure_is_a_row_of_the_summary_and_a_quantity_of_maps():
+    result = RunResult(status="completed", verdict=FULL)
+    rows = dict(result_rows(result))
+    assert sorted(summary_order()) == sorted(keys_of(Place.SUMMARY))
+    for key in keys_of(Place.SUMMARY):
+        name = FIGURES[key].words + (" of box 1" if FIGURES[key].lowest else "")
+        assert rows[name] == in_words(result, key)
+    assert {key for key, *_ in QUANTITIES} >= set(keys_of(Place.MAP))
+
+
+def test_every_figure_says_its_unit_in_its_key():
+    units = {"m": "mm", "N": "kN", "Pa": "MPa", "rad": "degrees", "s": "s"}
+    for key, one in (FIGURES | BOX_FIGURES).items():
+        assert one.places and one.words
+        if key.endswith("m_s2"):
+            assert one.unit.name == "m/s2"
+        elif (last := key.rpartition("_")[2]) in units:
+            assert one.unit.name == units[last]
+
+
+def test_every_figure_is_filled_by_some_run():
+    cases = {
+        "rocking": ["solver.duration_s=3"],
+        "sliding": ["solver.model=rigid"],
+        "overturning": ["solver.model=rigid", "container.joints=loose"],
+    }
+    filled = set()
+    for row in run_chunk(lambda name: load_case(name, cases[name]), list(cases)):
+        assert row["status"] != "failed", row["reason"]
+        filled |= {key for key in SCALARS if row[key] is not None}
+    assert filled == set(SCALARS)
