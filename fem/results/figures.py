@@ -189,10 +189,16 @@ JOINT_OPENING = Shown(
 
 
 @dataclass(frozen=True, kw_only=True)
-class RunFigures(Figures[float]):
-    """The outcome of one run with its figures."""
+class RunOutcome(JsonBlock):
+    """What happened in one run."""
 
     outcome: str | None = None  #: rest | slide | rock | slide-rock | overturned; None where the run failed
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunFigures(Figures[float], RunOutcome):  # of several bases the last comes first in a file
+    """The outcome of one run with its figures."""
+
     boxes: tuple[BoxResult, ...] | None = None  #: of a loose stack, from the floor up
     #: the first box of a loose stack that fell, from 1 at the floor
     fell_box: Annotated[int | None, Shown("first box that fell", COUNT, COLUMN | MAP)] = None

@@ -57,7 +57,7 @@ def test_what_a_run_in_memory_offers():
     assert repr(run) == "<run 'free_rocking': completed, rock>"
     assert run.verdict["outcome"] == run.verdict.outcome == run.result["verdict"]["outcome"] == "rock"
     assert run.history["rotation_rad"].dtype == np.float64
-    with pytest.raises(KeyError, match="no key 'outcomes'; known: outcome, modes"):
+    with pytest.raises(KeyError, match="no key 'outcomes'; known: outcome, max_rotation_rad"):
         run.verdict["outcomes"]
     with pytest.raises(FieldError, match="frames lie from 0 to 1 s, not at 7 s"):
         run.grid(7.0)
