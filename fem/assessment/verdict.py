@@ -1,6 +1,7 @@
 """The verdict of a run: outcome, extremes, events, energy balance, numerics."""
 
 import math
+from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any, TypeVar
 
@@ -23,7 +24,7 @@ from contact.stepping.observables import FORCE_WINDOW, ROCKING, SLIDING
 from fem.case.case import Case
 from fem.model.floor import YIELD_STRENGTH, is_steel_shell, plastic_work, steel_capacity
 from fem.model.model import Model
-from fem.results.figures import FIGURES, BoxResult
+from fem.results.figures import BOX_FIGURES, FIGURES, BoxResult, Shown
 from fem.results.history import History
 from fem.results.outcome import Outcome
 from fem.results.run_result import Energy, Numerics, Verdict
@@ -87,7 +88,7 @@ def verdict_from(
     sampled = end is not None and end > 0.0
     rocked = outcome in (Outcome.ROCK, Outcome.SLIDE_ROCK)
     return Verdict(
-        **_recorded(track=track, joint=joint),
+        **_recorded(FIGURES, track=track, joint=joint),
         outcome=outcome,
         modes=_modes_seen(track.modes, outcome, slides=_slides(model)),
         max_rotation_rad=rotation,
@@ -110,26 +111,21 @@ def verdict_from(
     )
 
 
-def _recorded(**records: SimpleNamespace) -> dict[str, Any]:
+def _recorded(figures: Mapping[str, Shown], **records: Any) -> dict[str, Any]:
     """The figures that the stepper records, by key; of an event that has not happened, None."""
-    recorded = {key: one.of.split(".") for key, one in FIGURES.items() if one.of}
-    values = {key: getattr(records[record], name) for key, (record, name) in recorded.items()}
-    return {key: _finite(value) if FIGURES[key].unit is SECONDS else value for key, value in values.items()}
+    sources = {key: one.of.split(".") for key, one in figures.items() if one.of}
+    values = {key: getattr(records[record], name) for key, (record, name) in sources.items()}
+    return {key: _finite(value) if figures[key].unit is SECONDS else value for key, value in values.items()}
 
 
 def box_results(model: Model) -> tuple[BoxResult, ...]:
     """What each box of a loose stack did, from the floor up; empty for a container that moves as one body."""
-    if not model.container.boxes:
-        return ()
+    joints = [
+        _numbers(model.run.joints[k:]) for k in range(len(model.run.joints) if model.container.boxes else 0)
+    ]
     return tuple(
-        BoxResult(
-            max_rotation_rad=float(joint.max_rotation),
-            max_slip_m=float(joint.max_slip),
-            residual_slip_m=float(joint.slip),
-            max_opening_m=float(joint.max_opening),
-            fell=math.isfinite(joint.fell_at),
-        )
-        for joint in model.run.joints
+        BoxResult(**_recorded(BOX_FIGURES, joint=joint), fell=math.isfinite(joint.fell_at))
+        for joint in joints
     )
 
 

@@ -13,13 +13,13 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from fem.batch.runner import run_cases
 from fem.case.case import Case
 from fem.report.variations import Variation, by_importance, variations_of
+from fem.results.figures import Place, RunFigures, keys_beside, keys_of
 from fem.results.files import to_json, write_atomically
-from fem.results.json_block import JsonBlock
 from fem.results.outcome import Outcome
 from fem.results.run_result import RunResult
 from fem.runtime.identity import versions
@@ -30,17 +30,23 @@ AFFORDED_S = 4.0  #: wall time for lines that are not asked for
 
 
 @dataclass(frozen=True, kw_only=True)
-class VariationRow(JsonBlock):
+class VariationRow(RunFigures):
     """What one line found."""
 
     status: str
     reason: str | None = None  #: why there is no outcome
-    outcome: str | None = None
-    rotation_ratio: float | None = None
-    max_slip_m: float | None = None
-    residual_slip_m: float | None = None
-    max_uplift_m: float | None = None
     max_joint_slip_m: float | None = None  #: largest between loose boxes
+
+    written_where_given = keys_beside(Place.RUNS) - {"max_joint_slip_m"} | {"boxes"}
+
+    @classmethod
+    def of(cls, status: str, found: RunFigures | Mapping[str, Any], reason: str | None = None) -> Self:
+        """The row of a run with these figures."""
+        row = {key: getattr(found, key) for key in SHOWN} if isinstance(found, RunFigures) else found
+        return cls(status=status, reason=reason, **{key: row[key] for key in SHOWN})
+
+
+SHOWN = ("outcome", *keys_of(Place.RUNS), "max_joint_slip_m")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,14 +191,12 @@ def _known_rows(case: Case, variations: Sequence[Variation], result: RunResult) 
     verdict = result.verdict
     if case.solver.model == "full" or verdict is None:
         return rows
-    slip = {"max_joint_slip_m": verdict.max_joint_slip_m}
-    rows[0] = VariationRow.from_json(verdict.to_json() | {"status": result.status} | slip)
+    rows[0] = VariationRow.of(result.status, verdict)
     members = verdict.band.members if verdict.band is not None else ()
     for index, one in enumerate(variations[1:], start=1):
         for member in members:
             if member.kind == "one" and _same_values(member.values or {}, one.values):
-                slip = {"max_joint_slip_m": member.max_joint_slip_m}
-                rows[index] = VariationRow.from_json(member.to_json() | {"reason": member.error} | slip)
+                rows[index] = VariationRow.of(member.status, member, member.error)
     return rows
 
 
@@ -224,7 +228,7 @@ def _computed(
     found = run_cases(list(cases.values()), stop=stop, time_limit_s=time_limit_s)
     for index, row in zip(cases, found, strict=True):
         if row["status"] in ("completed", "overturned"):
-            rows[index] = VariationRow.from_json(row | {"reason": None})
+            rows[index] = VariationRow.of(row["status"], row)
         elif row["status"] == "failed":
             rows[index] = VariationRow(status="failed", reason=str(row["reason"]).partition("\n")[0])
     return rows

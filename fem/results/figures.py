@@ -53,7 +53,7 @@ class Shown:
     words: str
     unit: DisplayUnit
     places: Place
-    of: str = ""  #: what the stepper records of it: a field of the lowest "joint" or of the "track"
+    of: str = ""  #: what the stepper records of it: a field of the (lowest) "joint" or of the "track"
     _: KW_ONLY
     head: str = ""  #: over a narrow column; empty: the words
     map_words: str = ""  #: on a map; empty: the words
@@ -75,11 +75,18 @@ class BoxFigures(JsonBlock, Generic[ValueT]):
     """What one box of a loose stack shows; slip and opening over what is below it."""
 
     #: largest |rotation|
-    max_rotation_rad: Annotated[ValueT, Shown("rotation", DEGREES, BAND, column="box_rotations_rad")]
-    max_slip_m: Annotated[ValueT, Shown("slip", SHORT_MM, BAND, column="box_slips_m")]  #: largest |slip|
+    max_rotation_rad: Annotated[
+        ValueT, Shown("rotation", DEGREES, BAND, "joint.max_rotation", column="box_rotations_rad")
+    ]
+    #: largest |slip|
+    max_slip_m: Annotated[ValueT, Shown("slip", SHORT_MM, BAND, "joint.max_slip", column="box_slips_m")]
     #: signed, at the end
-    residual_slip_m: Annotated[ValueT | None, Shown("slip left", SHORT_MM, BAND, signed=True)] = None
-    max_opening_m: Annotated[ValueT, Shown("opening", SHORT_MM, BAND, column="box_openings_m")]
+    residual_slip_m: Annotated[
+        ValueT | None, Shown("slip left", SHORT_MM, BAND, "joint.slip", signed=True)
+    ] = None
+    max_opening_m: Annotated[
+        ValueT, Shown("opening", SHORT_MM, BAND, "joint.max_opening", column="box_openings_m")
+    ]
 
 
 @dataclass(frozen=True, kw_only=True)
