@@ -152,8 +152,8 @@ def difference(own: RunFigures, other: RunFigures, width: float) -> int:
 
 def _sizes(one: RunFigures, width: float) -> Iterator[float]:
     """Slips, rotations and openings, each over the size from which it is large."""
-    ratio, boxes = one.rotation_ratio or 0.0, one.boxes or ()
-    yield (one.max_slip_m or 0.0) / (LARGE_SLIP * width)
+    ratio, boxes = one.turned, one.boxes or ()
+    yield one.slipped / (LARGE_SLIP * width)
     yield ratio / LARGE_ROTATION
     most = max((box.max_rotation_rad for box in boxes), default=0.0)
     large = LARGE_ROTATION * most / ratio if ratio else math.inf  #: rotation [rad]

@@ -147,7 +147,7 @@ def _group_of(member: BandMember) -> str:
 
 def _slip(member: BandMember) -> float:
     """The largest slip, of a loose stack that of any box over what is below it [m]."""
-    return max((box.max_slip_m for box in member.boxes or ()), default=member.max_slip_m or 0.0)
+    return max((box.max_slip_m for box in member.boxes or ()), default=member.slipped)
 
 
 def _ratios(check: RigidCheckResult) -> str:
@@ -160,6 +160,4 @@ def _ratios(check: RigidCheckResult) -> str:
 def _height(member: BandMember) -> float:
     if member.outcome is None:
         return 0.0
-    return (
-        FALLEN_ROW if member.outcome == Outcome.OVERTURNED else min(member.rotation_ratio or 0.0, FALLEN_ROW)
-    )
+    return FALLEN_ROW if member.outcome == Outcome.OVERTURNED else min(member.turned, FALLEN_ROW)

@@ -166,7 +166,7 @@ def slip_figure(run: OpenedRun) -> Figure:
             axes, limit, f"counts as sliding, ±{style.number(limit, 2)} mm", color=style.GREY, linestyle=":"
         )
         style.legend_above(axes)
-    largest = 1e3 * (verdict.max_slip_m or 0.0)
+    largest = 1e3 * verdict.slipped
     travel = 1e3 * (verdict.slip_travel_m or 0.0)
     left = verdict.residual_slip_m  # the end may lie between two samples
     end = slip[-1] if left is None else 1e3 * left

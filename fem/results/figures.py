@@ -211,6 +211,16 @@ class RunFigures(Figures[float], RunOutcome):  # of several bases the last comes
     fell_box: Annotated[int | None, Shown("first box that fell", COUNT, COLUMN | MAP)] = None
 
     @property
+    def turned(self) -> float:
+        """Largest |rotation| over the slenderness angle; 0 where none is known."""
+        return self.rotation_ratio or 0.0
+
+    @property
+    def slipped(self) -> float:
+        """Largest |slip|; 0 where none is known [m]."""
+        return self.max_slip_m or 0.0
+
+    @property
     def max_joint_slip_m(self) -> Annotated[float | None, JOINT_SLIP]:
         """Largest slip of a box on another, of a loose stack."""
         return max((box.max_slip_m for box in (self.boxes or ())[1:]), default=None)

@@ -138,7 +138,7 @@ def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limi
     if row.quantity is MethodQuantity.OVERTURNING:
         return _overturning(row, done, limits)
     least = min(((run.mu_static, run.mu_kinetic) for run in done), default=None)
-    slips = [run.max_slip_m or 0.0 for run in done if (run.mu_static, run.mu_kinetic) == least]
+    slips = [run.slipped for run in done if (run.mu_static, run.mu_kinetic) == least]
     if not slips:
         return Found(words="no runs")
     most = max(slips)
@@ -156,7 +156,7 @@ def found_by_runs(row: MethodRow, runs: Sequence[SiteRun], *, width: float, limi
 
 def _overturning(row: MethodRow, done: Sequence[SiteRun], limits: Limits) -> Found:
     fell = sum(run.outcome == Outcome.OVERTURNED for run in done)
-    stood = [run.rotation_ratio or 0.0 for run in done if run.outcome != Outcome.OVERTURNED]
+    stood = [run.turned for run in done if run.outcome != Outcome.OVERTURNED]
     if not done:
         return Found(words="no runs")
     words = f"{fell or 'none'} of {len(done)} overturned"

@@ -40,7 +40,7 @@ class MotionOutcome(RunShown):
 def severity(one: RunShown) -> tuple[int, float]:
     """Larger for a worse outcome."""
     order = (Ending.STANDING, Ending.FAILED, Ending.OVERTURNED)
-    return order.index(one.kind), one.rotation_ratio or 0.0
+    return order.index(one.kind), one.turned
 
 
 def sign_axes(axes: Sequence[Axis]) -> list[Axis]:
@@ -78,7 +78,7 @@ def set_row(found: Sequence[MotionOutcome]) -> dict[str, Any]:
     computed = [one for one in found if one.kind != Ending.FAILED]
     standing = [one for one in computed if one.kind == Ending.STANDING]
     worst = max(computed, key=severity, default=None)
-    slipped = max(computed, key=lambda one: one.max_slip_m or 0.0, default=None)
+    slipped = max(computed, key=lambda one: one.slipped, default=None)
     return {
         "motions": len(found),
         "stood": len(standing),
@@ -130,8 +130,8 @@ def by_motion(points: Sequence[Sequence[MotionOutcome]]) -> dict[str, dict[str, 
         standing = [one for one in outcomes if one.kind == Ending.STANDING]
         counts = {word: sum(one.kind == kind for one in outcomes) for word, kind in COUNTED.items()}
         found[outcomes[0].motion] = counts | {
-            "max_rotation_ratio": max((one.rotation_ratio or 0.0 for one in standing), default=None),
-            "max_slip_m": max((one.max_slip_m or 0.0 for one in standing), default=None),
+            "max_rotation_ratio": max((one.turned for one in standing), default=None),
+            "max_slip_m": max((one.slipped for one in standing), default=None),
         }
     return found
 
