@@ -6,7 +6,8 @@ A trailing zero that is known is kept: 98.10, not 98.1.
 import math
 import re
 
-from fem.runtime.units import MILLIMETRES, RATIO
+from fem.results.figures import Shown
+from fem.runtime.units import MILLIMETRES, RATIO, DisplayUnit
 
 ABSENT = "–"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -39,9 +40,24 @@ def quantity(value: float | None, unit: str, factor: float = 1.0, figures: int =
 
 def millimetres(value: float | None) -> str:
     """A length given in metres, without its unit; below 0.01 mm only that limit."""
-    if value is not None and 0.0 < abs(value) < MILLIMETRES.least:
-        return f"< {short(MILLIMETRES.least, 1000.0)}"
-    return number(value, 1000.0, 3)
+    return _in_unit(value, MILLIMETRES)
+
+
+def figure_cell(shown: Shown, value: float | None) -> str:
+    """A figure of a run in a column with its `figure_head`."""
+    return ratio(value) if shown.unit is RATIO else _in_unit(value, shown.unit)
+
+
+def figure_head(shown: Shown) -> str:
+    """Over a column of figures of runs."""
+    return typeset(f"{shown.head or shown.words} [{shown.unit.name}]").removesuffix(" []")
+
+
+def _in_unit(value: float | None, unit: DisplayUnit) -> str:
+    """Three significant figures without the unit; below the least only that limit."""
+    if value is not None and 0.0 < abs(value) < unit.least:
+        return f"< {short(unit.least, unit.factor)}"
+    return number(value, unit.factor, 3)
 
 
 def degrees(value: float | None, figures: int = 4) -> str:

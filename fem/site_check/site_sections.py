@@ -10,7 +10,8 @@ from markupsafe import Markup
 from fem.html import sections as html
 from fem.html.formula import formula_markup
 from fem.html.page import svg_element
-from fem.html.units import ABSENT, millimetres, number, quantity, ratio, short
+from fem.html.units import ABSENT, figure_cell, figure_head, millimetres, number, quantity, ratio, short
+from fem.results.figures import FIGURES, Place, keys_of
 from fem.results.outcome import Outcome
 from fem.site_check.figures import draw_floor, draw_methods, draw_scan
 from fem.site_check.result import ConfirmedRun, SiteMethod, SiteMotion, SiteResult, SiteRun
@@ -26,6 +27,7 @@ MARGIN = (
     "with other numerics, so read the factor as a magnitude."
 )
 symbols = partial(formula_markup, prose=True)
+TURNED, *FURTHER = keys_of(Place.RUNS)
 
 
 class RunPair(NamedTuple):
@@ -158,15 +160,17 @@ def _run_columns(k: int, head: str, turned_head: str) -> list[html.Column[RunPai
     def of(cell: html.CellOf[SiteRun], pair: RunPair) -> str:
         return cell(pair.runs[k]) if k < len(pair.runs) else ""
 
-    def turned(run: SiteRun) -> str:
-        return "fell" if run.outcome == Outcome.OVERTURNED else ratio(run.rotation_ratio)
+    def found(key: str, run: SiteRun) -> str:
+        fell = key == TURNED and run.outcome == Outcome.OVERTURNED
+        return "fell" if fell else figure_cell(FIGURES[key], run[key])
 
     return [
         html.Column(head, partial(of, lambda run: run.outcome or "failed")),
-        html.Column(turned_head, partial(of, turned), html.NUMBER),
-        html.Column("slip [mm]", partial(of, lambda run: millimetres(run.max_slip_m)), html.NUMBER),
-        html.Column("residual [mm]", partial(of, lambda run: millimetres(run.residual_slip_m)), html.NUMBER),
-        html.Column("uplift [mm]", partial(of, lambda run: millimetres(run.max_uplift_m)), html.NUMBER),
+        html.Column(turned_head, partial(of, partial(found, TURNED)), html.NUMBER),
+        *(
+            html.Column(figure_head(FIGURES[key]), partial(of, partial(found, key)), html.NUMBER)
+            for key in FURTHER
+        ),
     ]
 
 
@@ -187,14 +191,19 @@ def _governing_table(group: RunGroup) -> html.Table:
 
 
 def _confirmed_table(confirmed: Sequence[ConfirmedRun]) -> html.Table:
+    def found(key: str, one: ConfirmedRun) -> str:
+        return figure_cell(FIGURES[key], one[key])
+
     columns: list[html.Column[ConfirmedRun]] = [
         html.Column("motion", lambda one: str(one.run.motion), html.NUMBER),
         html.Column("weight", lambda one: one.run.mass),
         html.Column("friction", lambda one: friction(one.run), html.NUMBER),
         html.Column("model", lambda one: one.model),
         html.Column("outcome", lambda one: one.outcome or "failed"),
-        html.Column("rotation ratio", lambda one: ratio(one.rotation_ratio), html.NUMBER),
-        html.Column("slip [mm]", lambda one: millimetres(one.max_slip_m), html.NUMBER),
+        *(
+            html.Column(figure_head(FIGURES[key]), partial(found, key), html.NUMBER)
+            for key in keys_of(Place.KEY)
+        ),
         html.Column("how sure", lambda one: one.sure or ABSENT),
         html.Column("outcomes over unknown inputs", lambda one: ", ".join(one.outcomes) or ABSENT),
     ]
