@@ -1,4 +1,4 @@
-"""What is said of the code's rows beside a run: whose values they take, and whether the method applies."""
+"""The note on the code's rows beside a run: whose values they use, and whether the method applies."""
 
 from fem.results.run_result import StaticResult
 

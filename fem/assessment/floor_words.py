@@ -8,7 +8,7 @@ LEAST = 0.1  #: of a number in a unit, before a smaller unit is taken
 
 
 def floor_rows(floor: FloorNumbers | None) -> list[tuple[str, str]]:
-    """Name and value, in units of people; none of a floor that is rigid and level."""
+    """Name and value in everyday units; empty for a rigid, level floor."""
     if floor is None:
         return []
     rows = [("slab", _material(floor)), ("corner", _springs(floor)), ("crushes at", _cap(floor))]
@@ -20,7 +20,7 @@ def floor_rows(floor: FloorNumbers | None) -> list[tuple[str, str]]:
 
 
 def drawn_level(slope_percent: float) -> str:
-    """What is said beside a drawing in the frame of the floor, which slopes; empty of a level floor."""
+    """The note beside a drawing of a sloping floor, which is drawn level; empty for a level floor."""
     if not slope_percent:
         return ""
     return f"the floor falls {abs(slope_percent):g} % to the {'right' if slope_percent > 0.0 else 'left'}, drawn level"

@@ -23,7 +23,7 @@ def edge_forces(
 
 
 def joint_demands(model: Model, history: History) -> tuple[JointDemand, ...] | None:
-    """The demands of all joints, from the floor up; None for a single box, or where nothing was sampled.
+    """The demands on all joints, from the floor up; None for a single box, or if nothing was sampled.
 
     Of a container that overturned, until 90 degrees.
     """
@@ -59,7 +59,7 @@ def _demands_of(model: Model, history: History, joint: int, standing: NDArray[np
 
 
 def _friction_needed(normal: FloatArray, shear: FloatArray) -> float | None:
-    """Least coefficient of friction with which the joint never slides; None if it is unloaded under shear."""
+    """Least coefficient of friction at which the joint never slides; None if there is shear without compression."""
     sheared = shear != 0.0
     if np.any(normal[sheared] <= 0.0):
         return None

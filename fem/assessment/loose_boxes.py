@@ -22,7 +22,7 @@ BOXES_NOTE = (
 
 
 def fall_in_words(verdict: Verdict) -> str:
-    """Which box of a loose stack fell, and when; empty where none did."""
+    """Which box of a loose stack fell, and when; empty if none did."""
     if verdict.fell_box is None:
         return ""
     at, above = verdict.overturned_at_s, verdict.fell_box < len(verdict.boxes or ())
@@ -60,7 +60,7 @@ def largest_joint_slip(verdict: Verdict) -> tuple[str, str]:
 
 
 def _most(boxes: Sequence[BoxResult], key: str, above: int = 0) -> int:
-    """The place of the box with the largest figure, among those from a place on."""
+    """Index of the box with the largest figure, from a given box upward."""
     return max(range(above, len(boxes)), key=lambda k: abs(boxes[k][key] or 0.0))
 
 

@@ -64,7 +64,7 @@ def covered_in_words(motion: MotionResult) -> str:
 
 
 def missing_peak(motion: MotionResult) -> str:
-    """That the peak of a motion is not within the run; empty where it is."""
+    """A note that the run leaves out the peak of a motion; empty if it does not."""
     if not is_cut(motion):
         return ""
     missing = _missing_peak(motion, NAMES.get(motion.kind or "", "motion"))

@@ -48,14 +48,14 @@ def _filtered(result: RunResult, key: str) -> str:
 
 
 def impact_note(verdict: Verdict) -> str:
-    """What is said behind a force or stress that an impact decides; nothing where the band has tried the floor."""
+    """The caution after a force or stress that an impact decides; empty if the band has varied the floor."""
     if not verdict.impacts or (crushes(verdict) and verdict.band is not None):
         return ""
     return f"; {UNTRIED if crushes(verdict) else IMPACT}"
 
 
 def crushes(verdict: Verdict) -> bool:
-    """Whether the run is on a floor that crushes."""
+    """True if the floor of the run crushes."""
     return verdict.max_indentation_m is not None
 
 
@@ -91,7 +91,7 @@ def velocity_ratio(verdict: Verdict, static: StaticResult) -> str:
 
 
 def largest_stress(verdict: Verdict) -> str:
-    """Beyond yield an elastic stress is no stress of the container."""
+    """The largest stress; beyond yield, the elastic value is not the stress in the container."""
     words, reach = of_band(verdict, "max_von_mises_Pa"), reach_of(verdict, "max_von_mises_Pa")
     stress, limit = verdict.max_von_mises_Pa, verdict.yield_strength_Pa
     if stress is None or limit is None or max(reach or (0.0,)) <= limit >= stress:
@@ -102,7 +102,7 @@ def largest_stress(verdict: Verdict) -> str:
 
 
 def plastic_corner(verdict: Verdict) -> str:
-    """What a corner that yields as a whole would take of the impacts; empty where it has no capacity."""
+    """The work that a corner yielding as a whole would absorb; empty if its capacity is not known."""
     capacity, force, work = verdict.corner_capacity_N, verdict.max_corner_force_N, verdict.plastic_work_J
     if capacity is None or force is None or work is None:
         return ""

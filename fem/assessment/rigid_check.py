@@ -210,7 +210,7 @@ def first_peaks(time: FloatArray, rotation: FloatArray, least: float) -> list[tu
 
 
 def reasons_against(model: Model, history: History, verdict: Verdict, reference: Reference) -> list[str]:
-    """Why the container is not the rigid block; none where it is."""
+    """Reasons why the container differs from the rigid block; empty if there are none."""
     mesh, static = model.container.mesh, model.static
     kind, impact = model.case.support.kind, reference.impact
     sinking = static.weight / model.base_stiffness / (mesh.width * static.slenderness_angle)

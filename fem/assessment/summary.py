@@ -88,7 +88,7 @@ def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
 
 
 def outcome_sentence(result: RunResult) -> str:
-    """What happened, and how sure that is: the first line of the verdict."""
+    """The first line of the verdict: what happened, and how sure that is."""
     if result.status == "failed":
         return f"No verdict: {result.error or 'the solution failed'}. Results up to there are kept."
     found = _found(result)
@@ -190,7 +190,7 @@ def _table_of_pairs(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[Tab
 
 
 def result_rows(result: RunResult) -> list[tuple[str, str]]:
-    """Name and value of what the run found, in the order of reading, without what it did not reach."""
+    """Name and value of each result in reading order; results that were not reached are left out."""
     verdict, motion = result.verdict or Verdict(), result.motion or MotionResult()
     energy, lowest = result.energy or Energy(), " of box 1" if verdict.boxes else ""
     #: rows behind that of a figure
@@ -226,7 +226,7 @@ def _simulated(verdict: Verdict, numerics: Numerics) -> str:
 
 
 def numerics_rows(result: RunResult) -> list[tuple[str, str]]:
-    """Name and value of how well, and at what cost, the run was computed."""
+    """Name and value of the accuracy and the cost of the computation."""
     numerics = result.numerics or Numerics()
     rows = [
         ("energy balance error", _balance(result.energy or Energy())),

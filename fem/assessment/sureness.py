@@ -1,8 +1,8 @@
 """How sure a verdict is: what the members of its band show, and which inputs decide.
 
-A member stands in the same way as the run where its outcome is the same and neither rotation nor slip is another order
-of magnitude: a container that rocks and slips 2 mm at its impacts does not move like one that slips 200 mm. Of a loose
-stack this holds for every box and every joint, and it falls in the same way where the same box falls.
+A member behaves as the run does if its outcome is the same and neither rotation nor slip differs by an order of
+magnitude: a container that rocks and slips 2 mm at its impacts does not move like one that slips 200 mm. Of a loose
+stack this holds for every box and every joint, and a fall is the same if the same box falls.
 """
 
 import math
@@ -75,12 +75,12 @@ def judged(
 
 
 def below_uplift(members: Sequence[BandMember]) -> bool:
-    """Whether a run rocks although a rigid block on a rigid floor would rest; it has a member on a stiff floor."""
+    """True if the run rocks although a rigid block on a rigid floor would rest; a member has a stiff floor."""
     return bool(members) and members[0].outcome in ROCKING and any(one.kind == "floor" for one in members)
 
 
 def rests_on_stiff_floor(members: Sequence[BandMember]) -> bool:
-    """Whether a floor so stiff that it is rigid lets the container rest or slide without rocking."""
+    """True if on a practically rigid floor the container rests, or slides without rocking."""
     still = (Outcome.REST, Outcome.SLIDE)
     return any(one.kind == "floor" and one.outcome in still for one in members)
 
@@ -94,7 +94,7 @@ def static_use(result: RunResult) -> float | None:
 
 
 def sureness_in_words(result: RunResult) -> str:
-    """One sentence, or none where it was not tried."""
+    """One sentence; empty if the band was not computed."""
     verdict = result.verdict or Verdict()
     band = verdict.band
     if verdict.sure is None:  # no band, or one of a former version

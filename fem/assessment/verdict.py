@@ -38,7 +38,7 @@ MOST_RESTITUTION = 1.05
 
 
 def outcome_of(model: Model) -> Outcome:
-    """One word for the whole run."""
+    """The outcome of the whole run, in one word."""
     track = model.run.track[0]
     if math.isfinite(track.overturned_at):
         return Outcome.OVERTURNED
@@ -50,7 +50,7 @@ def outcome_of(model: Model) -> Outcome:
 
 
 def _slides(model: Model) -> bool:
-    """Whether it slid so far that it counts; of a loose stack any of its boxes."""
+    """True if it slid by more than the limit; in a loose stack, if any box did."""
     lowest, *further = model.run.joints
     if lowest.max_slip > SLIDING * model.container.mesh.width:
         return True
@@ -199,7 +199,7 @@ def audit(model: Model) -> str | None:
 
 
 def numerics_of(model: Model, stepping_cpu: float) -> Numerics:
-    """How a model was stepped."""
+    """The accuracy and cost of the stepping."""
     run, container = model.run, model.container
     clock = run.clock[0]
     mass, stiffness = container.mesh.mass, model.base_stiffness

@@ -1,4 +1,4 @@
-"""Warnings: what the reader of a result must know before believing it. One function a warning.
+"""Warnings: what the reader must know before relying on a result. One function a warning.
 
 A warning takes the result of a run and its case, and returns one sentence or two, or None. It states the value
 that raised it, the limit, and what can be done. No warning changes a verdict.
@@ -43,7 +43,7 @@ def warnings_for(result: RunResult, case: Case) -> list[str]:
 
 
 def verdict_is_unsure(result: RunResult, case: Case) -> str | None:
-    """The outcome changes within what is not known of the inputs."""
+    """The outcome changes within the uncertainty of the inputs."""
     verdict = _verdict(result)
     found = sureness_in_words(result)
     if verdict.band is None or verdict.sure == SURE or not found:

@@ -204,7 +204,7 @@ def run_cases(
 
 
 def motion_left_out(case: Case) -> str | None:
-    """The part of its motion that runs of a case are under, where they end before it; None where they do not."""
+    """How much of the motion a run covers, in words; None if all of it."""
     try:
         motion = motion_result(case, *build_motions(case))
     except CaseError:  # a row of the study says so

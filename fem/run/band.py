@@ -86,7 +86,7 @@ def wants_band(asked: bool | None, case: Case, result: RunResult) -> bool:
 
 
 def rests_far_below_limits(result: RunResult) -> bool:
-    """Whether a run rests and the static rule leaves so much that nothing which is not known moves it."""
+    """True if the run rests and no unknown input could use up the static reserve."""
     used = static_use(result)
     return (result.verdict or Verdict()).outcome == Outcome.REST and used is not None and used < NEAR_LIMIT
 
