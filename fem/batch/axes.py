@@ -13,6 +13,7 @@ from pydantic.fields import FieldInfo
 from fem.case.quantities import Quantity, with_unit
 from fem.case.tables import TABLES
 from fem.case.validation import TOP, choices_of, did_you_mean, known_keys, quantity_of, requirement_of
+from fem.results.json_block import JsonBlock
 
 #: keys that do not change a result, and why
 NO_AXIS = {
@@ -58,6 +59,30 @@ class Axis:
         """Whether its values are rising numbers, so that points have neighbours along it."""
         numbers = [value for value in self.values if not isinstance(value, bool | str)]
         return len(numbers) == len(self.values) > 1 and bool(np.all(np.diff(numbers) > 0.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class AxisResult(JsonBlock):
+    """An axis, as the result of a study holds it."""
+
+    written_where_given = frozenset({"scale", "following"})
+    key: str
+    values: tuple[Any, ...]
+    scale: str | None = None
+    unit: str = ""
+    following: dict[str, tuple[str | None, ...]] | None = None
+
+    @property
+    def axis(self) -> Axis:
+        """To name places on it."""
+        following = {key: tuple(some) for key, some in (self.following or {}).items()}
+        return Axis(
+            key=self.key,
+            values=self.values,
+            scale=self.scale or "list",
+            unit=self.unit,
+            following=following,
+        )
 
 
 def shape_of(axes: Sequence[Axis]) -> tuple[int, ...]:

@@ -51,6 +51,7 @@ class Runner:
     workers_of: WorkersOf  #: `LocalWorkers` or a cluster
     reporter: Reporter = field(default_factory=SilentReporter)
     stop: Callable[[], bool] = never  #: asked repeatedly; true ends the work
+    jobs: int = 1  #: cores of this machine that it may use
 
     def rows(
         self,

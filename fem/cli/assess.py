@@ -1,34 +1,23 @@
 """`assess`: verify a container at a site, by time histories for the action of EN 1998-1."""
 
 import importlib
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-from fem.cli.console import (
-    EXIT_CODES,
-    AllowOutside,
-    Folder,
-    Force,
-    Jobs,
-    Quiet,
-    Resume,
-    Scheduler,
-    connected,
-    flag,
-)
-from fem.results.files import to_json
+from fem.cli.console import STUDY, AllowOutside, StudyFlags, flag, print_result
+from fem.results.kinds import SITE
 from fem.runtime.progress import ScreenReporter
+
+if TYPE_CHECKING:
+    from fem.site_check.result import SiteResult
 
 
 def assess(
     site: str,
     /,
     *,
-    out: Folder = None,
-    jobs: Jobs = None,
-    scheduler: Scheduler = None,
-    resume: Resume = False,
-    force: Force = False,
+    flags: StudyFlags = STUDY,
     motion: Annotated[
         tuple[str, ...],
         flag(
@@ -37,9 +26,7 @@ def assess(
         ),
     ] = (),
     allow_outside: AllowOutside = False,
-    as_json: Annotated[bool, flag("Print assess.json.", "--json")] = False,
     pdf: Annotated[bool, flag("Print the page to report.pdf, by Chromium or Chrome.")] = False,
-    quiet: Quiet = False,
 ) -> int:
     """Verify a container at a site: overturning and slip under motions for the site, by EN 1998-1, 4.4.2.4(2).
 
@@ -53,22 +40,43 @@ def assess(
         A site file or the name of a shipped one: site.
     """
     request = importlib.import_module("fem.site_check.file").load_site(site, motion)
-    folder = out if out is not None else Path("outputs") / request.name
+    folder = flags.folder(request.name)
     # Loaded late: bad input is refused before anything is compiled.
     study = importlib.import_module("fem.site_check.run")
-    with connected(scheduler) as workers_of:
-        result = study.run_site(
-            request,
-            folder,
-            jobs=jobs,
-            workers_of=workers_of,
-            resume=resume,
-            force=force,
-            allow_outside=allow_outside or bool(motion),
-            reporter=ScreenReporter(quiet=quiet),
-        )
+    with flags.options() as options:
+        result = study.run_site(request, folder, allow_outside=allow_outside or bool(motion), **options)
     if pdf and result.status == "completed":
         printing = importlib.import_module("fem.report.printing")
-        ScreenReporter(quiet=quiet).message(str(printing.print_page(folder / study.PAGE) or printing.BY_HAND))
-    print(to_json(result.to_json()).rstrip() if as_json else study.page_of(result, folder))
-    return EXIT_CODES[result.status]
+        ScreenReporter(quiet=flags.quiet).message(
+            str(printing.print_page(folder / study.PAGE) or printing.BY_HAND)
+        )
+    return print_result(result, SITE, folder, page_of(result, folder), as_json=flags.as_json)
+
+
+def page_of(result: "SiteResult", folder: Path) -> Iterator[str]:
+    """The lines of a verification, for people."""
+    action, motions, answer = result.action, result.set, result.result
+    yield f"{folder.name}: {result.title}" if result.title else folder.name
+    yield (
+        f"  action     {action.source}; a_g S = {action.ag_S_m_s2:.3g} m/s2, a_vg = {action.avg_m_s2:.3g} m/s2"
+    )
+    yield (
+        f"  motions    {motions.count}, {motions.source}: mean peak {motions.mean_pga_m_s2:.3g} m/s2, least mean over "
+        f"target {motions.least_ratio:.2f} at {motions.least_ratio_period_s:.2g} s, largest correlation "
+        f"{motions.largest_correlation:.2f}: {'valid' if motions.valid else 'not valid'}"
+    )
+    yield f"  runs       {answer.runs}, {answer.overturned} overturned"
+    if answer.scan:
+        first = answer.factor_at_first_overturning
+        most = max(point.factor for point in answer.scan)
+        found = f"{first:.3g}" if first is not None else f"none up to {most:g}"
+        yield f"  factor     on the motions at the first overturning: {found}"
+    if answer.further:
+        further = answer.further
+        low, high = (100.0 * end for end in further.interval)
+        yield (
+            f"  further    {further.overturned} of {further.motions} motions overturn it (95 %: {low:.1f} to "
+            f"{high:.1f} %)"
+        )
+    yield f"  rule       {answer.rule}"
+    yield f"  files      {folder}"

@@ -1,14 +1,20 @@
 """What commands have in common: options that mean the same everywhere, and the exit code of a status."""
 
 import importlib
-from collections.abc import Sequence
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter, Token
 
 from fem.case.validation import CaseError
+from fem.results.kinds import ResultKind
+from fem.runtime.progress import ScreenReporter
+
+if TYPE_CHECKING:
+    from fem.batch.study import StudyOptions, StudyResult
 
 ELSEWHERE_OUT = "run the command again, or choose another place with --out DIR"
 ELSEWHERE_TO = "run the command again, or choose another place with --to FILE"
@@ -94,3 +100,51 @@ def connected(scheduler: str | None) -> AbstractContextManager[Any]:
         ) from None
     workers: AbstractContextManager[Any] = module.cluster(scheduler)
     return workers
+
+
+@Parameter(name="*")
+@dataclass(frozen=True, kw_only=True)
+class StudyFlags:
+    """Options of every study of many runs."""
+
+    out: Folder = None
+    jobs: Jobs = None
+    scheduler: Scheduler = None
+    resume: Resume = False
+    force: Force = False
+    as_json: AsJson = False
+    quiet: Quiet = False
+
+    def folder(self, name: str) -> Path:
+        """Where the results go, unless another folder is given to those of this name."""
+        return self.out if self.out is not None else Path("outputs") / name
+
+    @contextmanager
+    def options(self) -> "Iterator[StudyOptions]":
+        """For `run_study`; workers of a cluster are released at the end."""
+        with connected(self.scheduler) as workers_of:
+            yield {
+                "jobs": self.jobs,
+                "workers_of": workers_of,
+                "resume": self.resume,
+                "force": self.force,
+                "reporter": ScreenReporter(quiet=self.quiet),
+            }
+
+
+STUDY = StudyFlags()
+
+
+def print_result(
+    result: "StudyResult", kind: ResultKind, folder: Path, page: Iterable[str], *, as_json: bool
+) -> int:
+    """Print the result of a study, its marking file or a page for people; returns its exit code.
+
+    Args:
+        page: the lines before the last, which is the answer or what is missing.
+    """
+    if as_json:
+        print((folder / kind.mark).read_text(encoding="utf-8"), end="")
+    else:
+        print("\n".join([*page, *filter(None, [result.no_answer_yet or result.answer])]))
+    return EXIT_CODES[result.status]

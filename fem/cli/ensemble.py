@@ -1,26 +1,24 @@
 """`ensemble`: probability of overturning with uncertain parameters."""
 
 import importlib
-import json
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING
 
-from fem.cli.console import EXIT_CODES, Folder, Force, Jobs, Quiet, Resume, Scheduler, connected, flag
-from fem.results.files import to_json
-from fem.runtime.progress import ScreenReporter
+from fem.batch.answers import table_lines
+from fem.batch.axes import MOTION_FILE
+from fem.cli.console import STUDY, StudyFlags, print_result
+from fem.results.kinds import ENSEMBLE
+
+if TYPE_CHECKING:
+    from fem.ensemble.result import EnsembleResult
 
 
 def ensemble(
     ensemble: str,
     /,
     *,
-    out: Folder = None,
-    jobs: Jobs = None,
-    scheduler: Scheduler = None,
-    resume: Resume = False,
-    force: Force = False,
-    as_json: Annotated[bool, flag("Print ensemble.json.", "--json")] = False,
-    quiet: Quiet = False,
+    flags: StudyFlags = STUDY,
 ) -> int:
     """Sample the uncertain parameters and count how often the container overturns, with confidence intervals.
 
@@ -30,19 +28,46 @@ def ensemble(
         An ensemble file or the name of a shipped one: fragility, boundary.
     """
     asked = importlib.import_module("fem.ensemble.file").load_ensemble(ensemble)
-    folder = out if out is not None else Path("outputs") / asked.name
+    folder = flags.folder(asked.name)
     # Loaded late: bad input is refused before anything is compiled.
     study = importlib.import_module("fem.ensemble.run")
-    with connected(scheduler) as workers_of:
-        result = study.run_ensemble(
-            asked,
-            folder=folder,
-            jobs=jobs,
-            workers_of=workers_of,
-            force=force,
-            resume=resume,
-            reporter=ScreenReporter(quiet=quiet),
-        )
-    result = json.loads(to_json(result))
-    print(json.dumps(result, indent=2) if as_json else study.page_of(result, folder))
-    return EXIT_CODES[result["status"]]
+    with flags.options() as options:
+        result = study.run_ensemble(asked, folder=folder, **options)
+    return print_result(result, ENSEMBLE, folder, page_of(result, folder), as_json=flags.as_json)
+
+
+def page_of(result: "EnsembleResult", folder: Path) -> Iterator[str]:
+    """The lines of an ensemble, for people."""
+    words = importlib.import_module("fem.ensemble.answers")
+    yield f"{result.ensemble}: {result.title}" if result.title else result.ensemble
+    each = "to rest" if isinstance(result.duration_s, str) else f"{result.duration_s:g} s"
+    yield (
+        f"  {len(result.points)} points x {result.draws} draws ({result.sampling}, seed {result.seed}), "
+        f"model {result.model}, {each} each, {result.status}"
+    )
+    if result.motion_covered:
+        yield f"  under {result.motion_covered}"
+    count = len(result.random.get(MOTION_FILE, ()))
+    motions = "the floor's motion is not random"
+    if count:
+        motions = f"the intervals are those of a sample of {count} motions"
+    yield f"  random: {', '.join(result.random)}; {motions}"
+    if result.drawn_over_uncertainty:
+        yield f"  drawn over [uncertainty]: {', '.join(result.drawn_over_uncertainty)}"
+    if result.held:
+        yield f"  held: {result.held}"
+    limit = f"{result.probability:g}"
+    regions = {
+        "below": f"probability of overturning at most {limit}",
+        "undecided": f"the {100.0 * result.confidence:g} % interval holds {limit}",
+        "above": f"more than {limit}",
+    }
+    for name, count in result.regions.items():
+        yield f"  {name:10} {count:>6} points  {regions[name]}"
+    if result.failed:
+        yield f"  failed     {result.failed:>6} draws; the intervals allow for either outcome of these"
+    for name, line in words.fragility_lines(result):
+        yield f"  {name:10} {line}"
+    yield f"  files      {folder}"
+    if answer := words.ensemble_answer(result):
+        yield from table_lines(answer.lines())

@@ -19,8 +19,7 @@ from fem.site_check.tables import (
 )
 from fem.sweep.file import SweepHeading
 from fem.sweep.perturbation import Perturbation
-from fem.sweep.plan import MapChoice
-from fem.sweep.threshold import Threshold
+from fem.sweep.plan import MapChoice, Threshold
 
 Axes = dict[str, list[float | bool | str] | Range]
 CHANGES = "keys changed in the base case"

@@ -1,15 +1,21 @@
 """`response`: long-time motion under a harmonic floor, frequency by frequency."""
 
 import importlib
-import json
+from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
 from fem.case.case import load_case
-from fem.cli.console import EXIT_CODES, CaseName, Force, Overrides, Quiet, Resume, flag, whole
+from fem.cli.console import CaseName, Force, Overrides, Quiet, Resume, flag, print_result, whole
+from fem.results.kinds import RESPONSE
 from fem.runtime.progress import ScreenReporter
+
+if TYPE_CHECKING:
+    from fem.response.request import ResponseRequest
+    from fem.response.result import ResponseResult
 
 
 def response(
@@ -67,5 +73,43 @@ def response(
     result = study.run_response(
         request, folder=folder, force=force, resume=resume, reporter=ScreenReporter(quiet=quiet)
     )
-    print(json.dumps(result, indent=2) if as_json else study.page_of(request, result, folder))
-    return EXIT_CODES[result["status"]]
+    return print_result(result, RESPONSE, folder, page_of(request, result, folder), as_json=as_json)
+
+
+def page_of(request: "ResponseRequest", result: "ResponseResult", folder: Path) -> Iterator[str]:
+    """The lines of a response curve, for people."""
+    found_at = importlib.import_module("fem.response.answer").found_at
+    yield f"{result.case}: {result.title}" if result.title else result.case
+    yield (
+        f"  drive       {request.held_in_words}, {request.count} frequencies from {request.first_Hz:g} to "
+        f"{request.last_Hz:g} Hz, {request.order}"
+    )
+    yield f"  judged by   {request.observe} periods each, after {request.settle}"
+    for direction in ("up", "down"):
+        counted = Counter(point.words for point in result.points if point.direction == direction)
+        words = ", ".join(f"{count} x {word}" for word, count in counted.items())
+        yield f"  {direction:<11} {words or 'not reached'}"
+    for pair in result.coexisting:
+        difference = pair.largest_difference
+        by = f", rotation ratios up to {difference:.3f} apart" if difference is not None else ""
+        yield (
+            f"  coexist     {found_at(pair)}: {' or '.join(pair.up)} going up, {' or '.join(pair.down)} going down{by}"
+        )
+    for jump in result.jumps:
+        before, after = jump.rotation_ratio
+        yield (
+            f"  jump        {jump.direction}, {found_at(jump)}: {jump.what}, "
+            f"rotation ratio {before:.3f} to {after:.3f}"
+        )
+    for fall in result.drop_outs:
+        how = "carried there" if fall.carried else "from its start"
+        yield f"  overturns   {fall.direction}, {found_at(fall)}, {how}"
+    judged = [point.stable for point in result.points if point.stable is not None]
+    yield (
+        f"  stable      {sum(judged)} of {len(judged)} points: amplitudes do not diverge, and without drive the "
+        "motion dies out"
+    )
+    for point in result.points:
+        if point.status == "failed":
+            yield f"  failed      {point.direction}, {point.frequency_Hz:.4g} Hz: {point.reason}"
+    yield f"  files       {folder}"

@@ -1,26 +1,17 @@
 """`size`: the values of one key that fulfil the rule of a site."""
 
 import importlib
-import json
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from fem.cli.console import (
-    EXIT_CODES,
-    AllowOutside,
-    AsJson,
-    Folder,
-    Force,
-    Jobs,
-    Quiet,
-    Resume,
-    Scheduler,
-    connected,
-    whole,
-)
-from fem.runtime.progress import ScreenReporter
+from fem.cli.console import STUDY, AllowOutside, StudyFlags, print_result, whole
+from fem.results.kinds import SIZE
+
+if TYPE_CHECKING:
+    from fem.site_check.bracket import SizeResult
 
 
 def size(
@@ -36,14 +27,8 @@ def size(
     ] = None,
     high: Annotated[float | None, Parameter(name="--to", show_default=False, help="Largest value.")] = None,
     count: Annotated[int | None, whole("Values of the scan; default: 13.")] = None,
-    out: Folder = None,
-    jobs: Jobs = None,
-    scheduler: Scheduler = None,
-    resume: Resume = False,
-    force: Force = False,
+    flags: StudyFlags = STUDY,
     allow_outside: AllowOutside = False,
-    as_json: AsJson = False,
-    quiet: Quiet = False,
 ) -> int:
     """Find the least width, the tallest stack, the window of friction or the strongest action that fulfils the rule.
 
@@ -56,23 +41,20 @@ def size(
     axis = importlib.import_module("fem.site_check.size_axis").size_axis(
         request, over, low=low, high=high, count=count
     )
-    folder = out if out is not None else Path("outputs") / f"{request.name}_size"
+    folder = flags.folder(f"{request.name}_size")
     # Loaded late: bad input is refused before anything is compiled.
     study = importlib.import_module("fem.site_check.size_run")
-    with connected(scheduler) as workers_of:
-        result = study.run_size(
-            request,
-            axis,
-            folder,
-            jobs=jobs,
-            workers_of=workers_of,
-            resume=resume,
-            force=force,
-            allow_outside=allow_outside,
-            reporter=ScreenReporter(quiet=quiet),
-        )
-    if result is None:
-        print("interrupted; --resume continues")
-        return EXIT_CODES["interrupted"]
-    print(json.dumps(result.to_json(), indent=2) if as_json else study.size_page(result, folder))
-    return EXIT_CODES["completed"]
+    with flags.options() as options:
+        result = study.run_size(request, axis, folder, allow_outside=allow_outside, **options)
+    return print_result(result, SIZE, folder, page_of(result, folder), as_json=flags.as_json)
+
+
+def page_of(result: "SizeResult", folder: Path) -> Iterator[str]:
+    """The lines of a size study, for people."""
+    keys = " and ".join([result.key, *result.followers])
+    yield (
+        f"{keys}: {len(result.points)} values from {result.low:g} to {result.high:g} {result.unit}"
+    ).rstrip()
+    fulfilled = sum(bool(point.fulfilled) for point in result.points)
+    yield f"  fulfilled  at {fulfilled} of them, {sum(point.runs for point in result.points)} runs"
+    yield f"  files      {folder}"

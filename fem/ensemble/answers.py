@@ -14,6 +14,8 @@ from typing import Any
 from fem.batch.answers import LARGER_IS_SAFER, STRENGTHS, answer_axis
 from fem.batch.axes import MOTION_FILE, Axis
 from fem.batch.labels import axis_name, in_words, place_in_words
+from fem.batch.study import COMPLETED
+from fem.ensemble.result import EnsembleResult
 
 HALF = 0.5
 Row = Mapping[str, Any]  #: of a point, as `ensemble.json` holds it
@@ -46,36 +48,29 @@ class EnsembleAnswer:
             yield place_in_words(self.others, point), sentence
 
 
-def axes_of(result: Mapping[str, Any]) -> tuple[Axis, ...]:
-    """The axes of an ensemble, from the content of `ensemble.json`."""
-    return tuple(
-        Axis(key=one["key"], values=tuple(one["values"]), unit=one.get("unit", "")) for one in result["axes"]
-    )
-
-
-def draws_in_words(result: Row) -> str:
+def draws_in_words(result: EnsembleResult) -> str:
     """What is counted at a point: "128 draws", "7 motions", "70 draws of 7 motions"."""
-    draws, motions = result["draws"], len(result["random"].get(MOTION_FILE, ()))
+    draws, motions = result.draws, len(result.random.get(MOTION_FILE, ()))
     if not motions:
         return f"{draws} draws"
     return f"{motions} motions" if motions == draws else f"{draws} draws of {motions} motions"
 
 
-def ensemble_answer(result: Mapping[str, Any]) -> EnsembleAnswer | None:
+def ensemble_answer(result: EnsembleResult) -> EnsembleAnswer | None:
     """The answer along a strength, else along the axis with the most values.
 
     Returns:
         None of an unfinished ensemble, and where no axis has several numbers.
     """
-    axes = axes_of(result)
+    axes = result.point_axes
     numeric = sorted((axis for axis in axes if axis.is_numeric), key=lambda axis: -len(axis.values))
     axis = answer_axis(axes) or next(iter(numeric), None)
-    if axis is None or result["status"] != "completed":
+    if axis is None or result.status != COMPLETED:
         return None
     others = tuple(one for one in axes if one is not axis and len(one.values) > 1)
-    rising = _is_rising(axis, result["points"])
+    rising = _is_rising(axis, result.points)
     lines: dict[tuple[Any, ...], list[Row]] = defaultdict(list)
-    for point in sorted(result["points"], key=lambda one: one[axis.key], reverse=not rising):
+    for point in sorted(result.points, key=lambda one: one[axis.key], reverse=not rising):
         lines[tuple(point[one.key] for one in others)].append(point)
     rows = []
     for values in sorted(lines):
@@ -146,12 +141,16 @@ def interval_in_words(axis: Axis, found: HalfPoint, *, rising: bool) -> str:
     return " to ".join(words if rising else reversed(words))
 
 
-def _sentence(result: Row, axis: Axis, points: Sequence[Row], found: HalfPoint, *, rising: bool) -> str:
+def _sentence(
+    result: EnsembleResult, axis: Axis, points: Sequence[Row], found: HalfPoint, *, rising: bool
+) -> str:
     few = "" if found.few_to is None else _few(result, axis, found.few_to, rising=rising)
     return _half(result, axis, points, found, rising=rising) + few
 
 
-def _half(result: Row, axis: Axis, points: Sequence[Row], found: HalfPoint, *, rising: bool) -> str:
+def _half(
+    result: EnsembleResult, axis: Axis, points: Sequence[Row], found: HalfPoint, *, rising: bool
+) -> str:
     half = f"half of {draws_in_words(result)} overturned"
     if found.at_once:
         end = "least" if rising else "largest"
@@ -163,12 +162,38 @@ def _half(result: Row, axis: Axis, points: Sequence[Row], found: HalfPoint, *, r
             f"fewer than {half} at every value tried, at most {share} at {in_words(axis, [most[axis.key]])}"
         )
     interval = interval_in_words(axis, found, rising=rising)
-    return (
-        f"{half} at {in_words(axis, [found.value])} ({100.0 * result['confidence']:g} % interval {interval})"
-    )
+    return f"{half} at {in_words(axis, [found.value])} ({100.0 * result.confidence:g} % interval {interval})"
 
 
-def _few(result: Row, axis: Axis, few_to: float, *, rising: bool) -> str:
+def _few(result: EnsembleResult, axis: Axis, few_to: float, *, rising: bool) -> str:
     few = in_words(axis, [few_to])
     reach = f"up to {few}" if rising else f"from {few} on"
-    return f"; at most {100.0 * result['probability']:g} % {reach}, by the upper end of the interval"
+    return f"; at most {100.0 * result.probability:g} % {reach}, by the upper end of the interval"
+
+
+def fragility_lines(result: EnsembleResult) -> Iterator[tuple[str, str]]:
+    """Where the curve falls, and the lognormal curve: name and words; nothing where there is no curve."""
+    fragility = result.fragility
+    if fragility is None:
+        return
+    for fall in fragility["falls"]:
+        yield (
+            "falls",
+            f"from {fall['probability_weaker']:.3f} at {fall['weaker']:g} to {fall['probability_stronger']:.3f} at "
+            f"{fall['stronger']:g}: a stronger motion overturns less often",
+        )
+    fitted = fragility["lognormal"]
+    if fitted is None:
+        yield "lognormal", f"none: {fragility['no_lognormal']}"
+        return
+    parts = []
+    for name, unit in (("median", result.axes[0].unit), ("deviation", "")):
+        ends = fitted[f"{name}_interval"]
+        interval = f" ({ends[0]:.3g} to {ends[1]:.3g})" if ends else ""
+        parts.append(f"{name} {fitted[name]:.3g}{interval} {unit}".rstrip())
+    fit = "" if fitted["adequate"] else "; the lognormal curve does not describe the counts"
+    yield (
+        "lognormal",
+        f"{', '.join(parts)}; misses {fitted['levels_missed']} of {fitted['levels']} intervals of "
+        f"{100.0 * result.confidence:g} % ({fitted['missed_by_chance']} by chance){fit}",
+    )

@@ -4,18 +4,15 @@ The draws are logged as they are ready, so an interrupted ensemble continues whe
 that nor on the number of cores.
 """
 
-import hashlib
-import json
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack
+from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
-from fem.batch.answers import table_lines
-from fem.batch.axes import MOTION_FILE, Axis
+from fem.batch.axes import Axis, AxisResult
 from fem.batch.log import LoggedRuns, fields_of, table_of_lines, table_text
 from fem.batch.motion_set import (
     FloorMotionPair,
@@ -25,13 +22,23 @@ from fem.batch.motion_set import (
     write_motions,
 )
 from fem.batch.runner import Row, Runner
-from fem.batch.workers import LocalWorkers, WorkersOf
+from fem.batch.study import (
+    COMPLETED,
+    FAILED,
+    INTERRUPTED,
+    Study,
+    StudyOptions,
+    hash_of,
+    run_study,
+    runner_of,
+)
 from fem.case.case import case_hash, to_toml
 from fem.case.rules import ends_at_rest, longest_time
 from fem.ensemble.answers import ensemble_answer
-from fem.ensemble.distributions import RandomChoice, RandomQuantity
+from fem.ensemble.distributions import RandomChoice
 from fem.ensemble.figures import ensemble_figures
 from fem.ensemble.plan import Draw, Ensemble
+from fem.ensemble.result import EnsembleResult
 from fem.ensemble.statistics import (
     POINT_COLUMNS,
     PointResult,
@@ -39,18 +46,15 @@ from fem.ensemble.statistics import (
     fragility_of,
 )
 from fem.ensemble.unknown import UnknownInputs
-from fem.results.folder import ResultFolder, open_result_folder, program_of_results
+from fem.results.disk import BYTES_BESIDE, table_bytes
+from fem.results.folder import ResultFolder
 from fem.results.kinds import ENSEMBLE
 from fem.results.outcome import COUNTED, Ending, ending_of
 from fem.results.run_files import copy_data_files
-from fem.runtime.progress import Reporter, SilentReporter
-from fem.runtime.signals import interruptible
-from fem.runtime.threads import cores
 
 DRAWS = "draws.csv"
-#: room on the disk [bytes]: a row of draws.csv without its numbers, a number, a row of points.csv, all else
-BYTES_OF_A_DRAW, BYTES_OF_A_NUMBER, BYTES_OF_A_POINT, BYTES_BESIDE = 45, 20, 1000, 500_000
-BYTES_OF_A_MOTION = 4000  #: its spectrum and measures
+#: numbers in a row of draws.csv besides what is drawn, of a point in its files, of a motion: spectrum and measures
+OF_A_DRAW, OF_A_POINT, OF_A_MOTION = 3, 50, 200
 MOST_COPIED = 100  #: motions of a set that is copied into the results unless the file says otherwise
 WORDS = {ending: word for word, ending in COUNTED.items()}
 
@@ -103,61 +107,40 @@ class DrawRows:
         return [draw for draw in draws if self.codes[draw.cell, draw.number] == Ending.UNKNOWN]
 
 
-def run_ensemble(
-    ensemble: Ensemble,
-    *,
-    folder: Path,
-    jobs: int | None = None,
-    workers_of: WorkersOf | None = None,
-    force: bool = False,
-    resume: bool = False,
-    reporter: Reporter | None = None,
-) -> dict[str, Any]:
-    """Compute an ensemble into a folder; a finished one of the same request is not computed again.
-
-    Args:
-        jobs: cores to use; all by default.
-        workers_of: who computes so many draws of a model, in place of this machine's cores.
-
-    Returns:
-        The content of `ensemble.json`.
-
-    Raises:
-        CaseError, FolderError: bad input, or an unfinished ensemble (without `resume` or `force`).
-        WorkersLostError: a worker died; what was computed is kept.
-        OutputError: the disk is full, the folder was removed; what was written is kept.
-    """
-    reporter = reporter or SilentReporter()
-    with ExitStack() as stack:
-        workers_of = workers_of or stack.enter_context(LocalWorkers(jobs or cores()))
-        reader = Runner(workers_of=workers_of, reporter=reporter)
+def run_ensemble(ensemble: Ensemble, *, folder: Path, **options: Unpack[StudyOptions]) -> EnsembleResult:
+    """Compute an ensemble into a folder; raises as `run_study`, and CaseError for bad input."""
+    with runner_of(**options) as reader:
         motions = read_motion_set(ensemble.base, sets_of(ensemble), reader)
+        options["workers_of"] = reader.workers_of
         asked = ensemble_hash(ensemble, [one.case_hash for one in motions])
-        place = stack.enter_context(open_result_folder(folder, ENSEMBLE, asked, force=force, resume=resume))
-        runner = replace(reader, stop=stack.enter_context(interruptible(reporter)))
-        if place.finished and place.found:
-            reporter.message(f"{folder} holds this ensemble already; --force computes it again")
-            return place.found
-        place.refuse_unfinished("its draws so far")
-        if place.resuming:
-            place.require_same_program()
-        return _run(ensemble, motions, asked, place, runner)
+        unknown = UnknownInputs(ensemble)
+        copied = motions if _is_copied(ensemble) else ()
+        begun = asked_of(ensemble, unknown, motions, asked)
+        study = Study(
+            kind=ENSEMBLE,
+            request=asked,
+            result=EnsembleResult,
+            begun=begun,
+            compute=partial(_compute, ensemble, unknown, motions, copied, begun),
+            texts={"ensemble.toml": ensemble.text, "base.toml": to_toml(ensemble.base)},
+            size=required_disk(ensemble, unknown, copied),
+            subject="the ensemble",
+            way_out="take fewer draws",
+            progress=lambda place: "its draws so far",
+        )
+        return run_study(study, folder, **options)
 
 
-def _run(
+def _compute(
     ensemble: Ensemble,
+    unknown: UnknownInputs,
     motions: Sequence[FloorMotionPair],
-    asked: str,
+    copied: Sequence[FloorMotionPair],
+    begun: EnsembleResult,
     place: ResultFolder,
     runner: Runner,
-) -> dict[str, Any]:
-    """Compute the draws that are missing."""
-    unknown = UnknownInputs(ensemble)
-    copied = motions if _is_copied(ensemble) else ()
-    room = required_disk(ensemble, unknown, copied)
-    place.require_room(room, "the ensemble", "take fewer draws")
-    texts = {"ensemble.toml": ensemble.text, "base.toml": to_toml(ensemble.base)}
-    place.begin({"status": "running", "asked": asked} | program_of_results(), texts)
+) -> EnsembleResult:
+    """Compute the draws that are missing, count what there is, and write it."""
     copy_data_files(ensemble.base, place.path)
     for motion in copied:
         copy_data_files(motion.case, place.path, read=True)
@@ -171,40 +154,32 @@ def _run(
         values=draws.values,
         note=draws.note,
     ).run(runner, iter(draws.missing, []))
-    return _finish(ensemble, unknown, motions, asked, place, draws, runner)
-
-
-def _finish(
-    ensemble: Ensemble,
-    unknown: UnknownInputs,
-    motions: Sequence[FloorMotionPair],
-    asked: str,
-    place: ResultFolder,
-    draws: DrawRows,
-    runner: Runner,
-) -> dict[str, Any]:
-    """Count what there is, and write it."""
     complete = (draws.codes != Ending.UNKNOWN).all(axis=1)
     points = [count_point(ensemble, int(k), draws.codes[k]) for k in np.flatnonzero(complete)]
-    status, fragility = "interrupted", None
-    if complete.all():
-        status = "failed" if all(point.failed == ensemble.draws for point in points) else "completed"
-        fragility = fragility_of(ensemble, draws.codes, points)
     place.check()
     place.write_text("points.csv", csv_of_points(ensemble, points))
     place.write_text(DRAWS, draws.table())
-    if complete.all():
-        for name, svg in ensemble_figures(ensemble, unknown, points, fragility).items():
-            place.write_text(f"figures/{name}.svg", svg)
-    result = result_of(ensemble, unknown, motions, asked, points, fragility, status)
-    if motions and complete.all():
+    regions = [point.region for point in points]
+    result = replace(
+        begun,
+        status=INTERRUPTED,
+        points=tuple(point.row() for point in points),
+        regions={name: regions.count(name) for name in ("below", "undecided", "above")},
+        failed=sum(point.failed for point in points),
+    )
+    if not complete.all():
+        return replace(result, missing=f"{len(points)} of {ensemble.count} points have all their draws")
+    fragility = fragility_of(ensemble, draws.codes, points)
+    for name, svg in ensemble_figures(ensemble, unknown, points, fragility).items():
+        place.write_text(f"figures/{name}.svg", svg)
+    failed = all(point.failed == ensemble.draws for point in points)
+    result = replace(result, status=FAILED if failed else COMPLETED, fragility=fragility)
+    if motions:
         measures = [one.numbers() | found for one, found in zip(motions, draws.by_replicate(), strict=True)]
         figures = write_motions(place, motions, measures, runner)
-        result |= {"motions": measures, "motion_figures": figures}
+        result = replace(result, motions=tuple(measures), motion_figures=tuple(figures))
     answer = ensemble_answer(result)
-    result["answer"] = answer.sentence if answer else None
-    place.write_result(result)
-    return result
+    return replace(result, answer=answer.sentence if answer else None)
 
 
 def _is_copied(ensemble: Ensemble) -> bool:
@@ -216,10 +191,11 @@ def required_disk(
     ensemble: Ensemble, unknown: UnknownInputs, copied: Sequence[FloorMotionPair] = ()
 ) -> float:
     """Size of the folder of an ensemble [bytes]: the rows of the draws twice, a row a point, motions, figures."""
-    row = BYTES_OF_A_DRAW + BYTES_OF_A_NUMBER * (len(ensemble.random) + len(unknown.keys))
-    motions = BYTES_OF_A_MOTION * ensemble.replicates if ensemble.motions else 0
+    columns = OF_A_DRAW + len(ensemble.random) + len(unknown.keys)
+    draws = 2 * table_bytes(ensemble.count * ensemble.draws, columns)
+    motions = table_bytes(ensemble.replicates if ensemble.motions else 0, OF_A_MOTION)
     motions += sum(path.stat().st_size for one in copied for path in one.case.data_files.values())
-    return ensemble.count * (2 * ensemble.draws * row + BYTES_OF_A_POINT) + motions + BYTES_BESIDE
+    return draws + table_bytes(ensemble.count, OF_A_POINT) + motions + BYTES_BESIDE
 
 
 def ensemble_hash(ensemble: Ensemble, motions: Sequence[str] | None = None) -> str:
@@ -228,17 +204,20 @@ def ensemble_hash(ensemble: Ensemble, motions: Sequence[str] | None = None) -> s
     Args:
         motions: hashes of the cases of a set of motions, where they are known.
     """
-    given = {
+    asked = {
         "base": case_hash(ensemble.base),
         "axes": [[axis.key, list(axis.values)] for axis in ensemble.axes],
-        "random": [[one.key, _hashed(one)] for one in ensemble.random],
+        "random": [
+            [one.key, one.asked if isinstance(one, RandomChoice) else one.spread.model_dump()]
+            for one in ensemble.random
+        ],
         "derived": [[one.key, one.expression.text] for one in ensemble.derived],
     }
     if motions is None:
         motions = [case_hash(case) for case in motion_cases(ensemble.base, sets_of(ensemble))]
     if motions:
-        given["motions"] = list(motions)
-    return hashlib.sha256(json.dumps(given | asked_of(ensemble), sort_keys=True).encode()).hexdigest()
+        asked["motions"] = list(motions)
+    return hash_of(asked | _counted(ensemble))
 
 
 def sets_of(ensemble: Ensemble) -> list[Axis]:
@@ -246,91 +225,31 @@ def sets_of(ensemble: Ensemble) -> list[Axis]:
     return [] if ensemble.motions is None else [ensemble.motions]
 
 
-def _hashed(one: RandomQuantity | RandomChoice) -> Any:
-    return one.asked if isinstance(one, RandomChoice) else one.spread.model_dump()
-
-
-def asked_of(ensemble: Ensemble) -> dict[str, Any]:
+def _counted(ensemble: Ensemble) -> dict[str, Any]:
     """How the draws are made and counted."""
     names = ("draws", "seed", "sampling", "replicates", "confidence", "probability", "unknown_inputs")
     return {name: getattr(ensemble, name) for name in names}
 
 
-def result_of(
-    ensemble: Ensemble,
-    unknown: UnknownInputs,
-    motions: Sequence[FloorMotionPair],
-    asked: str,
-    points: Sequence[PointResult],
-    fragility: dict[str, Any] | None,
-    status: str,
-) -> dict[str, Any]:
-    """The content of `ensemble.json`."""
-    regions = [point.region for point in points]
-    return {
-        "status": status,
-        "asked": asked,
-        "ensemble": ensemble.name,
-        "title": ensemble.title,
-        "case": ensemble.base.name,
-        "model": ensemble.base.solver.model,
-        "duration_s": longest_time(ensemble.base) if not ends_at_rest(ensemble.base) else "auto",
-        "motion_covered": motions_left_out(ensemble.base, motions),
-        **asked_of(ensemble),
-        "axes": [{"key": axis.key, "values": list(axis.values), "unit": axis.unit} for axis in ensemble.axes],
-        "random": {one.key: one.asked for one in ensemble.random},
-        "derived": {one.key: one.expression.text for one in ensemble.derived},
-        "drawn_over_uncertainty": list(unknown.keys),
-        "held": unknown.held,
-        "motions": None,
-        "motion_figures": [],
-        "points": [point.row() for point in points],
-        "regions": {name: regions.count(name) for name in ("below", "undecided", "above")},
-        "failed": sum(point.failed for point in points),
-        "fragility": fragility,
-    } | program_of_results()
-
-
-def _of_motions(result: dict[str, Any]) -> str:
-    """What is random about the floor's motion."""
-    count = len(result["random"].get(MOTION_FILE, ()))
-    if not count:
-        return "the floor's motion is not random"
-    return f"the intervals are those of a sample of {count} motions"
-
-
-def _each(duration: float | str) -> str:
-    return "to rest" if isinstance(duration, str) else f"{duration:g} s"
-
-
-def page_of(result: dict[str, Any], folder: Path) -> str:
-    """The result of an ensemble as text."""
-    lines = [
-        f"{result['ensemble']}: {result['title']}" if result["title"] else str(result["ensemble"]),
-        f"  {len(result['points'])} points x {result['draws']} draws ({result['sampling']}, seed {result['seed']}), "
-        f"model {result['model']}, {_each(result['duration_s'])} each, {result['status']}",
-        *([f"  under {result['motion_covered']}"] if result.get("motion_covered") else []),
-        f"  random: {', '.join(result['random'])}; {_of_motions(result)}",
-    ]
-    if drawn := result.get("drawn_over_uncertainty"):
-        lines.append(f"  drawn over [uncertainty]: {', '.join(drawn)}")
-    if held := result.get("held"):
-        lines.append(f"  held: {held}")
-    words = region_words(result)
-    for name, count in result["regions"].items():
-        lines.append(f"  {name:10} {count:>6} points  {words[name]}")
-    if result["failed"]:
-        lines.append(
-            f"  failed     {result['failed']:>6} draws; the intervals allow for either outcome of these"
-        )
-    lines += [f"  {name:10} {line}" for name, line in fragility_lines(result)]
-    lines.append(f"  files      {folder}")
-    if result["status"] == "interrupted":
-        lines.append("  --resume continues")
-    if answer := ensemble_answer(result):
-        lines += table_lines(answer.lines())
-        lines.append(answer.sentence)
-    return "\n".join(lines)
+def asked_of(
+    ensemble: Ensemble, unknown: UnknownInputs, motions: Sequence[FloorMotionPair], asked: str
+) -> EnsembleResult:
+    """The part of `ensemble.json` that is known beforehand."""
+    return EnsembleResult(
+        asked=asked,
+        ensemble=ensemble.name,
+        title=ensemble.title,
+        case=ensemble.base.name,
+        model=ensemble.base.solver.model,
+        duration_s=longest_time(ensemble.base) if not ends_at_rest(ensemble.base) else "auto",
+        motion_covered=motions_left_out(ensemble.base, motions),
+        axes=tuple(AxisResult(key=axis.key, values=axis.values, unit=axis.unit) for axis in ensemble.axes),
+        random={one.key: one.asked for one in ensemble.random},
+        derived={one.key: one.expression.text for one in ensemble.derived},
+        drawn_over_uncertainty=tuple(unknown.keys),
+        held=unknown.held,
+        **_counted(ensemble),
+    )
 
 
 def csv_of_points(ensemble: Ensemble, points: Sequence[PointResult]) -> str:
@@ -338,41 +257,3 @@ def csv_of_points(ensemble: Ensemble, points: Sequence[PointResult]) -> str:
     names = [*(axis.key for axis in ensemble.axes), *POINT_COLUMNS]
     rows = [point.row() for point in points]
     return table_text(names, ([row[name] for name in names] for row in rows))
-
-
-def region_words(result: Mapping[str, Any]) -> dict[str, str]:
-    """The regions in words."""
-    limit = f"{result['probability']:g}"
-    return {
-        "below": f"probability of overturning at most {limit}",
-        "undecided": f"the {100.0 * result['confidence']:g} % interval holds {limit}",
-        "above": f"more than {limit}",
-    }
-
-
-def fragility_lines(result: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Where the curve falls, and the lognormal curve: name and words; nothing where there is no curve."""
-    fragility = result["fragility"]
-    if fragility is None:
-        return
-    for fall in fragility["falls"]:
-        yield (
-            "falls",
-            f"from {fall['probability_weaker']:.3f} at {fall['weaker']:g} to {fall['probability_stronger']:.3f} at "
-            f"{fall['stronger']:g}: a stronger motion overturns less often",
-        )
-    fitted = fragility["lognormal"]
-    if fitted is None:
-        yield "lognormal", f"none: {fragility['no_lognormal']}"
-        return
-    parts = []
-    for name, unit in (("median", result["axes"][0]["unit"]), ("deviation", "")):
-        ends = fitted[f"{name}_interval"]
-        interval = f" ({ends[0]:.3g} to {ends[1]:.3g})" if ends else ""
-        parts.append(f"{name} {fitted[name]:.3g}{interval} {unit}".rstrip())
-    fit = "" if fitted["adequate"] else "; the lognormal curve does not describe the counts"
-    yield (
-        "lognormal",
-        f"{', '.join(parts)}; misses {fitted['levels_missed']} of {fitted['levels']} intervals of "
-        f"{100.0 * result['confidence']:g} % ({fitted['missed_by_chance']} by chance){fit}",
-    )

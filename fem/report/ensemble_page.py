@@ -7,9 +7,10 @@ from typing import Any
 
 from fem.batch.axes import Axis
 from fem.batch.labels import axis_label, in_words, place_in_words
+from fem.batch.study import read_study
 from fem.case.case import load_case
-from fem.ensemble.answers import EnsembleAnswer, axes_of, ensemble_answer, interval_in_words
-from fem.ensemble.run import fragility_lines
+from fem.ensemble.answers import EnsembleAnswer, ensemble_answer, fragility_lines, interval_in_words
+from fem.ensemble.result import EnsembleResult
 from fem.html import sections as html
 from fem.html.page import Signature
 from fem.html.units import ABSENT, number, short, typeset
@@ -24,8 +25,7 @@ from fem.report.studies import (
     study_html,
     unfinished,
 )
-from fem.results.errors import FolderError
-from fem.results.kinds import ENSEMBLE, read_result
+from fem.results.kinds import ENSEMBLE
 from fem.results.outcome import COUNTED
 
 FIGURES = ("figures/fragility.svg", "figures/boundary.svg")
@@ -38,22 +38,19 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
         FolderError: it is no folder of an ensemble, it is damaged, or nothing was counted yet.
         CaseError: the base case in it cannot be read.
     """
-    info = read_result(folder / ENSEMBLE.mark, ENSEMBLE)
-    if "points" not in info:
-        raise FolderError(
-            f"{folder}: the ensemble is not finished; continue it with --resume, then report it"
-        )
-    case, axes = load_case(str(folder / "base.toml")), axes_of(info)
-    answer, name = ensemble_answer(info), str(info.get("ensemble") or folder.name)
+    info = read_study(folder, ENSEMBLE, EnsembleResult)
+    case, axes = load_case(str(folder / "base.toml")), info.point_axes
+    answer, name = ensemble_answer(info), info.ensemble or folder.name
     given = html.Pairs(asked_rows(case), caption="Base case, where nothing changes it", look="asked")
-    varied = html.Group("", [axes_table(axes, info["derived"]), random_table(info)])
+    varied = html.Group("", [axes_table(axes, info.derived), random_table(info)])
     return study_html(
         "an ensemble",
         info=info,
+        title=info.title,
         name=name,
         case=case,
         signature=signature,
-        hash=str(info["asked"]),
+        hash=info.asked,
         sections=[
             found_section(info, answer),
             html.section(
@@ -72,9 +69,9 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
             limits_section(case),
             repeat_section(
                 [
-                    ("ensemble", f"{name}, {info['status']}, model {info['model']}"),
-                    ("draws", f"{info['draws']} at each point, {info['sampling']}, seed {info['seed']}"),
-                    ("hash", info["asked"]),
+                    ("ensemble", f"{name}, {info.status}, model {info.model}"),
+                    ("draws", f"{info.draws} at each point, {info.sampling}, seed {info.seed}"),
+                    ("hash", info.asked),
                 ],
                 info,
                 again_from_files(folder, study="ensemble", name=name, case=case),
@@ -83,39 +80,37 @@ def ensemble_report(folder: Path, *, signature: Signature | None = None) -> str:
     )
 
 
-def found_section(info: Mapping[str, Any], answer: EnsembleAnswer | None) -> html.PageSection:
+def found_section(info: EnsembleResult, answer: EnsembleAnswer | None) -> html.PageSection:
     """The answer, how many points there are of each region, and the curve that was fitted."""
     words = region_labels(info)
-    regions = ", ".join(f"{words[region]} at {count}" for region, count in info["regions"].items() if count)
+    regions = ", ".join(f"{words[region]} at {count}" for region, count in info.regions.items() if count)
     motions = (
-        "the motions of the set, each equally often"
-        if info.get("motions")
-        else "the floor motion of the base case"
+        "the motions of the set, each equally often" if info.motions else "the floor motion of the base case"
     )
     return answer_section(
         info,
         answer.sentence if answer else None,
-        f"{len(info['points'])} points of {info['draws']} draws{unfinished(info)}; share that overturned: {regions}.",
+        f"{len(info.points)} points of {info.draws} draws{unfinished(info)}; share that overturned: {regions}.",
         *(typeset(f"{head}: {line}.") for head, line in fragility_lines(info)),
-        *([f"Held fixed: {info['held']}."] if info.get("held") else []),
+        *([f"Held fixed: {info.held}."] if info.held else []),
         note=f"A share of draws over the uncertain quantities listed below, under {motions}. It is not the probability "
         "of failure in an earthquake. Nothing is known between the points.",
     )
 
 
-def region_labels(info: Mapping[str, Any]) -> dict[str, str]:
+def region_labels(info: EnsembleResult) -> dict[str, str]:
     """The regions in words, as the share that overturns."""
-    limit = f"{short(info['probability'], 100.0)} %"
+    limit = f"{short(info.probability, 100.0)} %"
     return {"below": f"at most {limit}", "undecided": "not decided", "above": f"more than {limit}"}
 
 
-def answer_table(answer: EnsembleAnswer, info: Mapping[str, Any]) -> html.Table:
+def answer_table(answer: EnsembleAnswer, info: EnsembleResult) -> html.Table:
     """Where half of the draws overturn, for each combination of values of the other axes."""
 
     def in_axis(value: float | None) -> str:
         return ABSENT if value is None else in_words(answer.axis, [value])
 
-    few = f"at most {100.0 * info['probability']:g} % {'up to' if answer.rising else 'from'}"
+    few = f"at most {100.0 * info.probability:g} % {'up to' if answer.rising else 'from'}"
     rows = (
         [
             place_in_words(answer.others, point),
@@ -125,23 +120,23 @@ def answer_table(answer: EnsembleAnswer, info: Mapping[str, Any]) -> html.Table:
         ]
         for point, found, _ in answer.rows
     )
-    heads = ("", "half of the draws overturned at", f"{100.0 * info['confidence']:g} % interval", few)
+    heads = ("", "half of the draws overturned at", f"{100.0 * info.confidence:g} % interval", few)
     return html.table_of("answers", html.in_order(*heads), rows)
 
 
-def random_table(info: Mapping[str, Any]) -> html.Table:
+def random_table(info: EnsembleResult) -> html.Table:
     """What is drawn: by the file, and over the ranges of the unknown inputs."""
-    rows = [[key, _drawn(spread)] for key, spread in info["random"].items()]
-    rows += [[key, "over its range in [uncertainty]"] for key in info.get("drawn_over_uncertainty") or ()]
+    rows = [[key, _drawn(spread)] for key, spread in info.random.items()]
+    rows += [[key, "over its range in [uncertainty]"] for key in info.drawn_over_uncertainty]
     columns = html.in_order("key", "drawn")
     return html.table_of("random quantities", columns, rows, caption="Random quantities")
 
 
-def points_table(info: Mapping[str, Any]) -> html.Table:
+def points_table(info: EnsembleResult) -> html.Table:
     """A row a point: the counts, the share that overturned, its interval, the region."""
     words, share = region_labels(info), partial(number, factor=100.0, figures=3)
     columns: list[html.Column[Mapping[str, Any]]] = [
-        *(html.Column(axis_label(axis), partial(_on_axis, axis), html.NUMBER) for axis in axes_of(info)),
+        *(html.Column(axis_label(axis), partial(_on_axis, axis), html.NUMBER) for axis in info.point_axes),
         *(html.Column(name, partial(_count, name), html.NUMBER) for name in ("draws", *COUNTED)),
         html.Column(
             "share",
@@ -149,13 +144,13 @@ def points_table(info: Mapping[str, Any]) -> html.Table:
             html.NUMBER,
         ),
         html.Column(
-            f"{100.0 * info['confidence']:g} % interval",
+            f"{100.0 * info.confidence:g} % interval",
             lambda point: f"{share(point['low'])} to {share(point['high'])} %",
             html.NUMBER,
         ),
         html.Column("region", lambda point: words[point["region"]]),
     ]
-    return html.table_of("points", columns, info["points"], file="points.csv")
+    return html.table_of("points", columns, info.points, file="points.csv")
 
 
 def _count(name: str, point: Mapping[str, Any]) -> str:

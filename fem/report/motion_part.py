@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from fem.ensemble.result import EnsembleResult
 from fem.html import sections as html
 from fem.html.units import ABSENT, millimetres, number, ratio, short
 from fem.records.units import STANDARD_GRAVITY
@@ -11,6 +12,7 @@ from fem.report.studies import drawings
 from fem.results.outcome import COUNTED, ROCKING, SLIDING
 from fem.sweep.cells import shown_at
 from fem.sweep.motion_outcomes import MotionOutcome, motions_at
+from fem.sweep.result import SweepResult
 from fem.sweep.table import SweepTable
 
 MOST_POINTS = 12  #: beside one another in the table of outcomes
@@ -23,9 +25,9 @@ PEAKS = (
 )
 
 
-def motions_of_ensemble(folder: Path, info: Mapping[str, Any]) -> html.PageSection:
+def motions_of_ensemble(folder: Path, info: EnsembleResult) -> html.PageSection:
     """The motions that an ensemble draws, with their outcomes; empty where it has none, or is not finished."""
-    motions = info.get("motions")
+    motions = info.motions
     if not motions:
         return html.section("", "motions")
     outcomes = html.table_of(
@@ -44,11 +46,11 @@ def motions_of_ensemble(folder: Path, info: Mapping[str, Any]) -> html.PageSecti
 
 def motions_of_sweep(folder: Path, table: SweepTable) -> html.PageSection:
     """The motions of a sweep, with what each did at each point of the other axes; empty as for an ensemble."""
-    if not table.info.get("motions"):
+    if not table.info.motions:
         return html.section("", "motions")
     shown = {cell: shown_at(table, cell) for cell in range(len(table["cell"]))}
     points = list(motions_at(table.axes, shown))
-    rows = table.info["motion_set"]
+    rows = table.info.motion_set or ()
     places = [row["where"] for row in rows]
     tables = [_together(places, rows)]
     if len(points) <= MOST_POINTS:
@@ -71,15 +73,15 @@ def motions_of_sweep(folder: Path, table: SweepTable) -> html.PageSection:
 
 
 def _section(
-    folder: Path, info: Mapping[str, Any], command: str, tables: Sequence[html.Table], note: str
+    folder: Path, info: EnsembleResult | SweepResult, command: str, tables: Sequence[html.Table], note: str
 ) -> html.PageSection:
     """Tables of outcomes, the motions in numbers, their spectra, and how they are counted."""
     return html.section(
         "The motions",
         "motions",
         *tables,
-        _numbers(info["motions"]),
-        *drawings(folder, info.get("motion_figures") or (), command, prefix="motion"),
+        _numbers(info.motions or ()),
+        *drawings(folder, info.motion_figures, command, prefix="motion"),
         html.Note(f"{note} {PEAKS}"),
     )
 

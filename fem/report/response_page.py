@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from fem.batch.study import read_study
 from fem.case.case import load_case
 from fem.html import sections as html
 from fem.html.page import Signature
@@ -22,8 +23,8 @@ from fem.report.studies import (
 )
 from fem.response.answer import found_at, response_answer
 from fem.response.records import PointRow
-from fem.results.errors import FolderError
-from fem.results.kinds import RESPONSE, read_result
+from fem.response.result import ResponseResult
+from fem.results.kinds import RESPONSE
 
 FIGURES = ("figures/response_curve.svg", "figures/sections.svg", "figures/portraits.svg")
 STABLE = ": amplitudes do not diverge, and without drive the motion dies out."
@@ -54,19 +55,16 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
         FolderError: it is no folder of a response curve, it is damaged, or it has no points yet.
         CaseError: the case in it cannot be read.
     """
-    info = read_result(folder / RESPONSE.mark, RESPONSE)
-    if "points" not in info:
-        raise FolderError(
-            f"{folder}: the response curve is not finished; continue it with --resume, then report it"
-        )
-    case, name = load_case(str(folder / "case.toml")), str(info.get("case") or folder.name)
+    info = read_study(folder, RESPONSE, ResponseResult)
+    case, name = load_case(str(folder / "case.toml")), info.case or folder.name
     return study_html(
         "a response curve",
         info=info,
+        title=info.title,
         name=name,
         case=case,
         signature=signature,
-        hash=str(info["asked"]),
+        hash=info.asked,
         sections=[
             found_section(info),
             html.section("Response", "drawn", *drawings(folder, FIGURES, "response curve")),
@@ -75,7 +73,7 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
                 "The drive and the case",
                 "asked",
                 html.columns(
-                    html.Pairs(drive_rows(info["request"]), caption="Drive", look="asked"),
+                    html.Pairs(drive_rows(info.request), caption="Drive", look="asked"),
                     html.Pairs(asked_rows(case), caption="Case", look="asked"),
                 ),
             ),
@@ -83,14 +81,14 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
             limits_section(case),
             repeat_section(
                 [
-                    ("response curve", f"{name}, {info['status']}, model {case.solver.model}"),
-                    ("hash", info["asked"]),
+                    ("response curve", f"{name}, {info.status}, model {case.solver.model}"),
+                    ("hash", info.asked),
                 ],
                 info,
                 Again(
                     words="Save the file below as case.toml:",
                     command=shlex.join(
-                        ["python", "-m", "fem", "response", "case.toml", *_options(info["request"])]
+                        ["python", "-m", "fem", "response", "case.toml", *_options(info.request)]
                     ),
                     files=[("case.toml", text_of(folder / "case.toml"))],
                 ),
@@ -99,15 +97,15 @@ def response_report(folder: Path, *, signature: Signature | None = None) -> str:
     )
 
 
-def found_section(info: Mapping[str, Any]) -> html.PageSection:
+def found_section(info: ResponseResult) -> html.PageSection:
     """The answer, and how many points were computed, of which kinds."""
-    counts = Counter(PointRow(**point).words for point in info["points"]).most_common()
+    counts = Counter(point.words for point in info.points).most_common()
     counted = ", ".join(f"{count} {words}" for words, count in counts)
-    judged = [point["stable"] for point in info["points"] if point["stable"] is not None]
+    judged = [point.stable for point in info.points if point.stable is not None]
     return answer_section(
         info,
         response_answer(info),
-        f"{len(info['points'])} of {2 * info['request']['count']} points{unfinished(info)}: {counted}.",
+        f"{len(info.points)} of {2 * info.request['count']} points{unfinished(info)}: {counted}.",
         html.joined(f"{sum(judged)} of {len(judged)} points are ", html.strong("stable"), STABLE),
         note=METHOD,
     )
@@ -135,30 +133,26 @@ def drive_rows(request: Mapping[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def branch_tables(info: Mapping[str, Any]) -> list[html.Block]:
+def branch_tables(info: ResponseResult) -> list[html.Block]:
     """Coexisting motions, jumps and drop-outs, where there are any."""
 
     def rows() -> Iterator[list[str]]:
-        for found in info["drop_outs"]:
-            how = "a motion that was carried there" if found["carried"] else "from its start"
-            yield ["overturns", found["direction"], found_at(found), how]
-        for found in info["coexisting"]:
-            words = f"{' or '.join(found['up'])} going up, {' or '.join(found['down'])} going down"
-            yield ["coexist", "up and down", found_at(found), words]
-        for found in info["jumps"]:
-            before, after = (ratio(one) for one in found["rotation_ratio"])
-            yield [
-                "jump",
-                found["direction"],
-                found_at(found),
-                f"{found['what']}, rotation ratio {before} to {after}",
-            ]
+        for fall in info.drop_outs:
+            how = "a motion that was carried there" if fall.carried else "from its start"
+            yield ["overturns", fall.direction, found_at(fall), how]
+        for pair in info.coexisting:
+            words = f"{' or '.join(pair.up)} going up, {' or '.join(pair.down)} going down"
+            yield ["coexist", "up and down", found_at(pair), words]
+        for jump in info.jumps:
+            before, after = (ratio(one) for one in jump.rotation_ratio)
+            words = f"{jump.what}, rotation ratio {before} to {after}"
+            yield ["jump", jump.direction, found_at(jump), words]
 
     found = list(rows())
     return [html.table_of("branches", html.in_order("what", "sweep", "where", "how"), found)] if found else []
 
 
-def points_table(info: Mapping[str, Any]) -> html.Table:
+def points_table(info: ResponseResult) -> html.Table:
     """A row a point, in the order in which they were swept."""
     columns: list[html.Column[PointRow]] = [
         html.Column("sweep", lambda point: point.direction),
@@ -176,8 +170,7 @@ def points_table(info: Mapping[str, Any]) -> html.Table:
         html.Column("stable", lambda point: {None: ABSENT, True: "yes", False: "no"}[point.stable]),
         html.Column("why failed", lambda point: point.reason or "", optional=True),
     ]
-    points = [PointRow(**point) for point in info["points"]]
-    return html.table_of("points", columns, points, file="response.csv")
+    return html.table_of("points", columns, info.points, file="response.csv")
 
 
 def _options(request: Mapping[str, Any]) -> Iterator[str]:

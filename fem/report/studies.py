@@ -9,6 +9,7 @@ from typing import Any
 from markupsafe import escape
 
 from fem.batch.axes import Axis
+from fem.batch.study import COMPLETED, StudyResult
 from fem.case.case import Case
 from fem.html import sections as html
 from fem.html.page import Page, Signature, html_of, svg_element
@@ -30,7 +31,8 @@ class Again:
 def study_html(
     kind: str,
     *,
-    info: Mapping[str, Any],
+    info: StudyResult,
+    title: str,
     name: str,
     case: Case,
     signature: Signature | None,
@@ -41,8 +43,8 @@ def study_html(
 
     Args:
         kind: of study.
-        info: the content of the file that marks its folder.
-        name: of the study.
+        info: its result; an unfinished one is not signed.
+        title, name: of the study.
         case: that it starts from.
         signature: author, checker, revision.
         sections: what it shows.
@@ -51,9 +53,9 @@ def study_html(
     return html_of(
         Page(
             kind=f"Report of {kind}",
-            title=info.get("title") or name,
+            title=title or name,
             name=name,
-            signature=(signature or Signature()).completed(case.named),
+            signature=None if info.no_answer_yet else (signature or Signature()).completed(case.named),
             sections=sections,
             **content,
         )
@@ -61,25 +63,24 @@ def study_html(
 
 
 def answer_section(
-    info: Mapping[str, Any], answer: str | None, count: str, *more: html.Block, note: str
+    info: StudyResult, answer: str | None, count: str, *more: html.Block, note: str
 ) -> html.PageSection:
-    """The answer of a study, how far it was computed, what else there is to say, and how to read it."""
+    """The answer of a study or what is missing of it, how far it was computed, and how to read it."""
+    answer = info.no_answer_yet or answer
     sentence = [html.Paragraph(typeset(f"{answer[0].upper()}{answer[1:]}."), "sentence")] if answer else []
     counted = count if answer else html.Paragraph(count, "sentence")
-    look = f"answer {'stood' if info['status'] == 'completed' else 'open'}"
+    look = f"answer {'stood' if info.status == COMPLETED else 'open'}"
     return html.section("Found", "found", *sentence, counted, *more, html.Note(note), look=look)
 
 
-def unfinished(info: Mapping[str, Any]) -> str:
+def unfinished(info: StudyResult) -> str:
     """How a study ended that is not complete; empty of one that is."""
-    return "" if info["status"] == "completed" else f" ({info['status']})"
+    return "" if info.status == COMPLETED else f" ({info.status})"
 
 
-def repeat_section(
-    rows: Sequence[tuple[str, str]], info: Mapping[str, Any], again: Again
-) -> html.PageSection:
+def repeat_section(rows: Sequence[tuple[str, str]], info: StudyResult, again: Again) -> html.PageSection:
     """From what a study was computed, and how to compute it again."""
-    versions = ", ".join(f"{name} {version}" for name, version in (info.get("versions") or {}).items())
+    versions = ", ".join(f"{name} {version}" for name, version in info.versions.items())
     files = [
         block for name, text in again.files for block in (html.Heading(html.code(name)), html.Listing(text))
     ]

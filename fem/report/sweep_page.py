@@ -41,6 +41,7 @@ from fem.results.errors import FolderError
 from fem.results.figures import FIGURES, Place, keys_of
 from fem.runtime import units
 from fem.sweep.answers import AnswerRow, SweepAnswer, sweep_answer
+from fem.sweep.result import SweepResult
 from fem.sweep.table import SweepTable, open_sweep
 
 #: what can be shown: column, words for it, its unit
@@ -74,16 +75,17 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
     """
     table = open_sweep(folder)
     info, case = table.info, load_case(str(folder / "base.toml"))
-    data, drawn = map_data(table, folder), drawings(folder, table.info.get("maps") or [], "sweep")
-    answer, name = sweep_answer(table, folder), str(info.get("sweep") or folder.name)
+    data, drawn = map_data(table, folder), drawings(folder, table.info.maps, "sweep")
+    answer, name = sweep_answer(table, folder), info.sweep or folder.name
     given = html.Pairs(asked_rows(case), caption="Base case, where no axis changes it", look="asked")
     return study_html(
         "a sweep",
         info=info,
+        title=info.title,
         name=name,
         case=case,
         signature=signature,
-        hash=str(info.get("sweep_hash") or ""),
+        hash=info.sweep_hash,
         scripts=["map.js"],
         data={"sweep": data},
         sections=[
@@ -99,13 +101,13 @@ def sweep_report(folder: Path, *, signature: Signature | None = None) -> str:
             html.section(
                 "Counts", "counts", counts_table(table), *_failures(table), *_thresholds(folder, info)
             ),
-            html.section("The sweep", "asked", html.columns(axes_table(table.axes, info["derived"]), given)),
+            html.section("The sweep", "asked", html.columns(axes_table(table.axes, info.derived), given)),
             limits_section(case),
             repeat_section(
                 [
-                    ("sweep", f"{name}, {info['status']}, model {info.get('model')}"),
-                    ("sweep hash", str(info.get("sweep_hash"))),
-                    ("base hash", str(info.get("base_hash"))),
+                    ("sweep", f"{name}, {info.status}, model {info.model}"),
+                    ("sweep hash", info.sweep_hash),
+                    ("base hash", info.base_hash),
                 ],
                 info,
                 again_from_files(folder, study="sweep", name=name, case=case),
@@ -121,8 +123,8 @@ def found_section(table: SweepTable, answer: str | None) -> html.PageSection:
     return answer_section(
         info,
         answer,
-        f"{computed} of {info['cells']} cells{unfinished(info)}: {counted}.",
-        *([f"Held fixed: {info['held']}."] if info.get("held") else []),
+        f"{computed} of {info.cells} cells{unfinished(info)}: {counted}.",
+        *([f"Held fixed: {info.held}."] if info.held else []),
         *_sure_lines(table),
         note="What happened under these motions, in a study. Nothing is known between the cells: a region of "
         "overturning that is smaller than a cell is missed.",
@@ -132,10 +134,10 @@ def found_section(table: SweepTable, answer: str | None) -> html.PageSection:
 def _sure_lines(table: SweepTable) -> Iterator[str]:
     """How many cells are how sure, what their copies change, and which inputs decide."""
     info = table.info
-    if not (sure := info.get("sure")):
-        if info["unsure"] is not None:
+    if not (sure := info.sure):
+        if info.unsure is not None:
             yield (
-                f"{info['unsure']} cells are unsure: of {info['perturbed']} perturbed cells, these stand or overturn "
+                f"{info.unsure} cells are unsure: of {info.perturbed} perturbed cells, these stand or overturn "
                 "depending on small changes of friction, amplitude, phase or contact damping."
             )
         return
@@ -145,14 +147,14 @@ def _sure_lines(table: SweepTable) -> Iterator[str]:
         f": every copy of them has the same outcome. {sure[REGIME_UNSURE]} are ",
         html.strong(REGIME_UNSURE),
         ": none of their copies overturns, or all do, but they rest, slide or rock in different ways. "
-        f"{info['unsure']} are ",
+        f"{info.unsure} are ",
         html.strong(UNSURE),
         ": they stand or overturn depending on unknown inputs, or on small changes of the motion.",
     )
-    left_out = f" Left out: {info['left_out']}." if info.get("left_out") else ""
+    left_out = f" Left out: {info.left_out}." if info.left_out else ""
     yield (
         "A copy changes one input over its range in [uncertainty], a pair of them or all at once, or the motion, "
-        f"friction or damping a little: {info['copies']} copies of {info['perturbed']} cells.{left_out}"
+        f"friction or damping a little: {info.copies} copies of {info.perturbed} cells.{left_out}"
     )
     if found := [html.joined(html.code(key), f" ({count})") for key, count in deciding(table)]:
         yield html.joined("Unsure cells are decided by ", Markup(", ").join(found), ".")
@@ -214,7 +216,7 @@ def _failures(table: SweepTable) -> list[html.Block]:
     return [html.Heading("Without an outcome"), html.Bullets(lines, "")] if lines else []
 
 
-def _thresholds(folder: Path, info: Mapping[str, Any]) -> list[html.Block]:
+def _thresholds(folder: Path, info: SweepResult) -> list[html.Block]:
     """The refined changes of outcome, where they were asked for."""
     path = folder / "thresholds.csv"
     if not path.is_file():
@@ -225,7 +227,7 @@ def _thresholds(folder: Path, info: Mapping[str, Any]) -> list[html.Block]:
     except (OSError, ValueError) as error:
         raise FolderError(f"{path}: cannot be read ({error}); repeat the sweep with --force") from None
     shown = ([short(float(one), figures=5) if NUMBER.fullmatch(one) else one for one in row] for row in rows)
-    held = f"They hold {info['held']}; a range of an unknown input moves them." if info.get("held") else ""
+    held = f"They hold {info.held}; a range of an unknown input moves them." if info.held else ""
     return [
         html.Heading("Changes of outcome, refined"),
         *([html.Note(held)] if held else []),
@@ -271,7 +273,7 @@ def map_data(table: SweepTable, folder: Path) -> dict[str, Any]:
                 for axis in table.axes
                 for key in axis.following
             ),
-            *({"key": key, "values": _plain(table[key])} for key in table.info["derived"]),
+            *({"key": key, "values": _plain(table[key])} for key in table.info.derived),
         ],
         "outcomes": [
             {"name": name, "label": label, "colour": colour, "found": found_any}
@@ -319,7 +321,7 @@ def counts(table: SweepTable) -> list[tuple[str, str, int, float]]:
 
 def deciding(table: SweepTable) -> list[tuple[str, int]]:
     """The inputs that decide unsure cells, and how many each; none for a folder of before."""
-    found = table.info.get("decided_by") or {}
+    found = table.info.decided_by or {}
     return sorted(found.items(), key=lambda pair: -pair[1])
 
 

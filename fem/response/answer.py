@@ -1,21 +1,21 @@
 """The answer of a response curve in one sentence: overturning, largest rotation, coexisting motions."""
 
-from collections.abc import Mapping
-from typing import Any
+from fem.response.branches import Coexistence, DropOut, Jump
+from fem.response.result import ResponseResult
 
 MOST_RANGES = 3  #: of frequencies that are named
 
 
-def response_answer(result: Mapping[str, Any]) -> str | None:
-    """The answer from the content of `response.json`; None of an unfinished curve and one without an outcome."""
-    points = [point for point in result["points"] if point["status"] != "failed"]
-    if result["status"] not in ("completed", "failed") or not points:
+def response_answer(result: ResponseResult) -> str | None:
+    """The answer of a response curve; None of an unfinished one and one without an outcome."""
+    points = [point for point in result.points if point.status != "failed"]
+    if result.state != "finished" or not points:
         return None
-    standing = [point for point in points if point["rotation_ratio"] is not None]
-    frequencies = [point["frequency_Hz"] for point in points]
-    failed = len(result["points"]) - len(points)
+    standing = [point for point in points if point.rotation_ratio is not None]
+    frequencies = [point.frequency_Hz for point in points]
+    failed = len(result.points) - len(points)
     every = f"every frequency {'with an outcome' if failed else 'tried'}, {_range(min(frequencies), max(frequencies))}"
-    fallen = [f"{found_at(found)} going {found['direction']}" for found in result["drop_outs"]]
+    fallen = [f"{found_at(found)} going {found.direction}" for found in result.drop_outs]
     if not fallen:
         parts = [f"stood at {every}, up and down"]
     elif not standing:
@@ -23,20 +23,20 @@ def response_answer(result: Mapping[str, Any]) -> str | None:
     else:
         parts = [f"overturned at {_listed(fallen)}", f"stood at the other {len(standing)} points"]
     if standing:
-        most = max(standing, key=lambda point: float(point["rotation_ratio"]))
-        turned = f"{most['rotation_ratio']:.2g} of the slenderness angle, at {most['frequency_Hz']:.4g} Hz"
-        resting = all(point["long_time"] == "rest" for point in standing)
-        parts.append("at rest there" if resting else f"largest rotation {turned} going {most['direction']}")
-    if result["coexisting"]:
-        parts.append(f"two motions coexist at {_listed([found_at(found) for found in result['coexisting']])}")
+        most = max(standing, key=lambda point: point.rotation_ratio or 0.0)
+        turned = f"{most.rotation_ratio:.2g} of the slenderness angle, at {most.frequency_Hz:.4g} Hz"
+        resting = all(point.long_time == "rest" for point in standing)
+        parts.append("at rest there" if resting else f"largest rotation {turned} going {most.direction}")
+    if result.coexisting:
+        parts.append(f"two motions coexist at {_listed([found_at(found) for found in result.coexisting])}")
     if failed:
-        parts.append(f"no outcome at {failed} of {len(result['points'])} points")
+        parts.append(f"no outcome at {failed} of {len(result.points)} points")
     return "frequency: " + "; ".join(parts)
 
 
-def found_at(found: Mapping[str, Any]) -> str:
+def found_at(found: Coexistence | Jump | DropOut) -> str:
     """The frequencies of a coexistence, a jump or a drop-out, in the order of its sweep."""
-    return _range(found["from_Hz"], found["to_Hz"])
+    return _range(found.from_Hz, found.to_Hz)
 
 
 def _range(low: float, high: float) -> str:

@@ -1,13 +1,13 @@
 """What two sweeps over the same frequencies show: coexisting motions, jumps, drop-outs."""
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import groupby, pairwise
-from typing import Any
 
 import numpy as np
 
 from fem.response.records import PointRecord
+from fem.results.json_block import JsonBlock
 
 APART = 0.02  #: difference of rotation ratios that counts at least
 APART_STROKE = 0.05  #: of slip strokes, over the floor's amplitude
@@ -16,7 +16,7 @@ JUMP_SHARE = 4.0  #: .. and so many times the changes before and after it: a ste
 
 
 @dataclass(frozen=True, kw_only=True)
-class Coexistence:
+class Coexistence(JsonBlock):
     """Neighbouring frequencies at which the two sweeps found different motions."""
 
     from_Hz: float  # noqa: N815 - the unit, as in a case file
@@ -24,11 +24,11 @@ class Coexistence:
     frequencies: int
     up: tuple[str, ...]  #: motions found on the way up, in words
     down: tuple[str, ...]
-    largest_difference: float | None  #: of rotation ratios; None where one of each pair overturned
+    largest_difference: float | None = None  #: of rotation ratios; None where one of each pair overturned
 
 
 @dataclass(frozen=True, kw_only=True)
-class Jump:
+class Jump(JsonBlock):
     """A change between neighbouring frequencies that the sweep went through."""
 
     direction: str
@@ -39,7 +39,7 @@ class Jump:
 
 
 @dataclass(frozen=True, kw_only=True)
-class DropOut:
+class DropOut(JsonBlock):
     """Neighbouring frequencies at which the container overturned."""
 
     direction: str
@@ -47,15 +47,6 @@ class DropOut:
     to_Hz: float  # noqa: N815
     frequencies: int
     carried: bool  #: the first of them overturned a motion that had been carried there
-
-
-def branches_of(records: Sequence[PointRecord]) -> dict[str, Any]:
-    """Coexisting motions, jumps and drop-outs, as `response.json` holds them."""
-    return {
-        "coexisting": [asdict(found) for found in coexistences(records)],
-        "jumps": [asdict(found) for found in jumps(records)],
-        "drop_outs": [asdict(found) for found in drop_outs(records)],
-    }
 
 
 def coexistences(records: Sequence[PointRecord]) -> list[Coexistence]:

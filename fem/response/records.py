@@ -11,6 +11,7 @@ from fem.batch.log import table_text
 from fem.response.curve import PORTRAYED, CurvePoint
 from fem.response.model import SAMPLES_PER_PERIOD
 from fem.response.orbit import EXTREME_COLUMNS, SECTION_COLUMNS
+from fem.results.json_block import JsonBlock
 from fem.runtime.arrays import FloatArray
 
 PORTRAIT_COLUMNS = ("rotation_rad", "angular_velocity_rad_s")
@@ -18,7 +19,7 @@ ARRAYS = {"sections": SECTION_COLUMNS, "extremes": EXTREME_COLUMNS, "portrait": 
 
 
 @dataclass(frozen=True, kw_only=True)
-class PointRow:
+class PointRow(JsonBlock):
     """A row of `response.csv`; None where a column does not apply."""
 
     direction: str  #: up | down
@@ -28,7 +29,7 @@ class PointRow:
     peak_acceleration_m_s2: float
     began: str  #: carried | case
     status: str  #: completed | overturned | failed
-    motion: str | None
+    motion: str | None = None
     long_time: str | None = (
         None  #: rest | periodic | not settled | not periodic; None without a long-time motion
     )
@@ -46,11 +47,11 @@ class PointRow:
     slip_walk_m: float | None = None
     impacts_per_period: float | None = None
     growth: float | None = None
-    bounded: bool | None
+    bounded: bool | None = None
     undriven: str | None = None
     undriven_s: float | None = None
-    stable: bool | None
-    reason: str | None
+    stable: bool | None = None
+    reason: str | None = None
 
     @property
     def words(self) -> str:

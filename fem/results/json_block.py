@@ -35,6 +35,10 @@ class JsonBlock:
             raise KeyError(f"no key {key!r}; known: {', '.join(names)}")
         return getattr(self, key)
 
+    def get(self, key: str, default: Any = None) -> Any:
+        """A value by its key in the file, or the default where there is no such key."""
+        return getattr(self, key, default)
+
     def to_json(self) -> dict[str, Any]:
         """The block as JSON types, its keys in the order of the fields."""
         block = {one.name: _plain(getattr(self, one.name)) for one in fields(self)}  # type: ignore[arg-type]

@@ -24,6 +24,8 @@ class ResultKind:
     results: str  #: where to look for the numbers
     #: patterns of the files that are removed before a new result is computed; nothing else ever is
     own: tuple[str, ...]
+    #: .. those of them that serve to continue, and go when it is finished
+    temporary: tuple[str, ...] = ()
     #: statuses after which there is nothing left to compute
     finished: frozenset[str] = frozenset({"completed"})
 
@@ -63,6 +65,7 @@ SWEEP = ResultKind(
         *("rows.csv", "members.csv", "tried.csv", "thresholds.csv", "answers.csv", "table.csv", "maps/*.svg"),
         *("motions.csv", "motion_set.csv", "spectra.csv", "figures/*.svg"),
     ),
+    temporary=("rows.csv",),
 )
 ENSEMBLE = ResultKind(
     name="ensemble",
@@ -89,6 +92,7 @@ RESPONSE = ResultKind(
     request="asked",
     results="response.csv",
     own=("response.csv", "sections.csv", "portraits.csv", "case.toml", "state.npz", "figures/*.svg"),
+    temporary=("state.npz",),
 )
 SITE = ResultKind(
     name="verification at a site",
@@ -107,7 +111,7 @@ SITE = ResultKind(
     ),
 )
 SIZE = ResultKind(
-    name="size",
+    name="size study",
     asked="size",
     mark="size.json",
     request="asked",

@@ -9,12 +9,10 @@ import math
 
 from fem.case.case import Case
 from fem.case.columns import history_columns
-from fem.results.disk import in_units
+from fem.results.disk import BYTES_BESIDE, in_units, table_bytes
 
 BYTES_OF_A_NODE, BYTES_OF_A_FRAME = 40.0, 2e3
-BYTES_OF_A_NUMBER = 20.0
 BYTES_OF_A_CHECKPOINT_NODE = 500.0
-BYTES_BESIDE = 2e6
 
 
 def samples_of(case: Case, duration: float) -> int:
@@ -31,7 +29,7 @@ def frames_of(case: Case, duration: float) -> int:
 
 def required_disk(case: Case, nodes: int, duration: float) -> float:
     """Size of the folder of a run of this duration [s], in bytes; `nodes` of the elements."""
-    history = BYTES_OF_A_NUMBER * len(history_columns(case)) * samples_of(case, duration)
+    history = table_bytes(samples_of(case, duration), len(history_columns(case)))
     frames = (BYTES_OF_A_NODE * nodes + BYTES_OF_A_FRAME) * frames_of(case, duration)
     return history + frames + BYTES_OF_A_CHECKPOINT_NODE * nodes + BYTES_BESIDE
 

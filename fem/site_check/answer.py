@@ -27,10 +27,8 @@ def answer_of(
     motions: MotionSet,
     found: Mapping[RunKey, SiteRun],
     confirmed: Sequence[ConfirmedRun] = (),
-    *,
-    expected: int = 0,
 ) -> SiteAnswer:
-    """The answer, from all runs there are; none while fewer than those expected of the set are there."""
+    """The answer, from all runs."""
     own = [run for key, run in found.items() if key.stage == SET]
     rule = rule_in_words(motions.count)
     if not motions.valid:
@@ -41,19 +39,13 @@ def answer_of(
             overturned=0,
             runs=0,
         )
-    if len(own) < expected:
-        return SiteAnswer(
-            rule=rule,
-            sentence=f"No answer yet: {len(own)} of {expected} runs are computed.",
-            overturned=sum(run.outcome == Outcome.OVERTURNED for run in own),
-            runs=len(own),
-        )
     groups, limits = groups_of(own), request.limits
     overturned, failed = sum(one.overturned for one in groups), sum(one.failed for one in groups)
     found_by_rule = _largest(groups)
     within, short = (_within(found_by_rule[name], getattr(limits, name)) for name in LIMITED)
     fulfilled = None if failed and not overturned else not overturned and within and short
     return SiteAnswer(
+        answer={None: None, True: "fulfilled", False: "not fulfilled"}[fulfilled],
         fulfilled=fulfilled,
         rule=rule,
         sentence=_sentence(request, fulfilled, groups, overturned=overturned, failed=failed),
@@ -67,6 +59,21 @@ def answer_of(
         scan=_scan(found),
         further=_further(request, found),
         confirmed=tuple(confirmed),
+    )
+
+
+def no_answer_yet(motions: MotionSet, own: Sequence[SiteRun], missing: str) -> SiteAnswer:
+    """What stands in place of the answer of an interrupted verification.
+
+    Args:
+        own: the runs of the set that are there.
+        missing: what is not, in words.
+    """
+    return SiteAnswer(
+        rule=rule_in_words(motions.count),
+        sentence=f"No answer yet: {missing}.",
+        overturned=sum(run.outcome == Outcome.OVERTURNED for run in own),
+        runs=len(own),
     )
 
 

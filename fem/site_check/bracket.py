@@ -2,15 +2,15 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal
 
 import numpy as np
 
-from fem.results.run_result import JsonBlock
+from fem.batch.bracket import least_width, values_to_try
+from fem.batch.study import COMPLETED, StudyResult
 from fem.site_check.result import LIMITED, ByRule, SiteAnswer
-from fem.sweep.threshold import least_width, values_to_try
 
 RESOLUTION = 0.01  #: largest width of a bracket over the value
 INNER = 3  #: values tried within a bracket at a time
@@ -53,9 +53,11 @@ class SizePoint(ByRule):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SizeResult(JsonBlock):
+class SizeResult(StudyResult):
     """Which values fulfil the rule: what `size.json` holds."""
 
+    command: str = ""
+    wall_s: float | None = None
     key: str
     followers: tuple[str, ...] = ()  #: keys that took the same values
     unit: str
@@ -64,9 +66,11 @@ class SizeResult(JsonBlock):
     value: float | None = (
         None  #: the least or the largest; None where there is none in the range, or a window is asked
     )
-    intervals: tuple[tuple[float, ...], ...]  #: of the values that fulfil it, by their outermost values tried
-    sentence: str
-    points: tuple[SizePoint, ...]  #: by rising value
+    intervals: tuple[
+        tuple[float, ...], ...
+    ] = ()  #: of the values that fulfil it, by their outermost values tried
+    sentence: str = ""
+    points: tuple[SizePoint, ...] = ()  #: by rising value
 
 
 def next_values(axis: SizeAxis, found: Mapping[float, SiteAnswer]) -> list[float]:
@@ -84,21 +88,31 @@ def next_values(axis: SizeAxis, found: Mapping[float, SiteAnswer]) -> list[float
     )
 
 
-def size_result(
-    axis: SizeAxis, found: Mapping[float, SiteAnswer], followers: tuple[str, ...] = ()
-) -> SizeResult:
-    """Which values fulfil the rule, from the answers by value."""
-    points = tuple(_point(value, found[value]) for value in sorted(found))
-    intervals = fulfilled_intervals(points)
+def size_asked(axis: SizeAxis, followers: tuple[str, ...] = (), command: str = "") -> SizeResult:
+    """What is known before any value is tried."""
     return SizeResult(
+        command=command,
         key=axis.key,
         followers=followers,
         unit=axis.unit,
         low=axis.values[0],
         high=axis.values[-1],
+    )
+
+
+def size_result(
+    axis: SizeAxis, found: Mapping[float, SiteAnswer], asked: SizeResult | None = None
+) -> SizeResult:
+    """Which values fulfil the rule, from the answers by value."""
+    points = tuple(_point(value, found[value]) for value in sorted(found))
+    intervals, words = fulfilled_intervals(points), sentence(axis, points)
+    return replace(
+        asked or size_asked(axis),
+        status=COMPLETED,
+        answer=words,
         value=wanted_value(axis, intervals),
         intervals=tuple(intervals),
-        sentence=sentence(axis, points),
+        sentence=words,
         points=points,
     )
 

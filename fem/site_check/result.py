@@ -6,6 +6,7 @@ Every field has the name of its key in the file, with its SI unit. Accelerations
 
 from dataclasses import dataclass
 
+from fem.batch.study import StudyResult
 from fem.results.figures import Place, RunFigures, keys_beside
 from fem.results.json_block import JsonBlock
 
@@ -188,7 +189,8 @@ class ConfirmedRun(RunFigures):
 class SiteAnswer(ByRule):
     """The answer, under the rule that is printed with it."""
 
-    fulfilled: bool | None = None  #: None: the set is not valid, or runs failed
+    answer: str | None = None  #: fulfilled | not fulfilled
+    fulfilled: bool | None = None  #: None: the set is not valid, or runs failed, or are not there yet
     rule: str
     sentence: str
     overturned: int
@@ -267,10 +269,9 @@ class SiteProvenance(JsonBlock):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SiteResult(JsonBlock):
+class SiteResult(StudyResult):
     """Everything `assess` found."""
 
-    status: str
     title: str = ""
     inputs: SiteInputs
     action: SiteActionResult

@@ -5,30 +5,28 @@ neither on that nor on the number of cores.
 """
 
 import hashlib
-import json
 import shlex
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Unpack
 
 from fem.batch.log import LoggedRuns
 from fem.batch.runner import Runner
-from fem.batch.workers import LocalWorkers, WorkersOf, hand_out
+from fem.batch.study import COMPLETED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
+from fem.batch.workers import hand_out
 from fem.case.case import case_hash
-from fem.results.folder import ResultFolder, open_result_folder, program_of_results
+from fem.results.disk import BYTES_BESIDE, table_bytes
+from fem.results.folder import ResultFolder
 from fem.results.kinds import SITE
 from fem.runtime.identity import versions
-from fem.runtime.progress import Reporter, SilentReporter
-from fem.runtime.signals import interruptible
-from fem.runtime.threads import cores
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.floor import floor_motion
 from fem.seismic.ground_motion import GroundMotion
-from fem.seismic.motion_set import check_set
-from fem.site_check.answer import answer_of, governing_run
+from fem.seismic.motion_set import MotionSetCheck, check_set
+from fem.site_check.answer import answer_of, governing_run, no_answer_yet
 from fem.site_check.bodies import body_of
 from fem.site_check.confirm import confirmed, deciding
 from fem.site_check.file import SiteRequest
@@ -43,7 +41,8 @@ from fem.site_check.motion_results import (
 from fem.site_check.motions import floor_motions, ground_motions, longest_period
 from fem.site_check.result import (
     USUAL_BEHAVIOUR_FACTOR,
-    ConfirmedRun,
+    MotionSet,
+    SiteAnswer,
     SiteBody,
     SiteDocument,
     SiteInputs,
@@ -54,80 +53,54 @@ from fem.site_check.runs import COLUMNS, SET, RunCases, RunKey, RunPlan, RunRows
 from fem.site_check.site_page import site_report
 
 RUNS, PAGE = "runs.csv", "report.html"
-#: room on the disk [bytes]: one motion in three files, one run, all else
-BYTES_OF_A_MOTION, BYTES_OF_A_RUN, BYTES_BESIDE = 1_500_000, 200, 5_000_000
+OF_A_MOTION = 75_000  #: numbers, in three files
+STAGES = 14  #: runs of all stages over those of the set
 #: numbers of the artificial motions beyond the set begin behind those of any set
 FIRST_FURTHER = 10_000
 
 
 def run_site(
-    request: SiteRequest,
-    folder: Path,
-    *,
-    jobs: int | None = None,
-    workers_of: WorkersOf | None = None,
-    resume: bool = False,
-    force: bool = False,
-    allow_outside: bool = False,
-    reporter: Reporter | None = None,
+    request: SiteRequest, folder: Path, *, allow_outside: bool = False, **options: Unpack[StudyOptions]
 ) -> SiteResult:
-    """Verify a container at a site, into a folder; a finished verification is not computed again.
+    """Verify a container at a site, into a folder; raises as `run_study`, and CaseError for bad input.
 
     Args:
-        jobs: cores to use; all by default. The result does not depend on it.
-        workers_of: who computes the runs, in place of this machine's cores.
-        resume: continue with the rows that are there; force: overwrite earlier results.
         allow_outside: take records from outside the folder of the site file.
-
-    Raises:
-        CaseError, FolderError: bad input.
-        WorkersLostError: a worker died; what was computed is kept.
-        OutputError: the disk is full, the folder was removed; what was written is kept.
     """
-    reporter, began = reporter or SilentReporter(), time.perf_counter()
+    began = time.perf_counter()
     bodies = tuple(map(body_of, request.variants))
     longest = longest_period([body.frequency_parameter_1_s for body in bodies])
     ground = ground_motions(request, longest, allow_outside=allow_outside)
+    floors = floor_motions(request, ground)
+    plan = RunPlan(
+        request=request, motions=len(ground), vertical=ground[0].vertical is not None, periods=tuple(floors)
+    )
+    files = len(ground) * (1 + len(floors)) + request.motions.further
     asked = site_hash(request, ground)
-    with (
-        open_result_folder(folder, SITE, asked, force=force, resume=resume) as place,
-        interruptible(reporter) as stop,
-        ExitStack() as stack,
-    ):
-        if place.finished and place.found:
-            reporter.message(f"{folder} holds this verification already; --force computes it again")
-            return SiteResult.from_json(place.found)
-        place.refuse_unfinished("its runs so far")
-        if place.resuming:
-            place.require_same_program()
-        floors = floor_motions(request, ground)
-        plan = RunPlan(
-            request=request,
-            motions=len(ground),
-            vertical=ground[0].vertical is not None,
-            periods=tuple(floors),
-        )
-        files = len(ground) * (1 + len(floors)) + request.motions.further
-        size = files * BYTES_OF_A_MOTION + len(plan.of_set()) * 14 * BYTES_OF_A_RUN + BYTES_BESIDE
-        place.require_room(size, "the verification", "take fewer motions")
-        texts = {"site.toml": request.origin.text, "container.toml": request.container.text}
-        place.begin({"status": "running", "asked": asked} | program_of_results(), texts)
-        work = _Work(
-            request=request,
-            place=place,
-            plan=plan,
-            bodies=bodies,
-            ground=ground,
-            floors=floors,
-            longest=longest,
-            jobs=jobs or cores(),
-            runner=Runner(
-                workers_of=workers_of or stack.enter_context(LocalWorkers(jobs or cores())),
-                reporter=reporter,
-                stop=stop,
-            ),
-        )
-        return work.run(asked, began)
+    work = _Verification(
+        request=request,
+        plan=plan,
+        bodies=bodies,
+        ground=ground,
+        floors=floors,
+        longest=longest,
+        asked=asked,
+        began=began,
+    )
+    study = Study(
+        kind=SITE,
+        request=asked,
+        result=SiteResult,
+        compute=work.compute,
+        texts={"site.toml": request.origin.text, "container.toml": request.container.text},
+        size=table_bytes(files, OF_A_MOTION)
+        + table_bytes(STAGES * len(plan.of_set()), len(COLUMNS))
+        + BYTES_BESIDE,
+        subject="the verification",
+        way_out="take fewer motions",
+        progress=lambda place: "its runs so far",
+    )
+    return run_study(study, folder, **options)
 
 
 def site_hash(request: SiteRequest, ground: Sequence[GroundMotion]) -> str:
@@ -135,39 +108,52 @@ def site_hash(request: SiteRequest, ground: Sequence[GroundMotion]) -> str:
     data = {
         key: value for key, value in request.data.items() if key not in ("title", "document", "container")
     }
-    digest = hashlib.sha256(json.dumps(data, sort_keys=True).encode())
-    digest.update(case_hash(request.container).encode())
+    digest = hashlib.sha256()
     for motion in ground:
         for component in motion.components:
             digest.update(component.tobytes())
-    return digest.hexdigest()
+    return hash_of([data, case_hash(request.container), digest.hexdigest()])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Work:
-    """One verification under way."""
+class _Verification:
+    """What is asked, and its motions."""
 
     request: SiteRequest
-    place: ResultFolder
     plan: RunPlan
     bodies: tuple[SiteBody, ...]
     ground: Sequence[GroundMotion]  #: motions of the set
     floors: Mapping[float | None, Sequence[GroundMotion]]  #: by building period
     longest: float  #: period of the band [s]
-    runner: Runner
-    jobs: int
+    asked: str  #: its hash
+    began: float  #: when it was asked for [s]
 
-    def run(self, asked: str, began: float) -> SiteResult:
-        """Write the motions, compute what is missing, and write the result."""
-        request, place = self.request, self.place
-        checked = check_set(self.ground, request.action, longest=self.longest)
-        motions = set_result(request, checked, self.ground, write_ground(place.path, self.ground))
+    def compute(self, place: ResultFolder, runner: Runner) -> SiteResult:
+        """Write the motions, compute what is missing, and write runs and page."""
+        checked = check_set(self.ground, self.request.action, longest=self.longest)
+        written = write_ground(place.path, self.ground)
+        motions = set_result(self.request, checked, self.ground, written)
         for period, moved in self.floors.items():
             for number, motion in enumerate(moved, start=1):
                 if period is not None:
                     write_csv_files(place.path, motion, motion_stem(number, period))
-        rows, cases, again = RunRows(), RunCases.of(request, place.path), list[ConfirmedRun]()
+        rows = RunRows()
+        answer = self._answer(place, runner, motions, rows)
+        place.check()
+        result = self._result(checked, motions, rows, answer)
+        if result.status == COMPLETED:
+            if rows.found:
+                place.write_text(RUNS, rows.table())
+            place.write_text(PAGE, site_report(place.path, result))
+        return result
+
+    def _answer(
+        self, place: ResultFolder, runner: Runner, motions: MotionSet, rows: RunRows
+    ) -> SiteAnswer | None:
+        """Compute the runs that are missing; None where it was interrupted."""
+        again = []
         if motions.valid:
+            cases = RunCases.of(self.request, place.path)
             LoggedRuns(
                 what="runs",
                 path=place.path / RUNS,
@@ -176,29 +162,35 @@ class _Work:
                 model_of=lambda key: key.model,
                 values=rows.values,
                 note=rows.note,
-            ).run(self.runner, self._batches(rows))
+            ).run(runner, self._batches(place, runner, rows))
             found = rows.in_order()
-            keys = deciding(found, governing_run(request, rows.of(self.plan.of_set())))
-            if not self.runner.stop() and keys:
-                self.runner.reporter.message("repeating the deciding runs with the reduced model")
-                again = confirmed(cases, found, keys, self.jobs)
-        interrupted = self.runner.stop()
-        place.check()
-        found = rows.in_order()
+            keys = deciding(found, governing_run(self.request, rows.of(self.plan.of_set())))
+            if not runner.stop() and keys:
+                runner.reporter.message("repeating the deciding runs with the reduced model")
+                again = confirmed(cases, found, keys, runner.jobs)
+        return None if runner.stop() else answer_of(self.request, motions, rows.in_order(), again)
+
+    def _result(
+        self, checked: MotionSetCheck, motions: MotionSet, rows: RunRows, answer: SiteAnswer | None
+    ) -> SiteResult:
+        """Everything that was found; without an answer what there is, and what is missing."""
+        request, inputs, own = self.request, inputs_of(self.request), rows.of(self.plan.of_set())
+        missing = None if answer else self._missing(rows)
         action = action_result(request.action, checked)
         floor = floor_result(request, self.floors, checked.periods)
-        own = rows.of(self.plan.of_set())
-        inputs = inputs_of(request)
-        result = SiteResult(
-            status="interrupted" if interrupted else "completed",
+        document = request.document.model_dump(exclude_none=True) if request.document else None
+        return SiteResult(
+            status=COMPLETED if answer else INTERRUPTED,
+            answer=answer.sentence if answer else None,
+            missing=missing,
             title=request.heading.title,
             inputs=inputs,
             action=action,
             floor=floor,
             set=motions,
             bodies=self.bodies,
-            runs=tuple(found.values()),
-            result=answer_of(request, motions, found, again, expected=len(self.plan.of_set())),
+            runs=tuple(rows.in_order().values()),
+            result=answer or no_answer_yet(motions, own, missing or ""),
             methods=site_methods(
                 bodies=self.bodies,
                 inputs=inputs,
@@ -206,34 +198,36 @@ class _Work:
                 motions=motions.motions,
                 periods_s=action.periods_s,
                 floor=floor,
-                runs=own,
+                runs=own if answer else (),
             ),
             provenance=SiteProvenance(
                 command=f"python -m fem assess {shlex.quote(request.origin.place)}",
-                site_hash=asked,
+                site_hash=self.asked,
                 case_hash=case_hash(request.container),
                 versions=tuple(versions().items()),
-                wall_s=time.perf_counter() - began,
+                wall_s=time.perf_counter() - self.began,
             ),
-            document=SiteDocument(**request.document.model_dump(exclude_none=True))
-            if request.document
-            else None,
+            document=None if document is None else SiteDocument(**document),
         )
-        place.write_result(result.to_json() | {"asked": asked} | program_of_results())
-        if not interrupted:
-            if found:
-                place.write_text(RUNS, rows.table())
-            place.write_text(PAGE, site_report(place.path))
-        return result
 
-    def _batches(self, rows: RunRows) -> Iterator[Sequence[RunKey]]:
+    def _missing(self, rows: RunRows) -> str:
+        """What an interrupted verification has not come to, in words."""
+        wanted = self.plan.of_set()
+        if left := len(rows.missing(wanted)):
+            return f"{len(wanted) - left} of {len(wanted)} runs of the set are computed"
+        scan = self.plan.of_scan()
+        if left := len(rows.missing(scan)):
+            return f"{len(scan) - left} of {len(scan)} runs at other factors on the motions are computed"
+        return "further motions, or the repetition of the deciding runs, are missing"
+
+    def _batches(self, place: ResultFolder, runner: Runner, rows: RunRows) -> Iterator[Sequence[RunKey]]:
         """The runs of each stage that are missing; a stage is asked for when the one before is there."""
         yield rows.missing(self.plan.of_set())
         yield rows.missing(self.plan.of_scan())
         yield rows.missing(self.plan.refined(rows.found))
-        yield self._further(rows)
+        yield self._further(place, runner, rows)
 
-    def _further(self, rows: RunRows) -> Sequence[RunKey]:
+    def _further(self, place: ResultFolder, runner: Runner, rows: RunRows) -> Sequence[RunKey]:
         """The runs of the further motions, whose files are written."""
         own = {key: run for key, run in rows.in_order().items() if key.stage == SET}
         governing = governing_run(self.request, list(own.values()))
@@ -243,12 +237,12 @@ class _Work:
         wanted = rows.missing(self.plan.of_further(key, self.request.motions.further))
         numbers = sorted({one.motion for one in wanted})
         make = partial(further_motions, self.request, self.plan.vertical, self.longest, key.building_period_s)
-        pools = self.runner.workers_of(key.model, len(wanted))
-        for chunk, made in hand_out(numbers, make, pools, at_a_time=4, stop=self.runner.stop):
+        pools = runner.workers_of(key.model, len(wanted))
+        for chunk, made in hand_out(numbers, make, pools, at_a_time=4, stop=runner.stop):
             for number, motion in zip(chunk, made, strict=True):
                 stem = motion_stem(number, key.building_period_s, further=True)
-                write_csv_files(self.place.path, motion, stem)
-        return [] if self.runner.stop() else wanted
+                write_csv_files(place.path, motion, stem)
+        return [] if runner.stop() else wanted
 
 
 def further_motions(
@@ -292,32 +286,3 @@ def inputs_of(request: SiteRequest) -> SiteInputs:
         behaviour_factor=static.behaviour_factor if static else USUAL_BEHAVIOUR_FACTOR,
         model=request.heading.model,
     )
-
-
-def page_of(result: SiteResult, folder: Path) -> str:
-    """The result as text."""
-    action, motions, answer = result.action, result.set, result.result
-    lines = [
-        f"{folder.name}: {result.title}" if result.title else folder.name,
-        f"  action     {action.source}; a_g S = {action.ag_S_m_s2:.3g} m/s2, a_vg = {action.avg_m_s2:.3g} m/s2",
-        f"  motions    {motions.count}, {motions.source}: mean peak {motions.mean_pga_m_s2:.3g} m/s2, least mean over "
-        f"target {motions.least_ratio:.2f} at {motions.least_ratio_period_s:.2g} s, largest correlation "
-        f"{motions.largest_correlation:.2f}: {'valid' if motions.valid else 'not valid'}",
-        f"  runs       {answer.runs}, {answer.overturned} overturned",
-    ]
-    if answer.scan:
-        first = answer.factor_at_first_overturning
-        most = max(point.factor for point in answer.scan)
-        found = f"{first:.3g}" if first is not None else f"none up to {most:g}"
-        lines.append(f"  factor     on the motions at the first overturning: {found}")
-    if answer.further:
-        further = answer.further
-        low, high = (100.0 * end for end in further.interval)
-        lines.append(
-            f"  further    {further.overturned} of {further.motions} motions overturn it (95 %: {low:.1f} to "
-            f"{high:.1f} %)"
-        )
-    lines += [f"  rule       {answer.rule}", f"  files      {folder}", answer.sentence]
-    if result.status == "interrupted":
-        lines.append("  --resume continues")
-    return "\n".join(lines)

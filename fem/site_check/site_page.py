@@ -1,17 +1,18 @@
 """The page of a verification at a site: the answer first, then its basis, then all numbers."""
 
 import csv
-import json
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 
+from fem.batch.study import read_study
 from fem.html import sections as html
 from fem.html.page import Page, Signature, html_of
 from fem.html.units import ABSENT, millimetres, number, quantity, ratio, short, typeset
 from fem.results.errors import FolderError
+from fem.results.kinds import SITE
 from fem.results.outcome import Outcome
 from fem.runtime.arrays import FloatArray
 from fem.site_check.figures import draw_motion, draw_spectra
@@ -56,13 +57,19 @@ NOT_COVERED = (
 )
 
 
-def site_report(folder: Path, *, signature: Signature | None = None) -> str:
-    """The page, as the text of an HTML file.
+def site_report(folder: Path, result: SiteResult | None = None, *, signature: Signature | None = None) -> str:
+    """The page, as the text of an HTML file; there is nothing to sign before the verification is finished.
+
+    Args:
+        folder: of the verification.
+        result: of it; None: as its folder holds it.
+        signature: author, checker, revision.
 
     Raises:
         FolderError: the folder holds no result of `assess`, or it is damaged.
     """
-    result = read_result(folder)
+    result = result or read_study(folder, SITE, SiteResult)
+    signing = SIGNING if result.state == "finished" else ()
     view, document = SiteView(result=result), asdict(result.document or SiteDocument())
     motions = [
         DrawnMotion(motion, motion_figure(folder, motion, result) if motion.number <= MOST_DRAWN else None)
@@ -74,7 +81,7 @@ def site_report(folder: Path, *, signature: Signature | None = None) -> str:
         title=result.title or folder.name,
         name=folder.name,
         hash=result.provenance.site_hash,
-        signature=(signature or Signature()).completed(document),
+        signature=(signature or Signature()).completed(document) if signing else None,
         sections=[
             html.Group(
                 "first site",
@@ -85,7 +92,11 @@ def site_report(folder: Path, *, signature: Signature | None = None) -> str:
                     html.section(
                         "Not covered", "not-covered", html.Paragraph(f"{'; '.join(NOT_COVERED)}.", "tight")
                     ),
-                    html.Group("sign", [f"{who}: name, date, signature" for who in SIGNING]),
+                    *(
+                        [html.Group("sign", [f"{who}: name, date, signature" for who in signing])]
+                        if signing
+                        else []
+                    ),
                 ],
             ),
             runs_section(view),
@@ -172,24 +183,6 @@ def set_section(result: SiteResult) -> html.PageSection:
         html.Note(symbols(period_sentence(result.set))),
         figure(drawn, "spectra", "target, mean and every motion"),
     )
-
-
-def read_result(folder: Path) -> SiteResult:
-    """The result in a folder.
-
-    Raises:
-        FolderError: there is none, or it is damaged.
-    """
-    place = folder / RESULT_FILE
-    try:
-        content = json.loads(place.read_text(encoding="utf-8"))
-        if isinstance(content, dict) and content.get("status") == "running":
-            raise FolderError(f"{place}: the verification is not finished; assess --resume continues it")
-        return SiteResult.from_json(content)
-    except OSError as error:
-        raise FolderError(f"{place} cannot be read ({error.strerror or error})") from None
-    except ValueError as error:
-        raise FolderError(f"{place} is damaged ({error}); compute it again") from None
 
 
 def site_rows(result: SiteResult) -> list[tuple[str, str]]:

@@ -8,26 +8,23 @@ import shlex
 import shutil
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Unpack
 
 from fem.batch.log import LoggedRuns, fields_of, line_of, table_of_lines
 from fem.batch.runner import Row, Runner
-from fem.batch.workers import LocalWorkers, WorkersOf
+from fem.batch.study import INTERRUPTED, Study, StudyOptions, hash_of, run_study
 from fem.case.case import Case
-from fem.results.folder import ResultFolder, open_result_folder, program_of_results
+from fem.results.disk import BYTES_BESIDE
+from fem.results.folder import ResultFolder
 from fem.results.kinds import SIZE
-from fem.runtime.progress import Reporter, SilentReporter
-from fem.runtime.signals import interruptible
-from fem.runtime.threads import cores
 from fem.seismic.ground_motion import GroundMotion
 from fem.seismic.motion_set import check_set
 from fem.site_check.answer import answer_of
 from fem.site_check.bodies import body_of
-from fem.site_check.bracket import SizeAxis, SizeResult, next_values, size_result
+from fem.site_check.bracket import SizeAxis, SizeResult, next_values, size_asked, size_result
 from fem.site_check.figures import draw_size
 from fem.site_check.file import SiteRequest
 from fem.site_check.motion_results import set_result, write_csv_files
@@ -39,8 +36,7 @@ from fem.site_check.size_axis import at, followers
 
 RUNS, FIGURE = "runs.csv", "figures/size.svg"
 WORKING = ".motions"  #: of the sets, as long as they are computed
-#: room on the disk [bytes]: the motions of a set, all else
-BYTES_OF_A_SET, BYTES_BESIDE = 50_000_000, 5_000_000
+BYTES_OF_SETS = 50_000_000  #: of motions, as long as they are computed
 
 
 class SizeKey(NamedTuple):
@@ -90,66 +86,30 @@ def run_size(
     axis: SizeAxis,
     folder: Path,
     *,
-    jobs: int | None = None,
-    workers_of: WorkersOf | None = None,
-    resume: bool = False,
-    force: bool = False,
     allow_outside: bool = False,
-    reporter: Reporter | None = None,
-) -> SizeResult | None:
-    """Find which values of a key fulfil the rule, into a folder; a finished result is not computed again.
+    **options: Unpack[StudyOptions],
+) -> SizeResult:
+    """Find which values of a key fulfil the rule, into a folder; raises as `run_site`.
 
     Args:
         axis: the key and the values of the scan.
-        jobs, workers_of, resume, force, allow_outside: as of `run_site`, whose errors are raised.
-
-    Returns:
-        What was found; None where it was interrupted.
+        allow_outside: take records from outside the folder of the site file.
     """
-    reporter, began = reporter or SilentReporter(), time.perf_counter()
     ground = _ground(request, allow_outside)
-    asked = sha256(f"{site_hash(request, ground)} {axis}".encode()).hexdigest()
-    with (
-        open_result_folder(folder, SIZE, asked, force=force, resume=resume) as place,
-        interruptible(reporter) as stop,
-        ExitStack() as stack,
-    ):
-        if place.finished and place.found:
-            reporter.message(f"{folder} holds this result already; --force computes it again")
-            return SizeResult.from_json(place.found)
-        place.refuse_unfinished("its runs so far")
-        if place.resuming:
-            place.require_same_program()
-        place.require_room(BYTES_OF_A_SET + BYTES_BESIDE, "the result", "take fewer motions")
-        texts = {"site.toml": request.origin.text, "container.toml": request.container.text}
-        mark = {"asked": asked, "command": _command(request, axis)} | program_of_results()
-        place.begin({"status": "running"} | mark, texts)
-        stack.callback(shutil.rmtree, place.path / WORKING, ignore_errors=True)
-        work = _Sizing(request=request, axis=axis, place=place, allow_outside=allow_outside)
-        runner = Runner(
-            workers_of=workers_of or stack.enter_context(LocalWorkers(jobs or cores())),
-            reporter=reporter,
-            stop=stop,
-        )
-        LoggedRuns(
-            what="runs",
-            path=place.path / RUNS,
-            columns=("value", *COLUMNS),
-            make=work.cases,
-            model_of=lambda key: key.run.model,
-            values=work.values,
-            note=work.note,
-        ).run(runner, work.batches())
-        if stop():
-            place.write_result({"status": "interrupted"} | mark)
-            return None
-        place.check()
-        result = size_result(axis, work.answers(), followers(request, axis.key))
-        place.write_text(RUNS, work.table())
-        place.write_text(FIGURE, draw_size(result, inputs_of(request)))
-        wall = {"wall_s": time.perf_counter() - began}
-        place.write_result({"status": "completed"} | mark | wall | result.to_json())
-        return result
+    begun = size_asked(axis, followers(request, axis.key), _command(request, axis))
+    study = Study(
+        kind=SIZE,
+        request=hash_of([site_hash(request, ground), repr(axis)]),
+        result=SizeResult,
+        begun=begun,
+        compute=_Sizing(request=request, axis=axis, begun=begun, allow_outside=allow_outside).compute,
+        texts={"site.toml": request.origin.text, "container.toml": request.container.text},
+        size=BYTES_OF_SETS + BYTES_BESIDE,
+        subject="the result",
+        way_out="take fewer motions",
+        progress=lambda place: "its runs so far",
+    )
+    return run_study(study, folder, **options)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -158,18 +118,44 @@ class _Sizing:
 
     request: SiteRequest
     axis: SizeAxis
-    place: ResultFolder
+    begun: SizeResult
     allow_outside: bool
     cases: SizeCases = field(default_factory=SizeCases)
     tried: dict[float, Tried] = field(default_factory=dict)
     #: rows of an earlier attempt, by value, until it is tried
     early: dict[float, list[str]] = field(default_factory=dict)
 
-    def batches(self) -> Iterator[Sequence[SizeKey]]:
+    def compute(self, place: ResultFolder, runner: Runner) -> SizeResult:
+        """Run what is missing; the values are those that fulfil the rule."""
+        began = time.perf_counter()
+        log, columns = place.path / RUNS, ("value", *COLUMNS)
+        try:
+            LoggedRuns(
+                what="runs",
+                path=log,
+                columns=columns,
+                make=self.cases,
+                model_of=lambda key: key.run.model,
+                values=self.values,
+                note=self.note,
+            ).run(runner, self.batches(place.path / WORKING))
+        finally:
+            shutil.rmtree(place.path / WORKING, ignore_errors=True)
+        if runner.stop():
+            done = sum(not tried.rows.missing(tried.keys) for tried in self.tried.values())
+            words = f"{done} values are computed, of {len(self.axis.values)} and those between them"
+            return replace(self.begun, status=INTERRUPTED, missing=words)
+        place.check()
+        result = size_result(self.axis, self.answers(), self.begun)
+        place.write_text(RUNS, self.table())
+        place.write_text(FIGURE, draw_size(result, inputs_of(self.request)))
+        return replace(result, wall_s=time.perf_counter() - began)
+
+    def batches(self, working: Path) -> Iterator[Sequence[SizeKey]]:
         """The missing runs of the values to be tried next, as long as there are any."""
         while values := next_values(self.axis, self.answers()):
             for value in values:
-                self._try(value)
+                self._try(value, working)
             missing = [
                 SizeKey(value, key)
                 for value in values
@@ -203,7 +189,7 @@ class _Sizing:
         else:
             self.early.setdefault(float(value), []).append(line_of(fields))
 
-    def _try(self, value: float) -> None:
+    def _try(self, value: float, working: Path) -> None:
         """Make the motions of a value, and the cases of its runs."""
         request = at(self.request, self.axis, value)
         ground = _ground(request, self.allow_outside)
@@ -216,23 +202,24 @@ class _Sizing:
             motions=set_result(request, checked, ground, ()),
             plan=RunPlan(request=request, motions=len(ground), vertical=vertical, periods=tuple(floors)),
         )
-        self.cases.cases[value] = RunCases.of(request, self._written(floors))
+        self.cases.cases[value] = RunCases.of(request, _written(floors, working))
         for line in self.early.pop(value, []):
             tried.rows.note(line)
 
-    def _written(self, floors: Mapping[float | None, Sequence[GroundMotion]]) -> Path:
-        """The folder of these motions; values of the container share it."""
-        digest = sha256()
-        for motion in (one for floor in floors.values() for one in floor):
-            for component in motion.components:
-                digest.update(component.tobytes())
-        folder = self.place.path / WORKING / digest.hexdigest()[:16]
-        if not folder.exists():
-            folder.mkdir(parents=True)
-            for period, floor in floors.items():
-                for number, motion in enumerate(floor, start=1):
-                    write_csv_files(folder, motion, motion_stem(number, period))
-        return folder
+
+def _written(floors: Mapping[float | None, Sequence[GroundMotion]], working: Path) -> Path:
+    """The folder of these motions; values of the container share it."""
+    digest = sha256()
+    for motion in (one for floor in floors.values() for one in floor):
+        for component in motion.components:
+            digest.update(component.tobytes())
+    folder = working / digest.hexdigest()[:16]
+    if not folder.exists():
+        folder.mkdir(parents=True)
+        for period, floor in floors.items():
+            for number, motion in enumerate(floor, start=1):
+                write_csv_files(folder, motion, motion_stem(number, period))
+    return folder
 
 
 def _longest(request: SiteRequest) -> float:
@@ -247,18 +234,3 @@ def _command(request: SiteRequest, axis: SizeAxis) -> str:
     first, last = axis.values[0], axis.values[-1]
     ends = f"--from {first:g} --to {last:g} --count {len(axis.values)}"
     return f"python -m fem size {shlex.quote(request.origin.place)} --over {axis.key} {ends}"
-
-
-def size_page(result: SizeResult, folder: Path) -> str:
-    """The result as text; the sentence last."""
-    tried = len(result.points)
-    fulfilled = sum(bool(point.fulfilled) for point in result.points)
-    runs = sum(point.runs for point in result.points)
-    keys = " and ".join([result.key, *result.followers])
-    lines = [
-        f"{keys}: {tried} values from {result.low:g} to {result.high:g} {result.unit}".rstrip(),
-        f"  fulfilled  at {fulfilled} of them, {runs} runs",
-        f"  files      {folder}",
-        result.sentence,
-    ]
-    return "\n".join(lines)

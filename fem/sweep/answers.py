@@ -84,7 +84,7 @@ def sweep_answer(table: SweepTable, folder: Path) -> SweepAnswer | None:
         table: of the sweep.
         folder: where the values are that a threshold tried between the cells.
     """
-    wanted = (table.info.get("threshold") or {}).get("axis")
+    wanted = (table.info.threshold or {}).get("axis")
     axis = next((one for one in table.axes if one.key == wanted), None) or answer_axis(table.axes)
     if axis is None or not np.all(table["status"] != ""):
         return None

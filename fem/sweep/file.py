@@ -25,8 +25,7 @@ from fem.case.overrides import keys_in_effect
 from fem.case.tables import CaseTable
 from fem.case.validation import CaseError
 from fem.sweep.perturbation import Perturbation
-from fem.sweep.plan import MapChoice, Sweep
-from fem.sweep.threshold import Threshold
+from fem.sweep.plan import MapChoice, Sweep, Threshold
 
 MOST_AXES = 4
 #: cells that are built to find bad values before anything is computed

@@ -123,7 +123,7 @@ def rotation_curve(table: SweepTable) -> Figure:
         axes.set_ylim(0.0, 1.05)
         axes.margins(x=0.02)
         title = "Largest rotation and outcome; grey: the range of the perturbed copies"
-        axes.set_title("\n".join(filter(None, (title, table.info.get("held")))))
+        axes.set_title("\n".join(filter(None, (title, table.info.held))))
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return figure
 
@@ -158,13 +158,13 @@ def _map(
         )
         for name, pick in picks
     ]
-    subject = table.info.get("title") or table.info.get("sweep", "")
+    subject = table.info.title or table.info.sweep
     more = f"; {left_out} more panels are not drawn" if left_out else ""
     return draw_heat_map(
         map_axis(across),
         map_axis(up),
         panels,
-        title="\n".join(filter(None, (title, f"{subject}{more}", table.info.get("held")))),
+        title="\n".join(filter(None, (title, f"{subject}{more}", table.info.held))),
         colours=colours,
         norm=norm,
         bar=bar,

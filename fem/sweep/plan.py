@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from pydantic import Field
 
@@ -17,11 +17,11 @@ from fem.batch.axes import Axis, point_of, shape_of, with_following
 from fem.batch.case_maker import CaseMaker
 from fem.batch.derived import Derived, with_derived
 from fem.case.case import Case
+from fem.case.quantities import Quantity
 from fem.case.tables import CaseTable
 from fem.case.uncertainty import apart_from_floor
 from fem.case.validation import CaseError
 from fem.sweep.perturbation import Perturbation
-from fem.sweep.threshold import Threshold
 
 #: tables and keys on which the container depends, or how it is computed: see `container_cache.container_key`
 OF_THE_CONTAINER = (
@@ -43,6 +43,21 @@ class MapChoice(CaseTable):
     y: str | None = Field(default=None, description="key of another axis")
     fixed: dict[str, Any] = Field(
         default={}, description="values at which further axes are held; the others have a panel each"
+    )
+
+
+RESOLUTION = Quantity(unit="", above=0.0, most=1.0, advice="0.01 is one per cent")
+
+
+class Threshold(CaseTable):
+    """Along which axis changes of outcome are located, and how precisely."""
+
+    axis: str = Field(description="the key of one of the axes", examples=["motion.peak_acceleration_m_s2"])
+    resolution: Annotated[float, RESOLUTION] = Field(
+        default=0.01, description="largest width of a bracket, relative to the value"
+    )
+    inner: Annotated[int, Quantity(unit="", least=1, most=100)] = Field(
+        default=3, description="values tried within a bracket at a time"
     )
 
 

@@ -1,4 +1,4 @@
-"""Locates the changes of outcome of a sweep along one axis, on all lines of cells at once: see `threshold`."""
+"""Locates the changes of outcome of a sweep along one axis, on all lines of cells at once: see `fem.batch.bracket`."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from fem.batch.bracket import Change, changes_of, least_width, values_to_try
 from fem.batch.log import LoggedRuns, fields_of, table_text
 from fem.batch.runner import Runner
 from fem.results.figures import Place, keys_of
 from fem.results.outcome import Ending, ending_of
 from fem.sweep.cells import CellRows
 from fem.sweep.plan import Sweep
-from fem.sweep.threshold import Change, changes_of, least_width, values_to_try
 
 FIRST, *FURTHER = keys_of(Place.KEY)
 COLUMNS = ("cell", "value", "status", "outcome", FIRST, "reason", *FURTHER)

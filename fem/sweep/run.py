@@ -4,30 +4,30 @@ cells -> rows -> which are near a change of outcome -> these perturbed -> change
 Every step is logged before the next begins, so an interrupted sweep continues where it was, to the same table.
 """
 
-import hashlib
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 from fem.assessment.sureness import REGIME_UNSURE, SURE, UNSURE
-from fem.batch.axes import with_following
+from fem.batch.axes import AxisResult, with_following
 from fem.batch.held import held_inputs
 from fem.batch.log import LoggedRuns, fields_of, line_of, read_lines, table_of_lines
 from fem.batch.motion_set import FloorMotionPair, motion_cases, motions_left_out, read_motion_set
 from fem.batch.runner import Row, Runner
-from fem.batch.workers import LocalWorkers, WorkersOf
+from fem.batch.study import COMPLETED, FAILED, INTERRUPTED, Study, StudyOptions, hash_of, run_study
 from fem.case.case import case_hash
 from fem.case.rules import ends_at_rest, longest_time
 from fem.case.tables import UncertaintyTable
 from fem.case.toml import toml_document
 from fem.case.validation import CaseError
-from fem.results.folder import ResultFolder, open_result_folder, program_of_results
+from fem.results.disk import BYTES_BESIDE, table_bytes
+from fem.results.folder import ResultFolder
 from fem.results.kinds import SWEEP
 from fem.results.run_files import copy_data_files
-from fem.runtime.progress import Reporter, SilentReporter, clock_time
-from fem.runtime.signals import interruptible
+from fem.runtime.progress import clock_time
 from fem.runtime.threads import cores
 from fem.sweep import perturbed
 from fem.sweep.answers import TRIED, sweep_answer
@@ -37,6 +37,7 @@ from fem.sweep.maps import draw_maps
 from fem.sweep.perturbed import PerturbedRows, band_rows, perturb_cells
 from fem.sweep.plan import Sweep
 from fem.sweep.refine import refine, table_of_changes
+from fem.sweep.result import SweepResult
 from fem.sweep.set_files import write_set
 from fem.sweep.table import FOUND, band_columns, open_sweep
 
@@ -53,87 +54,53 @@ UPDATE_S = 10.0
 MOST_CELLS = 1_000_000
 #: rough CPU time of a simulated second [s]
 SECONDS_PER_SECOND = {"rigid": 3e-4, "reduced": 3e-3, "full": 6.0}
-#: room on the disk [bytes]: a cell in the log, the table, the copies and the maps; all else
-BYTES_OF_A_CELL, BYTES_BESIDE = 5000, 500_000
+OF_A_CELL = 250  #: numbers, in the log, the table, the copies and the maps
 
 
-def run_sweep(
-    sweep: Sweep,
-    folder: Path,
-    *,
-    jobs: int | None = None,
-    workers_of: WorkersOf | None = None,
-    resume: bool = False,
-    force: bool = False,
-    reporter: Reporter | None = None,
-) -> dict[str, Any]:
-    """Compute a sweep into a folder; a finished one is not computed again.
+def run_sweep(sweep: Sweep, folder: Path, **options: Unpack[StudyOptions]) -> SweepResult:
+    """Compute a sweep into a folder; raises as `run_study`, and CaseError for too many cells.
 
-    Args:
-        jobs: cores to use; all by default. The table does not depend on it.
-        workers_of: who computes so many cases of a model, in place of this machine's cores.
-        resume: continue with the rows that are there.
-        force: overwrite earlier results; also lifts the limit on the number of cells.
-
-    Returns:
-        The content of `sweep.json`.
-
-    Raises:
-        CaseError: too many cells.
-        FolderError: the folder holds something else, or an unfinished sweep (without `resume` or `force`).
-        FolderLockedError: another process writes into it.
-        WorkersLostError: a worker died; what was computed is kept.
-        OutputError: the disk is full, the folder was removed; what was written is kept.
+    The rows of a finished sweep are kept where it is to be perturbed or refined in another way; maps over other axes
+    are drawn again. `force` also lifts the limit on the number of cells.
     """
-    reporter = reporter or SilentReporter()
-    jobs = jobs or cores()
-    check_size(sweep, jobs, force)
+    jobs = options.get("jobs") or cores()
+    check_size(sweep, jobs, options.get("force", False))
     motions = read_motion_set(sweep.base, sweep.axes)
-    with (
-        open_result_folder(folder, SWEEP, sweep_hash(sweep), force=force, resume=resume) as place,
-        interruptible(reporter) as stop,
-        ExitStack() as stack,
-    ):
-        found = place.found or {}
-        same_band = found.get("band_hash") == band_hash(sweep)
-        has_table = place.finished and (folder / TABLE).is_file()
-        if has_table and same_band:
-            reporter.message(f"{folder} holds this sweep already; --force computes it again")
-            return _with_maps(place, found, sweep)
-        if not has_table and (rows := _rows_in(folder / ROWS)):
-            place.refuse_unfinished(f"{rows} of {sweep.count} rows")
-        place.require_same_program()
-        place.require_room(
-            sweep.count * BYTES_OF_A_CELL + BYTES_BESIDE,
-            f"the sweep ({sweep.count} cells)",
-            "take fewer values",
-        )
-        runner = Runner(
-            workers_of=workers_of or stack.enter_context(LocalWorkers(jobs)), reporter=reporter, stop=stop
-        )
-        info = _asked(sweep, motions) | {"jobs": jobs}
-        return _Work(sweep=sweep, motions=motions, place=place, runner=runner, info=info).run(
-            same_band=same_band
-        )
+    asked = asked_of(sweep, motions, jobs)
+    study = Study(
+        kind=SWEEP,
+        request=asked.sweep_hash,
+        result=SweepResult,
+        begun=replace(asked, band_hash=None),  # until the copies of another band are gone
+        compute=partial(_compute, sweep, motions, asked),
+        texts={"sweep.toml": sweep.text, "base.toml": toml_document(sweep.base.given())},
+        size=table_bytes(sweep.count, OF_A_CELL) + BYTES_BESIDE,
+        subject=f"the sweep ({sweep.count} cells)",
+        way_out="take fewer values",
+        progress=partial(_progress, sweep),
+        again=partial(_again, sweep, asked),
+    )
+    return run_study(study, folder, **options)
 
 
 def sweep_hash(sweep: Sweep) -> str:
     """Equal for sweeps whose rows are the same."""
     base = sweep.base.model_copy(update={"uncertainty": UncertaintyTable()})  # of the copies alone
-    digest = hashlib.sha256(case_hash(base).encode())
     given = {key: value for key, value in base.given().items() if key not in ("title", "uncertainty")}
-    digest.update(toml_document(given).encode())
-    digest.update(repr([(axis.key, axis.values) for axis in sweep.axes]).encode())
-    digest.update(repr([(one.key, one.expression.tree) for one in sweep.derived]).encode())
-    for case in motion_cases(sweep.base, sweep.axes):
-        digest.update(case_hash(case).encode())
-    return digest.hexdigest()
+    return hash_of(
+        [
+            case_hash(base),
+            toml_document(given),
+            [(axis.key, axis.values) for axis in sweep.axes],
+            [(one.key, repr(one.expression.tree)) for one in sweep.derived],
+            [case_hash(case) for case in motion_cases(sweep.base, sweep.axes)],
+        ]
+    )
 
 
 def band_hash(sweep: Sweep) -> str:
     """Equal for sweeps that are perturbed and refined in the same way."""
-    asked = sweep.perturbation, sweep.base.uncertainty, sweep.threshold
-    return hashlib.sha256(repr(asked).encode()).hexdigest()
+    return hash_of(repr((sweep.perturbation, sweep.base.uncertainty, sweep.threshold)))
 
 
 def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
@@ -150,71 +117,156 @@ def check_size(sweep: Sweep, jobs: int, force: bool) -> None:
     speeds = [SECONDS_PER_SECOND[one] for one in axes.get("solver.model", (sweep.base.solver.model,))]
     seconds = sweep.count * sum(durations) / len(durations) * sum(speeds) / len(speeds) / jobs
     sizes = " x ".join(str(size) for size in sweep.shape)
+    room = table_bytes(sweep.count, OF_A_CELL) / 1e9
     raise CaseError(
         f"{sweep.name}: [axes] make {sizes} = {sweep.count} cells, more than {MOST_CELLS}: about "
-        f"{clock_time(seconds)} on {jobs} core{'s' * (jobs > 1)}, {sweep.count * BYTES_OF_A_CELL / 1e9:.1f} GB on the "
+        f"{clock_time(seconds)} on {jobs} core{'s' * (jobs > 1)}, {room:.1f} GB on the "
         "disk; take fewer values, or say --force"
     )
 
 
-class _Work:
-    """A sweep under way."""
+def asked_of(sweep: Sweep, motions: Sequence[FloorMotionPair], jobs: int) -> SweepResult:
+    """The part of `sweep.json` that is known beforehand."""
+    return SweepResult(
+        sweep=sweep.name,
+        title=sweep.title,
+        case=sweep.base.name,
+        sweep_hash=sweep_hash(sweep),
+        band_hash=band_hash(sweep),
+        base_hash=case_hash(sweep.base),
+        model=sweep.base.solver.model,
+        duration_s=longest_time(sweep.base) if not ends_at_rest(sweep.base) else "auto",
+        motion_covered=motions_left_out(sweep.base, motions),
+        axes=tuple(
+            AxisResult(
+                key=axis.key,
+                values=axis.values,
+                scale=axis.scale,
+                unit=axis.unit,
+                following=dict(axis.following) or None,
+            )
+            for axis in sweep.axes
+        ),
+        derived={one.key: one.expression.text for one in sweep.derived},
+        held=held_inputs(sweep.ends(), [axis.key for axis in sweep.axes]),
+        perturbation=sweep.perturbation.model_dump(),
+        uncertainty=sweep.base.uncertainty.model_dump(),
+        left_out=left_out(sweep),
+        threshold=sweep.threshold.model_dump() if sweep.threshold else None,
+        jobs=jobs,
+        cells=sweep.count,
+        map_axes=sweep.maps.model_dump(),
+    )
 
-    def __init__(
-        self,
-        *,
-        sweep: Sweep,
-        motions: Sequence[FloorMotionPair],
-        place: ResultFolder,
-        runner: Runner,
-        info: dict[str, Any],
-    ) -> None:
-        self.sweep, self.motions, self.place, self.runner, self.info = sweep, motions, place, runner, info
-        self.cells = CellRows(sweep)
-        self._began = self._updated = time.perf_counter()
 
-    def run(self, *, same_band: bool) -> dict[str, Any]:
-        """Compute what is missing; `same_band`: the copies that are there belong to this sweep."""
-        place, stop = self.place, self.runner.stop
-        keep = place.found is not None
-        if keep and not same_band:
-            # The mark first: a kill must not leave the copies of another band beside the hash of this one.
-            place.write_result(self.info | {"band_hash": None})
-            place.remove(MEMBERS, TRIED, CHANGES, ANSWERS)
-        base = toml_document(self.sweep.base.given())
-        place.begin(self.info, {"sweep.toml": self.sweep.text, "base.toml": base}, keep=keep)
-        copy_data_files(self.sweep.base, place.path)
-        for motion in self.motions:
-            copy_data_files(motion.case, place.path, read=True)
-        self._compute_rows()
-        copies = None if stop() else perturb_cells(self.runner, self.sweep, self.cells, place.path / MEMBERS)
-        changes = None if stop() else refine(self.runner, self.sweep, self.cells, place.path / TRIED)
-        self.info["perturbed"] = 0 if copies is None else len(copies.rows)
-        self.info["copies"] = 0 if copies is None else sum(map(len, copies.rows.values()))
-        self.info["status"] = "interrupted"
-        if not stop():
-            place.check()
-            self._write_table(copies)
-            if copies is not None:
-                place.write_text(MEMBERS, table_of_lines(perturbed.COLUMNS, copies.lines()))
-            if changes is not None:
-                place.write_text(CHANGES, table_of_changes(self.sweep, changes))
-                self.info["changes"] = len(changes)
-            if self.motions:
-                self.info |= write_set(place, self.sweep, self.motions, self.cells)
-            self.info["status"] = "failed" if set(self.cells.outcomes) == {"failed"} else "completed"
-            self._answer()
-            self.info["maps"] = _draw(place, self.sweep)
-        self.info["wall_s"] = time.perf_counter() - self._began
-        self._update()
-        if not stop():
-            place.remove(ROWS)
-        return self.info
+def _progress(sweep: Sweep, folder: Path) -> str:
+    """How many rows an unfinished sweep has; one without any is no loss."""
+    log = folder / ROWS
+    rows = log.read_bytes().count(b"\n") - 1 if log.is_file() else 0
+    return f"{rows} of {sweep.count} rows" if rows > 0 else ""
 
-    def _compute_rows(self) -> None:
+
+def _again(sweep: Sweep, asked: SweepResult, place: ResultFolder, found: SweepResult) -> SweepResult | None:
+    """A finished sweep, with maps over the axes that are asked for; None where its band is to be another."""
+    if found.band_hash != asked.band_hash or not (place.path / TABLE).is_file():
+        return None
+    if found.map_axes != asked.map_axes:
+        found = replace(found, map_axes=asked.map_axes, maps=_draw(place, sweep))
+        place.write_result(found.to_json())
+    return found
+
+
+def _draw(place: ResultFolder, sweep: Sweep) -> tuple[str, ...]:
+    return tuple(draw_maps(open_sweep(place.path), place.path / "maps", sweep.maps))
+
+
+def _compute(
+    sweep: Sweep,
+    motions: Sequence[FloorMotionPair],
+    asked: SweepResult,
+    place: ResultFolder,
+    runner: Runner,
+) -> SweepResult:
+    """Compute what is missing, and write tables and maps."""
+    began, stop = time.perf_counter(), runner.stop
+    if (place.found or {}).get("band_hash") != asked.band_hash:
+        place.remove(MEMBERS, TRIED, CHANGES, ANSWERS)
+    copy_data_files(sweep.base, place.path)
+    for pair in motions:
+        copy_data_files(pair.case, place.path, read=True)
+    cells = _Cells(sweep=sweep, place=place, asked=asked)
+    cells.update()
+    cells.compute(runner)
+    rows = cells.rows
+    copies = None if stop() else perturb_cells(runner, sweep, rows, place.path / MEMBERS)
+    changes = None if stop() else refine(runner, sweep, rows, place.path / TRIED)
+    result = cells.counted()
+    if copies is not None:
+        result = replace(result, perturbed=len(copies.rows), copies=sum(map(len, copies.rows.values())))
+    if stop():
+        missing = f"{result.rows} of {sweep.count} cells are computed"
+        if result.rows == sweep.count:
+            missing = "all cells are computed, their copies or the changes of outcome between them are not"
+        return replace(result, status=INTERRUPTED, missing=missing, wall_s=time.perf_counter() - began)
+    place.check()
+    result = replace(
+        result,
+        status=FAILED if set(rows.outcomes) == {"failed"} else COMPLETED,
+        **_write_table(place, sweep, rows, copies),
+    )
+    if changes is not None:
+        place.write_text(CHANGES, table_of_changes(sweep, changes))
+        result = replace(result, changes=len(changes))
+    if motions:
+        result = replace(result, **write_set(place, sweep, motions, rows))
+    answer = sweep_answer(open_sweep(place.path), place.path)
+    if answer:
+        place.write_text(ANSWERS, answer.table())
+    return replace(
+        result,
+        answer=answer.sentence if answer else None,
+        maps=_draw(place, sweep),
+        wall_s=time.perf_counter() - began,
+    )
+
+
+def _write_table(
+    place: ResultFolder, sweep: Sweep, cells: CellRows, copies: PerturbedRows | None
+) -> dict[str, Any]:
+    """Write `table.csv` and the copies; returns what they add to `sweep.json`."""
+    columns, found = band_columns(sweep.axes), dict[str, Any]()
+    bands = [line_of([None] * len(columns))] * sweep.count
+    if copies is not None:
+        counts, deciding, values = band_rows(sweep, cells, copies)
+        bands = [line_of(values(cell)) for cell in range(sweep.count)]
+        found = {
+            "unsure": counts[UNSURE],
+            "sure": {word: counts[word] for word in (SURE, REGIME_UNSURE, UNSURE)},
+            "decided_by": dict(deciding.most_common()),
+        }
+        place.write_text(MEMBERS, table_of_lines(perturbed.COLUMNS, copies.lines()))
+    lines = (f"{cells.lines[cell]},{band}" for cell, band in enumerate(bands))
+    place.write_text(TABLE, table_of_lines((*cells.columns, *columns), lines))
+    return found
+
+
+@dataclass(kw_only=True, eq=False)
+class _Cells:
+    """The rows of the cells, while they are computed; `sweep.json` says now and then how many there are."""
+
+    sweep: Sweep
+    place: ResultFolder
+    asked: SweepResult
+    rows: CellRows = field(init=False)
+    updated: float = field(default=0.0, init=False)
+
+    def __post_init__(self) -> None:
+        self.rows = CellRows(self.sweep)
+
+    def compute(self, runner: Runner) -> None:
         """The rows that are missing; those of a finished table whose band is to be another are kept."""
         log, table = self.place.path / ROWS, self.place.path / TABLE
-        columns = self.cells.columns
+        columns = self.rows.columns
         if table.exists() and not log.exists():
             lines = read_lines(table, (*columns, *band_columns(self.sweep.axes)))
             kept = (line_of(fields_of(line)[: len(columns)]) for line in lines)
@@ -228,10 +280,21 @@ class _Work:
             model_of=self.sweep.model_of,
             values=self._values,
             note=self._note,
-        ).run(self.runner, self._missing())
+        ).run(runner, self._missing())
+
+    def counted(self) -> SweepResult:
+        """The result so far."""
+        outcomes = dict(sorted(self.rows.outcomes.items()))
+        return replace(self.asked, rows=len(self.rows.lines), outcomes=outcomes)
+
+    def update(self) -> None:
+        """Write how many rows there are."""
+        self.updated = time.perf_counter()
+        self.place.check()
+        self.place.write_result(self.counted().to_json())
 
     def _missing(self) -> Iterator[list[int]]:
-        yield self.sweep.by_container(set(range(self.sweep.count)) - self.cells.lines.keys())
+        yield self.sweep.by_container(set(range(self.sweep.count)) - self.rows.lines.keys())
 
     def _values(self, cell: int, row: Row) -> Iterator[Any]:
         point = self.sweep.point(cell)
@@ -248,95 +311,6 @@ class _Work:
         yield from (row[name] for name in FOUND)
 
     def _note(self, line: str) -> None:
-        self.cells.note(line)
-        if time.perf_counter() - self._updated > UPDATE_S:
-            self._update()
-
-    def _write_table(self, copies: PerturbedRows | None) -> None:
-        columns = band_columns(self.sweep.axes)
-        bands = [line_of([None] * len(columns))] * self.sweep.count
-        if copies is not None:
-            counts, deciding, values = band_rows(self.sweep, self.cells, copies)
-            bands = [line_of(values(cell)) for cell in range(self.sweep.count)]
-            self.info |= {
-                "unsure": counts[UNSURE],
-                "sure": {word: counts[word] for word in (SURE, REGIME_UNSURE, UNSURE)},
-            }
-            self.info["decided_by"] = dict(deciding.most_common())
-        lines = (f"{self.cells.lines[cell]},{band}" for cell, band in enumerate(bands))
-        self.place.write_text(TABLE, table_of_lines((*self.cells.columns, *columns), lines))
-
-    def _answer(self) -> None:
-        answer = sweep_answer(open_sweep(self.place.path), self.place.path)
-        self.info["answer"] = answer.sentence if answer else None
-        if answer:
-            self.place.write_text(ANSWERS, answer.table())
-
-    def _update(self) -> None:
-        """Write into `sweep.json` how many rows there are."""
-        self._updated = time.perf_counter()
-        self.place.check()
-        self.info["rows"] = len(self.cells.lines)
-        self.info["outcomes"] = dict(sorted(self.cells.outcomes.items()))
-        self.place.write_result(self.info)
-
-
-def _with_maps(place: ResultFolder, info: dict[str, Any], sweep: Sweep) -> dict[str, Any]:
-    """A finished sweep; its maps are drawn again if other axes are asked for."""
-    asked = sweep.maps.model_dump()
-    if info.get("map_axes") != asked:
-        info |= {"map_axes": asked, "maps": _draw(place, sweep)}
-        place.write_result(info)
-    return info
-
-
-def _draw(place: ResultFolder, sweep: Sweep) -> list[str]:
-    return draw_maps(open_sweep(place.path), place.path / "maps", sweep.maps)
-
-
-def _rows_in(log: Path) -> int:
-    """Whole lines below the header."""
-    return max(log.read_bytes().count(b"\n") - 1, 0) if log.is_file() else 0
-
-
-def _asked(sweep: Sweep, motions: Sequence[FloorMotionPair]) -> dict[str, Any]:
-    """The part of `sweep.json` that is known beforehand."""
-    return {
-        "status": "running",
-        "sweep": sweep.name,
-        "title": sweep.title,
-        "case": sweep.base.name,
-        "sweep_hash": sweep_hash(sweep),
-        "band_hash": band_hash(sweep),
-        "base_hash": case_hash(sweep.base),
-        "model": sweep.base.solver.model,
-        "duration_s": longest_time(sweep.base) if not ends_at_rest(sweep.base) else "auto",
-        "motion_covered": motions_left_out(sweep.base, motions),
-        "axes": [
-            {"key": axis.key, "values": axis.values, "scale": axis.scale, "unit": axis.unit}
-            | ({"following": dict(axis.following)} if axis.following else {})
-            for axis in sweep.axes
-        ],
-        "derived": {one.key: one.expression.text for one in sweep.derived},
-        "held": held_inputs(sweep.ends(), [axis.key for axis in sweep.axes]),
-        "perturbation": sweep.perturbation.model_dump(),
-        "uncertainty": sweep.base.uncertainty.model_dump(),
-        "left_out": left_out(sweep),
-        "threshold": sweep.threshold.model_dump() if sweep.threshold else None,
-        "cells": sweep.count,
-        "rows": 0,
-        "outcomes": {},
-        "perturbed": 0,
-        "copies": 0,
-        "unsure": None,
-        "sure": None,
-        "decided_by": None,
-        "changes": None,
-        "answer": None,
-        "motions": None,
-        "motion_set": None,
-        "motion_figures": [],
-        "map_axes": sweep.maps.model_dump(),
-        "maps": [],
-        **program_of_results(),
-    }
+        self.rows.note(line)
+        if time.perf_counter() - self.updated > UPDATE_S:
+            self.update()

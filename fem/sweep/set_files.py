@@ -39,11 +39,11 @@ def write_set(
         place.write_text(SHARES, svg_of(draw_shares(shares, title=title, label=axis_label(axis))))
         figures.append(SHARES)
     return {
-        "motions": measures,
-        "motion_set": [
+        "motions": tuple(measures),
+        "motion_set": tuple(
             row | {"where": place_in_words(others, row), "in_words": set_in_words(row)} for row in rows
-        ],
-        "motion_figures": figures,
+        ),
+        "motion_figures": tuple(figures),
     }
 
 

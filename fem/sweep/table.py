@@ -18,6 +18,7 @@ from fem.batch.log import fields_of, read_lines
 from fem.results.errors import FolderError
 from fem.results.figures import BOXES, SCALARS
 from fem.results.kinds import SWEEP, read_result
+from fem.sweep.result import SweepResult
 
 #: columns behind the values of axes and derived keys in every row
 FOUND = ("status", *SCALARS, *BOXES, "reason", "wall_s")
@@ -42,7 +43,7 @@ def band_columns(axes: Sequence[Axis]) -> tuple[str, ...]:
 class SweepTable:
     """A sweep read from its folder: what was asked, and the results."""
 
-    info: dict[str, Any]  #: as in sweep.json
+    info: SweepResult
     axes: tuple[Axis, ...]
     columns: dict[str, NDArray[Any]]  #: (n_cells,) by name; nan and "" where there is no result
 
@@ -75,27 +76,19 @@ def open_sweep(folder: Path | str) -> SweepTable:
         FolderError: it is not the folder of a sweep, or it is damaged.
     """
     folder = Path(folder)
-    info = read_result(folder / SWEEP.mark, SWEEP)
+    content = read_result(folder / SWEEP.mark, SWEEP)
     try:
-        axes = tuple(
-            Axis(
-                key=one["key"],
-                values=tuple(one["values"]),
-                scale=one["scale"],
-                unit=one["unit"],
-                following={key: tuple(some) for key, some in one.get("following", {}).items()},
-            )
-            for one in info["axes"]
-        )
+        info = SweepResult.from_json(content)
+        axes = tuple(one.axis for one in info.axes)
         source = folder / "table.csv"
         if not source.is_file():
             source = folder / "rows.csv"
         names = _header(source, ("cell", *(axis.key for axis in axes), "status", "outcome", "rotation_ratio"))
         lines = [fields_of(line) for line in read_lines(source, names)]
-        if info["status"] in ("completed", "failed") and len(lines) != info["cells"]:
+        if info.state == "finished" and len(lines) != info.cells:
             raise ValueError(
-                f"{source.name} has {len(lines)} rows of {info['cells']}; recompute it: "
-                f"python -m fem sweep {info['sweep']} --out {folder} --force"
+                f"{source.name} has {len(lines)} rows of {info.cells}; recompute it: "
+                f"python -m fem sweep {info.sweep} --out {folder} --force"
             )
         return SweepTable(info=info, axes=axes, columns=_columns(axes, names, lines))
     except (KeyError, TypeError, ValueError, IndexError, OSError) as error:

@@ -312,7 +312,7 @@ def write_example(folder: Path, **changes) -> SiteResult:
     (folder / MOTIONS).mkdir(parents=True)
     for name, text in files.items():
         (folder / name).write_text(text, encoding="utf-8")
-    (folder / RESULT_FILE).write_text(to_json(result.to_json()), encoding="utf-8")
+    (folder / RESULT_FILE).write_text(to_json(result.to_json() | {"asked": "ab" * 32}), encoding="utf-8")
     (folder / "site.toml").write_text('schema = 1\ncontainer = "my-stack.toml"\n', encoding="utf-8")
     (folder / "container.toml").write_text("schema = 1\n[container]\nwidth_m = 1.1\n", encoding="utf-8")
     return result

@@ -93,7 +93,9 @@ def response_folder(folder: Path, **more: object) -> Path:
         "title": "Stack <b>",
         "request": request | {"largest_period": 16},
         "points": points,
-        "coexisting": [{"from_Hz": 1.0, "to_Hz": 1.0, "up": ["rock of period 1"], "down": ["rest"]}],
+        "coexisting": [
+            {"from_Hz": 1.0, "to_Hz": 1.0, "frequencies": 1, "up": ["rock of period 1"], "down": ["rest"]}
+        ],
         "jumps": [],
         "drop_outs": [{"direction": "down", "from_Hz": 0.5, "to_Hz": 0.5, "frequencies": 1, "carried": True}],
         "versions": VERSIONS,

@@ -1,19 +1,27 @@
-"""Sweeps, ensembles and response curves in their folders: interrupted, resumed, finished, refused alike."""
+"""Every kind of study in its folder: interrupted, killed, resumed, finished, refused, told and reported alike."""
 
 import json
+import os
 import re
+import signal
 
 import pytest
 from small_sweep import SMALL
 
 from fem.__main__ import main
 from fem.case.case import load_case
+from fem.cli.console import print_result
 from fem.ensemble.file import load_ensemble
 from fem.ensemble.run import run_ensemble
 from fem.response.request import ResponseRequest
 from fem.response.run import run_response
+from fem.results import kinds
 from fem.results.errors import FolderError
 from fem.runtime.progress import SilentReporter
+from fem.site_check.file import load_site
+from fem.site_check.run import run_site
+from fem.site_check.size_axis import size_axis
+from fem.site_check.size_run import run_size
 from fem.sweep.file import load_sweep
 from fem.sweep.run import run_sweep
 
@@ -30,18 +38,34 @@ probability = 0.5
 [random]
 "motion.phase_rad" = { distribution = "uniform", from = 0.0, to = 6.2 }
 """
+SITE = """
+container = "seed_stack"
+[site]
+ground = "D"
+reference_acceleration_m_s2 = 3.5
+[motions]
+count = 3
+further = 2
+[friction]
+mu_static = [0.4]
+mu_kinetic_over_static = [1.0]
+[limits]
+slip_m = 0.1
+"""
 RIGID = ("solver.model=rigid", "contact.mu_static=1", "contact.mu_kinetic=1", "solver.element_size_m=1")
 
 
 class Interrupting(SilentReporter):
-    """Interrupts at a report of progress."""
+    """Interrupts at a report of progress: at once, or by Ctrl-C, at the next safe point."""
 
-    def __init__(self, reports):
-        self.left = reports
+    def __init__(self, reports, *, ctrl_c=False):
+        self.left, self.ctrl_c = reports, ctrl_c
 
     def tell(self, line):
         self.left -= 1
-        if self.left == 0:
+        if self.left == 0 and self.ctrl_c:
+            os.kill(os.getpid(), signal.SIGINT)
+        elif self.left == 0:
             raise KeyboardInterrupt
 
     def update(self, time, rotation_ratio, mode):
@@ -70,26 +94,50 @@ def response(tmp_path, other=False):
     return lambda folder, **options: run_response(asked, folder=folder, **options)
 
 
+def site_of(tmp_path, other):
+    path = tmp_path / "hall.toml"
+    path.write_text(SITE.replace("slip_m = 0.1", "slip_m = 0.2") if other else SITE, encoding="utf-8")
+    return load_site(path)
+
+
+def site(tmp_path, other=False):
+    asked = site_of(tmp_path, other)
+    return lambda folder, **options: run_site(asked, folder, **options)
+
+
+def size(tmp_path, other=False):
+    asked = site_of(tmp_path, other)
+    axis = size_axis(asked, "container.boxes", high=3.0)
+    return lambda folder, **options: run_size(asked, axis, folder, **options)
+
+
 STUDIES = pytest.mark.parametrize(
     ("study", "mark", "log"),
     [
         (sweep, "sweep.json", "rows.csv"),
         (ensemble, "ensemble.json", "draws.csv"),
         (response, "response.json", "state.npz"),
+        (site, "assess.json", "runs.csv"),
+        (size, "size.json", "runs.csv"),
     ],
-    ids=["sweep", "ensemble", "response"],
+    ids=["sweep", "ensemble", "response", "site", "size"],
 )
 
 
-pytestmark = pytest.mark.usefixtures("undrawn")
+@pytest.fixture(autouse=True)
+def short(undrawn, monkeypatch):
+    """Maps, and the repetition of deciding runs with another model, are tested by themselves."""
+    monkeypatch.setattr("fem.site_check.run.confirmed", lambda *arguments: [])
 
 
 def files_of(folder):
     """Content of the files of a folder, without times and numbers of cores."""
     files = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.is_file()}
     found = {name: path.read_bytes() for name, path in files.items() if not path.name.startswith(".")}
-    for name in found.keys() & {"sweep.json", "table.csv"}:
-        found[name] = re.sub(rb'"(wall_s|jobs)": [^,]*|(?<=,)\d[^,]*(?=,\d+,(true|false),)', b"", found[name])
+    found.pop("report.html", None)
+    times = rb'"(wall_s|jobs)": [^,]*|(?<=,)\d[^,]*(?=,\d+,(true|false),)'
+    for name in found.keys() & {"sweep.json", "table.csv", "assess.json", "size.json"}:
+        found[name] = re.sub(times, b"", found[name])
     return found
 
 
@@ -110,6 +158,26 @@ def test_an_interrupted_study_continues_to_the_same_files(tmp_path, study, mark,
                     run(folder)
     run(folder, resume=True)
     assert files_of(folder) == files_of(tmp_path / "whole")
+
+
+@STUDIES
+def test_an_interrupted_study_says_what_is_missing_in_place_of_an_answer(tmp_path, capsys, study, mark, log):
+    run, folder = study(tmp_path), tmp_path / "out"
+    result = run(folder, reporter=Interrupting(1, ctrl_c=True), jobs=1)
+    kind = next(one for one in kinds.KINDS if one.mark == mark)
+    assert print_result(result, kind, folder, (), as_json=False) == 4
+    assert re.fullmatch("no answer yet: .*; --resume continues", capsys.readouterr().out.strip())
+    found = json.loads((folder / mark).read_text())
+    assert (found["status"], found["state"], found["answer"]) == ("interrupted", "interrupted", None)
+    if study is not size:  # has no page
+        assert main(["report", str(folder), "-q"]) == 0
+        page = (folder / "report.html").read_text()
+        sentence = re.search(r'class="sentence"[^>]*>([^<]*)<', page)[1]
+        assert sentence.startswith("No answer yet: ")
+        assert 'id="signature"' not in page and "signature</div>" not in page
+    assert run(folder, resume=True).state == "finished"
+    found = json.loads((folder / mark).read_text())
+    assert found["state"] == "finished" and found["answer"]
 
 
 @STUDIES

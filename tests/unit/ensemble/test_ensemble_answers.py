@@ -3,6 +3,7 @@
 import pytest
 
 from fem.ensemble.answers import ensemble_answer
+from fem.ensemble.result import EnsembleResult
 
 G = 9.80665
 PEAK, WIDTH, MU = "motion.peak_acceleration_m_s2", "container.width_m", "contact.mu_static"
@@ -13,15 +14,17 @@ def result_of(*rows, **more):
     """A result: rows of the axes' values, share, low, high, region; the last axis is the fastest."""
     keys = [key for key in rows[0] if key in UNITS]
     axes = [{"key": key, "values": sorted({row[key] for row in rows}), "unit": UNITS[key]} for key in keys]
-    return {
+    found = {
         "status": "completed",
+        "asked": "",
         "draws": 128,
         "random": {},
         "confidence": 0.95,
         "probability": 0.05,
         "axes": axes,
         "points": list(rows),
-    } | more
+    }
+    return EnsembleResult.from_json(found | more)
 
 
 def row(share, region="above", spread=0.1, **values):

@@ -3,42 +3,51 @@
 import pytest
 
 from fem.response.answer import response_answer
+from fem.response.branches import Coexistence, DropOut
+from fem.response.records import PointRow
+from fem.response.result import ResponseResult
 
 
 def point(frequency, direction, ratio, long_time="periodic", status="completed"):
     stands = ratio is not None
-    return {
-        "frequency_Hz": frequency,
-        "direction": direction,
-        "rotation_ratio": ratio,
-        "long_time": long_time if stands else None,
-        "status": status if stands or status == "failed" else "overturned",
-    }
+    return PointRow(
+        number=0,
+        frequency_Hz=frequency,
+        amplitude_m=0.1,
+        peak_acceleration_m_s2=1.0,
+        began="carried",
+        periods=1,
+        direction=direction,
+        rotation_ratio=ratio,
+        long_time=long_time if stands else None,
+        status=status if stands or status == "failed" else "overturned",
+    )
 
 
 def curve(*points, status="completed", **found):
-    return {"status": status, "points": list(points), "coexisting": [], "drop_outs": [], **found}
+    return ResponseResult(asked="", status=status, points=points, **found)
 
 
 STANDS = (point(0.5, "up", 0.1), point(1.0, "up", 0.62), point(1.0, "down", 0.3), point(0.5, "down", 0.1))
-FALL = {"direction": "down", "from_Hz": 0.9, "to_Hz": 0.5}
+FALL = DropOut(direction="down", from_Hz=0.9, to_Hz=0.5, frequencies=2, carried=True)
+TWO = Coexistence(from_Hz=1.0, to_Hz=1.0, frequencies=1, up=("rock",), down=("rest",))
 
 
 @pytest.mark.parametrize(
     ("result", "sentence"),
     [
         (
-            curve(*STANDS, coexisting=[{"from_Hz": 1.0, "to_Hz": 1.0}]),
+            curve(*STANDS, coexisting=(TWO,)),
             "frequency: stood at every frequency tried, 0.5 to 1 Hz, up and down; largest rotation 0.62 of the "
             "slenderness angle, at 1 Hz going up; two motions coexist at 1 Hz",
         ),
         (
-            curve(*STANDS[:3], point(0.5, "down", None), drop_outs=[FALL]),
+            curve(*STANDS[:3], point(0.5, "down", None), drop_outs=(FALL,)),
             "frequency: overturned at 0.9 to 0.5 Hz going down; stood at the other 3 points; largest rotation 0.62 of "
             "the slenderness angle, at 1 Hz going up",
         ),
         (
-            curve(point(0.5, "up", None), point(0.5, "down", None), drop_outs=[FALL]),
+            curve(point(0.5, "up", None), point(0.5, "down", None), drop_outs=(FALL,)),
             "frequency: overturned at every frequency tried, 0.5 Hz",
         ),
         (

@@ -132,8 +132,8 @@ def test_text_of_users_is_escaped(folders):
 
 
 def test_an_unfinished_verification_is_told(tmp_path):
-    (tmp_path / RESULT_FILE).write_text('{"status": "running"}', encoding="utf-8")
-    with pytest.raises(FolderError, match="--resume continues it"):
+    (tmp_path / RESULT_FILE).write_text('{"status": "running", "asked": "ab"}', encoding="utf-8")
+    with pytest.raises(FolderError, match="continue it with --resume"):
         site_report(tmp_path)
 
 

@@ -1,7 +1,6 @@
 """Verifications from file to folder: the same result on any number of cores and after an interruption."""
 
 import json
-import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -12,12 +11,11 @@ from fem.records.files import read_record
 from fem.seismic.artificial import artificial_motions
 from fem.seismic.motion_files import write_at2, write_csv
 from fem.seismic.motion_set import check_set
-from fem.site_check.answer import answer_of
 from fem.site_check.file import load_site
 from fem.site_check.motions import ground_motions
 from fem.site_check.result import SiteResult
-from fem.site_check.run import RUNS, run_site
-from fem.site_check.runs import SCANNED, RunRows
+from fem.site_check.run import run_site
+from fem.site_check.runs import SCANNED
 
 CONTAINER = """
 schema = 1
@@ -140,35 +138,6 @@ def test_the_motions_are_written_and_read_back_to_the_same_bits(computed):
             assert csv.values.tobytes() == at2.values.tobytes()
             assert csv.times.tobytes() == at2.times.tobytes()
         assert motion.end_velocity_m_s < 1e-10 and motion.end_displacement_m < 1e-9
-
-
-def test_an_interrupted_verification_continues_to_the_same_result(computed, tmp_path):
-    whole, folder = computed
-    place, out = folder / "site.toml", tmp_path / "out"
-    shutil.copytree(folder / "out", out)
-    lines = (out / RUNS).read_text().splitlines(keepends=True)
-    (out / RUNS).write_text("".join(lines[:20]) + lines[20][:9])
-    mark = json.loads((out / "assess.json").read_text()) | {"status": "running"}
-    (out / "assess.json").write_text(json.dumps(mark))
-    again = run_site(load_site(place), out, jobs=2, resume=True)
-    assert without_times(again).result == without_times(whole).result
-    assert again.runs == whole.runs
-    assert without_times(again) == without_times(whole)
-
-
-def test_part_of_the_runs_gives_no_answer(computed):
-    result, folder = computed
-    request = load_site(folder / "site.toml")
-    rows = RunRows()
-    for line in (folder / "out" / RUNS).read_text().splitlines()[1:6]:
-        rows.note(line)
-    answer = answer_of(request, result.set, rows.in_order(), expected=6)
-    assert answer.fulfilled is None and "5 of 6 runs" in answer.sentence
-
-
-def test_a_finished_verification_is_not_computed_again(computed):
-    whole, folder = computed
-    assert run_site(load_site(folder / "site.toml"), folder / "out") == whole
 
 
 def test_on_a_floor_the_period_of_the_building_is_varied(tmp_path):

@@ -5,11 +5,6 @@ import json
 import pytest
 
 from fem.__main__ import main
-from fem.results.errors import FolderError
-from fem.site_check.file import load_site
-from fem.site_check.result import SiteAnswer
-from fem.site_check.size_axis import size_axis
-from fem.site_check.size_run import run_size
 
 SITE = """
 container = "seed_stack"
@@ -55,28 +50,6 @@ def test_the_tallest_stack_is_found(place):
     assert [point["runs"] for point in found["points"]] == [6] * 5
     assert (place / "found" / "figures" / "size.svg").is_file()
     assert not (place / "found" / ".motions").exists()
-
-
-def test_an_interrupted_size_continues_to_the_same_result(place):
-    folder, before = place / "found", result_in(place / "found")
-    log = folder / "runs.csv"
-    lines = log.read_text(encoding="utf-8").splitlines(keepends=True)
-    log.write_text("".join([lines[0], *lines[13:0:-1]]), encoding="utf-8")  # as two cores may have been ready
-    (folder / "size.json").write_text(json.dumps(before | {"status": "running"}), encoding="utf-8")
-    asked = load_site(place / "hall.toml")
-    axis = size_axis(asked, "container.boxes", high=5.0)
-    with pytest.raises(FolderError, match="--resume"):
-        run_size(asked, axis, folder, jobs=1)
-    result = run_size(asked, axis, folder, jobs=1, resume=True)
-    assert json.loads(json.dumps(result.to_json())) == {key: before[key] for key in result.to_json()}
-    assert log.read_text(encoding="utf-8") == "".join(lines)
-
-
-def test_a_finished_size_is_not_computed_again(place, monkeypatch):
-    monkeypatch.setattr("fem.site_check.size_run.answer_of", lambda *_: SiteAnswer())
-    assert (
-        main(["size", str(place / "hall.toml"), "--over", "container.boxes", "--to", "5", *out(place)]) == 0
-    )
 
 
 def test_bad_input_is_told_before_anything_is_computed(place, capsys):

@@ -6,7 +6,9 @@ from itertools import product
 
 import pytest
 
+from fem.cli.console import print_result
 from fem.cli.sweep import page_of
+from fem.results.kinds import SWEEP
 from fem.sweep.answers import sweep_answer
 from fem.sweep.table import BAND, FOUND, open_sweep
 
@@ -126,9 +128,10 @@ def test_missing_cells_give_no_answer(folder):
     assert sweep_answer(open_sweep(folder), folder) is None
 
 
-def test_the_screen_ends_with_the_rows_and_the_sentence(folder):
-    info = json.loads((folder / "sweep.json").read_text())
-    *_, first, second, last = page_of(info, folder).splitlines()
+def test_the_screen_ends_with_the_rows_and_the_sentence(folder, capsys):
+    info = open_sweep(folder).info
+    assert print_result(info, SWEEP, folder, page_of(info, folder), as_json=False) == 0
+    *_, first, second, last = capsys.readouterr().out.splitlines()
     assert first.startswith("  mu static 0.3  stood in every motion tried")
     assert second.startswith("  mu static 0.5  stood in every motion tried")
     assert last == "as kept"

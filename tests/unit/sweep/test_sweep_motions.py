@@ -110,7 +110,7 @@ def test_what_a_sweep_tells_of_its_motions(sweep_of, tmp_path):
     assert 'aria-label="spectra"' in page and 'aria-label="overturned"' in page
     told_cells = json.loads(re.search(r'id="sweep"[^>]*>(.*?)</script>', page, re.DOTALL)[1])["derived"]
     assert told_cells[1] == {"key": "vertical.file", "values": table["vertical.file"].tolist()}
-    assert "of 2 motions overturn" in page_of(json.loads((folder / "sweep.json").read_text()), folder)
+    assert "of 2 motions overturn" in "\n".join(page_of(table.info, folder))
 
 
 def test_signs_are_no_strength_and_a_short_run_is_told(sweep_of, tmp_path):
@@ -118,7 +118,7 @@ def test_signs_are_no_strength_and_a_short_run_is_told(sweep_of, tmp_path):
     short = replace(sweep, base=sweep.base.with_values({"solver.duration_s": 0.5}))
     info = run_sweep(short, tmp_path / "results", jobs=1)
     assert [row["motions"] for row in info["motion_set"]] == [2]
-    assert info["motion_figures"] == ["figures/spectra.svg"]
+    assert info["motion_figures"] == ("figures/spectra.svg",)
     assert info["motion_covered"].startswith("the first 0.5 of 1 s")
     assert info["motion_covered"].endswith("(a_h.csv, and 1 more motions are cut)")
 

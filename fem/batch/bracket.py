@@ -1,4 +1,4 @@
-"""Changes of outcome along one axis: a scan, then every change located by refinement.
+"""Changes of an outcome along one axis: a scan, then every change located by refinement.
 
 An island narrower than the step of the scan may be missed.
 """
@@ -6,27 +6,8 @@ An island narrower than the step of the scan may be missed.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Annotated
 
 import numpy as np
-from pydantic import Field
-
-from fem.case.quantities import Quantity
-from fem.case.tables import CaseTable
-
-RESOLUTION = Quantity(unit="", above=0.0, most=1.0, advice="0.01 is one per cent")
-
-
-class Threshold(CaseTable):
-    """Along which axis changes of outcome are located, and how precisely."""
-
-    axis: str = Field(description="the key of one of the axes", examples=["motion.peak_acceleration_m_s2"])
-    resolution: Annotated[float, RESOLUTION] = Field(
-        default=0.01, description="largest width of a bracket, relative to the value"
-    )
-    inner: Annotated[int, Quantity(unit="", least=1, most=100)] = Field(
-        default=3, description="values tried within a bracket at a time"
-    )
 
 
 @dataclass(frozen=True, kw_only=True)

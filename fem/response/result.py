@@ -1,0 +1,23 @@
+"""The result of a response curve as typed data: what `response.json` holds."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from fem.batch.study import StudyResult
+from fem.response.branches import Coexistence, DropOut, Jump
+from fem.response.records import PointRow
+
+
+@dataclass(frozen=True, kw_only=True)
+class ResponseResult(StudyResult):
+    """Everything a response curve found."""
+
+    asked: str  #: hash of the request
+    case: str = ""  #: its name
+    title: str = ""
+    request: dict[str, Any] = field(default_factory=dict)  #: without the case
+    points: tuple[PointRow, ...] = ()  #: in the order in which they were swept
+    coexisting: tuple[Coexistence, ...] = ()
+    jumps: tuple[Jump, ...] = ()
+    drop_outs: tuple[DropOut, ...] = ()
+    stable_everywhere: bool | None = None  #: None without a point
