@@ -3,10 +3,13 @@
 import warnings
 from collections.abc import Hashable, Iterable, Sequence
 from functools import partial
+from typing import Literal, overload
 
 from fem.batch.container_cache import ContainerCache, container_key
 from fem.batch.workers import IN_THREADS, STDIN, LocalWorkers, hand_out, unguarded_script
 from fem.case.case import Case
+from fem.model.geometry import build_container
+from fem.model.motion import build_motions
 from fem.run.checks import WantedChecks
 from fem.run.compute import Run, compute_on, require_case
 from fem.runtime.threads import cores
@@ -19,9 +22,32 @@ _CONTAINERS = ContainerCache()
 Item = tuple[int, Case]
 
 
+@overload
 def compute_many(
-    cases: Iterable[Case], jobs: int | None = None, *, band: bool | None = None, check_rigid: bool = False
-) -> list[Run]:
+    cases: Iterable[Case],
+    jobs: int | None = None,
+    *,
+    band: bool | None = None,
+    check_rigid: bool = False,
+    errors: Literal["raise"] = "raise",
+) -> list[Run]: ...
+@overload
+def compute_many(
+    cases: Iterable[Case],
+    jobs: int | None = None,
+    *,
+    band: bool | None = None,
+    check_rigid: bool = False,
+    errors: Literal["return"],
+) -> list[Run | ValueError]: ...
+def compute_many(
+    cases: Iterable[Case],
+    jobs: int | None = None,
+    *,
+    band: bool | None = None,
+    check_rigid: bool = False,
+    errors: Literal["raise", "return"] = "raise",
+) -> Sequence[Run | ValueError]:
     """Compute cases in memory, side by side; no file is written.
 
     Several cases are shared by threads, many by processes as well. A process loads the script that started it: in a
@@ -32,6 +58,8 @@ def compute_many(
         cases: from `fem.load_case`, `fem.case_from` or `case.replace`, of any models.
         jobs: cores to use; default: all.
         band, check_rigid: as for `fem.compute`.
+        errors: "raise" that of the first case that cannot be computed, which is looked for before any is computed; or
+            "return" it in place of its run.
 
     Returns:
         The runs in the order of the cases, each the same as `fem.compute` gives, whatever `jobs` is.
@@ -47,6 +75,9 @@ def compute_many(
     jobs = cores() if jobs is None else jobs
     if jobs < 1:
         raise ValueError(f"compute_many: jobs must be at least 1, got {jobs}")
+    runs: dict[int, Run | ValueError] = _objections(asked)
+    if runs and errors == "raise":
+        raise next(error for error in runs.values() if isinstance(error, ValueError))
     script = unguarded_script() if min(jobs, len(asked)) > 1 else None
     if script is not None:
         unfit, fit = (
@@ -64,21 +95,39 @@ def compute_many(
         first.setdefault(container_key(case), number)
     order = sorted(range(len(asked)), key=lambda number: first[container_key(asked[number])])
     work = partial(_compute, WantedChecks(check_rigid=check_rigid, band=band), len(asked))
-    runs: dict[int, Run] = {}
     with LocalWorkers(jobs, WORTH_PROCESSES if script is None else IN_THREADS) as workers_of:
         for model in WORTH_PROCESSES:
-            items = [(number, asked[number]) for number in order if asked[number].solver.model == model]
+            items = [(n, asked[n]) for n in order if asked[n].solver.model == model and n not in runs]
             for chunk, found in hand_out(items, work, workers_of(model, len(items)), at_a_time=1):
                 runs |= dict(zip((number for number, _ in chunk), found, strict=True))
+                if errors == "raise":
+                    for error in (one for one in found if isinstance(one, ValueError)):
+                        raise error
     return [runs[number] for number in range(len(asked))]
 
 
-def _compute(wanted: WantedChecks, count: int, items: Sequence[Item]) -> list[Run]:
-    runs = []
+def _objections(cases: Sequence[Case]) -> dict[int, Run | ValueError]:
+    """What is wrong with the containers and motions of cases, by their numbers; little beside computing them."""
+    found: dict[int, Run | ValueError] = {}
+    for number, case in enumerate(cases):
+        try:
+            build_container(case)
+            build_motions(case)
+        except ValueError as error:
+            found[number] = _noted(error, number, len(cases))
+    return found
+
+
+def _noted(error: ValueError, number: int, count: int) -> ValueError:
+    error.add_note(f"case {number + 1} of {count} of compute_many")
+    return error
+
+
+def _compute(wanted: WantedChecks, count: int, items: Sequence[Item]) -> list[Run | ValueError]:
+    runs: list[Run | ValueError] = []
     for number, case in items:
         try:
             runs.append(compute_on(_CONTAINERS.container_of(case), case, wanted))
         except ValueError as error:
-            error.add_note(f"case {number + 1} of {count} of compute_many")
-            raise
+            runs.append(_noted(error, number, count))
     return runs

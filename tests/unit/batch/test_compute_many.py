@@ -62,6 +62,27 @@ def test_a_case_that_cannot_be_computed_is_named():
     assert fem.compute_many([]) == []
 
 
+#: its walls weigh more than the box; no mesh can be made of it
+TOO_LIGHT = BOX.replace({"container.wall_m": 0.05, "container.mass_kg": 900.0})
+
+
+def test_all_cases_are_looked_at_before_the_first_is_computed(monkeypatch):
+    monkeypatch.setattr(
+        many, "compute_on", lambda *_: pytest.fail("computed before the last case was looked at")
+    )
+    with pytest.raises(ValueError, match="walls of one box weigh") as refused:
+        fem.compute_many([BOX, TOO_LIGHT], 1, band=False)
+    assert refused.value.__notes__ == ["case 2 of 2 of compute_many"]
+
+
+def test_errors_may_be_returned_in_place_of_runs():
+    late = BOX.replace({"solver.step_s": 0.5})  # refused by the model alone
+    found = fem.compute_many([TOO_LIGHT, BOX, late], 1, band=False, errors="return")
+    assert [isinstance(one, ValueError) for one in found] == [True, False, True]
+    assert figures(found[1]) == figures(fem.compute(BOX, band=False))
+    assert found[2].__notes__ == ["case 3 of 3 of compute_many"]
+
+
 @pytest.mark.parametrize(
     ("call", "warned"),
     [("compute()", True), ('if __name__ == "__main__":\n    compute()', False)],
