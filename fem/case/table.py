@@ -27,6 +27,10 @@ class CaseTable(BaseModel):
         """The keys of a file with what they imply, and short names written out."""
         return given
 
+    def __dir__(self) -> list[str]:
+        """What a notebook offers: the keys and what is made of them, without the names of pydantic."""
+        return sorted(set(super().__dir__()) - (set(dir(BaseModel)) - set(dir(object))))
+
     def idle_keys(self) -> frozenset[str]:
         """Keys that are not used because another option is chosen."""
         return frozenset(

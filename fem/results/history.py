@@ -8,12 +8,13 @@ Which columns there are: `fem.case.columns`. A kill during a write may leave the
 
 import contextlib
 import hashlib
+import importlib
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -53,6 +54,33 @@ class History:
         """These samples with the rotation of the rigid block as last column, shape (n_samples,) [rad]."""
         values = np.column_stack([self.values, rotation])
         return replace(self, numbers=(*self.numbers, ANALYTIC_COLUMN), values=values)
+
+    def keys(self) -> tuple[str, ...]:
+        """Names of the columns of numbers, so that `dict(history)` has them all."""
+        return self.numbers
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.numbers)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of each column; empty of a pure number."""
+        units = {column.name: column.unit for group in columns.GROUPS for column in group.columns}
+        return {name: units.get(re.sub(r"_\d+_", "_{}_", name), "") for name in self.numbers}
+
+    def to_dataframe(self) -> Any:
+        """A table of pandas, with the states of motion as its last column.
+
+        Raises:
+            ImportError: pandas is not installed.
+        """
+        try:
+            pandas = importlib.import_module("pandas")
+        except ModuleNotFoundError:
+            raise ImportError(
+                "a table of pandas needs pandas: python -m pip install pandas; or take dict(history)"
+            ) from None
+        return pandas.DataFrame(dict(self) | {columns.MODE: list(self.modes)})
 
     def __contains__(self, column: str) -> bool:
         return column in self.numbers

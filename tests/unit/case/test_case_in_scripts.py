@@ -121,3 +121,11 @@ def test_the_number_of_a_document_may_be_a_number():
     assert case_hash(case) == case_hash(read_case(LEAST))
     with pytest.raises(CaseError, match="document"):
         read_case(LEAST).replace({"document.number": True})
+
+
+def test_a_notebook_offers_what_a_case_has_and_no_name_of_pydantic():
+    offered = dir(fem.load_case("seed_stack"))
+    assert {"container", "motion", "replace", "resolved"} <= set(offered)
+    assert not [
+        name for name in offered if name.startswith(("model_", "parse_", "construct", "update_forward"))
+    ]

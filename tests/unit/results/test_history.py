@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from contact.stepping.state import row_names
 from fem.case.columns import ALWAYS, GROUPS, JOINTS, MODE, VERTICAL, history_columns
-from fem.results.history import HistoryWriter, add_analytic_rotation, read_history
+from fem.results.history import History, HistoryWriter, add_analytic_rotation, read_history
 
 COLUMNS = ALWAYS.names((0,))
 NUMBERS = len(COLUMNS) - 1
@@ -205,3 +205,28 @@ def test_files_that_are_no_history_are_refused(tmp_path, text, words):
     (tmp_path / "h.csv").write_text(text)
     with pytest.raises(ValueError, match=words):
         read_history(tmp_path / "h.csv")
+
+
+class TestInPython:
+    """A history is a mapping of its columns."""
+
+    HISTORY = History(
+        numbers=("time_s", "joint_1_moment_Nm", "box_2_rotation_rad"),
+        values=np.array([[0.0, 1.0, 2.0], [0.1, 3.0, 4.0]]),
+        modes=("rest", "rock"),
+    )
+
+    def test_its_columns_are_keys_with_units(self):
+        table = dict(self.HISTORY)
+        assert list(table) == list(self.HISTORY) == list(self.HISTORY.keys()) == list(self.HISTORY.numbers)
+        assert table["joint_1_moment_Nm"].tolist() == [1.0, 3.0]
+        assert self.HISTORY.units == {"time_s": "s", "joint_1_moment_Nm": "Nm", "box_2_rotation_rad": "rad"}
+
+    def test_a_table_of_pandas_has_the_modes_too(self, monkeypatch):
+        monkeypatch.setitem(sys.modules, "pandas", SimpleNamespace(DataFrame=dict))
+        assert list(self.HISTORY.to_dataframe()) == [*self.HISTORY.numbers, "mode"]
+
+    def test_without_pandas_the_way_out_is_named(self, monkeypatch):
+        monkeypatch.setitem(sys.modules, "pandas", None)
+        with pytest.raises(ImportError, match="python -m pip install pandas; or take"):
+            self.HISTORY.to_dataframe()
