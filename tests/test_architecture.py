@@ -98,6 +98,7 @@ LOADING_LATE = {
     "fem/case/uncertainty.py",
     "fem/figures/cache.py",
     "fem/results/fields.py",
+    "fem/results/history.py",
     "fem/results/reader.py",
     "fem/run/checks.py",
     "mesh/files.py",
