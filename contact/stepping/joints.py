@@ -385,3 +385,5 @@ def update_joints(run: RunState, step: float) -> None:
         joint.slip_velocity = joint.velocity
         joint.max_slip = max(joint.max_slip, abs(joint.slip + joint.slip_step))
         joint.slip_travel += abs(joint.slip_step)
+        if joint.sliding == 1:
+            joint.max_slip_velocity = max(joint.max_slip_velocity, abs(joint.slip_velocity))

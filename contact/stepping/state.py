@@ -150,6 +150,7 @@ JOINT_RECORD = np.dtype(
         # observables
         ("max_slip", "f8"),
         ("slip_travel", "f8"),
+        ("max_slip_velocity", "f8"),  # while every loaded point slides
         # .. of a loose stack only
         ("opening", "f8"),  # largest gap between the box and what is below it
         ("max_opening", "f8"),

@@ -22,6 +22,7 @@ from fem.runtime.units import (
     MEGAPASCALS,
     RATIO,
     SECONDS,
+    VELOCITY,
     DisplayUnit,
     Reach,
 )
@@ -125,6 +126,15 @@ class Figures(JsonBlock, Generic[ValueT]):
     #: total
     slip_travel_m: Annotated[
         ValueT | None, Shown("path of slip", MM, COLUMN | SUMMARY, "joint.slip_travel", lowest=True)
+    ] = None
+    #: largest |velocity| of the slip, while every loaded point slides
+    max_slip_velocity_m_s: Annotated[
+        ValueT | None,
+        Shown(
+            *("largest sliding velocity", VELOCITY, TABLES | READ, "joint.max_slip_velocity"),
+            head="velocity",
+            lowest=True,
+        ),
     ] = None
     max_uplift_m: Annotated[
         ValueT | None,

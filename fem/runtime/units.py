@@ -85,5 +85,5 @@ RATIO = DisplayUnit(
     least=1e-3, figures=3
 )  #: of a rotation to the slenderness angle; a tenth of what counts as rocking
 KILONEWTONS = DisplayUnit(name="kN", factor=1e-3)
-ACCELERATION = DisplayUnit(name="m/s2")
+VELOCITY, ACCELERATION = DisplayUnit(name="m/s", least=1e-5), DisplayUnit(name="m/s2")
 MEGAPASCALS = DisplayUnit(name="MPa", factor=1e-6)

@@ -3,6 +3,8 @@
 import json
 from dataclasses import fields
 
+import pytest
+
 from fem.assessment.ranges import in_words
 from fem.assessment.summary import result_rows
 from fem.batch.runner import run_chunk
@@ -84,3 +86,16 @@ def test_every_figure_is_filled_by_some_run():
         assert row["status"] != "failed", row["reason"]
         filled |= {key for key in SCALARS if row[key] is not None}
     assert filled == set(SCALARS)
+
+
+@pytest.mark.parametrize(("velocity", "largest"), [(0.5, 0.5), (-0.5, 0.5), (0.0, 0.0)])
+def test_a_container_pushed_over_a_still_floor_slides_fastest_at_the_start(velocity, largest):
+    # friction alone acts on it: v0 - mu g t
+    keys = (
+        "motion.kind=none",
+        f"initial.velocity_m_s={velocity}",
+        "solver.model=rigid",
+        "solver.duration_s=1",
+    )
+    (row,) = run_chunk(lambda name: load_case(name, keys), ["sliding"])
+    assert row["max_slip_velocity_m_s"] == pytest.approx(largest, rel=1e-2, abs=1e-9)
