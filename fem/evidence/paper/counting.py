@@ -119,7 +119,7 @@ def _below_the_limits(experiments: Experiments) -> Evidence:
         f"For sliding it is {_bound(slide)} in this program: where the floor jumps to 0.80 of stiction the shell box "
         f"slides by {1e3 * slips[0]:.3g} mm ({1e3 * slips[1]:.2g} mm if mu falls over 0.1 mm of slip). For the start "
         f"of rocking it is {_bound(rock)}: at 0.95 of g a/c the shell stack on a flat base rotates to {ratios[2]:.2g} "
-        f"of beta ({ratios[3]:.2g} on a floor 100 times as stiff)."
+        f"of the slenderness angle ({ratios[3]:.2g} on a floor 100 times as stiff)."
     )
     yield from cases
     yield outcomes("Below the static limits", experiments, cases)

@@ -172,14 +172,15 @@ def within_the_limit_cycle(experiments: Experiments) -> Evidence:
         yield at_least(decay, died[-1], 1.0, inside=False)
     yield (
         f"At 6.928 rad/s 50 mm are {0.05 * ANGULAR_FREQUENCY**2:.2f} m/s² against g a/c = {UPLIFT:.2f} m/s²: the "
-        f"rotation there is {max(at_paper):.2g} of beta. At other frequencies the same 50 mm turn the stack to "
-        f"{max(float(np.nanmax(line.y)) for line in curves):.2f} of beta (1: overturned), which the ratio of "
-        f"50 mm to a/2 does not show. In the last 5 s the largest motion that stands reaches {max(growths):.2f} of "
-        f"its rotation before, and {sum(died)} of {len(died)} such motions die out after the drive ends."
+        f"rotation there is {max(at_paper):.2g} of the slenderness angle. At other frequencies the same 50 mm turn "
+        f"the stack to {max(float(np.nanmax(line.y)) for line in curves):.2f} of the slenderness angle (1: "
+        "overturned), which the ratio of 50 mm to a/2 does not show. In the last 5 s the largest motion that stands "
+        f"reaches {max(growths):.2f} of its rotation before, and {sum(died)} of {len(died)} such motions die out "
+        "after the drive ends."
     )
     yield draw_curves(
         "within-the-limit-cycle",
-        "Largest rotation over beta (1: overturned) of the rigid stack under 50 mm, over frequency.",
+        "Largest rotation over the slenderness angle (1: overturned) of the rigid stack under 50 mm, over frequency.",
         "angular frequency [rad/s] | rotation ratio [-]",
         curves,
         log_x=True,
@@ -187,7 +188,7 @@ def within_the_limit_cycle(experiments: Experiments) -> Evidence:
     yield experiments.band(
         STACK.but(duration=10.0),
         "rotation ratio at the paper's frequency",
-        "at most half of beta",
+        "at most half of the slenderness angle",
         lambda row: stands(row) and row["rotation_ratio"] <= 0.5,
     )
 
@@ -247,8 +248,8 @@ def _recomputed(boxes: int, *printed: Finding) -> Evidence:
     yield (
         f"{len(printed) - failures(printed)} of {len(printed)} printed numbers follow with g = 10 m/s². With g = 10 "
         f"and 9.81 m/s² the base shear is {stiction[0]:.3f} and {stiction[1]:.3f} of the stiction limit, the tilting "
-        f"moment {tilting[0]:.3f} and {tilting[1]:.3f} of the restoring one (above 1 the static rule predicts sliding, "
-        f"or tilting), and the period {ten.period_eq3:.3f} and {full.period_eq3:.3f} s."
+        f"moment {tilting[0]:.3f} and {tilting[1]:.3f} of the restoring one (above 1 the static rule predicts "
+        f"sliding, or tilting), and the period {ten.period_eq3:.3f} and {full.period_eq3:.3f} s."
     )
 
 
@@ -303,7 +304,7 @@ def amplitude_50_mm(experiments: Experiments) -> Evidence:
         f"EN 1998-1:2004, Eq. 3.12, d_g = 0.025 a_g S T_C T_D, gives {LONG:.0f} mm with the paper's "
         f"T_C = 0.8 s (ground D, type 1) and {SHORT:.0f} mm with the row that its S = 1.5 belongs to "
         "(ground C, type 2, T_C = 0.25 s): S and T_C belong to two different grounds. With the smaller, "
-        f"the paper's and the larger amplitude the stack rotates by {stated} of beta at {STATED_PEAK:g} m/s² and by "
-        f"{plateau} at {PLATEAU_PEAK:.1f} m/s²."
+        f"the paper's and the larger amplitude the stack rotates by {stated} of the slenderness angle at "
+        f"{STATED_PEAK:g} m/s² and by {plateau} at {PLATEAU_PEAK:.1f} m/s²."
     )
     yield from cases

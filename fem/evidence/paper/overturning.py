@@ -214,13 +214,13 @@ def rotation_at_half_width(experiments: Experiments) -> Evidence:
         time, rotation = run.history["time_s"], np.abs(run.history["rotation_rad"])
         ratios.append(float(rotation[time <= 0.5 * math.pi / frequency].max()) / angle)
         falls.append(run.status == "overturned")
-        what = f"rotation in the first quarter period over beta, {frequency:g} rad/s"
+        what = f"rotation in the first quarter period over the slenderness angle, {frequency:g} rad/s"
         yield at_most(what, ratios[-1], 1.0)
         yield at_most(f"overturns in the end, {frequency:g} rad/s", falls[-1], 0.0, inside=False)
     yield (
-        f"Within a quarter of the first period the rotation reaches {max(ratios):.2f} of beta at most. The stack then "
-        f"continues to rotate with the velocity it has; in the end it overturns at {sum(falls)} of {len(falls)} "
-        "frequencies."
+        f"Within a quarter of the first period the rotation reaches {max(ratios):.2f} of the slenderness angle at "
+        f"most. The stack then continues to rotate with the velocity it has; in the end it overturns at {sum(falls)} "
+        f"of {len(falls)} frequencies."
     )
     yield from cases
 

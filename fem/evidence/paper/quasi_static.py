@@ -157,7 +157,7 @@ def moments_of_a_tilted_body(experiments: Experiments) -> Evidence:
         back, away = (1e3 * _turn(experiments, case) for case in pair)
         yield from pair
         rows.append((back, away))
-        what = f"turn in {TURNING} s at {share:g} of beta (balance {balance:.2f} m/s²), 2 %"
+        what = f"turn in {TURNING} s at {share:g} of the slenderness angle (balance {balance:.2f} m/s²), 2 %"
         yield at_most(f"{what} below the balance of Eqs. 12, 13", back, 0.0, "mrad")
         yield at_least(f"{what} above it", away, 0.0, "mrad")
     yield (
@@ -169,7 +169,7 @@ def moments_of_a_tilted_body(experiments: Experiments) -> Evidence:
 
 @claim("5.3, below Eq. 13", "Note, that the restoring moments is negative for phi > beta")
 def sign_beyond_balance(experiments: Experiments) -> Evidence:
-    """The stack released at rest beside beta, and the sign of Eq. 13 as printed."""
+    """The stack released at rest beside the slenderness angle, and the sign of Eq. 13 as printed."""
     angle = experiments.block(STACK).slenderness_angle
     alpha = 0.5 * math.pi - angle
     weight = 98100.0  # N
@@ -180,15 +180,23 @@ def sign_beyond_balance(experiments: Experiments) -> Evidence:
     beyond, before = restoring(1.02 * angle), restoring(0.98 * angle)
     cases = [_released(factor * angle, 0.0) for factor in (1.02, 0.98)]
     falls, returns = (1e3 * _turn(experiments, case) for case in cases)
-    yield at_most(f"turn in {TURNING} s, released at rest at 0.98 beta", returns, 0.0, "mrad")
-    yield at_least(f"turn in {TURNING} s, released at rest at 1.02 beta", falls, 0.0, "mrad")
-    yield at_least("size of the restoring moment, -M_R of Eq. 13, at 0.98 beta", -before, 0.0, "kNm")
-    yield at_most("size of the restoring moment, -M_R of Eq. 13, at 1.02 beta", -beyond, 0.0, "kNm")
+    yield at_most(
+        f"turn in {TURNING} s, released at rest at 0.98 of the slenderness angle", returns, 0.0, "mrad"
+    )
+    yield at_least(
+        f"turn in {TURNING} s, released at rest at 1.02 of the slenderness angle", falls, 0.0, "mrad"
+    )
+    yield at_least(
+        "size of the restoring moment, -M_R of Eq. 13, at 0.98 of the slenderness angle", -before, 0.0, "kNm"
+    )
+    yield at_most(
+        "size of the restoring moment, -M_R of Eq. 13, at 1.02 of the slenderness angle", -beyond, 0.0, "kNm"
+    )
     yield (
-        f"Released at rest, the stack turns by {returns:+.2f} mrad in {TURNING} s from 0.98 beta and by {falls:+.2f} "
-        "mrad from 1.02 beta. Only the sign is reversed in print: the sentence counts a restoring moment as positive, "
-        f"Eqs. 10, 13 and 15 as negative; Eq. 13 as printed is {before:+.2f} kNm at 0.98 beta and {beyond:+.2f} kNm at "
-        "1.02 beta."
+        f"Released at rest, the stack turns by {returns:+.2f} mrad in {TURNING} s from 0.98 of the slenderness angle "
+        f"and by {falls:+.2f} mrad from 1.02 of the slenderness angle. Only the sign is reversed in print: the "
+        "sentence counts a restoring moment as positive, Eqs. 10, 13 and 15 as negative; Eq. 13 as printed is "
+        f"{before:+.2f} kNm at 0.98 of the slenderness angle and {beyond:+.2f} kNm at 1.02 of the slenderness angle."
     )
     yield from cases
 

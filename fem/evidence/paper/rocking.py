@@ -52,7 +52,7 @@ def _eq_2(block: RigidBlock, share: float) -> float:
 @claim(
     "4.2, Eq. 2",
     "T = 8 sqrt(phi_0 r²/(a g)) ... a mathematical pendulum rather than a physical pendulum",
-    bounds="a point mass, rotations up to 0.1 beta",
+    bounds="a point mass, rotations up to 0.1 of the slenderness angle",
 )
 def eq_2(experiments: Experiments) -> Evidence:
     """Rigid stack released at twelve rotations; four times the time to its first impact; the exact point mass."""
@@ -65,16 +65,16 @@ def eq_2(experiments: Experiments) -> Evidence:
     )
     for share in (0.05, 0.1, 0.2, 0.5, 0.9):
         exact = 4.0 * quarter_period(point, share * block.slenderness_angle)
-        what = f"Eq. 2 over the exact period of a point mass, phi_0 = {share:g} beta"
+        what = f"Eq. 2 over the exact period of a point mass, released at {share:g} of the slenderness angle"
         yield equal(what, _eq_2(block, share) / exact, 1.0, 0.05, inside=share <= 0.1)
     for share in (0.05, 0.5, 0.9):
-        what = f"Eq. 2 over the period of the stack's run, phi_0 = {share:g} beta"
+        what = f"Eq. 2 over the period of the stack's run, released at {share:g} of the slenderness angle"
         yield equal(what, _eq_2(block, share) / periods[share], 1.0, 0.05, inside=False)
     small = _eq_2(block, RELEASES[0]) / periods[RELEASES[0]]
     yield (
-        f"At {RELEASES[0]:g} beta Eq. 2 gives {small:.3f} of the stack's period. A point mass without rotational "
-        f"inertia, which the paper remarks on, would have sqrt(3/4) = {math.sqrt(0.75):.3f} of it at small "
-        "rotation. Towards beta the period of either grows without bound, and Eq. 2 does not."
+        f"At {RELEASES[0]:g} of the slenderness angle Eq. 2 gives {small:.3f} of the stack's period. A point mass "
+        f"without rotational inertia, which the paper remarks on, would have sqrt(3/4) = {math.sqrt(0.75):.3f} of it "
+        "at small rotation. Towards the slenderness angle the period grows without bound, and Eq. 2 does not."
     )
     yield from cases
 
@@ -82,7 +82,7 @@ def eq_2(experiments: Experiments) -> Evidence:
 @claim(
     "4.2, Eq. 3",
     "T = 2 pi sqrt(4 r/(3 g)) ... seems to be a better representation for our engineering problem",
-    bounds="as the period of a hanging bar; as that of rocking near phi_0 = 0.6 beta alone",
+    bounds="as the period of a hanging bar; as that of rocking released near 0.6 of the slenderness angle alone",
 )
 def eq_3(experiments: Experiments) -> Evidence:
     """The same runs, of stack and box, against Eqs. 2 and 3."""
@@ -93,9 +93,9 @@ def eq_3(experiments: Experiments) -> Evidence:
         exact = [4.0 * quarter_period(block, share * block.slenderness_angle) for share in RELEASES]
         second = [_eq_2(block, share) for share in RELEASES]
         yield from released_ones[::3]
-        met.append(f"{float(np.interp(third, exact, RELEASES)):.2f} beta ({name})")
+        met.append(f"{float(np.interp(third, exact, RELEASES)):.2f} of the slenderness angle ({name})")
         for share in (0.1, 0.3, 0.6, 0.9):
-            what = f"{name}: Eq. 3 over the period of the run, phi_0 = {share:g} beta"
+            what = f"{name}: Eq. 3 over the period of the run, released at {share:g} of the slenderness angle"
             yield equal(what, third / periods[share], 1.0, 0.1, inside=share == 0.6)
         far_2 += [abs(math.log(two / run)) for two, run in zip(second, periods.values(), strict=True)]
         far_3 += [abs(math.log(third / run)) for run in periods.values()]
@@ -114,7 +114,7 @@ def eq_3(experiments: Experiments) -> Evidence:
     yield at_most(median, typical_3 / typical_2, 1.0, inside=False)
     yield (
         "A rocking block has no natural period: its period is zero at small rotation and grows without bound "
-        "towards beta. Eq. 3, 2 pi/p, equals the period of the exact block at "
+        "towards the slenderness angle. Eq. 3, 2 pi/p, equals the period of the exact block at "
         f"{' and '.join(met)}. The median distance of "
         f"Eq. 3 from the runs is {100.0 * typical_3:.0f} %, that of Eq. 2 {100.0 * typical_2:.0f} %."
     )
@@ -129,7 +129,7 @@ def eq_3(experiments: Experiments) -> Evidence:
     quarter = quarter_period(block, rotation)
     yield experiments.band(
         STACK.but(FREE, rotation=rotation, duration=1.5),
-        "period of the stack released at 0.5 beta over the exact block's",
+        "period of the stack released at 0.5 of the slenderness angle over the exact block's",
         "within 5 % of the exact block's",
         lambda row: abs((row["first_impact_s"] or math.inf) / quarter - 1.0) <= 0.05,
         value=lambda row: row["first_impact_s"] and row["first_impact_s"] / quarter,
@@ -139,27 +139,30 @@ def eq_3(experiments: Experiments) -> Evidence:
 @claim(
     "4.2, Eq. 4",
     "the rocking period of bodies with practical dimensions is T >= 2 s ... smaller than the plateau value",
-    bounds="rotations of 0.7 beta and more",
+    bounds="rotations of 0.7 of the slenderness angle and more",
 )
 def control_periods(experiments: Experiments) -> Evidence:
     """The same runs against 2 s, and Eq. 4 with their periods."""
     ranges = []
     for name in ("box", "stack"):
         _, released_ones, periods = _periods(experiments, name)
-        reached = next((f"{share:g} beta" for share, period in periods.items() if period >= 2.0), "none")
+        reached = next(
+            (f"{share:g} of the slenderness angle" for share, period in periods.items() if period >= 2.0),
+            "none",
+        )
         low, high = min(periods.values()), max(periods.values())
         ranges.append(f"from {low:.2f} s to {high:.2f} s ({name}; 2 s and more from {reached} on)")
         yield from released_ones[1::4]
         for share in (0.05, 0.1, 0.3, 0.5, 0.7, 0.9):
-            what = f"{name}: period of the run, phi_0 = {share:g} beta"
+            what = f"{name}: period of the run, released at {share:g} of the slenderness angle"
             yield at_least(what, periods[share], 2.0, "s", inside=share >= 0.7)
         for share in (0.1, 0.9):
-            what = f"{name}: T_C/T of Eq. 4, phi_0 = {share:g} beta"
+            what = f"{name}: T_C/T of Eq. 4, released at {share:g} of the slenderness angle"
             yield at_most(what, CONTROL_PERIOD / periods[share], 0.4, inside=share >= 0.7)
     yield (
-        f"From {RELEASES[0]:g} to {RELEASES[-1]:g} beta the period ranges {'; '.join(ranges)}. As long as it is "
-        f"shorter than T_C = {CONTROL_PERIOD:g} s the container is on the plateau. That T_C belongs to ground D of "
-        "EN 1998-1 Table 3.2, the paper's S = 1.5 to another ground."
+        f"From {RELEASES[0]:g} to {RELEASES[-1]:g} of the slenderness angle the period ranges {'; '.join(ranges)}. "
+        f"As long as it is shorter than T_C = {CONTROL_PERIOD:g} s the container is on the plateau. That T_C belongs "
+        "to ground D of EN 1998-1 Table 3.2, the paper's S = 1.5 to another ground."
     )
 
 
@@ -168,7 +171,8 @@ def control_periods(experiments: Experiments) -> Evidence:
     "semi-stable ... perturbations to the outside are divergent while perturbations to the inside are stable",
 )
 def semi_stable_orbit(experiments: Experiments) -> Evidence:
-    """Kicks at rest scanned around the analytic limit, and release beside beta; box and stack, rigid and shell."""
+    """Kicks at rest scanned around the analytic limit, and release beside the slenderness angle; box and stack, rigid
+    and shell."""
     kicked, parted, cases = [], [], []
     for name, base in BODIES.items():
         block = experiments.block(base)
@@ -183,8 +187,12 @@ def semi_stable_orbit(experiments: Experiments) -> Evidence:
             inner, outer = experiments.rows(pair)
             cases += pair
             parted += [stands(inner), not stands(outer)]
-            yield at_least(f"{name}, {kind}: released at 0.98 beta it stands", parted[-2], 1.0)
-            yield at_least(f"{name}, {kind}: released at 1.02 beta it falls", parted[-1], 1.0)
+            yield at_least(
+                f"{name}, {kind}: released at 0.98 of the slenderness angle it stands", parted[-2], 1.0
+            )
+            yield at_least(
+                f"{name}, {kind}: released at 1.02 of the slenderness angle it falls", parted[-1], 1.0
+            )
     lines = []
     for case in cases[:2]:
         history = experiments.run(case).history
@@ -192,14 +200,14 @@ def semi_stable_orbit(experiments: Experiments) -> Evidence:
         rotation, velocity = history["rotation_rad"][shown], history["angular_velocity_rad_s"][shown]
         lines.append(curve(rotation, velocity, case.what))
     yield (
-        "The orbit through rest at beta separates the motions that return from those that overturn: of "
-        f"{len(parted)} releases on either side {sum(parted)} ended so. The largest kick that "
+        "The orbit through rest at the slenderness angle separates the motions that return from those that overturn: "
+        f"of {len(parted)} releases on either side {sum(parted)} ended so. The largest kick that "
         f"returns is {' and '.join(f'{one:.4f}' for one in kicked)} of the analytic one for the rigid stack and box."
     )
     yield from cases
     yield draw_curves(
         "semi-stable-orbit",
-        "Phase portrait of the rigid stack released 2 % inside and outside of beta.",
+        "Phase portrait of the rigid stack released 2 % inside and outside of the slenderness angle.",
         "rotation [rad] | angular velocity [rad/s]",
         lines,
     )
@@ -213,7 +221,7 @@ def semi_stable_orbit(experiments: Experiments) -> Evidence:
 
 
 def _analytic_kick(block: RigidBlock) -> float:
-    """Angular velocity at rest that just brings a block to beta, p sqrt(2 (1 - cos beta)) [rad/s]."""
+    """Angular velocity at rest that just brings a block to the slenderness angle, p sqrt(2 (1 - cos beta)) [rad/s]."""
     return 2.0 * block.frequency_parameter * math.sin(0.5 * block.slenderness_angle)
 
 
@@ -293,11 +301,11 @@ def no_amplification(experiments: Experiments) -> Evidence:
     yield at_most("shell: mean of 50 ms, worst of the band", mean, 1.0, inside=False)
     yield at_most("shell: peaks of impacts, worst of the band", peak, 1.0, inside=False)
     yield (
-        f"For 95 % of the time the load on the rigid container is at most {rigid[2]:.2f} of the plateau load. Impacts "
-        f"differ: the horizontal impulse of an impact, spread over 50 ms, is up to {of_all[1]:.2f} of the plateau "
-        f"load. Its peak is up to {of_all[0]:.0f} times the plateau load, which is a property of the contact and not "
-        "of the container. A shell vibrates after an impact: for one twentieth of the time its load exceeds up to "
-        f"{usual:.2f} of the plateau load."
+        f"For 95 % of the time the load on the rigid container is at most {rigid[2]:.2f} of the plateau load. "
+        f"Impacts differ: the horizontal impulse of an impact, spread over 50 ms, is up to {of_all[1]:.2f} of the "
+        f"plateau load. Its peak is up to {of_all[0]:.0f} times the plateau load, which is a property of the contact "
+        "and not of the container. A shell vibrates after an impact: for one twentieth of the time its load exceeds "
+        f"up to {usual:.2f} of the plateau load."
     )
     yield from [case for case, _ in loads[:2]]
     yield _band(

@@ -67,15 +67,15 @@ def cylinder(experiments: Experiments) -> Evidence:
     )
     yield equal("Housner's restitution of one box, cylinder less prism", solid - prism, 0.0, 0.05)
     yield (
-        f"A slender cylinder of the same width and height has I_O/(M R²) = {ratios['cylinder']:.4f} in place of 4/3: p "
-        f"changes by {changes[0] - 1.0:+.2%}, e by {changes[1] - 1.0:+.2%}, and the largest rotation at the plateau "
-        f"value by {changes[3] - 1.0:+.2%}. This is motion in the plane. A cylinder does not stay in it: it can roll "
-        "on its rim, which no model of this program describes. The numbers are those of the exact block."
+        f"A slender cylinder of the same width and height has I_O/(M R²) = {ratios['cylinder']:.4f} in place of 4/3: "
+        f"p changes by {changes[0] - 1.0:+.2%}, e by {changes[1] - 1.0:+.2%}, and the largest rotation at the "
+        f"plateau value by {changes[3] - 1.0:+.2%}. This is motion in the plane. A cylinder does not stay in it: it "
+        "can roll on its rim, which no model of this program describes. The numbers are those of the exact block."
     )
     yield table(
         "In the plane of motion, 1.1 m wide, 4.0 m high",
-        "body | I_O/(M R²) [-] | p [1/s] | e [-] | tilts from [m/s²] | rotation/beta in 3 s at the plateau value [-] "
-        "| first-swing peak at 6.928 rad/s [m/s²]",
+        "body | I_O/(M R²) [-] | p [1/s] | e [-] | tilts from [m/s²] | rotation over slenderness angle "
+        "in 3 s at the plateau value [-] | first-swing peak at 6.928 rad/s [m/s²]",
         rows,
     )
 
@@ -136,9 +136,9 @@ def rigid_assumption(experiments: Experiments) -> Evidence:
             f"rotation ratio, shell over rigid, {mu}", ratios[k] / ratios[k - 1], 1.0, 0.1, inside=False
         )
     yield (
-        f"With mu_k = mu_s rigid block, shell and solid steel turn to {_range(ratios[3:6])} of beta, with mu_k = "
-        f"mu_s/2 to {_range(ratios[:3])}. {_CHANCE if len(set(ends[:3])) > 1 else ''}With an energy tolerance of "
-        f"1, 0.1 and 10 solid steel slides by {', '.join(f'{one:.0f}' for one in slips)} mm"
+        f"With mu_k = mu_s rigid block, shell and solid steel turn to {_range(ratios[3:6])} of the slenderness "
+        f"angle, with mu_k = mu_s/2 to {_range(ratios[:3])}. {_CHANCE if len(set(ends[:3])) > 1 else ''}With an "
+        f"energy tolerance of 1, 0.1 and 10 solid steel slides by {', '.join(f'{one:.0f}' for one in slips)} mm"
         f"{'' if reproduced else ': this slip is not reproducible'}."
     )
     yield from [*cases, *numerics]
@@ -185,9 +185,9 @@ def gaps_between_boxes(experiments: Experiments) -> Evidence:
             yield at_most(what, tension, 0.0, "kN", inside=base is STACK)
             rows.append((f"{kind}, {name}", tension, opened, slid))
     yield (
-        f"At rest the joints carry at most {max(rows[0][1], rows[1][1]):.1f} kN of tension at an edge; at the plateau "
-        f"value the bolts of the rigid stack carry {rows[2][1]:.1f} kN, those of the shell {rows[3][1]:.0f} kN. The "
-        "tension of a rocking shell is that of an impact, and depends on the contact."
+        f"At rest the joints carry at most {max(rows[0][1], rows[1][1]):.1f} kN of tension at an edge; at the "
+        f"plateau value the bolts of the rigid stack carry {rows[2][1]:.1f} kN, those of the shell {rows[3][1]:.0f} "
+        "kN. The tension of a rocking shell is that of an impact, and depends on the contact."
     )
     yield table(
         "Joints from the floor up without bolts; faces rigid, friction as on the floor",

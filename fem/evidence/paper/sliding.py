@@ -180,7 +180,7 @@ def same_amplitude(experiments: Experiments) -> Evidence:
         "The stack rotates further than with friction that holds (1.0) at "
         f"{further}, of {amplitudes.size} amplitudes each. It overturns at {np.sum(held >= 1.0)} with friction that "
         f"holds and at {np.sum(curves[PAPER_MU] >= 1.0)} with 0.4/0.2. With 0.25/0.125, below "
-        f"a/c, its largest rotation is {curves[0.25, 0.125].max():.2g} of beta."
+        f"a/c, its largest rotation is {curves[0.25, 0.125].max():.2g} of the slenderness angle."
     )
     yield draw_curves(
         "same-amplitude",

@@ -205,7 +205,7 @@ def block_on_slope() -> Findings:
         floor = sine_floor(amplitude=4.5 / OMEGA**2, angular_frequency=OMEGA)
         yield computed(
             f"{name}, mu 1, 4.5 m/s2 at {OMEGA} rad/s, slope {per_cent:g} %",
-            "rotation up to the first impact, largest difference over al",
+            "rotation up to the first impact, largest difference over the slenderness angle",
             difference_of_rotation(done, floor.on_slope(done.model.run.problem.control.downhill)),
             source="event-driven block",
             absolute=2e-3 if keys else 1e-3,

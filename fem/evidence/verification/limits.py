@@ -40,8 +40,8 @@ def rigid_container() -> Findings:
     }
     orders = Convergence("1/E [1/Pa]", errors, order=1.0, within=0.15)
     yield computed(
-        "solid stack, 20 modes, released from 0.5 al, up to the impact",
-        "rotation, largest difference from the rigid model over al, at E = 3e11 Pa; order in 1/E",
+        "solid stack, 20 modes, released at half its slenderness angle, up to the impact",
+        "rotation, largest difference from the rigid model over the slenderness angle, at E = 3e11 Pa; order in 1/E",
         source="rigid model on the same floor",
         absolute=1e-4,
         convergence=orders,
@@ -61,8 +61,8 @@ def stiff_floor() -> Findings:
         errors[1.0 / factor] = largest(difference)
     orders = Convergence("default penalty/penalty", errors, order=1.0, within=0.25)
     yield computed(
-        "rigid stack released from 0.5 al, up to the impact",
-        "rotation, largest difference from the analytic block over al, at 3 x the default penalty",
+        "rigid stack released at half its slenderness angle, up to the impact",
+        "rotation, largest difference from the analytic block over the slenderness angle, at 3 x the default penalty",
         source="event-driven block",
         absolute=1e-4,
         convergence=orders,
@@ -81,8 +81,8 @@ def many_modes() -> Findings:
     against = "1/(modes + the 4 attachment modes)"
     orders = Convergence(against, errors, order=1.0, within=0.2, at_least=True)
     yield computed(
-        "shell stack of 8 mm released from 0.5 al, through its first impact, 64 modes",
-        "rotation, largest difference from 160 modes over al; order in 1/(modes + 4)",
+        "shell stack of 8 mm released at half its slenderness angle, through its first impact, 64 modes",
+        "rotation, largest difference from 160 modes over the slenderness angle; order in 1/(modes + 4)",
         source="160 modes",
         absolute=1e-3,
         convergence=orders,
@@ -111,7 +111,10 @@ def plateau() -> Findings:
         settings = {"contact.normal_penalty_Pa_m": factor * default, "solver.duration_s": 8.0}
         done = run(STACK, harmonic(4.0 / 6.928**2, 6.928) | FRICTION | settings)
         case = f"rigid stack, peak 4.0 m/s2 at 6.928 rad/s, mu 0.4/0.2, penalty x {factor:.3g}"
-        compared, found = "largest rotation in 8 s over al", float(done.track.max_rotation) / SLENDERNESS
+        compared, found = (
+            "largest rotation in 8 s over the slenderness angle",
+            float(done.track.max_rotation) / SLENDERNESS,
+        )
         yield computed(case, compared, found, 0.399, source=source, absolute=0.01)
         compared, stands = "rocks without slip and stands (1)", done.status == "completed"
         note = f"slip {1e6 * float(done.joint.max_slip):.3g} um"
@@ -126,7 +129,7 @@ def jerk() -> Findings:
     for omega, exact, note in ((6.93, 0.2505, "the reference is for 6.93 rad/s"), (6.928, 0.25040, "")):
         found = float(run(STACK, harmonic(0.05, omega) | settings).track.max_rotation) / SLENDERNESS
         case = f"rigid stack at rest, 50 mm at {omega} rad/s from t = 0, mu 0.4/0.4"
-        compared = "largest rotation over al"
+        compared = "largest rotation over the slenderness angle"
         yield computed(case, compared, found, exact, source=PLANAR_BLOCK, relative=0.01, note=note)
 
 
@@ -154,14 +157,19 @@ def full_model() -> Findings:
     before = full.history["time_s"] < 0.69
     difference = full.history["rotation_rad"] - reduced.history["rotation_rad"]
     ratio, other = (float(done.track.restitution) for done in (full, reduced))
-    case, source = "stiff solid stack, full model, from 0.5 al", "reduced model, 20 modes"
+    case, source = (
+        "stiff solid stack, full model, released at half its slenderness angle",
+        "reduced model, 20 modes",
+    )
     impact = full.track.first_impact
     yield analytic(case, "first impact [s]", impact, 0.700737, source="quarter period, exact", relative=3e-3)
     compared = "velocity ratio at the first impact"
     yield analytic(case, compared, ratio, 0.8945, source="Housner 1963", absolute=1e-2)
     compared = "velocity ratio minus that of the reduced model"
     yield computed(case, compared, ratio - other, source=source, absolute=1e-2)
-    compared = "rotation before the impact, largest difference from the reduced model over al"
+    compared = (
+        "rotation before the impact, largest difference from the reduced model over the slenderness angle"
+    )
     yield computed(case, compared, largest(difference[before]), source=source, absolute=1e-3)
 
 
@@ -190,7 +198,7 @@ def refined_shell() -> Findings:
     for name, changes in variations.items():
         yield computed(
             f"shell stack of 8 mm, peak 4.0 m/s2 at 6.928 rad/s, mu 0.4/0.4, {name}",
-            "largest rotation in 12 s over al, the farther from the reference",
+            "largest rotation in 12 s over the slenderness angle, the farther from the reference",
             max((largest_of(change) for change in changes), key=lambda found: abs(found - exact)),
             exact,
             source="elements of 0.1 m, 100 modes, tolerance 0.1, steps of 0.2 ms",
@@ -213,7 +221,7 @@ def friction_decides() -> Findings:
     errors = {size: abs(value - exact) for size, value in found.items()}
     yield computed(
         "rigid stack, peak 10.333 m/s2 at 6 rad/s, mu 0.4/0.2",
-        "largest rotation in 20 s over al, at 3 x the default penalty",
+        "largest rotation in 20 s over the slenderness angle, at 3 x the default penalty",
         found[1.0 / 3.0],
         exact,
         source=PLANAR_BLOCK,
@@ -275,7 +283,7 @@ def full_model_through_an_impact() -> Findings:
         first, other = (float(done.track.first_impact) for done in (full, reduced))
         yield computed(case, impact, first, other, source=source, relative=1e-3)
         difference = largest(full.history["rotation_rad"] - reduced.history["rotation_rad"])
-        compared = "rotation, largest difference from the reduced model over al"
+        compared = "rotation, largest difference from the reduced model over the slenderness angle"
         yield computed(case, compared, difference, source=source, absolute=2e-3)
         difference = float(np.abs(full.history["slip_m"] - reduced.history["slip_m"]).max())
         compared = "slip, largest difference from the reduced model [m]"
@@ -288,5 +296,5 @@ def rotation(keys: Keys) -> FloatArray:
 
 
 def largest(difference: FloatArray) -> float:
-    """Largest |difference| of rotations over al."""
+    """Largest |difference| of rotations over the slenderness angle."""
     return float(np.abs(difference).max()) / SLENDERNESS

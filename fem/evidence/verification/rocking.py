@@ -38,11 +38,11 @@ def first_impacts() -> Findings:
         rotation = share * SLENDERNESS
         done = run(STACK, {"initial.rotation_rad": rotation, "solver.duration_s": 2.0})
         exact, found = quarter_period(done.block, rotation), done.track.first_impact
-        case = f"rigid stack from {share} al"
+        case = f"rigid stack released at {share} of its slenderness angle"
         yield analytic(case, "first impact [s]", found, exact, source=source, relative=3e-3)
     for name, values in MODELS.items():
         found = run(STACK, RELEASED | {"solver.duration_s": 2.0} | values).track.first_impact
-        case = f"{name} from 0.5 al"
+        case = f"{name} released at half its slenderness angle"
         yield analytic(case, "first impact [s]", found, 0.700737, source=source, relative=3e-3)
 
 
@@ -53,7 +53,11 @@ def free_decay() -> Findings:
     note = "the error of e adds up from impact to impact: 0.0003 of 0.8945 is 0.1 % of each peak"
     for name, values in MODELS.items():
         done = run(STACK, RELEASED | {"solver.duration_s": 8.0, "output.history_s": 0.001} | values)
-        found, block, case = turning_points(done.history), done.block, f"{name} from 0.5 al"
+        found, block, case = (
+            turning_points(done.history),
+            done.block,
+            f"{name} released at half its slenderness angle",
+        )
         compared = "first peak after the first impact [rad]"
         yield analytic(case, compared, found[0], 0.098783, source=source, relative=0.01)
         exact = [
@@ -74,7 +78,7 @@ def equation_of_motion() -> Findings:
         floor = sine_floor(amplitude=amplitude, angular_frequency=omega)
         yield computed(
             f"rigid stack under {factor} g tan al at {omega} rad/s, whose rotation {name}",
-            "rotation up to the first impact, largest difference over al",
+            "rotation up to the first impact, largest difference over the slenderness angle",
             difference_of_rotation(done, floor),
             source="event-driven block: theta'' = -p^2 [sin(s al - theta) + (a_g/g) cos(s al - theta)]",
             absolute=1e-3,
@@ -93,7 +97,10 @@ def tilt_statics() -> Findings:
             turned = run(STACK, tilted | pulse(-acceleration, 1.0)).history["rotation_rad"]
             speeds.append(float(turned[-1] - turned[0]))
         slope = (speeds[1] - speeds[0]) / (accelerations[1] - accelerations[0])
-        case, found = f"rigid stack held at {share} al", accelerations[0] - speeds[0] / slope
+        case, found = (
+            f"rigid stack held at {share} of its slenderness angle",
+            accelerations[0] - speeds[0] / slope,
+        )
         compared = "floor acceleration under which it neither rises nor falls [m/s2]"
         yield analytic(case, compared, found, hold, source="g tan(al - theta)", relative=2e-3)
 
@@ -105,7 +112,7 @@ def friction_at_impact() -> Findings:
     done = run(STACK, RELEASED | {"solver.duration_s": 0.9, "output.history_s": 0.001})
     impact = float(done.track.first_impact)
     along, up = (velocity_jump(done.history, name, impact) for name in ("centre_x_m", "centre_z_m"))
-    case = "rigid stack from 0.5 al, ample friction"
+    case = "rigid stack released at half its slenderness angle, ample friction"
     compared = "horizontal over vertical impulse of the first impact"
     yield analytic(case, compared, abs(along) / up, 0.2024, source=source, relative=0.01)
     for factor, slides in ((1.5, False), (0.9, True)):
@@ -115,7 +122,7 @@ def friction_at_impact() -> Findings:
         ends = np.interp([impact - 0.002, impact + 0.02], done.history["time_s"], done.history["slip_m"])
         slip = abs(float(ends[1] - ends[0]))
         yield analytic(
-            f"rigid stack from 0.5 al, friction {factor} times what an impact needs",
+            f"rigid stack released at half its slenderness angle, friction {factor} times what an impact needs",
             "slides at the impact (1) or does not (0)",
             slip > 1e-5,
             slides,
@@ -149,7 +156,9 @@ def steady_orbit() -> Findings:
     case = "event-driven needle on the symmetric orbit, ten cycles"
     source = "slender closed form, e = 0.9, w = 3, a = 3"
     yield analytic(case, "speed after an impact over al p", after, 1.302075, source=source, relative=1e-4)
-    yield analytic(case, "peak over al", abs(peak) / angle, 0.421204, source=source, relative=1e-4)
+    yield analytic(
+        case, "peak over the slenderness angle", abs(peak) / angle, 0.421204, source=source, relative=1e-4
+    )
 
     # Housner's e is 0.9 at sin^2 al = 1/15.
     width = math.tan(math.asin(math.sqrt(1.0 / 15.0))) * 4.0
@@ -171,7 +180,7 @@ def steady_orbit() -> Findings:
     late = history["time_s"] > 38.0 * cycle
     yield computed(
         "rigid block of 4 m with e = 0.9 under a = 3, w = 3, after 38 cycles",
-        "steady peak over al",
+        "steady peak over the slenderness angle",
         np.abs(history["rotation_rad"][late]).max() / angle,
         max(abs(peak.rotation) for peak in reference.peaks if peak.time > 38.0 * cycle) / angle,
         source="event-driven block",
@@ -190,7 +199,7 @@ def turning_points(history: History) -> list[float]:
 
 
 def difference_of_rotation(done: Finished, floor: FloorAcceleration) -> float:
-    """Largest difference from the event-driven block up to its first impact, over al."""
+    """Largest difference from the event-driven block up to its first impact, over the slenderness angle."""
     times = done.history["time_s"]
     initial = done.model.case.initial
     exact = simulate_rocking(

@@ -132,7 +132,7 @@ def rough_joints() -> Findings:
         loose = runs.run(runs.STACK, keys | LOOSE | {"joints.mu_static": 2.0}).history["rotation_rad"]
         yield computed(
             f"two boxes, friction 2 between, 4 m/s2 at 6.928 rad/s for {duration:g} s, {name}",
-            "rotation of the lowest box, largest difference over al",
+            "rotation of the lowest box, largest difference over the slenderness angle",
             np.abs(loose - bolted).max() / SLENDERNESS,
             source="bolted stack",
             absolute=1e-3,

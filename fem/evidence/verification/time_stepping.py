@@ -289,6 +289,7 @@ def same_rotation(
     """The row of a rotation that must equal that of a run at every sample."""
     rotation, angle = done.history["rotation_rad"], done.block.slenderness_angle
     count = min(rotation.size, other.size)
-    compared = f"rotation, largest difference over al (largest rotation {np.abs(rotation).max() / angle:.2f})"
+    largest = np.abs(rotation).max() / angle
+    compared = f"rotation, largest difference over the slenderness angle (largest rotation {largest:.2f})"
     found = np.abs(rotation[:count] - other[:count]).max() / angle
     return analytic(case, compared, found, source=source, absolute=1e-6, note=note)

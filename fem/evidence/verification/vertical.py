@@ -42,7 +42,7 @@ def another_gravity() -> Findings:
             difference = np.abs(lifted.history["rotation_rad"] - heavier.history["rotation_rad"])[until]
             yield analytic(
                 f"{name}, 4.5 m/s2 at {OMEGA} rad/s, {acceleration:+g} m/s2 upward",
-                "rotation up to the third impact, largest difference over al",
+                "rotation up to the third impact, largest difference over the slenderness angle",
                 difference.max() / heavier.block.slenderness_angle,
                 source="the same run under gravity g + a",
                 absolute=2e-3,
@@ -95,14 +95,14 @@ def block_under_both() -> Findings:
         )
         yield computed(
             case,
-            "rotation up to the first impact, largest difference over al",
+            "rotation up to the first impact, largest difference over the slenderness angle",
             difference_of_rotation(done, floor),
             source="event-driven block",
             absolute=1e-3,
         )
         yield computed(
             case,
-            f"first {peaks} peaks, largest difference over al",
+            f"first {peaks} peaks, largest difference over the slenderness angle",
             difference_of_peaks(done, floor, peaks),
             source="event-driven planar block",
             absolute=1e-2,
@@ -119,7 +119,8 @@ def third_impact(done: runs.Finished) -> float:
 
 
 def difference_of_peaks(done: runs.Finished, floor: FloorAcceleration, count: int) -> float:
-    """Largest difference of the largest |rotation| of each of the first swings from the event-driven block, over al."""
+    """Largest difference of the largest |rotation| of the first swings from the event-driven block's, over the
+    slenderness angle."""
     times, friction = done.history["time_s"], done.model.case.contact
     block = PlanarBlock(body=done.block, mu_static=friction.mu_static, mu_kinetic=friction.mu_kinetic)
     exact = simulate_planar_block(block, floor, duration=float(times[-1])).at(times).rotation
