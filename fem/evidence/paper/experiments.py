@@ -17,9 +17,9 @@ from fem.batch.container_cache import ContainerCache
 from fem.batch.runner import Row, run_cases
 from fem.case.case import Case
 from fem.evidence.paper.cases import RIGID, SHELL, PaperCase
+from fem.evidence.verification.runs import Finished
 from fem.model.model import Model, build_model
 from fem.model.support import normal_penalty
-from fem.results.history import History
 from fem.results.outcome import ROCKING, Outcome
 from fem.run.recorder import Recorder
 from fem.run.simulation import simulate
@@ -38,15 +38,6 @@ class InterruptedStudyError(Exception):
     """The user has interrupted the work."""
 
     exit_code = 4
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class CaseRun:
-    """A finished run with its history."""
-
-    model: Model
-    history: History
-    status: str  #: completed | overturned | failed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -147,7 +138,7 @@ class Experiments:
         self._containers = ContainerCache()
         self._makers: dict[str, CaseMaker] = {}
         self._rows: dict[Any, Row] = {}
-        self._runs: dict[Any, CaseRun] = {}
+        self._runs: dict[Any, Finished] = {}
         self.failed: set[Any] = set()  #: keys of the failed cases that were asked for; to be cleared
 
     def case(self, wanted: PaperCase) -> Case:
@@ -194,14 +185,14 @@ class Experiments:
         """Verdict scalars of one case; raises as `rows`."""
         return self.rows([wanted])[0]
 
-    def run(self, wanted: PaperCase, *, also_failed: bool = False) -> CaseRun:
+    def run(self, wanted: PaperCase, *, also_failed: bool = False) -> Finished:
         """The run of a case with its history; arguments and errors as for `rows`."""
         if wanted.key not in self._runs:
             model = self.model(wanted)
             recorder = Recorder(model)
             ending = simulate(model, recorder, stop=self._stop)
             self._require_going()
-            self._runs[wanted.key] = CaseRun(model=model, history=recorder.history(), status=ending.status)
+            self._runs[wanted.key] = Finished(model=model, history=recorder.history(), status=ending.status)
         run = self._runs[wanted.key]
         if run.status == "failed":
             self.failed.add(wanted.key)

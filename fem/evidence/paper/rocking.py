@@ -10,8 +10,9 @@ from fem.evidence.findings import at_least, at_most, equal
 from fem.evidence.paper.cases import BOX, FOR_MAPS, NO_SLIDING, PLATEAU, RIGID, SHELL, STACK, PaperCase
 from fem.evidence.paper.claims import Evidence, claim
 from fem.evidence.paper.dimensions import GRAVITY, HEIGHT, PLATEAU_PEAK, WIDTH
-from fem.evidence.paper.experiments import CaseRun, Experiments, VariantBand, stands, variant_result
+from fem.evidence.paper.experiments import Experiments, VariantBand, stands, variant_result
 from fem.evidence.paper.figures import curve, draw_curves
+from fem.evidence.verification.runs import Finished
 from fem.model.static_checks import period_eq2, period_eq3
 
 FREE = {"motion.kind": "none", **NO_SLIDING}
@@ -314,13 +315,13 @@ def no_amplification(experiments: Experiments) -> Evidence:
     )
 
 
-def _at_plateau(experiments: Experiments) -> list[tuple[PaperCase, CaseRun]]:
+def _at_plateau(experiments: Experiments) -> list[tuple[PaperCase, Finished]]:
     """The plateau value over deformation, contact and support, sampled closely."""
     variants = experiments.variants(PLATEAU.but(duration=10.0, interval=0.002))
     return [(case, experiments.run(case, also_failed=True)) for case in variants]
 
 
-def _band(quantity: str, found: list[tuple[PaperCase, CaseRun, float]]) -> VariantBand:
+def _band(quantity: str, found: list[tuple[PaperCase, Finished, float]]) -> VariantBand:
     """Of values that must be at most 1; nan where a run gave none."""
     members = [
         variant_result(case, run.status if math.isfinite(value) else None, value, value <= 1.0)
@@ -329,7 +330,7 @@ def _band(quantity: str, found: list[tuple[PaperCase, CaseRun, float]]) -> Varia
     return VariantBand(quantity=quantity, unit="-", criterion="at most 1", members=members)
 
 
-def _factor(run: CaseRun) -> float:
+def _factor(run: Finished) -> float:
     """Half the peak to peak of the mass centre over that of the floor, largest of the last three cycles.
 
     nan for a run that failed or overturned.
@@ -344,7 +345,7 @@ def _factor(run: CaseRun) -> float:
     return max(float(np.ptp(centre[cycle]) / np.ptp(floor[cycle])) for cycle in cycles)
 
 
-def _loads(run: CaseRun) -> tuple[float, float, float]:
+def _loads(run: Finished) -> tuple[float, float, float]:
     """Horizontal load over that of the plateau: largest, largest mean of 50 ms, and for 95 % of the time."""
     time, shear = run.history["time_s"], run.history["shear_force_N"]
     width = max(round(IMPACT / float(time[1] - time[0])), 1)
