@@ -63,10 +63,10 @@ def paper_report(folder: Path, *, signature: Signature | None = None) -> str:
                 name=f"study_{study['study']}",
                 introduction=_introduction(study),
                 sections=[
-                    sections.PageSection("How a conclusion is reached", "rule", [RULE]),
-                    sections.PageSection("Overview", "overview", [_overview(study["groups"])]),
+                    sections.section("How a conclusion is reached", "rule", RULE),
+                    sections.section("Overview", "overview", _overview(study["groups"])),
                     *(_group(group, files) for group in study["groups"]),
-                    sections.PageSection("Not checked", "untried", [_untried(study["untried"])]),
+                    sections.section("Not checked", "untried", _untried(study["untried"])),
                 ],
                 signature=signature or Signature(),
                 hash=study["program"],
@@ -128,8 +128,8 @@ def _overview(groups: Sequence[Mapping[str, Any]]) -> sections.Table:
 
 
 def _group(group: Mapping[str, Any], files: Mapping[str, str]) -> sections.PageSection:
-    claims = [sections.Group("claim", list(_claim(one, files))) for one in group["statements"]]
-    return sections.PageSection(group["title"], group["title"].lower().replace(" ", "-"), claims)
+    claims = (sections.Group("claim", list(_claim(one, files))) for one in group["statements"])
+    return sections.section(group["title"], group["title"].lower().replace(" ", "-"), *claims)
 
 
 def _conclusion(one: Entry) -> Markup:

@@ -1,8 +1,7 @@
 """The verification suite for people: lines for a terminal, and a page with every finding and convergence plots."""
 
 import math
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Iterator
 
 import numpy as np
 from markupsafe import Markup
@@ -11,7 +10,7 @@ from matplotlib.figure import Figure
 from fem.evidence import page
 from fem.evidence.findings import Convergence, Finding, Value
 from fem.evidence.suite import failures
-from fem.evidence.verification.suite import ComputedCheck, SuiteResult
+from fem.evidence.verification.suite import ComputedCheck, SuiteResult, Topic
 from fem.figures.style import house_style, svg_of
 from fem.html import sections
 from fem.html.page import Page, html_of, svg_element
@@ -41,8 +40,11 @@ def lines_of(result: SuiteResult) -> list[str]:
     """The findings for a terminal, one line each, and the number of failures."""
     verdict = "all pass" if result.failures == 0 else f"{result.failures} FAIL"
     groups = [
-        (topic.upper().ljust(page.WIDE) + page.HEADING, [line for check in checks for line in _lines(check)])
-        for topic, checks in result.topics.items()
+        (
+            one.name.upper().ljust(page.WIDE) + page.HEADING,
+            [line for check in one.checks for line in _lines(check)],
+        )
+        for one in result.topics
     ]
     return page.table_lines(groups, f"{result.count} rows in {result.seconds:.0f} s: {verdict}")
 
@@ -57,7 +59,6 @@ def page_of(result: SuiteResult) -> str:
     failed, count = result.failures, result.count
     sentence = f"{failed} of {count} rows fail." if failed else f"All {count} rows pass."
     extent = "Quick checks: the slowest checks are left out" if result.quick else "All checks"
-    topics = [Topic(topic, checks) for topic, checks in result.topics.items()]
     return html_of(
         Page(
             kind="Verification",
@@ -71,46 +72,34 @@ def page_of(result: SuiteResult) -> str:
                 INTRODUCTION,
                 sections.Note(SYMBOLS),
                 sections.table_of(
-                    "overview", OVERVIEW, topics, row_look=lambda one: page.look_of(*one.findings)
+                    "overview", OVERVIEW, result.topics, row_look=lambda one: page.look_of(*one.findings)
                 ),
-                *(topic.section for topic in topics),
+                *map(_section, result.topics),
             ],
         )
     )
 
 
-class Topic(NamedTuple):
-    """The checks of a topic."""
+def _section(topic: Topic) -> sections.PageSection:
+    """All findings, and the plots of convergences."""
+    rows = [row for check in topic.checks for row in _rows(check)]
+    plots = [
+        sections.Figure(convergence_plot(convergence, f"{topic.name}-{k}"), "", caption=typeset(name))
+        for k, (name, convergence) in enumerate(_convergences(topic))
+    ]
+    table = sections.Table(f"rows of {topic.name}", HEAD, rows, look="checks")
+    return sections.section(topic.name, topic.name, table, sections.Group("plots", plots))
 
-    name: str
-    checks: Sequence[ComputedCheck]
 
-    @property
-    def findings(self) -> list[Finding]:
-        """Those of all its checks."""
-        return [finding for check in self.checks for finding in check.findings]
+def _convergences(topic: Topic) -> list[tuple[str, Convergence]]:
+    """Names and orders of the findings that have one."""
+    return [(one.name, one.convergence) for one in topic.findings if one.convergence is not None]
 
-    @property
-    def largest_use(self) -> str:
-        """The largest error over its tolerance."""
-        used = [finding.error / finding.tolerance for finding in self.findings if finding.tolerance]
-        return f"{max(used):.2f}" if used and math.isfinite(max(used)) else ABSENT
 
-    @property
-    def convergences(self) -> list[tuple[str, Convergence]]:
-        """Names and orders of the findings that have one."""
-        return [(one.name, one.convergence) for one in self.findings if one.convergence is not None]
-
-    @property
-    def section(self) -> sections.PageSection:
-        """All findings, and the plots of convergences."""
-        rows = [row for check in self.checks for row in _rows(check)]
-        plots = [
-            sections.Figure(convergence_plot(convergence, f"{self.name}-{k}"), "", caption=typeset(name))
-            for k, (name, convergence) in enumerate(self.convergences)
-        ]
-        table = sections.Table(f"rows of {self.name}", HEAD, rows, look="checks")
-        return sections.PageSection(self.name, self.name, [table, sections.Group("plots", plots)])
+def _largest_use(topic: Topic) -> str:
+    """The largest error over its tolerance."""
+    used = [finding.error / finding.tolerance for finding in topic.findings if finding.tolerance]
+    return f"{max(used):.2f}" if used and math.isfinite(max(used)) else ABSENT
 
 
 OVERVIEW = [
@@ -118,8 +107,8 @@ OVERVIEW = [
     sections.Column("checks", lambda one: str(len(one.checks)), NUMBER),
     sections.Column("rows", lambda one: str(len(one.findings)), NUMBER),
     sections.Column("failed", lambda one: str(failures(one.findings)), NUMBER),
-    sections.Column("error / tolerance", lambda one: one.largest_use, NUMBER),
-    sections.Column("orders", lambda one: str(len(one.convergences) or ABSENT), NUMBER),
+    sections.Column("error / tolerance", _largest_use, NUMBER),
+    sections.Column("orders", lambda one: str(len(_convergences(one)) or ABSENT), NUMBER),
 ]
 COLUMNS = [
     sections.Column[Finding]("value", lambda one: _number(one.value), NUMBER),

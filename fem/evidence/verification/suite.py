@@ -7,7 +7,9 @@ import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from itertools import groupby
+from operator import attrgetter
+from typing import Any, NamedTuple
 
 from fem.case.validation import did_you_mean
 from fem.evidence.findings import Finding, analytic
@@ -75,6 +77,18 @@ class ComputedCheck:
         return {"room": self.topic, "topic": self.topic, "check": self.title}
 
 
+class Topic(NamedTuple):
+    """The computed checks of a topic."""
+
+    name: str
+    checks: Sequence[ComputedCheck]
+
+    @property
+    def findings(self) -> list[Finding]:
+        """Those of all its checks."""
+        return [finding for check in self.checks for finding in check.findings]
+
+
 @dataclass(frozen=True, kw_only=True)
 class SuiteResult:
     """The computed checks."""
@@ -89,12 +103,9 @@ class SuiteResult:
         return (finding for check in self.checks for finding in check.findings)
 
     @property
-    def topics(self) -> dict[str, list[ComputedCheck]]:
+    def topics(self) -> list[Topic]:
         """The checks of each topic, in order."""
-        topics: dict[str, list[ComputedCheck]] = {}
-        for check in self.checks:
-            topics.setdefault(check.topic, []).append(check)
-        return topics
+        return [Topic(name, list(checks)) for name, checks in groupby(self.checks, attrgetter("topic"))]
 
     @property
     def failures(self) -> int:
