@@ -15,7 +15,7 @@ def floor_rows(floor: FloorNumbers | None) -> list[tuple[str, str]]:
     if floor.slope_percent:
         side = "right (+x)" if floor.slope_percent > 0.0 else "left (-x)"
         rows.append(("slope", f"{abs(floor.slope_percent):g} %, it falls to the {side}"))
-    rows.append(("a hit", _hit(floor)))
+    rows.append(("one impact", _hit(floor)))
     return [(name, value) for name, value in rows if value]
 
 
@@ -47,8 +47,8 @@ def _springs(floor: FloorNumbers) -> str:
         return ""
     patch = " x ".join(f"{side:g}" for side in floor.corner_patch_m)
     return (
-        f"{patch} m: {_in_units(stiffness, ('kN/mm', 1e-6))}, bounces at {_in_units(bounces, ('Hz', 1.0))}, sinks in "
-        f"by {_in_units(sinks, ('mm', 1e3), ('um', 1e6))} at rest"
+        f"{patch} m: {_in_units(stiffness, ('kN/mm', 1e-6))}, contact frequency {_in_units(bounces, ('Hz', 1.0))}, "
+        f"sinks in by {_in_units(sinks, ('mm', 1e3), ('um', 1e6))} at rest"
     )
 
 

@@ -33,10 +33,10 @@ def test_check_says_what_a_slab_amounts_to(capsys):
     # 31 GPa under 8 mm x 1.1 m is 8.1e9 N/m by an estimate apart from the program, 10 t on two of them 203 Hz.
     for words in (
         "slab concrete C25/30: E = 31 GPa, nu = 0.2, strength 50 MPa",
-        "corner 0.008 x 1.1 m: 8142 kN/mm, bounces at 203.1 Hz, sinks in by 6.024 um at rest",
+        "corner 0.008 x 1.1 m: 8142 kN/mm, contact frequency 203.1 Hz, sinks in by 6.024 um at rest",
         "crushes at 440 kN a corner, 4.5 times the weight; the wall yields at 2068 kN",
         "slope 2 %, it falls to the right (+x)",
-        "a hit back from 0.2 of the slenderness angle: 0.33 m/s, 510 J crush 1.2 mm",
+        "one impact back from 0.2 of the slenderness angle: 0.33 m/s, 510 J crush 1.2 mm",
         "contact bounces at 203.1 Hz",
     ):
         assert words in page
@@ -48,7 +48,7 @@ def test_the_side_that_gives_way_first_is_named():
         "where the wall yields; the floor bears 1000 kN"
         in rows("floor.corner_patch_m=[0.1, 0.2]")["crushes at"]
     )
-    hit = rows("floor.preset=rubber mat", "floor.corner_patch_m=[0.2, 1.1]")["a hit"]
+    hit = rows("floor.preset=rubber mat", "floor.corner_patch_m=[0.2, 1.1]")["one impact"]
     assert hit.endswith("which crushes nothing")
 
 

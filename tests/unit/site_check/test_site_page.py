@@ -178,5 +178,7 @@ def test_the_page_works_in_a_browser_on_a_desk_on_a_telephone_and_on_paper(folde
             assert [browser.errors, len(browser.requests)] == [[], 1]
             assert browser.evaluate("document.documentElement.scrollWidth") <= width
             assert browser.evaluate(FAINT) == []
+            clauses = "[...document.querySelectorAll('td.note')].map((cell) => cell.clientWidth)"
+            assert min(browser.evaluate(clauses)) >= 100  # no column of single letters
         paper = browser.pdf()
         assert re.search(rb"/MediaBox ?\[0 0 59[45][.\d]* 84[12][.\d]*\]", paper)
