@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 
 from fem.assessment.code_note import code_note
+from fem.assessment.floor_words import floor_rows
 from fem.assessment.loose_boxes import largest_joint_slip
 from fem.assessment.ranges import (
     largest_ratio,
@@ -220,7 +221,8 @@ def case_section(view: RunView) -> html.PageSection:
         - static.downhill,
         peak_vertical=static.peak_vertical_acceleration,
     )
-    asked = html.Pairs(asked_rows(view.case), look="asked")
+    floor = [(name, typeset(value)) for name, value in floor_rows(view.result.floor)]
+    asked = html.Pairs([*asked_rows(view.case), *floor], look="asked")
     return html.section("The case", "asked", html.columns(html.Figure(drawn), asked))
 
 
@@ -231,7 +233,8 @@ def static_section(view: RunView) -> html.PageSection:
     note: list[str] = [f"{code} {own}" if code else own]
     if not view.brief:
         note += [" See ", html.link("the static calculation", "sheet"), " for the numbers."]
-    found = [(name, typeset(value)) for name, value in result_rows(view.result)]
+    given = dict(floor_rows(view.result.floor))
+    found = [(name, typeset(value)) for name, value in result_rows(view.result) if name not in given]
     return html.section(
         "Static rule and run",
         "static",

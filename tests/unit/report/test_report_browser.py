@@ -103,6 +103,10 @@ class TestEveryReport:
         try:
             browser.open(pages / name)
             assert browser.evaluate("document.documentElement.scrollWidth") <= 390
+            outside = (
+                "[...document.querySelectorAll('table')].filter((one) => !one.closest('.scroll')).length"
+            )
+            assert browser.evaluate(outside) == 0
         finally:
             browser.window(1280, 900)
 
