@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any, assert_never
 
 import numpy as np
@@ -78,10 +77,8 @@ def longest_run(case: Case, *motions: BaseMotion) -> float:
         return longest_time(case)
     longest = motions_end(*motions) + MOST_FREE_MOTION
     solver = case.solver.model_copy(update={"duration_s": longest})
-    names = ("motion", "vertical", "output", "container")
-    tables = {name: getattr(case, name) for name in names}
     bounds = [rule for rule in CASE_RULES if rule.place in BOUNDED]
-    if problems := broken(bounds, SimpleNamespace(**tables, solver=solver)):
+    if problems := broken(bounds, case.model_copy(update={"solver": solver})):
         raise CaseError("\n".join(problem_lines(problems)))
     return longest
 

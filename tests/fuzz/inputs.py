@@ -18,10 +18,10 @@ from pydantic.fields import FieldInfo
 from fem.case.files import CASES
 from fem.case.overrides import with_overrides
 from fem.case.quantities import Quantity
-from fem.case.rules import RANGES
 from fem.case.table import CaseTable
 from fem.case.tables import TABLES, CaseHeading
 from fem.case.toml import toml_value
+from fem.case.unknown_inputs import UNKNOWN, UnknownNumber
 from fem.case.validation import known_keys, quantity_of
 
 Tables = dict[str, Any]
@@ -151,7 +151,8 @@ def values_of_type(key: str, kind: Any, quantity: Quantity | None, now: Any) -> 
         return st.sampled_from(get_args(kind))
     if get_origin(kind) is list:
         table, _, name = key.partition(".")
-        stated = RANGES[name] if table == "uncertainty" else quantity
+        ranges = {one.name: one.quantity for one in UNKNOWN if isinstance(one, UnknownNumber)}
+        stated = ranges[name] if table == "uncertainty" else quantity
         assert stated is not None, key
         pair = st.lists(numbers(stated, None, float, None), min_size=2, max_size=2)
         return pair.map(sorted) if table == "uncertainty" else pair

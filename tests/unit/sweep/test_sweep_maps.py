@@ -8,6 +8,7 @@ from fem.batch.labels import axis_label
 from fem.figures.style import svg_of
 from fem.sweep.maps import draw_maps, sweep_map
 from fem.sweep.plan import MapChoice
+from fem.sweep.result import SweepResult
 from fem.sweep.table import SweepTable
 
 FREQUENCY = Axis(
@@ -32,7 +33,9 @@ def table_of(*axes):
         "unsure": (np.arange(count) % 3 == 0).astype(float),
         "sure": np.array(["unsure", "regime unsure", "sure"], dtype=object)[np.arange(count) % 3],
     }
-    info = {"title": "A <title> & more", "sweep": "try", "held": "with mu_k = mu_s/2"}
+    info = SweepResult(
+        sweep_hash="", axes=(), title="A <title> & more", sweep="try", held="with mu_k = mu_s/2"
+    )
     return SweepTable(info=info, axes=axes, columns=columns)
 
 

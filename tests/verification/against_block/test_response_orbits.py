@@ -12,7 +12,7 @@ from contact.reference.rigid_block import RigidBlock
 from contact.reference.rocking import simulate_rocking
 from fem.evidence.verification.runs import STACK
 from fem.model.container import discretise
-from fem.response.branches import branches_of
+from fem.response.branches import coexistences, drop_outs, jumps
 from fem.response.curve import follow_point, sweep_points
 from fem.response.model import begin_drive, carry_drive
 from fem.response.orbit import follow_periods, step_until
@@ -118,12 +118,12 @@ def test_rest_and_rocking_coexist_below_uplift_and_rest_ends_at_uplift():
     assert [point.motion == "rest" for point in up] == [bool(f < uplift) for f in frequencies]
     assert all(point.motion == "rock" for point in down)
     assert all(point.stable for point in points)
-    found = branches_of([record_of(point) for point in points])
-    (both,) = found["coexisting"]
-    assert (both["from_Hz"], both["frequencies"]) == (pytest.approx(0.85 * uplift), 2)
-    (jump,) = found["jumps"]
-    assert jump["direction"] == "up" and jump["from_Hz"] < uplift < jump["to_Hz"]
-    assert found["drop_outs"] == []
+    records = [record_of(point) for point in points]
+    (both,) = coexistences(records)
+    assert (both.from_Hz, both.frequencies) == (pytest.approx(0.85 * uplift), 2)
+    (jump,) = jumps(records)
+    assert jump.direction == "up" and jump.from_Hz < uplift < jump.to_Hz
+    assert drop_outs(records) == []
 
     # The lowest of them is an orbit of the analytic block too: put on it, the block stays.
     last = down[-1]

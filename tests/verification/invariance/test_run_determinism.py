@@ -38,11 +38,13 @@ def test_the_number_of_threads_changes_no_byte(tmp_path, overrides):
     require_same(tmp_path / "1", tmp_path / "2")
 
 
-def test_numbas_own_passes_give_the_same_bytes(tmp_path):
+@pytest.mark.slow
+def test_numbas_own_passes_give_the_same_bytes_and_are_announced(tmp_path):
     said = []
     plain = {"UNANCHORED_COMPILER": "plain", "NUMBA_OPT": "1", "NUMBA_CACHE_DIR": str(tmp_path)}
     for name, environment in (("pieces", {}), ("plain", plain)):
         words = run_command("seed_stack_plateau", tmp_path / name, *THREADED[2], "output.figures=false")
+        words.remove("-q")
         done = subprocess.run(
             [sys.executable, "-m", "fem", *words, "--no-band"],
             env=os.environ | environment,
