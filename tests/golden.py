@@ -113,7 +113,7 @@ ITEMS = (
 
 #: keys of JSON and columns of tables that are times, versions or hashes of the program
 LEFT_OUT = re.compile(
-    r"wall_s|cpu_s|stepping_cpu_s|compilation_s|versions?|.*hash|asked|request_hash|digest|program|seconds|sha256|created"
+    r"wall_s|cpu_s|stepping_cpu_s|compile_s|price_s|left_out|versions?|.*hash|asked|request_hash|digest|program|seconds|sha256|created"
 )
 #: the same in text
 CLOCK = re.compile(

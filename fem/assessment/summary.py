@@ -6,7 +6,8 @@ and is shown below it. A summary states what happened under this motion and noth
 """
 
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from rich.console import Console, RenderableType
@@ -21,7 +22,7 @@ from fem.assessment.motion_words import covered_in_words, missing_peak, motion_i
 from fem.assessment.ranges import bolt_forces, crushes, in_words, largest_ratio, largest_slip
 from fem.assessment.rule_or_run import governing
 from fem.assessment.sureness import sureness_in_words
-from fem.results.figures import FIGURES, summary_order
+from fem.results.figures import BRIEF, FIGURES, SUMMARY, Place, summary_order
 from fem.results.outcome import ROCKING, SLIDING, Outcome
 from fem.results.run_result import (
     ActionResult,
@@ -57,15 +58,37 @@ def plain_summary(result: RunResult, *, folder: Path) -> str:
         result: of the run; blocks that it did not reach may be missing.
         folder: of the run.
     """
+    return "\n".join([*_lines(_parts(result, folder)), *_files(folder)]) + "\n"
+
+
+def brief_summary(result: RunResult, *, folder: Path) -> str:
+    """What the terminal shows after a run: verdict, ranges, the static rule of its own motion, where the rest is."""
+    lines = _lines(_brief_parts(result, folder))
+    count = len(result.warnings or ())
+    noted = f", with {count} warning{'s' * (count > 1)}" if count else ""
+    return "\n".join([*lines, f"Whole summary{noted}: {folder / 'summary.txt'}", *_files(folder)]) + "\n"
+
+
+def _lines(parts: Iterator[RenderableType]) -> list[str]:
     console = Console(file=io.StringIO(), width=TEXT_WIDTH, color_system=None, highlight=False)
     with console.capture() as capture:
-        console.print(*_parts(result, folder), sep="\n")
-    lines = [line.rstrip() for line in capture.get().splitlines()]
-    return "\n".join([*lines, *_files(folder)]) + "\n"
+        console.print(*parts, sep="\n")
+    return [line.rstrip() for line in capture.get().splitlines()]
+
+
+def _brief_parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
+    # Text, never markup: titles, folders and warnings may hold anything.
+    yield Text(result.title or result.case or folder.name)
+    yield Text(f"{outcome_sentence(result)}\n")
+    verdict, motion = result.verdict or Verdict(), result.motion or MotionResult()
+    rows = [("floor motion", motion_in_words(motion)), *_figure_rows(result, BRIEF)]
+    rows.append(("outcomes of the band", _band(verdict.band)))
+    yield from _table_of_pairs("The run", [row for row in rows if row[1]])
+    if result.static is not None:
+        yield _static_table(replace(result.static, code=None, code_q1=None), verdict)
 
 
 def _parts(result: RunResult, folder: Path) -> Iterator[RenderableType]:
-    # Text, never markup: titles, folders and warnings may hold anything.
     verdict = result.verdict or Verdict()
     yield Text(result.title or result.case or folder.name)
     yield Text(f"{outcome_sentence(result)}\n")
@@ -192,7 +215,7 @@ def _table_of_pairs(title: str, rows: Sequence[tuple[str, str]]) -> Iterator[Tab
 def result_rows(result: RunResult) -> list[tuple[str, str]]:
     """Name and value of each result in reading order; results that were not reached are left out."""
     verdict, motion = result.verdict or Verdict(), result.motion or MotionResult()
-    energy, lowest = result.energy or Energy(), " of box 1" if verdict.boxes else ""
+    energy = result.energy or Energy()
     #: rows behind that of a figure
     behind = {
         "slip_travel_m": [
@@ -207,15 +230,26 @@ def result_rows(result: RunResult) -> list[tuple[str, str]]:
         ("simulated time", _simulated(verdict, result.numerics or Numerics())),
         ("states seen", ", ".join(verdict.modes)),
     ]
-    for key in summary_order():
-        name = FIGURES[key].words + (lowest if FIGURES[key].lowest else "")
-        rows += [(name, in_words(result, key)), *behind.get(key, [])]
+    rows += _figure_rows(result, SUMMARY, behind)
     rows += [
         ("bolts, largest tension and shear", bolt_forces(result)),
         ("outcomes of the band", _band(verdict.band)),
         *_rigid_rows(result.rigid_check, (result.static or StaticResult()).slenderness_angle_rad),
     ]
     return [(name, value) for name, value in rows if value]
+
+
+def _figure_rows(
+    result: RunResult, place: Place, behind: Mapping[str, list[tuple[str, str]]] | None = None
+) -> list[tuple[str, str]]:
+    """Name and value of the figures of a place, each with the rows behind it."""
+    lowest = " of box 1" if result.verdict and result.verdict.boxes else ""
+    rows = []
+    for key in summary_order():
+        if place in FIGURES[key].places:
+            name = FIGURES[key].words + (lowest if FIGURES[key].lowest else "")
+            rows += [(name, in_words(result, key)), *(behind or {}).get(key, [])]
+    return rows
 
 
 def _simulated(verdict: Verdict, numerics: Numerics) -> str:

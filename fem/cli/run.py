@@ -47,6 +47,7 @@ def run(
     force: Force = False,
     dry_run: Annotated[bool, flag("Print the plan and exit.")] = False,
     as_json: Annotated[bool, flag("Print run.json.", "--json")] = False,
+    full: Annotated[bool, flag("Print the whole summary.")] = False,
     quiet: Quiet = False,
     verbose: Annotated[bool, flag("Print the plan before the run.", "--verbose", "-v")] = False,
 ) -> int:
@@ -75,7 +76,9 @@ def run(
     if as_json:
         print(json.dumps(read_result(folder / "run.json"), indent=2))
     else:
-        print((folder / "summary.txt").read_text(encoding="utf-8"), end="")
+        brief = importlib.import_module("fem.assessment.summary").brief_summary
+        whole = (folder / "summary.txt").read_text(encoding="utf-8")
+        print(whole if full else brief(result.typed_result, folder=folder), end="")
     if result.status == "interrupted":
         print(
             f"interrupted; run the same command with --resume to continue from {folder / 'checkpoint.npz'}",

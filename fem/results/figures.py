@@ -41,9 +41,10 @@ class Place(Flag):
     BAND = auto()  #: the members of a band, and its ranges
     SUMMARY = auto()  #: a row of the summary and the page of a run
     MAP = auto()  #: the map on the page of a sweep
+    BRIEF = auto()  #: of the summary, what the terminal shows after a run
 
 
-KEY, RUNS, COLUMN, BAND, SUMMARY, MAP = Place
+KEY, RUNS, COLUMN, BAND, SUMMARY, MAP, BRIEF = Place
 TABLES, READ = RUNS | COLUMN | BAND, SUMMARY | MAP
 
 
@@ -102,19 +103,21 @@ class Figures(JsonBlock, Generic[ValueT]):
     """The figures that a run has, or a band as [low, high]; None where one was not reached or is not known."""
 
     #: largest |rotation|
-    max_rotation_rad: Annotated[ValueT | None, Shown("largest rotation", DEGREES, COLUMN | SUMMARY)] = None
+    max_rotation_rad: Annotated[
+        ValueT | None, Shown("largest rotation", DEGREES, COLUMN | SUMMARY | BRIEF)
+    ] = None
     #: largest |rotation| over the slenderness angle
     rotation_ratio: Annotated[ValueT | None, Shown("rotation ratio", RATIO, TABLES | KEY | MAP)] = None
     #: largest |slip|
     max_slip_m: Annotated[
         ValueT | None,
-        Shown("largest slip", MM, TABLES | READ | KEY, "joint.max_slip", head="slip", lowest=True),
+        Shown("largest slip", MM, TABLES | READ | BRIEF | KEY, "joint.max_slip", head="slip", lowest=True),
     ] = None
     #: at the end
     residual_slip_m: Annotated[
         ValueT | None,
         Shown(
-            *("slip at the end", MM, TABLES | READ, "joint.slip"),
+            *("slip at the end", MM, TABLES | READ | BRIEF, "joint.slip"),
             head="residual",
             map_words="slip left at the end",
             signed=True,
@@ -138,10 +141,12 @@ class Figures(JsonBlock, Generic[ValueT]):
     ] = None
     max_uplift_m: Annotated[
         ValueT | None,
-        Shown("largest uplift", MM, TABLES | READ, "track.max_uplift", head="uplift", lowest=True),
+        Shown("largest uplift", MM, TABLES | READ | BRIEF, "track.max_uplift", head="uplift", lowest=True),
     ] = None
     #: permanent, where the floor is crushed; None: it does not crush
-    max_indentation_m: Annotated[ValueT | None, Shown("indentation of the floor", MM, BAND | SUMMARY)] = None
+    max_indentation_m: Annotated[
+        ValueT | None, Shown("indentation of the floor", MM, BAND | SUMMARY | BRIEF)
+    ] = None
     impacts: Annotated[
         int | None, Shown("impacts", COUNT, COLUMN | READ, "track.impacts", below="first_uplift_s")
     ] = None
@@ -167,7 +172,7 @@ class Figures(JsonBlock, Generic[ValueT]):
     max_corner_force_N: Annotated[
         ValueT | None,
         Shown(
-            *("largest corner force", KILONEWTONS, COLUMN | BAND | READ, "track.max_corner_force"),
+            *("largest corner force", KILONEWTONS, COLUMN | BAND | READ | BRIEF, "track.max_corner_force"),
             below="max_uplift_m",
             impact=True,
             window="corner_force_window_s",

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fem.assessment.summary import outcome_sentence, plain_summary, result_rows
+from fem.assessment.summary import brief_summary, outcome_sentence, plain_summary, result_rows
 from fem.assessment.warnings import warnings_for
 from fem.case.case import Case, load_case
 from fem.model.geometry import build_container
@@ -209,6 +209,14 @@ def test_summary_says_what_to_open_with_unbroken_paths(tmp_path, name):
     assert "Warp By Vector displacement_m" in text
     for file in ("fields/run.pvd", "history.csv", "run.json"):
         assert str(folder / file) in text
+
+
+def test_the_terminal_shows_at_most_forty_lines_and_where_the_rest_is(tmp_path):
+    text = brief_summary(changed(warnings=("a", "b")), folder=tmp_path)
+    assert len(text.splitlines()) <= 40
+    assert outcome_sentence(RESULT).split(".")[0][:30] in text
+    assert "largest rotation" in text and "own peak" in text and "code, q" not in text
+    assert f"Whole summary, with 2 warnings: {tmp_path / 'summary.txt'}" in text
 
 
 def test_titles_and_warnings_are_never_read_as_markup():
