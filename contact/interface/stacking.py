@@ -52,7 +52,7 @@ def stacked(
     rotation: FloatArray = np.zeros(boxes)
     ratio: FloatArray = np.zeros(boxes)
     force, corner_force = np.zeros((n, 2)), np.zeros((CORNERS * boxes, 2))
-    weight, place = float(np.abs(load).sum()), np.zeros((n, 2))
+    weight, stiffest, place = float(np.abs(load).sum()), float(springs.max()), np.zeros((n, 2))
     force[:, 1] = weight / n
     for _ in range(MOST_ROUNDS):
         cosine, sine = np.cos(rotation), np.sin(rotation)
@@ -93,8 +93,12 @@ def stacked(
         moved = (by_rigid[:, 0] * force[:, 1, None]).T @ along
         system[m:, m + 2 * boxes :] = moved
         right[m:] = -np.column_stack([load, np.zeros(boxes)]).ravel() + moved @ ratio
+        # Equations in newtons, unknowns in multiples of the weight and of its deflection: gaps in metres beside
+        # forces in newtons have a condition of the stiffness squared, and the rounding of the solution decided.
+        rows = np.concatenate([np.full(m, stiffest), np.ones(3 * boxes)]) / weight
+        units = np.concatenate([np.full(m, weight), np.full(2 * boxes, weight / stiffest), np.ones(boxes)])
         try:
-            solution = np.linalg.solve(system, right)
+            solution = units * np.linalg.solve(rows[:, None] * system * units, rows * right)
         except np.linalg.LinAlgError:
             break
         normal = np.zeros(n)
@@ -109,7 +113,7 @@ def stacked(
         wrong = np.where(carrying, normal < -ROUNDING * weight, springs * gap < -ROUNDING * weight)
         carrying = carrying ^ wrong
         # Springs see the rounding of the positions.
-        rounding = max(ROUNDING * weight, ROUNDING_OF_PLACES * float(np.abs(corner).max() * springs.max()))
+        rounding = max(ROUNDING * weight, ROUNDING_OF_PLACES * float(np.abs(corner).max()) * stiffest)
         if not wrong.any() and np.abs(force - before).max() <= rounding:
             return StackedStances(
                 centre=np.column_stack([centre[:, 0], height]),
