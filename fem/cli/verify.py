@@ -16,7 +16,7 @@ FOLDER = Path("outputs") / "verify"
 
 def verify(
     *,
-    quick: Annotated[bool, flag("Leave out long checks: two minutes in all.")] = False,
+    quick: Annotated[bool, flag("Leave out long checks: half a minute once compiled, else two.")] = False,
     topic: Annotated[tuple[str, ...], flag("Only this topic; may be repeated.", "--topic", "--room")] = (),
     out: Annotated[Path, Parameter(help="Folder of verify.json and verify.html.")] = FOLDER,
     as_json: AsJson = False,

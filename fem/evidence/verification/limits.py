@@ -173,7 +173,7 @@ def full_model() -> Findings:
     yield computed(case, compared, largest(difference[before]), source=source, absolute=1e-3)
 
 
-@check("limits", "a shell refined")
+@check("limits", "a shell refined", quick=False)
 def refined_shell() -> Findings:
     """The default motion of the stack, a shell: it depends on no number of the discretisation.
 
@@ -241,7 +241,7 @@ def friction_decides() -> Findings:
     )
 
 
-@check("limits", "a start at rest")
+@check("limits", "a start at rest", quick=False)
 def start_at_rest() -> Findings:
     """Floors that find the stack at rest: it slides first, and may rock only where its slip turns round."""
     body = RigidBlock.homogeneous(width=1.1, height=4.0)

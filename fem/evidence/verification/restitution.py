@@ -137,7 +137,7 @@ def tolerances_and_steps() -> Findings:
         )
 
 
-@check("restitution", "a stated restitution")
+@check("restitution", "a stated restitution", quick=False)
 def stated() -> Findings:
     """`contact.restitution_over_housner` in free rocking, in the program and by a block on springs of its own."""
     asked = {
@@ -173,7 +173,7 @@ def stated() -> Findings:
                 )
 
 
-@check("restitution", "a bed of springs")
+@check("restitution", "a bed of springs", quick=False)
 def bed_of_springs() -> Findings:
     """A flat base keeps more than Housner's: as a rigid block on springs that shares no code, by two turning points."""
     beds: tuple[tuple[str, Keys, tuple[float, ...]], ...] = (

@@ -53,7 +53,7 @@ def linear_order() -> Findings:
         )
 
 
-@check("time", "order at large rotation")
+@check("time", "order at large rotation", quick=False)
 def large_rotation_order() -> Findings:
     """Order 2 on a body that rotates by more than a radian while strained, with a manufactured source."""
     for name in ("generalised-alpha 0.5", TRAPEZOIDAL):
@@ -111,7 +111,7 @@ def energy_closure() -> Findings:
         )
 
 
-@check("time", "spin")
+@check("time", "spin", quick=False)
 def spin() -> Findings:
     """A block thrown spinning: it keeps its angular momentum, and rotates evenly if it is stiff."""
     turn = 2.0 * math.pi / SPIN
