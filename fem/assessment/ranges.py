@@ -18,7 +18,7 @@ def in_words(result: RunResult, key: str) -> str:
         case "max_rotation_rad":
             return rotation_in_words(verdict)
         case "restitution_first":
-            return velocity_ratio(verdict, result.static or StaticResult())
+            return first_restitution(verdict, result.static or StaticResult())
         case "max_von_mises_Pa":
             return largest_stress(verdict)
     if not (words := of_band(verdict, key)):
@@ -82,11 +82,11 @@ def rotation_in_words(verdict: Verdict) -> str:
     return f"{turned}, {ratio} of the slenderness angle" if turned and ratio else ""
 
 
-def velocity_ratio(verdict: Verdict, static: StaticResult) -> str:
-    """That of the first impact, beside Housner's."""
+def first_restitution(verdict: Verdict, static: StaticResult) -> str:
+    """That of the first impact, beside Housner's; empty where none could be measured."""
     housner = static.housner_restitution
     if verdict.restitution_first is None:
-        return "-" if verdict.impacts else ""
+        return ""
     return f"{verdict.restitution_first:.3f}" + (f" (Housner {housner:.3f})" if housner is not None else "")
 
 

@@ -167,7 +167,7 @@ class Figures(JsonBlock, Generic[ValueT]):
     #: it rocked and stands again at the end
     restored: Annotated[bool | None, Shown("restored", COUNT, COLUMN)] = None
     restitution_first: Annotated[
-        ValueT | None, Shown("velocity ratio, first impact", COUNT, COLUMN | SUMMARY)
+        ValueT | None, Shown("restitution, first impact", COUNT, COLUMN | SUMMARY)
     ] = None
     max_corner_force_N: Annotated[
         ValueT | None,

@@ -329,9 +329,6 @@ def test_an_acceleration_of_an_impact_has_its_filter_and_a_former_one_its_mean()
     assert "12 m/s2, mean over 5 ms" in former and "low-pass" not in former
 
 
-def test_an_impact_without_restitution_is_a_dash():
-    rows = dict(result_rows(changed(verdict__restitution_first=None)))
-    assert rows["velocity ratio, first impact"] == "-"
-    assert "velocity ratio, first impact" not in dict(
-        result_rows(changed(verdict__restitution_first=None, verdict__impacts=0))
-    )
+def test_a_restitution_that_could_not_be_measured_has_no_row():
+    assert "restitution, first impact" in dict(result_rows(changed(verdict__restitution_first=0.9)))
+    assert "restitution, first impact" not in dict(result_rows(changed(verdict__restitution_first=None)))
