@@ -49,6 +49,9 @@ class TestEnd:
         assert {"case.toml", "resolved.toml", "run.json", "summary.txt", "history.csv"} <= {
             path.name for path in folder.iterdir()
         }
+        brief = capsys.readouterr().out
+        assert len(brief.splitlines()) <= 40 and str(folder / "summary.txt") in brief
+        assert main([*run_command("rocking", folder, *QUICK, "solver.duration_s=2"), "--full"]) == 0
         assert (folder / "summary.txt").read_text() == capsys.readouterr().out
         assert len(history_of(folder)) == 401
         assert set(result["versions"]) >= {"python", "numpy", "numba", "unanchored"}
